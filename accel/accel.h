@@ -1,0 +1,138 @@
+/* The interface of accelerators: structures that answer `nearest` and `occluded` for rays.
+ *
+ * Every accelerator returns the same hits, bit for bit (see base/ray.h for why that is possible); they differ
+ * in what it costs. One that is not exact says so (RtAccel.exact) and is judged by verdicts.
+ *
+ * Queries come in streams: arrays of rays, one of them as a special case. Each accelerator answers them by
+ * four kernels: nearest and occluded, timed and counted. The body of a traversal is written once, as an
+ * inline function with an RtTally pointer, and RT_DEFINE_KERNELS expands it twice: with the tally of the
+ * ray's kind, and with a constant NULL, of which the compiler leaves nothing. A timed kernel has no tally to
+ * count in.
+ *
+ * An accelerator is built over a scene that must outlive it, and is read only from then on. What a traversal
+ * writes to (mailboxes) lies in an RtQuery, one per thread. */
+#ifndef RT_ACCEL_ACCEL_H
+#define RT_ACCEL_ACCEL_H
+
+#include "base/param.h"
+#include "base/ray.h"
+#include "base/tally.h"
+#include "scene/scene.h"
+
+typedef struct RtAccelOps RtAccelOps;
+
+/* The first member of every accelerator's own struct. */
+typedef struct RtAccel {
+    const RtAccelOps *ops;
+    const RtScene *scene; /* borrowed */
+    bool exact;           /* bit for bit like brute; false: judged by verdicts */
+    bool counts;          /* its counts are the same on every machine and belong into counts.csv */
+    RtTally build_tally;  /* tests made while building */
+} RtAccel;
+
+/* What a structure looks like. Zero where a figure does not apply; predicted_cost is NaN where none is known.
+ */
+typedef struct RtDescription {
+    uint64_t interior;     /* inner nodes */
+    uint64_t leaves;       /* leaves, or voxels */
+    uint64_t empty_leaves; /* of them, those without an object */
+    uint64_t references;   /* entries in all lists of objects */
+    uint64_t depth;        /* of the deepest leaf, the root being 0 */
+    uint64_t bytes;        /* of the structure, without the scene */
+    double predicted_cost; /* expected cost of a random line through the box, in object tests (SAH); see the
+                              file */
+} RtDescription;
+
+/* The four kernels. rays[0..count) are valid (rt_ray_is_valid); `scratch` is the query's; answers go to
+ * hits[0..count) and blocked[0..count); tallies[RT_RAY_KIND_COUNT] are added to, by the kind of each ray. */
+typedef void RtNearestKernel(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                             RtHit *hits);
+typedef void RtOccludedKernel(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                              bool *blocked);
+typedef void RtNearestCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                              RtHit *hits, RtTally *tallies);
+typedef void RtOccludedCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                               bool *blocked, RtTally *tallies);
+
+/* One accelerator, as a const table in its own file. Optional members may be NULL. */
+struct RtAccelOps {
+    const char *name;    /* as in a spec */
+    const char *summary; /* one line */
+    const char *paper;   /* author, year, title, venue */
+    const RtParam *params;
+    size_t param_count;
+
+    /* Builds over `scene`, which is finished and may hold no object at all. values[param_count] are in range.
+     * On failure nothing is left behind. *out is owned by the caller: `destroy`. */
+    RtStatus (*build)(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+    void (*destroy)(RtAccel *accel);
+
+    RtNearestKernel *nearest;
+    RtOccludedKernel *occluded;
+    RtNearestCounted *nearest_counted;
+    RtOccludedCounted *occluded_counted;
+
+    /* Optional: bytes of scratch memory per query; it starts zeroed and 64-byte aligned. */
+    size_t (*scratch_bytes)(const RtAccel *accel);
+
+    void (*describe)(const RtAccel *accel, RtDescription *out);
+
+    /* RT_OK, or RT_MISMATCH with a message that names the first broken invariant. */
+    RtStatus (*validate)(const RtAccel *accel, RtError *error);
+
+    /* Optional: the boxes of the structure down to `depth`, one call of `draw` each; for pictures. */
+    void (*each_box)(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
+                     void *context);
+
+    /* Optional: takes recorded answers for rays[0..count), which stay where they are while the accelerator is
+     * asked about them; only `ideal` does. */
+    RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
+};
+
+/* ---- the registry ---- */
+
+/* The registered accelerators, in the order in which they are listed: brute first. */
+size_t rt_accel_count(void);
+const RtAccelOps *rt_accel_at(size_t i);
+
+/* By name; NULL and a message that suggests the nearest name if there is none. */
+const RtAccelOps *rt_accel_find(const char *name, RtError *error);
+
+/* ---- specs ---- */
+
+/* An accelerator with a value for each of its parameters. */
+typedef struct RtSpec {
+    const RtAccelOps *ops;
+    RtValue values[RT_MAX_PARAMS];
+} RtSpec;
+
+/* Parses `name[:key=value[,key=value]...]`. */
+RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
+
+/* The spec with every effective parameter, "grid:rule=woo,density=10,...", to out[0..RT_MAX_SPEC_CHARS). */
+void rt_spec_format(const RtSpec *spec, char *out);
+
+/* ---- using an accelerator ---- */
+
+/* Builds what the spec says over `scene`. Destroy with rt_accel_destroy. */
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out, RtError *error);
+RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
+void rt_accel_destroy(RtAccel *accel); /* NULL is allowed */
+
+/* The state of one thread's queries. */
+typedef struct RtQuery {
+    const RtAccel *accel;
+    void *scratch;
+} RtQuery;
+
+RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);
+void rt_query_clear(RtQuery *query);
+
+/* Nearest hits of a stream of valid rays: timed where `tallies` is NULL, else counted into
+ * tallies[RT_RAY_KIND_COUNT]. */
+void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, RtTally *tallies);
+
+/* Whether anything lies on each ray within [tmin, tmax]. */
+void rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *blocked, RtTally *tallies);
+
+#endif

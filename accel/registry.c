@@ -1,0 +1,54 @@
+/* The one list of accelerators. To add one: write its file, add a line here, add the file to CMakeLists.txt.
+ */
+#include "accel/accel.h"
+
+#include <string.h>
+
+/* X(ops) */
+#define ACCELERATORS(X) X(rt_brute_ops)
+
+#ifdef RT_WITH_EMBREE
+#define EMBREE_ACCELERATORS(X) X(rt_embree_ops)
+#else
+#define EMBREE_ACCELERATORS(X)
+#endif
+
+#define DECLARE(ops) extern const RtAccelOps ops;
+ACCELERATORS(DECLARE)
+EMBREE_ACCELERATORS(DECLARE)
+#undef DECLARE
+
+static const RtAccelOps *const registry[] = {
+#define ENTRY(ops) &ops,
+    ACCELERATORS(ENTRY) EMBREE_ACCELERATORS(ENTRY)
+#undef ENTRY
+};
+
+enum { REGISTRY_COUNT = sizeof registry / sizeof registry[0] };
+
+size_t rt_accel_count(void) {
+    return REGISTRY_COUNT;
+}
+
+const RtAccelOps *rt_accel_at(size_t i) {
+    return registry[i];
+}
+
+const RtAccelOps *rt_accel_find(const char *name, RtError *error) {
+    const char *names[REGISTRY_COUNT];
+    for (size_t i = 0; i < REGISTRY_COUNT; i++) {
+        if (strcmp(registry[i]->name, name) == 0) return registry[i];
+        names[i] = registry[i]->name;
+    }
+#ifndef RT_WITH_EMBREE
+    if (strcmp(name, "embree") == 0) {
+        rt_fail(error, RT_NOT_AVAILABLE,
+                "this raytally was built without Embree: install its package and build again");
+        return NULL;
+    }
+#endif
+    const char *near = rt_nearest_name(name, names, REGISTRY_COUNT);
+    rt_fail(error, RT_BAD_INPUT, "there is no accelerator '%s'%s%s%s; `raytally accels` lists them", name,
+            near ? ": did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return NULL;
+}

@@ -1,0 +1,40 @@
+/* Ray sets: rays of one kind recorded from one scene, to be replayed to every accelerator alike.
+ *
+ * Primary, shadow, reflection and transmission rays are those of a frame, in the order in which the frame's
+ * tiles produce them (tile after tile), whatever the number of threads. Diffuse rays start at the primary
+ * hits, cosine-distributed about the normal; random rays are chords of the scene's bounding sphere between
+ * two uniform points of it. */
+#ifndef RT_EXPERIMENTS_RAYSET_H
+#define RT_EXPERIMENTS_RAYSET_H
+
+#include "render/frame.h"
+
+typedef struct RtRaySet {
+    RtRayKind kind;
+    uint64_t count;
+    RtRay *rays;          /* [count], owned; every ray is valid */
+    uint64_t fingerprint; /* XXH3 of the rays: equal sets, equal fingerprint, on every machine */
+} RtRaySet;
+
+typedef struct RtRecording {
+    RtSampling sampling; /* of the frame */
+    uint32_t depth;      /* levels of the ray tree */
+    uint64_t seed;       /* of diffuse and random rays */
+    uint64_t random;     /* number of random rays */
+    int threads;         /* 0 = all processors; does not change the sets */
+} RtRecording;
+
+/* Fills sets[RT_RAY_KIND_COUNT], indexed by kind; a kind that the scene does not produce gets an empty set.
+ * `accel` answers the recorded rays (any exact one will do: hits are the same). Free each with
+ * rt_rayset_clear. */
+RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording, RtError *error);
+
+/* Keeps every `every`th ray, starting with the first; 1 keeps all. */
+RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t every, RtRaySet *to, RtError *error);
+
+/* At most `limit` rays, evenly spread: thins by ceil(count / limit). */
+RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, RtRaySet *to, RtError *error);
+
+void rt_rayset_clear(RtRaySet *set);
+
+#endif

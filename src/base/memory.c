@@ -1,0 +1,62 @@
+#include "base/memory.h"
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+static _Atomic uint64_t fail_countdown;
+static _Atomic int64_t live_blocks;
+
+static bool told_to_fail(void) {
+    uint64_t left = atomic_load(&fail_countdown);
+    while (left > 0) {
+        if (atomic_compare_exchange_weak(&fail_countdown, &left, left - 1)) return left == 1;
+    }
+    return false;
+}
+
+void *rt_alloc(size_t count, size_t size) {
+    if (size != 0 && count > (SIZE_MAX - RT_CACHE_LINE) / size) return NULL;
+    if (told_to_fail()) return NULL;
+    size_t bytes = count * size;
+    size_t padded = (bytes + RT_CACHE_LINE) / RT_CACHE_LINE * RT_CACHE_LINE;
+    void *block = aligned_alloc(RT_CACHE_LINE, padded);
+    if (!block) return NULL;
+    memset(block, 0, padded);
+    atomic_fetch_add(&live_blocks, 1);
+    return block;
+}
+
+void rt_free(void *block) {
+    if (!block) return;
+    atomic_fetch_sub(&live_blocks, 1);
+    free(block);
+}
+
+RtStatus rt_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
+    if (needed <= *capacity) return RT_OK;
+    if (needed > UINT32_MAX) {
+        return rt_fail(error, RT_BAD_INPUT, "more than %u elements are asked for; split the scene",
+                       UINT32_MAX);
+    }
+    uint64_t grown = (uint64_t)*capacity * 2;
+    if (grown < needed) grown = needed;
+    if (grown < 16) grown = 16;
+    if (grown > UINT32_MAX) grown = UINT32_MAX;
+    void *block = rt_alloc((size_t)grown, size);
+    if (!block) return rt_fail_memory(error, "a growing array", (size_t)grown * size);
+    if (*array) memcpy(block, *array, (size_t)*capacity * size);
+    rt_free(*array);
+    *array = block;
+    *capacity = (uint32_t)grown;
+    return RT_OK;
+}
+
+void rt_alloc_fail_at(uint64_t n) {
+    atomic_store(&fail_countdown, n);
+}
+
+int64_t rt_alloc_live(void) {
+    return atomic_load(&live_blocks);
+}

@@ -1,0 +1,30 @@
+/* Memory: one allocator for everything, so that a test can count allocations and make the nth one fail.
+ * Blocks are 64-byte aligned (a cache line, an AVX-512 register). No allocation happens while tracing. */
+#ifndef RT_BASE_MEMORY_H
+#define RT_BASE_MEMORY_H
+
+#include "base/status.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define RT_CACHE_LINE 64
+
+/* `count` elements of `size` bytes, set to zero; NULL where count * size overflows or memory is short. A
+ * count of 0 gives a valid block that may be freed. Free with rt_free. */
+void *rt_alloc(size_t count, size_t size);
+
+/* Frees a block of rt_alloc; NULL is allowed. */
+void rt_free(void *block);
+
+/* Makes room for `needed` elements in a growing array: `*array` of `*capacity` elements of `size` bytes each
+ * is replaced by a larger one with the same contents. On failure nothing changes. */
+RtStatus rt_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
+
+/* For tests: the allocation `n` calls from now fails (1 = the next); 0 switches this off. */
+void rt_alloc_fail_at(uint64_t n);
+
+/* Blocks handed out and not yet freed; a test asserts that it returns to where it was. */
+int64_t rt_alloc_live(void);
+
+#endif

@@ -1,0 +1,22 @@
+/* Work in parallel: numbered items handed out to threads, in no fixed order. Results stay deterministic
+ * because an item writes only to its own place. */
+#ifndef RT_BASE_PARALLEL_H
+#define RT_BASE_PARALLEL_H
+
+#include "base/status.h"
+
+#include <stddef.h>
+
+/* Processors this process may run on, at least 1. */
+int rt_processor_count(void);
+
+/* Calls work(context, item, thread) for each item in 0..items-1, on `threads` threads (0 = all processors) of
+ * which the caller is one; thread is 0..threads-1. A status other than RT_OK stops the handing out; the
+ * status and message of the lowest item that failed are returned. */
+typedef RtStatus (*RtWork)(void *context, size_t item, int thread, RtError *error);
+RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, RtError *error);
+
+/* The number of threads that rt_parallel_for will use for `threads` (0 = all processors). */
+int rt_thread_count(int threads);
+
+#endif

@@ -1,0 +1,170 @@
+/* Rays, hits, and the one box test that everything conservative rests on.
+ *
+ * A ray is org + t * dir for tmin <= t <= tmax; dir need not have length 1, so t is in lengths of dir. Before
+ * it is traced a ray is prepared once (rt_ray_prepare): reciprocals, signs, and a thickness.
+ *
+ * Thickness. Hit functions compute in rounded arithmetic, so a ray may be said to hit an object that it
+ * misses by a few ulps of the distance between them. A box test that is to be trusted must be wider than
+ * that: it moves the planes of the box outward by
+ *
+ *     thickness(ray, B) = 2^-20 * max over axes of max(|B.lo - org|, |B.hi - org|)          (16 half-ulps)
+ *
+ * which is done for free by using one origin for near planes and another for far planes (the idea is in Woop,
+ * Benthin & Wald 2013, "Watertight Ray/Triangle Intersection", section 3.4).
+ *
+ * Why pruning is exact. The crossings (plane - org') * inv are monotone in the plane, in float32 as in the
+ * real numbers, and thickness grows with the box. So for b inside B, with the thickness of B or of anything
+ * larger:
+ *
+ *     enter(B) <= enter(b)  and  leave(b) <= leave(B),  bit for bit.
+ *
+ * rt_box_admit makes enter(b) <= t <= leave(b) part of what a hit on an object with box b *is*. Therefore a
+ * structure that skips B only if enter(B) > leave(B) or enter(B) > t of the best hit never skips the answer,
+ * whatever the rounding of the hit function. No other epsilon is needed anywhere. */
+#ifndef RT_BASE_RAY_H
+#define RT_BASE_RAY_H
+
+#include "base/box.h"
+
+#include <float.h>
+#include <stdint.h>
+
+/* X(CONSTANT, name, meaning) */
+#define RT_RAY_KINDS(X)                                                                                      \
+    X(PRIMARY, primary, "from the eye through a sample of the image")                                        \
+    X(SHADOW, shadow, "from a surface to a light; answered by `occluded`")                                   \
+    X(REFLECTION, reflection, "mirrored at a reflective surface")                                            \
+    X(TRANSMISSION, transmission, "refracted through a transparent surface")                                 \
+    X(DIFFUSE, diffuse, "from a surface, cosine-distributed about the normal")                               \
+    X(RANDOM, random, "a random chord of the scene's bounding sphere")
+
+typedef enum RtRayKind {
+#define RT_RAY_KIND_ENUM(CONSTANT, name, meaning) RT_RAY_##CONSTANT,
+    RT_RAY_KINDS(RT_RAY_KIND_ENUM)
+#undef RT_RAY_KIND_ENUM
+        RT_RAY_KIND_COUNT
+} RtRayKind;
+
+/* Invariants (rt_ray_is_valid): org and dir finite, |org| <= RT_MAX_COORDINATE, dir not zero,
+ * 0 <= tmin <= tmax, tmin finite, tmax possibly infinite. */
+typedef struct RtRay {
+    RtVec3 org;
+    float tmin;
+    RtVec3 dir;
+    float tmax;
+    uint32_t kind;   /* RtRayKind */
+    uint32_t source; /* primary: index of the sample in the frame's sample grid; shadow: index of the light */
+} RtRay;
+
+#define RT_NO_OBJECT UINT32_MAX
+
+/* The nearest hit: the least (t, object) in that order. A miss is {INFINITY, RT_NO_OBJECT}. */
+typedef struct RtHit {
+    float t;
+    uint32_t object;
+} RtHit;
+
+#define RT_MISS ((RtHit){INFINITY, RT_NO_OBJECT})
+
+/* Coordinates of scenes and origins stay below this (about 2^59), so that products of four of them are finite
+ * in double and Embree, which drops what is above 1.8e18, sees all that we see. */
+#define RT_MAX_COORDINATE 5e17f
+
+/* A ray with what box and triangle tests need, computed once. Arrays are indexed by axis. */
+typedef struct RtPreparedRay {
+    RtVec3 org, dir;
+    float tmin, tmax;                /* tmax finite: a hit at infinity is none */
+    float inv[3];                    /* 1 / dir, possibly infinite */
+    float org_near[3], org_far[3];   /* origins moved by the thickness */
+    uint32_t negative[3];            /* 1 where dir has its sign bit set, -0 included */
+    int kx, ky, kz;                  /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
+    float shear_x, shear_y, shear_z; /* dir[kx] / dir[kz], dir[ky] / dir[kz], 1 / dir[kz] */
+} RtPreparedRay;
+
+static inline bool rt_ray_is_valid(const RtRay *ray) {
+    return rt_finite(ray->org) && rt_finite(ray->dir) && fabsf(ray->org.x) <= RT_MAX_COORDINATE &&
+           fabsf(ray->org.y) <= RT_MAX_COORDINATE && fabsf(ray->org.z) <= RT_MAX_COORDINATE &&
+           (ray->dir.x != 0 || ray->dir.y != 0 || ray->dir.z != 0) && ray->tmin >= 0 && isfinite(ray->tmin) &&
+           ray->tmin <= ray->tmax;
+}
+
+/* org + t * dir, in double. */
+static inline RtVec3d rt_ray_point(const RtRay *ray, float t) {
+    return rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), (double)t);
+}
+
+/* Does `a` come before `b` in the order that defines the nearest hit? */
+static inline bool rt_hit_before(float t, uint32_t object, RtHit best) {
+    return t < best.t || (t == best.t && object < best.object);
+}
+
+static inline float rt_thickness(RtVec3 org, const RtBox *box) {
+    float most = 0;
+    for (int a = 0; a < 3; a++) {
+        most = rt_maxf(fabsf(box->lo.at[a] - org.at[a]), most);
+        most = rt_maxf(fabsf(box->hi.at[a] - org.at[a]), most);
+    }
+    return most * 0x1p-20f;
+}
+
+/* `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness. */
+static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_box) {
+    RtPreparedRay p;
+    const float *org = ray->org.at, *dir = ray->dir.at;
+    float thickness = rt_thickness(ray->org, scene_box);
+    p.org = ray->org;
+    p.dir = ray->dir;
+    for (int a = 0; a < 3; a++) {
+        p.inv[a] = 1 / dir[a];
+        p.negative[a] = signbit(dir[a]) ? 1 : 0;
+        p.org_near[a] = p.negative[a] ? org[a] - thickness : org[a] + thickness;
+        p.org_far[a] = p.negative[a] ? org[a] + thickness : org[a] - thickness;
+    }
+    p.tmin = ray->tmin;
+    p.tmax = rt_minf(ray->tmax, FLT_MAX);
+    p.kz = rt_major_axis(ray->dir);
+    p.kx = p.kz == 2 ? 0 : p.kz + 1;
+    p.ky = p.kx == 2 ? 0 : p.kx + 1;
+    p.shear_x = p.dir.at[p.kx] * p.inv[p.kz];
+    p.shear_y = p.dir.at[p.ky] * p.inv[p.kz];
+    p.shear_z = p.inv[p.kz];
+    return p;
+}
+
+/* The slab test (Kay & Kajiya 1986). True if the thick ray meets the box for some t in [ray->tmin, tmax];
+ * then *enter is where, at least tmin. Where dir is 0, inv is infinite: the crossings are -inf or +inf, or
+ * NaN for an origin exactly on a moved plane, and NaN is passed over: such a ray counts as inside. */
+static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float tmax, float *enter) {
+    const RtVec3 planes[2] = {box->lo, box->hi};
+    float near = ray->tmin, far = tmax;
+    for (int a = 0; a < 3; a++) {
+        float first = (planes[ray->negative[a]].at[a] - ray->org_near[a]) * ray->inv[a];
+        float second = (planes[1 - ray->negative[a]].at[a] - ray->org_far[a]) * ray->inv[a];
+        near = rt_maxf(first, near);
+        far = rt_minf(second, far);
+    }
+    *enter = near;
+    return near <= far;
+}
+
+/* What makes a candidate t a hit on an object whose own box is `own`: the thick ray meets the box, t is
+ * brought into [enter, leave] (it moves by rounding only), and then lies in [tmin, tmax]. NaN is refused. */
+static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, float *t) {
+    const RtVec3 planes[2] = {own->lo, own->hi};
+    float thickness = rt_thickness(ray->org, own);
+    float near = -INFINITY, far = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        float shift = ray->negative[a] ? -thickness : thickness;
+        float first = (planes[ray->negative[a]].at[a] - (ray->org.at[a] + shift)) * ray->inv[a];
+        float second = (planes[1 - ray->negative[a]].at[a] - (ray->org.at[a] - shift)) * ray->inv[a];
+        near = rt_maxf(first, near);
+        far = rt_minf(second, far);
+    }
+    if (!(near <= far)) return false;
+    float clamped = *t < near ? near : *t > far ? far : *t;
+    if (!(clamped >= ray->tmin && clamped <= ray->tmax)) return false;
+    *t = clamped;
+    return true;
+}
+
+#endif

@@ -1,0 +1,50 @@
+/* Tallies: what tracing cost, in events that are the same on every machine. RT_TALLY_COUNTERS is the one list
+ * of counters: the struct, the sums, the CSV columns, --help and the docs all expand it.
+ *
+ * A tally belongs to one thread and one ray kind; tallies are summed at the end, so counts do not depend on
+ * the number of threads. Kernels count with RT_COUNT(tally, field, n): where the tally is a constant NULL
+ * (the timed kernels) nothing is left of it after inlining. */
+#ifndef RT_BASE_TALLY_H
+#define RT_BASE_TALLY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* X(name, meaning) */
+#define RT_TALLY_COUNTERS(X)                                                                                 \
+    X(rays, "rays traced")                                                                                   \
+    X(hits, "rays that hit an object")                                                                       \
+    X(object_tests, "exact ray-object intersection routines entered; a SIMD lane holding an object is one")  \
+    X(object_hits, "object tests that found the object within [tmin, tmax]")                                 \
+    X(extent_tests, "ray-extent tests; a SIMD lane holding an extent is one")                                \
+    X(steps, "nodes, voxels or list entries visited by a traversal")                                         \
+    X(empty_steps, "steps that met no object: empty leaves and voxels")                                      \
+    X(csg_tests, "leaf solids tested inside CSG trees")                                                      \
+    X(repeats_avoided, "object tests that a mailbox saved")                                                  \
+    X(passed_on, "rays that an overlay handed to the accelerator below it")
+
+typedef struct RtTally {
+#define RT_TALLY_FIELD(name, meaning) uint64_t name;
+    RT_TALLY_COUNTERS(RT_TALLY_FIELD)
+#undef RT_TALLY_FIELD
+} RtTally;
+
+enum { RT_TALLY_COUNTER_COUNT = sizeof(RtTally) / sizeof(uint64_t) };
+
+/* Adds `n` to a counter of `tally`, which may be NULL: then nothing is counted. */
+#define RT_COUNT(tally, counter, n)                                                                          \
+    do {                                                                                                     \
+        if (tally) (tally)->counter += (uint64_t)(n);                                                        \
+    } while (0)
+
+/* Name and one-line meaning of counter `i`, 0 <= i < RT_TALLY_COUNTER_COUNT, in the order of the struct. */
+const char *rt_tally_name(size_t i);
+const char *rt_tally_meaning(size_t i);
+
+/* Value of counter `i`. */
+uint64_t rt_tally_get(const RtTally *tally, size_t i);
+
+/* sum += part, counter by counter. */
+void rt_tally_add(RtTally *sum, const RtTally *part);
+
+#endif

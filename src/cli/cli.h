@@ -1,0 +1,36 @@
+/* The command line: one file per command, each with its own argp parser (so `raytally COMMAND --help` teaches
+ * it), and what they share. Only here is anything printed, and only main exits. */
+#ifndef RT_CLI_CLI_H
+#define RT_CLI_CLI_H
+
+#include "base/status.h"
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { RT_EXIT_OK = 0, RT_EXIT_CHECK_FAILED = 1, RT_EXIT_BAD_INPUT = 2 };
+
+typedef struct RtCommand {
+    const char *name, *arguments, *summary;
+    int (*run)(int argc, char **argv); /* argv[0] is "raytally NAME"; returns the exit code */
+} RtCommand;
+
+int rt_command_accels(int argc, char **argv);
+
+/* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
+int rt_cli_fail(const RtError *error);
+
+/* Prints one JSON document to stdout, indented, and takes the reference. */
+void rt_cli_print_json(json_t *document);
+
+/* For parsers of options: the number in `text`, lo..hi, or argp_error's exit with what would be right.
+ * `state` is argp's. */
+struct argp_state;
+int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
+                       int64_t hi);
+
+/* "WxH" */
+void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);
+
+#endif

@@ -1,0 +1,85 @@
+/* raytally accels: what the tables of the registry say. */
+#include "accel/accel.h"
+#include "cli/cli.h"
+
+#include <argp.h>
+#include <stdio.h>
+
+typedef struct Options {
+    const char *name;
+    bool json;
+} Options;
+
+static const struct argp_option options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    Options *o = state->input;
+    switch (key) {
+    case 'j': o->json = true; return 0;
+    case ARGP_KEY_ARG:
+        if (o->name) argp_error(state, "one NAME at a time");
+        o->name = argument;
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static void print_accelerator(const RtAccelOps *ops) {
+    printf("%s: %s\n  %s\n", ops->name, ops->summary, ops->paper);
+    for (size_t i = 0; i < ops->param_count; i++) {
+        const RtParam *p = &ops->params[i];
+        char range[RT_MAX_SPEC_CHARS];
+        rt_param_range(p, range, sizeof range);
+        printf("  %-12s %s\n  %-12s   default %s (%s); %s\n", p->name, p->meaning, "", p->standard, p->source,
+               range);
+    }
+    putchar('\n');
+}
+
+static json_t *accelerator_json(const RtAccelOps *ops) {
+    json_t *params = json_array();
+    for (size_t i = 0; i < ops->param_count; i++) {
+        const RtParam *p = &ops->params[i];
+        char range[RT_MAX_SPEC_CHARS];
+        rt_param_range(p, range, sizeof range);
+        json_array_append_new(params,
+                              json_pack("{s:s, s:s, s:s, s:s, s:s}", "name", p->name, "default", p->standard,
+                                        "range", range, "meaning", p->meaning, "source", p->source));
+    }
+    return json_pack("{s:s, s:s, s:s, s:o}", "name", ops->name, "summary", ops->summary, "paper", ops->paper,
+                     "params", params);
+}
+
+int rt_command_accels(int argc, char **argv) {
+    Options o = {0};
+    const struct argp argp = {
+        options,
+        parse_option,
+        "[NAME]",
+        "List the accelerators, or explain the one called NAME: its parameters with defaults "
+        "and ranges, and the paper it follows.",
+        0,
+        0,
+        0};
+    argp_parse(&argp, argc, argv, 0, 0, &o);
+    RtError error;
+    const RtAccelOps *only = o.name ? rt_accel_find(o.name, &error) : NULL;
+    if (o.name && !only) return rt_cli_fail(&error);
+    json_t *list = json_array();
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        if (only && ops != only) continue;
+        if (o.json) {
+            json_array_append_new(list, accelerator_json(ops));
+        } else {
+            print_accelerator(ops);
+        }
+    }
+    if (o.json) {
+        rt_cli_print_json(json_pack("{s:O}", "accelerators", list));
+    } else if (!only) {
+        puts("An accelerator is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in grid:density=4.");
+    }
+    json_decref(list);
+    return RT_EXIT_OK;
+}

@@ -1,0 +1,48 @@
+/* Frames: one image of a scene, traced recursively under the standard illumination model, on any accelerator.
+ *
+ * A frame is cut into tiles of RT_TILE x RT_TILE samples; a tile is the unit of work of a thread. Within a
+ * tile rays are traced level by level (all primary rays as one stream, then all shadow rays of their hits,
+ * then all reflection and transmission rays they spawned, and so on), so that an accelerator sees streams.
+ * Everything a tile computes lies in its own place, in an order that depends on the tile alone: the frame is
+ * byte-identical at any number of threads. */
+#ifndef RT_RENDER_FRAME_H
+#define RT_RENDER_FRAME_H
+
+#include "accel/accel.h"
+
+#define RT_TILE      16
+#define RT_MAX_DEPTH 64
+
+/* Called with every ray of one tile as it is traced, by any thread, but for one tile in one order: level by
+ * level, each stream as it goes to the accelerator (shadow rays to `occluded`, the others to `nearest`).
+ * `rays` is valid during the call only. */
+typedef RtStatus RtRaySink(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error);
+
+typedef struct RtFrameOptions {
+    RtSampling sampling;
+    uint32_t depth;  /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
+    int threads;     /* 0 = all processors */
+    bool counted;    /* fill tallies and the count channels; else the timed kernels run */
+    RtRaySink *sink; /* or NULL */
+    void *sink_context;
+    /* Optional: called by one thread at a time as tiles are finished. */
+    void (*progress)(void *context, size_t tiles_done, size_t tiles);
+    void *progress_context;
+} RtFrameOptions;
+
+/* Arrays of one value per sample, [rows * columns], row by row from the upper left. Owned. */
+typedef struct RtFrame {
+    RtSampling sampling;
+    RtVec3 *color;    /* linear rgb */
+    uint32_t *object; /* primary hit, RT_NO_OBJECT for none */
+    float *depth;     /* t of the primary hit (distance along the camera's axis), INFINITY for none */
+    RtTally *cost;    /* all rays of the sample's tree; NULL unless counted */
+    RtTally tallies[RT_RAY_KIND_COUNT]; /* zero unless counted */
+    double seconds;                     /* wall time of the tracing */
+} RtFrame;
+
+/* Traces the frame. The scene is the accelerator's. Free with rt_frame_clear. */
+RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error);
+void rt_frame_clear(RtFrame *frame);
+
+#endif

@@ -1,0 +1,179 @@
+#include "scene/scene.h"
+
+#include "base/memory.h"
+
+#include <assert.h>
+#include <string.h>
+#include <xxhash.h>
+
+void rt_scene_init(RtScene *scene) {
+    *scene = (RtScene){
+        .ambient = {1, 1, 1},
+        .background = {0.078f, 0.361f, 0.753f}, /* SPD's sky */
+        .camera = {.up = {0, 0, 1}, .fov = 45, .width = 512, .height = 512},
+    };
+}
+
+RtMaterial rt_default_material(void) {
+    return (RtMaterial){.name = "default",
+                        .color = {0.8f, 0.8f, 0.8f},
+                        .ambient = 0.1f,
+                        .diffuse = 0.9f,
+                        .shine = 1,
+                        .ior = 1};
+}
+
+static RtStatus check_range(const char *material, const char *what, float value, float lo, float hi,
+                            RtError *error) {
+    if (value >= lo && value <= hi) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "material '%s': %s is %g, must be %g..%g", material, what,
+                   (double)value, (double)lo, (double)hi);
+}
+
+RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error) {
+    const RtMaterial *m = material;
+    const float color_max = 1e6f;
+    RT_TRY(check_range(m->name, "the red of the colour", m->color.x, 0, color_max, error));
+    RT_TRY(check_range(m->name, "the green of the colour", m->color.y, 0, color_max, error));
+    RT_TRY(check_range(m->name, "the blue of the colour", m->color.z, 0, color_max, error));
+    RT_TRY(check_range(m->name, "ambient", m->ambient, 0, 1e6f, error));
+    RT_TRY(check_range(m->name, "diffuse", m->diffuse, 0, 1e6f, error));
+    RT_TRY(check_range(m->name, "specular", m->specular, 0, 1e6f, error));
+    RT_TRY(check_range(m->name, "shine", m->shine, 0, 1e6f, error));
+    RT_TRY(check_range(m->name, "reflection", m->reflection, 0, 1, error));
+    RT_TRY(check_range(m->name, "transmission", m->transmission, 0, 1, error));
+    RT_TRY(check_range(m->name, "ior", m->ior, 1e-3f, 1e3f, error));
+    RT_TRY(rt_reserve((void **)&scene->materials, &scene->material_capacity,
+                      (uint64_t)scene->material_count + 1, sizeof(RtMaterial), error));
+    *index = scene->material_count++;
+    scene->materials[*index] = *material;
+    return RT_OK;
+}
+
+uint32_t rt_scene_find_material(const RtScene *scene, const char *name) {
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        if (strcmp(scene->materials[i].name, name) == 0) return i;
+    }
+    return UINT32_MAX;
+}
+
+RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error) {
+    if (!rt_finite(position) || !rt_finite(intensity)) {
+        return rt_fail(error, RT_BAD_INPUT, "a light's position or intensity is not finite");
+    }
+    if (rt_maxf(fabsf(position.x), rt_maxf(fabsf(position.y), fabsf(position.z))) > RT_MAX_COORDINATE) {
+        return rt_fail(error, RT_BAD_INPUT, "a light is farther away than %g: bring it nearer",
+                       (double)RT_MAX_COORDINATE);
+    }
+    if (intensity.x < 0 || intensity.y < 0 || intensity.z < 0) {
+        return rt_fail(error, RT_BAD_INPUT, "a light's intensity is negative");
+    }
+    RT_TRY(rt_reserve((void **)&scene->lights, &scene->light_capacity, (uint64_t)scene->light_count + 1,
+                      sizeof(RtLight), error));
+    scene->lights[scene->light_count++] = (RtLight){position, intensity};
+    return RT_OK;
+}
+
+/* Room for the material of the next object, made before the object is added. */
+static RtStatus reserve_material_of(RtScene *scene, uint32_t material, RtError *error) {
+    assert(material < scene->material_count);
+    RT_TRY(rt_reserve((void **)&scene->material_of, &scene->material_of_capacity,
+                      (uint64_t)scene->geometry.object_count + 1, sizeof(uint32_t), error));
+    scene->material_of[scene->geometry.object_count] = material;
+    return RT_OK;
+}
+
+RtStatus rt_scene_add_sphere(RtScene *scene, uint32_t material, RtVec3 center, float radius, RtError *error) {
+    RT_TRY(reserve_material_of(scene, material, error));
+    return rt_geometry_add_sphere(&scene->geometry, center, radius, error);
+}
+
+RtStatus rt_scene_add_polygon(RtScene *scene, uint32_t material, const RtVec3 *vertices, uint32_t count,
+                              RtError *error) {
+    RT_TRY(reserve_material_of(scene, material, error));
+    return rt_geometry_add_polygon(&scene->geometry, vertices, count, error);
+}
+
+RtStatus rt_scene_add_triangle(RtScene *scene, uint32_t material, const RtVec3 vertices[3],
+                               const RtVec3 *normals, RtError *error) {
+    RT_TRY(reserve_material_of(scene, material, error));
+    return rt_geometry_add_triangle(&scene->geometry, vertices, normals, error);
+}
+
+RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float base_radius, RtVec3 apex,
+                           float apex_radius, RtError *error) {
+    RT_TRY(reserve_material_of(scene, material, error));
+    return rt_geometry_add_cone(&scene->geometry, base, base_radius, apex, apex_radius, error);
+}
+
+static bool same_point(RtVec3 a, RtVec3 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* From the front, a little to the right and above, far enough for the bounding sphere to fill the view. */
+static void place_camera(RtCamera *camera, const RtBox *box) {
+    RtVec3d center = {0, 0, 0};
+    double radius = 1;
+    if (!rt_box_is_empty(*box)) {
+        center = rt_widen(rt_box_center(*box));
+        radius = fmax(rt_lengthd(rt_subd(rt_widen(box->hi), center)), 1e-30);
+    }
+    RtVec3d up = rt_normalized(rt_widen(camera->up));
+    /* Two directions across `up`, whichever axis that is. */
+    RtVec3d side = fabs(up.x) < 0.5 ? rt_vec3d(1, 0, 0) : rt_vec3d(0, 1, 0);
+    RtVec3d front = rt_normalized(rt_crossd(side, up));
+    RtVec3d towards = rt_addd(rt_scaled(front, 1), rt_addd(rt_scaled(side, 0.4), rt_scaled(up, 0.3)));
+    double half_angle = (double)camera->fov * (3.14159265358979323846 / 360);
+    double distance = 1.05 * radius / sin(half_angle);
+    camera->at = rt_narrow(center);
+    camera->from = rt_narrow(rt_add_scaledd(center, rt_normalized(towards), distance));
+}
+
+RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
+    RT_TRY(rt_geometry_finish(&scene->geometry, error));
+    RtCamera *camera = &scene->camera;
+    if (same_point(camera->from, camera->at)) place_camera(camera, &scene->geometry.box);
+    if (scene->light_count == 0) {
+        RtVec3d above = rt_scaled(rt_widen(camera->up),
+                                  0.5 * rt_lengthd(rt_subd(rt_widen(camera->from), rt_widen(camera->at))));
+        RtVec3 position = rt_narrow(rt_addd(rt_widen(camera->from), above));
+        RT_TRY(rt_scene_add_light(scene, position, rt_vec3(1, 1, 1), error));
+    }
+    return RT_OK;
+}
+
+uint64_t rt_scene_fingerprint(const RtScene *scene) {
+    const RtGeometry *g = &scene->geometry;
+    XXH3_state_t *state = XXH3_createState();
+    if (!state) return 0;
+    XXH3_64bits_reset(state);
+#define ADD(array, count) XXH3_64bits_update(state, array, (size_t)(count) * sizeof *(array))
+    ADD(g->objects, g->object_count);
+    ADD(scene->material_of, g->object_count);
+    ADD(g->spheres, g->sphere_count);
+    ADD(g->triangles, g->triangle_count);
+    ADD(g->polygon_vertices, g->polygon_vertex_count);
+    for (uint32_t i = 0; i < g->polygon_count; i++) ADD(&g->polygons[i].count, 1);
+    ADD(g->cones, g->cone_count);
+    ADD(g->vertex_normals, g->vertex_normal_count);
+    for (uint32_t i = 0; i < scene->material_count; i++) { /* all but the name */
+        XXH3_64bits_update(state, &scene->materials[i].color,
+                           sizeof(RtMaterial) - offsetof(RtMaterial, color));
+    }
+    ADD(scene->lights, scene->light_count);
+    ADD(&scene->ambient, 1);
+    ADD(&scene->background, 1);
+    ADD(&scene->camera, 1);
+#undef ADD
+    uint64_t hash = XXH3_64bits_digest(state);
+    XXH3_freeState(state);
+    return hash;
+}
+
+void rt_scene_clear(RtScene *scene) {
+    rt_geometry_clear(&scene->geometry);
+    rt_free(scene->material_of);
+    rt_free(scene->materials);
+    rt_free(scene->lights);
+    *scene = (RtScene){0};
+}

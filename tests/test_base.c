@@ -1,0 +1,119 @@
+/* base/: tallies, parameters, memory, rounding, random numbers. */
+#include "testing.h"
+
+#include "base/box.h"
+#include "base/memory.h"
+#include "base/param.h"
+#include "base/random.h"
+#include "base/tally.h"
+
+#include <string.h>
+
+static void rounding_outward_brackets_the_number(void **state) {
+    (void)state;
+    double third = 1.0 / 3.0;
+    assert_true((double)rt_float_below(third) < third);
+    assert_true((double)rt_float_above(third) > third);
+    assert_true(rt_float_below(0.5) == 0.5f && rt_float_above(0.5) == 0.5f);
+}
+
+static void tallies_add_counter_by_counter(void **state) {
+    (void)state;
+    RtTally sum = {.rays = 1, .passed_on = 2}, part = {.rays = 10, .steps = 5};
+    rt_tally_add(&sum, &part);
+    assert_int_equal(sum.rays, 11);
+    assert_int_equal(sum.steps, 5);
+    assert_int_equal(sum.passed_on, 2);
+    assert_string_equal(rt_tally_name(0), "rays");
+    assert_int_equal(rt_tally_get(&sum, 0), 11);
+}
+
+static const RtParam table[] = {
+    {.name = "width",
+     .type = RT_PARAM_INT,
+     .standard = "4",
+     .lo = 1,
+     .hi = 64,
+     .meaning = "m",
+     .source = "s"},
+    {.name = "rule",
+     .type = RT_PARAM_CHOICE,
+     .standard = "woo",
+     .choices = "cubic|woo",
+     .meaning = "m",
+     .source = "s"},
+    {.name = "resolution",
+     .type = RT_PARAM_RESOLUTION,
+     .standard = "auto",
+     .lo = 1,
+     .hi = 512,
+     .meaning = "m",
+     .source = "s"},
+    {.name = "mailbox", .type = RT_PARAM_FLAG, .standard = "on", .meaning = "m", .source = "s"},
+};
+
+static void parameters_left_out_have_their_defaults(void **state) {
+    (void)state;
+    RtValue v[4];
+    RtError error;
+    assert_int_equal(rt_params_parse(table, 4, "rule=cubic,resolution=46x46x3", "it", v, &error), RT_OK);
+    char text[128];
+    rt_params_format(table, 4, v, text, sizeof text);
+    assert_string_equal(text, "width=4,rule=cubic,resolution=46x46x3,mailbox=on");
+}
+
+static void wrong_parameters_are_refused_with_what_would_be_right(void **state) {
+    (void)state;
+    const struct {
+        const char *text, *says;
+    } cases[] = {
+        {"width=0", "1..64"},           {"width=1000000000", "1..64"},
+        {"width=3.5", "whole number"},  {"wdith=3", "mean 'width'"},
+        {"width", "key=value"},         {"width=2,width=3", "twice"},
+        {"rule=grid", "cubic|woo"},     {"mailbox=yes", "on|off"},
+        {"resolution=4x4", "NXxNYxNZ"}, {"resolution=-4x4x4", "NXxNYxNZ"},
+        {"width=nan", "1..64"},         {"width=", "1..64"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtValue v[4];
+        RtError error;
+        assert_int_equal(rt_params_parse(table, 4, cases[i].text, "it", v, &error), RT_BAD_INPUT);
+        if (!strstr(error.message, cases[i].says)) fail_msg("'%s' gave: %s", cases[i].text, error.message);
+    }
+}
+
+static void the_nth_allocation_fails_when_told_to(void **state) {
+    (void)state;
+    rt_alloc_fail_at(2);
+    void *a = rt_alloc(1, 1), *b = rt_alloc(1, 1), *c = rt_alloc(1, 1);
+    assert_non_null(a);
+    assert_null(b);
+    assert_non_null(c);
+    rt_free(a);
+    rt_free(c);
+    assert_null(rt_alloc(SIZE_MAX, 2));
+}
+
+static void random_numbers_depend_on_seed_stream_and_place_alone(void **state) {
+    (void)state;
+    RtRandom a = rt_random(7, 1), b = rt_random(7, 1), c = rt_random(7, 2);
+    bool differ = false;
+    for (int i = 0; i < 9; i++) {
+        uint32_t x = rt_random_bits(&a);
+        assert_int_equal(x, rt_random_bits(&b));
+        differ |= x != rt_random_bits(&c);
+    }
+    assert_true(differ);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rounding_outward_brackets_the_number),
+        cmocka_unit_test(tallies_add_counter_by_counter),
+        cmocka_unit_test(parameters_left_out_have_their_defaults),
+        cmocka_unit_test(wrong_parameters_are_refused_with_what_would_be_right),
+        cmocka_unit_test(the_nth_allocation_fails_when_told_to),
+        cmocka_unit_test(random_numbers_depend_on_seed_stream_and_place_alone),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
