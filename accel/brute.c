@@ -1,5 +1,5 @@
 /* brute: tests every object for every ray. It has no structure and defines the answer: the least (t, id).
- * One loop per shape, each in ascending order of ids. */
+ */
 #include "accel/kernel.h"
 
 #include "base/memory.h"
@@ -23,30 +23,13 @@ static void destroy(RtAccel *accel) {
     rt_free(accel);
 }
 
-RT_KERNEL RtHit find_nearest(const Brute *self, void *scratch, const RtPreparedRay *ray, RtTally *tally) {
+RT_KERNEL void search(const Brute *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
     (void)scratch;
-    const RtGeometry *g = &self->base.scene->geometry;
-    RtHit best = RT_MISS;
-#define LOOP(CONSTANT, name, Type)                                                                           \
-    for (uint32_t i = 0; i < g->name##_count; i++) rt_test_nearest(g, g->name##_ids[i], ray, &best, tally);
-    RT_SHAPES(LOOP)
-#undef LOOP
-    return best;
+    rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
 }
 
-RT_KERNEL bool find_any(const Brute *self, void *scratch, const RtPreparedRay *ray, RtTally *tally) {
-    (void)scratch;
-    const RtGeometry *g = &self->base.scene->geometry;
-#define LOOP(CONSTANT, name, Type)                                                                           \
-    for (uint32_t i = 0; i < g->name##_count; i++) {                                                         \
-        if (rt_test_any(g, g->name##_ids[i], ray, tally)) return true;                                       \
-    }
-    RT_SHAPES(LOOP)
-#undef LOOP
-    return false;
-}
-
-RT_DEFINE_KERNELS(Brute, find_nearest, find_any)
+RT_DEFINE_KERNELS(Brute, search)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     uint32_t count = accel->scene->geometry.object_count;

@@ -69,10 +69,10 @@ static inline RtVec3 rt_box_center(RtBox a) {
     return rt_add(rt_scale(a.lo, 0.5f), rt_scale(a.hi, 0.5f));
 }
 
-/* Half the surface area; 0 for the empty box. */
-static inline float rt_box_half_area(RtBox a) {
+/* Half the surface area, in double because float32 would under- or overflow; 0 for the empty box. */
+static inline double rt_box_half_area(RtBox a) {
     if (rt_box_is_empty(a)) return 0;
-    RtVec3 s = rt_box_size(a);
+    RtVec3d s = rt_subd(rt_widen(a.hi), rt_widen(a.lo));
     return s.x * (s.y + s.z) + s.y * s.z;
 }
 
