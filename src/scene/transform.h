@@ -1,0 +1,40 @@
+/* Affine transforms in double: what places meshes and built-in scenes in a scene.
+ *
+ * A point p (a column) goes to m[.][0..2] p + m[.][3]. Transforms keep the orientation of space (determinant
+ * above 0): mirrors would turn surfaces inside out, and no function here makes one. */
+#ifndef RT_SCENE_TRANSFORM_H
+#define RT_SCENE_TRANSFORM_H
+
+#include "base/status.h"
+#include "base/vec.h"
+
+typedef struct RtTransform {
+    double m[3][4];
+} RtTransform;
+
+RtTransform rt_transform_identity(void);
+
+/* The step makers below change *transform so that it does what it did and then the new step, and refuse, with
+ * a message without a place, numbers that are not finite and what is named. */
+
+/* Scales about the origin, along each axis; refuses factors that are not above 0. */
+RtStatus rt_transform_scale(RtTransform *transform, RtVec3 factors, RtError *error);
+
+/* Turns about `axis` through the origin, counter-clockwise for one who looks against the axis; multiples of
+ * 90 degrees are exact. Refuses an axis of length 0. The sine and cosine pass through float32, which hides
+ * the last bits, in which libraries differ. */
+RtStatus rt_transform_rotate(RtTransform *transform, RtVec3 axis, double degrees, RtError *error);
+
+RtStatus rt_transform_translate(RtTransform *transform, RtVec3 by, RtError *error);
+
+/* Where a point goes, rounded to float32. */
+RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point);
+
+/* Where a normal goes (by the matrix of cofactors), of unit length; a zero vector stays zero. */
+RtVec3 rt_transform_normal(const RtTransform *transform, RtVec3 normal);
+
+/* The factor by which all lengths grow, or 0 if lengths grow differently along different directions: then a
+ * sphere would not stay a sphere. */
+double rt_transform_uniform_scale(const RtTransform *transform);
+
+#endif
