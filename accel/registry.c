@@ -5,7 +5,10 @@
 #include <string.h>
 
 /* X(ops) */
-#define ACCELERATORS(X) X(rt_brute_ops)
+#define ACCELERATORS(X)                                                                                      \
+    X(rt_brute_ops)                                                                                          \
+    X(rt_bvh_ops)                                                                                            \
+    X(rt_ideal_ops)
 
 #ifdef RT_WITH_EMBREE
 #define EMBREE_ACCELERATORS(X) X(rt_embree_ops)

@@ -72,6 +72,7 @@ typedef struct RtHit {
 
 /* A ray with what box and triangle tests need, computed once. Arrays are indexed by axis. */
 typedef struct RtPreparedRay {
+    const RtRay *original; /* what it was made from */
     RtVec3 org, dir;
     float tmin, tmax;                /* tmax finite: a hit at infinity is none */
     float inv[3];                    /* 1 / dir, possibly infinite */
@@ -112,6 +113,7 @@ static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_
     RtPreparedRay p;
     const float *org = ray->org.at, *dir = ray->dir.at;
     float thickness = rt_thickness(ray->org, scene_box);
+    p.original = ray;
     p.org = ray->org;
     p.dir = ray->dir;
     for (int a = 0; a < 3; a++) {

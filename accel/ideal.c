@@ -1,0 +1,95 @@
+/* ideal: answers from a record: one object test for a ray that hits, none for one that misses. It is the
+ * floor of every plot, what an accelerator that knew everything beforehand would still have to do.
+ *
+ * Layout: the id of the nearest object per recorded ray. A ray is recognised by its address, so that looking
+ * it up costs nothing: rays between `rays` and `rays + count` are recorded. All other rays are tested against
+ * every object, as brute does, so the answers are right for any ray. */
+#include "accel/kernel.h"
+
+#include "base/memory.h"
+
+typedef struct Ideal {
+    RtAccel base;
+    const RtRay *rays; /* borrowed; NULL until something was learned */
+    uint32_t *objects; /* [count] the nearest object, or RT_NO_OBJECT */
+    size_t count;
+} Ideal;
+
+extern const RtAccelOps rt_ideal_ops;
+
+static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+    (void)values;
+    Ideal *self = rt_alloc(1, sizeof(Ideal));
+    if (!self) return rt_fail_memory(error, "ideal", sizeof(Ideal));
+    self->base = (RtAccel){.ops = &rt_ideal_ops, .scene = scene, .exact = true, .counts = true};
+    *out = &self->base;
+    return RT_OK;
+}
+
+static void destroy(RtAccel *accel) {
+    rt_free(((Ideal *)accel)->objects);
+    rt_free(accel);
+}
+
+static RtStatus learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error) {
+    Ideal *self = (Ideal *)accel;
+    uint32_t *objects = rt_alloc(count, sizeof(uint32_t));
+    if (!objects) return rt_fail_memory(error, "the answers of ideal", count * sizeof(uint32_t));
+    for (size_t i = 0; i < count; i++) objects[i] = hits[i].object;
+    rt_free(self->objects);
+    self->rays = rays;
+    self->objects = objects;
+    self->count = count;
+    return RT_OK;
+}
+
+/* ---- queries ---- */
+
+RT_KERNEL void search(const Ideal *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
+    (void)scratch;
+    const RtGeometry *g = &self->base.scene->geometry;
+    uintptr_t offset = (uintptr_t)ray->original - (uintptr_t)self->rays;
+    if (offset >= self->count * sizeof(RtRay)) {
+        rt_test_all(g, ray, any, best, tally);
+        return;
+    }
+    uint32_t id = self->objects[offset / sizeof(RtRay)];
+    if (id != RT_NO_OBJECT) rt_test_object(g, id, ray, any, best, tally);
+}
+
+RT_DEFINE_KERNELS(Ideal, search)
+
+/* ---- describe and validate ---- */
+
+static void describe(const RtAccel *accel, RtDescription *out) {
+    const Ideal *self = (const Ideal *)accel;
+    *out = (RtDescription){.bytes = sizeof(Ideal) + self->count * sizeof(uint32_t),
+                           .predicted_cost = (double)NAN};
+}
+
+static RtStatus validate(const RtAccel *accel, RtError *error) {
+    const Ideal *self = (const Ideal *)accel;
+    for (size_t i = 0; i < self->count; i++) {
+        uint32_t id = self->objects[i];
+        if (id == RT_NO_OBJECT || id < accel->scene->geometry.object_count) continue;
+        return rt_fail(error, RT_MISMATCH, "ideal: the answer of ray %zu, %u, is no object", i, id);
+    }
+    return RT_OK;
+}
+
+const RtAccelOps rt_ideal_ops = {
+    .name = "ideal",
+    .summary =
+        "recorded answers: one test for a ray that hits, none for one that misses; the floor of every plot",
+    .paper = "none: a yardstick",
+    .build = build,
+    .destroy = destroy,
+    .nearest = nearest_timed,
+    .occluded = occluded_timed,
+    .nearest_counted = nearest_counted,
+    .occluded_counted = occluded_counted,
+    .describe = describe,
+    .validate = validate,
+    .learn = learn,
+};
