@@ -1,0 +1,179 @@
+/* grid: uniform spatial partitioning. The scene's box is cut into equal voxels, each with a list of the
+ * objects whose boxes touch it; a ray visits the voxels it passes through, in order.
+ *
+ * Papers: Fujimoto, Tanaka & Iwata 1986 (ARTS); Amanatides & Woo 1987 (the walk); Woo 1992 and Klimaszewski &
+ * Sederberg 1997 (rules of resolution); Kirk & Arvo 1991 (mailboxes).
+ *
+ * Layout and invariant: grid.h.
+ *
+ * The walk is exact because it uses the crossings of base/ray.h. On each axis the thick ray is in interval i
+ * of planes from near(i) = (plane - org_near) * inv until far(i) = (plane' - org_far) * inv; neighbours
+ * overlap, because the thick ray is in both while it crosses their plane. A voxel is visited at the moment at
+ * which the ray is in all three of its intervals. Now let a hit at t have own box b: enter(b) <= t <=
+ * leave(b). Its intervals i0..i1 on an axis cover b, so near(i0) <= t <= far(i1), and at t the ray is in one
+ * of them; on all three axes at once, so in a voxel that lists the object, entered at or before t. Stopping
+ * when the next voxel is entered beyond the best t therefore loses nothing, and no hit need be refused for
+ * lying outside the current voxel. Usually an axis has one current interval, two while the ray crosses a
+ * plane; rays in a plane of voxels, or so far away that float32 cannot tell voxels apart, have more, and
+ * visit more.
+ *
+ * Counting: an extent test for the box of the grid; a step per voxel visited. */
+#include "accel/grid/grid.h"
+#include "accel/kernel.h"
+
+#include <string.h>
+
+/* The mailbox of one thread: the number of the ray that last tested each object. */
+typedef struct Mailbox {
+    uint32_t ray;
+    uint32_t last[]; /* [object_count] */
+} Mailbox;
+
+static size_t scratch_bytes(const RtAccel *accel) {
+    const RtGrid *grid = (const RtGrid *)accel;
+    return grid->mailbox ? sizeof(Mailbox) + accel->scene->geometry.object_count * sizeof(uint32_t) : 0;
+}
+
+static void next_ray(const RtGrid *grid, Mailbox *mailbox) {
+    if (++mailbox->ray == 0) {
+        memset(mailbox->last, 0, grid->base.scene->geometry.object_count * sizeof(uint32_t));
+        mailbox->ray = 1;
+    }
+}
+
+/* One axis of the walk. Intervals are numbered along the ray: 0 is the first it can meet. */
+typedef struct Axis {
+    const float *planes;
+    uint32_t n, lo, hi; /* current intervals, lo..hi */
+    bool mirrored;      /* the ray runs against the axis */
+    float near_org, far_org, inv;
+    float enter; /* when interval hi + 1 is entered: near(hi + 1), or INFINITY beyond the last */
+    float leave; /* when interval lo is left: far(lo) */
+} Axis;
+
+RT_KERNEL float near_crossing(const Axis *axis, uint32_t i) {
+    return (axis->planes[axis->mirrored ? axis->n - i : i] - axis->near_org) * axis->inv;
+}
+
+RT_KERNEL float far_crossing(const Axis *axis, uint32_t i) {
+    return (axis->planes[axis->mirrored ? axis->n - 1 - i : i + 1] - axis->far_org) * axis->inv;
+}
+
+/* A crossing is NaN where the ray lies exactly in the moved plane: then it is in the interval, always. */
+RT_KERNEL void update_enter(Axis *axis) {
+    axis->enter = axis->hi + 1 < axis->n ? near_crossing(axis, axis->hi + 1) : INFINITY;
+}
+
+/* The intervals that the ray is in at `t`. */
+RT_KERNEL Axis start_axis(const RtGrid *grid, const RtPreparedRay *ray, int a, float t) {
+    Axis axis = {.planes = grid->planes[a],
+                 .n = grid->n[a],
+                 .mirrored = ray->negative[a],
+                 .near_org = ray->org_near[a],
+                 .far_org = ray->org_far[a],
+                 .inv = ray->inv[a]};
+    float width = axis.planes[axis.n] - axis.planes[0];
+    float at = (ray->org.at[a] + t * ray->dir.at[a] - axis.planes[0]) / width * (float)axis.n;
+    uint32_t guess = at > 0 ? (uint32_t)rt_minf(at, (float)(axis.n - 1)) : 0;
+    axis.lo = axis.mirrored ? axis.n - 1 - guess : guess;
+    while (axis.lo > 0 && !(far_crossing(&axis, axis.lo - 1) < t)) axis.lo--;
+    while (axis.lo + 1 < axis.n && far_crossing(&axis, axis.lo) < t) axis.lo++;
+    axis.hi = axis.lo;
+    while (axis.hi + 1 < axis.n && !(near_crossing(&axis, axis.hi + 1) > t)) axis.hi++;
+    axis.leave = far_crossing(&axis, axis.lo);
+    update_enter(&axis);
+    return axis;
+}
+
+/* Drops the intervals that the ray has left before `t`; false if none remains. */
+RT_KERNEL bool retire(Axis *axis, float t) {
+    while (axis->leave < t) {
+        if (axis->lo == axis->hi) return false;
+        axis->lo++;
+        axis->leave = far_crossing(axis, axis->lo);
+    }
+    return true;
+}
+
+RT_KERNEL bool visit_voxel(const RtGrid *self, Mailbox *mailbox, size_t voxel, const RtPreparedRay *ray,
+                           bool any, RtHit *best, RtTally *tally) {
+    uint32_t from = self->first[voxel], to = self->first[voxel + 1];
+    RT_COUNT(tally, steps, 1);
+    RT_COUNT(tally, empty_steps, from == to);
+    for (uint32_t i = from; i < to; i++) {
+        uint32_t id = self->ids[i];
+        if (mailbox) {
+            if (mailbox->last[id] == mailbox->ray) {
+                RT_COUNT(tally, repeats_avoided, 1);
+                continue;
+            }
+            mailbox->last[id] = mailbox->ray;
+        }
+        if (rt_test_object(&self->base.scene->geometry, id, ray, any, best, tally)) return true;
+    }
+    return false;
+}
+
+/* Visits the voxels of all current intervals, but of axis `entered` only the newest. */
+RT_KERNEL bool visit_current(const RtGrid *self, Mailbox *mailbox, const Axis axes[3], int entered,
+                             const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+    uint32_t from[3], i[3], at[3];
+    for (int a = 0; a < 3; a++) from[a] = a == entered ? axes[a].hi : axes[a].lo;
+    for (i[2] = from[2]; i[2] <= axes[2].hi; i[2]++) {
+        for (i[1] = from[1]; i[1] <= axes[1].hi; i[1]++) {
+            for (i[0] = from[0]; i[0] <= axes[0].hi; i[0]++) {
+                for (int a = 0; a < 3; a++) at[a] = axes[a].mirrored ? axes[a].n - 1 - i[a] : i[a];
+                if (visit_voxel(self, mailbox, rt_grid_voxel_at(self, at), ray, any, best, tally))
+                    return true;
+            }
+        }
+    }
+    return false;
+}
+
+RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
+    float t;
+    if (self->n[0] == 0) return;
+    RT_COUNT(tally, extent_tests, 1);
+    if (!rt_box_hit(&self->box, ray, ray->tmax, &t)) return;
+    Mailbox *mailbox = self->mailbox ? scratch : NULL;
+    if (mailbox) next_ray(self, mailbox);
+    Axis axes[3];
+    for (int a = 0; a < 3; a++) axes[a] = start_axis(self, ray, a, t);
+    int entered = -1;
+    for (;;) {
+        if (visit_current(self, mailbox, axes, entered, ray, any, best, tally)) return;
+        entered = axes[0].enter <= axes[1].enter ? (axes[0].enter <= axes[2].enter ? 0 : 2)
+                                                 : (axes[1].enter <= axes[2].enter ? 1 : 2);
+        t = axes[entered].enter;
+        /* INFINITY where the ray has no interval left to enter on any axis. */
+        if (t > rt_limit(ray, best)) return;
+        for (int a = 0; a < 3; a++) {
+            if (!retire(&axes[a], t)) return;
+        }
+        axes[entered].hi++;
+        update_enter(&axes[entered]);
+    }
+}
+
+RT_DEFINE_KERNELS(RtGrid, search)
+
+const RtAccelOps rt_grid_ops = {
+    .name = "grid",
+    .summary = "uniform spatial partitioning: equal voxels with lists of objects, walked in order",
+    .paper = "Fujimoto, Tanaka & Iwata 1986, ARTS, CG&A 6(4); Amanatides & Woo 1987, A Fast Voxel Traversal "
+             "Algorithm",
+    .params = rt_grid_params,
+    .param_count = RT_GRID_PARAM_COUNT,
+    .build = rt_grid_build,
+    .destroy = rt_grid_destroy,
+    .nearest = nearest_timed,
+    .occluded = occluded_timed,
+    .nearest_counted = nearest_counted,
+    .occluded_counted = occluded_counted,
+    .scratch_bytes = scratch_bytes,
+    .describe = rt_grid_describe,
+    .validate = rt_grid_validate,
+    .each_box = rt_grid_each_box,
+};

@@ -1,0 +1,53 @@
+/* The inside of grid: its data, shared by the files of this folder.
+ *
+ * Per axis the planes between voxels, planes[axis][0..n]; all lists in one array, `ids`, voxel after voxel, x
+ * fastest; the list of voxel v at first[v]..first[v + 1].
+ * Invariant: an object is in the list of every voxel whose closed interval of planes meets its box, on every
+ * axis.
+ */
+#ifndef RT_ACCEL_GRID_GRID_H
+#define RT_ACCEL_GRID_GRID_H
+
+#include "accel/accel.h"
+
+enum {
+    RT_GRID_RULE,
+    RT_GRID_DENSITY,
+    RT_GRID_RESOLUTION,
+    RT_GRID_MARGIN,
+    RT_GRID_MAILBOX,
+    RT_GRID_PARAM_COUNT
+};
+extern const RtParam rt_grid_params[RT_GRID_PARAM_COUNT];
+
+typedef struct RtGrid {
+    RtAccel base;
+    RtBox box;
+    uint32_t n[3];    /* voxels along each axis; 0 if there is no object */
+    float *planes[3]; /* [n[axis] + 1], ascending, parts of one block */
+    uint32_t *first;  /* [voxels + 1] */
+    uint32_t *ids;    /* [first[voxels]] */
+    bool mailbox;
+} RtGrid;
+
+extern const RtAccelOps rt_grid_ops;
+
+/* build.c */
+RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+void rt_grid_destroy(RtAccel *accel);
+
+/* survey.c */
+void rt_grid_describe(const RtAccel *accel, RtDescription *out);
+RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
+void rt_grid_each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
+                      void *context);
+
+static inline size_t rt_grid_voxel_count(const RtGrid *grid) {
+    return (size_t)grid->n[0] * grid->n[1] * grid->n[2];
+}
+
+static inline size_t rt_grid_voxel_at(const RtGrid *grid, const uint32_t at[3]) {
+    return ((size_t)at[2] * grid->n[1] + at[1]) * grid->n[0] + at[0];
+}
+
+#endif
