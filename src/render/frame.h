@@ -2,9 +2,11 @@
  *
  * A frame is cut into tiles of RT_TILE x RT_TILE samples; a tile is the unit of work of a thread. Within a
  * tile rays are traced level by level (all primary rays as one stream, then all shadow rays of their hits,
- * then all reflection and transmission rays they spawned, and so on), so that an accelerator sees streams.
- * Everything a tile computes lies in its own place, in an order that depends on the tile alone: the frame is
- * byte-identical at any number of threads. */
+ * then all reflection and transmission rays they spawned, and so on), so that an accelerator sees streams. A
+ * level of more than 1024 rays is cut into streams, each followed to the bottom before the next; shadow rays
+ * go light by light. A counted frame hands over one ray at a time, to charge each to its sample. What a tile
+ * computes lies in its own place, in an order that depends on the tile alone: the frame is byte-identical at
+ * any number of threads. */
 #ifndef RT_RENDER_FRAME_H
 #define RT_RENDER_FRAME_H
 
@@ -12,6 +14,9 @@
 
 #define RT_TILE      16
 #define RT_MAX_DEPTH 64
+
+/* A frame of more samples is refused: 8192 x 8192, which take 1.3 GB, counted 6.7 GB. */
+#define RT_MAX_FRAME_SAMPLES (UINT32_C(1) << 26)
 
 /* Called with every ray of one tile as it is traced, by any thread, but for one tile in one order: level by
  * level, each stream as it goes to the accelerator (shadow rays to `occluded`, the others to `nearest`).
@@ -41,7 +46,7 @@ typedef struct RtFrame {
     double seconds;                     /* wall time of the tracing */
 } RtFrame;
 
-/* Traces the frame. The scene is the accelerator's. Free with rt_frame_clear. */
+/* Traces the frame. The scene is the accelerator's. Free with rt_frame_clear; after a failure it is empty. */
 RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error);
 void rt_frame_clear(RtFrame *frame);
 

@@ -1,0 +1,337 @@
+/* Frames. Each thread has a worker with all the memory it will need: one buffer of rays for each level of the
+ * ray tree, and room for the answers of one stream.
+ *
+ * A level is traced in streams of at most STREAM rays; each stream is answered, shaded, its shadow rays asked
+ * light by light, and all that it spawned traced to the bottom before the next one begins. So a level never
+ * holds more than RT_MAX_SPAWN * STREAM rays, however deep the tree grows, and at the usual depths a level is
+ * a single stream. */
+#include "render/frame.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "render/illumination.h"
+
+#include <pthread.h>
+
+enum { STREAM = 1024, LEVEL = RT_MAX_SPAWN * STREAM };
+
+/* What a ray brings light to. */
+typedef struct Path {
+    uint32_t sample; /* of the frame */
+    float factor;    /* of the light it brings: the product of kr and kt on the way */
+} Path;
+
+typedef struct Level {
+    RtRay *rays; /* [LEVEL] */
+    Path *paths; /* [LEVEL] */
+    uint32_t count;
+} Level;
+
+typedef struct Job Job;
+
+typedef struct Worker {
+    Job *job;
+    RtQuery query;
+    RtTally tallies[RT_RAY_KIND_COUNT];
+    size_t tile;
+    Level *levels; /* [depth]; 0 holds the primary rays */
+
+    /* The stream in hand: its answers and surfaces. */
+    RtHit *hits;         /* [STREAM] */
+    RtSurface *surfaces; /* [STREAM], of the rays that hit, with the path of each: */
+    Path *surface_paths; /* [STREAM] */
+
+    /* Shadow rays waiting to be asked together. */
+    uint32_t shadow_count;
+    RtRay *shadow_rays;    /* [STREAM] */
+    bool *blocked;         /* [STREAM] */
+    RtVec3 *shadow_lights; /* [STREAM] what arrives unless blocked */
+    Path *shadow_paths;    /* [STREAM] */
+} Worker;
+
+struct Job {
+    RtFrame *frame;
+    const RtFrameOptions *options;
+    const RtScene *scene;
+    RtView view;
+    size_t tiles, tiles_across, tiles_done;
+    pthread_mutex_t lock; /* guards tiles_done and the calls of progress */
+    Worker *workers;
+};
+
+static void add_light(Worker *worker, Path path, RtVec3 light) {
+    RtVec3 *color = &worker->job->frame->color[path.sample];
+    *color = rt_add(*color, rt_scale(light, path.factor));
+}
+
+/* ---- asking the accelerator ---- */
+
+/* Moves what one ray cost from `cost` to its sample and its kind. */
+static void charge(Worker *worker, uint32_t sample, uint32_t kind, RtTally cost[RT_RAY_KIND_COUNT]) {
+    rt_tally_add(&worker->job->frame->cost[sample], &cost[kind]);
+    rt_tally_add(&worker->tallies[kind], &cost[kind]);
+    cost[kind] = (RtTally){0};
+}
+
+static RtStatus show_to_sink(Worker *worker, const RtRay *rays, uint32_t count, RtError *error) {
+    const RtFrameOptions *o = worker->job->options;
+    return o->sink ? o->sink(o->sink_context, worker->tile, rays, count, error) : RT_OK;
+}
+
+static RtStatus ask_nearest(Worker *worker, const RtRay *rays, const Path *paths, uint32_t count,
+                            RtError *error) {
+    RT_TRY(show_to_sink(worker, rays, count, error));
+    if (!worker->job->options->counted) {
+        rt_nearest(&worker->query, rays, count, worker->hits, NULL);
+        return RT_OK;
+    }
+    RtTally cost[RT_RAY_KIND_COUNT] = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        rt_nearest(&worker->query, &rays[i], 1, &worker->hits[i], cost);
+        charge(worker, paths[i].sample, rays[i].kind, cost);
+    }
+    return RT_OK;
+}
+
+static RtStatus ask_occluded(Worker *worker, RtError *error) {
+    const RtRay *rays = worker->shadow_rays;
+    RT_TRY(show_to_sink(worker, rays, worker->shadow_count, error));
+    if (!worker->job->options->counted) {
+        rt_occluded(&worker->query, rays, worker->shadow_count, worker->blocked, NULL);
+        return RT_OK;
+    }
+    RtTally cost[RT_RAY_KIND_COUNT] = {0};
+    for (uint32_t i = 0; i < worker->shadow_count; i++) {
+        rt_occluded(&worker->query, &rays[i], 1, &worker->blocked[i], cost);
+        charge(worker, worker->shadow_paths[i].sample, rays[i].kind, cost);
+    }
+    return RT_OK;
+}
+
+/* ---- one stream ---- */
+
+static RtStatus flush_shadows(Worker *worker, RtError *error) {
+    if (worker->shadow_count == 0) return RT_OK;
+    RT_TRY(ask_occluded(worker, error));
+    for (uint32_t i = 0; i < worker->shadow_count; i++) {
+        if (!worker->blocked[i]) add_light(worker, worker->shadow_paths[i], worker->shadow_lights[i]);
+    }
+    worker->shadow_count = 0;
+    return RT_OK;
+}
+
+/* Light by light, so that neighbours in the stream go to the same place. */
+static RtStatus trace_shadows(Worker *worker, uint32_t surface_count, RtError *error) {
+    const RtScene *scene = worker->job->scene;
+    for (uint32_t light = 0; light < scene->light_count; light++) {
+        for (uint32_t i = 0; i < surface_count; i++) {
+            uint32_t n = worker->shadow_count;
+            if (!rt_shadow_ray(scene, &worker->surfaces[i], light, &worker->shadow_rays[n],
+                               &worker->shadow_lights[n])) {
+                continue;
+            }
+            worker->shadow_paths[n] = worker->surface_paths[i];
+            if (++worker->shadow_count == STREAM) RT_TRY(flush_shadows(worker, error));
+        }
+    }
+    return flush_shadows(worker, error);
+}
+
+/* The surfaces that the stream met; what met none brings the background. Gives the number of surfaces. */
+static uint32_t find_surfaces(Worker *worker, const RtRay *rays, const Path *paths, uint32_t count) {
+    const RtScene *scene = worker->job->scene;
+    uint32_t surface_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (worker->hits[i].object == RT_NO_OBJECT) {
+            add_light(worker, paths[i], scene->background);
+            continue;
+        }
+        RtSurface *surface = &worker->surfaces[surface_count];
+        *surface = rt_surface(scene, &rays[i], worker->hits[i]);
+        worker->surface_paths[surface_count++] = paths[i];
+        add_light(worker, paths[i], rt_ambient_light(scene, surface));
+    }
+    return surface_count;
+}
+
+static void spawn(Worker *worker, uint32_t surface_count, Level *below) {
+    below->count = 0;
+    for (uint32_t i = 0; i < surface_count; i++) {
+        float factors[RT_MAX_SPAWN];
+        Path from = worker->surface_paths[i];
+        uint32_t spawned = rt_spawn_rays(&worker->surfaces[i], below->rays + below->count, factors);
+        for (uint32_t k = 0; k < spawned; k++) {
+            below->paths[below->count++] = (Path){from.sample, from.factor * factors[k]};
+        }
+    }
+}
+
+static void record_primary(Worker *worker, const Path *paths, uint32_t count) {
+    RtFrame *frame = worker->job->frame;
+    for (uint32_t i = 0; i < count; i++) {
+        frame->object[paths[i].sample] = worker->hits[i].object;
+        frame->depth[paths[i].sample] = worker->hits[i].t;
+    }
+}
+
+static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
+    Level *level = &worker->levels[depth];
+    bool deepest = depth + 1 == worker->job->options->depth;
+    for (uint32_t begin = 0; begin < level->count; begin += STREAM) {
+        uint32_t count = level->count - begin < STREAM ? level->count - begin : STREAM;
+        const RtRay *rays = level->rays + begin;
+        const Path *paths = level->paths + begin;
+        RT_TRY(ask_nearest(worker, rays, paths, count, error));
+        if (depth == 0) record_primary(worker, paths, count);
+        uint32_t surface_count = find_surfaces(worker, rays, paths, count);
+        RT_TRY(trace_shadows(worker, surface_count, error));
+        if (deepest) continue;
+        spawn(worker, surface_count, level + 1);
+        RT_TRY(trace_level(worker, depth + 1, error));
+    }
+    return RT_OK;
+}
+
+/* ---- tiles ---- */
+
+static void make_primary_rays(Worker *worker, Level *level) {
+    const Job *job = worker->job;
+    const RtSampling *s = &job->view.sampling;
+    uint32_t left = (uint32_t)(worker->tile % job->tiles_across) * RT_TILE;
+    uint32_t top = (uint32_t)(worker->tile / job->tiles_across) * RT_TILE;
+    level->count = 0;
+    for (uint32_t row = top; row < s->rows && row < top + RT_TILE; row++) {
+        for (uint32_t column = left; column < s->columns && column < left + RT_TILE; column++) {
+            RtRay ray = rt_view_ray(&job->view, column, row);
+            job->frame->object[ray.source] = RT_NO_OBJECT;
+            job->frame->depth[ray.source] = INFINITY;
+            if (!rt_ray_is_valid(&ray)) continue;
+            level->rays[level->count] = ray;
+            level->paths[level->count++] = (Path){ray.source, 1};
+        }
+    }
+}
+
+static RtStatus trace_tile(void *context, size_t tile, int thread, RtError *error) {
+    Job *job = context;
+    const RtFrameOptions *o = job->options;
+    Worker *worker = &job->workers[thread];
+    worker->tile = tile;
+    make_primary_rays(worker, &worker->levels[0]);
+    RT_TRY(trace_level(worker, 0, error));
+    if (!o->progress) return RT_OK;
+    pthread_mutex_lock(&job->lock);
+    o->progress(o->progress_context, ++job->tiles_done, job->tiles);
+    pthread_mutex_unlock(&job->lock);
+    return RT_OK;
+}
+
+/* ---- memory ---- */
+
+static void clear_worker(Worker *worker, uint32_t depth) {
+    rt_query_clear(&worker->query);
+    for (uint32_t i = 0; worker->levels && i < depth; i++) {
+        rt_free(worker->levels[i].rays);
+        rt_free(worker->levels[i].paths);
+    }
+    void *const blocks[] = {worker->levels,        worker->hits,        worker->surfaces,
+                            worker->surface_paths, worker->shadow_rays, worker->blocked,
+                            worker->shadow_lights, worker->shadow_paths};
+    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; i++) rt_free(blocks[i]);
+}
+
+static RtStatus init_worker(Worker *worker, Job *job, const RtAccel *accel, RtError *error) {
+    uint32_t depth = job->options->depth;
+    worker->job = job;
+    bool complete = true;
+#define MAKE(array, count) (complete = ((array) = rt_alloc(count, sizeof *(array))) && complete)
+    MAKE(worker->levels, depth);
+    for (uint32_t i = 0; worker->levels && i < depth; i++) {
+        MAKE(worker->levels[i].rays, LEVEL);
+        MAKE(worker->levels[i].paths, LEVEL);
+    }
+    MAKE(worker->hits, STREAM);
+    MAKE(worker->surfaces, STREAM);
+    MAKE(worker->surface_paths, STREAM);
+    MAKE(worker->shadow_rays, STREAM);
+    MAKE(worker->blocked, STREAM);
+    MAKE(worker->shadow_lights, STREAM);
+    MAKE(worker->shadow_paths, STREAM);
+#undef MAKE
+    if (!complete) {
+        size_t bytes = (size_t)LEVEL * depth * (sizeof(RtRay) + sizeof(Path));
+        return rt_fail_memory(error, "the rays of a thread", bytes);
+    }
+    return rt_query_init(&worker->query, accel, error);
+}
+
+static RtStatus init_frame(RtFrame *frame, const RtFrameOptions *o, RtError *error) {
+    size_t samples = (size_t)o->sampling.columns * o->sampling.rows;
+    if (samples > RT_MAX_FRAME_SAMPLES) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "a frame of %u x %u samples: at most %u samples fit; take a smaller image or fewer "
+                       "samples a pixel",
+                       o->sampling.columns, o->sampling.rows, RT_MAX_FRAME_SAMPLES);
+    }
+    frame->sampling = o->sampling;
+    frame->color = rt_alloc(samples, sizeof(RtVec3));
+    frame->object = rt_alloc(samples, sizeof(uint32_t));
+    frame->depth = rt_alloc(samples, sizeof(float));
+    if (o->counted) frame->cost = rt_alloc(samples, sizeof(RtTally));
+    if (frame->color && frame->object && frame->depth && (frame->cost || !o->counted)) return RT_OK;
+    size_t each = sizeof(RtVec3) + sizeof(uint32_t) + sizeof(float) + (o->counted ? sizeof(RtTally) : 0);
+    return rt_fail_memory(error, "a frame", samples * each);
+}
+
+void rt_frame_clear(RtFrame *frame) {
+    rt_free(frame->color);
+    rt_free(frame->object);
+    rt_free(frame->depth);
+    rt_free(frame->cost);
+    *frame = (RtFrame){0};
+}
+
+/* ---- the whole ---- */
+
+static RtStatus run(Job *job, const RtAccel *accel, int threads, RtError *error) {
+    job->workers = rt_alloc((size_t)threads, sizeof(Worker));
+    if (!job->workers) return rt_fail_memory(error, "workers", (size_t)threads * sizeof(Worker));
+    RtStatus status = RT_OK;
+    for (int i = 0; i < threads && status == RT_OK; i++) {
+        status = init_worker(&job->workers[i], job, accel, error);
+    }
+    double start = rt_wall_seconds();
+    if (status == RT_OK) status = rt_parallel_for(job->tiles, threads, trace_tile, job, error);
+    job->frame->seconds = rt_wall_seconds() - start;
+    for (int i = 0; i < threads; i++) {
+        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+            rt_tally_add(&job->frame->tallies[kind], &job->workers[i].tallies[kind]);
+        }
+        clear_worker(&job->workers[i], job->options->depth);
+    }
+    rt_free(job->workers);
+    return status;
+}
+
+RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error) {
+    *frame = (RtFrame){0};
+    if (options->depth < 1 || options->depth > RT_MAX_DEPTH) {
+        return rt_fail(error, RT_BAD_INPUT, "a ray tree of %u levels: must be 1..%d", options->depth,
+                       RT_MAX_DEPTH);
+    }
+    Job job = {.frame = frame, .options = options, .scene = accel->scene};
+    RT_TRY(rt_view_init(&job.view, &accel->scene->camera, options->sampling, error));
+    job.tiles_across = (options->sampling.columns + RT_TILE - 1) / RT_TILE;
+    job.tiles = job.tiles_across * ((options->sampling.rows + RT_TILE - 1) / RT_TILE);
+    RtStatus status = init_frame(frame, options, error);
+    if (status == RT_OK) {
+        int threads = rt_thread_count(options->threads);
+        if ((size_t)threads > job.tiles) threads = (int)job.tiles;
+        pthread_mutex_init(&job.lock, NULL);
+        status = run(&job, accel, threads, error);
+        pthread_mutex_destroy(&job.lock);
+    }
+    if (status != RT_OK) rt_frame_clear(frame);
+    return status;
+}

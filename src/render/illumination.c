@@ -1,0 +1,108 @@
+#include "render/illumination.h"
+
+static double max_norm(RtVec3d a) {
+    return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
+}
+
+RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit) {
+    const RtGeometry *g = &scene->geometry;
+    RtVec3d point = rt_ray_point(ray, hit.t);
+    RtNormals normals = rt_object_normals(g, hit.object, point);
+    RtVec3d dir = rt_widen(ray->dir);
+    bool entering = rt_dotd(dir, normals.geometric) < 0;
+    RtVec3d side = entering ? normals.geometric : rt_scaled(normals.geometric, -1);
+    bool turn = rt_dotd(normals.shading, side) < 0;
+    double reach = fmax(max_norm(point), (double)hit.t * max_norm(dir));
+    double thickness = (double)rt_thickness(rt_narrow(point), &g->boxes[hit.object]);
+    return (RtSurface){
+        .material = &scene->materials[scene->material_of[hit.object]],
+        .point = point,
+        .arriving = rt_normalized(dir),
+        .side = side,
+        .normal = turn ? rt_scaled(normals.shading, -1) : normals.shading,
+        .offset = fmax(0x1p-18 * reach, thickness),
+        .entering = entering,
+    };
+}
+
+RtVec3 rt_ambient_light(const RtScene *scene, const RtSurface *surface) {
+    return rt_scale(rt_mul(surface->material->color, scene->ambient), surface->material->ambient);
+}
+
+/* The direction `dir` mirrored at the plane with unit normal `n`. */
+static RtVec3d mirrored(RtVec3d dir, RtVec3d n) {
+    return rt_add_scaledd(dir, n, -2 * rt_dotd(dir, n));
+}
+
+/* A ray from the surface, on the side of it that `away` (+1 or -1 times surface->side) says. */
+static RtRay start_ray(const RtSurface *surface, double away, RtVec3d dir, RtRayKind kind) {
+    RtVec3d org = rt_add_scaledd(surface->point, surface->side, away * surface->offset);
+    return (RtRay){.org = rt_narrow(org), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = kind};
+}
+
+bool rt_shadow_ray(const RtScene *scene, const RtSurface *surface, uint32_t index, RtRay *ray,
+                   RtVec3 *light) {
+    const RtLight *source = &scene->lights[index];
+    RtVec3d to_light = rt_normalized(rt_subd(rt_widen(source->position), surface->point));
+    double n_dot_l = rt_dotd(surface->normal, to_light);
+    if (!(n_dot_l > 0) || !(rt_dotd(surface->side, to_light) > 0)) return false;
+
+    *ray = start_ray(surface, 1, to_light, RT_RAY_SHADOW);
+    ray->dir = rt_sub(source->position, ray->org);
+    ray->tmax = 1;
+    ray->source = index;
+    if (!rt_ray_is_valid(ray)) return false;
+
+    const RtMaterial *m = surface->material;
+    double r_dot_v = rt_dotd(mirrored(to_light, surface->normal), surface->arriving);
+    double highlight = r_dot_v > 0 ? (double)m->specular * pow(r_dot_v, (double)m->shine) : 0;
+    RtVec3 matte = rt_scale(m->color, (float)((double)m->diffuse * n_dot_l));
+    RtVec3 glossy = {(float)highlight, (float)highlight, (float)highlight};
+    *light = rt_mul(source->intensity, rt_add(matte, glossy));
+    return true;
+}
+
+static RtVec3d reflected(const RtSurface *surface) {
+    RtVec3d dir = mirrored(surface->arriving, surface->normal);
+    if (!(rt_dotd(dir, surface->side) > 0)) dir = mirrored(surface->arriving, surface->side);
+    return rt_normalized(dir);
+}
+
+/* Snell's law in vectors; false under total internal reflection. `ratio`: the index of refraction on this
+ * side of the surface over that on the other. */
+static bool refract(RtVec3d arriving, RtVec3d n, double ratio, RtVec3d *dir) {
+    double cosine = -rt_dotd(arriving, n);
+    double squared = 1 - ratio * ratio * (1 - cosine * cosine);
+    if (squared < 0) return false;
+    *dir = rt_normalized(rt_add_scaledd(rt_scaled(arriving, ratio), n, ratio * cosine - sqrt(squared)));
+    return true;
+}
+
+static bool transmitted(const RtSurface *surface, RtVec3d *dir) {
+    double ior = (double)surface->material->ior, ratio = surface->entering ? 1 / ior : ior;
+    bool seen = rt_dotd(surface->arriving, surface->normal) < 0;
+    if (!refract(surface->arriving, seen ? surface->normal : surface->side, ratio, dir)) return false;
+    if (rt_dotd(*dir, surface->side) < 0) return true;
+    return refract(surface->arriving, surface->side, ratio, dir);
+}
+
+uint32_t rt_spawn_rays(const RtSurface *surface, RtRay rays[RT_MAX_SPAWN], float factors[RT_MAX_SPAWN]) {
+    const RtMaterial *m = surface->material;
+    RtVec3d through;
+    bool passes = m->transmission > 0 && transmitted(surface, &through);
+    float mirror = m->reflection;
+    if (m->transmission > 0 && !passes) mirror += m->transmission;
+
+    uint32_t count = 0;
+    if (mirror > 0) {
+        rays[count] = start_ray(surface, 1, reflected(surface), RT_RAY_REFLECTION);
+        factors[count] = mirror;
+        count += rt_ray_is_valid(&rays[count]);
+    }
+    if (passes) {
+        rays[count] = start_ray(surface, -1, through, RT_RAY_TRANSMISSION);
+        factors[count] = m->transmission;
+        count += rt_ray_is_valid(&rays[count]);
+    }
+    return count;
+}
