@@ -1,0 +1,45 @@
+/* Files: reading one whole, and writing one so that nothing half-written remains: to PATH.tmp, renamed to
+ * PATH when complete. */
+#ifndef RT_BASE_FILE_H
+#define RT_BASE_FILE_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#define RT_MAX_PATH 4096
+
+/* A file being written. Write to `file`; then rt_output_commit, or rt_output_discard. */
+typedef struct RtOutput {
+    FILE *file;
+    char path[RT_MAX_PATH], temporary[RT_MAX_PATH + 8];
+} RtOutput;
+
+RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error);
+
+/* Flushes to the disk and renames; a failed write of any time before is reported here, and discards. */
+RtStatus rt_output_commit(RtOutput *output, RtError *error);
+
+/* Closes and removes the temporary file. */
+void rt_output_discard(RtOutput *output);
+
+/* Writes `size` bytes to `path`, in this way. */
+RtStatus rt_file_write(const char *path, const void *data, size_t size, RtError *error);
+
+/* The whole file, with a 0 after its last byte; refuses more than `limit` bytes. Free with rt_free. */
+RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error);
+
+bool rt_file_exists(const char *path);
+
+/* Creates the directory and its parents where they are missing. */
+RtStatus rt_directory_create(const char *path, RtError *error);
+
+/* "FOLDER/name" to out[0..RT_MAX_PATH); an absolute name, or an empty folder, gives the name alone. Refuses
+ * what is too long. */
+RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error);
+
+/* The folder of `path`, "" where it names none, to out[0..RT_MAX_PATH). */
+void rt_path_folder(const char *path, char *out);
+
+#endif
