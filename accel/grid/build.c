@@ -67,6 +67,21 @@ static RtVec3d solid_size(const RtBox *box) {
     return s;
 }
 
+/* By Newton's method, because the library's last bit may differ from machine to machine, and counts must not. */
+static double cube_root(double x) {
+    double root = fmax(x, 1), last;
+    do {
+        last = root;
+        root = (2 * root + x / (root * root)) / 3;
+    } while (root < last);
+    return root;
+}
+
+/* Rounds down, but takes what is a whole number up to rounding as that number. */
+static double whole(double x) {
+    return floor(x * (1 + 1e-12));
+}
+
 static void choose_resolution(const RtGrid *grid, uint32_t objects, const RtValue *values, uint32_t n[3]) {
     const uint32_t *given = values[RT_GRID_RESOLUTION].resolution;
     if (given[0] > 0) {
@@ -77,17 +92,17 @@ static void choose_resolution(const RtGrid *grid, uint32_t objects, const RtValu
     double voxels = values[RT_GRID_DENSITY].f * objects;
     switch (values[RT_GRID_RULE].choice) {
     case RULE_CUBIC: {
-        double per_side = cbrt(voxels / (s.x * s.y * s.z));
-        for (int a = 0; a < 3; a++) n[a] = clamp_resolution(floor(s.at[a] * per_side + 0.5));
+        double per_side = cube_root(voxels / (s.x * s.y * s.z));
+        for (int a = 0; a < 3; a++) n[a] = clamp_resolution(whole(s.at[a] * per_side + 0.5));
         break;
     }
     case RULE_WOO:
-        for (int a = 0; a < 3; a++) n[a] = clamp_resolution(floor(s.at[a] * cbrt(voxels)));
+        for (int a = 0; a < 3; a++) n[a] = clamp_resolution(whole(s.at[a] * cube_root(voxels)));
         break;
     case RULE_HETEROGENEOUS:
-        n[0] = clamp_resolution(floor(cbrt(voxels * s.x * s.x / (s.y * s.z)) + 0.5));
-        n[1] = clamp_resolution(floor(sqrt(voxels * s.y / (n[0] * s.z)) + 0.5));
-        n[2] = clamp_resolution(floor(voxels / ((double)n[0] * n[1])));
+        n[0] = clamp_resolution(whole(cube_root(voxels * s.x * s.x / (s.y * s.z)) + 0.5));
+        n[1] = clamp_resolution(whole(sqrt(voxels * s.y / (n[0] * s.z)) + 0.5));
+        n[2] = clamp_resolution(whole(voxels / ((double)n[0] * n[1])));
         break;
     default: assert(false && "no such rule");
     }
@@ -160,7 +175,7 @@ static RtStatus refuse_size(const RtGrid *grid, uint64_t references, RtError *er
     double voxels = (double)grid->n[0] * grid->n[1] * grid->n[2];
     double bytes = 4 * (voxels + (double)references), most = (double)MAX_BYTES;
     if (bytes <= most) return RT_OK;
-    double fits = fmax(floor(cbrt(most / bytes) * fmax(grid->n[0], fmax(grid->n[1], grid->n[2]))), 1);
+    double fits = fmax(floor(cube_root(most / bytes) * fmax(grid->n[0], fmax(grid->n[1], grid->n[2]))), 1);
     return rt_fail(
         error, RT_BAD_INPUT,
         "a grid of %ux%ux%u voxels with %.3g list entries would take %.1f GiB, more than %.0f GiB: a "
