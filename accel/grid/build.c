@@ -67,7 +67,8 @@ static RtVec3d solid_size(const RtBox *box) {
     return s;
 }
 
-/* By Newton's method, because the library's last bit may differ from machine to machine, and counts must not. */
+/* By Newton's method, because the library's last bit may differ from machine to machine, and counts must not.
+ */
 static double cube_root(double x) {
     double root = fmax(x, 1), last;
     do {

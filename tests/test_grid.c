@@ -1,0 +1,137 @@
+/* accel/grid/ from the inside: its invariants, broken on purpose, its rules of resolution, its limits. */
+#include "testing.h"
+
+#include "accel/grid/grid.h"
+#include "base/memory.h"
+
+#include <string.h>
+
+/* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
+static void make_lattice(RtScene *scene, int nx, int ny, int nz) {
+    uint32_t material;
+    RtMaterial grey = rt_default_material();
+    rt_scene_init(scene);
+    assert_ok(rt_scene_add_material(scene, &grey, &material, error));
+    for (int x = 0; x < nx; x++) {
+        for (int y = 0; y < ny; y++) {
+            for (int z = 0; z < nz; z++) {
+                RtVec3 center = {(float)x, (float)y, (float)z};
+                assert_ok(rt_scene_add_sphere(scene, material, center, 0.5f, error));
+            }
+        }
+    }
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+static RtGrid *make_grid(const RtScene *scene, const char *spec) {
+    RtAccel *accel = NULL;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    return (RtGrid *)accel;
+}
+
+static void assert_resolution(const RtScene *scene, const char *spec, uint32_t x, uint32_t y, uint32_t z) {
+    RtGrid *grid = make_grid(scene, spec);
+    if (grid->n[0] != x || grid->n[1] != y || grid->n[2] != z) {
+        fail_msg("%s gave %ux%ux%u", spec, grid->n[0], grid->n[1], grid->n[2]);
+    }
+    assert_ok(rt_grid_validate(&grid->base, error));
+    rt_grid_destroy(&grid->base);
+}
+
+/* A box of 8 x 4 x 2 with 64 spheres in it. */
+static void the_rules_of_resolution_give_what_their_formulas_say(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 8, 4, 2);
+    assert_resolution(&scene, "grid:density=1", 8, 4, 2);
+    assert_resolution(&scene, "grid:density=8", 16, 8, 4);
+    assert_resolution(&scene, "grid:rule=woo,density=1", 4, 2, 1); /* 4 = cbrt(64) along the longest side */
+    assert_resolution(&scene, "grid:rule=woo,density=1000", 40, 20, 10);
+    assert_resolution(&scene, "grid:rule=heterogeneous,density=1", 8, 4, 2);
+    assert_resolution(&scene, "grid:resolution=3x5x7", 3, 5, 7);
+    assert_resolution(&scene, "grid:density=0.000001", 1, 1, 1);
+    rt_scene_clear(&scene);
+}
+
+/* Planes halfway through the spheres: each of 2 x 2 x 2 voxels touches all 8 of them; a touch counts. */
+static void objects_go_into_every_voxel_they_touch(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 2, 2, 2);
+    RtGrid *grid = make_grid(&scene, "grid:resolution=2x2x2");
+    RtDescription description;
+    rt_grid_describe(&grid->base, &description);
+    assert_int_equal(description.leaves, 8);
+    assert_int_equal(description.empty_leaves, 0);
+    assert_int_equal(description.references, 64);
+    assert_true(fabs(description.predicted_cost - 64.0 / 4.0) < 1e-6);
+    rt_grid_destroy(&grid->base);
+    rt_scene_clear(&scene);
+}
+
+static void assert_broken(const RtGrid *grid, const char *phrase) {
+    RtError error = {RT_OK, ""};
+    assert_int_equal(rt_grid_validate(&grid->base, &error), RT_MISMATCH);
+    if (!strstr(error.message, phrase)) fail_msg("validate said: %s", error.message);
+}
+
+static void validate_names_each_invariant_that_is_broken(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 4, 4, 4);
+    RtGrid *grid = make_grid(&scene, "grid:resolution=8x8x8");
+    assert_ok(rt_grid_validate(&grid->base, error));
+
+    float plane = grid->planes[1][3];
+    grid->planes[1][3] = 100;
+    assert_broken(grid, "lies behind");
+    grid->planes[1][3] = plane;
+
+    RtBox box = grid->box;
+    grid->box.hi.z -= 1;
+    assert_broken(grid, "does not contain the scene");
+    grid->box = box;
+
+    uint32_t first = grid->first[10];
+    grid->first[10] = grid->first[11] + 1;
+    assert_broken(grid, "is broken");
+    grid->first[10] = first;
+
+    uint32_t last = grid->first[11] - 1, id = grid->ids[last];
+    grid->ids[last] = 63;
+    assert_broken(grid, "which it does not touch");
+    grid->ids[last] = 64;
+    assert_broken(grid, "not ascending ids");
+    grid->ids[last] = id;
+
+    /* The first object taken out of the first list. */
+    memmove(grid->ids, grid->ids + 1, (grid->first[512] - 1) * sizeof(uint32_t));
+    for (uint32_t v = 1; v <= 512; v++) grid->first[v]--;
+    assert_broken(grid, "voxels, but");
+
+    rt_grid_destroy(&grid->base);
+    rt_scene_clear(&scene);
+}
+
+static void a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 2, 2, 2);
+    RtAccel *accel;
+    RtError error = {RT_OK, ""};
+    int64_t live = rt_alloc_live();
+    assert_int_equal(rt_accel_open("grid:resolution=2000x2000x2000", &scene, &accel, &error), RT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "would fit"));
+    assert_int_equal(rt_alloc_live(), live);
+    rt_scene_clear(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_rules_of_resolution_give_what_their_formulas_say),
+        cmocka_unit_test(objects_go_into_every_voxel_they_touch),
+        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
+        cmocka_unit_test(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
