@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# From a fresh Debian 12 to a report: installs what is missing, builds, runs the first experiment.
+# Options go to `raytally run`: ./run.sh --quick
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+install_missing build optional data
+build release
+say "running experiments/first-look.yaml"
+exec build/release/raytally run experiments/first-look.yaml "$@"

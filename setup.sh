@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Sourced by run.sh and test.sh: moves to the top of the tree, installs missing packages, builds a preset.
+# Works without root where nothing is missing.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+exec </dev/null # nothing here asks questions; a closed stdin will do
+
+say() { printf '== %s\n' "$*"; }
+die() { printf '%s: %s\n' "${0##*/}" "$*" >&2 && exit 2; }
+
+# packages SECTION...: the names that packages.txt lists there
+packages() {
+    awk -v wanted="$*" '
+        BEGIN { split(wanted, list, " "); for (i in list) want[list[i]] = 1 }
+        /^\[/ { section = $1; gsub(/[][]/, "", section) }
+        /^[a-z0-9]/ && section in want { print $1 }' packages.txt
+}
+
+# missing SECTION...: of them, those not installed
+missing() {
+    local name
+    for name in $(packages "$@"); do
+        dpkg-query -W -f '${db:Status-Status}\n' "$name" 2>/dev/null | grep -qx installed || echo "$name"
+    done
+}
+
+# logged FILE COMMAND...: quietly; where it fails, the end of its output
+logged() {
+    local log=$1 && shift
+    mkdir -p "${log%/*}"
+    "$@" >"$log" 2>&1 || { tail -n 40 "$log" >&2 && return 1; }
+}
+
+apt() {
+    local root=()
+    [ "$(id -u)" = 0 ] || root=(sudo)
+    "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
+}
+
+# install_missing SECTION...: what cannot be installed is named, and is fatal unless it is optional
+install_missing() {
+    command -v dpkg-query >/dev/null || {
+        say "this is not Debian: have the counterparts of these ready: $(packages "$@" | xargs)"
+        return
+    }
+    local names
+    names=$(missing "$@" | xargs)
+    [ -n "$names" ] || return 0
+    if [ "$(id -u)" = 0 ] || { command -v sudo >/dev/null && sudo true; }; then
+        say "installing $names"
+        # shellcheck disable=SC2086 # the names are words of their own
+        if logged build/apt.log apt update; then
+            logged build/apt.log apt install -y --no-install-recommends $names || true
+        fi
+    fi
+    names=$(missing optional | xargs)
+    [ -z "$names" ] || say "going on without $names"
+    names=$(missing "${@/optional/}" | xargs)
+    [ -z "$names" ] || die "packages are missing; as root: apt-get install --no-install-recommends $names"
+}
+
+# build PRESET [CMAKE OPTION...]
+build() {
+    local preset=$1
+    say "building build/$preset"
+    logged "build/$preset.log" cmake --preset "$@" || die "cmake failed: build/$preset.log"
+    grep -A 3 'CMake Warning' "build/$preset.log" | grep '^  ' || true
+    logged "build/$preset.log" cmake --build --preset "$preset" -j "$(nproc)" || die "the build failed: build/$preset.log"
+}

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds with warnings as errors, runs every test: by gcc, by clang, under the
+# address, undefined-behaviour and thread sanitizers. --quick: by gcc alone.
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+passed=0 failed=0 skipped=0
+
+# run_tests PRESET [CTEST OPTION...]: adds to the sums
+run_tests() {
+    local preset=$1 report=$PWD/build/$1/tests.xml status=0 tests good unrun
+    shift
+    say "testing build/$preset"
+    rm -f "$report"
+    ctest --preset "$preset" -j "$(nproc)" --no-tests=error --timeout 900 --output-junit "$report" "$@" || status=1
+    count() { grep -c "$1" "$report" 2>/dev/null || true; }
+    tests=$(count '<testcase ') good=$(count '<testcase .* status="run"') unrun=$(count '<skipped message="SKIP_')
+    passed=$((passed + good)) skipped=$((skipped + unrun))
+    failed=$((failed + tests - good - unrun))
+    [ "$status" = 0 ] || [ "${tests:-0}" != $((${good:-0} + ${unrun:-0})) ] || failed=$((failed + 1)) # no test at all
+}
+
+case "${1-}" in
+--quick)
+    install_missing build optional data test
+    build release -DRT_WERROR=ON
+    run_tests release
+    ;;
+"")
+    install_missing build optional data test check
+    build release -DRT_WERROR=ON
+    run_tests release
+    build clang -DRT_WERROR=ON
+    run_tests clang -LE tree
+    build debug
+    run_tests debug -LE 'tree|slow'
+    build tsan
+    run_tests tsan -L threads
+    ;;
+*) die "usage: ./test.sh [--quick]" ;;
+esac
+
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" = 0 ]

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# check_layers.sh [TREE]: includes go one way only, and nothing but the registry and its own file names the
+# operations of a concrete accelerator. Prints each violation; exit code 1 where there is one.
+set -euo pipefail
+cd "${1:-$(dirname "$0")/..}"
+
+# shellcheck disable=SC2016 # the dollars are awk's
+find src accel experiments scenes tests -name '*.[ch]' | sort | xargs awk '
+    BEGIN { # a room may include itself and those of a lower number; scene and scenes/ stand beside one another
+        split("base 1 shape 2 scene 3 scenes 3 accel 4 render 5 experiments 6 cli 7 tests 8", list, " ")
+        for (i = 1; i in list; i += 2) level[list[i]] = list[i + 1]
+    }
+    function room_of(path,    part) {
+        sub(/^src\//, "", path)
+        split(path, part, "/")
+        return part[1]
+    }
+    function report(what) {
+        print FILENAME ":" FNR ": " what
+        wrong = 1
+    }
+    /^[ \t]*#[ \t]*include[ \t]*"/ {
+        split($0, quoted, "\"")
+        from = room_of(FILENAME)
+        to = quoted[2] ~ /\// ? room_of(quoted[2]) : from
+        if (!(from in level)) report("the room " from "/ is not in the order of check_layers.sh")
+        else if (!(to in level)) report("includes \"" quoted[2] "\", which lies in no room")
+        else if (level[to] > level[from]) report(from "/ includes \"" quoted[2] "\", a room above it")
+    }
+    { # an accelerator defines rt_NAME_ops in one file; note where it is named
+        rest = $0
+        while (match(rest, /rt_[a-z0-9_]+_ops/)) {
+            name = substr(rest, RSTART, RLENGTH)
+            rest = substr(rest, RSTART + RLENGTH)
+            if (rest ~ /^ = [{]/) home[name] = FILENAME
+            named[++names] = name
+            file[names] = FILENAME
+            line[names] = FNR
+        }
+    }
+    END {
+        for (i = 1; i <= names; i++) {
+            if (!(named[i] in home)) continue
+            if (file[i] == "accel/registry.c" || file[i] == home[named[i]]) continue
+            print file[i] ":" line[i] ": names " named[i] ", which belongs to " home[named[i]] " and the registry"
+            wrong = 1
+        }
+        exit wrong
+    }'

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# The checks of the tree find what they are there for: each is shown a small tree that breaks the rule.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+tree=$(mktemp -d) && trap 'rm -rf "$tree"' EXIT
+failures=0
+
+fresh_tree() {
+    rm -rf "${tree:?}"/*
+    mkdir -p "$tree"/{src/base,src/scene,src/render,accel,experiments,scenes,tests}
+    echo '#include "accel/accel.h"' >"$tree/src/render/frame.c"
+    echo '#include "scene/scene.h"' >"$tree/scenes/balls.c"
+    echo '#include "scenes/builtin.h"' >"$tree/src/scene/load.c"
+    echo 'const RtAccelOps rt_grid_ops = {' >"$tree/accel/grid.c"
+    echo 'X(rt_grid_ops)' >"$tree/accel/registry.c"
+    echo '#include "testing.h"' >"$tree/tests/test_grid.c"
+    printf '%s\n' 'set(ALL src/render/frame.c' 'src/scene/load.c scenes/balls.c' 'accel/grid.c accel/registry.c)' \
+        'raytally_test(grid)' >"$tree/CMakeLists.txt"
+}
+
+# expect passes|fails CHECK WHAT
+expect() {
+    local outcome=passes
+    "$here/$2" "$tree" >/dev/null || outcome=fails
+    [ "$outcome" = "$1" ] && return
+    echo "$2 $outcome on $3"
+    failures=$((failures + 1))
+}
+
+fresh_tree
+expect passes check_layers.sh "a tree in order"
+expect passes check_files.sh "a tree in order"
+
+fresh_tree && echo '#include "render/frame.h"' >>"$tree/accel/grid.c"
+expect fails check_layers.sh "an accelerator that includes the renderer"
+fresh_tree && echo '  # include "scene/scene.h"' >"$tree/src/base/box.h"
+expect fails check_layers.sh "a base header that includes the scene"
+fresh_tree && echo '#include "accel/accel.h"' >>"$tree/scenes/balls.c"
+expect fails check_layers.sh "a generator that includes accelerators"
+fresh_tree && echo 'return &rt_grid_ops;' >>"$tree/src/render/frame.c"
+expect fails check_layers.sh "a renderer that names an accelerator"
+fresh_tree && echo 'extern const RtAccelOps rt_grid_ops;' >>"$tree/tests/test_grid.c"
+expect fails check_layers.sh "a test that names an accelerator"
+
+fresh_tree && touch "$tree/accel/octree.c"
+expect fails check_files.sh "a file that is not built"
+fresh_tree && touch "$tree/tests/test_octree.c"
+expect fails check_files.sh "a test that is not registered"
+fresh_tree && touch "$tree/accel/grid_c.c" && sed -i 's|accel/grid\.c|accel/grid.c.orig|' "$tree/CMakeLists.txt"
+expect fails check_files.sh "a name that only resembles one in the list"
+
+[ "$failures" = 0 ]
