@@ -42,6 +42,12 @@ expect fails check_layers.sh "a renderer that names an accelerator"
 fresh_tree && echo 'extern const RtAccelOps rt_grid_ops;' >>"$tree/tests/test_grid.c"
 expect fails check_layers.sh "a test that names an accelerator"
 
+fresh_tree && mkdir "$tree/accel/octree" && echo 'const RtAccelOps rt_octree_ops = {' >"$tree/accel/octree/octree.c"
+echo 'extern const RtAccelOps rt_octree_ops;' >"$tree/accel/octree/octree.h"
+expect passes check_layers.sh "an accelerator in a folder of its own"
+echo 'extern const RtAccelOps rt_octree_ops;' >>"$tree/accel/grid.c"
+expect fails check_layers.sh "an accelerator that names another"
+
 fresh_tree && touch "$tree/accel/octree.c"
 expect fails check_files.sh "a file that is not built"
 fresh_tree && touch "$tree/tests/test_octree.c"
