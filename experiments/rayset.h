@@ -7,6 +7,7 @@
 #ifndef RT_EXPERIMENTS_RAYSET_H
 #define RT_EXPERIMENTS_RAYSET_H
 
+#include "base/random.h"
 #include "render/frame.h"
 
 typedef struct RtRaySet {
@@ -36,5 +37,9 @@ RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t every, RtRaySet *to, RtEr
 RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, RtRaySet *to, RtError *error);
 
 void rt_rayset_clear(RtRaySet *set);
+
+/* One random ray: from one uniform point of the bounding sphere of `box` towards another, dir not normalised,
+ * so that t = 1 is the other point; tmin 0, tmax infinite. The empty box counts as the unit sphere. */
+RtRay rt_random_chord(const RtBox *box, RtRandom *random);
 
 #endif

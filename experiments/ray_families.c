@@ -1,0 +1,259 @@
+/* The families of rays: one function a family, which makes one ray from the random numbers it is given. */
+#include "experiments/families.h"
+#include "experiments/rayset.h"
+
+#include <assert.h>
+
+typedef struct Maker {
+    RtQuery *query;
+    const RtGeometry *geometry;
+    RtVec3d center; /* of the scene's box */
+    double size;    /* half its diagonal */
+    RtRandom random;
+} Maker;
+
+static uint32_t below(Maker *m, uint32_t n) {
+    return rt_random_bits(&m->random) % n;
+}
+
+static double between(Maker *m, double lo, double hi) {
+    return lo + (hi - lo) * (double)rt_random_unit(&m->random);
+}
+
+/* ---- points to start at and aim at ---- */
+
+static RtVec3d point_in_box(Maker *m, const RtBox *box) {
+    RtVec3d p;
+    for (int a = 0; a < 3; a++) p.at[a] = between(m, (double)box->lo.at[a], (double)box->hi.at[a]);
+    return p;
+}
+
+static RtVec3d point_in_scene(Maker *m) {
+    if (m->geometry->object_count == 0) return rt_random_direction(&m->random);
+    return point_in_box(m, &m->geometry->box);
+}
+
+static const RtBox *some_box(Maker *m) {
+    static const RtBox unit = {{-1, -1, -1}, {1, 1, 1}};
+    if (m->geometry->object_count == 0) return &unit;
+    if (below(m, 4) == 0) return &m->geometry->box;
+    return &m->geometry->boxes[below(m, m->geometry->object_count)];
+}
+
+/* A point of a cone's side, or with `rim` of one of its circles. */
+static RtVec3d point_of_cone(Maker *m, const RtCone *cone, bool rim) {
+    RtVec3d around = rt_normalized(rt_crossd(cone->axis, rt_random_direction(&m->random)));
+    double s = rim ? (double)below(m, 2) : between(m, 0, 1);
+    double radius = (double)cone->base_radius + cone->slope * cone->height * s;
+    return rt_add_scaledd(rt_add_scaledd(rt_widen(cone->base), cone->axis, cone->height * s), around, radius);
+}
+
+/* Where on a chain of vertices: at one, between two neighbours, or among three. */
+typedef enum Where { AT_VERTEX, ON_EDGE, ON_SURFACE } Where;
+
+static RtVec3d point_of_vertices(Maker *m, const RtVec3 *v, uint32_t count, Where where) {
+    uint32_t i = below(m, count);
+    RtVec3d a = rt_widen(v[i]), b = rt_widen(v[(i + 1) % count]), c = rt_widen(v[(i + 2) % count]);
+    if (where == AT_VERTEX) return a;
+    RtVec3d p = rt_add_scaledd(a, rt_subd(b, a), between(m, 0, 1));
+    return where == ON_EDGE ? p : rt_add_scaledd(p, rt_subd(c, p), between(m, 0, 1));
+}
+
+/* One of the six points at which a sphere touches its box, or any other. */
+static RtVec3d point_of_sphere(Maker *m, const RtSphere *sphere, Where where) {
+    RtVec3d out = rt_random_direction(&m->random);
+    if (where == AT_VERTEX) {
+        uint32_t pole = below(m, 6);
+        out = rt_vec3d(0, 0, 0);
+        out.at[pole / 2] = pole % 2 ? 1 : -1;
+    }
+    return rt_add_scaledd(rt_widen(sphere->center), out, (double)sphere->radius);
+}
+
+/* A point of object `id`, and the id itself; in an empty scene any point and RT_NO_OBJECT. */
+static RtVec3d point_of_object(Maker *m, Where where, uint32_t *id) {
+    const RtGeometry *g = m->geometry;
+    *id = RT_NO_OBJECT;
+    if (g->object_count == 0) return point_in_scene(m);
+    *id = below(m, g->object_count);
+    uint32_t index = rt_ref_index(g->objects[*id]);
+    switch (rt_ref_shape(g->objects[*id])) {
+    case RT_SHAPE_SPHERE: return point_of_sphere(m, &g->spheres[index], where);
+    case RT_SHAPE_TRIANGLE: return point_of_vertices(m, g->triangles[index].v, 3, where);
+    case RT_SHAPE_POLYGON: {
+        const RtPolygon *polygon = &g->polygons[index];
+        return point_of_vertices(m, g->polygon_vertices + polygon->first, polygon->count, where);
+    }
+    case RT_SHAPE_CONE: return point_of_cone(m, &g->cones[index], where != ON_SURFACE);
+    case RT_SHAPE_COUNT: break;
+    }
+    return point_in_scene(m);
+}
+
+static RtRay ray_along(RtVec3d from, RtVec3d dir) {
+    return (RtRay){.org = rt_narrow(from), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+}
+
+/* From a random place around or inside the scene through `target`. */
+static RtRay ray_through(Maker *m, RtVec3d target) {
+    RtVec3d from = below(m, 2) ? point_in_scene(m)
+                               : rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
+    return (RtRay){.org = rt_narrow(from),
+                   .dir = rt_sub(rt_narrow(target), rt_narrow(from)),
+                   .tmax = INFINITY,
+                   .kind = RT_RAY_RANDOM};
+}
+
+/* ---- the families ---- */
+
+static RtRay chord(Maker *m) {
+    return rt_random_chord(&m->geometry->box, &m->random);
+}
+
+/* Parallel to an axis, the other components +0 or -0. */
+static RtRay along_axis(Maker *m) {
+    RtVec3d p = point_in_scene(m), dir;
+    int axis = (int)below(m, 3);
+    for (int a = 0; a < 3; a++) dir.at[a] = below(m, 2) ? 0.0 : -0.0;
+    dir.at[axis] = below(m, 2) ? 1 : -1;
+    if (below(m, 2)) p.at[axis] = m->center.at[axis] - 2 * m->size * dir.at[axis];
+    return ray_along(p, dir);
+}
+
+/* Directions of whole numbers from points at whole fractions of a box: through its corners, edges and
+ * halves, and through the corners of a grid's voxels. */
+static RtRay on_fractions(Maker *m) {
+    const RtBox *box = some_box(m);
+    RtVec3d from, to;
+    for (int a = 0; a < 3; a++) {
+        double lo = (double)box->lo.at[a], hi = (double)box->hi.at[a];
+        from.at[a] = lo + (hi - lo) * ((double)below(m, 17) - 4) / 8;
+        to.at[a] = lo + (hi - lo) * (double)below(m, 9) / 8;
+    }
+    RtVec3 dir = rt_sub(rt_narrow(to), rt_narrow(from));
+    RtRay ray = ray_along(from, rt_vec3d(1, -1, 1));
+    if (dir.x != 0 || dir.y != 0 || dir.z != 0) ray.dir = dir;
+    return ray;
+}
+
+static RtRay from_surface(Maker *m) {
+    uint32_t id;
+    RtVec3d p = point_of_object(m, ON_SURFACE, &id);
+    return ray_along(p, rt_random_direction(&m->random));
+}
+
+/* From a point in a face of a box, in the face or off it. */
+static RtRay from_box_face(Maker *m) {
+    const RtBox *box = some_box(m);
+    RtVec3d p = point_in_box(m, box), dir = rt_random_direction(&m->random);
+    int axis = (int)below(m, 3);
+    p.at[axis] = (double)(below(m, 2) ? box->hi : box->lo).at[axis];
+    if (below(m, 2)) dir.at[axis] = below(m, 2) ? 0.0 : -0.0;
+    if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[axis] = 1;
+    return ray_along(p, dir);
+}
+
+static RtRay from_inside(Maker *m) {
+    const RtBox *box = some_box(m);
+    RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : point_in_box(m, box);
+    return ray_along(p, rt_random_direction(&m->random));
+}
+
+static RtRay at_vertex(Maker *m) {
+    uint32_t id;
+    return ray_through(m, point_of_object(m, AT_VERTEX, &id));
+}
+
+static RtRay at_edge(Maker *m) {
+    uint32_t id;
+    return ray_through(m, point_of_object(m, ON_EDGE, &id));
+}
+
+/* Touches an object: in the plane of a flat one, along the silhouette of a round one. */
+static RtRay tangent(Maker *m) {
+    uint32_t id;
+    RtVec3d p = point_of_object(m, below(m, 2) ? ON_SURFACE : AT_VERTEX, &id);
+    RtVec3d dir = rt_random_direction(&m->random);
+    if (id != RT_NO_OBJECT) {
+        RtVec3d normal = rt_object_normals(m->geometry, id, p).geometric;
+        dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
+    }
+    return ray_along(rt_add_scaledd(p, dir, -m->size), dir);
+}
+
+/* From a thousand or a million sizes away. */
+static RtRay from_afar(Maker *m) {
+    double distance = m->size * (below(m, 2) ? 1e3 : 1e6);
+    RtVec3d from = rt_add_scaledd(m->center, rt_random_direction(&m->random), distance);
+    uint32_t id;
+    RtVec3d to = below(m, 2) ? point_in_scene(m) : point_of_object(m, ON_SURFACE, &id);
+    return ray_along(from, rt_normalized(rt_subd(to, from)));
+}
+
+/* Begins or ends exactly at a hit, or one float beside it. */
+static RtRay ends_at_hit(Maker *m) {
+    RtRay ray = below(m, 2) ? chord(m) : at_vertex(m);
+    RtHit hit = RT_MISS;
+    if (rt_ray_is_valid(&ray)) rt_nearest(m->query, &ray, 1, &hit, NULL);
+    if (hit.object == RT_NO_OBJECT) return ray;
+    float t = hit.t;
+    uint32_t side = below(m, 3);
+    if (side == 1) t = nextafterf(t, INFINITY);
+    if (side == 2) t = rt_maxf(0, nextafterf(t, -INFINITY));
+    uint32_t which = below(m, 3);
+    if (which != 0) ray.tmin = t;
+    if (which != 1) ray.tmax = t;
+    return ray;
+}
+
+/* A length of direction anywhere from 1e-15 to 1e15. */
+static RtRay of_any_length(Maker *m) {
+    static const double lengths[] = {1e-15, 1e-10, 1e-5, 1e-2, 1e2, 1e5, 1e10, 1e15};
+    RtRay ray = chord(m);
+    RtVec3d dir = rt_normalized(rt_widen(ray.dir));
+    ray.dir = rt_narrow(rt_scaled(dir, lengths[below(m, 8)]));
+    return ray;
+}
+
+static const struct {
+    const char *name;
+    RtRay (*make)(Maker *maker);
+} families[] = {
+    {"chord", chord},
+    {"along-axis", along_axis},
+    {"on-fractions", on_fractions},
+    {"from-surface", from_surface},
+    {"from-box-face", from_box_face},
+    {"from-inside", from_inside},
+    {"at-vertex", at_vertex},
+    {"at-edge", at_edge},
+    {"tangent", tangent},
+    {"from-afar", from_afar},
+    {"ends-at-hit", ends_at_hit},
+    {"of-any-length", of_any_length},
+};
+
+size_t rt_ray_family_count(void) {
+    return sizeof families / sizeof families[0];
+}
+
+const char *rt_ray_family_name(size_t family) {
+    return families[family].name;
+}
+
+void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t first, size_t count,
+                        RtRay *rays) {
+    Maker maker = {.query = query, .geometry = &query->accel->scene->geometry, .size = 1};
+    if (maker.geometry->object_count > 0) {
+        const RtBox *box = &maker.geometry->box;
+        maker.center = rt_widen(rt_box_center(*box));
+        maker.size = rt_lengthd(rt_subd(rt_widen(box->hi), maker.center));
+    }
+    for (size_t i = 0; i < count; i++) {
+        maker.random = rt_random(seed, (uint64_t)family << 56 | (first + i));
+        rays[i] = families[family].make(&maker);
+        /* A target that is its own origin, or a direction that rounds to zero. */
+        if (!rt_ray_is_valid(&rays[i])) rays[i] = chord(&maker);
+        assert(rt_ray_is_valid(&rays[i]));
+    }
+}

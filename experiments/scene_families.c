@@ -1,0 +1,248 @@
+/* The families of scenes. One recipe a row: how many objects of which shapes, where, how large, and how the
+ * whole is scaled and moved. */
+#include "experiments/families.h"
+
+#include <stdio.h>
+
+/* Centre and size of object `i` of `count`, in a world of about [-1, 1]^3. */
+typedef struct Place {
+    RtVec3d center;
+    double size;
+} Place;
+typedef Place Placement(RtRandom *random, uint32_t i, uint32_t count);
+
+typedef enum Make { SPHERES, TRIANGLES, ROUND_AND_FLAT, AXIS_ALIGNED, MESH, MAKE_COUNT } Make;
+
+typedef struct Recipe {
+    const char *name;
+    uint32_t count;
+    Make make;
+    Placement *place;
+    double scale, offset; /* applied last: scale * p + (offset, offset, offset) */
+} Recipe;
+
+static double between(RtRandom *random, double lo, double hi) {
+    return lo + (hi - lo) * (double)rt_random_unit(random);
+}
+
+static RtVec3d in_cube(RtRandom *random) {
+    double x = between(random, -1, 1), y = between(random, -1, 1), z = between(random, -1, 1);
+    return rt_vec3d(x, y, z);
+}
+
+/* ---- placements ---- */
+
+static Place uniform(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)i, (void)count;
+    return (Place){in_cube(random), between(random, 0.02, 0.2)};
+}
+
+static Place coincident(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)random, (void)i, (void)count;
+    return (Place){{0.25, 0.5, -0.125}, 0.5};
+}
+
+static Place on_a_line(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)random;
+    return (Place){{-1 + 2.0 * i / count, 0, 0}, 1.0 / count};
+}
+
+static Place in_a_plane(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)i, (void)count;
+    RtVec3d p = in_cube(random);
+    return (Place){{p.x, p.y, 0.5}, between(random, 0.02, 0.2)};
+}
+
+static Place huge_beside_tiny(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)count;
+    RtVec3d p = in_cube(random);
+    return i % 8 == 0 ? (Place){rt_scaled(p, 3), 2} : (Place){rt_scaled(p, 1e-3), 1e-4};
+}
+
+/* Eight clusters, each a hundredth of the world. */
+static Place clustered(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)count;
+    RtVec3d corner = {i & 1 ? 0.75 : -0.75, i & 2 ? 0.75 : -0.75, i & 4 ? 0.75 : -0.75};
+    return (Place){rt_add_scaledd(corner, in_cube(random), 0.01), between(random, 0.001, 0.005)};
+}
+
+/* Every four in a row are alike. */
+static Place duplicated(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)random, (void)count;
+    RtRandom shared = rt_random(11, i / 4);
+    return uniform(&shared, i, count);
+}
+
+/* Corners and edges on multiples of 1/4, where a grid's own planes are. */
+static Place on_a_lattice(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)count, (void)i;
+    RtVec3d p;
+    for (int a = 0; a < 3; a++) p.at[a] = floor(between(random, -4, 4)) / 4 + 0.125;
+    return (Place){p, 0.125};
+}
+
+/* ---- objects ---- */
+
+typedef struct Builder {
+    const Recipe *recipe;
+    RtScene *scene;
+    uint32_t material;
+    RtRandom random;
+} Builder;
+
+static RtVec3 placed(const Builder *b, RtVec3d p) {
+    double o = b->recipe->offset;
+    return rt_narrow(rt_add_scaledd(rt_vec3d(o, o, o), p, b->recipe->scale));
+}
+
+static RtStatus add_sphere(Builder *b, Place at, RtError *error) {
+    float radius = (float)(at.size * b->recipe->scale);
+    return rt_scene_add_sphere(b->scene, b->material, placed(b, at.center), radius, error);
+}
+
+static RtStatus add_triangle(Builder *b, Place at, RtError *error) {
+    RtVec3 v[3];
+    for (int i = 0; i < 3; i++) v[i] = placed(b, rt_add_scaledd(at.center, in_cube(&b->random), at.size));
+    return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
+}
+
+/* An L in the plane of u and v: concave, six vertices. */
+static RtStatus add_ell(Builder *b, Place at, RtVec3d u, RtVec3d v, RtError *error) {
+    static const double outline[6][2] = {{-1, -1}, {1, -1}, {1, 0}, {0, 0}, {0, 1}, {-1, 1}};
+    RtVec3 vertices[6];
+    for (int i = 0; i < 6; i++) {
+        RtVec3d p = rt_add_scaledd(at.center, u, at.size * outline[i][0]);
+        vertices[i] = placed(b, rt_add_scaledd(p, v, at.size * outline[i][1]));
+    }
+    return rt_scene_add_polygon(b->scene, b->material, vertices, 6, error);
+}
+
+static RtStatus add_polygon(Builder *b, Place at, RtError *error) {
+    /* In a plane that is exactly representable, so that offsets and scales do not warp it. */
+    static const RtVec3d u[3] = {{1, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+    static const RtVec3d v[3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
+    uint32_t plane = rt_random_bits(&b->random) % 3;
+    return add_ell(b, at, u[plane], v[plane], error);
+}
+
+static RtStatus add_cone(Builder *b, Place at, RtError *error) {
+    RtVec3d axis = rt_random_direction(&b->random);
+    double size = at.size * b->recipe->scale;
+    float base = (float)(size * between(&b->random, 0.2, 0.8));
+    float apex = rt_random_bits(&b->random) % 2 ? base : 0; /* a cylinder or a full cone */
+    return rt_scene_add_cone(b->scene, b->material, placed(b, at.center), base,
+                             placed(b, rt_add_scaledd(at.center, axis, at.size)), apex, error);
+}
+
+/* A rectangle in a coordinate plane: as two triangles or as a polygon. */
+static RtStatus add_axis_aligned(Builder *b, Place at, uint32_t i, RtError *error) {
+    int w = (int)(rt_random_bits(&b->random) % 3), u = (w + 1) % 3, v = (w + 2) % 3;
+    RtVec3 corner[4];
+    for (int k = 0; k < 4; k++) {
+        RtVec3d p = at.center;
+        p.at[u] += k == 1 || k == 2 ? at.size : -at.size;
+        p.at[v] += k >= 2 ? at.size : -at.size;
+        corner[k] = placed(b, p);
+    }
+    if (i % 2) return rt_scene_add_polygon(b->scene, b->material, corner, 4, error);
+    const RtVec3 halves[2][3] = {{corner[0], corner[1], corner[2]}, {corner[0], corner[2], corner[3]}};
+    RT_TRY(rt_scene_add_triangle(b->scene, b->material, halves[0], NULL, error));
+    return rt_scene_add_triangle(b->scene, b->material, halves[1], NULL, error);
+}
+
+static RtStatus add_round_or_flat(Builder *b, Place at, uint32_t i, RtError *error) {
+    switch (i % 4) {
+    case 0: return add_sphere(b, at, error);
+    case 1: return add_triangle(b, at, error);
+    case 2: return add_polygon(b, at, error);
+    default: return add_cone(b, at, error);
+    }
+}
+
+/* A closed mesh: an octahedron, each face cut into n x n triangles, its vertices pushed out to the sphere.
+ * Neighbours share their vertices bit for bit. */
+static RtStatus add_mesh(Builder *b, uint32_t n, RtError *error) {
+    for (uint32_t face = 0; face < 8; face++) {
+        RtVec3d sign = {face & 1 ? -1 : 1, face & 2 ? -1 : 1, face & 4 ? -1 : 1};
+        for (uint32_t i = 0; i < n; i++) {
+            for (uint32_t j = 0; j + i < n; j++) {
+                const uint32_t at[4][2] = {{i, j}, {i + 1, j}, {i, j + 1}, {i + 1, j + 1}};
+                RtVec3 v[4];
+                for (int k = 0; k < 4; k++) {
+                    double x = at[k][0], y = at[k][1], z = (double)n - x - y;
+                    RtVec3d p = rt_normalized(rt_vec3d(x * sign.x, y * sign.y, z * sign.z));
+                    v[k] = placed(b, p);
+                }
+                RT_TRY(rt_scene_add_triangle(b->scene, b->material, v, NULL, error));
+                if (i + j + 1 == n) continue;
+                RT_TRY(rt_scene_add_triangle(b->scene, b->material, v + 1, NULL, error));
+            }
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
+    Place at = b->recipe->place(&b->random, i, b->recipe->count);
+    switch (b->recipe->make) {
+    case SPHERES: return add_sphere(b, at, error);
+    case TRIANGLES: return add_triangle(b, at, error);
+    case ROUND_AND_FLAT: return add_round_or_flat(b, at, i, error);
+    case AXIS_ALIGNED: return add_axis_aligned(b, at, i, error);
+    case MESH:
+    case MAKE_COUNT: break;
+    }
+    return RT_OK;
+}
+
+/* ---- the families ---- */
+
+static const Recipe recipes[] = {
+    {"empty", 0, SPHERES, uniform, 1, 0},
+    {"one-sphere", 1, SPHERES, uniform, 1, 0},
+    {"one-triangle", 1, TRIANGLES, uniform, 1, 0},
+    {"two", 2, ROUND_AND_FLAT, uniform, 1, 0},
+    {"coincident", 33, SPHERES, coincident, 1, 0},
+    {"line", 64, ROUND_AND_FLAT, on_a_line, 1, 0},
+    {"plane", 96, AXIS_ALIGNED, in_a_plane, 1, 0},
+    {"huge-beside-tiny", 96, ROUND_AND_FLAT, huge_beside_tiny, 1, 0},
+    {"uniform", 150, SPHERES, uniform, 1, 0},
+    {"clustered", 160, ROUND_AND_FLAT, clustered, 1, 0},
+    {"mixed", 160, ROUND_AND_FLAT, uniform, 1, 0},
+    {"soup", 200, TRIANGLES, uniform, 1, 0},
+    {"duplicates", 120, SPHERES, duplicated, 1, 0},
+    {"axis-aligned", 100, AXIS_ALIGNED, on_a_lattice, 1, 0},
+    {"mesh", 5, MESH, NULL, 1, 0},
+    {"mesh-far", 5, MESH, NULL, 1, 1e5},
+    {"mixed-tiny", 100, ROUND_AND_FLAT, uniform, 0x1p-30, 0},
+    {"mixed-huge", 100, ROUND_AND_FLAT, uniform, 0x1p30, 0},
+    {"mixed-far", 100, ROUND_AND_FLAT, uniform, 1, 1e5},
+};
+
+size_t rt_scene_family_count(void) {
+    return sizeof recipes / sizeof recipes[0];
+}
+
+const char *rt_scene_family_name(size_t family) {
+    return recipes[family].name;
+}
+
+static RtStatus fill(Builder *b, RtError *error) {
+    RtMaterial material = rt_default_material();
+    RT_TRY(rt_scene_add_material(b->scene, &material, &b->material, error));
+    if (b->recipe->make == MESH) {
+        RT_TRY(add_mesh(b, b->recipe->count, error));
+    } else {
+        for (uint32_t i = 0; i < b->recipe->count; i++) RT_TRY(add_object(b, i, error));
+    }
+    return rt_scene_finish(b->scene, error);
+}
+
+RtStatus rt_scene_family_build(size_t family, uint64_t seed, RtScene *scene, RtError *error) {
+    Builder builder = {.recipe = &recipes[family], .scene = scene, .random = rt_random(seed, family)};
+    rt_scene_init(scene);
+    snprintf(scene->name, sizeof scene->name, "%s", recipes[family].name);
+    RtStatus status = fill(&builder, error);
+    if (status != RT_OK) rt_scene_clear(scene);
+    return status;
+}

@@ -1,0 +1,168 @@
+/* Conformance: every registered accelerator, at every value worth testing of each of its parameters, on every
+ * family of scenes, answers every ray of every family like brute, bit for bit (or, where it is not exact,
+ * without a wrong verdict). No accelerator is named here: a new one is covered once it is registered. */
+#include "testing.h"
+
+#include "base/memory.h"
+#include "experiments/equivalence.h"
+#include "experiments/families.h"
+#include "experiments/spread.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RAYS_PER_FAMILY = 256, MAX_SCENES = 64 };
+#define SEED 1
+
+/* One family of scenes with its rays and the right answers. */
+typedef struct Bench {
+    RtScene scene;
+    RtAccel *brute;
+    RtRay *rays;
+    RtReference reference;
+} Bench;
+
+static void set_up(Bench *bench, size_t scene_family, size_t rays_per_family) {
+    size_t families = rt_ray_family_count();
+    assert_ok(rt_scene_family_build(scene_family, SEED, &bench->scene, error));
+    assert_ok(rt_accel_open("brute", &bench->scene, &bench->brute, error));
+    bench->rays = rt_alloc(families * rays_per_family, sizeof(RtRay));
+    assert_non_null(bench->rays);
+    RtQuery query;
+    assert_ok(rt_query_init(&query, bench->brute, error));
+    for (size_t f = 0; f < families; f++) {
+        rt_ray_family_fill(f, &query, SEED, 0, rays_per_family, bench->rays + f * rays_per_family);
+    }
+    rt_query_clear(&query);
+    assert_ok(rt_reference_init(&bench->reference, bench->brute, bench->rays, families * rays_per_family, 0,
+                                error));
+}
+
+static void tear_down(Bench *bench) {
+    rt_reference_clear(&bench->reference);
+    rt_free(bench->rays);
+    rt_accel_destroy(bench->brute);
+    rt_scene_clear(&bench->scene);
+}
+
+/* Checks one spec; tells what is wrong and returns false if anything is. */
+static bool conforms(const Bench *bench, const char *spec) {
+    RtError error = {RT_OK, ""};
+    RtAccel *accel;
+    const char *scene = bench->scene.name;
+    if (rt_accel_open(spec, &bench->scene, &accel, &error) != RT_OK) {
+        print_error("%s on %s cannot be built: %s\n", spec, scene, error.message);
+        return false;
+    }
+    RtEquivalence result = {0};
+    bool good = true;
+    if (accel->ops->validate(accel, &error) != RT_OK) {
+        print_error("%s on %s is not valid: %s\n", spec, scene, error.message);
+        good = false;
+    }
+    if (rt_equivalence_check(&bench->reference, accel, 0, &result, &error) != RT_OK) {
+        print_error("%s on %s cannot be checked: %s\n", spec, scene, error.message);
+        good = false;
+    }
+    if (result.any_wrong) {
+        char text[512];
+        rt_witness_format(&result.first_wrong, text, sizeof text);
+        print_error("%s on %s: %llu of %llu wrong, %llu occluded wrong; family %s, %s\n", spec, scene,
+                    (unsigned long long)result.verdicts[RT_WRONG], (unsigned long long)result.rays,
+                    (unsigned long long)result.occluded_wrong,
+                    rt_ray_family_name(result.first_wrong.index / RAYS_PER_FAMILY), text);
+        good = false;
+    }
+    rt_accel_destroy(accel);
+    return good;
+}
+
+static void every_accelerator_answers_like_brute(void **state) {
+    Bench bench;
+    set_up(&bench, *(const size_t *)*state, RAYS_PER_FAMILY);
+    size_t failures = 0;
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) failures += !conforms(&bench, spec);
+    }
+    tear_down(&bench);
+    assert_int_equal(failures, 0);
+}
+
+/* Embree allocates by itself and is not under our control. */
+static bool allocates_elsewhere(const RtAccelOps *ops) {
+    return strcmp(ops->name, "embree") == 0;
+}
+
+static void every_allocation_of_a_build_may_fail(void **state) {
+    (void)state;
+    size_t mixed = 0;
+    while (strcmp(rt_scene_family_name(mixed), "mixed") != 0) mixed++;
+    Bench bench;
+    set_up(&bench, mixed, 8);
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        if (allocates_elsewhere(rt_accel_at(i))) continue;
+        for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
+            int64_t live = rt_alloc_live();
+            RtStatus status = RT_NO_MEMORY;
+            for (uint64_t nth = 1; status != RT_OK; nth++) {
+                RtError error = {RT_OK, ""};
+                RtAccel *accel = NULL;
+                rt_alloc_fail_at(nth);
+                status = rt_accel_open(spec, &bench.scene, &accel, &error);
+                rt_alloc_fail_at(0);
+                if (status == RT_OK) rt_accel_destroy(accel);
+                if (status != RT_OK && status != RT_NO_MEMORY) {
+                    fail_msg("%s, allocation %llu: status %d, %s", spec, (unsigned long long)nth, status,
+                             error.message);
+                }
+                if (rt_alloc_live() != live) {
+                    fail_msg("%s, allocation %llu: %lld blocks leaked", spec, (unsigned long long)nth,
+                             (long long)(rt_alloc_live() - live));
+                }
+            }
+        }
+    }
+    tear_down(&bench);
+}
+
+static void every_ray_of_every_family_is_valid_and_repeatable(void **state) {
+    (void)state;
+    for (size_t s = 0; s < rt_scene_family_count(); s++) {
+        Bench bench;
+        set_up(&bench, s, 64);
+        RtQuery query;
+        assert_ok(rt_query_init(&query, bench.brute, error));
+        for (size_t f = 0; f < rt_ray_family_count(); f++) {
+            for (size_t i = 0; i < 64; i++) {
+                RtRay again;
+                rt_ray_family_fill(f, &query, SEED, i, 1, &again);
+                assert_true(rt_ray_is_valid(&again));
+                assert_memory_equal(&again, &bench.rays[f * 64 + i], sizeof again);
+            }
+        }
+        rt_query_clear(&query);
+        tear_down(&bench);
+    }
+}
+
+int main(void) {
+    static size_t families[MAX_SCENES];
+    static char names[MAX_SCENES][128];
+    struct CMUnitTest tests[MAX_SCENES + 2] = {
+        cmocka_unit_test(every_ray_of_every_family_is_valid_and_repeatable),
+        cmocka_unit_test(every_allocation_of_a_build_may_fail),
+    };
+    size_t count = 2;
+    if (rt_scene_family_count() > MAX_SCENES) return EXIT_FAILURE;
+    for (size_t i = 0; i < rt_scene_family_count(); i++) {
+        families[i] = i;
+        snprintf(names[i], sizeof names[i], "every_accelerator_answers_like_brute on %s",
+                 rt_scene_family_name(i));
+        tests[count++] =
+            (struct CMUnitTest){names[i], every_accelerator_answers_like_brute, NULL, NULL, &families[i]};
+    }
+    return _cmocka_run_group_tests("conformance", tests, count, NULL, NULL);
+}
