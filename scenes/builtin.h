@@ -7,8 +7,10 @@
 
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: where the scene comes from */
-    const RtParam *params;
+    const RtParam *params;               /* params[0] is the whole number that sets the size of the scene */
     size_t param_count;
+    /* How many objects `generate` would make: checked against memory before anything is made. */
+    uint64_t (*object_count)(const RtValue *values);
     /* Fills an initialised scene (rt_scene_init); the caller finishes it, or clears it after a failure. */
     RtStatus (*generate)(RtScene *scene, const RtValue *values, RtError *error);
 } RtBuiltin;
@@ -16,7 +18,18 @@ typedef struct RtBuiltin {
 size_t rt_builtin_count(void);
 const RtBuiltin *rt_builtin_at(size_t i);
 
-/* "name[:key=value,...]" to a finished scene, whose name is the spec with every parameter. */
+/* By the name that `spec` begins with, up to its end or a colon; NULL if there is none. */
+const RtBuiltin *rt_builtin_find(const char *spec);
+
+/* "name[:key=value,...]" to a finished scene, whose name is the spec with every parameter. On failure *scene
+ * is empty. A scene for which this machine has not the memory is refused, with the size that would fit. */
 RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error);
+
+/* What an object may take while a scene is made, arrays that grow by doubling included. */
+#define RT_BUILTIN_OBJECT_BYTES 256
+
+/* Refuses values whose scene may need more than `bytes`, with the value of params[0] that would fit. */
+RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,
+                                 RtError *error);
 
 #endif

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static _Atomic uint64_t fail_countdown;
 static _Atomic int64_t live_blocks;
@@ -51,6 +52,10 @@ RtStatus rt_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t si
     *array = block;
     *capacity = (uint32_t)grown;
     return RT_OK;
+}
+
+uint64_t rt_memory_size(void) {
+    return (uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
 void rt_alloc_fail_at(uint64_t n) {

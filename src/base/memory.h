@@ -21,6 +21,9 @@ void rt_free(void *block);
  * is replaced by a larger one with the same contents. On failure nothing changes. */
 RtStatus rt_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
 
+/* Bytes of memory in this machine. */
+uint64_t rt_memory_size(void);
+
 /* For tests: the allocation `n` calls from now fails (1 = the next); 0 switches this off. */
 void rt_alloc_fail_at(uint64_t n);
 

@@ -1,0 +1,106 @@
+/* balls: the sphereflake over a floor, 9^0 + ... + 9^size spheres and one polygon.
+ *
+ * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. Every sphere carries
+ * nine of a third of its radius: six about its equator and three towards its tip, the root's being +Z, a
+ * child's the direction in which it sits. Objects come depth first, in the order of the Standard Procedural
+ * Databases. All angles have known sines and cosines, so nothing but + - * / sqrt is used. */
+#include "scene/nff.h"
+#include "scenes/builtin.h"
+
+static const RtParam params[] = {
+    {.name = "size",
+     .type = RT_PARAM_INT,
+     .standard = "4",
+     .lo = 1,
+     .hi = 7,
+     .meaning = "levels below the root: (9^(size+1) - 1) / 8 spheres",
+     .source = "SPD: 7381 spheres",
+     .tries = "1|3"},
+};
+
+enum { CHILDREN = 9 };
+
+typedef struct Flake {
+    RtScene *scene;
+    uint32_t material;
+    RtVec3d offsets[CHILDREN]; /* unit directions of the children of a sphere that points to +Z */
+} Flake;
+
+static uint64_t object_count(const RtValue *values) {
+    uint64_t spheres = 1;
+    for (int64_t level = 0; level < values[0].i; level++) spheres = spheres * CHILDREN + 1;
+    return spheres + 1;
+}
+
+/* `v` turned about the unit vector `axis` (Rodrigues). */
+static RtVec3d rotate(RtVec3d v, RtVec3d axis, double cosine, double sine) {
+    RtVec3d turned = rt_add_scaledd(rt_scaled(v, cosine), rt_crossd(axis, v), sine);
+    return rt_add_scaledd(turned, axis, rt_dotd(axis, v) * (1 - cosine));
+}
+
+/* `v` turned as +Z has to be turned to point along the unit vector `towards`. */
+static RtVec3d rotate_from_z(RtVec3d v, RtVec3d towards) {
+    double cosine = towards.z;
+    if (cosine >= 0.9999) return v;
+    if (cosine <= -0.9999) return rt_vec3d(-v.x, v.y, -v.z);
+    double sine = sqrt(1 - cosine * cosine);
+    return rotate(v, rt_normalized(rt_vec3d(-towards.y, towards.x, 0)), cosine, sine);
+}
+
+static void set_offsets(RtVec3d offsets[CHILDREN]) {
+    double d = sqrt(0.5);
+    const RtVec3d trio[3] = {{d, d, 0}, {d, 0, -d}, {0, d, -d}};
+    const RtVec3d axis = {d, -d, 0}, z = {0, 0, 1};
+    const double turn_cosine[3] = {1, -0.5, -0.5}, turn_sine[3] = {0, sqrt(0.75), -sqrt(0.75)};
+    for (int i = 0; i < CHILDREN; i++) {
+        RtVec3d tilted = rotate(trio[i % 3], axis, sqrt(1.0 / 3), sqrt(2.0 / 3));
+        offsets[i] = rotate(tilted, z, turn_cosine[i / 3], turn_sine[i / 3]);
+    }
+}
+
+static RtStatus add_sphere(const Flake *flake, RtVec3d center, double radius, RtVec3d direction,
+                           int64_t levels, RtError *error) {
+    RT_TRY(rt_scene_add_sphere(flake->scene, flake->material, rt_narrow(center), (float)radius, error));
+    if (levels == 0) return RT_OK;
+    for (int i = 0; i < CHILDREN; i++) {
+        RtVec3d towards = rotate_from_z(flake->offsets[i], direction);
+        RtVec3d child = rt_add_scaledd(center, towards, radius * (1 + 1.0 / 3));
+        RT_TRY(add_sphere(flake, child, radius / 3, towards, levels - 1, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_floor(RtScene *scene, RtError *error) {
+    uint32_t material;
+    RtMaterial matte = rt_nff_material("floor", rt_vec3(1, 0.75f, 0.33f), 0.8f, 0, 100000, 0, 1);
+    RT_TRY(rt_scene_add_material(scene, &matte, &material, error));
+    const RtVec3 corners[4] = {{12, 12, -0.5f}, {-12, 12, -0.5f}, {-12, -12, -0.5f}, {12, -12, -0.5f}};
+    return rt_scene_add_polygon(scene, material, corners, 4, error);
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    static const RtVec3 lights[3] = {{4, 3, 2}, {1, -4, 4}, {-3, 1, 5}};
+    for (int i = 0; i < 3; i++) {
+        RT_TRY(rt_scene_add_light(scene, lights[i], rt_nff_light_intensity(3), error));
+    }
+    scene->camera.from = rt_vec3(2.1f, 1.3f, 1.7f);
+    scene->camera.hither = 0.01f;
+    RT_TRY(add_floor(scene, error));
+
+    Flake flake = {.scene = scene};
+    RtMaterial shiny = rt_nff_material("balls", rt_vec3(1, 0.9f, 0.7f), 0.5f, 0.5f, 3.0827f, 0, 1);
+    RT_TRY(rt_scene_add_material(scene, &shiny, &flake.material, error));
+    set_offsets(flake.offsets);
+    return add_sphere(&flake, rt_vec3d(0, 0, 0), 0.5, rt_vec3d(0, 0, 1), values[0].i, error);
+}
+
+extern const RtBuiltin rt_builtin_balls;
+const RtBuiltin rt_builtin_balls = {
+    .name = "balls",
+    .summary = "a sphereflake over a floor: reflective spheres of very different sizes, touching",
+    .source = "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)",
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};

@@ -1,0 +1,98 @@
+#include "scenes/builtin.h"
+
+#include "base/memory.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+extern const RtBuiltin rt_builtin_balls, rt_builtin_tetra, rt_builtin_random;
+
+/* In the order in which they are listed. */
+static const RtBuiltin *const builtins[] = {&rt_builtin_balls, &rt_builtin_tetra, &rt_builtin_random};
+
+enum { BUILTIN_COUNT = sizeof builtins / sizeof builtins[0] };
+
+size_t rt_builtin_count(void) {
+    return BUILTIN_COUNT;
+}
+
+const RtBuiltin *rt_builtin_at(size_t i) {
+    assert(i < BUILTIN_COUNT);
+    return builtins[i];
+}
+
+const RtBuiltin *rt_builtin_find(const char *spec) {
+    size_t length = strcspn(spec, ":");
+    for (size_t i = 0; i < BUILTIN_COUNT; i++) {
+        const char *name = builtins[i]->name;
+        if (strlen(name) == length && strncmp(name, spec, length) == 0) return builtins[i];
+    }
+    return NULL;
+}
+
+static RtStatus fail_unknown(const char *spec, RtError *error) {
+    const char *names[BUILTIN_COUNT];
+    char list[256] = "", name[RT_MAX_NAME];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(spec, ":"), spec);
+    for (size_t i = 0; i < BUILTIN_COUNT; i++) {
+        names[i] = builtins[i]->name;
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
+    }
+    const char *near = rt_nearest_name(name, names, BUILTIN_COUNT);
+    return rt_fail(error, RT_BAD_INPUT, "there is no built-in scene '%s'%s%s%s Built-in are: %s", name,
+                   near ? ": did you mean '" : "", near ? near : "", near ? "'?" : ".", list);
+}
+
+static bool fits(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes) {
+    uint64_t objects = builtin->object_count(values);
+    return objects <= RT_MAX_OBJECTS && objects <= bytes / RT_BUILTIN_OBJECT_BYTES;
+}
+
+RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,
+                                 RtError *error) {
+    if (fits(builtin, values, bytes)) return RT_OK;
+    RtValue tried[RT_MAX_PARAMS];
+    memcpy(tried, values, builtin->param_count * sizeof *values);
+    const RtParam *size = &builtin->params[0];
+    int64_t fitting = (int64_t)size->lo, too_large = values[0].i;
+    while (fitting + 1 < too_large) { /* bisection: the count grows with the value */
+        tried[0].i = fitting + (too_large - fitting) / 2;
+        if (fits(builtin, tried, bytes)) {
+            fitting = tried[0].i;
+        } else {
+            too_large = tried[0].i;
+        }
+    }
+    uint64_t objects = builtin->object_count(values);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "scene %s: %s=%lld makes %llu objects, which may take %.1f GB where %.1f GB are to be "
+                   "had: %s=%lld would fit",
+                   builtin->name, size->name, (long long)values[0].i, (unsigned long long)objects,
+                   (double)objects * RT_BUILTIN_OBJECT_BYTES / 1e9, (double)bytes / 1e9, size->name,
+                   (long long)fitting);
+}
+
+RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error) {
+    *scene = (RtScene){0};
+    const RtBuiltin *builtin = rt_builtin_find(spec);
+    if (!builtin) return fail_unknown(spec, error);
+    RtValue values[RT_MAX_PARAMS];
+    const char *colon = strchr(spec, ':');
+    char what[RT_MAX_NAME + 16];
+    snprintf(what, sizeof what, "scene %s", builtin->name);
+    RT_TRY(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, what, values,
+                           error));
+    /* The other half of the memory is for what is built over the scene. */
+    RT_TRY(rt_builtin_check_memory(builtin, values, rt_memory_size() / 2, error));
+
+    rt_scene_init(scene);
+    int used = snprintf(scene->name, sizeof scene->name, "%s:", builtin->name);
+    rt_params_format(builtin->params, builtin->param_count, values, scene->name + used,
+                     sizeof scene->name - (size_t)used);
+    RtStatus status = builtin->generate(scene, values, error);
+    if (status == RT_OK) status = rt_scene_finish(scene, error);
+    if (status != RT_OK) rt_scene_clear(scene);
+    return status;
+}

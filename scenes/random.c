@@ -1,0 +1,193 @@
+/* random: n objects in the cube from -1 to 1, uniformly or in clusters.
+ *
+ * Object i is made from the random numbers of stream i alone, so it does not depend on what came before.
+ * Sizes are in units of the mean spacing (edge of the cube over the cube root of n): the density of the scene
+ * stays the same for any n. In clusters, the distance from a centre along each axis is the sum of four
+ * uniform numbers: nearly a normal distribution, without a logarithm. */
+#include "base/random.h"
+#include "scene/nff.h"
+#include "scenes/builtin.h"
+
+enum { N, DISTRIBUTION, SHAPE, SEED, RADIUS, SPREAD, CLUSTERS, WIDTH };
+enum { UNIFORM, CLUSTERED };
+enum { SPHERES, TRIANGLES, MIXED };
+
+static const RtParam params[] = {
+    [N] = {.name = "n",
+           .type = RT_PARAM_INT,
+           .standard = "1000",
+           .lo = 1,
+           .hi = RT_MAX_OBJECTS,
+           .meaning = "objects",
+           .source = "small enough to see",
+           .tries = "1|100|5000"},
+    [DISTRIBUTION] = {.name = "distribution",
+                      .type = RT_PARAM_CHOICE,
+                      .standard = "uniform",
+                      .choices = "uniform|clustered",
+                      .meaning = "where the objects are",
+                      .source = "the usual case"},
+    [SHAPE] = {.name = "shape",
+               .type = RT_PARAM_CHOICE,
+               .standard = "sphere",
+               .choices = "sphere|triangle|mixed",
+               .meaning = "what they are; mixed: spheres, polygons, triangles and cones in turn",
+               .source = "the simplest"},
+    [SEED] = {.name = "seed",
+              .type = RT_PARAM_INT,
+              .standard = "1",
+              .lo = 0,
+              .hi = 1e15,
+              .meaning = "of the random numbers",
+              .source = "any",
+              .tries = "1"},
+    [RADIUS] = {.name = "radius",
+                .type = RT_PARAM_FLOAT,
+                .standard = "0.25",
+                .lo = 1e-6,
+                .hi = 1e3,
+                .meaning = "mean radius of an object, in mean spacings",
+                .source = "few objects overlap",
+                .tries = "0.25|2"},
+    [SPREAD] = {.name = "spread",
+                .type = RT_PARAM_FLOAT,
+                .standard = "0.5",
+                .lo = 0,
+                .hi = 0.999,
+                .meaning = "radii differ from the mean by up to this part of it",
+                .source = "a ratio of 3 between largest and smallest",
+                .tries = "0|0.9"},
+    [CLUSTERS] = {.name = "clusters",
+                  .type = RT_PARAM_INT,
+                  .standard = "16",
+                  .lo = 1,
+                  .hi = 1e6,
+                  .meaning = "number of clusters, for distribution=clustered",
+                  .source = "enough to leave empty space",
+                  .tries = "16"},
+    [WIDTH] = {.name = "width",
+               .type = RT_PARAM_FLOAT,
+               .standard = "0.1",
+               .lo = 1e-6,
+               .hi = 1,
+               .meaning = "standard deviation of a cluster along each axis, for distribution=clustered",
+               .source = "a twentieth of the cube",
+               .tries = "0.1"},
+};
+
+/* Streams of cluster centres lie beyond those of objects. */
+#define CLUSTER_STREAM (UINT64_C(1) << 32)
+
+static RtVec3d point_in_cube(RtRandom *random) {
+    RtVec3d p;
+    for (int a = 0; a < 3; a++) p.at[a] = 2 * (double)rt_random_unit(random) - 1;
+    return p;
+}
+
+static RtVec3d point_in_cluster(RtRandom *random, const RtValue *values) {
+    uint64_t chosen = rt_random_bits(random) % (uint64_t)values[CLUSTERS].i;
+    RtRandom of_cluster = rt_random(random->seed, CLUSTER_STREAM + chosen);
+    RtVec3d center = point_in_cube(&of_cluster);
+    for (int a = 0; a < 3; a++) {
+        double sum = -2; /* four uniform numbers: mean 2, variance 4 / 12 */
+        for (int i = 0; i < 4; i++) sum += (double)rt_random_unit(random);
+        center.at[a] += sum * sqrt(3) * values[WIDTH].f;
+    }
+    return center;
+}
+
+static RtStatus add_triangle(RtScene *scene, uint32_t material, RtVec3d center, double radius,
+                             RtRandom *random, RtError *error) {
+    RtVec3 vertices[3];
+    for (int i = 0; i < 3; i++) {
+        vertices[i] = rt_narrow(rt_add_scaledd(center, rt_random_direction(random), radius));
+    }
+    return rt_scene_add_triangle(scene, material, vertices, NULL, error);
+}
+
+/* An arrow head: concave, so that the test for being inside has something to do. */
+static RtStatus add_polygon(RtScene *scene, uint32_t material, RtVec3d center, double radius,
+                            RtRandom *random, RtError *error) {
+    static const double u[4] = {1, -0.7, -0.2, -0.7}, v[4] = {0, 0.7, 0, -0.7};
+    RtVec3d along = rt_random_direction(random);
+    RtVec3d other = rt_vec3d(0, 0, 0);
+    other.at[rt_major_axis(rt_narrow(along)) == 0] = 1; /* an axis that `along` is not near */
+    RtVec3d across = rt_normalized(rt_crossd(along, other));
+    RtVec3 vertices[4];
+    for (int i = 0; i < 4; i++) {
+        RtVec3d on_axis = rt_add_scaledd(center, along, u[i] * radius);
+        vertices[i] = rt_narrow(rt_add_scaledd(on_axis, across, v[i] * radius));
+    }
+    return rt_scene_add_polygon(scene, material, vertices, 4, error);
+}
+
+static RtStatus add_cone(RtScene *scene, uint32_t material, RtVec3d center, double radius, RtRandom *random,
+                         RtError *error) {
+    RtVec3d half = rt_scaled(rt_random_direction(random), radius);
+    float base_radius = (float)(radius / 2), apex_radius = base_radius * rt_random_unit(random);
+    return rt_scene_add_cone(scene, material, rt_narrow(rt_subd(center, half)), base_radius,
+                             rt_narrow(rt_addd(center, half)), apex_radius, error);
+}
+
+static RtStatus add_object(RtScene *scene, uint64_t i, double mean_radius, const RtValue *values,
+                           RtError *error) {
+    RtRandom random = rt_random((uint64_t)values[SEED].i, i);
+    RtVec3d center =
+        values[DISTRIBUTION].choice == CLUSTERED ? point_in_cluster(&random, values) : point_in_cube(&random);
+    double deviation = 2 * (double)rt_random_unit(&random) - 1;
+    double radius = mean_radius * (1 + values[SPREAD].f * deviation);
+    uint32_t material = (uint32_t)(i / 4 % scene->material_count);
+    RtShape shape = values[SHAPE].choice == MIXED       ? (RtShape)(i % RT_SHAPE_COUNT)
+                    : values[SHAPE].choice == TRIANGLES ? RT_SHAPE_TRIANGLE
+                                                        : RT_SHAPE_SPHERE;
+    switch (shape) {
+    case RT_SHAPE_POLYGON: return add_polygon(scene, material, center, radius, &random, error);
+    case RT_SHAPE_TRIANGLE: return add_triangle(scene, material, center, radius, &random, error);
+    case RT_SHAPE_CONE: return add_cone(scene, material, center, radius, &random, error);
+    case RT_SHAPE_SPHERE:
+    case RT_SHAPE_COUNT: break;
+    }
+    return rt_scene_add_sphere(scene, material, rt_narrow(center), (float)radius, error);
+}
+
+/* Two matte, a mirror and a glass, so that every kind of ray is traced. */
+static RtStatus add_materials(RtScene *scene, RtError *error) {
+    const RtMaterial materials[4] = {
+        rt_nff_material("clay", rt_vec3(0.9f, 0.5f, 0.3f), 0.9f, 0, 1, 0, 1),
+        rt_nff_material("slate", rt_vec3(0.3f, 0.4f, 0.6f), 0.9f, 0, 1, 0, 1),
+        rt_nff_material("steel", rt_vec3(0.8f, 0.8f, 0.8f), 0.4f, 0.5f, 50, 0, 1),
+        rt_nff_material("glass", rt_vec3(0.9f, 1, 0.9f), 0.1f, 0.1f, 100, 0.8f, 1.3f),
+    };
+    for (int i = 0; i < 4; i++) {
+        uint32_t index;
+        RT_TRY(rt_scene_add_material(scene, &materials[i], &index, error));
+    }
+    return RT_OK;
+}
+
+static uint64_t object_count(const RtValue *values) {
+    return (uint64_t)values[N].i;
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    RT_TRY(add_materials(scene, error));
+    RT_TRY(rt_scene_add_light(scene, rt_vec3(4, 3, 6), rt_vec3(0.6f, 0.6f, 0.6f), error));
+    RT_TRY(rt_scene_add_light(scene, rt_vec3(5, -6, 2), rt_vec3(0.4f, 0.4f, 0.4f), error));
+    /* float32 hides the last bits of the cube root, in which libraries differ. */
+    double mean_radius = (double)(float)(values[RADIUS].f * 2 / cbrt((double)values[N].i));
+    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) {
+        RT_TRY(add_object(scene, i, mean_radius, values, error));
+    }
+    return RT_OK;
+}
+
+extern const RtBuiltin rt_builtin_random;
+const RtBuiltin rt_builtin_random = {
+    .name = "random",
+    .summary = "n random objects, uniform or in clusters, in four materials",
+    .source = "made for tests",
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};
