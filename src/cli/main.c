@@ -13,6 +13,8 @@
 static const RtCommand commands[] = {
     {"accels", "[NAME]", "list the accelerators, their parameters, defaults, ranges and papers",
      rt_command_accels},
+    {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
+     rt_command_render},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

@@ -1,0 +1,352 @@
+/* raytally render: a picture of a scene, and what it cost. The timed kernels make the picture; where counts
+ * are asked for, a second frame is traced by the counted ones. */
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "cli/cli.h"
+#include "experiments/equivalence.h"
+#include "experiments/rayset.h"
+#include "render/heatmap.h"
+#include "render/image.h"
+#include "render/structure.h"
+#include "scene/load.h"
+
+#include <argp.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct Options {
+    const char *scene, *accel;
+    uint32_t width, height; /* 0: the camera's */
+    uint32_t samples, depth;
+    int threads;
+    bool corners, check;
+    const char *png, *exr, *heatmap, *structure, *stats; /* paths, or NULL */
+    size_t heatmap_counter;
+} Options;
+
+enum { KEY_CORNERS = 256, KEY_HEATMAP, KEY_STRUCTURE, KEY_STATS, KEY_CHECK };
+
+static const struct argp_option options[] = {
+    {"accel", 'a', "SPEC", 0, "Accelerator (default bvh); `raytally accels` lists them", 0},
+    {"size", 's', "WxH", 0, "Size of the image in pixels (default: the scene's)", 0},
+    {"corners", KEY_CORNERS, 0, 0, "Sample the corners of pixels, (W+1) x (H+1) rays, as SPD asks", 0},
+    {"samples", 'n', "N", 0, "N x N samples a pixel, 1..64 (default 1)", 0},
+    {"depth", 'd', "N", 0, "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)", 0},
+    {"threads", 't', "N", 0, "Threads (default: all processors)", 0},
+    {"output", 'o', "FILE", 0, "The image, .png or .exr; may be given once for each", 0},
+    {"heatmap", KEY_HEATMAP, "COUNTER FILE.png", 0,
+     "What each pixel cost: object_tests, extent_tests, steps, or any other counter", 0},
+    {"structure", KEY_STRUCTURE, "FILE.png", 0, "The boxes of the accelerator over the image", 0},
+    {"stats", KEY_STATS, "FILE.json", 0, "Counts by ray kind, times and sizes", 0},
+    {"check", KEY_CHECK, 0, 0, "Compare the answer to every ray with brute's; exit 1 if one differs", 0},
+    {0}};
+
+static bool has_extension(const char *path, const char *extension) {
+    size_t length = strlen(path), tail = strlen(extension);
+    return length > tail && strcmp(path + length - tail, extension) == 0;
+}
+
+static const char *checked_path(struct argp_state *state, const char *option, const char *path,
+                                const char *extension) {
+    if (!has_extension(path, extension)) {
+        argp_error(state, "%s: '%s' will not do: its name must end in %s", option, path, extension);
+    }
+    return path;
+}
+
+static size_t counter_by_name(struct argp_state *state, const char *name) {
+    const char *names[RT_TALLY_COUNTER_COUNT];
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        names[i] = rt_tally_name(i);
+        if (strcmp(names[i], name) == 0) return i;
+    }
+    const char *near = rt_nearest_name(name, names, RT_TALLY_COUNTER_COUNT);
+    argp_error(
+        state,
+        "--heatmap: there is no counter '%s': it must be object_tests, extent_tests, steps or another%s%s%s",
+        name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return 0;
+}
+
+static void parse_output(Options *o, struct argp_state *state, const char *path) {
+    const char **slot = has_extension(path, ".png") ? &o->png : has_extension(path, ".exr") ? &o->exr : NULL;
+    if (!slot) argp_error(state, "-o: '%s' will not do: its name must end in .png or .exr", path);
+    if (*slot) argp_error(state, "-o: both '%s' and '%s': one file of each format is written", *slot, path);
+    *slot = path;
+}
+
+static void check_options(const Options *o, struct argp_state *state) {
+    if (!o->scene)
+        argp_error(state,
+                   "a SCENE is needed: a file or a built-in, as in `raytally render balls -o balls.png`");
+    if (!o->png && !o->exr && !o->heatmap && !o->structure && !o->stats && !o->check) {
+        argp_error(state, "nothing to make: give -o FILE.png, or --heatmap, --structure, --stats or --check");
+    }
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    Options *o = state->input;
+    switch (key) {
+    case 'a': o->accel = argument; return 0;
+    case 's': rt_cli_size(state, argument, &o->width, &o->height); return 0;
+    case 'n': o->samples = (uint32_t)rt_cli_integer(state, "--samples", argument, 1, 64); return 0;
+    case 'd': o->depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH); return 0;
+    case 't': o->threads = (int)rt_cli_integer(state, "--threads", argument, 1, 1024); return 0;
+    case 'o': parse_output(o, state, argument); return 0;
+    case KEY_CORNERS: o->corners = true; return 0;
+    case KEY_CHECK: o->check = true; return 0;
+    case KEY_STRUCTURE: o->structure = checked_path(state, "--structure", argument, ".png"); return 0;
+    case KEY_STATS: o->stats = checked_path(state, "--stats", argument, ".json"); return 0;
+    case KEY_HEATMAP:
+        o->heatmap_counter = counter_by_name(state, argument);
+        if (state->next >= state->argc)
+            argp_error(state, "--heatmap: a FILE.png is needed after the counter");
+        o->heatmap = checked_path(state, "--heatmap", state->argv[state->next++], ".png");
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->scene) argp_error(state, "one SCENE at a time: '%s' is too much", argument);
+        o->scene = argument;
+        return 0;
+    case ARGP_KEY_END: check_options(o, state); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* ---- the frames ---- */
+
+/* All there is to tell about one run. */
+typedef struct Run {
+    const Options *options;
+    RtScene scene;
+    RtAccel *accel;
+    char spec[RT_MAX_SPEC_CHARS];
+    double build_seconds;
+    RtFrameOptions frame_options;
+    RtFrame timed, counted;
+    atomic_uint_fast64_t rays[RT_RAY_KIND_COUNT];
+} Run;
+
+static RtStatus count_by_kind(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error) {
+    (void)tile, (void)error;
+    Run *run = context;
+    uint64_t kinds[RT_RAY_KIND_COUNT] = {0};
+    for (size_t i = 0; i < count; i++) kinds[rays[i].kind]++;
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        if (kinds[kind]) atomic_fetch_add(&run->rays[kind], kinds[kind]);
+    }
+    return RT_OK;
+}
+
+static void show_progress(void *context, size_t tiles_done, size_t tiles) {
+    size_t percent = tiles_done * 100 / tiles;
+    if (tiles_done > 1 && percent == (tiles_done - 1) * 100 / tiles) return;
+    fprintf(stderr, "\r%s %3zu %%", (const char *)context, percent);
+    if (tiles_done == tiles) fprintf(stderr, "\r%*s\r", (int)strlen(context) + 6, "");
+}
+
+static RtStatus trace_frames(Run *run, RtError *error) {
+    const Options *o = run->options;
+    RtFrameOptions *f = &run->frame_options;
+    const RtCamera *camera = &run->scene.camera;
+    *f = (RtFrameOptions){.depth = o->depth, .threads = o->threads};
+    RT_TRY(rt_sampling_init(&f->sampling, o->width ? o->width : camera->width,
+                            o->height ? o->height : camera->height, o->samples, o->corners, error));
+    if (isatty(STDERR_FILENO)) f->progress = show_progress;
+    f->progress_context = "tracing";
+    f->sink = count_by_kind;
+    f->sink_context = run;
+    RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
+    if (!o->heatmap && !o->stats && !o->exr) return RT_OK;
+    f->progress_context = "counting";
+    f->counted = true;
+    f->sink = NULL;
+    return rt_frame_trace(&run->counted, run->accel, f, error);
+}
+
+static RtStatus prepare(Run *run, RtError *error) {
+    const Options *o = run->options;
+    RtSpec spec;
+    RT_TRY(rt_spec_parse(o->accel, &spec, error));
+    rt_spec_format(&spec, run->spec);
+    if (o->structure) RT_TRY(rt_structure_available(spec.ops, error));
+    RT_TRY(rt_scene_open(o->scene, &run->scene, error));
+    double start = rt_wall_seconds();
+    RT_TRY(rt_accel_build(&spec, &run->scene, &run->accel, error));
+    run->build_seconds = rt_wall_seconds() - start;
+    return RT_OK;
+}
+
+/* ---- what is written ---- */
+
+static RtStatus write_images(const Run *run, RtError *error) {
+    const Options *o = run->options;
+    RtImage image = {0};
+    RtStatus status = RT_OK;
+    if (o->exr) RT_TRY(rt_exr_write(&run->counted, o->exr, error));
+    if (o->png || o->structure) {
+        status = rt_image_from_frame(&image, &run->timed, error);
+        if (status == RT_OK && o->png) status = rt_png_write(&image, o->png, error);
+        if (status == RT_OK && o->structure) status = rt_draw_structure(&image, run->accel, error);
+        if (status == RT_OK && o->structure) status = rt_png_write(&image, o->structure, error);
+        rt_image_clear(&image);
+    }
+    if (status == RT_OK && o->heatmap) {
+        status = rt_heatmap(&image, &run->counted, o->heatmap_counter, error);
+        if (status == RT_OK) status = rt_png_write(&image, o->heatmap, error);
+        rt_image_clear(&image);
+    }
+    return status;
+}
+
+static const char *const kind_names[] = {
+#define RT_RAY_KIND_NAME(CONSTANT, name, meaning) #name,
+    RT_RAY_KINDS(RT_RAY_KIND_NAME)
+#undef RT_RAY_KIND_NAME
+};
+
+static uint64_t total_rays(const Run *run) {
+    uint64_t sum = 0;
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sum += run->rays[kind];
+    return sum;
+}
+
+static json_t *tally_json(const RtTally *tally) {
+    json_t *object = json_object();
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        json_object_set_new(object, rt_tally_name(i), json_integer((json_int_t)rt_tally_get(tally, i)));
+    }
+    return object;
+}
+
+static json_t *stats_json(const Run *run) {
+    const RtSampling *s = &run->timed.sampling;
+    const Options *o = run->options;
+    RtDescription d;
+    run->accel->ops->describe(run->accel, &d);
+    json_t *kinds = json_object();
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        if (run->rays[kind])
+            json_object_set_new(kinds, kind_names[kind], tally_json(&run->counted.tallies[kind]));
+    }
+    json_t *structure = json_pack("{s:I, s:I, s:I, s:I, s:I}", "interior", (json_int_t)d.interior, "leaves",
+                                  (json_int_t)d.leaves, "empty_leaves", (json_int_t)d.empty_leaves,
+                                  "references", (json_int_t)d.references, "depth", (json_int_t)d.depth);
+    json_object_set_new(structure, "predicted_cost",
+                        isfinite(d.predicted_cost) ? json_real(d.predicted_cost) : json_null());
+    uint64_t rays = total_rays(run);
+    double mrays = run->timed.seconds > 0 ? (double)rays * 1e-6 / run->timed.seconds : 0;
+    return json_pack("{s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o}",
+                     "scene", run->scene.name, "accel", run->spec, "objects",
+                     (json_int_t)run->scene.geometry.object_count, "lights",
+                     (json_int_t)run->scene.light_count, "width", (int)s->width, "height", (int)s->height,
+                     "samples", (int)s->samples, "corners", (int)s->corners, "depth", (int)o->depth,
+                     "threads", rt_thread_count(o->threads), "build_seconds", run->build_seconds, "bytes",
+                     (json_int_t)d.bytes, "structure", structure, "rays", (json_int_t)rays, "seconds",
+                     run->timed.seconds, "mrays_per_s", mrays, "kinds", kinds);
+}
+
+static RtStatus write_stats(const Run *run, RtError *error) {
+    const char *path = run->options->stats;
+    if (!path) return RT_OK;
+    json_t *document = stats_json(run);
+    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    json_decref(document);
+    if (!text) return rt_fail(error, RT_NO_MEMORY, "%s: memory is short for the statistics", path);
+    RtStatus status = rt_file_write(path, text, strlen(text), error);
+    free(text);
+    return status;
+}
+
+static void print_summary(const Run *run) {
+    const Options *o = run->options;
+    const RtSampling *s = &run->timed.sampling;
+    RtDescription d;
+    run->accel->ops->describe(run->accel, &d);
+    printf("%s: %u objects, %u lights. %s: built in %.3g s, %.3g MB. %u x %u pixels%s, %u levels: ",
+           run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
+           run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,
+           s->corners ? " at their corners" : "", o->depth);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        if (run->rays[kind]) printf("%llu %s, ", (unsigned long long)run->rays[kind], kind_names[kind]);
+    }
+    uint64_t rays = total_rays(run);
+    printf("%llu rays in %.3g s on %d threads: %.3g Mrays/s.", (unsigned long long)rays, run->timed.seconds,
+           rt_thread_count(o->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
+    const char *const written[] = {o->png, o->exr, o->heatmap, o->structure, o->stats};
+    const char *before = " Wrote ";
+    for (size_t i = 0; i < sizeof written / sizeof written[0]; i++) {
+        if (!written[i]) continue;
+        printf("%s%s", before, written[i]);
+        before = ", ";
+    }
+    puts(before[0] == ',' ? "." : "");
+}
+
+/* ---- the check ---- */
+
+static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet *set, RtError *error) {
+    RtReference reference;
+    RtEquivalence result;
+    int threads = run->options->threads;
+    RT_TRY(rt_reference_init(&reference, brute, set->rays, (size_t)set->count, threads, error));
+    RtStatus status = rt_equivalence_check(&reference, run->accel, threads, &result, error);
+    rt_reference_clear(&reference);
+    if (status != RT_OK) return status;
+    if (!result.any_wrong && result.occluded_wrong == 0) {
+        printf("%s: all %llu %s rays answered like brute.\n", run->spec, (unsigned long long)set->count,
+               kind_names[set->kind]);
+        return RT_OK;
+    }
+    char witness[512];
+    rt_witness_format(&result.first_wrong, witness, sizeof witness);
+    return rt_fail(error, RT_MISMATCH, "%s differs from brute on %s rays, first on: %s", run->spec,
+                   kind_names[set->kind], witness);
+}
+
+static RtStatus check_rays(const Run *run, RtError *error) {
+    if (!run->options->check) return RT_OK;
+    RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
+    RtRecording recording = {
+        .sampling = run->timed.sampling, .depth = run->options->depth, .threads = run->options->threads};
+    RtAccel *brute;
+    RT_TRY(rt_accel_open("brute", &run->scene, &brute, error));
+    RtStatus status = rt_rayset_record(sets, run->accel, &recording, error);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT && status == RT_OK; kind++) {
+        if (run->rays[kind] > 0) status = check_kind(run, brute, &sets[kind], error);
+    }
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
+    rt_accel_destroy(brute);
+    return status;
+}
+
+int rt_command_render(int argc, char **argv) {
+    static const char doc[] =
+        "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
+        "To begin with: raytally render balls -o balls.png";
+    const struct argp argp = {options, parse_option, "SCENE", doc, 0, 0, 0};
+    Options o = {.accel = "bvh", .samples = 1, .depth = 5};
+    argp_parse(&argp, argc, argv, 0, 0, &o);
+    RtError error = {RT_OK, ""};
+    Run *run = rt_alloc(1, sizeof(Run));
+    if (!run) {
+        rt_fail_memory(&error, "the run", sizeof(Run));
+        return rt_cli_fail(&error);
+    }
+    run->options = &o;
+    RtStatus status = prepare(run, &error);
+    if (status == RT_OK) status = trace_frames(run, &error);
+    if (status == RT_OK) status = write_images(run, &error);
+    if (status == RT_OK) status = write_stats(run, &error);
+    if (status == RT_OK) print_summary(run);
+    if (status == RT_OK) status = check_rays(run, &error);
+    rt_frame_clear(&run->timed);
+    rt_frame_clear(&run->counted);
+    rt_accel_destroy(run->accel);
+    rt_scene_clear(&run->scene);
+    rt_free(run);
+    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+}

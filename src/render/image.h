@@ -1,0 +1,44 @@
+/* Images: from the samples of a frame to pixels, and to files. Files are written whole or not at all. */
+#ifndef RT_RENDER_IMAGE_H
+#define RT_RENDER_IMAGE_H
+
+#include "render/frame.h"
+
+/* 8-bit sRGB, what a PNG holds. Owns its pixels. */
+typedef struct RtImage {
+    uint32_t width, height;
+    uint8_t *rgb; /* [height][width][3], from the upper left */
+} RtImage;
+
+/* A black image. Free with rt_image_clear. */
+RtStatus rt_image_init(RtImage *image, uint32_t width, uint32_t height, RtError *error);
+void rt_image_clear(RtImage *image);
+
+/* The samples of one pixel: `span` x `span` of the frame's grid, from (column, row) on. N x N of its own; or,
+ * sampled at corners, its 4 corners, which it shares with its neighbours. */
+typedef struct RtFootprint {
+    uint32_t column, row, span;
+} RtFootprint;
+RtFootprint rt_pixel_footprint(const RtSampling *sampling, uint32_t x, uint32_t y);
+
+/* The mean colour of a pixel's samples, linear. */
+RtVec3 rt_frame_pixel(const RtFrame *frame, uint32_t x, uint32_t y);
+
+/* The mean of one counter over a pixel's samples; `counter` as in rt_tally_get, the frame counted. */
+double rt_frame_cost(const RtFrame *frame, size_t counter, uint32_t x, uint32_t y);
+
+/* The frame as an image: mean colours, clipped to 0..1. */
+RtStatus rt_image_from_frame(RtImage *image, const RtFrame *frame, RtError *error);
+
+/* 8 bits a channel, sRGB. */
+RtStatus rt_png_write(const RtImage *image, const char *path, RtError *error);
+
+/* One part, scan lines, 32 bits a channel:
+ *   R G B                             linear mean, FLOAT
+ *   Z                                 depth along the camera's axis, FLOAT, infinite where nothing is hit
+ *   id                                object, UINT, RT_NO_OBJECT for none
+ *   object_tests extent_tests steps   mean of the samples' ray trees, FLOAT, if the frame is counted
+ * Z and id cannot be averaged: they are those of the pixel's middle sample (of four, the upper left). */
+RtStatus rt_exr_write(const RtFrame *frame, const char *path, RtError *error);
+
+#endif
