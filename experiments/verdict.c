@@ -50,7 +50,8 @@ static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray) {
     for (int i = 0; i < PROBES; i++) {
         /* 13, the middle of the 3 x 3 x 3 places, comes first. */
         int place = i == 0 ? 13 : i <= 13 ? i - 1 : i;
-        RtVec3d to = {place % 3 - 1, place / 3 % 3 - 1, place / 9 - 1};
+        int x = place % 3, y = place / 3 % 3, z = place / 9;
+        RtVec3d to = {x - 1, y - 1, z - 1};
         RtRay moved = *ray;
         moved.org = rt_narrow(rt_add_scaledd(rt_widen(ray->org), to, p->shift));
         moved.tmin = (float)fmax(tmin - p->tolerance, 0);

@@ -38,4 +38,11 @@ RtStatus rt_fail_memory(RtError *error, const char *what, size_t bytes);
         if (rt_try_status != RT_OK) return rt_try_status;                                                    \
     } while (0)
 
+/* For clang's analyzer, which sees one file at a time: what these return is never RT_OK. */
+#ifdef __clang_analyzer__
+#define rt_fail(error, status, ...)        (rt_fail(error, status, __VA_ARGS__), status)
+#define rt_fail_at(error, file, ...)       (rt_fail_at(error, file, __VA_ARGS__), RT_BAD_INPUT)
+#define rt_fail_memory(error, what, bytes) (rt_fail_memory(error, what, bytes), RT_NO_MEMORY)
+#endif
+
 #endif
