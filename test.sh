@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds with warnings as errors, runs every test: by gcc, by clang, under the
-# address, undefined-behaviour and thread sanitizers. --quick: by gcc alone.
+# address, undefined-behaviour and thread sanitizers. --quick: by gcc alone, without the slow ones.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 passed=0 failed=0 skipped=0
@@ -23,7 +23,7 @@ case "${1-}" in
 --quick)
     install_missing build optional data test
     build release -DRT_WERROR=ON
-    run_tests release
+    run_tests release -LE slow
     ;;
 "")
     install_missing build optional data test check
