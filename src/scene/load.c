@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/param.h"
+#include "scene/mesh.h"
 #include "scene/nff.h"
 #include "scenes/builtin.h"
 
@@ -11,18 +12,18 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-/* Formats with a reader of our own. */
-typedef struct Format {
-    const char *extension; /* without the dot */
-    RtStatus (*load)(const char *path, RtScene *scene, RtError *error);
-    RtStatus (*save)(const RtScene *scene, FILE *file, RtError *error);
-} Format;
+typedef RtStatus (*Load)(const char *path, RtScene *scene, RtError *error);
 
-static const Format formats[] = {
+/* Formats with a reader and a writer of our own; all else is a mesh. */
+static const struct {
+    const char *extension; /* without the dot */
+    Load load;
+    RtStatus (*save)(const RtScene *scene, FILE *file, RtError *error);
+} formats[] = {
     {"nff", rt_nff_load, rt_nff_save},
 };
 
-enum { FORMAT_COUNT = sizeof formats / sizeof formats[0] };
+enum { FORMAT_COUNT = sizeof formats / sizeof formats[0], MAX_WRITTEN = FORMAT_COUNT + 8 };
 
 /* What follows the last dot of the last part of a path; "" if there is none. */
 static const char *extension_of(const char *path) {
@@ -30,25 +31,40 @@ static const char *extension_of(const char *path) {
     return dot && (!slash || dot > slash) ? dot + 1 : "";
 }
 
-static const Format *find_format(const char *extension) {
+/* Index of our own format of that extension, or -1. */
+static int find_format(const char *extension) {
     for (int i = 0; i < FORMAT_COUNT; i++) {
-        if (strcasecmp(formats[i].extension, extension) == 0) return &formats[i];
+        if (strcasecmp(formats[i].extension, extension) == 0) return i;
     }
-    return NULL;
+    return -1;
 }
 
-static RtStatus fail_extension(const char *path, RtError *error) {
-    const char *names[FORMAT_COUNT];
+static Load find_loader(const char *extension) {
+    int own = find_format(extension);
+    return own >= 0 ? formats[own].load : rt_mesh_reads(extension) ? rt_mesh_load : NULL;
+}
+
+/* The extensions that can be written, to names[0..MAX_WRITTEN); returns how many there are. */
+static size_t list_written(const char *names[MAX_WRITTEN]) {
+    size_t count = 0;
+    for (int i = 0; i < FORMAT_COUNT; i++) names[count++] = formats[i].extension;
+    for (size_t i = 0; rt_mesh_written(i) && count < MAX_WRITTEN; i++) names[count++] = rt_mesh_written(i);
+    return count;
+}
+
+/* `more` ends the list of extensions. */
+static RtStatus fail_extension(const char *path, const char *doing, const char *more, RtError *error) {
+    const char *names[MAX_WRITTEN], *extension = extension_of(path);
+    size_t count = list_written(names);
     char list[256] = "";
-    for (size_t i = 0; i < FORMAT_COUNT; i++) {
-        names[i] = formats[i].extension;
+    for (size_t i = 0; i < count; i++) {
         size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s.%s", i ? ", " : "", names[i]);
+        snprintf(list + used, sizeof list - used, "%s.%s", i ? " " : "", names[i]);
     }
-    const char *extension = extension_of(path);
-    const char *near = rt_nearest_name(extension, names, FORMAT_COUNT);
-    return rt_fail(error, RT_BAD_INPUT, "%s: there is no scene format '.%.40s'%s%s%s Scenes are %s", path,
-                   extension, near ? ": did you mean '." : "", near ? near : "", near ? "'?" : ".", list);
+    const char *near = rt_nearest_name(extension, names, count);
+    return rt_fail(error, RT_BAD_INPUT, "%s: no format '.%.40s' can be %s%s%s%s These can: %s%s", path,
+                   extension, doing, near ? ": did you mean '." : "", near ? near : "", near ? "'?" : ".",
+                   list, more);
 }
 
 /* Names the file of the same folder whose name is nearest. */
@@ -70,10 +86,10 @@ static RtStatus fail_missing(const char *path, RtError *error) {
                    best[0] ? "'?" : "");
 }
 
-static RtStatus load_file(const char *path, const Format *format, RtScene *scene, RtError *error) {
+static RtStatus load_file(const char *path, Load load, RtScene *scene, RtError *error) {
     rt_scene_init(scene);
     snprintf(scene->name, sizeof scene->name, "%.*s", (int)sizeof scene->name - 1, path);
-    RtStatus status = format->load(path, scene, error);
+    RtStatus status = load(path, scene, error);
     if (status == RT_OK && scene->geometry.object_count == 0) {
         status = rt_fail_at(error, path, 0, 0, "the scene is empty: it needs at least one object");
     }
@@ -90,21 +106,26 @@ RtStatus rt_scene_open(const char *spec, RtScene *scene, RtError *error) {
     if (exists && S_ISDIR(found.st_mode)) {
         return rt_fail(error, RT_BAD_INPUT, "%s is a folder: give the name of a file in it", spec);
     }
-    const Format *format = find_format(extension_of(spec));
-    if (format) return exists ? load_file(spec, format, scene, error) : fail_missing(spec, error);
-    if (exists || strchr(spec, '/') || extension_of(spec)[0]) return fail_extension(spec, error);
+    Load load = find_loader(extension_of(spec));
+    if (load) return exists ? load_file(spec, load, scene, error) : fail_missing(spec, error);
+    if (exists || strchr(spec, '/') || extension_of(spec)[0]) {
+        return fail_extension(spec, "read", ", and the other mesh formats of Assimp", error);
+    }
     return rt_builtin_open(spec, scene, error); /* which says that there is none of that name */
 }
 
 RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, RtError *error) {
-    const Format *format = find_format(extension_of(path));
-    if (!format) return fail_extension(path, error);
+    const char *extension = extension_of(path), *names[MAX_WRITTEN];
+    size_t count = list_written(names), named = 0;
+    while (named < count && strcasecmp(names[named], extension) != 0) named++;
+    if (named == count) return fail_extension(path, "written", "", error);
     if (!overwrite && rt_file_exists(path)) {
         return rt_fail(error, RT_BAD_INPUT, "%s exists already: remove it, or choose another name", path);
     }
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));
-    RtStatus status = format->save(scene, output.file, error);
+    RtStatus status = named < FORMAT_COUNT ? formats[named].save(scene, output.file, error)
+                                           : rt_mesh_save(scene, extension, output.file, error);
     if (status == RT_OK) return rt_output_commit(&output, error);
     rt_output_discard(&output);
     return status;

@@ -1,0 +1,140 @@
+/* Reading meshes. Assimp's scene is a tree of nodes, each with a matrix and indices of meshes; the matrices
+ * are multiplied on the way down, in double, and every vertex is rounded to float32 once. */
+#include "scene/mesh.h"
+
+#include "base/file.h"
+
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <string.h>
+
+typedef struct Reader {
+    const char *path;
+    const struct aiScene *file;
+    RtScene *scene;
+    uint32_t material;
+    RtError *error;
+} Reader;
+
+/* What a node does first, then what is above it. */
+static RtTransform compose(const RtTransform *above, const struct aiMatrix4x4 *node) {
+    const double n[4][4] = {
+        {(double)node->a1, (double)node->a2, (double)node->a3, (double)node->a4},
+        {(double)node->b1, (double)node->b2, (double)node->b3, (double)node->b4},
+        {(double)node->c1, (double)node->c2, (double)node->c3, (double)node->c4},
+        {0, 0, 0, 1},
+    };
+    RtTransform both;
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 4; column++) {
+            double sum = 0;
+            for (int i = 0; i < 4; i++) sum += above->m[row][i] * n[i][column];
+            both.m[row][column] = sum;
+        }
+    }
+    return both;
+}
+
+/* Turns the inside out: then corners are taken in reverse, and normals, which go by cofactors, change sign.
+ */
+static bool is_mirror(const RtTransform *t) {
+    const RtVec3d x = {t->m[0][0], t->m[1][0], t->m[2][0]}, y = {t->m[0][1], t->m[1][1], t->m[2][1]};
+    const RtVec3d z = {t->m[0][2], t->m[1][2], t->m[2][2]};
+    return rt_dotd(rt_crossd(x, y), z) < 0;
+}
+
+static RtVec3 vector_at(const struct aiVector3D *vectors, unsigned i) {
+    return rt_vec3(vectors[i].x, vectors[i].y, vectors[i].z);
+}
+
+static RtStatus check_vertices(const Reader *r, const struct aiMesh *mesh) {
+    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+        RtVec3 v = vector_at(mesh->mVertices, i);
+        if (rt_finite(v)) continue;
+        return rt_fail_at(
+            r->error, r->path, 0, 0,
+            "vertex %u of mesh '%.60s' (counted from 0) is not finite: (%g, %g, %g); repair the "
+            "file",
+            i, mesh->mName.data, (double)v.x, (double)v.y, (double)v.z);
+    }
+    return RT_OK;
+}
+
+static RtStatus add_face(const Reader *r, const struct aiMesh *mesh, unsigned face,
+                         const RtTransform *transform, bool mirror) {
+    RtVec3 vertices[3], normals[3];
+    bool has_normals = mesh->mNormals != NULL;
+    for (int i = 0; i < 3; i++) {
+        unsigned vertex = mesh->mFaces[face].mIndices[mirror ? 2 - i : i];
+        if (vertex >= mesh->mNumVertices) {
+            return rt_fail_at(r->error, r->path, 0, 0,
+                              "face %u of mesh '%.60s' names vertex %u of %u: the file is damaged", face,
+                              mesh->mName.data, vertex, mesh->mNumVertices);
+        }
+        vertices[i] = rt_transform_point(transform, vector_at(mesh->mVertices, vertex));
+        if (!has_normals) continue;
+        RtVec3 normal = vector_at(mesh->mNormals, vertex);
+        normals[i] = rt_transform_normal(transform, mirror ? rt_scale(normal, -1) : normal);
+        has_normals = rt_finite(normals[i]) && rt_lengthd(rt_widen(normals[i])) > 0;
+    }
+    RtStatus status =
+        rt_scene_add_triangle(r->scene, r->material, vertices, has_normals ? normals : NULL, r->error);
+    if (status != RT_BAD_INPUT || !r->error) return status;
+    RtError inner = *r->error;
+    return rt_fail_at(r->error, r->path, 0, 0, "face %u of mesh '%.60s' (counted from 0): %s", face,
+                      mesh->mName.data, inner.message);
+}
+
+static RtStatus add_mesh(const Reader *r, const struct aiMesh *mesh, const RtTransform *transform) {
+    bool mirror = is_mirror(transform);
+    RT_TRY(check_vertices(r, mesh));
+    for (unsigned face = 0; face < mesh->mNumFaces; face++) {
+        if (mesh->mFaces[face].mNumIndices != 3) continue; /* points and lines */
+        RT_TRY(add_face(r, mesh, face, transform, mirror));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_node(const Reader *r, const struct aiNode *node, const RtTransform *above) {
+    RtTransform transform = compose(above, &node->mTransformation);
+    for (unsigned i = 0; i < node->mNumMeshes; i++) {
+        RT_TRY(add_mesh(r, r->file->mMeshes[node->mMeshes[i]], &transform));
+    }
+    for (unsigned i = 0; i < node->mNumChildren; i++) RT_TRY(add_node(r, node->mChildren[i], &transform));
+    return RT_OK;
+}
+
+bool rt_mesh_reads(const char *extension) {
+    char dotted[16];
+    if (strlen(extension) + 2 > sizeof dotted || !extension[0]) return false;
+    snprintf(dotted, sizeof dotted, ".%s", extension);
+    return aiIsExtensionSupported(dotted);
+}
+
+RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
+                        RtError *error) {
+    if (!rt_file_exists(path))
+        return rt_fail_at(error, path, 0, 0, "there is no such file, or no right to it");
+    const struct aiScene *file = aiImportFile(path, aiProcess_Triangulate);
+    if (!file) return rt_fail_at(error, path, 0, 0, "Assimp cannot read this file: %s", aiGetErrorString());
+    RtTransform identity = rt_transform_identity();
+    Reader reader = {path, file, scene, material, error};
+    uint32_t before = scene->geometry.object_count;
+    RtStatus status = RT_OK;
+    if (file->mRootNode) status = add_node(&reader, file->mRootNode, transform ? transform : &identity);
+    if (status == RT_OK && scene->geometry.object_count == before) {
+        status =
+            rt_fail_at(error, path, 0, 0, "there is no triangle in this file: a mesh needs one at least");
+    }
+    aiReleaseImport(file);
+    return status;
+}
+
+RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error) {
+    uint32_t material;
+    RtMaterial standard = rt_default_material();
+    scene->camera.up = rt_vec3(0, 1, 0);
+    RT_TRY(rt_scene_add_material(scene, &standard, &material, error));
+    return rt_mesh_append(scene, path, material, NULL, error);
+}

@@ -1,0 +1,38 @@
+/* Triangle meshes, through Assimp: OBJ, PLY, STL, glTF and what else it reads. Scenes in NFF and YAML have
+ * readers of their own.
+ *
+ * Triangles come in the order of the file as Assimp gives it: its nodes depth first, the meshes of a node,
+ * the faces of a mesh. Polygons are cut into triangles, points and lines left out. Nothing is merged, removed
+ * or made up: triangles without area stay (they are never hit), and there are vertex normals only where the
+ * file has them. Materials, cameras and lights of the file are not taken over. */
+#ifndef RT_SCENE_MESH_H
+#define RT_SCENE_MESH_H
+
+#include "scene/scene.h"
+#include "scene/transform.h"
+
+#include <stdio.h>
+
+/* Does Assimp read files with this extension, given without its dot? */
+bool rt_mesh_reads(const char *extension);
+
+/* Adds the triangles of `path` to the scene, all of `material`, moved by `transform` (NULL: left in place).
+ * A failure may leave some of them in the scene, which is then to be cleared. Refuses files that Assimp
+ * cannot read (with its message), that hold no triangle, or a vertex that is not finite (with its index). */
+RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
+                        RtError *error);
+
+/* Reads a bare mesh into a scene that rt_scene_init has made: the default material, +Y up. */
+RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error);
+
+/* The extensions that rt_mesh_save writes, without dots; NULL after the last. */
+const char *rt_mesh_written(size_t i);
+
+/* Writes the triangles of a scene in the format that belongs to `extension`: coordinates come back bit for
+ * bit from the binary formats (ply, stl, glb); obj is text of 9 digits. Vertices are not shared between
+ * triangles. Where some triangles have vertex normals, the others get their geometric normal as such. Refuses
+ * scenes with objects of other shapes, naming formats that hold them. Materials, lights and camera are not
+ * written. */
+RtStatus rt_mesh_save(const RtScene *scene, const char *extension, FILE *file, RtError *error);
+
+#endif
