@@ -18,6 +18,7 @@ typedef struct RtCommand {
 
 int rt_command_accels(int argc, char **argv);
 int rt_command_render(int argc, char **argv);
+int rt_command_verify(int argc, char **argv);
 
 /* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
 int rt_cli_fail(const RtError *error);

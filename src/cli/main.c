@@ -15,6 +15,7 @@ static const RtCommand commands[] = {
      rt_command_accels},
     {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
      rt_command_render},
+    {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

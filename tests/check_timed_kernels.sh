@@ -1,0 +1,44 @@
+#!/bin/sh
+# The timed kernels hold no counting code. Counters are 64-bit words in memory, and counting adds to them; so
+# no function of the library that is called ..._timed may add to a 64-bit word in memory, its own stack apart.
+# The functions called ..._counted must: each file's counted kernels show that this script would see it.
+# Optimised x86-64 builds only; elsewhere it is skipped (exit code 77).
+set -eu
+
+build=$(dirname "${RT_PROGRAM:?the path of raytally, beside which its library lies}")
+library=$build/libraytally_core.a
+[ "$(uname -m)" = x86_64 ] || { echo "skipped: not x86-64"; exit 77; }
+command -v objdump >/dev/null || { echo "skipped: there is no objdump"; exit 77; }
+grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Rel' "$build/CMakeCache.txt" || { echo "skipped: not a release build"; exit 77; }
+
+objdump --disassemble --no-show-raw-insn "$library" | awk '
+/file format/ { file = $1; sub(/:$/, "", file) }
+/^[0-9a-f]+ <.*>:$/ {
+    kind = $2 ~ /_timed/ ? "timed" : $2 ~ /_counted/ ? "counted" : ""
+    if (kind == "") next
+    name = $2; gsub(/[<>:]/, "", name)
+    seen[file, kind]++
+    if (!(file in known)) { known[file] = 1; files[++n] = file }
+    next
+}
+kind == "" { next }
+# addq $1,8(%rdi)   incq (%rax)   lock addq ...   add %rax,8(%rdi)   -- but not n(%rsp): spilled registers
+/[ \t](addq|subq|incq|decq|adcq)[ \t].*\(/ || /[ \t](add|sub|adc|xadd)[ \t]+%r[a-z0-9]+,[^%]*\(/ {
+    if ($0 ~ /\(%rsp[,)]/) next
+    if ($0 ~ /%r[0-9]+[dwb],/) next
+    adds[file, kind]++
+    if (kind == "timed") print "  " file ": " name ": " $0
+}
+END {
+    for (i = 1; i <= n; i++) {
+        f = files[i]
+        printf "%-12s timed kernels: %d, additions to memory: %d; counted: %d, additions: %d\n", f,
+            seen[f, "timed"], adds[f, "timed"], seen[f, "counted"], adds[f, "counted"]
+        if (adds[f, "timed"] > 0) { print "  FAILED: a timed kernel counts"; bad = 1 }
+        if (seen[f, "timed"] == 0 || seen[f, "counted"] == 0 || adds[f, "counted"] == 0) {
+            print "  FAILED: nothing to compare with: the counted kernels show no counting"; bad = 1
+        }
+    }
+    if (n == 0) { print "FAILED: there are no kernels"; bad = 1 }
+    exit bad
+}'
