@@ -15,7 +15,7 @@ typedef struct Probes {
 /* What the probes say about one object. */
 typedef struct Margin {
     bool possible, certain;
-    double lo[2], hi[2]; /* range of t: of wide probes, of narrow ones; empty is lo > hi */
+    double lo[2], hi[2]; /* range of t where a probe meets a front [0] and a back [1]; empty is lo > hi */
 } Margin;
 
 const char *rt_verdict_name(RtVerdict verdict) {
@@ -74,6 +74,13 @@ static bool in_reach(const RtGeometry *g, uint32_t id, const Probes *p) {
     return rt_box_hit(&box, &p->wide[0], p->wide[0].tmax, &enter);
 }
 
+/* Does the ray meet the object's front, seen along its normal, or its back? */
+static int side_met(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, float t) {
+    RtVec3d dir = rt_widen(ray->dir);
+    RtVec3d point = rt_add_scaledd(rt_widen(ray->org), dir, (double)t);
+    return rt_dotd(rt_object_normals(g, id, point).geometric, dir) > 0;
+}
+
 static Margin margin_of(const RtGeometry *g, uint32_t id, const Probes *p) {
     Margin m = {.certain = true, .lo = {HUGE_VAL, HUGE_VAL}, .hi = {-HUGE_VAL, -HUGE_VAL}};
     for (int i = 0; i < PROBES; i++) {
@@ -84,17 +91,18 @@ static Margin margin_of(const RtGeometry *g, uint32_t id, const Probes *p) {
                 m.certain = false;
                 continue;
             }
+            int side = side_met(g, id, rays[k], t);
             m.possible = true;
-            m.lo[k] = fmin(m.lo[k], (double)t);
-            m.hi[k] = fmax(m.hi[k], (double)t);
+            m.lo[side] = fmin(m.lo[side], (double)t);
+            m.hi[side] = fmax(m.hi[side], (double)t);
         }
     }
     return m;
 }
 
 static bool in_margin(const Margin *m, double t, double tolerance) {
-    for (int k = 0; k < 2; k++) {
-        if (m->possible && t >= m->lo[k] - tolerance && t <= m->hi[k] + tolerance) return true;
+    for (int side = 0; side < 2; side++) {
+        if (t >= m->lo[side] - tolerance && t <= m->hi[side] + tolerance) return true;
     }
     return false;
 }

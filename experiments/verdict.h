@@ -9,7 +9,8 @@
  * along the 26 directions of a cube's faces, edges and corners, and its interval is once widened and once
  * narrowed by the tolerance. An object that all these rays hit is certain, one that some hit is possible, one
  * that none hits is impossible. An answer that names a possible or certain object, at a t between those found
- * for it, with no certain object clearly before it, is marginal; so is a miss where nothing is certain.
+ * for its front or between those for its back, with no certain object clearly before it, is marginal; so is a
+ * miss where nothing is certain.
  *
  * This trusts our hit functions to be within the bound of the truth; a referee in exact arithmetic, which
  * trusts nobody, is to take its place. */

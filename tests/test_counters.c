@@ -1,0 +1,289 @@
+/* Counters: what each of them counts, pinned by scenes counted by hand, and the same numbers on any number of
+ * threads and in streams of any length. */
+#include "testing.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "experiments/families.h"
+#include "experiments/spread.h"
+
+#include <string.h>
+
+/* ---- counted by hand ----
+ *
+ * The scene: two unit-diameter spheres, 0 about (0.5, 0.5, 0.5) and 1 about (3.5, 0.5, 0.5). Their boxes are
+ * [0,1] x [0,1] x [0,1] and [3,4] x [0,1] x [0,1]; the scene's box is [0,4] x [0,1] x [0,1].
+ *
+ * The rays all run along +x from x = -1:
+ *   THROUGH  at y = z = 0.5: meets sphere 0 at t = 1, sphere 1 at t = 4;
+ *   BETWEEN  at y = z = 0.95: crosses both boxes near an edge and misses both spheres;
+ *   BESIDE   at y = 5: misses all boxes. */
+enum { THROUGH, BETWEEN, BESIDE, RAY_COUNT };
+
+static const RtRay rays[RAY_COUNT] = {
+    {{-1, 0.5f, 0.5f}, 0, {1, 0, 0}, INFINITY, RT_RAY_RANDOM, 0},
+    {{-1, 0.95f, 0.95f}, 0, {1, 0, 0}, INFINITY, RT_RAY_RANDOM, 0},
+    {{-1, 5, 0.5f}, 0, {1, 0, 0}, INFINITY, RT_RAY_RANDOM, 0},
+};
+static const RtHit answers[RAY_COUNT] = {{1, 0}, {INFINITY, RT_NO_OBJECT}, {INFINITY, RT_NO_OBJECT}};
+
+typedef struct Row {
+    const char *spec;
+    int ray;
+    bool occluded; /* which question is asked */
+    RtTally expected;
+} Row;
+
+static const Row rows[] = {
+    /* brute: every object is tested; occlusion ends with the first that is hit. */
+    {"brute", THROUGH, false, {.rays = 1, .hits = 1, .object_tests = 2, .object_hits = 2}},
+    {"brute", THROUGH, true, {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1}},
+    {"brute", BETWEEN, false, {.rays = 1, .object_tests = 2}},
+    {"brute", BETWEEN, true, {.rays = 1, .object_tests = 2}},
+    {"brute", BESIDE, false, {.rays = 1, .object_tests = 2}},
+
+    /* ideal, which was told the answers: one test for a hit, none for a miss. */
+    {"ideal", THROUGH, false, {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1}},
+    {"ideal", THROUGH, true, {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1}},
+    {"ideal", BETWEEN, false, {.rays = 1}},
+    {"ideal", BESIDE, true, {.rays = 1}},
+
+    /* bvh: an extent test per box, the root's included; a step per node visited. With leaf=1 a root and two
+     * leaves: THROUGH visits the root and the near leaf, and drops the far one, which begins at t = 4. */
+    {"bvh:leaf=1",
+     THROUGH,
+     false,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 3, .steps = 2}},
+    {"bvh:leaf=1",
+     THROUGH,
+     true,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 3, .steps = 2}},
+    {"bvh:leaf=1", BETWEEN, false, {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3}},
+    {"bvh:leaf=1", BETWEEN, true, {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3}},
+    {"bvh:leaf=1", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+    /* A visit that costs ten object tests never pays here: the root is a leaf of two. */
+    {"bvh:traversal=10",
+     THROUGH,
+     false,
+     {.rays = 1, .hits = 1, .object_tests = 2, .object_hits = 2, .extent_tests = 1, .steps = 1}},
+    {"bvh:traversal=10",
+     THROUGH,
+     true,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
+
+    /* grid: an extent test for its box; a step per voxel. Three voxels along x, of width 4/3: sphere 0 in the
+     * first, none in the second, sphere 1 in the third, which THROUGH does not reach. */
+    {"grid:resolution=3x1x1",
+     THROUGH,
+     false,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
+    {"grid:resolution=3x1x1",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .empty_steps = 1}},
+    {"grid:resolution=3x1x1",
+     BETWEEN,
+     true,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .empty_steps = 1}},
+    {"grid:resolution=3x1x1", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+    /* Eight voxels of width 1/2. Voxels are closed, so sphere 0 is in three of them, up to the one that only
+     * touches it at x = 1; sphere 1 likewise; two are empty. The mailbox saves the two later tests of each.
+     */
+    {"grid:resolution=8x1x1",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 8, .empty_steps = 2, .repeats_avoided = 4}},
+    {"grid:resolution=8x1x1,mailbox=off",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 6, .extent_tests = 1, .steps = 8, .empty_steps = 2}},
+};
+
+static void make_scene(RtScene *scene) {
+    RtMaterial material = rt_default_material();
+    uint32_t m;
+    rt_scene_init(scene);
+    assert_ok(rt_scene_add_material(scene, &material, &m, error));
+    assert_ok(rt_scene_add_sphere(scene, m, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(scene, m, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+static size_t differences(const Row *row, const RtTally *got) {
+    size_t wrong = 0;
+    for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
+        uint64_t counted = rt_tally_get(got, c), expected = rt_tally_get(&row->expected, c);
+        if (counted == expected) continue;
+        wrong++;
+        print_error("%s, ray %d, %s: %s is %llu, by hand %llu\n", row->spec, row->ray,
+                    row->occluded ? "occluded" : "nearest", rt_tally_name(c), (unsigned long long)counted,
+                    (unsigned long long)expected);
+    }
+    return wrong;
+}
+
+static void counters_are_what_was_counted_by_hand(void **state) {
+    (void)state;
+    RtScene scene;
+    size_t wrong = 0;
+    make_scene(&scene);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const Row *row = &rows[i];
+        RtAccel *accel;
+        RtQuery query;
+        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+        assert_ok(rt_accel_open(row->spec, &scene, &accel, error));
+        if (accel->ops->learn) assert_ok(accel->ops->learn(accel, rays, answers, RAY_COUNT, error));
+        assert_ok(rt_query_init(&query, accel, error));
+        RtHit hit;
+        bool blocked;
+        if (row->occluded) {
+            rt_occluded(&query, &rays[row->ray], 1, &blocked, tallies);
+            assert_true(blocked == (answers[row->ray].object != RT_NO_OBJECT));
+        } else {
+            rt_nearest(&query, &rays[row->ray], 1, &hit, tallies);
+            assert_memory_equal(&hit, &answers[row->ray], sizeof hit);
+        }
+        wrong += differences(row, &tallies[RT_RAY_RANDOM]);
+        for (int kind = 0; kind < RT_RAY_RANDOM; kind++) assert_int_equal(tallies[kind].rays, 0);
+        rt_query_clear(&query);
+        rt_accel_destroy(accel);
+    }
+    rt_scene_clear(&scene);
+    assert_int_equal(wrong, 0);
+}
+
+/* ---- independent of threads and streams ---- */
+
+enum { RAYS = 3000, PIECE = 500 };
+
+typedef struct Stage {
+    RtScene scene;
+    RtAccel *brute;
+    RtRay rays[RAYS]; /* of all kinds in turn */
+    RtHit hits[RAYS];
+    uint64_t hits_by_kind[RT_RAY_KIND_COUNT];
+} Stage;
+
+typedef struct Count {
+    const Stage *stage;
+    const RtAccel *accel;
+    size_t stream;
+    RtQuery queries[3];                                                    /* a thread */
+    RtTally nearest[3][RT_RAY_KIND_COUNT], occluded[3][RT_RAY_KIND_COUNT]; /* a thread and kind */
+} Count;
+
+static int set_up(void **state) {
+    static Stage stage;
+    size_t mixed = 0;
+    while (strcmp(rt_scene_family_name(mixed), "mixed") != 0) mixed++;
+    assert_ok(rt_scene_family_build(mixed, 1, &stage.scene, error));
+    assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
+    RtQuery query;
+    assert_ok(rt_query_init(&query, stage.brute, error));
+    for (size_t i = 0; i < RAYS; i++) {
+        rt_ray_family_fill(i % rt_ray_family_count(), &query, 1, i, 1, &stage.rays[i]);
+        stage.rays[i].kind = (uint32_t)(i / 7 % RT_RAY_KIND_COUNT);
+    }
+    rt_nearest(&query, stage.rays, RAYS, stage.hits, NULL);
+    for (size_t i = 0; i < RAYS; i++) {
+        stage.hits_by_kind[stage.rays[i].kind] += stage.hits[i].object != RT_NO_OBJECT;
+    }
+    rt_query_clear(&query);
+    *state = &stage;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    Stage *stage = *state;
+    rt_accel_destroy(stage->brute);
+    rt_scene_clear(&stage->scene);
+    return rt_alloc_live() == 0 ? 0 : -1;
+}
+
+static RtStatus count_piece(void *context, size_t piece, int thread, RtError *error) {
+    (void)error;
+    Count *count = context;
+    const RtRay *piece_rays = count->stage->rays + piece * PIECE;
+    RtHit hits[PIECE];
+    bool blocked[PIECE];
+    for (size_t first = 0; first < PIECE; first += count->stream) {
+        size_t n = PIECE - first < count->stream ? PIECE - first : count->stream;
+        rt_nearest(&count->queries[thread], piece_rays + first, n, hits, count->nearest[thread]);
+        rt_occluded(&count->queries[thread], piece_rays + first, n, blocked, count->occluded[thread]);
+    }
+    return RT_OK;
+}
+
+/* Sums over `threads` threads go to the place of thread 0. */
+static void count_all(Count *count, int threads) {
+    for (int i = 0; i < threads; i++) assert_ok(rt_query_init(&count->queries[i], count->accel, error));
+    assert_ok(rt_parallel_for(RAYS / PIECE, threads, count_piece, count, error));
+    for (int i = 0; i < threads; i++) {
+        rt_query_clear(&count->queries[i]);
+        for (int kind = 0; i > 0 && kind < RT_RAY_KIND_COUNT; kind++) {
+            rt_tally_add(&count->nearest[0][kind], &count->nearest[i][kind]);
+            rt_tally_add(&count->occluded[0][kind], &count->occluded[i][kind]);
+        }
+    }
+}
+
+static void assert_plausible(const char *spec, const Stage *stage, const Count *count) {
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        const RtTally *both[2] = {&count->nearest[0][kind], &count->occluded[0][kind]};
+        uint64_t rays_of_kind = 0;
+        for (size_t i = 0; i < RAYS; i++) rays_of_kind += stage->rays[i].kind == (uint32_t)kind;
+        for (int k = 0; k < 2; k++) {
+            const RtTally *t = both[k];
+            if (t->rays != rays_of_kind) fail_msg("%s: rays", spec);
+            if (count->accel->exact && t->hits != stage->hits_by_kind[kind]) fail_msg("%s: hits", spec);
+            if (!count->accel->counts) continue;
+            if (t->object_hits > t->object_tests) fail_msg("%s: more object hits than tests", spec);
+            if (t->object_hits < t->hits) fail_msg("%s: fewer object hits than hits", spec);
+            if (t->empty_steps > t->steps) fail_msg("%s: more empty steps than steps", spec);
+        }
+    }
+}
+
+static void counts_do_not_depend_on_threads_or_streams(void **state) {
+    const Stage *stage = *state;
+    const struct {
+        int threads;
+        size_t stream;
+    } ways[] = {{2, 1}, {3, PIECE}, {2, 7}, {1, 64}};
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
+            RtAccel *accel;
+            RtError error;
+            RtStatus status = rt_accel_open(spec, &stage->scene, &accel, &error);
+            if (status == RT_NOT_AVAILABLE) continue;
+            assert_int_equal(status, RT_OK);
+            if (accel->ops->learn) {
+                assert_int_equal(accel->ops->learn(accel, stage->rays, stage->hits, RAYS, &error), RT_OK);
+            }
+            static Count first, other;
+            first = (Count){.stage = stage, .accel = accel, .stream = 1};
+            count_all(&first, 1);
+            assert_plausible(spec, stage, &first);
+            for (size_t w = 0; accel->counts && w < sizeof ways / sizeof ways[0]; w++) {
+                other = (Count){.stage = stage, .accel = accel, .stream = ways[w].stream};
+                count_all(&other, ways[w].threads);
+                if (memcmp(first.nearest[0], other.nearest[0], sizeof first.nearest[0]) != 0 ||
+                    memcmp(first.occluded[0], other.occluded[0], sizeof first.occluded[0]) != 0) {
+                    fail_msg("%s: other counts on %d threads in streams of %zu", spec, ways[w].threads,
+                             ways[w].stream);
+                }
+            }
+            rt_accel_destroy(accel);
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(counters_are_what_was_counted_by_hand),
+        cmocka_unit_test(counts_do_not_depend_on_threads_or_streams),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
