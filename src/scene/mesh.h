@@ -28,9 +28,10 @@ RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error);
 /* The extensions that rt_mesh_save writes, without dots; NULL after the last. */
 const char *rt_mesh_written(size_t i);
 
-/* Writes the triangles of a scene in the format that belongs to `extension`: coordinates come back bit for
- * bit from the binary formats (ply, stl, glb); obj is text of 9 digits. Vertices are not shared between
- * triangles. Where some triangles have vertex normals, the others get their geometric normal as such. Refuses
+/* Writes the triangles of a scene in the format that belongs to `extension`, without sharing vertices.
+ * Coordinates come back bit for bit from ply and stl; from obj within the rounding of Assimp's reader; from
+ * glb but for vertices of nearly the same place, which Assimp's writer joins. stl has facet normals alone.
+ * Where some triangles have vertex normals, ply and glb give the others their geometric normal. Refuses
  * scenes with objects of other shapes, naming formats that hold them. Materials, lights and camera are not
  * written. */
 RtStatus rt_mesh_save(const RtScene *scene, const char *extension, FILE *file, RtError *error);

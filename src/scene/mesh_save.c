@@ -1,18 +1,17 @@
 /* Writing meshes: one aiScene of one mesh, three vertices a triangle, borrowed by Assimp's exporter, which
- * gives the bytes of the file. */
+ * gives the bytes of the file. OBJ is written here, because that exporter makes up vertex normals. */
 #include "scene/mesh.h"
 
 #include "base/memory.h"
 
 #include <assimp/cexport.h>
 #include <assimp/scene.h>
-#include <string.h>
 #include <strings.h>
 
-/* Assimp's name of each format, the binary one where there are two. */
+/* Assimp's name of each format, the binary one where there are two; NULL: written here. */
 static const struct {
     const char *extension, *format;
-} writers[] = {{"obj", "objnomtl"}, {"ply", "plyb"}, {"stl", "stlb"}, {"glb", "glb2"}};
+} writers[] = {{"obj", NULL}, {"ply", "plyb"}, {"stl", "stlb"}, {"glb", "glb2"}};
 
 enum { WRITER_COUNT = sizeof writers / sizeof writers[0] };
 
@@ -91,6 +90,33 @@ static RtStatus export_arrays(const Arrays *arrays, uint32_t triangles, const ch
     return status;
 }
 
+static RtStatus save_assimp(const RtGeometry *g, const char *format, FILE *file, RtError *error) {
+    if (g->triangle_count > UINT32_MAX / 3) {
+        return rt_fail(error, RT_BAD_INPUT, "%u triangles are too many for one mesh", g->triangle_count);
+    }
+    Arrays arrays = {0};
+    RtStatus status = make_arrays(g, &arrays, error);
+    if (status == RT_OK) status = export_arrays(&arrays, g->triangle_count, format, file, error);
+    free_arrays(&arrays);
+    return status;
+}
+
+static void put_line(FILE *file, const char *word, RtVec3 v) {
+    fprintf(file, "%s %.9g %.9g %.9g\n", word, (double)v.x, (double)v.y, (double)v.z);
+}
+
+/* Indices from the end: -1 is the latest. */
+static void save_obj(const RtGeometry *g, FILE *file) {
+    for (uint32_t i = 0; i < g->triangle_count; i++) {
+        uint32_t entry = g->triangle_normals ? g->triangle_normals[i] : RT_NO_NORMALS;
+        for (int k = 0; k < 3; k++) {
+            put_line(file, "v", g->triangles[i].v[k]);
+            if (entry != RT_NO_NORMALS) put_line(file, "vn", g->vertex_normals[entry].n[k]);
+        }
+        fprintf(file, entry != RT_NO_NORMALS ? "f -3//-3 -2//-2 -1//-1\n" : "f -3 -2 -1\n");
+    }
+}
+
 static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError *error) {
     const uint32_t counts[RT_SHAPE_COUNT] = {
 #define COUNT(CONSTANT, name, Type) g->name##_count,
@@ -108,19 +134,13 @@ static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError
 }
 
 RtStatus rt_mesh_save(const RtScene *scene, const char *extension, FILE *file, RtError *error) {
-    const RtGeometry *g = &scene->geometry;
-    const char *format = NULL;
-    for (int i = 0; i < WRITER_COUNT; i++) {
-        if (strcasecmp(writers[i].extension, extension) == 0) format = writers[i].format;
+    int writer = 0;
+    while (writer < WRITER_COUNT && strcasecmp(writers[writer].extension, extension) != 0) writer++;
+    if (writer == WRITER_COUNT) {
+        return rt_fail(error, RT_BAD_INPUT, "meshes cannot be written as .%.40s", extension);
     }
-    if (!format) return rt_fail(error, RT_BAD_INPUT, "meshes cannot be written as .%.40s", extension);
-    RT_TRY(check_shapes(g, extension, error));
-    if (g->triangle_count > UINT32_MAX / 3) {
-        return rt_fail(error, RT_BAD_INPUT, "%u triangles are too many for one mesh", g->triangle_count);
-    }
-    Arrays arrays = {0};
-    RtStatus status = make_arrays(g, &arrays, error);
-    if (status == RT_OK) status = export_arrays(&arrays, g->triangle_count, format, file, error);
-    free_arrays(&arrays);
-    return status;
+    RT_TRY(check_shapes(&scene->geometry, extension, error));
+    if (writers[writer].format) return save_assimp(&scene->geometry, writers[writer].format, file, error);
+    save_obj(&scene->geometry, file);
+    return ferror(file) ? rt_fail(error, RT_IO, "the mesh could not be written") : RT_OK;
 }
