@@ -3,6 +3,7 @@
 #ifndef RT_CLI_CLI_H
 #define RT_CLI_CLI_H
 
+#include "base/param.h"
 #include "base/status.h"
 
 #include <jansson.h>
@@ -17,6 +18,8 @@ typedef struct RtCommand {
 } RtCommand;
 
 int rt_command_accels(int argc, char **argv);
+int rt_command_scenes(int argc, char **argv);
+int rt_command_info(int argc, char **argv);
 int rt_command_render(int argc, char **argv);
 int rt_command_verify(int argc, char **argv);
 
@@ -25,6 +28,10 @@ int rt_cli_fail(const RtError *error);
 
 /* Prints one JSON document to stdout, indented, and takes the reference. */
 void rt_cli_print_json(json_t *document);
+
+/* A parameter table: two lines a parameter, or an array of objects. */
+void rt_cli_print_params(const RtParam *table, size_t count);
+json_t *rt_cli_params_json(const RtParam *table, size_t count);
 
 /* For parsers of options: the number in `text`, lo..hi, or argp_error's exit with what would be right.
  * `state` is argp's. */

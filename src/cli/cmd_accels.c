@@ -26,28 +26,13 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 static void print_accelerator(const RtAccelOps *ops) {
     printf("%s: %s\n  %s\n", ops->name, ops->summary, ops->paper);
-    for (size_t i = 0; i < ops->param_count; i++) {
-        const RtParam *p = &ops->params[i];
-        char range[RT_MAX_SPEC_CHARS];
-        rt_param_range(p, range, sizeof range);
-        printf("  %-12s %s\n  %-12s   default %s (%s); %s\n", p->name, p->meaning, "", p->standard, p->source,
-               range);
-    }
+    rt_cli_print_params(ops->params, ops->param_count);
     putchar('\n');
 }
 
 static json_t *accelerator_json(const RtAccelOps *ops) {
-    json_t *params = json_array();
-    for (size_t i = 0; i < ops->param_count; i++) {
-        const RtParam *p = &ops->params[i];
-        char range[RT_MAX_SPEC_CHARS];
-        rt_param_range(p, range, sizeof range);
-        json_array_append_new(params,
-                              json_pack("{s:s, s:s, s:s, s:s, s:s}", "name", p->name, "default", p->standard,
-                                        "range", range, "meaning", p->meaning, "source", p->source));
-    }
     return json_pack("{s:s, s:s, s:s, s:o}", "name", ops->name, "summary", ops->summary, "paper", ops->paper,
-                     "params", params);
+                     "params", rt_cli_params_json(ops->params, ops->param_count));
 }
 
 int rt_command_accels(int argc, char **argv) {

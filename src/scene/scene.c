@@ -170,6 +170,12 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
     return hash;
 }
 
+uint64_t rt_scene_bytes(const RtScene *scene) {
+    return rt_geometry_bytes(&scene->geometry) + (uint64_t)scene->material_of_capacity * sizeof(uint32_t) +
+           (uint64_t)scene->material_capacity * sizeof(RtMaterial) +
+           (uint64_t)scene->light_capacity * sizeof(RtLight);
+}
+
 void rt_scene_clear(RtScene *scene) {
     rt_geometry_clear(&scene->geometry);
     rt_free(scene->material_of);

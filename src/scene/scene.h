@@ -75,6 +75,9 @@ RtStatus rt_scene_finish(RtScene *scene, RtError *error);
 /* A hash of everything that can change an answer or a picture (geometry, materials, lights, camera). */
 uint64_t rt_scene_fingerprint(const RtScene *scene);
 
+/* Bytes of memory that the scene holds. */
+uint64_t rt_scene_bytes(const RtScene *scene);
+
 /* Frees everything and leaves the empty scene. */
 void rt_scene_clear(RtScene *scene);
 

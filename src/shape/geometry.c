@@ -163,6 +163,20 @@ RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error) {
     return RT_OK;
 }
 
+uint64_t rt_geometry_bytes(const RtGeometry *geometry) {
+    const RtGeometry *g = geometry;
+    uint64_t bytes = (uint64_t)g->object_capacity * sizeof *g->objects;
+#define ADD_BYTES(CONSTANT, name, Type)                                                                      \
+    bytes += (uint64_t)g->name##_capacity * sizeof(Type);                                                    \
+    bytes += (uint64_t)g->name##_id_capacity * sizeof(uint32_t);
+    RT_SHAPES(ADD_BYTES)
+#undef ADD_BYTES
+    bytes += (uint64_t)g->polygon_vertex_capacity * sizeof *g->polygon_vertices;
+    bytes += (uint64_t)g->triangle_normal_capacity * sizeof *g->triangle_normals;
+    bytes += (uint64_t)g->vertex_normal_capacity * sizeof *g->vertex_normals;
+    return bytes + (g->boxes ? (uint64_t)g->object_count * sizeof *g->boxes : 0);
+}
+
 void rt_geometry_clear(RtGeometry *geometry) {
     rt_free(geometry->objects);
 #define FREE_ARRAYS(CONSTANT, name, Type)                                                                    \

@@ -97,6 +97,9 @@ RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3]
 /* Computes the boxes. To be called once, after the last object. */
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error);
 
+/* Bytes of memory that the arrays hold. */
+uint64_t rt_geometry_bytes(const RtGeometry *geometry);
+
 /* Frees everything and leaves the empty geometry. */
 void rt_geometry_clear(RtGeometry *geometry);
 

@@ -1,0 +1,161 @@
+/* raytally info: what is in a scene. */
+#include "cli/cli.h"
+#include "scene/load.h"
+
+#include <argp.h>
+#include <inttypes.h>
+#include <stdio.h>
+
+typedef struct Options {
+    const char *scene;
+    bool json;
+} Options;
+
+/* What is counted for both kinds of output. */
+typedef struct Counts {
+    uint32_t of_shape[RT_SHAPE_COUNT];
+    uint32_t zero_area; /* triangles */
+    char fingerprint[17];
+} Counts;
+
+static const struct argp_option options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    Options *o = state->input;
+    switch (key) {
+    case 'j': o->json = true; return 0;
+    case ARGP_KEY_ARG:
+        if (o->scene) argp_error(state, "one SCENE at a time");
+        o->scene = argument;
+        return 0;
+    case ARGP_KEY_NO_ARGS: argp_error(state, "which SCENE? A file, or a built-in such as balls"); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static Counts count(const RtScene *scene) {
+    const RtGeometry *g = &scene->geometry;
+    Counts counts = {.of_shape = {
+#define COUNT(CONSTANT, name, Type) g->name##_count,
+                         RT_SHAPES(COUNT)
+#undef COUNT
+                     }};
+    for (uint32_t i = 0; i < g->triangle_count; i++) {
+        counts.zero_area += rt_lengthd(rt_triangle_normal(&g->triangles[i])) == 0;
+    }
+    snprintf(counts.fingerprint, sizeof counts.fingerprint, "%016" PRIx64, rt_scene_fingerprint(scene));
+    return counts;
+}
+
+/* ---- as text ---- */
+
+static void print_vector(const char *what, RtVec3 v) {
+    printf("  %-13s %.6g %.6g %.6g\n", what, (double)v.x, (double)v.y, (double)v.z);
+}
+
+static void print_material(const RtMaterial *m) {
+    printf("  %-13s color %.3g %.3g %.3g, ambient %.3g, diffuse %.3g, specular %.3g, shine %.4g,\n"
+           "  %-13s reflection %.3g, transmission %.3g, ior %.3g\n",
+           m->name, (double)m->color.x, (double)m->color.y, (double)m->color.z, (double)m->ambient,
+           (double)m->diffuse, (double)m->specular, (double)m->shine, "", (double)m->reflection,
+           (double)m->transmission, (double)m->ior);
+}
+
+static void print_info(const RtScene *scene, const Counts *counts) {
+    enum { SHOWN = 8 }; /* materials and lights */
+    const RtGeometry *g = &scene->geometry;
+    printf("%s\n\nobjects: %u\n", scene->name, g->object_count);
+    for (int i = 0; i < RT_SHAPE_COUNT; i++) {
+        if (counts->of_shape[i]) printf("  %-13s %u\n", rt_shape_name((RtShape)i), counts->of_shape[i]);
+    }
+    if (g->vertex_normal_count) printf("  with vertex normals: %u triangles\n", g->vertex_normal_count);
+    if (counts->zero_area) printf("  without area, never hit: %u triangles\n", counts->zero_area);
+    printf("bounds:\n");
+    print_vector("from", g->box.lo);
+    print_vector("to", g->box.hi);
+    printf("materials: %u\n", scene->material_count);
+    for (uint32_t i = 0; i < scene->material_count && i < SHOWN; i++) print_material(&scene->materials[i]);
+    if (scene->material_count > SHOWN) printf("  ... (--json lists all)\n");
+    printf("lights: %u\n", scene->light_count);
+    for (uint32_t i = 0; i < scene->light_count && i < SHOWN; i++)
+        print_vector("at", scene->lights[i].position);
+    if (scene->light_count > SHOWN) printf("  ... (--json lists all)\n");
+    const RtCamera *camera = &scene->camera;
+    printf("camera:\n");
+    print_vector("from", camera->from);
+    print_vector("at", camera->at);
+    print_vector("up", camera->up);
+    printf("  %-13s %.4g degrees, %u x %u pixels, hither %.4g\n", "view", (double)camera->fov, camera->width,
+           camera->height, (double)camera->hither);
+    printf("memory: %.1f MB\nfingerprint: %s\n", (double)rt_scene_bytes(scene) / 1e6, counts->fingerprint);
+}
+
+/* ---- as JSON ---- */
+
+static json_t *vector_json(RtVec3 v) {
+    return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
+}
+
+static json_t *material_json(const RtMaterial *m) {
+    return json_pack("{s:s, s:o, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "name", m->name, "color",
+                     vector_json(m->color), "ambient", (double)m->ambient, "diffuse", (double)m->diffuse,
+                     "specular", (double)m->specular, "shine", (double)m->shine, "reflection",
+                     (double)m->reflection, "transmission", (double)m->transmission, "ior", (double)m->ior);
+}
+
+static json_t *camera_json(const RtCamera *camera) {
+    return json_pack("{s:o, s:o, s:o, s:f, s:f, s:I, s:I}", "from", vector_json(camera->from), "at",
+                     vector_json(camera->at), "up", vector_json(camera->up), "fov", (double)camera->fov,
+                     "hither", (double)camera->hither, "width", (json_int_t)camera->width, "height",
+                     (json_int_t)camera->height);
+}
+
+static json_t *info_json(const RtScene *scene, const Counts *counts) {
+    const RtGeometry *g = &scene->geometry;
+    json_t *shapes = json_object(), *materials = json_array(), *lights = json_array();
+    for (int i = 0; i < RT_SHAPE_COUNT; i++) {
+        json_object_set_new(shapes, rt_shape_name((RtShape)i), json_integer(counts->of_shape[i]));
+    }
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        json_array_append_new(materials, material_json(&scene->materials[i]));
+    }
+    for (uint32_t i = 0; i < scene->light_count; i++) {
+        const RtLight *light = &scene->lights[i];
+        json_array_append_new(lights, json_pack("{s:o, s:o}", "position", vector_json(light->position),
+                                                "intensity", vector_json(light->intensity)));
+    }
+    return json_pack("{s:s, s:s, s:I, s:o, s:I, s:I, s:{s:o, s:o}, s:o, s:o, s:o, s:o, s:o, s:I}", "scene",
+                     scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count,
+                     "shapes", shapes, "triangles_with_normals", (json_int_t)g->vertex_normal_count,
+                     "triangles_without_area", (json_int_t)counts->zero_area, "bounds", "lo",
+                     vector_json(g->box.lo), "hi", vector_json(g->box.hi), "materials", materials, "lights",
+                     lights, "ambient", vector_json(scene->ambient), "background",
+                     vector_json(scene->background), "camera", camera_json(&scene->camera), "bytes",
+                     (json_int_t)rt_scene_bytes(scene));
+}
+
+int rt_command_info(int argc, char **argv) {
+    const struct argp argp = {
+        options,
+        parse_option,
+        "SCENE",
+        "Say what is in a scene: objects by shape, bounds, materials, lights, the camera, "
+        "memory, and a fingerprint that changes with anything that can change an answer. "
+        "SCENE is a file or a built-in such as balls:size=5.",
+        0,
+        0,
+        0};
+    Options o = {0};
+    RtScene scene;
+    RtError error;
+    argp_parse(&argp, argc, argv, 0, 0, &o);
+    if (rt_scene_open(o.scene, &scene, &error) != RT_OK) return rt_cli_fail(&error);
+    Counts counts = count(&scene);
+    if (o.json) {
+        rt_cli_print_json(info_json(&scene, &counts));
+    } else {
+        print_info(&scene, &counts);
+    }
+    rt_scene_clear(&scene);
+    return RT_EXIT_OK;
+}
