@@ -73,8 +73,10 @@ static size_t counter_by_name(struct argp_state *state, const char *name) {
 }
 
 static void parse_output(Options *o, struct argp_state *state, const char *path) {
-    const char **slot = has_extension(path, ".png") ? &o->png : has_extension(path, ".exr") ? &o->exr : NULL;
-    if (!slot) argp_error(state, "-o: '%s' will not do: its name must end in .png or .exr", path);
+    if (!has_extension(path, ".png") && !has_extension(path, ".exr")) {
+        argp_error(state, "-o: '%s' will not do: its name must end in .png or .exr", path);
+    }
+    const char **slot = has_extension(path, ".png") ? &o->png : &o->exr;
     if (*slot) argp_error(state, "-o: both '%s' and '%s': one file of each format is written", *slot, path);
     *slot = path;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 enum { MARGIN = 4, BAR_HEIGHT = 8, LEGEND_HEIGHT = 34, LEGEND_WIDTH = 200 }; /* in dots */
+enum { MOST_MARKS = 24 };
 
 static const RtColor black = {{0, 0, 0}}, white = {{255, 255, 255}};
 
@@ -35,13 +36,13 @@ static double position(const Scale *scale, double value) {
     return scale->logarithmic ? log1p(value) / log1p(scale->most) : value / scale->most;
 }
 
-/* The value after `value` that gets a mark: powers of ten, or fifths to halves of the range in round numbers.
- */
-static double next_mark(const Scale *scale, double value) {
-    if (scale->logarithmic) return value > 0 ? value * 10 : 1;
+/* The value of mark `i`: 0 and powers of ten, or steps of fifths to halves of the range in round numbers. */
+static double mark_value(const Scale *scale, int i) {
+    if (scale->logarithmic) return i > 0 ? pow(10, i - 1) : 0;
+    if (!(scale->most > 0)) return i;
     double power = pow(10, floor(log10(scale->most / 2)));
     double step = scale->most / power >= 10 ? 5 * power : scale->most / power >= 5 ? 2 * power : power;
-    return value + step;
+    return i * step;
 }
 
 static void draw_legend(RtImage *image, const Scale *scale, const char *name, int top, int dot) {
@@ -52,7 +53,9 @@ static void draw_legend(RtImage *image, const Scale *scale, const char *name, in
         rt_draw_rectangle(image, left + x, top + MARGIN * dot, 1, BAR_HEIGHT * dot, color);
     }
     int free_from = 0; /* numbers that would run into the one before are left out */
-    for (double value = 0; value <= scale->most; value = next_mark(scale, value)) {
+    for (int i = 0; i < MOST_MARKS; i++) {
+        double value = mark_value(scale, i);
+        if (value > scale->most) break;
         char text[32];
         snprintf(text, sizeof text, "%.10g", value);
         int x = left + (int)(position(scale, value) * (width - 1)), half = rt_text_width(text) * dot / 2;
@@ -61,7 +64,6 @@ static void draw_legend(RtImage *image, const Scale *scale, const char *name, in
         if (from < free_from || from + 2 * half > (int)image->width) continue;
         rt_draw_text(image, from, numbers, dot, text, white);
         free_from = from + 2 * half + 4 * dot;
-        if (scale->most == 0) break;
     }
     char title[128];
     snprintf(title, sizeof title, "%s  mean %.4g  most %.4g  %s", name, scale->mean, scale->most,
