@@ -33,6 +33,17 @@ double rt_cone_support(const RtCone *cone, RtVec3d direction);
 /* Unit normal at `point` on the side, away from the axis. */
 RtVec3d rt_cone_normal(const RtCone *cone, RtVec3d point);
 
+/* Is across + root * d_across, an offset from the axis, as long as a radius of the cone? Where a cone is flat
+ * the height of a point says little about that: it is 2^-20 of the radius, say, and has lost all its digits.
+ */
+static inline bool rt_cone_between_radii(const RtCone *cone, RtVec3d across, RtVec3d d_across, double root) {
+    RtVec3d offset = rt_add_scaledd(across, d_across, root);
+    double lo = (double)rt_minf(cone->base_radius, cone->apex_radius);
+    double hi = (double)rt_maxf(cone->base_radius, cone->apex_radius);
+    double squared = rt_dotd(offset, offset);
+    return squared >= lo * lo && squared <= hi * hi;
+}
+
 /* The first t in [tmin, tmax] at which the ray meets the side. */
 static inline bool rt_cone_hit(const RtCone *cone, const RtBox *own, const RtPreparedRay *ray, float *t) {
     RtVec3d org = rt_widen(ray->org);
@@ -55,6 +66,7 @@ static inline bool rt_cone_hit(const RtCone *cone, const RtBox *own, const RtPre
     for (int i = 0; i < count; i++) {
         double s = s0 + roots[i] * ds;
         if (!(fabs(s) <= half)) continue;
+        if (fabs(cone->slope) > 1 && !rt_cone_between_radii(cone, across, d_across, roots[i])) continue;
         *t = (float)(closest + roots[i]);
         if (rt_box_admit(own, ray, t)) return true;
     }

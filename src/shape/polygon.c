@@ -14,13 +14,13 @@ RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t fi
                          RtError *error) {
     if (count < 3)
         return rt_fail(error, RT_BAD_INPUT, "a polygon needs at least 3 vertices, this one has %u", count);
-    RtVec3d sum = newell(vertices, count), center = {0, 0, 0};
+    RtVec3d sum = newell(vertices, count), first_vertex = rt_widen(vertices[0]), offset = {0, 0, 0};
     RtBox box = RT_EMPTY_BOX;
     for (uint32_t i = 0; i < count; i++) {
-        center = rt_addd(center, rt_widen(vertices[i]));
+        offset = rt_addd(offset, rt_subd(rt_widen(vertices[i]), first_vertex));
         box = rt_box_add_point(box, vertices[i]);
     }
-    center = rt_scaled(center, 1.0 / count);
+    RtVec3d center = rt_add_scaledd(first_vertex, offset, 1.0 / count);
     double size = rt_lengthd(rt_widen(rt_box_size(box)));
     double area = rt_lengthd(sum) / 2;
     if (!(area > 1e-12 * size * size)) {
@@ -46,21 +46,20 @@ RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t fi
                            .count = count,
                            .u = dropped == 0 ? 1 : 0,
                            .v = dropped == 2 ? 1 : 2,
-                           .warp = rt_float_above(warp)};
+                           .warp = rt_float_above(warp / fabs(normal.at[dropped]))};
     return RT_OK;
+}
+
+static int third_axis(const RtPolygon *polygon) {
+    return (int)(3 - polygon->u - polygon->v);
 }
 
 RtBox rt_polygon_box(const RtPolygon *polygon, const RtVec3 *vertices) {
     RtBox box = RT_EMPTY_BOX;
     for (uint32_t i = 0; i < polygon->count; i++) box = rt_box_add_point(box, vertices[i]);
-    double warp = (double)polygon->warp;
-    for (int a = 0; a < 3; a++) {
-        /* A polygon in a coordinate plane keeps its flat, exact box: only components of the normal move it.
-         */
-        double grow = warp * fabs(polygon->normal.at[a]);
-        box.lo.at[a] = rt_float_below((double)box.lo.at[a] - grow);
-        box.hi.at[a] = rt_float_above((double)box.hi.at[a] + grow);
-    }
+    int w = third_axis(polygon);
+    box.lo.at[w] = rt_float_below((double)box.lo.at[w] - (double)polygon->warp);
+    box.hi.at[w] = rt_float_above((double)box.hi.at[w] + (double)polygon->warp);
     return box;
 }
 
@@ -74,5 +73,5 @@ double rt_polygon_support(const RtPolygon *polygon, const RtVec3 *vertices, RtVe
     double most = rt_dotd(rt_widen(vertices[0]), direction);
     for (uint32_t i = 1; i < polygon->count; i++)
         most = fmax(most, rt_dotd(rt_widen(vertices[i]), direction));
-    return most + (double)polygon->warp * rt_lengthd(direction);
+    return most + (double)polygon->warp * fabs(direction.at[third_axis(polygon)]);
 }

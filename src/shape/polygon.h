@@ -17,10 +17,10 @@ typedef struct RtPolygon {
     uint32_t first; /* first vertex */
     uint32_t count; /* vertices */
     uint32_t u, v;  /* axes of the plane it is projected to */
-    float warp;     /* the largest distance of a vertex from the plane, rounded up */
+    float warp;     /* the largest distance of a vertex from the plane along the third axis, rounded up */
 } RtPolygon;
 
-/* A polygon whose vertices deviate from their plane by more than this part of its size is refused. */
+/* A polygon with a vertex farther from the plane (along the normal) than this part of its size is refused. */
 #define RT_POLYGON_MAX_WARP 1e-3
 
 /* Fills `polygon` from vertices[0..count): its plane and projection. Refuses fewer than 3 vertices, no area,
@@ -30,7 +30,8 @@ RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t fi
 
 /* In what follows `vertices` are the polygon's own: the geometry's array from `first` on. */
 
-/* The box of the vertices, grown by the warp. */
+/* Extents hold the vertices and the polygon as it is hit, that is, projected to its plane along the third
+ * axis. The box is flat and exact where the polygon lies in a coordinate plane. */
 RtBox rt_polygon_box(const RtPolygon *polygon, const RtVec3 *vertices);
 RtBall rt_polygon_ball(const RtPolygon *polygon, const RtVec3 *vertices);
 double rt_polygon_support(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d direction);
