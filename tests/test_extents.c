@@ -1,0 +1,401 @@
+/* accel/extents: exact for every kind of extent where hits are least certain, counters by hand, and a broken
+ * extent found. */
+#include "testing.h"
+
+#include "accel/extents/extents.h"
+#include "base/random.h"
+
+#include <string.h>
+
+static const char *const specs[] = {"extents:kind=box",           "extents:kind=sphere",
+                                    "extents:kind=obb",           "extents:kind=slabs,slabs=3",
+                                    "extents:kind=slabs,slabs=7", "extents:kind=slabs,slabs=13"};
+enum { SPEC_COUNT = sizeof specs / sizeof specs[0] };
+
+static RtVec3 random_point(RtRandom *random, float size) {
+    float x = rt_random_between(random, -size, size), y = rt_random_between(random, -size, size);
+    return rt_vec3(x, y, rt_random_between(random, -size, size));
+}
+
+/* ---- a soup of everything that is hard ---- */
+
+/* Coplanar to about 1/2000 of its size, the most that is let in: five points about `center`, one of them
+ * pulled inward so that the polygon is concave. */
+static void add_warped_polygon(RtScene *scene, RtRandom *random, RtVec3 center) {
+    RtVec3d u = rt_random_direction(random), v = rt_normalized(rt_crossd(u, rt_random_direction(random)));
+    static const float at[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {0, -0.5f}, {-1, 1}};
+    RtVec3 vertices[5];
+    for (int i = 0; i < 5; i++) {
+        RtVec3d p = rt_add_scaledd(rt_widen(center), u, 0.2 * (double)at[i][0]);
+        vertices[i] = rt_narrow(rt_add_scaledd(p, v, 0.2 * (double)at[i][1]));
+        vertices[i] = rt_add(vertices[i], random_point(random, 1e-4f));
+    }
+    assert_ok(rt_scene_add_polygon(scene, 0, vertices, 5, error));
+}
+
+static void add_triangles(RtScene *scene, RtRandom *random, RtVec3 center) {
+    RtVec3 a = rt_add(center, random_point(random, 0.3f)), b = rt_add(center, random_point(random, 0.3f));
+    RtVec3 ordinary[3] = {center, a, b};
+    RtVec3 sliver[3] = {a, b, rt_add(rt_scale(rt_add(a, b), 0.5f), random_point(random, 1e-7f))};
+    RtVec3 without_area[3] = {a, a, b};
+    assert_ok(rt_scene_add_triangle(scene, 0, ordinary, NULL, error));
+    assert_ok(rt_scene_add_triangle(scene, 0, sliver, NULL, error));
+    assert_ok(rt_scene_add_triangle(scene, 0, without_area, NULL, error));
+}
+
+static void add_cones(RtScene *scene, RtRandom *random, RtVec3 center) {
+    RtVec3 apex = rt_add(center, random_point(random, 0.3f));
+    RtVec3 just_above = rt_add(center, random_point(random, 1e-6f));
+    assert_ok(rt_scene_add_cone(scene, 0, center, 0.1f, apex, 0, error));
+    assert_ok(rt_scene_add_cone(scene, 0, center, 0.02f, apex, 0.02f, error));
+    if (memcmp(&center, &just_above, sizeof center) == 0) return;
+    assert_ok(rt_scene_add_cone(scene, 0, center, 0.3f, just_above, 0.1f, error));
+}
+
+static RtScene make_soup(uint64_t seed, float shift) {
+    RtScene scene;
+    RtRandom random = rt_random(seed, 0);
+    RtMaterial material = rt_default_material();
+    uint32_t index;
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &material, &index, error));
+    for (int i = 0; i < 6; i++) {
+        RtVec3 center = rt_add(random_point(&random, 1), rt_vec3(shift, 0, -shift));
+        RtRandom again = random;
+        for (int copy = 0; copy < 2; copy++) {
+            random = again;
+            assert_ok(rt_scene_add_sphere(&scene, 0, center, rt_random_between(&random, 1e-3f, 0.2f), error));
+            add_warped_polygon(&scene, &random, center);
+            add_triangles(&scene, &random, center);
+            add_cones(&scene, &random, center);
+        }
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+/* ---- rays ---- */
+
+/* A point that an object touches or nearly touches: its extreme in a random direction, a corner of its box.
+ */
+static RtVec3 delicate_point(const RtGeometry *geometry, uint32_t id, RtRandom *random) {
+    RtRef ref = geometry->objects[id];
+    uint32_t index = rt_ref_index(ref), bits = rt_random_bits(random);
+    const RtBox *box = &geometry->boxes[id];
+    RtVec3 corner = {bits & 1 ? box->lo.x : box->hi.x, bits & 2 ? box->lo.y : box->hi.y,
+                     bits & 4 ? box->lo.z : box->hi.z};
+    if (bits & 8) return corner;
+    if (bits & 16) return rt_box_center(*box);
+    if (rt_ref_shape(ref) == RT_SHAPE_TRIANGLE) return geometry->triangles[index].v[bits % 3];
+    if (rt_ref_shape(ref) == RT_SHAPE_POLYGON) {
+        return geometry->polygon_vertices[geometry->polygons[index].first + bits % 5];
+    }
+    RtVec3d direction = rt_random_direction(random);
+    if (rt_ref_shape(ref) == RT_SHAPE_SPHERE) {
+        const RtSphere *sphere = &geometry->spheres[index];
+        return rt_narrow(rt_add_scaledd(rt_widen(sphere->center), direction, (double)sphere->radius));
+    }
+    const RtCone *cone = &geometry->cones[index];
+    RtVec3d across = rt_normalized(rt_crossd(direction, cone->axis));
+    return rt_narrow(rt_add_scaledd(rt_widen(cone->base), across, (double)cone->base_radius));
+}
+
+static RtRay make_ray(const RtGeometry *geometry, RtRandom *random) {
+    uint32_t id = rt_random_bits(random) % geometry->object_count;
+    uint32_t other = rt_random_bits(random) % geometry->object_count;
+    RtVec3 target = delicate_point(geometry, id, random), org = delicate_point(geometry, other, random);
+    RtVec3d axes[3];
+    rt_object_frame(geometry, id, axes);
+    uint32_t how = rt_random_bits(random);
+    static const float away[] = {0, 1, 10, 1e3f, 1e4f, 1e5f, 1e6f};
+    RtVec3d back = rt_scaled(rt_random_direction(random), (double)away[how / 64 % 7]);
+    RtRay ray = {.tmin = 0, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+    switch (how % 4) {
+    case 0: /* along an axis of the world, from the target's plane or from a box */
+        ray.dir.at[how / 4 % 3] = how & 16 ? -1 : 1;
+        ray.org = how & 32 ? org : target;
+        ray.org.at[how / 4 % 3] = how & 16 ? geometry->box.hi.at[how / 4 % 3] : org.at[how / 4 % 3];
+        return ray;
+    case 1: /* along an axis of the object: within a triangle's plane, parallel to a cone's axis */
+        ray.dir = rt_narrow(axes[how / 4 % 3]);
+        ray.org = rt_narrow(rt_add_scaledd(rt_widen(target), axes[how / 4 % 3], -rt_lengthd(back)));
+        return ray;
+    case 2: /* from one object to another */
+        ray.org = org;
+        ray.tmax = how & 16 ? 1 : INFINITY;
+        break;
+    case 3: ray.org = rt_add(target, rt_narrow(back)); break; /* from far away */
+    }
+    ray.dir = rt_sub(target, ray.org);
+    if (ray.dir.x == 0 && ray.dir.y == 0 && ray.dir.z == 0) ray.dir.z = 1;
+    return ray;
+}
+
+/* ---- exactness ---- */
+
+enum { RAYS = 6000 };
+
+static void compare_with_brute(const RtScene *scene, const RtRay *rays) {
+    static RtHit expected[RAYS], got[RAYS];
+    static bool blocked[RAYS];
+    RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+    RtAccel *accel;
+    RtQuery query;
+    assert_ok(rt_accel_open("brute", scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    rt_nearest(&query, rays, RAYS, expected, NULL);
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    for (int s = 0; s < SPEC_COUNT; s++) {
+        assert_ok(rt_accel_open(specs[s], scene, &accel, error));
+        assert_ok(accel->ops->validate(accel, error));
+        assert_ok(rt_query_init(&query, accel, error));
+        for (int counted = 0; counted < 2; counted++) {
+            rt_nearest(&query, rays, RAYS, got, counted ? tallies : NULL);
+            rt_occluded(&query, rays, RAYS, blocked, counted ? tallies : NULL);
+            for (int i = 0; i < RAYS; i++) {
+                if (memcmp(&expected[i], &got[i], sizeof(RtHit)) == 0 &&
+                    blocked[i] == (expected[i].object != RT_NO_OBJECT)) {
+                    continue;
+                }
+                fail_msg("%s: ray %d from (%a, %a, %a) along (%a, %a, %a) hits object %u at %a, not %u at %a",
+                         specs[s], i, (double)rays[i].org.x, (double)rays[i].org.y, (double)rays[i].org.z,
+                         (double)rays[i].dir.x, (double)rays[i].dir.y, (double)rays[i].dir.z,
+                         expected[i].object, (double)expected[i].t, got[i].object, (double)got[i].t);
+            }
+        }
+        rt_query_clear(&query);
+        rt_accel_destroy(accel);
+    }
+}
+
+static void check_soup(uint64_t seed, float shift) {
+    static RtRay rays[RAYS];
+    RtScene scene = make_soup(seed, shift);
+    RtRandom random = rt_random(seed, 1);
+    for (int i = 0; i < RAYS; i++) {
+        rays[i] = make_ray(&scene.geometry, &random);
+        assert_true(rt_ray_is_valid(&rays[i]));
+    }
+    compare_with_brute(&scene, rays);
+    rt_scene_clear(&scene);
+}
+
+static void every_kind_answers_like_brute_on_soups_of_all_shapes(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed <= 4; seed++) check_soup(seed, 0);
+}
+
+static void every_kind_answers_like_brute_far_from_the_zero_of_coordinates(void **state) {
+    (void)state;
+    check_soup(5, 30);
+    check_soup(6, 1e3f);
+}
+
+static void a_scene_without_objects_is_missed(void **state) {
+    (void)state;
+    RtScene scene;
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_finish(&scene, error));
+    RtRay ray = {.dir = {{0, 0, 1}}, .tmax = INFINITY};
+    for (int s = 0; s < SPEC_COUNT; s++) {
+        RtAccel *accel;
+        RtQuery query;
+        RtHit hit;
+        RtDescription description;
+        assert_ok(rt_accel_open(specs[s], &scene, &accel, error));
+        assert_ok(accel->ops->validate(accel, error));
+        accel->ops->describe(accel, &description);
+        assert_int_equal(description.references, 0);
+        assert_ok(rt_query_init(&query, accel, error));
+        rt_nearest(&query, &ray, 1, &hit, NULL);
+        assert_int_equal(hit.object, RT_NO_OBJECT);
+        rt_query_clear(&query);
+        rt_accel_destroy(accel);
+    }
+    rt_scene_clear(&scene);
+}
+
+/* ---- counters by hand ---- */
+
+/* Unit spheres at x = 0, 10 and 20. */
+static RtScene three_spheres_in_a_row(void) {
+    RtScene scene;
+    RtMaterial material = rt_default_material();
+    uint32_t index;
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &material, &index, error));
+    for (int i = 0; i < 3; i++) {
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(10.0f * (float)i, 0, 0), 1, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+static RtTally count(const RtScene *scene, const char *spec, RtVec3 org, RtVec3 dir, bool any) {
+    RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+    RtRay ray = {.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};
+    RtAccel *accel;
+    RtQuery query;
+    RtHit hit;
+    bool blocked;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    if (any)
+        rt_occluded(&query, &ray, 1, &blocked, tallies);
+    else
+        rt_nearest(&query, &ray, 1, &hit, tallies);
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    return tallies[RT_RAY_PRIMARY];
+}
+
+static void
+a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_beyond_its_hit(void **state) {
+    (void)state;
+    RtScene scene = three_spheres_in_a_row();
+    for (int s = 0; s < SPEC_COUNT; s++) {
+        /* From the left the first is hit at once, and the others begin behind it. */
+        RtTally left = count(&scene, specs[s], rt_vec3(-5, 0, 0), rt_vec3(1, 0, 0), false);
+        assert_int_equal(left.rays, 1);
+        assert_int_equal(left.hits, 1);
+        assert_int_equal(left.extent_tests, 3);
+        assert_int_equal(left.steps, 3);
+        assert_int_equal(left.object_tests, 1);
+        assert_int_equal(left.object_hits, 1);
+        /* From the right every one is nearer than the last. */
+        RtTally right = count(&scene, specs[s], rt_vec3(25, 0, 0), rt_vec3(-1, 0, 0), false);
+        assert_int_equal(right.extent_tests, 3);
+        assert_int_equal(right.object_tests, 3);
+        assert_int_equal(right.object_hits, 3);
+        /* Any hit will do: the first ends the search. */
+        RtTally any = count(&scene, specs[s], rt_vec3(25, 0, 0), rt_vec3(-1, 0, 0), true);
+        assert_int_equal(any.extent_tests, 1);
+        assert_int_equal(any.object_tests, 1);
+        /* From between the first two, to the right: the first is behind. */
+        RtTally between = count(&scene, specs[s], rt_vec3(5, 0, 0), rt_vec3(1, 0, 0), false);
+        assert_int_equal(between.extent_tests, 3);
+        assert_int_equal(between.object_tests, 1);
+    }
+    rt_scene_clear(&scene);
+}
+
+static void a_ray_by_the_corner_of_the_boxes_meets_the_boxes_only(void **state) {
+    (void)state;
+    RtScene scene = three_spheres_in_a_row();
+    RtVec3 org = rt_vec3(-5, 0.9f, 0.9f), dir = rt_vec3(1, 0, 0);
+    static const uint64_t object_tests[SPEC_COUNT] = {3, 0, 3, 3, 0, 0};
+    for (int s = 0; s < SPEC_COUNT; s++) {
+        RtTally tally = count(&scene, specs[s], org, dir, false);
+        assert_int_equal(tally.hits, 0);
+        assert_int_equal(tally.extent_tests, 3);
+        assert_int_equal(tally.object_tests, object_tests[s]);
+    }
+    rt_scene_clear(&scene);
+}
+
+/* ---- describe and validate ---- */
+
+static void describe_tells_references_bytes_and_expected_tests(void **state) {
+    (void)state;
+    RtScene scene = three_spheres_in_a_row();
+    /* The scene's box is 22 x 2 x 2, of half area 92; a sphere's box has 12, a sphere 2 pi. */
+    static const double expected[SPEC_COUNT] = {36.0 / 92, 6 * 3.14159265358979 / 92, 36.0 / 92, NAN, NAN,
+                                                NAN};
+    static const size_t each[SPEC_COUNT] = {0,
+                                            sizeof(RtBall),
+                                            sizeof(RtOrientedBox),
+                                            3 * sizeof(RtSlab),
+                                            7 * sizeof(RtSlab),
+                                            13 * sizeof(RtSlab)};
+    for (int s = 0; s < SPEC_COUNT; s++) {
+        RtAccel *accel;
+        RtDescription description;
+        assert_ok(rt_accel_open(specs[s], &scene, &accel, error));
+        accel->ops->describe(accel, &description);
+        assert_int_equal(description.references, 3);
+        assert_int_equal(description.bytes, sizeof(RtExtents) + 3 * each[s]);
+        if (isnan(expected[s]))
+            assert_true(isnan(description.predicted_cost));
+        else
+            assert_true(fabs(description.predicted_cost - expected[s]) < 1e-9);
+        rt_accel_destroy(accel);
+    }
+    rt_scene_clear(&scene);
+}
+
+static void count_box(void *context, const RtBox *box, uint32_t depth) {
+    (void)box;
+    assert_int_equal(depth, 0);
+    ++*(uint32_t *)context;
+}
+
+static void each_box_gives_the_box_of_every_object(void **state) {
+    (void)state;
+    RtScene scene = three_spheres_in_a_row();
+    RtAccel *accel;
+    uint32_t boxes = 0;
+    assert_ok(rt_accel_open("extents", &scene, &accel, error));
+    accel->ops->each_box(accel, count_box, &boxes);
+    assert_int_equal(boxes, 3);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static RtExtents *open_extents(const RtScene *scene, const char *spec) {
+    RtAccel *accel;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    assert_ok(accel->ops->validate(accel, error));
+    return (RtExtents *)accel;
+}
+
+static void assert_broken(RtExtents *extents, const char *expected) {
+    RtError error = {RT_OK, ""};
+    assert_int_equal(extents->base.ops->validate(&extents->base, &error), RT_MISMATCH);
+    if (!strstr(error.message, expected)) fail_msg("'%s' does not say '%s'", error.message, expected);
+    rt_accel_destroy(&extents->base);
+}
+
+static void validate_names_the_extent_that_is_too_small(void **state) {
+    (void)state;
+    RtScene scene = three_spheres_in_a_row();
+    RtExtents *extents = open_extents(&scene, "extents:kind=sphere");
+    extents->balls[1].radius *= 1 - 1e-6;
+    assert_broken(extents, "the sphere of object 1 (sphere) does not contain it along (1, 0, 0)");
+
+    extents = open_extents(&scene, "extents:kind=obb");
+    extents->boxes[2].half[1] *= 1 - 1e-6;
+    assert_broken(extents, "the oriented box of object 2 (sphere) does not contain it");
+
+    extents = open_extents(&scene, "extents:kind=obb");
+    extents->boxes[0].axes[1] = extents->boxes[0].axes[0];
+    assert_broken(extents, "the axes of the oriented box of object 0 are not orthonormal");
+
+    extents = open_extents(&scene, "extents:kind=slabs,slabs=5");
+    extents->slabs[5 + 4].hi -= 0.5f;
+    assert_broken(extents, "the set of slabs of object 1 (sphere) does not contain it");
+
+    extents = open_extents(&scene, "extents:kind=slabs,slabs=3");
+    extents->slabs[0].lo = NAN;
+    assert_broken(extents, "the set of slabs of object 0 (sphere) does not contain it along (-1, 0, 0)");
+
+    extents = open_extents(&scene, "extents:kind=box");
+    scene.geometry.boxes[1].hi.y = 0.5f;
+    assert_broken(extents, "the box of object 1 (sphere) does not contain it along (0, 1, 0)");
+    rt_scene_clear(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_kind_answers_like_brute_on_soups_of_all_shapes),
+        cmocka_unit_test(every_kind_answers_like_brute_far_from_the_zero_of_coordinates),
+        cmocka_unit_test(a_scene_without_objects_is_missed),
+        cmocka_unit_test(
+            a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_beyond_its_hit),
+        cmocka_unit_test(a_ray_by_the_corner_of_the_boxes_meets_the_boxes_only),
+        cmocka_unit_test(describe_tells_references_bytes_and_expected_tests),
+        cmocka_unit_test(each_box_gives_the_box_of_every_object),
+        cmocka_unit_test(validate_names_the_extent_that_is_too_small),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
