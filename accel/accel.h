@@ -98,6 +98,9 @@ const RtAccelOps *rt_accel_at(size_t i);
 /* By name; NULL and a message that suggests the nearest name if there is none. */
 const RtAccelOps *rt_accel_find(const char *name, RtError *error);
 
+/* The spec that is used where none is asked for: exact, and fast on every scene. */
+const char *rt_accel_default(void);
+
 /* ---- specs ---- */
 
 /* An accelerator with a value for each of its parameters. */

@@ -39,6 +39,10 @@ const RtAccelOps *rt_accel_at(size_t i) {
     return registry[i];
 }
 
+const char *rt_accel_default(void) {
+    return "bvh";
+}
+
 const RtAccelOps *rt_accel_find(const char *name, RtError *error) {
     const char *names[REGISTRY_COUNT];
     for (size_t i = 0; i < REGISTRY_COUNT; i++) {

@@ -1,0 +1,190 @@
+#include "experiments/measure.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/random.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+/* Rays handed to a thread at a time; the chunks, not the threads, decide which thread traces what. */
+enum { CHUNK = 4096, MOST_REPEATS = 1000000 };
+
+/* One pass of an accelerator over a ray set. Either `hits` or `blocked` takes the answers. */
+typedef struct Pass {
+    const RtRaySet *set;
+    RtQuery *queries; /* [threads] */
+    int threads;
+    RtHit *hits;
+    bool *blocked;
+    RtTally (*tallies)[RT_RAY_KIND_COUNT]; /* [threads], or NULL: the timed kernels */
+} Pass;
+
+static bool is_shadow(const RtRaySet *set) {
+    return set->kind == RT_RAY_SHADOW;
+}
+
+static void pass_clear(Pass *pass) {
+    for (int i = 0; pass->queries && i < pass->threads; i++) rt_query_clear(&pass->queries[i]);
+    rt_free(pass->queries);
+    rt_free(pass->tallies);
+    rt_free(pass->hits);
+    rt_free(pass->blocked);
+    *pass = (Pass){0};
+}
+
+/* Everything a pass needs, so that nothing is allocated while it runs. Clear it also after a failure. */
+static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set, int threads, bool counted,
+                          RtError *error) {
+    *pass = (Pass){.set = set, .threads = rt_thread_count(threads)};
+    size_t count = set->count, answer = is_shadow(set) ? sizeof(bool) : sizeof(RtHit);
+    pass->queries = rt_alloc((size_t)pass->threads, sizeof *pass->queries);
+    if (counted) pass->tallies = rt_alloc((size_t)pass->threads, sizeof *pass->tallies);
+    if (is_shadow(set)) {
+        pass->blocked = rt_alloc(count, answer);
+    } else {
+        pass->hits = rt_alloc(count, answer);
+    }
+    if (!pass->queries || (counted && !pass->tallies) || (!pass->hits && !pass->blocked)) {
+        return rt_fail_memory(error, "the answers to a ray set", count * answer);
+    }
+    for (int i = 0; i < pass->threads; i++) RT_TRY(rt_query_init(&pass->queries[i], accel, error));
+    return RT_OK;
+}
+
+static void trace(Pass *pass, int thread, size_t first, size_t count) {
+    const RtRay *rays = pass->set->rays + first;
+    RtTally *tallies = pass->tallies ? pass->tallies[thread] : NULL;
+    if (pass->blocked) {
+        rt_occluded(&pass->queries[thread], rays, count, pass->blocked + first, tallies);
+    } else {
+        rt_nearest(&pass->queries[thread], rays, count, pass->hits + first, tallies);
+    }
+}
+
+static RtStatus trace_chunk(void *context, size_t item, int thread, RtError *error) {
+    (void)error;
+    Pass *pass = context;
+    size_t first = item * CHUNK, left = pass->set->count - first;
+    trace(pass, thread, first, left < CHUNK ? left : CHUNK);
+    return RT_OK;
+}
+
+/* A single thread gets the set as one stream, several share it by chunks. */
+static RtStatus run_pass(Pass *pass, RtError *error) {
+    if (pass->threads == 1) {
+        trace(pass, 0, 0, pass->set->count);
+        return RT_OK;
+    }
+    return rt_parallel_for((pass->set->count + CHUNK - 1) / CHUNK, pass->threads, trace_chunk, pass, error);
+}
+
+/* ---- counting ---- */
+
+RtStatus rt_measure_answers(const RtAccel *accel, const RtRaySet *set, int threads, RtHit *hits,
+                            RtError *error) {
+    /* `nearest` also for shadow rays: a hit is then known by its object. */
+    RtRaySet nearest = *set;
+    nearest.kind = RT_RAY_PRIMARY;
+    Pass pass;
+    RtStatus status = pass_init(&pass, accel, &nearest, threads, false, error);
+    if (status == RT_OK) status = run_pass(&pass, error);
+    if (status == RT_OK) memcpy(hits, pass.hits, set->count * sizeof(RtHit));
+    pass_clear(&pass);
+    return status;
+}
+
+static bool answers_agree(const Pass *pass, size_t i, RtHit expected) {
+    if (pass->blocked) return pass->blocked[i] == (expected.object != RT_NO_OBJECT);
+    return memcmp(&pass->hits[i], &expected, sizeof expected) == 0;
+}
+
+RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
+                          RtCount *count, RtError *error) {
+    *count = (RtCount){0};
+    Pass pass;
+    RtStatus status = pass_init(&pass, accel, set, threads, true, error);
+    if (status == RT_OK) status = run_pass(&pass, error);
+    if (status == RT_OK) {
+        for (int i = 0; i < pass.threads; i++) rt_tally_add(&count->tally, &pass.tallies[i][set->kind]);
+        for (size_t i = 0; i < set->count; i++) {
+            if (answers_agree(&pass, i, expected[i])) continue;
+            if (count->differ++ == 0) count->first = i;
+        }
+    }
+    pass_clear(&pass);
+    return status;
+}
+
+/* ---- timing ---- */
+
+/* A contender of the rounds, ready to run. */
+typedef struct Runner {
+    Pass pass;
+    double repeats;
+} Runner;
+
+/* Runs `repeats` times; seconds of both clocks for all of them. */
+static RtStatus time_runner(Runner *runner, double *processor, double *wall, RtError *error) {
+    double processor_start = rt_thread_seconds(), wall_start = rt_wall_seconds();
+    for (double i = 0; i < runner->repeats; i++) RT_TRY(run_pass(&runner->pass, error));
+    *wall = rt_wall_seconds() - wall_start;
+    *processor = runner->pass.threads == 1 ? rt_thread_seconds() - processor_start : *wall;
+    return RT_OK;
+}
+
+/* Brings code and data into the caches, and finds how often each must run to last `least` seconds. */
+static RtStatus warm_up(Runner *runners, size_t count, double least, RtError *error) {
+    for (size_t i = 0; i < count; i++) {
+        double processor, wall;
+        runners[i].repeats = 1;
+        RT_TRY(time_runner(&runners[i], &processor, &wall, error));
+        double seconds = processor > 1e-9 ? processor : 1e-9;
+        runners[i].repeats = fmin(fmax(ceil(least / seconds), 1), MOST_REPEATS);
+    }
+    return RT_OK;
+}
+
+static void shuffle(size_t *order, size_t count, RtRandom *random) {
+    for (size_t i = count; i > 1; i--) {
+        size_t k = ((uint64_t)rt_random_bits(random) * i) >> 32, other = order[k];
+        order[k] = order[i - 1];
+        order[i - 1] = other;
+    }
+}
+
+static RtStatus run_rounds(Runner *runners, RtTimed *timed, size_t *order, size_t count,
+                           const RtTiming *timing, RtError *error) {
+    RtRandom random = rt_random(timing->seed, 0);
+    for (size_t i = 0; i < count; i++) order[i] = i;
+    RT_TRY(warm_up(runners, count, timing->least, error));
+    for (uint32_t round = 0; round < timing->rounds; round++) {
+        shuffle(order, count, &random);
+        for (size_t i = 0; i < count; i++) {
+            size_t k = order[i];
+            double processor, wall, rays = runners[k].repeats * (double)timed[k].set->count;
+            RT_TRY(time_runner(&runners[k], &processor, &wall, error));
+            timed[k].seconds[round] = processor / rays;
+            timed[k].wall[round] = wall / rays;
+        }
+    }
+    return RT_OK;
+}
+
+RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, RtError *error) {
+    assert(timing->rounds >= 1 && timing->rounds <= RT_MAX_ROUNDS);
+    Runner *runners = rt_alloc(count, sizeof(Runner));
+    size_t *order = rt_alloc(count, sizeof(size_t));
+    RtStatus status = RT_OK;
+    if (!runners || !order) status = rt_fail_memory(error, "the rounds", count * sizeof(Runner));
+    for (size_t i = 0; status == RT_OK && i < count; i++) {
+        status = pass_init(&runners[i].pass, timed[i].accel, timed[i].set, timing->threads, false, error);
+    }
+    if (status == RT_OK) status = run_rounds(runners, timed, order, count, timing, error);
+    for (size_t i = 0; runners && i < count; i++) pass_clear(&runners[i].pass);
+    rt_free(runners);
+    rt_free(order);
+    return status;
+}

@@ -1,0 +1,368 @@
+/* A trial in order: the scene is opened, its rays are recorded by the default accelerator, which also gives
+ * the answers that all others are held against; every contender is built; then, ray kind by ray kind, each is
+ * counted, and all are timed against each other. */
+#include "experiments/trial.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "experiments/measure.h"
+#include "scene/load.h"
+
+#include <string.h>
+
+/* Builds are repeated while that is cheap. */
+enum { MOST_BUILDS = 3 };
+static const double CHEAP_BUILD = 0.25; /* seconds */
+
+/* The rays that one contender gets of one kind, and the answers to them. */
+typedef struct Share {
+    RtRaySet set;
+    const RtHit *expected;
+    RtRaySet thinned; /* owned where the contender is thinned, else empty */
+    RtHit *picked;    /* owned likewise */
+} Share;
+
+typedef struct Trial {
+    RtResults *results;
+    const RtExperiment *experiment;
+    const RtTrialOptions *options;
+    uint32_t index, count; /* count: contenders and the null run */
+    RtScene scene;
+    RtAccel *reference; /* answers */
+    RtAccel **accels;   /* [count], NULL for one that is missing */
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    Share *shares;  /* [count], of the kind at hand */
+    RtHit *answers; /* to the set of the kind at hand */
+} Trial;
+
+/* ---- what is left to do ---- */
+
+static bool is_missing(const Trial *trial, uint32_t contender) {
+    return contender < trial->experiment->contender_count && trial->experiment->contenders[contender].missing;
+}
+
+static uint32_t spec_of(const Trial *trial, uint32_t contender) {
+    return contender < trial->experiment->contender_count ? contender : trial->experiment->baseline;
+}
+
+static bool kind_is_done(const Trial *trial, RtRayKind kind) {
+    for (uint32_t c = 0; c < trial->count; c++) {
+        const RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
+        bool null = c == trial->experiment->contender_count;
+        if (is_missing(trial, c)) continue;
+        if ((!cell->counted && !null) || (!cell->timed && !trial->options->count_only)) return false;
+    }
+    return true;
+}
+
+static bool trial_is_done(const Trial *trial) {
+    const RtTrialResult *result = &trial->results->trials[trial->index];
+    if (!result->known) return result->skipped;
+    for (uint32_t c = 0; c < trial->count; c++) {
+        if (!is_missing(trial, c) && !rt_build_at(trial->results, trial->index, c)->known) return false;
+    }
+    for (uint32_t k = 0; k < trial->experiment->kind_count; k++) {
+        RtRayKind kind = trial->experiment->kinds[k];
+        if (result->rays[kind] && !kind_is_done(trial, kind)) return false;
+    }
+    return true;
+}
+
+static RtStatus tell(const Trial *trial, RtEventKind what, uint32_t contender, RtRayKind kind,
+                     RtError *error) {
+    const RtObserver *observer = &trial->options->observer;
+    RtEvent event = {what, trial->index, contender, kind};
+    return observer->event ? observer->event(observer->context, trial->results, &event, error) : RT_OK;
+}
+
+static void notice(const Trial *trial, const char *message) {
+    const RtObserver *observer = &trial->options->observer;
+    if (observer->notice) observer->notice(observer->context, message);
+}
+
+/* ---- scene, rays, structures ---- */
+
+static RtStatus open_scene(Trial *trial, RtError *error) {
+    const RtTrial *setup = &trial->experiment->trials[trial->index];
+    RtTrialResult *result = &trial->results->trials[trial->index];
+    if (!setup->file || rt_file_exists(setup->path)) return rt_scene_open(setup->path, &trial->scene, error);
+    if (!setup->optional) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: this scene is missing; `scenes/fetch.sh` fetches the public meshes", setup->path);
+    }
+    char message[RT_MAX_PATH + 128];
+    snprintf(message, sizeof message,
+             "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public "
+             "meshes",
+             setup->path, setup->label);
+    notice(trial, message);
+    result->skipped = true;
+    return RT_OK;
+}
+
+/* Keeps of the recorded sets what the experiment asks for, at most `limit` of each kind. */
+static RtStatus keep_sets(Trial *trial, const RtRaySet *recorded, RtError *error) {
+    for (uint32_t k = 0; k < trial->experiment->kind_count; k++) {
+        RtRayKind kind = trial->experiment->kinds[k];
+        RT_TRY(rt_rayset_limit(&recorded[kind], trial->experiment->limit, &trial->sets[kind], error));
+    }
+    return RT_OK;
+}
+
+static RtStatus record_rays(Trial *trial, RtSampling sampling, RtError *error) {
+    const RtTrial *setup = &trial->experiment->trials[trial->index];
+    RtRecording recording = {.sampling = sampling,
+                             .depth = setup->depth,
+                             .seed = trial->experiment->seed,
+                             .random = trial->experiment->limit,
+                             .threads = trial->options->threads};
+    RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
+    RT_TRY(rt_accel_open(rt_accel_default(), &trial->scene, &trial->reference, error));
+    RtStatus status = rt_rayset_record(recorded, trial->reference, &recording, error);
+    if (status == RT_OK) status = keep_sets(trial, recorded, error);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
+    return status;
+}
+
+/* Fills the trial's part of the results, or holds it against what an earlier run found. */
+static RtStatus describe_trial(Trial *trial, RtSampling sampling, RtError *error) {
+    RtTrialResult *result = &trial->results->trials[trial->index];
+    RtTrialResult now = {.known = true,
+                         .objects = trial->scene.geometry.object_count,
+                         .width = sampling.width,
+                         .height = sampling.height,
+                         .scene = rt_scene_fingerprint(&trial->scene)};
+    bool same = now.scene == result->scene;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        now.rays[k] = trial->sets[k].count;
+        now.ray_fingerprints[k] = trial->sets[k].fingerprint;
+        same &= now.ray_fingerprints[k] == result->ray_fingerprints[k];
+    }
+    if (result->known && !same) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s' has changed since this run was interrupted: start it anew, without --resume",
+                       trial->experiment->trials[trial->index].label);
+    }
+    if (result->known) return RT_OK;
+    *result = now;
+    return tell(trial, RT_EVENT_TRIAL, 0, RT_RAY_PRIMARY, error);
+}
+
+static RtStatus prepare(Trial *trial, RtError *error) {
+    RT_TRY(open_scene(trial, error));
+    if (trial->results->trials[trial->index].skipped) return RT_OK;
+    const RtTrial *setup = &trial->experiment->trials[trial->index];
+    const RtCamera *camera = &trial->scene.camera;
+    RtSampling sampling;
+    RT_TRY(rt_sampling_init(&sampling, setup->width ? setup->width : camera->width,
+                            setup->height ? setup->height : camera->height, 1, setup->corners, error));
+    RT_TRY(record_rays(trial, sampling, error));
+    return describe_trial(trial, sampling, error);
+}
+
+/* Builds one contender up to MOST_BUILDS times, keeps the last, and gives the median of the seconds. */
+static RtStatus build_one(Trial *trial, const RtSpec *spec, RtAccel **out, double *median, RtError *error) {
+    double seconds[MOST_BUILDS], sum = 0;
+    uint32_t builds = 0;
+    *out = NULL;
+    while (builds < MOST_BUILDS && sum < CHEAP_BUILD) {
+        rt_accel_destroy(*out);
+        *out = NULL;
+        double start = rt_wall_seconds();
+        RT_TRY(rt_accel_build(spec, &trial->scene, out, error));
+        seconds[builds] = rt_wall_seconds() - start;
+        sum += seconds[builds++];
+    }
+    *median = rt_median(seconds, builds);
+    return RT_OK;
+}
+
+static RtStatus build_all(Trial *trial, RtError *error) {
+    for (uint32_t c = 0; c < trial->count; c++) {
+        RtSpec spec;
+        double seconds;
+        RtBuildResult *result = rt_build_at(trial->results, trial->index, c);
+        if (is_missing(trial, c)) continue;
+        RT_TRY(rt_spec_parse(trial->experiment->contenders[spec_of(trial, c)].spec, &spec, error));
+        RT_TRY(build_one(trial, &spec, &trial->accels[c], &seconds, error));
+        if (result->known) continue;
+        const RtAccel *accel = trial->accels[c];
+        *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
+        result->seconds = seconds;
+        rt_spec_format(&spec, result->spec);
+        accel->ops->describe(accel, &result->shape);
+        RT_TRY(tell(trial, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
+    }
+    return RT_OK;
+}
+
+/* ---- the rays of one kind ---- */
+
+static void clear_shares(Trial *trial) {
+    for (uint32_t c = 0; c < trial->count; c++) {
+        rt_rayset_clear(&trial->shares[c].thinned);
+        rt_free(trial->shares[c].picked);
+        trial->shares[c] = (Share){0};
+    }
+    rt_free(trial->answers);
+    trial->answers = NULL;
+}
+
+static RtStatus thin_share(Share *share, uint64_t every, const Trial *trial, const RtRaySet *set,
+                           RtError *error) {
+    RT_TRY(rt_rayset_thin(set, every, &share->thinned, error));
+    share->picked = rt_alloc(share->thinned.count, sizeof(RtHit));
+    if (!share->picked) return rt_fail_memory(error, "answers", share->thinned.count * sizeof(RtHit));
+    for (uint64_t i = 0; i < share->thinned.count; i++) share->picked[i] = trial->answers[i * every];
+    share->set = share->thinned;
+    share->expected = share->picked;
+    return RT_OK;
+}
+
+/* Gives every contender its share of the set, and the answers to those that learn. */
+static RtStatus deal_shares(Trial *trial, const RtRaySet *set, RtError *error) {
+    trial->answers = rt_alloc(set->count, sizeof(RtHit));
+    if (!trial->answers) return rt_fail_memory(error, "answers", set->count * sizeof(RtHit));
+    RT_TRY(rt_measure_answers(trial->reference, set, trial->options->threads, trial->answers, error));
+    for (uint32_t c = 0; c < trial->count; c++) {
+        Share *share = &trial->shares[c];
+        RtAccel *accel = trial->accels[c];
+        if (!accel) continue;
+        uint64_t every = trial->experiment->contenders[spec_of(trial, c)].every;
+        *share = (Share){.set = *set, .expected = trial->answers};
+        if (every > 1) RT_TRY(thin_share(share, every, trial, set, error));
+        if (!accel->ops->learn) continue;
+        RT_TRY(accel->ops->learn(accel, share->set.rays, share->expected, share->set.count, error));
+    }
+    return RT_OK;
+}
+
+/* The invariants of Havran & Sixta 1999: equal for every correct accelerator are the rays, the rays that hit,
+ * and, stronger, each answer. */
+static RtStatus check_answers(const Trial *trial, uint32_t contender, RtRayKind kind, const RtCount *count,
+                              RtError *error) {
+    const Share *share = &trial->shares[contender];
+    const char *scene = trial->experiment->trials[trial->index].label;
+    const char *accel = rt_contender_label(trial->experiment, contender);
+    uint64_t hits = 0;
+    for (uint64_t i = 0; i < share->set.count; i++) hits += share->expected[i].object != RT_NO_OBJECT;
+    if (count->differ) {
+        return rt_fail(error, RT_MISMATCH,
+                       "%s on %s answers %llu of %llu %s rays unlike %s, the first of them ray %llu; "
+                       "`raytally verify` shows what is wrong",
+                       accel, scene, (unsigned long long)count->differ, (unsigned long long)share->set.count,
+                       rt_ray_kind_name(kind), rt_accel_default(), (unsigned long long)count->first);
+    }
+    if (count->tally.rays == share->set.count && count->tally.hits == hits) return RT_OK;
+    return rt_fail(error, RT_MISMATCH,
+                   "%s on %s counts %llu %s rays with %llu hits, where there are %llu with %llu", accel,
+                   scene, (unsigned long long)count->tally.rays, rt_ray_kind_name(kind),
+                   (unsigned long long)count->tally.hits, (unsigned long long)share->set.count,
+                   (unsigned long long)hits);
+}
+
+static RtStatus count_kind(Trial *trial, RtRayKind kind, RtError *error) {
+    for (uint32_t c = 0; c < trial->experiment->contender_count; c++) {
+        RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
+        const Share *share = &trial->shares[c];
+        RtCount count;
+        if (!trial->accels[c] || cell->counted) continue;
+        RT_TRY(rt_measure_count(trial->accels[c], &share->set, share->expected, trial->options->threads,
+                                &count, error));
+        if (trial->accels[c]->exact) RT_TRY(check_answers(trial, c, kind, &count, error));
+        cell->counted = true;
+        cell->tally = count.tally;
+        cell->differ = count.differ;
+        RT_TRY(tell(trial, RT_EVENT_COUNT, c, kind, error));
+    }
+    return RT_OK;
+}
+
+/* ---- timing ---- */
+
+/* Takes what was timed into the cells; timed[i] is contender who[i]. */
+static RtStatus keep_times(Trial *trial, RtRayKind kind, const RtTimed *timed, const uint32_t *who,
+                           size_t count, RtError *error) {
+    uint32_t rounds = trial->experiment->rounds, baseline = 0;
+    uint64_t seed = trial->experiment->seed;
+    while (who[baseline] != trial->experiment->baseline) baseline++;
+    for (size_t i = 0; i < count; i++) {
+        RtCell *cell = rt_cell_at(trial->results, trial->index, who[i], kind);
+        if (cell->timed) continue;
+        cell->timed = true;
+        cell->rounds = rounds;
+        cell->threads = trial->options->timing;
+        cell->tally.rays = timed[i].set->count;
+        cell->seconds = rt_estimate(timed[i].seconds, rounds, seed);
+        cell->wall = rt_estimate(timed[i].wall, rounds, seed);
+        cell->ratio = rt_estimate_ratio(timed[baseline].seconds, timed[i].seconds, rounds, seed);
+        RT_TRY(tell(trial, RT_EVENT_TIME, who[i], kind, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus time_kind(Trial *trial, RtRayKind kind, RtError *error) {
+    const RtExperiment *experiment = trial->experiment;
+    RtTiming timing = {.rounds = experiment->rounds,
+                       .least = 1e-3 * experiment->milliseconds,
+                       .threads = trial->options->timing,
+                       .seed = experiment->seed + (uint64_t)kind};
+    size_t count = 0, doubles = 2 * (size_t)trial->count * experiment->rounds;
+    RtTimed *timed = rt_alloc(trial->count, sizeof(RtTimed));
+    uint32_t *who = rt_alloc(trial->count, sizeof(uint32_t));
+    double *seconds = rt_alloc(doubles, sizeof(double));
+    RtStatus status = RT_OK;
+    if (!timed || !who || !seconds) status = rt_fail_memory(error, "times", doubles * sizeof(double));
+    for (uint32_t c = 0; status == RT_OK && c < trial->count; c++) {
+        if (!trial->accels[c]) continue;
+        double *place = seconds + 2 * count * experiment->rounds;
+        timed[count] = (RtTimed){trial->accels[c], &trial->shares[c].set, place, place + experiment->rounds};
+        who[count++] = c;
+    }
+    if (status == RT_OK) status = rt_measure_time(timed, count, &timing, error);
+    if (status == RT_OK) status = keep_times(trial, kind, timed, who, count, error);
+    rt_free(timed);
+    rt_free(who);
+    rt_free(seconds);
+    return status;
+}
+
+/* ---- all of it ---- */
+
+static RtStatus measure_kind(Trial *trial, RtRayKind kind, RtError *error) {
+    if (trial->sets[kind].count == 0 || kind_is_done(trial, kind)) return RT_OK;
+    RtStatus status = deal_shares(trial, &trial->sets[kind], error);
+    if (status == RT_OK) status = count_kind(trial, kind, error);
+    if (status == RT_OK && !trial->options->count_only) status = time_kind(trial, kind, error);
+    clear_shares(trial);
+    return status;
+}
+
+static RtStatus measure(Trial *trial, RtError *error) {
+    RT_TRY(prepare(trial, error));
+    if (trial->results->trials[trial->index].skipped) return RT_OK;
+    RT_TRY(build_all(trial, error));
+    for (uint32_t k = 0; k < trial->experiment->kind_count; k++) {
+        RT_TRY(measure_kind(trial, trial->experiment->kinds[k], error));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error) {
+    Trial trial = {.results = results, .experiment = results->experiment, .options = options, .index = index};
+    trial.count = trial.experiment->contender_count + 1;
+    if (trial_is_done(&trial)) return RT_OK;
+    trial.accels = rt_alloc(trial.count, sizeof(RtAccel *));
+    trial.shares = rt_alloc(trial.count, sizeof(Share));
+    RtStatus status = RT_OK;
+    if (!trial.accels || !trial.shares)
+        status = rt_fail_memory(error, "a trial", trial.count * sizeof(Share));
+    if (status == RT_OK) status = measure(&trial, error);
+    for (uint32_t c = 0; trial.accels && c < trial.count; c++) rt_accel_destroy(trial.accels[c]);
+    rt_accel_destroy(trial.reference);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&trial.sets[k]);
+    rt_scene_clear(&trial.scene);
+    rt_free(trial.accels);
+    rt_free(trial.shares);
+    return status;
+}
