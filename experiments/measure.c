@@ -123,13 +123,13 @@ RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit
 /* A contender of the rounds, ready to run. */
 typedef struct Runner {
     Pass pass;
-    double repeats;
+    uint32_t repeats;
 } Runner;
 
 /* Runs `repeats` times; seconds of both clocks for all of them. */
 static RtStatus time_runner(Runner *runner, double *processor, double *wall, RtError *error) {
     double processor_start = rt_thread_seconds(), wall_start = rt_wall_seconds();
-    for (double i = 0; i < runner->repeats; i++) RT_TRY(run_pass(&runner->pass, error));
+    for (uint32_t i = 0; i < runner->repeats; i++) RT_TRY(run_pass(&runner->pass, error));
     *wall = rt_wall_seconds() - wall_start;
     *processor = runner->pass.threads == 1 ? rt_thread_seconds() - processor_start : *wall;
     return RT_OK;
@@ -142,7 +142,7 @@ static RtStatus warm_up(Runner *runners, size_t count, double least, RtError *er
         runners[i].repeats = 1;
         RT_TRY(time_runner(&runners[i], &processor, &wall, error));
         double seconds = processor > 1e-9 ? processor : 1e-9;
-        runners[i].repeats = fmin(fmax(ceil(least / seconds), 1), MOST_REPEATS);
+        runners[i].repeats = (uint32_t)fmin(fmax(ceil(least / seconds), 1), MOST_REPEATS);
     }
     return RT_OK;
 }

@@ -165,14 +165,14 @@ static RtStatus build_one(Trial *trial, const RtSpec *spec, RtAccel **out, doubl
     double seconds[MOST_BUILDS], sum = 0;
     uint32_t builds = 0;
     *out = NULL;
-    while (builds < MOST_BUILDS && sum < CHEAP_BUILD) {
+    do {
         rt_accel_destroy(*out);
         *out = NULL;
         double start = rt_wall_seconds();
         RT_TRY(rt_accel_build(spec, &trial->scene, out, error));
         seconds[builds] = rt_wall_seconds() - start;
         sum += seconds[builds++];
-    }
+    } while (builds < MOST_BUILDS && sum < CHEAP_BUILD);
     *median = rt_median(seconds, builds);
     return RT_OK;
 }

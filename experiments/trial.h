@@ -34,8 +34,8 @@ typedef struct RtTrialOptions {
     RtObserver observer;
 } RtTrialOptions;
 
-/* Fills what is unknown of the experiment's trial number `trial`. An exact accelerator whose answers differ
+/* Fills what is unknown of the experiment's trial number `index`. An exact accelerator whose answers differ
  * from the baseline's, or whose hits are not the same number, is RT_MISMATCH. */
-RtStatus rt_trial_run(RtResults *results, uint32_t trial, const RtTrialOptions *options, RtError *error);
+RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error);
 
 #endif

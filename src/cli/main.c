@@ -18,6 +18,7 @@ static const RtCommand commands[] = {
     {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
      rt_command_render},
     {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
+    {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

@@ -1,0 +1,31 @@
+# Writes OUT, a header that says what is built: commit, whether the tree differs from it, compiler and flags. It runs
+# at every build, and touches OUT only when something changed.
+# cmake -DSOURCE=... -DOUT=... -DCOMPILER=... -DFLAGS=... -P build_info.cmake
+set(commit "unknown")
+set(dirty false)
+find_package(Git QUIET)
+if(GIT_FOUND AND EXISTS ${SOURCE}/.git)
+  execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} rev-parse --short=12 HEAD
+    OUTPUT_VARIABLE head OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+  if(NOT failed)
+    set(commit ${head})
+    execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} status --porcelain --untracked-files=no
+      OUTPUT_VARIABLE changes ERROR_QUIET)
+    if(changes)
+      set(dirty true)
+    endif()
+  endif()
+endif()
+string(STRIP "${FLAGS}" FLAGS)
+set(text "#define RT_COMMIT \"${commit}\"
+#define RT_DIRTY ${dirty}
+#define RT_COMPILER \"${COMPILER}\"
+#define RT_FLAGS \"${FLAGS}\"
+")
+set(old "")
+if(EXISTS ${OUT})
+  file(READ ${OUT} old)
+endif()
+if(NOT old STREQUAL text)
+  file(WRITE ${OUT} "${text}")
+endif()

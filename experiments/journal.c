@@ -1,0 +1,275 @@
+#include "experiments/journal.h"
+
+#include "base/memory.h"
+#include "experiments/machine.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MOST_BYTES = 1 << 28 }; /* of a journal */
+
+/* ---- to JSON ---- */
+
+static json_t *hex(uint64_t value) {
+    return json_sprintf("%016" PRIx64, value);
+}
+
+static json_t *number(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *header_json(const RtExperiment *experiment) {
+    return json_pack("{s:s, s:o, s:b, s:s}", "experiment", experiment->name, "hash",
+                     hex(experiment->fingerprint), "quick", experiment->quick, "build", rt_build_identity());
+}
+
+static json_t *trial_json(const RtTrialResult *trial) {
+    json_t *sets = json_object();
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        json_object_set_new(sets, rt_ray_kind_name((RtRayKind)k),
+                            json_pack("{s:I, s:o}", "rays", (json_int_t)trial->rays[k], "hash",
+                                      hex(trial->ray_fingerprints[k])));
+    }
+    return json_pack("{s:I, s:I, s:I, s:o, s:o}", "objects", (json_int_t)trial->objects, "width",
+                     (json_int_t)trial->width, "height", (json_int_t)trial->height, "hash", hex(trial->scene),
+                     "sets", sets);
+}
+
+static json_t *build_json(const RtBuildResult *build) {
+    const RtDescription *d = &build->shape;
+    return json_pack("{s:s, s:b, s:b, s:f, s:I, s:I, s:I, s:I, s:I, s:I, s:o}", "spec", build->spec, "exact",
+                     build->exact, "counts", build->counts, "seconds", build->seconds, "interior",
+                     (json_int_t)d->interior, "leaves", (json_int_t)d->leaves, "empty_leaves",
+                     (json_int_t)d->empty_leaves, "references", (json_int_t)d->references, "depth",
+                     (json_int_t)d->depth, "bytes", (json_int_t)d->bytes, "predicted_cost",
+                     number(d->predicted_cost));
+}
+
+static json_t *count_json(const RtCell *cell) {
+    json_t *object = json_pack("{s:I}", "differ", (json_int_t)cell->differ);
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        json_object_set_new(object, rt_tally_name(i),
+                            json_integer((json_int_t)rt_tally_get(&cell->tally, i)));
+    }
+    return object;
+}
+
+static json_t *estimate_json(const RtEstimate *e) {
+    return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
+}
+
+static json_t *time_json(const RtCell *cell) {
+    return json_pack("{s:I, s:I, s:i, s:o, s:o, s:o}", "rays", (json_int_t)cell->tally.rays, "rounds",
+                     (json_int_t)cell->rounds, "threads", cell->threads, "seconds",
+                     estimate_json(&cell->seconds), "wall", estimate_json(&cell->wall), "ratio",
+                     estimate_json(&cell->ratio));
+}
+
+static json_t *event_json(const RtResults *results, const RtEvent *event) {
+    const RtExperiment *experiment = results->experiment;
+    const RtCell *cell = rt_cell_at(results, event->trial, event->contender, event->kind);
+    const char *scene = experiment->trials[event->trial].label;
+    const char *accel = rt_contender_label(experiment, event->contender);
+    const char *kind = rt_ray_kind_name(event->kind);
+    switch (event->what) {
+    case RT_EVENT_TRIAL:
+        return json_pack("{s:s, s:o}", "scene", scene, "trial", trial_json(&results->trials[event->trial]));
+    case RT_EVENT_BUILD:
+        return json_pack("{s:s, s:s, s:o}", "scene", scene, "accel", accel, "built",
+                         build_json(rt_build_at(results, event->trial, event->contender)));
+    case RT_EVENT_COUNT:
+        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "counted",
+                         count_json(cell));
+    case RT_EVENT_TIME:
+        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
+                         time_json(cell));
+    }
+    return NULL;
+}
+
+/* ---- writing ---- */
+
+/* One line, on the disk when this returns. Takes the reference. */
+static RtStatus write_line(RtJournal *journal, json_t *line, RtError *error) {
+    if (!line) return rt_fail_memory(error, "a line of the journal", 0);
+    int failed = json_dumpf(line, journal->file, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(line);
+    if (!failed && fputc('\n', journal->file) != EOF && fflush(journal->file) == 0 &&
+        fdatasync(fileno(journal->file)) == 0) {
+        return RT_OK;
+    }
+    return rt_fail(error, RT_IO, "%s: writing failed: %s", journal->path, strerror(errno));
+}
+
+/* Cuts off what an interruption left behind the last whole line. */
+static RtStatus trim(const char *path, RtError *error) {
+    char *text;
+    size_t size;
+    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
+    while (size > 0 && text[size - 1] != '\n') size--;
+    rt_free(text);
+    if (truncate(path, (off_t)size) == 0) return RT_OK;
+    return rt_fail(error, RT_IO, "%s: truncating failed: %s", path, strerror(errno));
+}
+
+RtStatus rt_journal_open(RtJournal *journal, const char *path, const RtExperiment *experiment, bool resume,
+                         RtError *error) {
+    journal->file = NULL;
+    snprintf(journal->path, sizeof journal->path, "%s", path);
+    if (resume) RT_TRY(trim(path, error));
+    journal->file = fopen(path, resume ? "ab" : "wb");
+    if (!journal->file) return rt_fail(error, RT_IO, "%s: cannot be written: %s", path, strerror(errno));
+    return resume ? RT_OK : write_line(journal, header_json(experiment), error);
+}
+
+void rt_journal_close(RtJournal *journal) {
+    if (journal->file) fclose(journal->file);
+    journal->file = NULL;
+}
+
+RtStatus rt_journal_append(RtJournal *journal, const RtResults *results, const RtEvent *event,
+                           RtError *error) {
+    return write_line(journal, event_json(results, event), error);
+}
+
+/* ---- from JSON ---- */
+
+/* Members that are missing or of another type read as 0, which no journal of ours has. */
+static uint64_t get_integer(const json_t *object, const char *key) {
+    return (uint64_t)json_integer_value(json_object_get(object, key));
+}
+
+static uint64_t get_hex(const json_t *object, const char *key) {
+    const char *text = json_string_value(json_object_get(object, key));
+    uint64_t value = 0;
+    return text && sscanf(text, "%" SCNx64, &value) == 1 ? value : 0;
+}
+
+static double get_number(const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    return json_is_number(value) ? json_number_value(value) : (double)NAN;
+}
+
+static RtEstimate get_estimate(const json_t *object, const char *key) {
+    const json_t *list = json_object_get(object, key);
+    return (RtEstimate){
+        json_number_value(json_array_get(list, 0)), json_number_value(json_array_get(list, 1)),
+        json_number_value(json_array_get(list, 2)), json_number_value(json_array_get(list, 3))};
+}
+
+static void take_trial(RtTrialResult *trial, const json_t *object) {
+    const json_t *sets = json_object_get(object, "sets");
+    trial->known = true;
+    trial->objects = (uint32_t)get_integer(object, "objects");
+    trial->width = (uint32_t)get_integer(object, "width");
+    trial->height = (uint32_t)get_integer(object, "height");
+    trial->scene = get_hex(object, "hash");
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const json_t *set = json_object_get(sets, rt_ray_kind_name((RtRayKind)k));
+        trial->rays[k] = get_integer(set, "rays");
+        trial->ray_fingerprints[k] = get_hex(set, "hash");
+    }
+}
+
+static void take_build(RtBuildResult *build, const json_t *object) {
+    const char *spec = json_string_value(json_object_get(object, "spec"));
+    build->known = true;
+    build->exact = json_is_true(json_object_get(object, "exact"));
+    build->counts = json_is_true(json_object_get(object, "counts"));
+    snprintf(build->spec, sizeof build->spec, "%s", spec ? spec : "");
+    build->seconds = get_number(object, "seconds");
+    build->shape = (RtDescription){.interior = get_integer(object, "interior"),
+                                   .leaves = get_integer(object, "leaves"),
+                                   .empty_leaves = get_integer(object, "empty_leaves"),
+                                   .references = get_integer(object, "references"),
+                                   .depth = get_integer(object, "depth"),
+                                   .bytes = get_integer(object, "bytes"),
+                                   .predicted_cost = get_number(object, "predicted_cost")};
+}
+
+static void take_count(RtCell *cell, const json_t *object) {
+    cell->counted = true;
+    cell->differ = get_integer(object, "differ");
+#define TAKE(name, meaning) cell->tally.name = get_integer(object, #name);
+    RT_TALLY_COUNTERS(TAKE)
+#undef TAKE
+}
+
+static void take_time(RtCell *cell, const json_t *object) {
+    cell->timed = true;
+    cell->tally.rays = get_integer(object, "rays");
+    cell->rounds = (uint32_t)get_integer(object, "rounds");
+    cell->threads = (int)get_integer(object, "threads");
+    cell->seconds = get_estimate(object, "seconds");
+    cell->wall = get_estimate(object, "wall");
+    cell->ratio = get_estimate(object, "ratio");
+}
+
+/* Places a line where its labels say; lines about what the experiment does not have are passed over. */
+static void take_line(RtResults *results, const json_t *line) {
+    const RtExperiment *experiment = results->experiment;
+    const char *scene = json_string_value(json_object_get(line, "scene"));
+    const char *accel = json_string_value(json_object_get(line, "accel"));
+    const char *kind_name = json_string_value(json_object_get(line, "kind"));
+    const json_t *object;
+    uint32_t trial = 0, contender = 0;
+    RtRayKind kind = RT_RAY_PRIMARY;
+    while (scene && trial < experiment->trial_count && strcmp(experiment->trials[trial].label, scene) != 0)
+        trial++;
+    if (!scene || trial == experiment->trial_count) return;
+    if ((object = json_object_get(line, "trial"))) take_trial(&results->trials[trial], object);
+    if (!accel) return;
+    while (contender <= experiment->contender_count &&
+           strcmp(rt_contender_label(experiment, contender), accel) != 0) {
+        contender++;
+    }
+    if (contender > experiment->contender_count) return;
+    if ((object = json_object_get(line, "built"))) take_build(rt_build_at(results, trial, contender), object);
+    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;
+    RtCell *cell = rt_cell_at(results, trial, contender, kind);
+    if ((object = json_object_get(line, "counted"))) take_count(cell, object);
+    if ((object = json_object_get(line, "timed"))) take_time(cell, object);
+}
+
+static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,
+                             bool same_build, RtError *error) {
+    const char *build = json_string_value(json_object_get(line, "build"));
+    if (get_hex(line, "hash") != experiment->fingerprint ||
+        json_is_true(json_object_get(line, "quick")) != experiment->quick) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: this is a run of another experiment, or of an older version of it: start anew, "
+                       "without --resume, or give another --out",
+                       path);
+    }
+    if (!same_build || (build && strcmp(build, rt_build_identity()) == 0)) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "%s: this run was begun by another build (%s; this is %s): start anew, without --resume, or "
+        "give another --out",
+        path, build ? build : "unknown", rt_build_identity());
+}
+
+RtStatus rt_journal_load(const char *path, RtResults *results, bool same_build, RtError *error) {
+    char *text;
+    size_t size;
+    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
+    RtStatus status = RT_OK;
+    bool first = true;
+    for (char *line = text, *end; status == RT_OK && (end = strchr(line, '\n')); line = end + 1) {
+        json_t *object = json_loadb(line, (size_t)(end - line), 0, NULL);
+        if (first) {
+            status = check_header(path, object, results->experiment, same_build, error);
+        } else if (object) {
+            take_line(results, object);
+        }
+        first = false;
+        json_decref(object);
+    }
+    if (status == RT_OK && first) status = rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty", path);
+    rt_free(text);
+    return status;
+}

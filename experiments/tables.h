@@ -1,0 +1,28 @@
+/* Results as tables: the two CSV files of a result directory, and one for the eye. */
+#ifndef RT_EXPERIMENTS_TABLES_H
+#define RT_EXPERIMENTS_TABLES_H
+
+#include "experiments/results.h"
+
+#include <stdio.h>
+
+/* counts.csv: a row per cell of an accelerator whose counts are the same on every machine, with every
+ * effective parameter, all counters, and the figures of the structure. Byte-identical wherever it is made. */
+void rt_counts_csv(const RtResults *results, FILE *out);
+
+/* times.csv: a row per timed cell, null runs included: times a ray in nanoseconds with their intervals,
+ * ratios, build seconds, bytes; and tests and steps as counted here, which for an accelerator that is not in
+ * counts.csv may be others elsewhere. */
+void rt_times_csv(const RtResults *results, FILE *out);
+
+/* A row per scene, accelerator and ray kind; or per scene and accelerator, all kinds together. */
+void rt_print_cells(const RtResults *results, FILE *out);
+void rt_print_totals(const RtResults *results, FILE *out);
+
+/* "12 of 12 null runs straddle 1.", and what to think of it otherwise; "" where none was timed. */
+void rt_null_sentence(const RtResults *results, char *out, size_t room);
+
+/* A figure in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Room for 16. */
+void rt_format_figure(double value, char *out);
+
+#endif

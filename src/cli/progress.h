@@ -1,0 +1,25 @@
+/* One line of progress on stderr, redrawn in place, and only on a terminal. */
+#ifndef RT_CLI_PROGRESS_H
+#define RT_CLI_PROGRESS_H
+
+#include "experiments/trial.h"
+
+typedef struct RtProgress {
+    bool terminal;
+    uint32_t done, all; /* cells counted or timed, and how many there will be at most */
+    double start;       /* of the run, wall seconds */
+} RtProgress;
+
+/* `parts`: measurements a cell, 1 when only counting, else 2. */
+RtProgress rt_progress_begin(const RtExperiment *experiment, uint32_t parts);
+
+/* After an event. */
+void rt_progress_event(RtProgress *progress, const RtResults *results, const RtEvent *event);
+
+/* A line of its own, on a terminal or not. */
+void rt_progress_notice(RtProgress *progress, const char *message);
+
+/* Takes the line away. */
+void rt_progress_end(RtProgress *progress);
+
+#endif
