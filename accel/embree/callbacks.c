@@ -1,0 +1,110 @@
+/* What Embree calls back for user geometry. A callback gets a primitive and a packet of N rays, of which
+ * those with a non-zero `valid` are to be tested. */
+#include "accel/embree/embree.h"
+#include "accel/kernel.h"
+
+void rt_embree_bounds(const struct RTCBoundsFunctionArguments *arguments) {
+    const RtEmbreeSlot *slot = arguments->geometryUserPtr;
+    const RtBox *box = &slot->self->base.scene->geometry.boxes[slot->ids[arguments->primID]];
+    double growth = (double)slot->self->growth;
+    *arguments->bounds_o = (struct RTCBounds){
+        .lower_x = rt_float_below((double)box->lo.x - growth),
+        .lower_y = rt_float_below((double)box->lo.y - growth),
+        .lower_z = rt_float_below((double)box->lo.z - growth),
+        .upper_x = rt_float_above((double)box->hi.x + growth),
+        .upper_y = rt_float_above((double)box->hi.y + growth),
+        .upper_z = rt_float_above((double)box->hi.z + growth),
+    };
+}
+
+/* ---- user mode: our rays, our hits; Embree's ray only learns how far there is still to look ---- */
+
+RT_KERNEL void search_lanes(const RtEmbreeSlot *slot, const void *context, uint32_t primitive,
+                            const int *valid, RtEmbreeWord *rays, unsigned lanes, bool any, bool counted) {
+    const RtGeometry *geometry = &slot->self->base.scene->geometry;
+    const RtEmbreeTrace *trace = context;
+    uint32_t id = slot->ids[primitive];
+    for (unsigned i = 0; i < lanes; i++) {
+        if (!valid[i]) continue;
+        RtEmbreeSearch *search = &trace->searches[rays[RT_EMBREE_ID * lanes + i].u];
+        float *tfar = &rays[RT_EMBREE_TFAR * lanes + i].f;
+        bool over =
+            rt_test_object(geometry, id, &search->ray, any, &search->best, counted ? search->tally : NULL);
+        if (over) {
+            *tfar = -INFINITY;
+        } else if (search->best.object == id) {
+            *tfar = rt_embree_limit(search->best.t, search->shrink);
+        }
+    }
+}
+
+#define DEFINE_SEARCHES(suffix, counted)                                                                     \
+    static void intersect_##suffix(const struct RTCIntersectFunctionNArguments *a) {                         \
+        search_lanes(a->geometryUserPtr, a->context, a->primID, a->valid, (RtEmbreeWord *)a->rayhit, a->N,   \
+                     false, counted);                                                                        \
+    }                                                                                                        \
+    static void occluded_##suffix(const struct RTCOccludedFunctionNArguments *a) {                           \
+        search_lanes(a->geometryUserPtr, a->context, a->primID, a->valid, (RtEmbreeWord *)a->ray, a->N,      \
+                     true, counted);                                                                         \
+    }
+DEFINE_SEARCHES(timed, false)
+DEFINE_SEARCHES(counted, true)
+#undef DEFINE_SEARCHES
+
+void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches) {
+    rt_embree_init_context(&trace->context, coherent);
+    trace->intersect = counted ? intersect_counted : intersect_timed;
+    trace->occluded = counted ? occluded_counted : occluded_timed;
+    trace->searches = searches;
+}
+
+void rt_embree_user_intersect(const struct RTCIntersectFunctionNArguments *arguments) {
+    ((const RtEmbreeTrace *)(const void *)arguments->context)->intersect(arguments);
+}
+
+void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *arguments) {
+    ((const RtEmbreeTrace *)(const void *)arguments->context)->occluded(arguments);
+}
+
+/* ---- native mode: Embree's rays, for the shapes it has no geometry of its own for ---- */
+
+static bool lane_hit(const RtGeometry *geometry, uint32_t id, const RtEmbreeWord *rays, unsigned lanes,
+                     unsigned i, float *t) {
+    RtRay ray = {.tmin = rays[RT_EMBREE_TNEAR * lanes + i].f, .tmax = rays[RT_EMBREE_TFAR * lanes + i].f};
+    for (unsigned a = 0; a < 3; a++) {
+        ray.org.at[a] = rays[(RT_EMBREE_ORG + a) * lanes + i].f;
+        ray.dir.at[a] = rays[(RT_EMBREE_DIR + a) * lanes + i].f;
+    }
+    RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
+    return rt_object_hit(geometry, id, &prepared, t);
+}
+
+void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments) {
+    const RtEmbreeSlot *slot = arguments->geometryUserPtr;
+    const RtGeometry *geometry = &slot->self->base.scene->geometry;
+    RtEmbreeWord *rays = (RtEmbreeWord *)arguments->rayhit;
+    unsigned lanes = arguments->N;
+    for (unsigned i = 0; i < lanes; i++) {
+        float t;
+        if (!arguments->valid[i]) continue;
+        if (!lane_hit(geometry, slot->ids[arguments->primID], rays, lanes, i, &t)) continue;
+        rays[RT_EMBREE_TFAR * lanes + i].f = t;
+        for (unsigned field = RT_EMBREE_NG; field <= RT_EMBREE_V; field++) rays[field * lanes + i].f = 0;
+        rays[RT_EMBREE_PRIMITIVE * lanes + i].u = arguments->primID;
+        rays[RT_EMBREE_GEOMETRY * lanes + i].u = arguments->geomID;
+        rays[RT_EMBREE_INSTANCE * lanes + i].u = arguments->context->instID[0];
+    }
+}
+
+void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *arguments) {
+    const RtEmbreeSlot *slot = arguments->geometryUserPtr;
+    const RtGeometry *geometry = &slot->self->base.scene->geometry;
+    RtEmbreeWord *rays = (RtEmbreeWord *)arguments->ray;
+    unsigned lanes = arguments->N;
+    for (unsigned i = 0; i < lanes; i++) {
+        float t;
+        if (!arguments->valid[i]) continue;
+        if (!lane_hit(geometry, slot->ids[arguments->primID], rays, lanes, i, &t)) continue;
+        rays[RT_EMBREE_TFAR * lanes + i].f = -INFINITY;
+    }
+}

@@ -1,0 +1,218 @@
+/* embree: Intel's ray tracing kernels, as the competitor and as an oracle.
+ *
+ *   mode=native  triangles and spheres are Embree's own geometry, with its own arithmetic: fast, and judged
+ *                by verdicts. Polygons and cones, which it has not, use our hit functions.
+ *   mode=user    everything uses our hit functions on Embree's hierarchy: the same bits as brute (embree.h
+ * says why), independent of any structure of ours. Its time is that of calling back; never quote it as
+ * Embree's.
+ *
+ * Wald, Woop, Benthin, Johnson & Ernst 2014, "Embree: A Kernel Framework for Efficient CPU Ray Tracing", ACM
+ * TOG 33(4). Object tests are counted in user mode alone; extent tests, steps and the look of the structure
+ * are Embree's secret and reported as 0. */
+#include "accel/embree/embree.h"
+
+#include "base/memory.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+extern const RtAccelOps rt_embree_ops;
+
+enum { MODE, QUALITY, ISA, ROBUST, QUERY, PARAM_COUNT };
+
+static const RtParam params[PARAM_COUNT] = {
+    [MODE] = {.name = "mode",
+              .type = RT_PARAM_CHOICE,
+              .standard = "native",
+              .choices = "native|user",
+              .meaning = "Embree's own triangles and spheres, or our hit functions on its hierarchy",
+              .source = "native is the competitor"},
+    [QUALITY] = {.name = "quality",
+                 .type = RT_PARAM_CHOICE,
+                 .standard = "medium",
+                 .choices = "low|medium|high",
+                 .meaning = "build: Morton codes, binned SAH, SAH with spatial splits",
+                 .source = "Embree's default"},
+    [ISA] = {.name = "isa",
+             .type = RT_PARAM_CHOICE,
+             .standard = "default",
+             .choices = RT_EMBREE_ISAS,
+             .meaning = "instruction set; default is the widest of the processor",
+             .source = "Embree's default"},
+    [ROBUST] = {.name = "robust",
+                .type = RT_PARAM_FLAG,
+                .standard = "off",
+                .meaning = "no ray slips between triangles that share an edge; user mode is exact either way",
+                .source = "Embree's default"},
+    [QUERY] = {.name = "query",
+               .type = RT_PARAM_CHOICE,
+               .standard = "1",
+               .choices = "1|8|16|stream",
+               .meaning = "rays handed over at once: one, a packet of 8 or 16, a stream",
+               .source = "the most general one"},
+};
+
+/* ---- build ---- */
+
+/* How far from an origin a box may be, and what follows from it. At least four times the size of the scene,
+ * and twice as far as the camera. */
+static void set_reach(RtEmbree *self) {
+    const RtScene *scene = self->base.scene;
+    const RtBox *box = &scene->geometry.box;
+    double size = 0, magnitude = 0;
+    for (int a = 0; a < 3; a++) {
+        size = fmax(size, (double)box->hi.at[a] - (double)box->lo.at[a]);
+        magnitude = fmax(magnitude, fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a])));
+    }
+    double camera = (double)rt_thickness(scene->camera.from, box) * 0x1p20;
+    double reach = fmax(4 * size, 2 * camera);
+    self->max_thickness = rt_float_below(reach * 0x1p-20);
+    self->growth = rt_float_above(reach * 0x1p-19 + magnitude * 0x1p-21 + 0x1p-100);
+}
+
+static void attach(RtEmbree *self, RTCGeometry geometry, RtShape shape, const uint32_t *ids) {
+    self->slots[shape] = (RtEmbreeSlot){self, ids};
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(self->scene, geometry, shape);
+    rtcReleaseGeometry(geometry);
+}
+
+static void attach_user(RtEmbree *self, RtShape shape, const uint32_t *ids, uint32_t count) {
+    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, count);
+    rtcSetGeometryUserData(geometry, &self->slots[shape]);
+    rtcSetGeometryBoundsFunction(geometry, rt_embree_bounds, NULL);
+    rtcSetGeometryIntersectFunction(geometry,
+                                    self->user ? rt_embree_user_intersect : rt_embree_native_intersect);
+    rtcSetGeometryOccludedFunction(geometry,
+                                   self->user ? rt_embree_user_occluded : rt_embree_native_occluded);
+    attach(self, geometry, shape, ids);
+}
+
+/* The scene's vertices are shared. Embree reads 16 bytes of each, 4 more than the last one has; a block of
+ * rt_alloc always has them. */
+static RtStatus attach_triangles(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    size_t count = (size_t)g->triangle_count * 3;
+    self->indices = rt_alloc(count, sizeof(uint32_t));
+    if (!self->indices) return rt_fail_memory(error, "Embree's list of vertices", count * sizeof(uint32_t));
+    for (size_t i = 0; i < count; i++) self->indices[i] = (uint32_t)i;
+    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryBuildQuality(geometry, quality);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, g->triangles, 0,
+                               sizeof(RtVec3), count);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, self->indices, 0,
+                               3 * sizeof(uint32_t), g->triangle_count);
+    attach(self, geometry, RT_SHAPE_TRIANGLE, g->triangle_ids);
+    return RT_OK;
+}
+
+_Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "centre and radius, as Embree wants them");
+
+static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    RTCGeometry geometry = rtcNewGeometry(self->device.device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    rtcSetGeometryBuildQuality(geometry, quality);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, g->spheres, 0,
+                               sizeof(RtSphere), g->sphere_count);
+    attach(self, geometry, RT_SHAPE_SPHERE, g->sphere_ids);
+}
+
+static RtStatus attach_all(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    bool own[RT_SHAPE_COUNT] = {false}; /* done as Embree's own geometry */
+    if (!self->user) {
+        own[RT_SHAPE_TRIANGLE] = own[RT_SHAPE_SPHERE] = true;
+        if (g->triangle_count > 0) RT_TRY(attach_triangles(self, quality, error));
+        if (g->sphere_count > 0) attach_spheres(self, quality);
+    }
+#define ATTACH(CONSTANT, name, Type)                                                                         \
+    if (!own[RT_SHAPE_##CONSTANT] && g->name##_count > 0) {                                                  \
+        attach_user(self, RT_SHAPE_##CONSTANT, g->name##_ids, g->name##_count);                              \
+    }
+    RT_SHAPES(ATTACH)
+#undef ATTACH
+    return RT_OK;
+}
+
+static RtStatus build_into(RtEmbree *self, const RtValue *values, RtError *error) {
+    static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
+                                                     RTC_BUILD_QUALITY_HIGH};
+    enum RTCBuildQuality quality = qualities[values[QUALITY].choice];
+    if (self->query == RT_EMBREE_STREAM && !RT_EMBREE_STREAMS) {
+        return rt_fail(error, RT_NOT_AVAILABLE,
+                       "accelerator embree: Embree 4 has no streams; choose query=1, 8 or 16");
+    }
+    RT_TRY(rt_embree_device_open(&self->device, values[ISA].choice, error));
+    set_reach(self);
+    self->scene = rtcNewScene(self->device.device);
+    rtcSetSceneFlags(self->scene, values[ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    rtcSetSceneBuildQuality(self->scene, quality);
+    RT_TRY(attach_all(self, quality, error));
+    rtcCommitScene(self->scene);
+    return rt_embree_device_check(&self->device, error);
+}
+
+static void destroy(RtAccel *accel) {
+    RtEmbree *self = (RtEmbree *)accel;
+    if (self->scene) rtcReleaseScene(self->scene);
+    rt_embree_device_close(&self->device);
+    rt_free(self->indices);
+    rt_free(self);
+}
+
+static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+    RtEmbree *self = rt_alloc(1, sizeof(RtEmbree));
+    if (!self) return rt_fail_memory(error, "embree", sizeof(RtEmbree));
+    self->user = values[MODE].choice == 1;
+    self->query = (RtEmbreeQueryKind)values[QUERY].choice;
+    self->base = (RtAccel){.ops = &rt_embree_ops, .scene = scene, .exact = self->user};
+    RtStatus status = build_into(self, values, error);
+    if (status != RT_OK) {
+        destroy(&self->base);
+        return status;
+    }
+    *out = &self->base;
+    return RT_OK;
+}
+
+/* ---- describe, validate ---- */
+
+/* Bytes: what Embree has allocated. Not the vertices, which are the scene's, nor the list of their indices,
+ * which is how Embree wants to be told of them. */
+static void describe(const RtAccel *accel, RtDescription *out) {
+    const RtEmbree *self = (const RtEmbree *)accel;
+    *out = (RtDescription){.references = accel->scene->geometry.object_count,
+                           .bytes = sizeof(RtEmbree) + (uint64_t)atomic_load(&self->device.bytes),
+                           .predicted_cost = (double)NAN};
+}
+
+static RtStatus validate(const RtAccel *accel, RtError *error) {
+    const RtEmbree *self = (const RtEmbree *)accel;
+    RT_TRY(rt_embree_device_check(&self->device, error));
+    if (!self->user || accel->scene->geometry.object_count == 0) return RT_OK;
+    struct RTCBounds bounds;
+    rtcGetSceneBounds(self->scene, &bounds);
+    RtBox all = {{bounds.lower_x, bounds.lower_y, bounds.lower_z},
+                 {bounds.upper_x, bounds.upper_y, bounds.upper_z}};
+    if (rt_box_contains(all, accel->scene->geometry.box)) return RT_OK;
+    return rt_fail(error, RT_MISMATCH, "Embree's bounds do not contain the box of the scene");
+}
+
+const RtAccelOps rt_embree_ops = {
+    .name = "embree",
+    .summary = "Intel's kernels: the competitor (mode=native) and an oracle (mode=user)",
+    .paper = "Wald, Woop, Benthin, Johnson & Ernst 2014, Embree: A Kernel Framework for Efficient CPU Ray "
+             "Tracing, ACM TOG 33(4)",
+    .params = params,
+    .param_count = PARAM_COUNT,
+    .build = build,
+    .destroy = destroy,
+    .nearest = rt_embree_nearest,
+    .occluded = rt_embree_occluded_any,
+    .nearest_counted = rt_embree_nearest_counted,
+    .occluded_counted = rt_embree_occluded_counted,
+    .scratch_bytes = rt_embree_scratch_bytes,
+    .describe = describe,
+    .validate = validate,
+};

@@ -1,0 +1,121 @@
+/* What the files of `embree` share: the accelerator's struct, the state of a query, and Embree's device.
+ *
+ * Each shape with objects is one Embree geometry, whose geometry id is the RtShape and whose primitive ids
+ * are the indices of that shape's array; `slots` leads back to object ids.
+ *
+ * Why user mode is exact. There Embree only proposes candidates, and our hit functions decide; so it must
+ * propose every object that brute would find. Brute finds an object on a ray where the thick ray meets its
+ * own box (base/ray.h). Embree knows no thick rays, so the boxes it gets are thick instead: grown by
+ *
+ *     growth = 2^-19 R + 2^-21 M,     R = reach, the farthest that a box may be from an origin,
+ *                                     M = the largest coordinate of the scene,
+ *
+ * twice the thickness of any ray whose origin is within reach, and the other half covers the rounding of
+ * Embree's box test (at most 2^-22 R + 2^-23 (M + R) in the place of a plane, robust or not, with or without
+ * fused multiply-add) and of ours. A ray from farther away is answered by testing every object. Embree takes
+ * |dir| < 1e-18 for 1e-18, so directions are brought to ordinary lengths by a power of two. A search keeps
+ * its own best hit and gives Embree a tfar that lies above it by 2^-20, so that ties and near ties are
+ * proposed too, whatever Embree does at t = tfar. */
+#ifndef RT_ACCEL_EMBREE_H
+#define RT_ACCEL_EMBREE_H
+
+#include "accel/accel.h"
+#include "accel/embree/api.h"
+
+/* ---- the device ---- */
+
+/* One Embree device, and what it reports. */
+typedef struct RtEmbreeDevice {
+    RTCDevice device;
+    _Atomic int64_t bytes; /* allocated and not freed */
+    RTCErrorFunction on_error;
+    enum RTCError code; /* the first error */
+    char message[256];
+} RtEmbreeDevice;
+
+/* The choices of the parameter `isa`, in order, "default" first. */
+#define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
+
+/* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS; RT_NOT_AVAILABLE where the
+ * processor lacks it. `device` must stay where it is until it is closed. */
+RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, RtError *error);
+
+/* RT_OK, or the first error that the device reported. */
+RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error);
+void rt_embree_device_close(RtEmbreeDevice *device); /* a zeroed one is allowed */
+
+/* ---- the accelerator ---- */
+
+typedef struct RtEmbree RtEmbree;
+
+/* One geometry of Embree's: the user pointer that its callbacks get. */
+typedef struct RtEmbreeSlot {
+    const RtEmbree *self;
+    const uint32_t *ids; /* object id of each primitive; the scene's */
+} RtEmbreeSlot;
+
+typedef enum RtEmbreeQueryKind {
+    RT_EMBREE_ONE,
+    RT_EMBREE_EIGHT,
+    RT_EMBREE_SIXTEEN,
+    RT_EMBREE_STREAM
+} RtEmbreeQueryKind;
+
+struct RtEmbree {
+    RtAccel base;
+    RtEmbreeDevice device;
+    RTCScene scene;
+    bool user; /* else native */
+    RtEmbreeQueryKind query;
+    RtEmbreeSlot slots[RT_SHAPE_COUNT];
+    uint32_t *indices;   /* [3 * triangle_count] 0, 1, 2, ...; NULL in user mode */
+    float growth;        /* of the boxes of user geometry */
+    float max_thickness; /* of a ray from within reach */
+};
+
+/* ---- queries ---- */
+
+#define RT_EMBREE_PACKET_RAYS 16  /* rays handed over at once as single rays or packets */
+#define RT_EMBREE_STREAM_RAYS 256 /* the same as a stream */
+
+/* One ray of user mode: ours, and what was found on it. */
+typedef struct RtEmbreeSearch {
+    RtPreparedRay ray;
+    double shrink; /* Embree's t is t * shrink, a power of two */
+    RtHit best;
+    RtTally *tally; /* NULL in the timed kernels */
+} RtEmbreeSearch;
+
+/* Embree's context of one call, extended by what the callbacks of user mode need. They are reached through
+ * it, so that one structure serves the timed and the counted kernels. */
+typedef struct RtEmbreeTrace {
+    RtEmbreeContext context; /* first: callbacks get a pointer to it */
+    RTCIntersectFunctionN intersect;
+    RTCOccludedFunctionN occluded;
+    RtEmbreeSearch *searches; /* by ray id */
+} RtEmbreeTrace;
+
+/* tfar for Embree where only hits up to t matter: a little above it. */
+static inline float rt_embree_limit(float t, double shrink) {
+    return (float)((double)t * shrink * (1 + 0x1p-20)) + FLT_MIN;
+}
+
+/* Callbacks of user geometry: the box of a primitive, grown; candidates of user mode, by way of the context;
+ * and those of native mode, with nothing but what Embree hands over. */
+void rt_embree_bounds(const struct RTCBoundsFunctionArguments *arguments);
+void rt_embree_user_intersect(const struct RTCIntersectFunctionNArguments *arguments);
+void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *arguments);
+void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments);
+void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *arguments);
+
+/* A context for one chunk of rays of user mode. */
+void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches);
+
+/* The kernels of the table of operations, and their scratch memory. */
+RtNearestKernel rt_embree_nearest;
+RtOccludedKernel rt_embree_occluded_any;
+RtNearestCounted rt_embree_nearest_counted;
+RtOccludedCounted rt_embree_occluded_counted;
+size_t rt_embree_scratch_bytes(const RtAccel *accel);
+
+#endif

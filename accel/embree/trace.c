@@ -1,0 +1,244 @@
+/* The kernels: a stream of our rays goes to Embree in chunks, as single rays, packets of 8 or 16, or streams,
+ * and comes back as hits. The loop is written once; mode, query and counting are constants where it is
+ * inlined.
+ *
+ * Rays are valid (rt_ray_is_valid), so what Embree's assertions forbid cannot occur but for directions above
+ * 1.8e18; those, and directions so short that Embree would take them for others, are brought to an ordinary
+ * length by a power of two, which changes t by the same power and no bit of its mantissa. */
+#include "accel/embree/embree.h"
+#include "accel/kernel.h"
+
+#include "base/memory.h"
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+typedef struct Batch {
+    _Alignas(RT_CACHE_LINE) struct RTCRayHit packets[RT_EMBREE_STREAM_RAYS]; /* or as packets of 8 or 16 */
+    int valid[RT_EMBREE_STREAM_RAYS];                                        /* -1 or 0, as Embree asks */
+    RtEmbreeSearch searches[RT_EMBREE_STREAM_RAYS];
+} Batch;
+
+_Static_assert(sizeof(struct RTCRayHit16) <= RT_EMBREE_PACKET_RAYS * sizeof(struct RTCRayHit),
+               "a packet takes no more room than its rays");
+
+size_t rt_embree_scratch_bytes(const RtAccel *accel) {
+    (void)accel;
+    return sizeof(Batch);
+}
+
+/* ---- denormals: Embree's documentation asks for them to be off; our own arithmetic needs them ---- */
+
+static inline unsigned denormals_off(void) {
+#if defined(__x86_64__)
+    unsigned before = _mm_getcsr();
+    _mm_setcsr(before | 0x8040u); /* flush to zero, denormals are zero */
+    return before;
+#else
+    return 0;
+#endif
+}
+
+static inline void denormals_restore(unsigned before) {
+#if defined(__x86_64__)
+    _mm_setcsr(before);
+#else
+    (void)before;
+#endif
+}
+
+/* ---- rays in ---- */
+
+static double unusual_stretch(double most) {
+    double stretch = 1;
+    while (most * stretch < 0x1p-16) stretch *= 0x1p16;
+    while (most * stretch > 0x1p16) stretch *= 0x1p-16;
+    return stretch;
+}
+
+/* The power of two that brings the longest component of dir into [2^-16, 2^16]: nearly always 1. */
+RT_KERNEL double stretch_of(RtVec3 dir) {
+    float most = rt_maxf(fabsf(dir.x), rt_maxf(fabsf(dir.y), fabsf(dir.z)));
+    return most >= 0x1p-16f && most <= 0x1p16f ? 1 : unusual_stretch((double)most);
+}
+
+RT_KERNEL RtEmbreeWord *word_of(Batch *batch, unsigned lanes, size_t i) {
+    return (RtEmbreeWord *)batch->packets + i / lanes * rt_embree_packet_words(lanes) + i % lanes;
+}
+
+RT_KERNEL void put_ray(Batch *batch, unsigned lanes, size_t i, const RtRay *ray, double stretch, float tnear,
+                       float tfar) {
+    RtEmbreeWord *word = word_of(batch, lanes, i);
+    for (unsigned a = 0; a < 3; a++) {
+        word[(RT_EMBREE_ORG + a) * lanes].f = ray->org.at[a];
+        word[(RT_EMBREE_DIR + a) * lanes].f = (float)((double)ray->dir.at[a] * stretch);
+    }
+    word[RT_EMBREE_TNEAR * lanes].f = rt_minf(tnear, FLT_MAX) + 0.0f; /* -0 becomes 0 */
+    word[RT_EMBREE_TFAR * lanes].f = tfar;
+    word[RT_EMBREE_TIME * lanes].f = 0;
+    word[RT_EMBREE_MASK * lanes].u = UINT32_MAX;
+    word[RT_EMBREE_ID * lanes].u = (uint32_t)i;
+    word[RT_EMBREE_FLAGS * lanes].u = 0;
+    word[RT_EMBREE_GEOMETRY * lanes].u = RTC_INVALID_GEOMETRY_ID;
+    word[RT_EMBREE_INSTANCE * lanes].u = RTC_INVALID_GEOMETRY_ID;
+    batch->valid[i] = -1;
+}
+
+RT_KERNEL void put_native(Batch *batch, unsigned lanes, size_t i, const RtRay *ray) {
+    double stretch = stretch_of(ray->dir), shrink = 1 / stretch;
+    put_ray(batch, lanes, i, ray, stretch, (float)((double)ray->tmin * shrink),
+            (float)((double)ray->tmax * shrink));
+}
+
+/* Out of the way of the common case, once with and once without a tally. */
+static __attribute__((noinline)) void test_all(const RtGeometry *geometry, RtEmbreeSearch *search, bool any) {
+    rt_test_all(geometry, &search->ray, any, &search->best, NULL);
+}
+
+static __attribute__((noinline)) void test_all_counted(const RtGeometry *geometry, RtEmbreeSearch *search,
+                                                       bool any) {
+    rt_test_all(geometry, &search->ray, any, &search->best, search->tally);
+}
+
+/* A ray from beyond reach is answered here and now, and sent along as an inactive one. */
+RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
+                          bool any, RtTally *tally) {
+    const RtGeometry *geometry = &self->base.scene->geometry;
+    double stretch = stretch_of(ray->dir);
+    RtEmbreeSearch *search = &batch->searches[i];
+    search->ray = rt_ray_prepare(ray, &geometry->box);
+    search->shrink = 1 / stretch;
+    search->best = RT_MISS;
+    search->tally = tally;
+    float tnear = (float)((double)ray->tmin * search->shrink * (1 - 0x1p-20));
+    put_ray(batch, lanes, i, ray, stretch, tnear, rt_embree_limit(ray->tmax, search->shrink));
+    if (rt_thickness(ray->org, &geometry->box) <= self->max_thickness) return;
+    if (tally) {
+        test_all_counted(geometry, search, any);
+    } else {
+        test_all(geometry, search, any);
+    }
+    batch->valid[i] = 0;
+    word_of(batch, lanes, i)[RT_EMBREE_TFAR * lanes].f = -INFINITY;
+}
+
+/* ---- through Embree ---- */
+
+RT_KERNEL void trace_chunk(const RtEmbree *self, Batch *batch, RtEmbreeContext *context, bool coherent,
+                           size_t count, bool any, unsigned lanes, bool stream) {
+    RtEmbreeWord *words = (RtEmbreeWord *)batch->packets;
+    if (stream) {
+        if (any) {
+            rt_embree_occluded_stream(self->scene, context, words, (unsigned)count);
+        } else {
+            rt_embree_intersect_stream(self->scene, context, words, (unsigned)count);
+        }
+        return;
+    }
+    for (size_t i = count; i % lanes != 0; i++) batch->valid[i] = 0;
+    for (size_t i = 0; i < count; i += lanes, words += rt_embree_packet_words(lanes)) {
+        const int *valid = &batch->valid[i];
+        if (lanes == 1 && !*valid) continue;
+        if (any) {
+            rt_embree_occluded(self->scene, context, coherent, valid, words, lanes);
+        } else {
+            rt_embree_intersect(self->scene, context, coherent, valid, words, lanes);
+        }
+    }
+}
+
+/* ---- hits out ---- */
+
+RT_KERNEL RtHit native_hit(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray) {
+    const RtEmbreeWord *word = word_of(batch, lanes, i);
+    uint32_t slot = word[RT_EMBREE_GEOMETRY * lanes].u;
+    if (slot == RTC_INVALID_GEOMETRY_ID) return RT_MISS;
+    double t = (double)word[RT_EMBREE_TFAR * lanes].f * stretch_of(ray->dir);
+    return (RtHit){(float)t, self->slots[slot].ids[word[RT_EMBREE_PRIMITIVE * lanes].u]};
+}
+
+/* ---- the kernels ---- */
+
+/* Primary and shadow rays come in tiles, so neighbours go the same way. */
+RT_KERNEL bool is_coherent(const RtRay *ray) {
+    return ray->kind == RT_RAY_PRIMARY || ray->kind == RT_RAY_SHADOW;
+}
+
+/* Nearest hits to `hits`, or where that is NULL occlusion to `blocked`. */
+RT_KERNEL void answer(const RtEmbree *self, Batch *batch, const RtRay *rays, size_t count, RtHit *hits,
+                      bool *blocked, RtTally *tallies, bool user, unsigned lanes, bool stream) {
+    const size_t chunk = stream ? RT_EMBREE_STREAM_RAYS : RT_EMBREE_PACKET_RAYS;
+    const bool any = !hits;
+    for (size_t begin = 0; begin < count; begin += chunk) {
+        const RtRay *ray = rays + begin;
+        size_t n = count - begin < chunk ? count - begin : chunk;
+        for (size_t i = 0; i < n; i++) {
+            if (user) {
+                put_search(self, batch, lanes, i, &ray[i], any, tallies ? &tallies[ray[i].kind] : NULL);
+            } else {
+                put_native(batch, lanes, i, &ray[i]);
+            }
+        }
+        RtEmbreeTrace trace;
+        bool coherent = is_coherent(ray);
+        rt_embree_trace_init(&trace, coherent, tallies != NULL, batch->searches);
+        unsigned before = user ? 0 : denormals_off();
+        trace_chunk(self, batch, &trace.context, coherent, n, any, lanes, stream);
+        if (!user) denormals_restore(before);
+        for (size_t i = 0; i < n; i++) {
+            RtHit hit = user ? batch->searches[i].best : RT_MISS;
+            if (!any) {
+                if (!user) hit = native_hit(self, batch, lanes, i, &ray[i]);
+                hits[begin + i] = hit;
+            } else {
+                blocked[begin + i] = user ? hit.object != RT_NO_OBJECT
+                                          : word_of(batch, lanes, i)[RT_EMBREE_TFAR * lanes].f < 0;
+            }
+            if (tallies) {
+                bool found = any ? blocked[begin + i] : hit.object != RT_NO_OBJECT;
+                RT_COUNT(&tallies[ray[i].kind], rays, 1);
+                RT_COUNT(&tallies[ray[i].kind], hits, found);
+            }
+        }
+    }
+}
+
+RT_KERNEL void answer_mode(const RtEmbree *self, Batch *batch, const RtRay *rays, size_t count, RtHit *hits,
+                           bool *blocked, RtTally *tallies, bool user) {
+    switch (self->query) {
+    case RT_EMBREE_ONE: answer(self, batch, rays, count, hits, blocked, tallies, user, 1, false); break;
+    case RT_EMBREE_EIGHT: answer(self, batch, rays, count, hits, blocked, tallies, user, 8, false); break;
+    case RT_EMBREE_SIXTEEN: answer(self, batch, rays, count, hits, blocked, tallies, user, 16, false); break;
+    case RT_EMBREE_STREAM: answer(self, batch, rays, count, hits, blocked, tallies, user, 1, true); break;
+    }
+}
+
+RT_KERNEL void answer_all(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits,
+                          bool *blocked, RtTally *tallies) {
+    const RtEmbree *self = (const RtEmbree *)accel;
+    if (self->user) {
+        answer_mode(self, scratch, rays, count, hits, blocked, tallies, true);
+    } else {
+        answer_mode(self, scratch, rays, count, hits, blocked, tallies, false);
+    }
+}
+
+void rt_embree_nearest(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits) {
+    answer_all(accel, scratch, rays, count, hits, NULL, NULL);
+}
+
+void rt_embree_nearest_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                               RtHit *hits, RtTally *tallies) {
+    answer_all(accel, scratch, rays, count, hits, NULL, tallies);
+}
+
+void rt_embree_occluded_any(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                            bool *blocked) {
+    answer_all(accel, scratch, rays, count, NULL, blocked, NULL);
+}
+
+void rt_embree_occluded_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                                bool *blocked, RtTally *tallies) {
+    answer_all(accel, scratch, rays, count, NULL, blocked, tallies);
+}
