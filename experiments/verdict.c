@@ -1,5 +1,6 @@
 #include "experiments/verdict.h"
 
+#define ERROR     0x1p-20
 #define SHIFT     0x1p-21
 #define TOLERANCE 0x1p-18
 
@@ -9,14 +10,18 @@ enum { PROBES = 27 }; /* unmoved first */
 typedef struct Probes {
     RtPreparedRay wide[PROBES], narrow[PROBES];
     double shift;     /* of the origin along an axis */
+    double error;     /* of a place, as float32 arithmetic finds it */
     double tolerance; /* of t */
 } Probes;
 
-/* What the probes say about one object. */
+/* Where one object may be hit. */
 typedef struct Margin {
     bool possible, certain;
-    double lo[2], hi[2]; /* range of t where a probe meets a front [0] and a back [1]; empty is lo > hi */
+    double lo[2], hi[2]; /* possible t, in up to two ranges; empty is lo > hi */
+    double latest;       /* if certain: it is hit no later than this */
 } Margin;
+
+static const Margin impossible = {.lo = {HUGE_VAL, HUGE_VAL}, .hi = {-HUGE_VAL, -HUGE_VAL}};
 
 const char *rt_verdict_name(RtVerdict verdict) {
     static const char *const names[RT_VERDICT_COUNT] = {"equal", "tie", "marginal", "wrong"};
@@ -45,6 +50,7 @@ static bool within(double a, double b, double tolerance) {
 
 static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray) {
     p->shift = SHIFT * largest_coordinate(g, ray);
+    p->error = ERROR * largest_coordinate(g, ray);
     p->tolerance = tolerance_of(g, ray);
     double tmin = (double)ray->tmin, tmax = (double)ray->tmax;
     for (int i = 0; i < PROBES; i++) {
@@ -81,8 +87,10 @@ static int side_met(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, 
     return rt_dotd(rt_object_normals(g, id, point).geometric, dir) > 0;
 }
 
-static Margin margin_of(const RtGeometry *g, uint32_t id, const Probes *p) {
-    Margin m = {.certain = true, .lo = {HUGE_VAL, HUGE_VAL}, .hi = {-HUGE_VAL, -HUGE_VAL}};
+/* Shapes that only our hit functions know: what the probes say. */
+static Margin probed_margin(const RtGeometry *g, uint32_t id, const Probes *p) {
+    Margin m = impossible;
+    m.certain = true;
     for (int i = 0; i < PROBES; i++) {
         const RtPreparedRay *rays[2] = {&p->wide[i], &p->narrow[i]};
         for (int k = 0; k < 2; k++) {
@@ -97,7 +105,84 @@ static Margin margin_of(const RtGeometry *g, uint32_t id, const Probes *p) {
             m.hi[side] = fmax(m.hi[side], (double)t);
         }
     }
+    m.latest = fmax(m.hi[0], m.hi[1]);
     return m;
+}
+
+/* ---- shapes that Embree has arithmetic of its own for: the errors of that arithmetic, in double ---- */
+
+/* Is t in lo..hi possibly, or certainly, within the ray's interval? */
+static bool may_count(const Probes *p, const RtRay *ray, double lo, double hi) {
+    return hi >= (double)ray->tmin - p->tolerance && lo <= (double)ray->tmax + p->tolerance;
+}
+
+static bool must_count(const Probes *p, const RtRay *ray, double lo, double hi) {
+    return lo >= (double)ray->tmin + p->tolerance && hi <= (double)ray->tmax - p->tolerance;
+}
+
+/* The edge functions, their sum and the height above the plane are triple products of vectors that are wrong
+ * by `error` each; a plane seen edge on is hit anywhere along the ray. */
+static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, const Probes *p) {
+    RtVec3d dir = rt_widen(ray->dir), from[3], side[3];
+    double longest = 0, least = HUGE_VAL, most = -HUGE_VAL, sum = 0;
+    for (int i = 0; i < 3; i++) from[i] = rt_subd(rt_widen(triangle->v[i]), rt_widen(ray->org));
+    for (int i = 0; i < 3; i++) {
+        side[i] = rt_subd(from[(i + 1) % 3], from[i]);
+        longest = fmax(longest, rt_lengthd(side[i]));
+        double edge = rt_dotd(rt_crossd(from[i], side[i]), dir);
+        least = fmin(least, edge);
+        most = fmax(most, edge);
+        sum += edge;
+    }
+    Margin m = impossible;
+    double error = p->error * longest * rt_lengthd(dir);
+    if (least < -error && most > error) return m;
+    if (fabs(sum) <= 3 * error) {
+        return (Margin){.possible = true, .lo = {-HUGE_VAL, HUGE_VAL}, .hi = {HUGE_VAL, -HUGE_VAL}};
+    }
+    double t = rt_dotd(rt_crossd(side[0], side[1]), from[0]) / sum;
+    double slack = 3 * p->error * longest * longest / fabs(sum);
+    m.lo[0] = t - slack;
+    m.hi[0] = m.latest = t + slack;
+    m.possible = may_count(p, ray, m.lo[0], m.hi[0]);
+    m.certain = (least >= error || most <= -error) && must_count(p, ray, m.lo[0], m.hi[0]);
+    return m;
+}
+
+/* The distance of the line from the centre is wrong by `error`; near the silhouette half the chord, and with
+ * it t, is wrong by much more. */
+static Margin sphere_margin(const RtSphere *sphere, const RtRay *ray, const Probes *p) {
+    RtVec3d dir = rt_widen(ray->dir), org = rt_subd(rt_widen(ray->org), rt_widen(sphere->center));
+    double dd = rt_dotd(dir, dir), radius = (double)sphere->radius;
+    double closest = -rt_dotd(org, dir) / dd;
+    RtVec3d across = rt_add_scaledd(org, dir, closest);
+    double ll = rt_dotd(across, across), outer = radius + p->error, inner = fmax(radius - p->error, 0);
+    Margin m = impossible;
+    if (ll > outer * outer) return m;
+    double longest = sqrt((outer * outer - ll) / dd);
+    double shortest = inner * inner > ll ? sqrt((inner * inner - ll) / dd) : 0;
+    const double lo[2] = {closest - longest, closest + shortest};
+    const double hi[2] = {closest - shortest, closest + longest};
+    bool front_may = may_count(p, ray, lo[0], hi[0]), front_must = must_count(p, ray, lo[0], hi[0]);
+    bool back_may = may_count(p, ray, lo[1], hi[1]), back_must = must_count(p, ray, lo[1], hi[1]);
+    for (int k = 0; k < 2; k++) {
+        if (k == 0 ? !front_may : !back_may || (front_must && shortest > 0)) continue;
+        m.lo[k] = lo[k];
+        m.hi[k] = hi[k];
+    }
+    m.possible = front_may || back_may;
+    m.certain = shortest > 0 && (front_must || back_must);
+    m.latest = front_must ? hi[0] : hi[1];
+    return m;
+}
+
+static Margin margin_of(const RtGeometry *g, uint32_t id, const RtRay *ray, const Probes *p) {
+    uint32_t index = rt_ref_index(g->objects[id]);
+    switch (rt_ref_shape(g->objects[id])) {
+    case RT_SHAPE_TRIANGLE: return triangle_margin(&g->triangles[index], ray, p);
+    case RT_SHAPE_SPHERE: return sphere_margin(&g->spheres[index], ray, p);
+    default: return probed_margin(g, id, p);
+    }
 }
 
 static bool in_margin(const Margin *m, double t, double tolerance) {
@@ -116,8 +201,8 @@ static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer) {
     bool named = answer.object == RT_NO_OBJECT;
     for (uint32_t id = 0; id < g->object_count; id++) {
         if (!in_reach(g, id, &probes)) continue;
-        Margin m = margin_of(g, id, &probes);
-        if (m.certain) nearest_certain = fmin(nearest_certain, fmax(m.hi[0], m.hi[1]));
+        Margin m = margin_of(g, id, ray, &probes);
+        if (m.certain) nearest_certain = fmin(nearest_certain, m.latest);
         if (id == answer.object) named = in_margin(&m, (double)answer.t, probes.tolerance);
     }
     if (answer.object == RT_NO_OBJECT) return nearest_certain == HUGE_VAL;
@@ -152,7 +237,7 @@ RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool
     bool possible = false, certain = false;
     for (uint32_t id = 0; id < geometry->object_count; id++) {
         if (!in_reach(geometry, id, &probes)) continue;
-        Margin m = margin_of(geometry, id, &probes);
+        Margin m = margin_of(geometry, id, ray, &probes);
         possible |= m.possible;
         certain |= m.certain;
     }

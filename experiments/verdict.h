@@ -2,18 +2,24 @@
  * the answer of our hit functions.
  *
  * Both compute in rounded arithmetic, so where a ray grazes an object, or begins or ends on one, both answers
- * can be right. The margin of an object is found by trying: the ray is moved by the float32 error bound
+ * can be right. Each object has a margin: where float32 arithmetic may find it hit, the places of its corners
+ * and of the ray being wrong by
  *
- *     shift = 2^-21 * the largest coordinate of the scene's box or of the ray's origin     (8 half-ulps)
+ *     error = 2^-20 * the largest coordinate of the scene's box or of the ray's origin     (16 half-ulps)
  *
- * along the 26 directions of a cube's faces, edges and corners, and its interval is once widened and once
- * narrowed by the tolerance. An object that all these rays hit is certain, one that some hit is possible, one
- * that none hits is impossible. An answer that names a possible or certain object, at a t between those found
- * for its front or between those for its back, with no certain object clearly before it, is marginal; so is a
- * miss where nothing is certain.
+ * For triangles and spheres, which such an accelerator tests by arithmetic of its own, the margin is computed
+ * in double: edge functions within their error of 0, and t with an error that grows as the plane is seen edge
+ * on; distance of the line from the centre within the error of the radius, and every t on the chord between
+ * the smaller and the larger sphere. Other shapes are tested by our hit functions, and their margin is found
+ * by trying: the ray is moved by half the error along the 26 directions of a cube's faces, edges and corners,
+ * and its interval is once widened and once narrowed by the tolerance; t lies between those found for the
+ * front or between those for the back.
  *
- * This trusts our hit functions to be within the bound of the truth; a referee in exact arithmetic, which
- * trusts nobody, is to take its place. */
+ * An object that is hit all over its margin is certain, one that is hit somewhere is possible. An answer that
+ * names a possible or certain object, at a t that is possible for it, with no certain object clearly before
+ * it, is marginal; so is a miss where nothing is certain.
+ *
+ * This trusts a bound on errors; a referee in exact arithmetic, which trusts nobody, is to take its place. */
 #ifndef RT_EXPERIMENTS_VERDICT_H
 #define RT_EXPERIMENTS_VERDICT_H
 

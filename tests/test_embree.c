@@ -80,14 +80,15 @@ static void make_triangles(RtScene *scene, uint32_t count) {
     assert_ok(rt_scene_finish(scene, error));
 }
 
-/* Of four directions one is parallel to an axis and one lies in a coordinate plane. */
+/* Of four directions one is parallel to an axis and one to a coordinate plane, or nearly. */
 static RtVec3 direction(RtRandom *random) {
     RtVec3 d = rt_narrow(rt_random_direction(random));
     uint32_t bits = rt_random_bits(random);
     uint32_t axis = bits % 3, style = bits / 3 % 4;
     for (uint32_t a = 0; a < 3; a++) {
-        if (style == 0 && a != axis) d.at[a] = bits & 1 ? 0.0f : -0.0f;
-        if (style == 1 && a == axis) d.at[a] = bits & 1 ? 0.0f : -0.0f;
+        static const float small[] = {0.0f, -0.0f, 1e-19f, -1e-19f};
+        if (style == 0 && a != axis) d.at[a] = small[bits >> 8 & 3];
+        if (style == 1 && a == axis) d.at[a] = small[bits >> 8 & 3];
     }
     if (d.x == 0 && d.y == 0 && d.z == 0) d.at[axis] = 1;
     return d;
@@ -257,11 +258,36 @@ static void user_mode_is_brute_in_scenes_of_every_size_and_from_far_away(void **
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         RtScene scene;
         make_soup(&scene, 40, 1, sizes[i]);
-        Rays rays = make_rays(&scene, 4000, sizes[i], 1000);
+        Rays rays = make_rays(&scene, 4000, sizes[i], i % 2 ? 3 : 1e5f);
         compare_with_brute(&scene, rays, specs, 2);
         rt_free(rays.rays);
         rt_scene_clear(&scene);
     }
+}
+
+/* Every hit is asked for again with nothing but its t left of the interval, and from where it is. */
+static void user_mode_finds_hits_at_the_very_ends_of_the_interval(void **state) {
+    (void)state;
+    static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=8,robust=on",
+                                        "embree:mode=user,query=16", "embree:mode=user,query=stream"};
+    RtScene scene;
+    make_soup(&scene, 60, 2, 10);
+    Rays rays = make_rays(&scene, 10000, 10, 3);
+    Answers hit = ask(&scene, "brute", rays, false);
+    for (size_t i = 0; i < rays.count; i++) {
+        RtRay *ray = &rays.rays[i];
+        if (hit.hits[i].object == RT_NO_OBJECT) continue;
+        if (i % 2) {
+            ray->tmin = ray->tmax = hit.hits[i].t;
+        } else {
+            ray->org = rt_narrow(rt_ray_point(ray, hit.hits[i].t));
+            ray->tmin = ray->tmax = 0;
+        }
+    }
+    compare_with_brute(&scene, rays, specs, sizeof specs / sizeof specs[0]);
+    forget(&hit);
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
 }
 
 static void user_mode_counts_tests_where_it_is_asked_to(void **state) {
@@ -340,6 +366,29 @@ static void native_mode_sees_every_shape(void **state) {
     rt_scene_clear(&scene);
 }
 
+/* Embree asserts what it assumes, and ends the process where that does not hold. */
+static void native_mode_takes_every_valid_ray(void **state) {
+    (void)state;
+    static const char *const specs[] = {"embree",
+                                        "embree:query=8",
+                                        "embree:query=16",
+                                        "embree:query=stream",
+                                        "embree:query=8,robust=on",
+                                        "embree:query=stream,isa=avx"};
+    RtScene scene;
+    make_soup(&scene, 60, 2, 10);
+    Rays rays = make_rays(&scene, 50000, 10, 3);
+    for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
+        Answers got = ask(&scene, specs[s], rays, false);
+        for (size_t i = 0; i < rays.count; i++) {
+            assert_true(got.hits[i].object == RT_NO_OBJECT ? isinf(got.hits[i].t) : isfinite(got.hits[i].t));
+        }
+        forget(&got);
+    }
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
+}
+
 static void an_empty_scene_is_hit_by_nothing(void **state) {
     (void)state;
     static const char *const specs[] = {"embree", "embree:query=16", "embree:query=stream",
@@ -392,9 +441,11 @@ int main(void) {
         cmocka_unit_test(user_mode_is_brute_bit_for_bit_by_every_query),
         cmocka_unit_test(user_mode_is_brute_by_every_isa_and_quality),
         cmocka_unit_test(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away),
+        cmocka_unit_test(user_mode_finds_hits_at_the_very_ends_of_the_interval),
         cmocka_unit_test(user_mode_counts_tests_where_it_is_asked_to),
         cmocka_unit_test(native_mode_agrees_with_brute_on_triangles),
         cmocka_unit_test(native_mode_sees_every_shape),
+        cmocka_unit_test(native_mode_takes_every_valid_ray),
         cmocka_unit_test(an_empty_scene_is_hit_by_nothing),
         cmocka_unit_test(building_ten_times_leaks_nothing),
         cmocka_unit_test(info_names_a_version_and_an_isa),

@@ -50,6 +50,10 @@ static inline void denormals_restore(unsigned before) {
 
 /* ---- rays in ---- */
 
+/* Components of dir below this Embree takes for +LEAST_DIR, and forgets to turn the sign of negative ones:
+ * a stream may then lose hits. So they, and -0, go in as 0. */
+#define LEAST_DIR 1e-18f
+
 static double unusual_stretch(double most) {
     double stretch = 1;
     while (most * stretch < 0x1p-16) stretch *= 0x1p16;
@@ -72,7 +76,8 @@ RT_KERNEL void put_ray(Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
     RtEmbreeWord *word = word_of(batch, lanes, i);
     for (unsigned a = 0; a < 3; a++) {
         word[(RT_EMBREE_ORG + a) * lanes].f = ray->org.at[a];
-        word[(RT_EMBREE_DIR + a) * lanes].f = (float)((double)ray->dir.at[a] * stretch);
+        float dir = (float)((double)ray->dir.at[a] * stretch);
+        word[(RT_EMBREE_DIR + a) * lanes].f = fabsf(dir) < LEAST_DIR ? 0 : dir;
     }
     word[RT_EMBREE_TNEAR * lanes].f = rt_minf(tnear, FLT_MAX) + 0.0f; /* -0 becomes 0 */
     word[RT_EMBREE_TFAR * lanes].f = tfar;
