@@ -41,6 +41,11 @@ enum {
     RT_EMBREE_INSTANCE
 };
 
+/* A field of one lane. */
+static inline RtEmbreeWord *rt_embree_word(RtEmbreeWord *packet, size_t lanes, size_t field, size_t lane) {
+    return &packet[field * lanes + lane];
+}
+
 /* Words from one packet of rays and hits to the next. */
 static inline size_t rt_embree_packet_words(unsigned lanes) {
     size_t bytes = lanes == 1   ? sizeof(struct RTCRayHit)

@@ -26,8 +26,8 @@ RT_KERNEL void search_lanes(const RtEmbreeSlot *slot, const void *context, uint3
     uint32_t id = slot->ids[primitive];
     for (unsigned i = 0; i < lanes; i++) {
         if (!valid[i]) continue;
-        RtEmbreeSearch *search = &trace->searches[rays[RT_EMBREE_ID * lanes + i].u];
-        float *tfar = &rays[RT_EMBREE_TFAR * lanes + i].f;
+        RtEmbreeSearch *search = &trace->searches[rt_embree_word(rays, lanes, RT_EMBREE_ID, i)->u];
+        float *tfar = &rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f;
         bool over =
             rt_test_object(geometry, id, &search->ray, any, &search->best, counted ? search->tally : NULL);
         if (over) {
@@ -68,12 +68,13 @@ void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *argumen
 
 /* ---- native mode: Embree's rays, for the shapes it has no geometry of its own for ---- */
 
-static bool lane_hit(const RtGeometry *geometry, uint32_t id, const RtEmbreeWord *rays, unsigned lanes,
-                     unsigned i, float *t) {
-    RtRay ray = {.tmin = rays[RT_EMBREE_TNEAR * lanes + i].f, .tmax = rays[RT_EMBREE_TFAR * lanes + i].f};
+static bool lane_hit(const RtGeometry *geometry, uint32_t id, RtEmbreeWord *rays, unsigned lanes, unsigned i,
+                     float *t) {
+    RtRay ray = {.tmin = rt_embree_word(rays, lanes, RT_EMBREE_TNEAR, i)->f,
+                 .tmax = rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f};
     for (unsigned a = 0; a < 3; a++) {
-        ray.org.at[a] = rays[(RT_EMBREE_ORG + a) * lanes + i].f;
-        ray.dir.at[a] = rays[(RT_EMBREE_DIR + a) * lanes + i].f;
+        ray.org.at[a] = rt_embree_word(rays, lanes, RT_EMBREE_ORG + a, i)->f;
+        ray.dir.at[a] = rt_embree_word(rays, lanes, RT_EMBREE_DIR + a, i)->f;
     }
     RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
     return rt_object_hit(geometry, id, &prepared, t);
@@ -88,11 +89,12 @@ void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arg
         float t;
         if (!arguments->valid[i]) continue;
         if (!lane_hit(geometry, slot->ids[arguments->primID], rays, lanes, i, &t)) continue;
-        rays[RT_EMBREE_TFAR * lanes + i].f = t;
-        for (unsigned field = RT_EMBREE_NG; field <= RT_EMBREE_V; field++) rays[field * lanes + i].f = 0;
-        rays[RT_EMBREE_PRIMITIVE * lanes + i].u = arguments->primID;
-        rays[RT_EMBREE_GEOMETRY * lanes + i].u = arguments->geomID;
-        rays[RT_EMBREE_INSTANCE * lanes + i].u = arguments->context->instID[0];
+        rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f = t;
+        for (unsigned field = RT_EMBREE_NG; field <= RT_EMBREE_V; field++)
+            rt_embree_word(rays, lanes, field, i)->f = 0;
+        rt_embree_word(rays, lanes, RT_EMBREE_PRIMITIVE, i)->u = arguments->primID;
+        rt_embree_word(rays, lanes, RT_EMBREE_GEOMETRY, i)->u = arguments->geomID;
+        rt_embree_word(rays, lanes, RT_EMBREE_INSTANCE, i)->u = arguments->context->instID[0];
     }
 }
 
@@ -105,6 +107,6 @@ void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *argum
         float t;
         if (!arguments->valid[i]) continue;
         if (!lane_hit(geometry, slot->ids[arguments->primID], rays, lanes, i, &t)) continue;
-        rays[RT_EMBREE_TFAR * lanes + i].f = -INFINITY;
+        rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f = -INFINITY;
     }
 }

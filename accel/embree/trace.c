@@ -67,26 +67,26 @@ RT_KERNEL double stretch_of(RtVec3 dir) {
     return most >= 0x1p-16f && most <= 0x1p16f ? 1 : unusual_stretch((double)most);
 }
 
-RT_KERNEL RtEmbreeWord *word_of(Batch *batch, unsigned lanes, size_t i) {
-    return (RtEmbreeWord *)batch->packets + i / lanes * rt_embree_packet_words(lanes) + i % lanes;
+RT_KERNEL RtEmbreeWord *word_of(Batch *batch, unsigned lanes, size_t i, size_t field) {
+    RtEmbreeWord *packet = (RtEmbreeWord *)batch->packets + i / lanes * rt_embree_packet_words(lanes);
+    return rt_embree_word(packet, lanes, field, i % lanes);
 }
 
 RT_KERNEL void put_ray(Batch *batch, unsigned lanes, size_t i, const RtRay *ray, double stretch, float tnear,
                        float tfar) {
-    RtEmbreeWord *word = word_of(batch, lanes, i);
     for (unsigned a = 0; a < 3; a++) {
-        word[(RT_EMBREE_ORG + a) * lanes].f = ray->org.at[a];
+        word_of(batch, lanes, i, RT_EMBREE_ORG + a)->f = ray->org.at[a];
         float dir = (float)((double)ray->dir.at[a] * stretch);
-        word[(RT_EMBREE_DIR + a) * lanes].f = fabsf(dir) < LEAST_DIR ? 0 : dir;
+        word_of(batch, lanes, i, RT_EMBREE_DIR + a)->f = fabsf(dir) < LEAST_DIR ? 0 : dir;
     }
-    word[RT_EMBREE_TNEAR * lanes].f = rt_minf(tnear, FLT_MAX) + 0.0f; /* -0 becomes 0 */
-    word[RT_EMBREE_TFAR * lanes].f = tfar;
-    word[RT_EMBREE_TIME * lanes].f = 0;
-    word[RT_EMBREE_MASK * lanes].u = UINT32_MAX;
-    word[RT_EMBREE_ID * lanes].u = (uint32_t)i;
-    word[RT_EMBREE_FLAGS * lanes].u = 0;
-    word[RT_EMBREE_GEOMETRY * lanes].u = RTC_INVALID_GEOMETRY_ID;
-    word[RT_EMBREE_INSTANCE * lanes].u = RTC_INVALID_GEOMETRY_ID;
+    word_of(batch, lanes, i, RT_EMBREE_TNEAR)->f = rt_minf(tnear, FLT_MAX) + 0.0f; /* -0 becomes 0 */
+    word_of(batch, lanes, i, RT_EMBREE_TFAR)->f = tfar;
+    word_of(batch, lanes, i, RT_EMBREE_TIME)->f = 0;
+    word_of(batch, lanes, i, RT_EMBREE_MASK)->u = UINT32_MAX;
+    word_of(batch, lanes, i, RT_EMBREE_ID)->u = (uint32_t)i;
+    word_of(batch, lanes, i, RT_EMBREE_FLAGS)->u = 0;
+    word_of(batch, lanes, i, RT_EMBREE_GEOMETRY)->u = RTC_INVALID_GEOMETRY_ID;
+    word_of(batch, lanes, i, RT_EMBREE_INSTANCE)->u = RTC_INVALID_GEOMETRY_ID;
     batch->valid[i] = -1;
 }
 
@@ -125,7 +125,7 @@ RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, si
         test_all(geometry, search, any);
     }
     batch->valid[i] = 0;
-    word_of(batch, lanes, i)[RT_EMBREE_TFAR * lanes].f = -INFINITY;
+    word_of(batch, lanes, i, RT_EMBREE_TFAR)->f = -INFINITY;
 }
 
 /* ---- through Embree ---- */
@@ -156,11 +156,10 @@ RT_KERNEL void trace_chunk(const RtEmbree *self, Batch *batch, RtEmbreeContext *
 /* ---- hits out ---- */
 
 RT_KERNEL RtHit native_hit(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray) {
-    const RtEmbreeWord *word = word_of(batch, lanes, i);
-    uint32_t slot = word[RT_EMBREE_GEOMETRY * lanes].u;
+    uint32_t slot = word_of(batch, lanes, i, RT_EMBREE_GEOMETRY)->u;
     if (slot == RTC_INVALID_GEOMETRY_ID) return RT_MISS;
-    double t = (double)word[RT_EMBREE_TFAR * lanes].f * stretch_of(ray->dir);
-    return (RtHit){(float)t, self->slots[slot].ids[word[RT_EMBREE_PRIMITIVE * lanes].u]};
+    double t = (double)word_of(batch, lanes, i, RT_EMBREE_TFAR)->f * stretch_of(ray->dir);
+    return (RtHit){(float)t, self->slots[slot].ids[word_of(batch, lanes, i, RT_EMBREE_PRIMITIVE)->u]};
 }
 
 /* ---- the kernels ---- */
@@ -197,8 +196,8 @@ RT_KERNEL void answer(const RtEmbree *self, Batch *batch, const RtRay *rays, siz
                 if (!user) hit = native_hit(self, batch, lanes, i, &ray[i]);
                 hits[begin + i] = hit;
             } else {
-                blocked[begin + i] = user ? hit.object != RT_NO_OBJECT
-                                          : word_of(batch, lanes, i)[RT_EMBREE_TFAR * lanes].f < 0;
+                blocked[begin + i] =
+                    user ? hit.object != RT_NO_OBJECT : word_of(batch, lanes, i, RT_EMBREE_TFAR)->f < 0;
             }
             if (tallies) {
                 bool found = any ? blocked[begin + i] : hit.object != RT_NO_OBJECT;
