@@ -112,8 +112,8 @@ void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *argum
 void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches);
 
 /* The kernels of the table of operations, and their scratch memory. */
-RtNearestKernel rt_embree_nearest;
-RtOccludedKernel rt_embree_occluded_any;
+RtNearestKernel rt_embree_nearest_timed;
+RtOccludedKernel rt_embree_occluded_timed;
 RtNearestCounted rt_embree_nearest_counted;
 RtOccludedCounted rt_embree_occluded_counted;
 size_t rt_embree_scratch_bytes(const RtAccel *accel);

@@ -97,7 +97,8 @@ RT_KERNEL void put_native(Batch *batch, unsigned lanes, size_t i, const RtRay *r
 }
 
 /* Out of the way of the common case, once with and once without a tally. */
-static __attribute__((noinline)) void test_all(const RtGeometry *geometry, RtEmbreeSearch *search, bool any) {
+static __attribute__((noinline)) void test_all_timed(const RtGeometry *geometry, RtEmbreeSearch *search,
+                                                     bool any) {
     rt_test_all(geometry, &search->ray, any, &search->best, NULL);
 }
 
@@ -122,7 +123,7 @@ RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, si
     if (tally) {
         test_all_counted(geometry, search, any);
     } else {
-        test_all(geometry, search, any);
+        test_all_timed(geometry, search, any);
     }
     batch->valid[i] = 0;
     word_of(batch, lanes, i, RT_EMBREE_TFAR)->f = -INFINITY;
@@ -228,7 +229,8 @@ RT_KERNEL void answer_all(const RtAccel *accel, void *scratch, const RtRay *rays
     }
 }
 
-void rt_embree_nearest(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits) {
+void rt_embree_nearest_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                             RtHit *hits) {
     answer_all(accel, scratch, rays, count, hits, NULL, NULL);
 }
 
@@ -237,8 +239,8 @@ void rt_embree_nearest_counted(const RtAccel *accel, void *scratch, const RtRay 
     answer_all(accel, scratch, rays, count, hits, NULL, tallies);
 }
 
-void rt_embree_occluded_any(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                            bool *blocked) {
+void rt_embree_occluded_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                              bool *blocked) {
     answer_all(accel, scratch, rays, count, NULL, blocked, NULL);
 }
 
