@@ -97,6 +97,27 @@ static const Row rows[] = {
      BETWEEN,
      false,
      {.rays = 1, .object_tests = 6, .extent_tests = 1, .steps = 8, .empty_steps = 2}},
+
+    /* extents: a step and an extent test per object, until the search is over; sphere 1 begins beyond the hit
+     * on sphere 0. BETWEEN is inside the boxes, but 0.64 from the centres of the spheres; of slabs, the three
+     * of the axes are the box again, and the diagonals of a cube's faces turn the ray away. */
+    {"extents:kind=box",
+     THROUGH,
+     false,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 2, .steps = 2}},
+    {"extents:kind=box",
+     THROUGH,
+     true,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
+    {"extents:kind=box", BETWEEN, false, {.rays = 1, .object_tests = 2, .extent_tests = 2, .steps = 2}},
+    {"extents:kind=obb", BETWEEN, false, {.rays = 1, .object_tests = 2, .extent_tests = 2, .steps = 2}},
+    {"extents:kind=sphere", BETWEEN, false, {.rays = 1, .extent_tests = 2, .steps = 2}},
+    {"extents:kind=slabs,slabs=3",
+     BETWEEN,
+     true,
+     {.rays = 1, .object_tests = 2, .extent_tests = 2, .steps = 2}},
+    {"extents:kind=slabs,slabs=13", BETWEEN, true, {.rays = 1, .extent_tests = 2, .steps = 2}},
+    {"extents:kind=box", BESIDE, false, {.rays = 1, .extent_tests = 2, .steps = 2}},
 };
 
 static void make_scene(RtScene *scene) {
