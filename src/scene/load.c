@@ -4,6 +4,7 @@
 #include "base/param.h"
 #include "scene/mesh.h"
 #include "scene/nff.h"
+#include "scene/yaml.h"
 #include "scenes/builtin.h"
 
 #include <dirent.h>
@@ -20,6 +21,8 @@ static const struct {
     Load load;
     RtStatus (*save)(const RtScene *scene, FILE *file, RtError *error);
 } formats[] = {
+    {"yaml", rt_yaml_load, rt_yaml_save},
+    {"yml", rt_yaml_load, rt_yaml_save},
     {"nff", rt_nff_load, rt_nff_save},
 };
 

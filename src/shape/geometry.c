@@ -105,6 +105,12 @@ static RtStatus reserve_triangle_normals(RtGeometry *g, uint64_t needed, RtError
     return RT_OK;
 }
 
+/* A normal of unit length already stays as it is, bit for bit, so that scenes survive saving and loading. */
+static RtVec3 unit_normal(RtVec3 normal) {
+    RtVec3d n = rt_widen(normal);
+    return fabs(rt_dotd(n, n) - 1) <= 0x1p-22 ? normal : rt_narrow(rt_normalized(n));
+}
+
 RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3], const RtVec3 *normals,
                                   RtError *error) {
     for (int i = 0; i < 3; i++) RT_TRY(check_point(vertices[i], error));
@@ -116,7 +122,7 @@ RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3]
             return rt_fail(error, RT_BAD_INPUT, "vertex normal %d is zero or not finite: (%g, %g, %g)", i,
                            (double)normals[i].x, (double)normals[i].y, (double)normals[i].z);
         }
-        unit.n[i] = rt_narrow(rt_normalized(rt_widen(normals[i])));
+        unit.n[i] = unit_normal(normals[i]);
     }
     if (normals || geometry->triangle_normals) {
         RT_TRY(reserve_triangle_normals(geometry, (uint64_t)index + 1, error));

@@ -1,0 +1,19 @@
+/* raytally's own scene format, described with examples in docs/scenes.md. */
+#ifndef RT_SCENE_YAML_H
+#define RT_SCENE_YAML_H
+
+#include "scene/scene.h"
+
+#include <stdio.h>
+
+/* Adds what the file at `path` describes to `scene`, initialised by rt_scene_init; the caller then finishes
+ * it, or clears it after a failure. Meshes are looked for beside the file. The scene's name is not touched.
+ */
+RtStatus rt_yaml_load(const char *path, RtScene *scene, RtError *error);
+
+/* Writes a finished scene, one object a line; read again it has the same fingerprint. Meshes and built-ins
+ * are written out as the objects they are. Materials keep their names if these are all there and all
+ * different, and are called m0, m1 ... otherwise. */
+RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error);
+
+#endif
