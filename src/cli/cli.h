@@ -23,6 +23,7 @@ int rt_command_info(int argc, char **argv);
 int rt_command_render(int argc, char **argv);
 int rt_command_verify(int argc, char **argv);
 int rt_command_bench(int argc, char **argv);
+int rt_command_convert(int argc, char **argv);
 
 /* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
 int rt_cli_fail(const RtError *error);

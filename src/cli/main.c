@@ -19,6 +19,7 @@ static const RtCommand commands[] = {
      rt_command_render},
     {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
     {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench},
+    {"convert", "IN OUT", "write a scene in another format", rt_command_convert},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
