@@ -6,10 +6,12 @@
 #include "scene/yaml.h"
 #include "scenes/builtin.h"
 
+#include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #define FOLDER RT_BINARY_DIR "/test_yaml.d"
@@ -447,6 +449,52 @@ static void every_example_of_the_documentation_loads(void **state) {
     assert_true(count >= 5);
 }
 
+static void every_scene_that_comes_along_loads(void **state) {
+    (void)state;
+    glob_t found;
+    assert_int_equal(glob("scenes/*.yaml", 0, NULL, &found), 0);
+    for (size_t i = 0; i < found.gl_pathc; i++) {
+        RtScene scene;
+        assert_ok(load(found.gl_pathv[i], &scene, error));
+        rt_scene_clear(&scene);
+    }
+    assert_true(found.gl_pathc >= 3);
+    globfree(&found);
+}
+
+/* ---- raytally convert ---- */
+
+static int convert(const char *arguments) {
+    char command[1024];
+    snprintf(command, sizeof command, "%s convert %s 2>/dev/null", RT_PROGRAM, arguments);
+    int result = system(command);
+    return WIFEXITED(result) ? WEXITSTATUS(result) : -1;
+}
+
+static void convert_keeps_the_scene_and_the_files_that_are_there(void **state) {
+    (void)state;
+    remove(FOLDER "/balls.yaml");
+    assert_int_equal(convert("balls:size=1 " FOLDER "/balls.yaml"), 0);
+    RtScene made, read;
+    assert_ok(rt_builtin_open("balls:size=1", &made, error));
+    assert_ok(load(FOLDER "/balls.yaml", &read, error));
+    assert_true(rt_scene_fingerprint(&made) == rt_scene_fingerprint(&read));
+    rt_scene_clear(&made);
+    rt_scene_clear(&read);
+    assert_int_equal(convert("balls:size=2 " FOLDER "/balls.yaml"), 2);
+    assert_int_equal(convert("balls:size=2 " FOLDER "/balls.yaml --force"), 0);
+}
+
+static void convert_refuses_and_leaves_nothing_behind(void **state) {
+    (void)state;
+    remove(FOLDER "/out.ply");
+    assert_int_equal(convert("balls:size=1"), 2);
+    assert_int_equal(convert("nothing " FOLDER "/out.yaml"), 2);
+    assert_int_equal(convert("balls:size=1 " FOLDER "/out.ply"), 2); /* spheres are no triangles */
+    assert_int_equal(access(FOLDER "/out.ply", F_OK), -1);
+    assert_int_equal(access(FOLDER "/out.ply.tmp", F_OK), -1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_scene_is_what_its_file_says),
@@ -464,6 +512,9 @@ int main(void) {
         cmocka_unit_test(names_that_cannot_be_written_are_replaced_by_numbers),
         cmocka_unit_test(a_full_disk_is_reported),
         cmocka_unit_test(every_example_of_the_documentation_loads),
+        cmocka_unit_test(every_scene_that_comes_along_loads),
+        cmocka_unit_test(convert_keeps_the_scene_and_the_files_that_are_there),
+        cmocka_unit_test(convert_refuses_and_leaves_nothing_behind),
     };
     return cmocka_run_group_tests(tests, make_folder, NULL);
 }
