@@ -74,10 +74,11 @@ static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out
     };
     if (self->kind != RT_EXTENT_BOX) {
         uint32_t count = scene->geometry.object_count;
-        void *block = rt_alloc(count, bytes_each(self));
+        size_t each = bytes_each(self);
+        void *block = rt_alloc(count, each);
         if (!block) {
             destroy(&self->base);
-            return rt_fail_memory(error, "the extents of the objects", count * bytes_each(self));
+            return rt_fail_memory(error, "the extents of the objects", count * each);
         }
         if (self->kind == RT_EXTENT_SPHERE) self->balls = block;
         if (self->kind == RT_EXTENT_OBB) self->boxes = block;
