@@ -1,0 +1,163 @@
+#!/usr/bin/env bash
+# The command line on bad input: exit code 2, nothing on stdout, a message that says where, what is wrong and what
+# would be right, and no file left behind. Uses $RT_PROGRAM.
+set -uo pipefail
+program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+complain() {
+    printf '%s\n' "$*" >&2
+    failures=$((failures + 1))
+}
+
+# refuses PATTERN ARGUMENT...: what the message must say is an extended regular expression
+refuses() {
+    local pattern=$1 code=0 before after message
+    shift
+    before=$(find . | sort)
+    timeout 60 "$program" "$@" >stdout 2>stderr </dev/null || code=$?
+    message=$(tr '\n' ' ' <stderr)
+    [ -s stdout ] && complain "raytally $*: writes to stdout"
+    rm stdout stderr
+    after=$(find . | sort)
+    [ "$code" = 2 ] || complain "raytally $*: exit code $code, not 2: $message"
+    [[ $message =~ $pattern ]] || complain "raytally $*: the message does not say '$pattern': $message"
+    [ "$before" = "$after" ] || complain "raytally $*: leaves files: $(comm -13 <(echo "$before") <(echo "$after") | xargs)"
+    rm -f ./*.tmp
+}
+
+# does ARGUMENT...: exit code 0
+does() {
+    local code=0
+    timeout 60 "$program" "$@" >stdout 2>stderr </dev/null || code=$?
+    [ "$code" = 0 ] || complain "raytally $*: exit code $code: $(cat stderr)"
+    rm stdout stderr
+}
+
+# nff NAME LINE...: a scene of a camera, a material and those lines, the first being line 9
+nff() {
+    local name=$1
+    shift
+    printf '%s\n' v 'from 0 0 9' 'at 0 0 0' 'up 0 1 0' 'angle 45' 'hither 0' 'resolution 8 8' 'f 1 1 1 .8 0 0 0 1' \
+        "$@" >"$name.nff"
+}
+
+yaml() {
+    local name=$1
+    shift
+    printf '%s\n' "$@" >"$name.yaml"
+}
+
+# ---- commands and options ----
+
+does --help
+does --version
+does accels --json
+refuses 'Usage: raytally COMMAND'
+refuses "no command 'rendr': did you mean 'render'.*--help" rendr
+refuses "unrecognized option '--bogus'.*--help" accels --bogus
+refuses "no accelerator 'grd': did you mean 'grid'.*raytally accels" accels grd
+for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+    does "$command" --help
+    refuses "unrecognized option '--bogus'.*$command --help" "$command" --bogus
+done
+for command in render; do
+    refuses "raytally $command: .*raytally $command" $command
+done
+
+# ---- scenes: which files and which built-ins ----
+
+refuses 'nope\.nff: there is no such file' render nope.nff -o x.png
+refuses 'nope\.yaml: there is no such file' render nope.yaml -o x.png
+refuses 'nope\.obj: there is no such file' render nope.obj -o x.png
+refuses "'?bals'?.*did you mean '?balls" render bals -o x.png
+refuses 'scene\.txt.*\.yaml.*\.nff' render scene.txt -o x.png
+refuses 'size=1000000000.*1\.\.7' render balls:size=1000000000 -o x.png
+refuses "siz.*size" render balls:siz=2 -o x.png
+refuses 'a whole number' render balls:size=two -o x.png
+refuses '1\.\.' render random:n=0 -o x.png
+
+# ---- scenes: what is in them ----
+
+nff empty
+refuses 'empty\.nff: .*empty.*at least one object' render empty.nff -o x.png
+nff nan 's 0 0 0 1' 's nan 0 0 1'
+refuses 'nan\.nff:10: .*(finite|number)' render nan.nff -o x.png
+nff infinite 's 1e39 0 0 1'
+refuses 'infinite\.nff:9: .*float' render infinite.nff -o x.png
+nff point 's 0 0 0 0'
+refuses 'point\.nff:9: .*radius' render point.nff -o x.png
+nff flat 's 0 0 0 1' 'p 3' '0 0 0' '1 1 1' '2 2 2'
+refuses 'flat\.nff:10: .*(area|line|degenerate)' render flat.nff -o x.png
+nff bent 'p 4' '0 0 0' '1 0 0' '1 1 5' '0 1 0'
+refuses 'bent\.nff:9: .*plan' render bent.nff -o x.png
+nff short 'p 3' '0 0 0' '1 0 0'
+refuses 'short\.nff:11: ' render short.nff -o x.png
+nff huge 'p 1000000000' '0 0 0' '1 0 0' '1 1 0'
+refuses 'huge\.nff:(9|12): ' render huge.nff -o x.png
+nff cone 'c' '0 0 0 0' '0 0 1 0'
+refuses 'cone\.nff:9: .*radi' render cone.nff -o x.png
+nff unknown 's 0 0 0 1' 'sphere 0 0 0 1'
+refuses "unknown\.nff:10: .*sphere" render unknown.nff -o x.png
+printf 's 0 0 0 1\n\0\377\n' >binary.nff
+refuses 'binary\.nff' render binary.nff -o x.png
+mkdir folder.nff
+refuses 'folder\.nff is a folder' render folder.nff -o x.png
+
+yaml key 'objects:' '  - sphere: {centre: [0, 0, 0], radius: 1}'
+refuses "key\.yaml:2:.*centre.*center" render key.yaml -o x.png
+yaml zero 'objects:' '  - sphere: {center: [0, 0, 0], radius: 0}'
+refuses "zero\.yaml:2:.*radius" render zero.yaml -o x.png
+yaml notnumber 'objects:' '  - sphere: {center: [0, 0, .nan], radius: 1}'
+refuses "notnumber\.yaml:2:.*" render notnumber.yaml -o x.png
+yaml line 'objects:' '  - polygon: {vertices: [[0, 0, 0], [1, 1, 1], [2, 2, 2]]}'
+refuses "line\.yaml:2:.*(area|line|degenerate)" render line.yaml -o x.png
+yaml none 'objects: []'
+refuses "none\.yaml:.*object" render none.yaml -o x.png
+yaml broken 'objects: [' '  - sphere'
+refuses "broken\.yaml:2:" render broken.yaml -o x.png
+yaml wide 'camera: {size: [1000000000, 1]}' 'objects:' '  - sphere: {center: [0, 0, 0], radius: 1}'
+refuses "wide\.yaml:1:.*1\.\.32768" render wide.yaml -o x.png
+yaml stuff 'objects:' '  - sphere: {center: [0, 0, 0], radius: 1, material: gold}'
+refuses "stuff\.yaml:2:.*gold" render stuff.yaml -o x.png
+: >nothing.yaml
+refuses "nothing\.yaml" render nothing.yaml -o x.png
+echo 'f 1 2 3' >bad.obj
+refuses 'bad\.obj' render bad.obj -o x.png
+
+# ---- accelerators ----
+
+refuses "'grd': did you mean 'grid'" render balls:size=1 --accel grd -o x.png
+refuses "densty.*density" render balls:size=1 --accel grid:densty=4 -o x.png
+refuses "density=1e9.*\.\." render balls:size=1 --accel grid:density=1e9 -o x.png
+refuses "density.*twice" render balls:size=1 --accel grid:density=2,density=3 -o x.png
+refuses "leaf=1000000000.*1\.\." render balls:size=1 --accel bvh:leaf=1000000000 -o x.png
+refuses "leaf=" render balls:size=1 --accel bvh:leaf= -o x.png
+refuses "NAME\[:KEY=VALUE" render balls:size=1 --accel '' -o x.png
+
+# ---- sizes, numbers, outputs ----
+
+refuses "1000000000x2.*1\.\.32768" render balls:size=1 --size 1000000000x2 -o x.png
+refuses "0x0.*1\.\.32768" render balls:size=1 --size 0x0 -o x.png
+refuses "1\.\.64" render balls:size=1 --depth 1000000000 -o x.png
+refuses "1\.\.64" render balls:size=1 --samples 0 -o x.png
+refuses "threads.*1\.\." render balls:size=1 --threads -1 -o x.png
+refuses "nothing to make" render balls:size=1
+refuses "\.png or \.exr" render balls:size=1 -o x.gif
+refuses "missing/x\.png.*No such file" render balls:size=1 --size 8x8 -o missing/x.png
+mkdir taken.png
+refuses "taken\.png" render balls:size=1 --size 8x8 -o taken.png
+refuses "teps.*steps" render balls:size=1 --size 8x8 --heatmap teps x.png
+refuses "missing/x\.json.*No such file" render balls:size=1 --size 8x8 --stats missing/x.json
+
+# ---- and what is right works: the same scenes without their mistake ----
+
+nff right 's 0 0 0 1' 'p 3' '0 0 0' '1 0 0' '1 1 0' 'c' '0 0 0 1' '0 0 1 1'
+does render right.nff -o x.png
+[ -s x.png ] || complain "raytally render right.nff -o x.png: makes no picture"
+yaml right 'objects:' '  - sphere: {center: [0, 0, 0], radius: 1}'
+does render right.yaml --size 8x8 -o y.png
+
+[ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }
