@@ -63,9 +63,14 @@ for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*
     does "$command" --help
     refuses "unrecognized option '--bogus'.*$command --help" "$command" --bogus
 done
-for command in render; do
+for command in render info convert; do
     refuses "raytally $command: .*raytally $command" $command
 done
+refuses 'one SCENE at a time' info balls balls
+refuses "rays: '1000000000000'.*1\.\." verify --rays 1000000000000
+refuses "rays: '0'.*1\.\." verify --rays 0
+refuses "no accelerator 'nope'" verify --accel nope
+refuses 'nope\.nff: there is no such file' verify nope.nff
 
 # ---- scenes: which files and which built-ins ----
 
@@ -124,8 +129,22 @@ yaml stuff 'objects:' '  - sphere: {center: [0, 0, 0], radius: 1, material: gold
 refuses "stuff\.yaml:2:.*gold" render stuff.yaml -o x.png
 : >nothing.yaml
 refuses "nothing\.yaml" render nothing.yaml -o x.png
-echo 'f 1 2 3' >bad.obj
-refuses 'bad\.obj' render bad.obj -o x.png
+
+printf '%s\n' 'f 1 2 3' >bad.obj
+refuses 'bad\.obj: ' render bad.obj -o x.png
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 9' >index.obj
+refuses 'index\.obj: .*index' render index.obj -o x.png
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v nan 1 0' 'f 1 2 3' >nan.obj
+refuses 'nan\.obj: .*not finite' render nan.obj -o x.png
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' >points.obj
+refuses 'points\.obj: .*no triangle' render points.obj -o x.png
+: >empty.ply
+refuses 'empty\.ply: .*empty' render empty.ply -o x.png
+
+nff whole 's 0 0 0 1'
+refuses "out\.xyz.*\.nff" convert whole.nff out.xyz
+refuses 'missing/out\.yaml' convert whole.nff missing/out.yaml
+refuses 'nope\.nff: there is no such file' convert nope.nff out.yaml
 
 # ---- accelerators ----
 

@@ -143,8 +143,8 @@ static RtStatus fail_unknown(const RtParam *table, size_t count, const char *key
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
     }
     const char *near = rt_nearest_name(key, names, count);
-    return rt_fail(error, RT_BAD_INPUT, "%s has no parameter '%s'%s%s%s; it has: %s", what, key,
-                   near ? ": did you mean '" : "", near ? near : "", near ? "'?" : "", list);
+    return rt_fail(error, RT_BAD_INPUT, "%s has no parameter '%s'%s%s%s it has: %s", what, key,
+                   near ? ": did you mean '" : "", near ? near : "", near ? "'?" : ";", list);
 }
 
 /* One "key=value" of the text. */
