@@ -17,6 +17,21 @@ static void rounding_outward_brackets_the_number(void **state) {
     assert_true(rt_float_below(0.5) == 0.5f && rt_float_above(0.5) == 0.5f);
 }
 
+static __attribute__((noinline)) void narrow_and_widen(const RtVec3d *from, RtVec3d *to) {
+    *to = rt_widen(rt_narrow(*from));
+}
+
+static void narrowing_rounds_also_where_widening_follows(void **state) {
+    (void)state;
+    const RtVec3d a = {1.0 / 3.0, 1.0 / 7.0, 1.0 / 11.0};
+    RtVec3d b;
+    narrow_and_widen(&a, &b);
+    for (int i = 0; i < 3; i++) {
+        volatile float rounded = (float)a.at[i];
+        assert_true(b.at[i] == (double)rounded);
+    }
+}
+
 static void tallies_add_counter_by_counter(void **state) {
     (void)state;
     RtTally sum = {.rays = 1, .passed_on = 2}, part = {.rays = 10, .steps = 5};
@@ -109,6 +124,7 @@ static void random_numbers_depend_on_seed_stream_and_place_alone(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rounding_outward_brackets_the_number),
+        cmocka_unit_test(narrowing_rounds_also_where_widening_follows),
         cmocka_unit_test(tallies_add_counter_by_counter),
         cmocka_unit_test(parameters_left_out_have_their_defaults),
         cmocka_unit_test(wrong_parameters_are_refused_with_what_would_be_right),
