@@ -1,0 +1,124 @@
+/* raytally verify, as a user runs it: the document it prints, the exit codes, what it refuses. */
+#include "testing.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#define OUT RT_BINARY_DIR "/test_cmd_verify"
+
+/* Runs `raytally verify ARGUMENTS`, output to OUT.out and messages to OUT.err; gives the exit code. */
+static int verify(const char *arguments) {
+    char command[2048];
+    snprintf(command, sizeof command, "'%s' verify %s > '%s.out' 2> '%s.err'", RT_PROGRAM, arguments, OUT,
+             OUT);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static const char *text_of(const char *path) {
+    static char text[65536];
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+static json_t *document(const char *arguments) {
+    assert_int_equal(verify(arguments), 0);
+    assert_string_equal(text_of(OUT ".err"), "");
+    json_t *json = json_load_file(OUT ".out", 0, NULL);
+    assert_non_null(json);
+    return json;
+}
+
+static json_int_t number(const json_t *row, const char *key) {
+    const json_t *value = json_object_get(row, key);
+    assert_true(json_is_integer(value));
+    return json_integer_value(value);
+}
+
+static void a_row_says_how_each_ray_was_answered(void **state) {
+    (void)state;
+    json_t *json =
+        document("balls:size=1 tetra:size=2 --accel bvh --accel grid:density=1 --rays 1001 --seed 9 --json");
+    assert_int_equal(number(json, "seed"), 9);
+    const json_t *rows = json_object_get(json, "rows");
+    assert_int_equal(json_array_size(rows), 4);
+    const char *const accels[2] = {"bvh", "grid:density=1"};
+    for (size_t i = 0; i < 4; i++) {
+        const json_t *row = json_array_get(rows, i);
+        assert_string_equal(json_string_value(json_object_get(row, "scene")),
+                            i < 2 ? "balls:size=1" : "tetra:size=2");
+        assert_string_equal(json_string_value(json_object_get(row, "accel")), accels[i % 2]);
+        assert_string_equal(json_string_value(json_object_get(row, "against")), "brute");
+        assert_int_equal(number(row, "rays"), 1001);
+        assert_int_equal(number(row, "equal"), 1001);
+        assert_int_equal(number(row, "tie") + number(row, "marginal") + number(row, "wrong"), 0);
+        assert_int_equal(number(row, "occluded_wrong"), 0);
+        assert_true(json_is_null(json_object_get(row, "first_wrong")));
+    }
+    json_decref(json);
+}
+
+static void the_spread_tries_each_value_of_each_parameter(void **state) {
+    (void)state;
+    json_t *json = document("balls:size=1 --accel bvh --spread --rays 10 --json");
+    const json_t *rows = json_object_get(json, "rows");
+    bool leaf = false;
+    for (size_t i = 0; i < json_array_size(rows); i++) {
+        const char *accel = json_string_value(json_object_get(json_array_get(rows, i), "accel"));
+        assert_true(strncmp(accel, "bvh", 3) == 0);
+        leaf |= strcmp(accel, "bvh:leaf=1") == 0;
+    }
+    assert_true(leaf && json_array_size(rows) > 5);
+    json_decref(json);
+}
+
+static void all_is_the_default_and_threads_change_nothing(void **state) {
+    (void)state;
+    static char one[65536];
+    assert_int_equal(verify("random:n=30,shape=mixed --rays 5000 --threads 1"), 0);
+    strcpy(one, text_of(OUT ".out"));
+    assert_non_null(strstr(one, " brute "));
+    assert_non_null(strstr(one, " grid "));
+    assert_int_equal(verify("random:n=30,shape=mixed --rays 5000 --threads 3 --accel all"), 0);
+    assert_string_equal(text_of(OUT ".out"), one);
+}
+
+static void what_cannot_be_verified_is_refused_before_anything_is_printed(void **state) {
+    (void)state;
+    const struct {
+        const char *arguments, *says;
+    } cases[] = {
+        {"nothing.yaml", "nothing.yaml"},
+        {"balls:size=99999", "size=99999"},
+        {"ball", "balls"},
+        {"balls --accel gird", "did you mean 'grid'"},
+        {"balls --accel bvh:leaf=0", "1..1024"},
+        {"--rays 0", "whole number 1.."},
+        {"--rays 1e6", "whole number"},
+        {"--threads -1", "whole number"},
+        {"--wrong", "unrecognized option"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        if (verify(cases[i].arguments) != 2) fail_msg("'%s' is not refused", cases[i].arguments);
+        if (!strstr(text_of(OUT ".err"), cases[i].says)) {
+            fail_msg("'%s' says: %s", cases[i].arguments, text_of(OUT ".err"));
+        }
+        assert_string_equal(text_of(OUT ".out"), "");
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_row_says_how_each_ray_was_answered),
+        cmocka_unit_test(the_spread_tries_each_value_of_each_parameter),
+        cmocka_unit_test(all_is_the_default_and_threads_change_nothing),
+        cmocka_unit_test(what_cannot_be_verified_is_refused_before_anything_is_printed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
