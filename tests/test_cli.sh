@@ -138,6 +138,10 @@ printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v nan 1 0' 'f 1 2 3' >nan.obj
 refuses 'nan\.obj: .*not finite' render nan.obj -o x.png
 printf '%s\n' 'v 0 0 0' 'v 1 0 0' >points.obj
 refuses 'points\.obj: .*no triangle' render points.obj -o x.png
+printf '%s\n' ply 'format ascii 1.0' 'element vertex 1000000000' 'property float x' end_header >huge.ply
+refuses 'huge\.ply:3: .*1000000000 elements' render huge.ply -o x.png
+printf '%s\n' OFF '1000000000 1 0' '0 0 0' >huge.off
+refuses 'huge\.off:2: .*1000000000 elements' render huge.off -o x.png
 : >empty.ply
 refuses 'empty\.ply: .*empty' render empty.ply -o x.png
 

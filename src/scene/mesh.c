@@ -2,11 +2,10 @@
  * are multiplied on the way down, in double, and every vertex is rounded to float32 once. */
 #include "scene/mesh.h"
 
-#include "base/file.h"
-
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef struct Reader {
@@ -105,6 +104,33 @@ static RtStatus add_node(const Reader *r, const struct aiNode *node, const RtTra
     return RT_OK;
 }
 
+/* Headers of PLY and OFF say how many elements follow, and Assimp makes room for them before it looks; so one
+ * that promises more elements than the file has bytes is refused. */
+static RtStatus check_header(FILE *file, const char *path, RtError *error) {
+    fseek(file, 0, SEEK_END);
+    long bytes = ftell(file);
+    rewind(file);
+    char line[256];
+    bool ply = false, end = false;
+    for (size_t number = 1; !end && fgets(line, sizeof line, file); number++) {
+        unsigned long long count = 0;
+        if (number == 1) {
+            ply = strncmp(line, "ply", 3) == 0;
+            end = !ply && strncmp(line, "OFF", 3) != 0;
+            continue;
+        }
+        sscanf(line, ply ? "element %*s %llu" : "%llu", &count);
+        if (bytes >= 0 && count > (unsigned long long)bytes) {
+            return rt_fail_at(error, path, number, 0,
+                              "%llu elements are promised, but the file has only %ld bytes: it is cut off or "
+                              "damaged",
+                              count, bytes);
+        }
+        end = !ply || strncmp(line, "end_header", 10) == 0;
+    }
+    return RT_OK;
+}
+
 bool rt_mesh_reads(const char *extension) {
     char dotted[16];
     if (strlen(extension) + 2 > sizeof dotted || !extension[0]) return false;
@@ -114,14 +140,16 @@ bool rt_mesh_reads(const char *extension) {
 
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
                         RtError *error) {
-    if (!rt_file_exists(path))
-        return rt_fail_at(error, path, 0, 0, "there is no such file, or no right to it");
+    FILE *opened = fopen(path, "rb");
+    if (!opened) return rt_fail_at(error, path, 0, 0, "there is no such file, or no right to it");
+    RtStatus status = check_header(opened, path, error);
+    fclose(opened);
+    if (status != RT_OK) return status;
     const struct aiScene *file = aiImportFile(path, aiProcess_Triangulate);
     if (!file) return rt_fail_at(error, path, 0, 0, "Assimp cannot read this file: %s", aiGetErrorString());
     RtTransform identity = rt_transform_identity();
     Reader reader = {path, file, scene, material, error};
     uint32_t before = scene->geometry.object_count;
-    RtStatus status = RT_OK;
     if (file->mRootNode) status = add_node(&reader, file->mRootNode, transform ? transform : &identity);
     if (status == RT_OK && scene->geometry.object_count == before) {
         status =
