@@ -48,35 +48,39 @@ void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddl
     }
 }
 
-bool rt_cell_has_tests(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind) {
+double rt_cell_per_ray(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind,
+                       uint64_t counter) {
     const RtCell *cell = rt_cell_at(results, trial, contender, kind);
-    const RtTally *tally = &cell->tally;
-    bool some = tally->object_tests || tally->extent_tests || tally->steps;
-    return cell->counted && (some || rt_build_at(results, trial, contender)->counts);
+    bool known = cell->counted && (counter || rt_build_at(results, trial, contender)->counts);
+    return known ? (double)counter / (double)cell->tally.rays : (double)NAN;
+}
+
+/* A mean of what is known, weighted. */
+typedef struct Mean {
+    double sum, weight;
+} Mean;
+
+static void add(Mean *mean, double value, double weight) {
+    if (isnan(value)) return;
+    mean->sum += weight * value;
+    mean->weight += weight;
 }
 
 RtTotal rt_results_total(const RtResults *results, uint32_t trial, uint32_t contender) {
-    RtTotal total = {0};
-    double counted = 0, timed = 0;
+    Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0};
+    uint64_t rays = 0;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        const RtCell *cell = rt_cell_at(results, trial, contender, (RtRayKind)k);
-        double weight = (double)results->trials[trial].rays[k], rays = (double)cell->tally.rays;
-        total.rays += cell->tally.rays;
-        if (rt_cell_has_tests(results, trial, contender, (RtRayKind)k)) {
-            counted += weight;
-            total.object_tests += weight * (double)cell->tally.object_tests / rays;
-            total.extent_tests += weight * (double)cell->tally.extent_tests / rays;
-            total.steps += weight * (double)cell->tally.steps / rays;
-        }
-        if (cell->timed) {
-            timed += weight;
-            total.seconds += weight * cell->seconds.median;
-        }
+        RtRayKind kind = (RtRayKind)k;
+        const RtCell *cell = rt_cell_at(results, trial, contender, kind);
+        const RtTally *tally = &cell->tally;
+        double weight = (double)results->trials[trial].rays[k];
+        rays += tally->rays;
+        add(&object_tests, rt_cell_per_ray(results, trial, contender, kind, tally->object_tests), weight);
+        add(&extent_tests, rt_cell_per_ray(results, trial, contender, kind, tally->extent_tests), weight);
+        add(&steps, rt_cell_per_ray(results, trial, contender, kind, tally->steps), weight);
+        if (cell->timed) add(&seconds, cell->seconds.median, weight);
     }
     /* 0 / 0 is NAN: not known. */
-    total.object_tests /= counted;
-    total.extent_tests /= counted;
-    total.steps /= counted;
-    total.seconds /= timed;
-    return total;
+    return (RtTotal){rays, object_tests.sum / object_tests.weight, extent_tests.sum / extent_tests.weight,
+                     steps.sum / steps.weight, seconds.sum / seconds.weight};
 }

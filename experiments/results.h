@@ -66,7 +66,9 @@ typedef struct RtTotal {
 
 RtTotal rt_results_total(const RtResults *results, uint32_t trial, uint32_t contender);
 
-/* Does the cell say something about tests? Not where the accelerator does not count. */
-bool rt_cell_has_tests(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind);
+/* How often a counter counted for a ray of the cell; NAN where that is not known: nothing was counted, or the
+ * counter stayed at 0 in an accelerator that does not count everything (Embree its own boxes). */
+double rt_cell_per_ray(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind,
+                       uint64_t counter);
 
 #endif

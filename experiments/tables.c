@@ -7,9 +7,8 @@
 /* ---- CSV ---- */
 
 /* Columns that say which cell it is; the same in both files. */
-static const char identity[] =
-    "scene,scene_spec,objects,scene_hash,width,height,corners,depth,kind,rays_hash,accel,"
-    "spec,every,rays";
+static const char identity[] = "scene,scene_spec,objects,scene_hash,width,height,corners,depth,kind,set_rays,"
+                               "set_hash,accel,spec,every,rays";
 
 /* A text field, quoted where commas or quotes ask for it. */
 static void put_text(FILE *out, const char *text) {
@@ -28,9 +27,11 @@ static void put_identity(FILE *out, const RtResults *results, uint32_t t, uint32
     uint32_t origin = c < results->experiment->contender_count ? c : results->experiment->baseline;
     put_text(out, setup->label);
     put_text(out, setup->spec);
-    fprintf(out, "%" PRIu32 ",%016" PRIx64 ",%" PRIu32 ",%" PRIu32 ",%s,%" PRIu32 ",%s,%016" PRIx64 ",",
+    fprintf(out,
+            "%" PRIu32 ",%016" PRIx64 ",%" PRIu32 ",%" PRIu32 ",%s,%" PRIu32 ",%s,%" PRIu64 ",%016" PRIx64
+            ",",
             trial->objects, trial->scene, trial->width, trial->height, setup->corners ? "yes" : "no",
-            setup->depth, rt_ray_kind_name(kind), trial->ray_fingerprints[kind]);
+            setup->depth, rt_ray_kind_name(kind), trial->rays[kind], trial->ray_fingerprints[kind]);
     put_text(out, rt_contender_label(results->experiment, c));
     put_text(out, rt_build_at(results, t, c)->spec);
     fprintf(out, "%" PRIu64 ",%" PRIu64, results->experiment->contenders[origin].every,
@@ -76,6 +77,13 @@ static void put_estimate(FILE *out, const RtEstimate *e, double scale) {
     fprintf(out, ",%.6g,%.6g,%.6g", scale * e->median, scale * e->low, scale * e->high);
 }
 
+/* A counter, or nothing where it is not known. */
+static void put_known(FILE *out, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind,
+                      uint64_t counter) {
+    fputc(',', out);
+    if (!isnan(rt_cell_per_ray(results, t, c, kind, counter))) fprintf(out, "%" PRIu64, counter);
+}
+
 static void put_times(FILE *out, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
     const RtCell *cell = rt_cell_at(results, t, c, kind);
     const RtBuildResult *build = rt_build_at(results, t, c);
@@ -88,13 +96,9 @@ static void put_times(FILE *out, const RtResults *results, uint32_t t, uint32_t 
     fprintf(out, ",%.6g", 1e-6 / cell->seconds.median);
     put_estimate(out, &cell->ratio, 1);
     fprintf(out, ",%.6g,%" PRIu64, build->seconds, build->shape.bytes);
-    if (rt_cell_has_tests(results, t, c, kind)) {
-        const RtTally *tally = &cell->tally;
-        fprintf(out, ",%" PRIu64 ",%" PRIu64 ",%" PRIu64, tally->object_tests, tally->extent_tests,
-                tally->steps);
-    } else {
-        fputs(",,,", out);
-    }
+    put_known(out, results, t, c, kind, cell->tally.object_tests);
+    put_known(out, results, t, c, kind, cell->tally.extent_tests);
+    put_known(out, results, t, c, kind, cell->tally.steps);
     fprintf(out, ",%" PRIu64 "\n", cell->differ);
 }
 
@@ -123,6 +127,14 @@ void rt_format_figure(double value, char *out) {
     }
 }
 
+void rt_format_amount(double value, char *out) {
+    if (value > 0 && value < 0.00095) {
+        strcpy(out, "<0.001");
+    } else {
+        rt_format_figure(value, out);
+    }
+}
+
 static void print_figure(FILE *out, int width, double value) {
     char text[16];
     rt_format_figure(value, text);
@@ -140,9 +152,10 @@ static int label_width(const RtExperiment *experiment) {
 }
 
 static void print_build(FILE *out, const RtBuildResult *build) {
-    print_figure(out, 8, fmax(1e3 * build->seconds, 0.001));
-    print_figure(out, 8, fmax(1e-6 * (double)build->shape.bytes, 0.001));
-    fputc('\n', out);
+    char milliseconds[16], megabytes[16];
+    rt_format_amount(1e3 * build->seconds, milliseconds);
+    rt_format_amount(1e-6 * (double)build->shape.bytes, megabytes);
+    fprintf(out, " %8s %8s\n", milliseconds, megabytes);
 }
 
 static void print_scene(FILE *out, const RtResults *results, uint32_t t) {
@@ -154,12 +167,11 @@ static void print_scene(FILE *out, const RtResults *results, uint32_t t) {
 
 static void print_cell(FILE *out, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
     const RtCell *cell = rt_cell_at(results, t, c, kind);
-    double rays = rt_cell_has_tests(results, t, c, kind) ? (double)cell->tally.rays : (double)NAN;
     fprintf(out, "%-*s  %-12s %9" PRIu64, label_width(results->experiment),
             rt_contender_label(results->experiment, c), rt_ray_kind_name(kind), cell->tally.rays);
-    print_figure(out, 9, (double)cell->tally.object_tests / rays);
-    print_figure(out, 9, (double)cell->tally.extent_tests / rays);
-    print_figure(out, 9, (double)cell->tally.steps / rays);
+    print_figure(out, 9, rt_cell_per_ray(results, t, c, kind, cell->tally.object_tests));
+    print_figure(out, 9, rt_cell_per_ray(results, t, c, kind, cell->tally.extent_tests));
+    print_figure(out, 9, rt_cell_per_ray(results, t, c, kind, cell->tally.steps));
     if (cell->timed) {
         char ratio[16], low[16], high[16], interval[40];
         rt_format_figure(cell->ratio.median, ratio);

@@ -22,7 +22,9 @@ void rt_print_totals(const RtResults *results, FILE *out);
 /* "12 of 12 null runs straddle 1.", and what to think of it otherwise; "" where none was timed. */
 void rt_null_sentence(const RtResults *results, char *out, size_t room);
 
-/* A figure in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Room for 16. */
+/* A figure in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Room for 16. An amount
+ * below 0.001 is "<0.001" where a figure is 1.2e-04. */
 void rt_format_figure(double value, char *out);
+void rt_format_amount(double value, char *out);
 
 #endif

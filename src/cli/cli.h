@@ -23,6 +23,10 @@ int rt_command_info(int argc, char **argv);
 int rt_command_render(int argc, char **argv);
 int rt_command_verify(int argc, char **argv);
 int rt_command_bench(int argc, char **argv);
+int rt_command_run(int argc, char **argv);
+int rt_command_plot(int argc, char **argv);
+int rt_command_report(int argc, char **argv);
+int rt_command_reproduce(int argc, char **argv);
 int rt_command_convert(int argc, char **argv);
 
 /* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */

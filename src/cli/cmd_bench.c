@@ -169,7 +169,8 @@ static json_t *row_json(const RtResults *results, uint32_t c, RtRayKind kind) {
                                   "leaves", (json_int_t)d->leaves, "empty_leaves",
                                   (json_int_t)d->empty_leaves, "references", (json_int_t)d->references,
                                   "depth", (json_int_t)d->depth, "predicted_cost", number(d->predicted_cost));
-    json_t *counts = rt_cell_has_tests(results, 0, c, kind) ? json_object() : json_null();
+    json_t *counts = isfinite(rt_cell_per_ray(results, 0, c, kind, cell->tally.object_tests)) ? json_object()
+                                                                                              : json_null();
     for (size_t i = 0; json_is_object(counts) && i < RT_TALLY_COUNTER_COUNT; i++) {
         json_object_set_new(counts, rt_tally_name(i),
                             json_integer((json_int_t)rt_tally_get(&cell->tally, i)));
@@ -231,16 +232,6 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
 
 /* ---- the command ---- */
 
-static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
-    (void)error;
-    rt_progress_event(context, results, event);
-    return RT_OK;
-}
-
-static void on_notice(void *context, const char *message) {
-    rt_progress_notice(context, message);
-}
-
 static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
     RtExperiment *experiment = o->experiment;
@@ -248,7 +239,7 @@ static RtStatus bench(Options *o, RtError *error) {
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
     RtProgress progress = rt_progress_begin(experiment, o->trial.count_only ? 1 : 2);
-    o->trial.observer = (RtObserver){&progress, on_event, on_notice};
+    o->trial.observer = rt_progress_observer(&progress);
     RtResults results;
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = rt_trial_run(&results, 0, &o->trial, error);

@@ -19,6 +19,10 @@ static const RtCommand commands[] = {
      rt_command_render},
     {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
     {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench},
+    {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run},
+    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot},
+    {"report", "DIR", "write the report of a result directory again", rt_command_report},
+    {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce},
     {"convert", "IN OUT", "write a scene in another format", rt_command_convert},
 };
 

@@ -14,12 +14,14 @@ RtProgress rt_progress_begin(const RtExperiment *experiment, uint32_t parts) {
                         .start = rt_wall_seconds()};
 }
 
-void rt_progress_event(RtProgress *progress, const RtResults *results, const RtEvent *event) {
+static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
+    (void)error;
+    RtProgress *progress = context;
     const RtExperiment *experiment = results->experiment;
     bool null = event->contender == experiment->contender_count;
     bool cell = event->what == RT_EVENT_COUNT || event->what == RT_EVENT_TIME;
     progress->done += cell && !null;
-    if (!progress->terminal) return;
+    if (!progress->terminal) return RT_OK;
     double passed = rt_wall_seconds() - progress->start;
     double left = progress->done ? passed / progress->done * (progress->all - progress->done) : 0;
     fprintf(stderr, "\r\033[K[%u/%u] %s", progress->done, progress->all,
@@ -33,10 +35,16 @@ void rt_progress_event(RtProgress *progress, const RtResults *results, const RtE
                                                     : ": timed");
     if (progress->done) fprintf(stderr, ", about %.0f s left", left);
     fflush(stderr);
+    return RT_OK;
 }
 
-void rt_progress_notice(RtProgress *progress, const char *message) {
+static void on_notice(void *context, const char *message) {
+    const RtProgress *progress = context;
     fprintf(stderr, "%sraytally: %s\n", progress->terminal ? "\r\033[K" : "", message);
+}
+
+RtObserver rt_progress_observer(RtProgress *progress) {
+    return (RtObserver){progress, on_event, on_notice};
 }
 
 void rt_progress_end(RtProgress *progress) {

@@ -13,11 +13,8 @@ typedef struct RtProgress {
 /* `parts`: measurements a cell, 1 when only counting, else 2. */
 RtProgress rt_progress_begin(const RtExperiment *experiment, uint32_t parts);
 
-/* After an event. */
-void rt_progress_event(RtProgress *progress, const RtResults *results, const RtEvent *event);
-
-/* A line of its own, on a terminal or not. */
-void rt_progress_notice(RtProgress *progress, const char *message);
+/* What a trial tells its progress to; notices get a line of their own, on a terminal or not. */
+RtObserver rt_progress_observer(RtProgress *progress);
 
 /* Takes the line away. */
 void rt_progress_end(RtProgress *progress);

@@ -1,0 +1,90 @@
+#include "experiments/manifest.h"
+
+#include "base/parallel.h"
+#include "experiments/machine.h"
+
+#include <inttypes.h>
+#include <time.h>
+
+static json_t *hex(uint64_t value) {
+    return json_sprintf("%016" PRIx64, value);
+}
+
+static json_t *scenes_json(const RtResults *results) {
+    const RtExperiment *experiment = results->experiment;
+    json_t *list = json_array();
+    for (uint32_t t = 0; t < experiment->trial_count; t++) {
+        const RtTrialResult *trial = &results->trials[t];
+        json_t *sets = json_object();
+        for (uint32_t k = 0; trial->known && k < experiment->kind_count; k++) {
+            RtRayKind kind = experiment->kinds[k];
+            json_object_set_new(sets, rt_ray_kind_name(kind),
+                                json_pack("{s:I, s:o}", "rays", (json_int_t)trial->rays[kind], "hash",
+                                          hex(trial->ray_fingerprints[kind])));
+        }
+        json_array_append_new(
+            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:I, s:o}", "label",
+                            experiment->trials[t].label, "scene", experiment->trials[t].spec, "skipped",
+                            trial->skipped, "objects", (json_int_t)trial->objects, "hash", hex(trial->scene),
+                            "width", (json_int_t)trial->width, "height", (json_int_t)trial->height, "corners",
+                            experiment->trials[t].corners, "depth", (json_int_t)experiment->trials[t].depth,
+                            "rays", sets));
+    }
+    return list;
+}
+
+static json_t *contenders_json(const RtExperiment *experiment) {
+    json_t *list = json_array();
+    for (uint32_t c = 0; c < experiment->contender_count; c++) {
+        const RtContender *contender = &experiment->contenders[c];
+        json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:b}", "label", contender->label, "accel",
+                                              contender->spec, "every", (json_int_t)contender->every,
+                                              "missing", contender->missing));
+    }
+    return list;
+}
+
+static json_t *manifest_json(const RtResults *results, const RtTrialOptions *options) {
+    const RtExperiment *experiment = results->experiment;
+    char date[32];
+    time_t now = time(NULL);
+    struct tm utc;
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+    return json_pack(
+        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:s, s:s, s:i, s:i, s:o, s:o, s:o}", "experiment",
+        experiment->name, "file", experiment->path, "hash", hex(experiment->fingerprint), "question",
+        experiment->question, "prediction", experiment->prediction, "quick", experiment->quick, "seed",
+        (json_int_t)experiment->seed, "limit", (json_int_t)experiment->limit, "rounds",
+        (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
+        experiment->contenders[experiment->baseline].label, "date", date, "threads_counting",
+        rt_thread_count(options->threads), "threads_timing", rt_thread_count(options->timing), "scenes",
+        scenes_json(results), "accelerators", contenders_json(experiment), "machine", rt_machine_json());
+}
+
+RtStatus rt_manifest_write(const RtResults *results, const RtTrialOptions *options, const char *directory,
+                           RtError *error) {
+    char path[RT_MAX_PATH];
+    RtOutput output;
+    RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    json_t *manifest = manifest_json(results, options);
+    if (!manifest) return rt_fail_memory(error, "the manifest", 0);
+    RtStatus status = rt_output_open(&output, path, error);
+    if (status == RT_OK) {
+        json_dumpf(manifest, output.file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+        fputc('\n', output.file);
+        status = rt_output_commit(&output, error);
+    }
+    json_decref(manifest);
+    return status;
+}
+
+RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error) {
+    char path[RT_MAX_PATH];
+    json_error_t fault;
+    *manifest = NULL;
+    RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    *manifest = json_load_file(path, 0, &fault);
+    if (*manifest) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: line %d: %s; this is not a whole result directory", path,
+                   fault.line, fault.text);
+}

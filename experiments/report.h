@@ -1,0 +1,13 @@
+/* The report of a result directory: one HTML file with everything in it. */
+#ifndef RT_EXPERIMENTS_REPORT_H
+#define RT_EXPERIMENTS_REPORT_H
+
+#include "experiments/results.h"
+
+#include <jansson.h>
+
+/* Writes `directory`/report.html from the results, the manifest, and the plots and images that are there. */
+RtStatus rt_report_write(const RtResults *results, const json_t *manifest, const char *directory,
+                         RtError *error);
+
+#endif

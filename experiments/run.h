@@ -1,0 +1,28 @@
+/* Running an experiment into a result directory (DESIGN section 5), and working on one that is there.
+ *
+ *   cells.jsonl      the journal: everything found, line by line as it was found
+ *   experiment.yaml  a copy of what was run
+ *   manifest.json    with what it was run: seed, fingerprints, version, compiler, machine, date
+ *   counts.csv       exact columns; byte-identical wherever the same version is run
+ *   times.csv        measured columns
+ *   plots/ images/   the scripts and what they drew; a picture of each scene
+ *   report.html      all of it in one page */
+#ifndef RT_EXPERIMENTS_RUN_H
+#define RT_EXPERIMENTS_RUN_H
+
+#include "experiments/trial.h"
+
+typedef struct RtRunOptions {
+    const char *directory; /* created where missing */
+    bool resume;           /* take over what an earlier run in it has found */
+    RtTrialOptions trial;  /* its observer is told after the journal */
+} RtRunOptions;
+
+/* Runs what is not yet known, and writes everything. `results` is initialised for the experiment, and filled.
+ * Where the plots cannot be drawn there is a notice, and a report without them. */
+RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error);
+
+/* Loads experiment and results of a result directory. `results` is initialised here: rt_results_clear. */
+RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults *results, RtError *error);
+
+#endif

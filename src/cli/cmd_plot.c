@@ -1,0 +1,22 @@
+/* raytally plot: the plots of a result directory, drawn again. */
+#include "cli/cli.h"
+#include "cli/directory.h"
+#include "experiments/plot.h"
+
+#include <stdio.h>
+
+static RtStatus plot(const char *directory, const RtExperiment *experiment, RtResults *results,
+                     RtError *error) {
+    (void)experiment;
+    RT_TRY(rt_plots_draw(results, directory, error));
+    printf("Plots: %s/plots\n", directory);
+    return RT_OK;
+}
+
+int rt_command_plot(int argc, char **argv) {
+    return rt_cli_directory(
+        argc, argv,
+        "Draw the plots of a result directory again, from its CSV files and the scripts in "
+        "DIR/plots.",
+        plot);
+}

@@ -1,0 +1,22 @@
+/* raytally report: the report of a result directory, written again. */
+#include "cli/cli.h"
+#include "cli/directory.h"
+#include "experiments/manifest.h"
+#include "experiments/report.h"
+
+#include <stdio.h>
+
+static RtStatus report(const char *directory, const RtExperiment *experiment, RtResults *results,
+                       RtError *error) {
+    (void)experiment;
+    json_t *manifest;
+    RT_TRY(rt_manifest_read(directory, &manifest, error));
+    RtStatus status = rt_report_write(results, manifest, directory, error);
+    json_decref(manifest);
+    if (status == RT_OK) printf("Report: %s/report.html\n", directory);
+    return status;
+}
+
+int rt_command_report(int argc, char **argv) {
+    return rt_cli_directory(argc, argv, "Write DIR/report.html again, from what is in DIR.", report);
+}

@@ -1,0 +1,93 @@
+/* raytally reproduce: the counts of a result directory, counted again and compared byte for byte. */
+#include "base/memory.h"
+#include "cli/cli.h"
+#include "cli/directory.h"
+#include "cli/progress.h"
+#include "experiments/manifest.h"
+#include "experiments/tables.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_CSV_BYTES = 1 << 28 };
+
+static RtStatus count_again(RtResults *results, RtError *error) {
+    RtProgress progress = rt_progress_begin(results->experiment, 1);
+    RtTrialOptions options = {.timing = 1, .count_only = true, .observer = rt_progress_observer(&progress)};
+    RtStatus status = RT_OK;
+    for (uint32_t t = 0; status == RT_OK && t < results->experiment->trial_count; t++) {
+        status = rt_trial_run(results, t, &options, error);
+    }
+    rt_progress_end(&progress);
+    return status;
+}
+
+/* RT_MISMATCH with the first line that differs. */
+static RtStatus compare(const char *path, const char *kept, const char *counted, RtError *error) {
+    if (strcmp(kept, counted) == 0) return RT_OK;
+    size_t line = 1;
+    while (strcspn(kept, "\n") == strcspn(counted, "\n") &&
+           strncmp(kept, counted, strcspn(kept, "\n")) == 0 && kept[strcspn(kept, "\n")]) {
+        kept += strcspn(kept, "\n") + 1;
+        counted += strcspn(counted, "\n") + 1;
+        line++;
+    }
+    return rt_fail(error, RT_MISMATCH,
+                   "%s:%zu: differs from what is counted now:\n  there: %.*s\n  now:   %.*s", path, line,
+                   (int)strcspn(kept, "\n"), kept, (int)strcspn(counted, "\n"), counted);
+}
+
+static RtStatus compare_counts(const char *directory, const RtResults *results, RtError *error) {
+    char path[RT_MAX_PATH], *kept = NULL, *counted = NULL;
+    size_t size;
+    RT_TRY(rt_path_join(directory, "counts.csv", path, error));
+    FILE *stream = open_memstream(&counted, &size);
+    if (!stream) return rt_fail_memory(error, "the counts", 0);
+    rt_counts_csv(results, stream);
+    RtStatus status = fclose(stream) == 0 ? RT_OK : rt_fail_memory(error, "the counts", 0);
+    if (status == RT_OK) status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
+    if (status == RT_OK) status = compare(path, kept, counted, error);
+    if (status == RT_OK) printf("Reproduced: %s, byte for byte\n", path);
+    rt_free(kept);
+    free(counted);
+    return status;
+}
+
+/* The copy in the directory says what was run; scenes are found from where the original lies. */
+static RtStatus find_original(const char *directory, RtExperiment *experiment, RtError *error) {
+    uint64_t fingerprint = experiment->fingerprint;
+    bool quick = experiment->quick;
+    char path[RT_MAX_PATH];
+    json_t *manifest;
+    RT_TRY(rt_manifest_read(directory, &manifest, error));
+    const char *file = json_string_value(json_object_get(manifest, "file"));
+    snprintf(path, sizeof path, "%s", file ? file : "");
+    json_decref(manifest);
+    RT_TRY(rt_experiment_load(experiment, path, quick, error));
+    if (experiment->fingerprint == fingerprint) return RT_OK;
+    return rt_fail(error, RT_MISMATCH, "%s has changed since %s was made from it", path, directory);
+}
+
+static RtStatus reproduce(const char *directory, const RtExperiment *experiment, RtResults *results,
+                          RtError *error) {
+    RtExperiment *original = rt_alloc(1, sizeof *original);
+    if (!original) return rt_fail_memory(error, "an experiment", sizeof *original);
+    *original = *experiment;
+    RtStatus status = find_original(directory, original, error);
+    rt_results_clear(results);
+    if (status == RT_OK) status = rt_results_init(results, original, error);
+    if (status == RT_OK) status = count_again(results, error);
+    if (status == RT_OK) status = compare_counts(directory, results, error);
+    rt_results_clear(results);
+    rt_free(original);
+    return status;
+}
+
+int rt_command_reproduce(int argc, char **argv) {
+    return rt_cli_directory(
+        argc, argv,
+        "Count everything in a result directory again and compare with DIR/counts.csv, byte "
+        "for byte. Run it from where the experiment was run.",
+        reproduce);
+}

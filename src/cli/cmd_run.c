@@ -1,0 +1,88 @@
+/* raytally run: an experiment, from its YAML to a result directory. */
+#include "base/memory.h"
+#include "cli/cli.h"
+#include "cli/progress.h"
+#include "experiments/run.h"
+#include "experiments/tables.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { OPT_RESUME = 256, OPT_QUICK };
+
+typedef struct Options {
+    const char *path, *out;
+    bool resume, quick;
+    int threads, timing;
+} Options;
+
+static const struct argp_option options[] = {
+    {"out", 'o', "DIR", 0, "The result directory (results/NAME)", 0},
+    {"resume", OPT_RESUME, 0, 0, "Go on where an interrupted run stopped; what it measured is kept", 0},
+    {"threads", 't', "N", 0,
+     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and counting on all; on "
+     "several, wall time is compared",
+     0},
+    {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
+    {0}};
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    Options *o = state->input;
+    switch (key) {
+    case 'o': o->out = argument; return 0;
+    case OPT_RESUME: o->resume = true; return 0;
+    case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
+    case OPT_QUICK: o->quick = true; return 0;
+    case ARGP_KEY_ARG:
+        if (o->path) argp_error(state, "one EXPERIMENT at a time; '%s' is a second one", argument);
+        o->path = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->path) argp_error(state, "an EXPERIMENT is missing, as in experiments/first-look.yaml");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) {
+    char directory[RT_MAX_PATH], sentence[256];
+    RtResults results;
+    RT_TRY(rt_experiment_load(experiment, o->path, o->quick, error));
+    snprintf(directory, sizeof directory, "results/%s", experiment->name);
+    RtProgress progress = rt_progress_begin(experiment, 2);
+    RtRunOptions how = {
+        .directory = o->out ? o->out : directory,
+        .resume = o->resume,
+        .trial = {.threads = o->threads, .timing = o->timing, .observer = rt_progress_observer(&progress)}};
+    RtStatus status = rt_results_init(&results, experiment, error);
+    if (status == RT_OK) status = rt_run(&results, &how, error);
+    rt_progress_end(&progress);
+    if (status == RT_OK) {
+        rt_print_totals(&results, stdout);
+        rt_null_sentence(&results, sentence, sizeof sentence);
+        printf("\n%s\nReport: %s/report.html\n", sentence, how.directory);
+    }
+    rt_results_clear(&results);
+    return status;
+}
+
+int rt_command_run(int argc, char **argv) {
+    Options o = {.timing = 1};
+    const struct argp argp = {options,
+                              parse_option,
+                              "EXPERIMENT.yaml",
+                              "Run an experiment and write its result directory: counts.csv, times.csv, "
+                              "manifest.json, plots, images and report.html."
+                              "\vexperiments/README.md tells how to write one.",
+                              0,
+                              0,
+                              0};
+    argp_parse(&argp, argc, argv, 0, 0, &o);
+    RtError error;
+    RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
+    RtStatus status = experiment ? run(&o, experiment, &error)
+                                 : rt_fail_memory(&error, "an experiment", sizeof *experiment);
+    rt_free(experiment);
+    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+}

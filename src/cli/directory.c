@@ -1,0 +1,35 @@
+#include "cli/directory.h"
+
+#include "base/memory.h"
+#include "cli/cli.h"
+
+#include <argp.h>
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    const char **directory = state->input;
+    switch (key) {
+    case ARGP_KEY_ARG:
+        if (*directory) argp_error(state, "one DIR at a time; '%s' is a second one", argument);
+        *directory = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!*directory) argp_error(state, "a result DIR is missing, as in results/first-look");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+int rt_cli_directory(int argc, char **argv, const char *help, RtDirectoryWork *work) {
+    const char *directory = NULL;
+    const struct argp argp = {0, parse_option, "DIR", help, 0, 0, 0};
+    argp_parse(&argp, argc, argv, 0, 0, &directory);
+    RtError error;
+    RtResults results = {0};
+    RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
+    RtStatus status = experiment ? rt_run_load(directory, experiment, &results, &error)
+                                 : rt_fail_memory(&error, "an experiment", sizeof *experiment);
+    if (status == RT_OK) status = work(directory, experiment, &results, &error);
+    rt_results_clear(&results);
+    rt_free(experiment);
+    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+}

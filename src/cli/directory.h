@@ -1,0 +1,14 @@
+/* Commands that work on a result directory: their common command line, `raytally COMMAND DIR`. */
+#ifndef RT_CLI_DIRECTORY_H
+#define RT_CLI_DIRECTORY_H
+
+#include "experiments/run.h"
+
+/* What such a command does with the directory once experiment and results are loaded from it. */
+typedef RtStatus RtDirectoryWork(const char *directory, const RtExperiment *experiment, RtResults *results,
+                                 RtError *error);
+
+/* Parses the arguments, loads, works; gives the exit code. `help` explains the command. */
+int rt_cli_directory(int argc, char **argv, const char *help, RtDirectoryWork *work);
+
+#endif
