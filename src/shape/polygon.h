@@ -1,9 +1,10 @@
 /* Polygons: planar, n >= 3 vertices, convex or concave, both sides hit.
  *
  * Hit by projection (the lecture's way): the ray meets the plane, and the point is tested for being inside in
- * the coordinate plane that the polygon is least perpendicular to, by counting crossings of its edges with a
- * half-open rule, so that a point on an edge shared by two polygons of one plane lies in exactly one of them.
- * The plane is Newell's, through the centroid, in double. Vertices lie in one array of the geometry. */
+ * the coordinate plane that the polygon is least perpendicular to, by counting crossings of its edges. Edges
+ * and vertices belong to the polygon, so that a symmetric ray through the edge of a cube does not slip
+ * through. The plane is Newell's, through the centroid, in double. Vertices lie in one array of the geometry.
+ */
 #ifndef RT_SHAPE_POLYGON_H
 #define RT_SHAPE_POLYGON_H
 
@@ -36,7 +37,7 @@ RtBox rt_polygon_box(const RtPolygon *polygon, const RtVec3 *vertices);
 RtBall rt_polygon_ball(const RtPolygon *polygon, const RtVec3 *vertices);
 double rt_polygon_support(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d direction);
 
-/* Even-odd rule in the plane of projection. */
+/* Even-odd rule in the plane of projection; a point on an edge is inside. */
 static inline bool rt_polygon_inside(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d point) {
     double pu = point.at[polygon->u], pv = point.at[polygon->v];
     const float *last = vertices[polygon->count - 1].at;
@@ -45,9 +46,11 @@ static inline bool rt_polygon_inside(const RtPolygon *polygon, const RtVec3 *ver
     for (uint32_t i = 0; i < polygon->count; i++) {
         const float *vertex = vertices[i].at;
         double bu = (double)vertex[polygon->u], bv = (double)vertex[polygon->v];
-        if ((av > pv) != (bv > pv)) {
+        if ((av >= pv || bv >= pv) && (av <= pv || bv <= pv)) {
             double side = (bu - au) * (pv - av) - (pu - au) * (bv - av);
-            if (bv > av ? side > 0 : side < 0) inside = !inside;
+            if (side == 0 && (au >= pu || bu >= pu) && (au <= pu || bu <= pu)) return true;
+            bool crosses = (av > pv) != (bv > pv);
+            if (crosses && (bv > av ? side > 0 : side < 0)) inside = !inside;
         }
         au = bu;
         av = bv;
