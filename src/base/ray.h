@@ -10,11 +10,13 @@
  *     thickness(ray, B) = 2^-20 * max over axes of max(|B.lo - org|, |B.hi - org|)          (16 half-ulps)
  *
  * which is done for free by using one origin for near planes and another for far planes (the idea is in Woop,
- * Benthin & Wald 2013, "Watertight Ray/Triangle Intersection", section 3.4).
+ * Benthin & Wald 2013, "Watertight Ray/Triangle Intersection", section 3.4). The origin moves along each axis
+ * by 2^-23 |org| more (rt_shift), for otherwise the rounding of the sum would swallow the thickness where a
+ * scene lies far from the zero of coordinates.
  *
  * Why pruning is exact. The crossings (plane - org') * inv are monotone in the plane, in float32 as in the
- * real numbers, and thickness grows with the box. So for b inside B, with the thickness of B or of anything
- * larger:
+ * real numbers, and the thickness grows with the box. So for b inside B, with the thickness of B or of
+ * anything larger:
  *
  *     enter(B) <= enter(b)  and  leave(b) <= leave(B),  bit for bit.
  *
@@ -108,6 +110,11 @@ static inline float rt_thickness(RtVec3 org, const RtBox *box) {
     return most * 0x1p-20f;
 }
 
+/* By how much an origin moves along an axis at which it is `org`; grows with the thickness. */
+static inline float rt_shift(float thickness, float org) {
+    return thickness + fabsf(org) * 0x1p-23f;
+}
+
 /* `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness. */
 static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_box) {
     RtPreparedRay p;
@@ -119,8 +126,9 @@ static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_
     for (int a = 0; a < 3; a++) {
         p.inv[a] = 1 / dir[a];
         p.negative[a] = signbit(dir[a]) ? 1 : 0;
-        p.org_near[a] = p.negative[a] ? org[a] - thickness : org[a] + thickness;
-        p.org_far[a] = p.negative[a] ? org[a] + thickness : org[a] - thickness;
+        float shift = rt_shift(thickness, org[a]);
+        p.org_near[a] = p.negative[a] ? org[a] - shift : org[a] + shift;
+        p.org_far[a] = p.negative[a] ? org[a] + shift : org[a] - shift;
     }
     p.tmin = ray->tmin;
     p.tmax = rt_minf(ray->tmax, FLT_MAX);
@@ -156,7 +164,8 @@ static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, floa
     float thickness = rt_thickness(ray->org, own);
     float near = -INFINITY, far = INFINITY;
     for (int a = 0; a < 3; a++) {
-        float shift = ray->negative[a] ? -thickness : thickness;
+        float outward = rt_shift(thickness, ray->org.at[a]);
+        float shift = ray->negative[a] ? -outward : outward;
         float first = (planes[ray->negative[a]].at[a] - (ray->org.at[a] + shift)) * ray->inv[a];
         float second = (planes[1 - ray->negative[a]].at[a] - (ray->org.at[a] - shift)) * ray->inv[a];
         near = rt_maxf(first, near);
