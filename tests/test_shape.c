@@ -1,16 +1,47 @@
-/* shape/: the hit functions, against answers known by hand. */
+/* shape/: hits, normals and refusals of every shape, against answers known by hand; and what all hit
+ * functions have in common: closed intervals of t, and powers of two that scale it exactly. */
 #include "testing.h"
 
+#include "base/random.h"
 #include "shape/geometry.h"
 
-static bool hit(const RtGeometry *g, RtRay ray, float *t) {
-    RtPreparedRay prepared = rt_ray_prepare(&ray, &g->box);
-    return rt_object_hit(g, 0, &prepared, t);
+#include <string.h>
+
+#define MISS NAN
+
+/* A ray, in words, and where it first meets the only object: t, or MISS. */
+typedef struct Case {
+    const char *what;
+    RtVec3 org, dir;
+    float t;
+} Case;
+
+static bool hit(const RtGeometry *g, uint32_t id, const RtRay *ray, float *t) {
+    RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
+    return rt_object_hit(g, id, &prepared, t);
 }
 
 static RtRay make_ray(RtVec3 org, RtVec3 dir) {
     return (RtRay){.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};
 }
+
+/* Finishes `g`, asks every case of its object 0, and clears it. */
+static void check(RtGeometry *g, const Case *cases, size_t count) {
+    assert_ok(rt_geometry_finish(g, error));
+    for (size_t i = 0; i < count; i++) {
+        RtRay ray = make_ray(cases[i].org, cases[i].dir);
+        float t = NAN;
+        bool met = hit(g, 0, &ray, &t);
+        if (met == !isnan(cases[i].t) && (!met || t == cases[i].t)) continue;
+        fail_msg("%s: %s at %.9g, expected %.9g", cases[i].what, met ? "hit" : "missed", (double)t,
+                 (double)cases[i].t);
+    }
+    rt_geometry_clear(g);
+}
+
+#define CHECK(g, cases) check(g, cases, sizeof cases / sizeof *(cases))
+
+/* ---- each shape by hand ---- */
 
 static void the_lecture_ray_meets_the_unit_sphere_at_9_and_11(void **state) {
     (void)state;
@@ -19,19 +50,349 @@ static void the_lecture_ray_meets_the_unit_sphere_at_9_and_11(void **state) {
     assert_ok(rt_geometry_finish(&g, error));
     RtRay ray = make_ray(rt_vec3(0, 0, 10), rt_vec3(0, 0, -1));
     float t;
-    assert_true(hit(&g, ray, &t));
+    assert_true(hit(&g, 0, &ray, &t));
     assert_true(t == 9.0f);
     ray.tmin = 9.5f;
-    assert_true(hit(&g, ray, &t));
+    assert_true(hit(&g, 0, &ray, &t));
     assert_true(t == 11.0f);
     ray.tmin = 11.5f;
-    assert_false(hit(&g, ray, &t));
+    assert_false(hit(&g, 0, &ray, &t));
+    rt_geometry_clear(&g);
+}
+
+static void a_sphere_is_hit_from_outside_and_inside_and_touched(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"from outside", {{1, 2, -7}}, {{0, 0, 1}}, 8},
+        {"from the centre", {{1, 2, 3}}, {{0, 1, 0}}, 2},
+        {"from inside, off the centre", {{1, 2, 4}}, {{0, 0, 1}}, 1},
+        {"from the surface inward", {{1, 2, 1}}, {{0, 0, 1}}, 0},
+        {"from the surface outward", {{1, 2, 1}}, {{0, 0, -1}}, 0},
+        {"towards it, off the centre", {{-6, 2, 3}}, {{0.5f, 0, 0}}, 10},
+        {"touching", {{3, 2, -7}}, {{0, 0, 1}}, 10},
+        {"just outside of touching", {{3.001f, 2, -7}}, {{0, 0, 1}}, MISS},
+        {"behind", {{1, 2, -7}}, {{0, 0, -1}}, MISS},
+        {"passing far away", {{100, 2, -7}}, {{0, 0, 1}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 2, 3), 2, error));
+    CHECK(&g, cases);
+}
+
+static void a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"from the front", {{1, 1, 5}}, {{0, 0, -1}}, 4},
+        {"from behind it", {{1, 1, -5}}, {{0, 0, 2}}, 3},
+        {"from its plane, across", {{1, 1, 1}}, {{0, 0, 1}}, 0},
+        {"through an edge", {{2, 0, 5}}, {{0, 0, -1}}, 4},
+        {"through the slanting edge", {{2, 2, 5}}, {{0, 0, -1}}, 4},
+        {"through a vertex", {{0, 0, 5}}, {{0, 0, -1}}, 4},
+        {"through another vertex", {{4, 0, 5}}, {{0, 0, -1}}, 4},
+        {"just outside of an edge", {{2, -1e-6f, 5}}, {{0, 0, -1}}, MISS},
+        {"beyond the slanting edge", {{2, 2.001f, 5}}, {{0, 0, -1}}, MISS},
+        {"away from it", {{1, 1, 5}}, {{0, 0, 1}}, MISS},
+        {"parallel to it", {{-1, 1, 5}}, {{1, 0, 0}}, MISS},
+        {"in its plane", {{-1, 1, 1}}, {{1, 0, 0}}, MISS},
+        {"in its plane, along an edge", {{-1, 0, 1}}, {{1, 0, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_triangle(&g, (RtVec3[]){{{0, 0, 1}}, {{4, 0, 1}}, {{0, 4, 1}}}, NULL, error));
+    CHECK(&g, cases);
+}
+
+static void a_triangle_without_area_is_let_in_and_never_hit(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"across it", {{1, 0, 5}}, {{0, 0, -1}}, MISS},
+        {"along it", {{-1, 0, 0}}, {{1, 0, 0}}, MISS},
+        {"at its end", {{0, -3, 0}}, {{0, 1, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_triangle(&g, (RtVec3[]){{{0, 0, 0}}, {{4, 0, 0}}, {{2, 0, 0}}}, NULL, error));
+    CHECK(&g, cases);
+}
+
+/* A U in the plane x = 2, with its notch open towards +z. */
+static void a_concave_polygon_is_missed_in_its_notch(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"through the left arm", {{0, 0.5f, 2}}, {{1, 0, 0}}, 2},
+        {"through the right arm, from behind", {{4, 2.5f, 2}}, {{-1, 0, 0}}, 2},
+        {"through the bottom", {{0, 1.5f, 0.5f}}, {{1, 0, 0}}, 2},
+        {"through the notch", {{0, 1.5f, 2}}, {{1, 0, 0}}, MISS},
+        {"through the notch, level with its bottom corners", {{0, 1.5f, 1.5f}}, {{1, 0, 0}}, MISS},
+        {"on the floor of the notch", {{0, 1.5f, 1}}, {{1, 0, 0}}, 2},
+        {"on the wall of the notch", {{0, 1, 2}}, {{1, 0, 0}}, 2},
+        {"on the upper edge of an arm", {{0, 0.5f, 3}}, {{1, 0, 0}}, 2},
+        {"on the lower left corner", {{0, 0, 0}}, {{1, 0, 0}}, 2},
+        {"on the upper right corner", {{0, 3, 3}}, {{1, 0, 0}}, 2},
+        {"between the corners of the arms", {{0, 1.5f, 3}}, {{1, 0, 0}}, MISS},
+        {"beside it", {{0, 3.5f, 1}}, {{1, 0, 0}}, MISS},
+        {"level with a corner, beside it", {{0, -1, 1}}, {{1, 0, 0}}, MISS},
+        {"slanting", {{0, 0, 0}}, {{4, 1, 1}}, 0.5f},
+        {"behind", {{3, 0.5f, 2}}, {{1, 0, 0}}, MISS},
+        {"parallel to it", {{0, 0.5f, 2}}, {{0, 1, 0}}, MISS},
+        {"in its plane", {{2, -1, 0.5f}}, {{0, 1, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    static const RtVec3 vertices[] = {{{2, 0, 0}}, {{2, 3, 0}}, {{2, 3, 3}}, {{2, 2, 3}},
+                                      {{2, 2, 1}}, {{2, 1, 1}}, {{2, 1, 3}}, {{2, 0, 3}}};
+    assert_ok(rt_geometry_add_polygon(&g, vertices, 8, error));
+    CHECK(&g, cases);
+}
+
+static void a_cylinder_is_open_at_both_ends(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"from outside", {{-5, 0, 2}}, {{1, 0, 0}}, 4},
+        {"from inside", {{0, 0, 2}}, {{0, -1, 0}}, 1},
+        {"touching", {{-5, 1, 2}}, {{1, 0, 0}}, 5},
+        {"just outside of touching", {{-5, 1.001f, 2}}, {{1, 0, 0}}, MISS},
+        {"on the circle of an end", {{-5, 0, 0}}, {{1, 0, 0}}, 4},
+        {"on the circle of the other end", {{-5, 0, 4}}, {{1, 0, 0}}, 4},
+        {"beyond an end", {{-5, 0, 4.001f}}, {{1, 0, 0}}, MISS},
+        {"along the axis", {{0, 0, -5}}, {{0, 0, 1}}, MISS},
+        {"parallel to the axis, inside", {{0.5f, 0, -5}}, {{0, 0, 1}}, MISS},
+        {"parallel to the axis, outside", {{1.5f, 0, -5}}, {{0, 0, 1}}, MISS},
+        {"in by the open end, out by the wall", {{0, 0, -1}}, {{0.5f, 0, 1}}, 2},
+        {"behind", {{-5, 0, 2}}, {{-1, 0, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 1, error));
+    CHECK(&g, cases);
+}
+
+static void a_full_cone_is_hit_up_to_its_tip(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"half way up", {{-5, 0, 0.5f}}, {{1, 0, 0}}, 4.5f},
+        {"half way up, from inside", {{0, 0, 0.5f}}, {{1, 0, 0}}, 0.5f},
+        {"at the tip, across", {{-5, 0, 1}}, {{1, 0, 0}}, 5},
+        {"at the tip, along the axis through the open end", {{0, 0, -5}}, {{0, 0, 1}}, 6},
+        {"at the tip, from above", {{0, 0, 5}}, {{0, 0, -1}}, 4},
+        {"above the tip, where the other half of the double cone is", {{-5, 0, 1.5f}}, {{1, 0, 0}}, MISS},
+        {"through the open end", {{0, 0, -0.5f}}, {{1, 0, 1}}, 0.75f},
+        {"along the side, outside", {{0, 0, -2}}, {{1, 0, -1}}, MISS},
+        {"on the circle", {{-5, 0, 0}}, {{1, 0, 0}}, 4},
+        {"below the circle", {{-5, 0, -0.001f}}, {{1, 0, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 1), 0, error));
+    CHECK(&g, cases);
+}
+
+/* Nearly a disc with a hole: what is hit must not depend on heights that have lost their digits. */
+static void a_flat_cone_ends_at_its_circles(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"through the ring", {{0.75f, 0, 1}}, {{0, 0, -1}}, 1},
+        {"through the hole", {{0.25f, 0, 1}}, {{0, 0, -1}}, MISS},
+        {"outside, within its box", {{0.75f, 0.75f, 1}}, {{0, 0, -1}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 1e-20f), 0.5f, error));
+    CHECK(&g, cases);
+}
+
+/* ---- normals ---- */
+
+static void assert_vector(RtVec3d a, double x, double y, double z) {
+    if (rt_lengthd(rt_subd(a, rt_vec3d(x, y, z))) < 1e-12) return;
+    fail_msg("(%g, %g, %g) is not (%g, %g, %g)", a.x, a.y, a.z, x, y, z);
+}
+
+static void normals_point_outward_or_by_the_right_hand_rule(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    static const RtVec3 square[] = {{{0, 0, 5}}, {{0, 2, 5}}, {{2, 2, 5}}, {{2, 0, 5}}};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 0, 0), 2, error));
+    assert_ok(rt_geometry_add_polygon(&g, square, 4, error));
+    assert_ok(rt_geometry_add_triangle(&g, (RtVec3[]){{{0, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}, NULL, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 1, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 5, rt_vec3(0, 0, 4), 2, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 2, rt_vec3(0, 0, 4), 5, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_vector(rt_object_normals(&g, 0, rt_vec3d(-1, 0, 0)).geometric, -1, 0, 0);
+    assert_vector(rt_object_normals(&g, 1, rt_vec3d(1, 1, 5)).geometric, 0, 0, -1);
+    assert_vector(rt_object_normals(&g, 2, rt_vec3d(0, 0, 0)).geometric, 1, 0, 0);
+    assert_vector(rt_object_normals(&g, 3, rt_vec3d(0, 1, 2)).geometric, 0, 1, 0);
+    /* A frustum that narrows by 3 over a height of 4 leans outward and up, one that widens outward and down.
+     */
+    assert_vector(rt_object_normals(&g, 4, rt_vec3d(3.5, 0, 2)).geometric, 0.8, 0, 0.6);
+    assert_vector(rt_object_normals(&g, 5, rt_vec3d(0, -3.5, 2)).geometric, 0, -0.8, -0.6);
+    rt_geometry_clear(&g);
+}
+
+static void vertex_normals_are_interpolated_for_shading_only(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    const RtVec3 vertices[3] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
+    const RtVec3 normals[3] = {{{0, 0, 7}}, {{3, 0, 0}}, {{0, 0.5f, 0}}};
+    assert_ok(rt_geometry_add_triangle(&g, vertices, NULL, error));
+    assert_ok(rt_geometry_add_triangle(&g, vertices, normals, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_vector(rt_object_normals(&g, 0, rt_vec3d(0.5, 0.5, 0)).shading, 0, 0, 1);
+    assert_vector(rt_object_normals(&g, 1, rt_vec3d(0, 0, 0)).shading, 0, 0, 1);
+    assert_vector(rt_object_normals(&g, 1, rt_vec3d(1, 0, 0)).shading, 1, 0, 0);
+    assert_vector(rt_object_normals(&g, 1, rt_vec3d(0.5, 0.5, 0)).shading, sqrt(0.5), sqrt(0.5), 0);
+    assert_vector(rt_object_normals(&g, 1, rt_vec3d(0.5, 0.5, 0)).geometric, 0, 0, 1);
+    rt_geometry_clear(&g);
+}
+
+/* ---- what every hit function promises ---- */
+
+/* One object of each kind, about the origin, 2^exponent in size; 0.75 and the like survive the scaling. */
+static RtGeometry one_of_each(int exponent) {
+    RtGeometry g = {0};
+    float s = ldexpf(1, exponent);
+    const RtVec3 notched[] = {{{-s, -s, 0.25f * s}},
+                              {{s, -s, 0.25f * s}},
+                              {{s, s, -0.25f * s}},
+                              {{0, 0, 0}},
+                              {{-s, s, -0.25f * s}}};
+    const RtVec3 triangle[] = {{{-s, -s, 0}}, {{s, -0.5f * s, 0.5f * s}}, {{0.25f * s, s, -0.25f * s}}};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0.125f * s, 0, 0), 0.75f * s, error));
+    assert_ok(rt_geometry_add_polygon(&g, notched, 5, error));
+    assert_ok(rt_geometry_add_triangle(&g, triangle, NULL, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, -s, 0), s, rt_vec3(0.5f * s, s, 0), 0, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, -s), 0.5f * s, rt_vec3(0, 0, s), 0.5f * s, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(-s, 0, 0), 0.25f * s, rt_vec3(s, s, s), 0.75f * s, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    return g;
+}
+
+/* Through a point of [-1, 1]^3, from up to 3 before it. */
+static RtRay random_ray(RtRandom *random) {
+    RtVec3 target;
+    for (int a = 0; a < 3; a++) target.at[a] = rt_random_between(random, -1, 1);
+    RtVec3d dir = rt_random_direction(random);
+    RtVec3d org = rt_add_scaledd(rt_widen(target), dir, -3 * (double)rt_random_unit(random));
+    return make_ray(rt_narrow(org), rt_narrow(dir));
+}
+
+enum { RAYS = 4000 };
+
+static void both_ends_of_the_interval_of_t_belong_to_it(void **state) {
+    (void)state;
+    RtGeometry g = one_of_each(0);
+    RtRandom random = rt_random(1, 0);
+    int hits = 0;
+    for (int i = 0; i < RAYS; i++) {
+        RtRay ray = random_ray(&random);
+        uint32_t id = (uint32_t)i % g.object_count;
+        float t, again;
+        if (!hit(&g, id, &ray, &t) || t == 0) continue;
+        hits++;
+        ray.tmin = ray.tmax = t;
+        assert_true(hit(&g, id, &ray, &again) && again == t);
+        ray.tmin = 0, ray.tmax = nextafterf(t, 0);
+        assert_false(hit(&g, id, &ray, &again));
+        ray.tmin = nextafterf(t, INFINITY), ray.tmax = INFINITY;
+        assert_true(!hit(&g, id, &ray, &again) || again > t);
+    }
+    assert_true(hits > RAYS / 8);
+    rt_geometry_clear(&g);
+}
+
+static void a_direction_twice_as_long_halves_t_to_the_bit(void **state) {
+    (void)state;
+    RtGeometry g = one_of_each(0);
+    RtRandom random = rt_random(2, 0);
+    for (int i = 0; i < RAYS; i++) {
+        RtRay ray = random_ray(&random), longer = ray;
+        uint32_t id = (uint32_t)i % g.object_count;
+        float t = 0, half = 0, third = 0;
+        longer.dir = rt_scale(ray.dir, 2);
+        bool met = hit(&g, id, &ray, &t);
+        assert_int_equal(met, hit(&g, id, &longer, &half));
+        assert_true(half == t / 2);
+        longer.dir = rt_scale(ray.dir, 3);
+        if (met && hit(&g, id, &longer, &third)) assert_true(fabsf(third * 3 - t) <= 1e-4f);
+    }
+    rt_geometry_clear(&g);
+}
+
+static void a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit(void **state) {
+    (void)state;
+    static const int exponents[] = {-40, -17, 1, 23, 40};
+    RtGeometry unit = one_of_each(0);
+    for (int e = 0; e < 5; e++) {
+        RtGeometry g = one_of_each(exponents[e]);
+        RtRandom random = rt_random(3, 0);
+        for (int i = 0; i < RAYS; i++) {
+            RtRay ray = random_ray(&random), scaled = ray;
+            uint32_t id = (uint32_t)i % g.object_count;
+            float t = 0, t_scaled = 0;
+            scaled.org = rt_scale(ray.org, ldexpf(1, exponents[e]));
+            assert_int_equal(hit(&unit, id, &ray, &t), hit(&g, id, &scaled, &t_scaled));
+            assert_true(t_scaled == ldexpf(t, exponents[e]));
+        }
+        rt_geometry_clear(&g);
+    }
+    rt_geometry_clear(&unit);
+}
+
+/* ---- refusals ---- */
+
+static void assert_refused(const RtGeometry *g, RtStatus status, const RtError *error, const char *phrase) {
+    assert_int_equal(status, RT_BAD_INPUT);
+    if (!strstr(error->message, phrase)) fail_msg("'%s' does not say '%s'", error->message, phrase);
+    assert_int_equal(g->object_count, 0);
+}
+
+#define REFUSE(phrase, call)                                                                                 \
+    do {                                                                                                     \
+        RtError failure = {RT_OK, ""}, *error = &failure;                                                    \
+        RtStatus status = (call);                                                                            \
+        assert_refused(&g, status, error, phrase);                                                           \
+    } while (0)
+
+static void degenerate_objects_are_refused_with_the_reason(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    const RtVec3 o = {{0, 0, 0}}, z = {{0, 0, 1}}, nan = {{NAN, 0, 0}}, huge = {{0, 6e17f, 0}};
+    const RtVec3 line[] = {{{0, 0, 0}}, {{1, 1, 1}}, {{2, 2, 2}}, {{5, 5, 5}}};
+    const RtVec3 warped[] = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0.1f}}, {{0, 1, 0}}};
+    const RtVec3 infinite[] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, INFINITY, 0}}};
+    const RtVec3 normals[] = {{{0, 0, 1}}, {{0, 0, 0}}, {{0, 0, 1}}};
+    REFUSE("radius above 0", rt_geometry_add_sphere(&g, o, 0, error));
+    REFUSE("radius above 0", rt_geometry_add_sphere(&g, o, -1, error));
+    REFUSE("a radius of nan", rt_geometry_add_sphere(&g, o, NAN, error));
+    REFUSE("a radius of inf", rt_geometry_add_sphere(&g, o, INFINITY, error));
+    REFUSE("not a finite number", rt_geometry_add_sphere(&g, nan, 1, error));
+    REFUSE("scale the scene down", rt_geometry_add_sphere(&g, huge, 1, error));
+    REFUSE("at least 3 vertices", rt_geometry_add_polygon(&g, line, 0, error));
+    REFUSE("at least 3 vertices", rt_geometry_add_polygon(&g, line, 2, error));
+    REFUSE("has no area", rt_geometry_add_polygon(&g, line, 4, error));
+    REFUSE("not planar", rt_geometry_add_polygon(&g, warped, 4, error));
+    REFUSE("not a finite number", rt_geometry_add_polygon(&g, infinite, 3, error));
+    REFUSE("not a finite number", rt_geometry_add_triangle(&g, infinite, NULL, error));
+    REFUSE("vertex normal 1 is zero", rt_geometry_add_triangle(&g, warped, normals, error));
+    REFUSE("one of them above 0", rt_geometry_add_cone(&g, o, 0, z, 0, error));
+    REFUSE("radii of at least 0", rt_geometry_add_cone(&g, o, -1, z, 1, error));
+    REFUSE("the same point", rt_geometry_add_cone(&g, z, 1, z, 1, error));
+    REFUSE("not a finite number", rt_geometry_add_cone(&g, o, 1, nan, 1, error));
+    REFUSE("a radius of nan", rt_geometry_add_cone(&g, o, 1, z, NAN, error));
     rt_geometry_clear(&g);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_lecture_ray_meets_the_unit_sphere_at_9_and_11),
+        cmocka_unit_test(a_sphere_is_hit_from_outside_and_inside_and_touched),
+        cmocka_unit_test(a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices),
+        cmocka_unit_test(a_triangle_without_area_is_let_in_and_never_hit),
+        cmocka_unit_test(a_concave_polygon_is_missed_in_its_notch),
+        cmocka_unit_test(a_cylinder_is_open_at_both_ends),
+        cmocka_unit_test(a_full_cone_is_hit_up_to_its_tip),
+        cmocka_unit_test(a_flat_cone_ends_at_its_circles),
+        cmocka_unit_test(normals_point_outward_or_by_the_right_hand_rule),
+        cmocka_unit_test(vertex_normals_are_interpolated_for_shading_only),
+        cmocka_unit_test(both_ends_of_the_interval_of_t_belong_to_it),
+        cmocka_unit_test(a_direction_twice_as_long_halves_t_to_the_bit),
+        cmocka_unit_test(a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit),
+        cmocka_unit_test(degenerate_objects_are_refused_with_the_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
