@@ -145,11 +145,10 @@ static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_
  * then *enter is where, at least tmin. Where dir is 0, inv is infinite: the crossings are -inf or +inf, or
  * NaN for an origin exactly on a moved plane, and NaN is passed over: such a ray counts as inside. */
 static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float tmax, float *enter) {
-    const RtVec3 planes[2] = {box->lo, box->hi};
     float near = ray->tmin, far = tmax;
     for (int a = 0; a < 3; a++) {
-        float first = (planes[ray->negative[a]].at[a] - ray->org_near[a]) * ray->inv[a];
-        float second = (planes[1 - ray->negative[a]].at[a] - ray->org_far[a]) * ray->inv[a];
+        float first = ((ray->negative[a] ? box->hi : box->lo).at[a] - ray->org_near[a]) * ray->inv[a];
+        float second = ((ray->negative[a] ? box->lo : box->hi).at[a] - ray->org_far[a]) * ray->inv[a];
         near = rt_maxf(first, near);
         far = rt_minf(second, far);
     }
