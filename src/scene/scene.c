@@ -116,7 +116,9 @@ static void place_camera(RtCamera *camera, const RtBox *box) {
     double radius = 1;
     if (!rt_box_is_empty(*box)) {
         center = rt_widen(rt_box_center(*box));
-        radius = fmax(rt_lengthd(rt_subd(rt_widen(box->hi), center)), 1e-30);
+        radius = rt_lengthd(rt_subd(rt_widen(box->hi), center));
+        /* A point has no size, but float32 has to tell `from` and `at` apart. */
+        radius = fmax(radius, fmax(1e-5 * rt_lengthd(center), 1e-30));
     }
     RtVec3d up = rt_normalized(rt_widen(camera->up));
     /* Two directions across `up`, whichever axis that is. */

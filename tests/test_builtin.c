@@ -1,0 +1,233 @@
+/* scenes/: the built-in scenes against the databases they follow, and what is refused. */
+#include "testing.h"
+
+#include "base/memory.h"
+#include "scene/load.h"
+#include "scenes/builtin.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <xxhash.h>
+
+static RtScene open_scene(const char *spec) {
+    RtScene scene;
+    assert_ok(rt_scene_open(spec, &scene, error));
+    return scene;
+}
+
+static void balls_and_tetra_have_the_counts_of_the_databases(void **state) {
+    (void)state;
+    const struct {
+        const char *spec;
+        uint32_t spheres, polygons, triangles;
+    } cases[] = {
+        {"balls", 7381, 1, 0},   {"balls:size=1", 10, 1, 0}, {"balls:size=5", 66430, 1, 0},
+        {"tetra", 0, 0, 4096},   {"tetra:size=1", 0, 0, 4},  {"tetra:size=9", 0, 0, 262144},
+        {"random:n=7", 7, 0, 0}, {"random:n=1", 1, 0, 0},    {"random:n=8,shape=triangle", 0, 0, 8},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene = open_scene(cases[i].spec);
+        assert_int_equal(scene.geometry.sphere_count, cases[i].spheres);
+        assert_int_equal(scene.geometry.polygon_count, cases[i].polygons);
+        assert_int_equal(scene.geometry.triangle_count, cases[i].triangles);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void assert_printed(RtVec3 v, const char *expected) {
+    char text[96];
+    snprintf(text, sizeof text, "%.6g %.6g %.6g", (double)v.x, (double)v.y, (double)v.z);
+    assert_string_equal(text, expected);
+}
+
+/* Values as the package that makes the databases prints them. */
+static void balls_lie_where_the_databases_have_them(void **state) {
+    (void)state;
+    RtScene scene = open_scene("balls");
+    const RtSphere *spheres = scene.geometry.spheres;
+    assert_printed(spheres[0].center, "0 0 0");
+    assert_printed(spheres[1].center, "0.272166 0.272166 0.544331");
+    assert_printed(spheres[2].center, "0.420314 0.420314 0.618405");
+    assert_printed(spheres[822].center, "0.802608 0.281471 -0.111111");
+    assert_printed(spheres[7380].center, "0.436486 -0.541242 -0.222222");
+    assert_true(spheres[1].radius == (float)(0.5 / 3));
+    assert_printed(scene.geometry.polygon_vertices[0], "12 12 -0.5");
+    assert_int_equal(scene.light_count, 3);
+    assert_true(scene.lights[2].intensity.x == (float)(sqrt(3.0) / 6));
+    assert_true(scene.materials[scene.material_of[1]].reflection == 0.5f);
+    assert_printed(scene.camera.from, "2.1 1.3 1.7");
+    rt_scene_clear(&scene);
+}
+
+/* Adds "x y z", each with 6 digits, as the databases are printed; what should be 0 may be off in the 16th. */
+static void hash_point(XXH3_state_t *hash, RtVec3 p) {
+    for (int a = 0; a < 3; a++) {
+        char text[32];
+        double x = fabs((double)p.at[a]) < 1e-12 ? 0 : (double)p.at[a];
+        int length = snprintf(text, sizeof text, "%.6g ", x);
+        XXH3_64bits_update(hash, text, (size_t)length);
+    }
+}
+
+/* The hashes were recorded from runs whose every number was compared with the files of the package: equal to
+ * the 6 digits printed there, give or take the rounding to float32. */
+static void balls_and_tetra_print_as_when_they_were_compared_with_the_databases(void **state) {
+    (void)state;
+    XXH3_state_t *hash = XXH3_createState();
+    RtScene scene = open_scene("balls");
+    XXH3_64bits_reset(hash);
+    for (uint32_t i = 0; i < scene.geometry.sphere_count; i++) {
+        const RtSphere *s = &scene.geometry.spheres[i];
+        hash_point(hash, s->center);
+        hash_point(hash, rt_vec3(s->radius, 0, 0));
+    }
+    rt_scene_clear(&scene);
+    assert_int_equal(XXH3_64bits_digest(hash), UINT64_C(0xc67dcbb42e0ffd90));
+
+    scene = open_scene("tetra");
+    XXH3_64bits_reset(hash);
+    for (uint32_t i = 0; i < scene.geometry.triangle_count; i++) {
+        for (int k = 0; k < 3; k++) hash_point(hash, scene.geometry.triangles[i].v[k]);
+    }
+    rt_scene_clear(&scene);
+    assert_int_equal(XXH3_64bits_digest(hash), UINT64_C(0x5938c7814f54bb3e));
+    XXH3_freeState(hash);
+}
+
+static void random_scenes_depend_on_the_seed_alone(void **state) {
+    (void)state;
+    RtScene a = open_scene("random:n=500,shape=mixed,seed=7"),
+            b = open_scene("random:n=500,shape=mixed,seed=7");
+    RtScene c = open_scene("random:n=500,shape=mixed,seed=8");
+    assert_int_equal(rt_scene_fingerprint(&a), rt_scene_fingerprint(&b));
+    assert_int_not_equal(rt_scene_fingerprint(&a), rt_scene_fingerprint(&c));
+    assert_int_equal(a.geometry.sphere_count, 125);
+    assert_int_equal(a.geometry.polygon_count, 125);
+    assert_int_equal(a.geometry.triangle_count, 125);
+    assert_int_equal(a.geometry.cone_count, 125);
+    rt_scene_clear(&a);
+    rt_scene_clear(&b);
+    rt_scene_clear(&c);
+}
+
+static void a_random_object_does_not_depend_on_those_before_it(void **state) {
+    (void)state;
+    RtScene few = open_scene("random:n=10"), many = open_scene("random:n=1000");
+    assert_memory_equal(&few.geometry.spheres[9].center, &many.geometry.spheres[9].center, sizeof(RtVec3));
+    rt_scene_clear(&few);
+    rt_scene_clear(&many);
+}
+
+static void one_narrow_cluster_lies_together(void **state) {
+    (void)state;
+    RtScene scene = open_scene("random:n=2000,distribution=clustered,clusters=1,width=0.001,radius=0.001");
+    RtVec3 size = rt_box_size(scene.geometry.box);
+    assert_true(rt_maxf(size.x, rt_maxf(size.y, size.z)) < 0.1f);
+    rt_scene_clear(&scene);
+}
+
+static void wrong_names_are_refused_with_what_would_be_right(void **state) {
+    (void)state;
+    const struct {
+        const char *spec, *says;
+    } cases[] = {
+        {"bals", "did you mean 'balls'?"},
+        {"", "Built-in are: balls, tetra, random"},
+        {"balls:size=0", "1..7"},
+        {"balls:size=8", "1..7"},
+        {"balls:size=1000000000", "1..7"},
+        {"balls:sise=2", "did you mean 'size'?"},
+        {"balls:4", "key=value"},
+        {"random:n=0", "1..268435456"},
+        {"random:n=1000000000", "1..268435456"},
+        {"random:n=nan", "1..268435456"},
+        {"random:shape=cube", "sphere|triangle|mixed"},
+        {"balls.nof", "'.nff'?"},
+        {"tests/no_such_scene.nff", "there is no such file"},
+        {"scenes/jewl.nff", "did you mean 'scenes/jewel.nff'?"},
+        {"no_such_folder/a.nff", "nor a folder no_such_folder/"},
+        {"scenes", "is a folder"},
+        {"README.md", "the other mesh formats"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene;
+        RtError problem;
+        assert_int_equal(rt_scene_open(cases[i].spec, &scene, &problem), RT_BAD_INPUT);
+        if (!strstr(problem.message, cases[i].says))
+            fail_msg("'%s' gave: %s", cases[i].spec, problem.message);
+        assert_int_equal(scene.geometry.object_count, 0);
+    }
+}
+
+static void too_large_a_scene_is_refused_with_the_size_that_fits(void **state) {
+    (void)state;
+    const struct {
+        const char *name;
+        int64_t value;
+        uint64_t objects; /* for which there is memory */
+        const char *says;
+    } cases[] = {
+        {"random", 1000000, 1234, "n=1234 would fit"},
+        {"balls", 7, 7382, "size=4 would fit"},
+        {"balls", 7, 7381, "size=3 would fit"},
+        {"tetra", 9, 65535, "size=7 would fit"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const RtBuiltin *builtin = rt_builtin_find(cases[i].name);
+        RtValue values[RT_MAX_PARAMS];
+        RtError problem;
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
+        values[0].i = cases[i].value;
+        uint64_t bytes = cases[i].objects * RT_BUILTIN_OBJECT_BYTES;
+        assert_int_equal(rt_builtin_check_memory(builtin, values, bytes, &problem), RT_BAD_INPUT);
+        if (!strstr(problem.message, cases[i].says)) fail_msg("%s gave: %s", cases[i].name, problem.message);
+    }
+}
+
+static void the_estimate_of_memory_is_no_less_than_what_is_used(void **state) {
+    (void)state;
+    static const char *const specs[] = {"balls", "tetra", "random:n=20000", "random:n=20000,shape=mixed"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        RtScene scene = open_scene(specs[i]);
+        assert_true(rt_scene_bytes(&scene) <=
+                    (uint64_t)scene.geometry.object_count * RT_BUILTIN_OBJECT_BYTES);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    static const char *const specs[] = {"balls:size=1", "tetra:size=2", "random:n=100,shape=mixed"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        int64_t before = rt_alloc_live();
+        RtStatus status = RT_NO_MEMORY;
+        for (uint64_t n = 1; status != RT_OK; n++) {
+            RtScene scene;
+            RtError problem;
+            rt_alloc_fail_at(n);
+            status = rt_scene_open(specs[i], &scene, &problem);
+            rt_alloc_fail_at(0);
+            if (status == RT_OK)
+                rt_scene_clear(&scene);
+            else
+                assert_int_equal(status, RT_NO_MEMORY);
+            assert_int_equal(rt_alloc_live(), before);
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(balls_and_tetra_have_the_counts_of_the_databases),
+        cmocka_unit_test(balls_lie_where_the_databases_have_them),
+        cmocka_unit_test(balls_and_tetra_print_as_when_they_were_compared_with_the_databases),
+        cmocka_unit_test(random_scenes_depend_on_the_seed_alone),
+        cmocka_unit_test(a_random_object_does_not_depend_on_those_before_it),
+        cmocka_unit_test(one_narrow_cluster_lies_together),
+        cmocka_unit_test(wrong_names_are_refused_with_what_would_be_right),
+        cmocka_unit_test(too_large_a_scene_is_refused_with_the_size_that_fits),
+        cmocka_unit_test(the_estimate_of_memory_is_no_less_than_what_is_used),
+        cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
