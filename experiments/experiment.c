@@ -106,6 +106,9 @@ static RtStatus check_trial(const RtExperiment *experiment, uint32_t i, RtError 
 }
 
 static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
+    if (experiment->baseline >= experiment->contender_count) {
+        return rt_fail(error, RT_BAD_INPUT, "this is not the label of one of the accelerators");
+    }
     const RtContender *baseline = &experiment->contenders[experiment->baseline];
     if (baseline->missing) {
         return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",

@@ -10,8 +10,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
 enum { MOST_SCRIPT_BYTES = 1 << 20, MOST_ARGUMENTS = RT_MAX_PLOTS + 3 };
 
 const char *rt_contender_color(uint32_t contender) {
