@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# check_counts.sh [--update]: tests/golden/experiment.yaml gives tests/golden/counts.csv, byte for byte, on one thread
+# and on two; run for every build, this makes the counts of compilers and optimisation levels the same. --update
+# replaces the file: say in CHANGELOG.md why it changed. Uses $RT_PROGRAM.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=${RT_PROGRAM:-build/release/raytally}
+golden=tests/golden/counts.csv
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+
+run() {
+    "$program" run tests/golden/experiment.yaml --threads "$1" --out "$work/$1" >/dev/null 2>"$work/log" || {
+        cat "$work/log"
+        exit 1
+    }
+}
+
+if [ "${1-}" = --update ]; then
+    run 0 && cp "$work/0/counts.csv" "$golden"
+    exit
+fi
+for threads in 1 2; do
+    run $threads
+    diff "$golden" "$work/$threads/counts.csv" >"$work/diff" || {
+        echo "on $threads threads $(grep -c '^>' "$work/diff") rows differ from $golden:"
+        head -n 8 "$work/diff"
+        exit 1
+    }
+done
