@@ -4,6 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_missing build optional data
+fetch_bunny
 build release
 say "running experiments/first-look.yaml"
 exec build/release/raytally run experiments/first-look.yaml "$@"

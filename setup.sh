@@ -67,3 +67,7 @@ build() {
     grep -A 3 'CMake Warning' "build/$preset.log" | grep '^  ' || true
     logged "build/$preset.log" cmake --build --preset "$preset" -j "$(nproc)" || die "the build failed: build/$preset.log"
 }
+
+fetch_bunny() {
+    scenes/fetch.sh bunny 2>/dev/null || say "going on without scenes/fetched/bunny.obj"
+}
