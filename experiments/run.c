@@ -58,6 +58,9 @@ static RtStatus open_journal(Run *run, RtError *error) {
 }
 
 static RtStatus begin(Run *run, RtError *error) {
+    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
+        RT_TRY(rt_trial_find_scene(&run->experiment->trials[t], error));
+    }
     RT_TRY(make_directories(run, error));
     RT_TRY(open_journal(run, error));
     RT_TRY(copy_experiment(run, error));

@@ -82,21 +82,26 @@ static void notice(const Trial *trial, const char *message) {
 
 /* ---- scene, rays, structures ---- */
 
+static bool is_there(const RtTrial *setup) {
+    return !setup->file || rt_file_exists(setup->path);
+}
+
+RtStatus rt_trial_find_scene(const RtTrial *setup, RtError *error) {
+    if (is_there(setup) || setup->optional) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", setup->path);
+}
+
 static RtStatus open_scene(Trial *trial, RtError *error) {
     const RtTrial *setup = &trial->experiment->trials[trial->index];
-    RtTrialResult *result = &trial->results->trials[trial->index];
-    if (!setup->file || rt_file_exists(setup->path)) return rt_scene_open(setup->path, &trial->scene, error);
-    if (!setup->optional) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: this scene is missing; `scenes/fetch.sh` fetches the public meshes", setup->path);
-    }
+    RT_TRY(rt_trial_find_scene(setup, error));
+    if (is_there(setup)) return rt_scene_open(setup->path, &trial->scene, error);
     char message[RT_MAX_PATH + 128];
     snprintf(message, sizeof message,
-             "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public "
-             "meshes",
-             setup->path, setup->label);
+             "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
+             setup->label);
     notice(trial, message);
-    result->skipped = true;
+    trial->results->trials[trial->index].skipped = true;
     return RT_OK;
 }
 

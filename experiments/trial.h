@@ -34,6 +34,9 @@ typedef struct RtTrialOptions {
     RtObserver observer;
 } RtTrialOptions;
 
+/* RT_OK where the scene is there to be opened, or optional; tells before anything is measured. */
+RtStatus rt_trial_find_scene(const RtTrial *setup, RtError *error);
+
 /* Fills what is unknown of the experiment's trial number `index`. An exact accelerator whose answers differ
  * from the baseline's, or whose hits are not the same number, is RT_MISMATCH. */
 RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error);

@@ -175,6 +175,34 @@ refuses "taken\.png" render balls:size=1 --size 8x8 -o taken.png
 refuses "teps.*steps" render balls:size=1 --size 8x8 --heatmap teps x.png
 refuses "missing/x\.json.*No such file" render balls:size=1 --size 8x8 --stats missing/x.json
 
+# ---- measuring ----
+
+bench='bench balls:size=1 --size 8x8 --limit 50 --rounds 2'
+refuses 'SCENE is missing' bench --accel bvh
+refuses 'accelerator is missing' $bench
+refuses 'nope\.nff: there is no such file' bench nope.nff --accel bvh
+refuses "'grd': did you mean 'grid'" $bench --accel grd
+refuses 'bvh.*used twice' $bench --accel bvh --accel bvh
+refuses "no ray kind 'sideways'.*primary" $bench --accel bvh --rays sideways
+refuses 'primary.*twice' $bench --accel bvh --rays primary,primary
+refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 1000000000
+refuses 'limit.*1\.\.' $bench --accel bvh --limit 0
+refuses '--every stands behind' $bench --every 2 --accel bvh
+refuses 'missing/x\.csv.*No such file' $bench --accel bvh --csv missing/x.csv
+does $bench --accel all --json
+does $bench --accel brute --every 3 --accel bvh --baseline bvh --count-only
+
+refuses 'EXPERIMENT is missing' run
+refuses 'nope\.yaml: .*No such file' run nope.yaml
+yaml wrong 'name: wrong' 'questoin: why'
+refuses 'wrong\.yaml:2:.*question' run wrong.yaml
+yaml absent 'name: a' 'question: b' 'prediction: c' 'scenes: [{scene: absent.obj}]' 'accelerators: [{accel: bvh}]'
+refuses 'absent\.obj: there is no such file; .*fetch\.sh' run absent.yaml
+for command in plot report reproduce; do
+    refuses 'DIR is missing' $command
+    refuses 'nowhere/manifest\.json' $command nowhere
+done
+
 # ---- and what is right works: the same scenes without their mistake ----
 
 nff right 's 0 0 0 1' 'p 3' '0 0 0' '1 0 0' '1 1 0' 'c' '0 0 0 1' '0 0 1 1'
@@ -182,5 +210,13 @@ does render right.nff -o x.png
 [ -s x.png ] || complain "raytally render right.nff -o x.png: makes no picture"
 yaml right 'objects:' '  - sphere: {center: [0, 0, 0], radius: 1}'
 does render right.yaml --size 8x8 -o y.png
+
+yaml small 'name: small' 'question: b' 'prediction: c' 'scenes: [{scene: "balls:size=1", size: 8x8}]' \
+    'accelerators: [{accel: bvh}, {accel: brute}]' 'limit: 50' 'rounds: 2' 'milliseconds: 1'
+does run small.yaml
+does run small.yaml --resume
+does reproduce results/small
+sed -i 's/,50,/,49,/' results/small/counts.csv
+"$program" reproduce results/small >stdout 2>stderr && complain 'raytally reproduce: takes counts that differ'
 
 [ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }

@@ -219,6 +219,7 @@ static RtStatus write_csv(const RtResults *results, const Options *o, RtError *e
 }
 
 static RtStatus report(const RtResults *results, const Options *o, RtError *error) {
+    if (o->csv) RT_TRY(write_csv(results, o, error));
     if (o->json) {
         print_json(results);
     } else {
@@ -227,7 +228,7 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
         rt_null_sentence(results, sentence, sizeof sentence);
         if (sentence[0]) printf("\n%s\n", sentence);
     }
-    return o->csv ? write_csv(results, o, error) : RT_OK;
+    return RT_OK;
 }
 
 /* ---- the command ---- */
