@@ -16,6 +16,7 @@ if(GIT_FOUND AND EXISTS ${SOURCE}/.git)
     endif()
   endif()
 endif()
+string(REGEX REPLACE " +-W[^ ]*" "" FLAGS "${FLAGS}") # warnings change no result
 string(STRIP "${FLAGS}" FLAGS)
 set(text "#define RT_COMMIT \"${commit}\"
 #define RT_DIRTY ${dirty}

@@ -235,11 +235,10 @@ void rt_null_sentence(const RtResults *results, char *out, size_t room) {
     int n =
         snprintf(out, room, "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " intervals straddle 1",
                  results->experiment->contenders[results->experiment->baseline].label, straddling, runs);
-    /* One in twenty may miss by chance; more of them mean a machine too restless to be measured on. */
-    bool fine = runs - straddling <= 1 + runs / 10;
-    if (n > 0 && (size_t)n < room) {
-        snprintf(out + n, room - (size_t)n, "%s",
-                 fine ? ", as they should."
-                      : ": this machine was not quiet; take small differences for noise.");
-    }
+    uint32_t misses = runs - straddling;
+    const char *verdict = misses == 0 ? ", as they should."
+                          : misses <= 1 + runs / 10
+                              ? "; one in twenty may miss by chance."
+                              : ": this machine was not quiet; take small differences for noise.";
+    if (n > 0 && (size_t)n < room) snprintf(out + n, room - (size_t)n, "%s", verdict);
 }
