@@ -83,8 +83,12 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
     json_error_t fault;
     *manifest = NULL;
     RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    if (!rt_file_exists(path)) {
+        return rt_fail(error, RT_BAD_INPUT, "%s is no finished result directory: it has no manifest.json",
+                       directory);
+    }
     *manifest = json_load_file(path, 0, &fault);
     if (*manifest) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s: line %d: %s; this is not a whole result directory", path,
-                   fault.line, fault.text);
+    return rt_fail_at(error, path, fault.line > 0 ? (size_t)fault.line : 0, 0,
+                      "%s; the file is damaged: run the experiment again", fault.text);
 }

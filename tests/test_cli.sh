@@ -200,7 +200,7 @@ yaml absent 'name: a' 'question: b' 'prediction: c' 'scenes: [{scene: absent.obj
 refuses 'absent\.obj: there is no such file; .*fetch\.sh' run absent.yaml
 for command in plot report reproduce; do
     refuses 'DIR is missing' $command
-    refuses 'nowhere/manifest\.json' $command nowhere
+    refuses 'nowhere is no finished result directory' $command nowhere
 done
 
 # ---- and what is right works: the same scenes without their mistake ----
@@ -211,8 +211,13 @@ does render right.nff -o x.png
 yaml right 'objects:' '  - sphere: {center: [0, 0, 0], radius: 1}'
 does render right.yaml --size 8x8 -o y.png
 
+mkdir damaged && echo '{' >damaged/manifest.json
+refuses 'damaged/manifest\.json:2: .*run the experiment again' reproduce damaged
+
 yaml small 'name: small' 'question: b' 'prediction: c' 'scenes: [{scene: "balls:size=1", size: 8x8}]' \
     'accelerators: [{accel: bvh}, {accel: brute}]' 'limit: 50' 'rounds: 2' 'milliseconds: 1'
+: >occupied
+refuses 'occupied.*(directory|folder)' run small.yaml --out occupied
 does run small.yaml
 does run small.yaml --resume
 does reproduce results/small
