@@ -53,8 +53,8 @@ static RtStatus record(void *context, size_t tile, const RtRay *rays, size_t cou
     TileRays *to = &recorder->tiles[tile];
     for (size_t i = 0; i < count; i++) {
         uint32_t kind = rays[i].kind;
-        RT_TRY(rt_reserve((void **)&to->rays[kind], &to->capacity[kind], (uint64_t)to->count[kind] + 1,
-                          sizeof(RtRay), error));
+        RT_TRY(rt_reserve(&to->rays[kind], &to->capacity[kind], (uint64_t)to->count[kind] + 1, sizeof(RtRay),
+                          error));
         to->rays[kind][to->count[kind]++] = rays[i];
     }
     return RT_OK;

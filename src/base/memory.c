@@ -35,7 +35,7 @@ void rt_free(void *block) {
     free(block);
 }
 
-RtStatus rt_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
+RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
     if (needed <= *capacity) return RT_OK;
     if (needed > UINT32_MAX) {
         return rt_fail(error, RT_BAD_INPUT, "more than %u elements are asked for; split the scene",
@@ -47,9 +47,13 @@ RtStatus rt_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t si
     if (grown > UINT32_MAX) grown = UINT32_MAX;
     void *block = rt_alloc((size_t)grown, size);
     if (!block) return rt_fail_memory(error, "a growing array", (size_t)grown * size);
-    if (*array) memcpy(block, *array, (size_t)*capacity * size);
-    rt_free(*array);
-    *array = block;
+    /* The caller's pointer is read and written as bytes: it is no void pointer, and may not be taken for one.
+     */
+    void *old;
+    memcpy(&old, array, sizeof old);
+    if (old) memcpy(block, old, (size_t)*capacity * size);
+    rt_free(old);
+    memcpy(array, &block, sizeof block);
     *capacity = (uint32_t)grown;
     return RT_OK;
 }

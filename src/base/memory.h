@@ -17,9 +17,10 @@ void *rt_alloc(size_t count, size_t size);
 /* Frees a block of rt_alloc; NULL is allowed. */
 void rt_free(void *block);
 
-/* Makes room for `needed` elements in a growing array: `*array` of `*capacity` elements of `size` bytes each
- * is replaced by a larger one with the same contents. On failure nothing changes. */
-RtStatus rt_reserve(void **array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
+/* Makes room for `needed` elements in a growing array. `array` is the address of a pointer, of any type, to
+ * `*capacity` elements of `size` bytes each (or of NULL); the block is replaced by a larger one with the same
+ * contents. On failure nothing changes. */
+RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
 
 /* Bytes of memory in this machine. */
 uint64_t rt_memory_size(void);

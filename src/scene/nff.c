@@ -193,8 +193,8 @@ static RtStatus read_light(Reader *r) {
     RT_TRY(read_vector(r, "l x y z, the position of a light", &position));
     bool plain = !number_follows(r);
     if (plain) {
-        RT_TRY(rt_reserve((void **)&r->plain, &r->plain_capacity, (uint64_t)r->plain_count + 1,
-                          sizeof(uint32_t), r->error));
+        RT_TRY(rt_reserve(&r->plain, &r->plain_capacity, (uint64_t)r->plain_count + 1, sizeof(uint32_t),
+                          r->error));
         r->plain[r->plain_count++] = r->scene->light_count;
     } else {
         RT_TRY(read_vector(r, "l x y z r g b, the colour of a light", &color));
@@ -286,9 +286,9 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
                           "%u vertices are announced, but what is left of the file holds at most %zu", *count,
                           room);
     }
-    RT_TRY(rt_reserve((void **)&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->error));
+    RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->error));
     if (patch) {
-        RT_TRY(rt_reserve((void **)&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->error));
+        RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->error));
     }
     for (uint32_t i = 0; i < *count; i++) {
         RT_TRY(read_vector(r, what, &r->vertices[i]));

@@ -43,8 +43,8 @@ RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint3
     RT_TRY(check_range(m->name, "reflection", m->reflection, 0, 1, error));
     RT_TRY(check_range(m->name, "transmission", m->transmission, 0, 1, error));
     RT_TRY(check_range(m->name, "ior", m->ior, 1e-3f, 1e3f, error));
-    RT_TRY(rt_reserve((void **)&scene->materials, &scene->material_capacity,
-                      (uint64_t)scene->material_count + 1, sizeof(RtMaterial), error));
+    RT_TRY(rt_reserve(&scene->materials, &scene->material_capacity, (uint64_t)scene->material_count + 1,
+                      sizeof(RtMaterial), error));
     *index = scene->material_count++;
     scene->materials[*index] = *material;
     return RT_OK;
@@ -68,7 +68,7 @@ RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, R
     if (intensity.x < 0 || intensity.y < 0 || intensity.z < 0) {
         return rt_fail(error, RT_BAD_INPUT, "a light's intensity is negative");
     }
-    RT_TRY(rt_reserve((void **)&scene->lights, &scene->light_capacity, (uint64_t)scene->light_count + 1,
+    RT_TRY(rt_reserve(&scene->lights, &scene->light_capacity, (uint64_t)scene->light_count + 1,
                       sizeof(RtLight), error));
     scene->lights[scene->light_count++] = (RtLight){position, intensity};
     return RT_OK;
@@ -77,7 +77,7 @@ RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, R
 /* Room for the material of the next object, made before the object is added. */
 static RtStatus reserve_material_of(RtScene *scene, uint32_t material, RtError *error) {
     assert(material < scene->material_count);
-    RT_TRY(rt_reserve((void **)&scene->material_of, &scene->material_of_capacity,
+    RT_TRY(rt_reserve(&scene->material_of, &scene->material_of_capacity,
                       (uint64_t)scene->geometry.object_count + 1, sizeof(uint32_t), error));
     scene->material_of[scene->geometry.object_count] = material;
     return RT_OK;

@@ -41,8 +41,7 @@ static RtStatus reserve_object(RtGeometry *g, RtError *error) {
     if (g->object_count >= RT_MAX_OBJECTS) {
         return rt_fail(error, RT_BAD_INPUT, "a scene holds at most %u objects", RT_MAX_OBJECTS);
     }
-    return rt_reserve((void **)&g->objects, &g->object_capacity, (uint64_t)g->object_count + 1, sizeof(RtRef),
-                      error);
+    return rt_reserve(&g->objects, &g->object_capacity, (uint64_t)g->object_count + 1, sizeof(RtRef), error);
 }
 
 /* One function per shape that appends a checked object; all room is made before anything changes. */
@@ -50,9 +49,8 @@ static RtStatus reserve_object(RtGeometry *g, RtError *error) {
     static RtStatus append_##name(RtGeometry *g, const Type *object, RtError *error) {                       \
         uint64_t needed = (uint64_t)g->name##_count + 1;                                                     \
         RT_TRY(reserve_object(g, error));                                                                    \
-        RT_TRY(rt_reserve((void **)&g->name##s, &g->name##_capacity, needed, sizeof(Type), error));          \
-        RT_TRY(                                                                                              \
-            rt_reserve((void **)&g->name##_ids, &g->name##_id_capacity, needed, sizeof(uint32_t), error));   \
+        RT_TRY(rt_reserve(&g->name##s, &g->name##_capacity, needed, sizeof(Type), error));                   \
+        RT_TRY(rt_reserve(&g->name##_ids, &g->name##_id_capacity, needed, sizeof(uint32_t), error));         \
         g->objects[g->object_count] = rt_ref(RT_SHAPE_##CONSTANT, g->name##_count);                          \
         g->name##_ids[g->name##_count] = g->object_count++;                                                  \
         g->name##s[g->name##_count++] = *object;                                                             \
@@ -77,7 +75,7 @@ RtStatus rt_geometry_add_polygon(RtGeometry *geometry, const RtVec3 *vertices, u
     RtPolygon polygon;
     uint32_t first = geometry->polygon_vertex_count;
     RT_TRY(rt_polygon_init(&polygon, vertices, first, count, error));
-    RT_TRY(rt_reserve((void **)&geometry->polygon_vertices, &geometry->polygon_vertex_capacity,
+    RT_TRY(rt_reserve(&geometry->polygon_vertices, &geometry->polygon_vertex_capacity,
                       (uint64_t)first + count, sizeof(RtVec3), error));
     RT_TRY(append_polygon(geometry, &polygon, error));
     memcpy(geometry->polygon_vertices + first, vertices, count * sizeof(RtVec3));
@@ -99,8 +97,7 @@ RtStatus rt_geometry_add_cone(RtGeometry *geometry, RtVec3 base, float base_radi
 /* Makes triangle_normals as long as there is room for triangles; new entries say "none". */
 static RtStatus reserve_triangle_normals(RtGeometry *g, uint64_t needed, RtError *error) {
     uint32_t before = g->triangle_normal_capacity;
-    RT_TRY(rt_reserve((void **)&g->triangle_normals, &g->triangle_normal_capacity, needed, sizeof(uint32_t),
-                      error));
+    RT_TRY(rt_reserve(&g->triangle_normals, &g->triangle_normal_capacity, needed, sizeof(uint32_t), error));
     for (uint32_t i = before; i < g->triangle_normal_capacity; i++) g->triangle_normals[i] = RT_NO_NORMALS;
     return RT_OK;
 }
@@ -128,7 +125,7 @@ RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3]
         RT_TRY(reserve_triangle_normals(geometry, (uint64_t)index + 1, error));
     }
     if (normals) {
-        RT_TRY(rt_reserve((void **)&geometry->vertex_normals, &geometry->vertex_normal_capacity,
+        RT_TRY(rt_reserve(&geometry->vertex_normals, &geometry->vertex_normal_capacity,
                           (uint64_t)geometry->vertex_normal_count + 1, sizeof(RtVertexNormals), error));
     }
     RT_TRY(append_triangle(geometry, &triangle, error));
