@@ -5,31 +5,6 @@
 #include <ctype.h>
 #include <string.h>
 
-/* ---- names ---- */
-
-static const char *const kind_names[RT_RAY_KIND_COUNT] = {
-#define NAME(CONSTANT, name, meaning) #name,
-    RT_RAY_KINDS(NAME)
-#undef NAME
-};
-
-const char *rt_ray_kind_name(RtRayKind kind) {
-    return kind_names[kind];
-}
-
-RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error) {
-    char list[256] = "";
-    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        if (strcmp(kind_names[k], name) == 0) {
-            *kind = (RtRayKind)k;
-            return RT_OK;
-        }
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", k ? ", " : "", kind_names[k]);
-    }
-    return rt_fail(error, RT_BAD_INPUT, "there is no ray kind '%.40s'; the kinds are %s", name, list);
-}
-
 void rt_experiment_init(RtExperiment *experiment) {
     memset(experiment, 0, sizeof *experiment);
     experiment->limit = 100000;
@@ -134,7 +109,8 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         snprintf(where, RT_MAX_LABEL, "rays[%u]", i);
         for (uint32_t k = 0; k < i; k++) {
             if (experiment->kinds[k] != experiment->kinds[i]) continue;
-            return rt_fail(error, RT_BAD_INPUT, "%s rays are given twice", kind_names[experiment->kinds[i]]);
+            return rt_fail(error, RT_BAD_INPUT, "%s rays are given twice",
+                           rt_ray_kind_name(experiment->kinds[i]));
         }
     }
     strcpy(where, "baseline");

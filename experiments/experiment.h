@@ -72,8 +72,4 @@ RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder
  * gets the path of the fault in the YAML ("accelerators[2].accel"), room for RT_MAX_LABEL. */
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error);
 
-/* "primary", ...; and the kind of a name, or RT_BAD_INPUT and the names there are. */
-const char *rt_ray_kind_name(RtRayKind kind);
-RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error);
-
 #endif

@@ -27,6 +27,7 @@
 #define RT_BASE_RAY_H
 
 #include "base/box.h"
+#include "base/status.h"
 
 #include <float.h>
 #include <stdint.h>
@@ -46,6 +47,10 @@ typedef enum RtRayKind {
 #undef RT_RAY_KIND_ENUM
         RT_RAY_KIND_COUNT
 } RtRayKind;
+
+/* "primary", ...; and the kind of a name, or RT_BAD_INPUT and the names there are. */
+const char *rt_ray_kind_name(RtRayKind kind);
+RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error);
 
 /* Invariants (rt_ray_is_valid): org and dir finite, |org| <= RT_MAX_COORDINATE, dir not zero,
  * 0 <= tmin <= tmax, tmin finite, tmax possibly infinite. */

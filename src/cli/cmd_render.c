@@ -204,12 +204,6 @@ static RtStatus write_images(const Run *run, RtError *error) {
     return status;
 }
 
-static const char *const kind_names[] = {
-#define RT_RAY_KIND_NAME(CONSTANT, name, meaning) #name,
-    RT_RAY_KINDS(RT_RAY_KIND_NAME)
-#undef RT_RAY_KIND_NAME
-};
-
 static uint64_t total_rays(const Run *run) {
     uint64_t sum = 0;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sum += run->rays[kind];
@@ -232,7 +226,8 @@ static json_t *stats_json(const Run *run) {
     json_t *kinds = json_object();
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         if (run->rays[kind])
-            json_object_set_new(kinds, kind_names[kind], tally_json(&run->counted.tallies[kind]));
+            json_object_set_new(kinds, rt_ray_kind_name((RtRayKind)kind),
+                                tally_json(&run->counted.tallies[kind]));
     }
     json_t *structure = json_pack("{s:I, s:I, s:I, s:I, s:I}", "interior", (json_int_t)d.interior, "leaves",
                                   (json_int_t)d.leaves, "empty_leaves", (json_int_t)d.empty_leaves,
@@ -273,7 +268,8 @@ static void print_summary(const Run *run) {
            run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,
            s->corners ? " at their corners" : "", o->depth);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        if (run->rays[kind]) printf("%llu %s, ", (unsigned long long)run->rays[kind], kind_names[kind]);
+        if (run->rays[kind])
+            printf("%llu %s, ", (unsigned long long)run->rays[kind], rt_ray_kind_name((RtRayKind)kind));
     }
     uint64_t rays = total_rays(run);
     printf("%llu rays in %.3g s on %d threads: %.3g Mrays/s.", (unsigned long long)rays, run->timed.seconds,
@@ -300,13 +296,13 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
     if (status != RT_OK) return status;
     if (!result.any_wrong && result.occluded_wrong == 0) {
         printf("%s: all %llu %s rays answered like brute.\n", run->spec, (unsigned long long)set->count,
-               kind_names[set->kind]);
+               rt_ray_kind_name(set->kind));
         return RT_OK;
     }
     char witness[512];
     rt_witness_format(&result.first_wrong, witness, sizeof witness);
     return rt_fail(error, RT_MISMATCH, "%s differs from brute on %s rays, first on: %s", run->spec,
-                   kind_names[set->kind], witness);
+                   rt_ray_kind_name(set->kind), witness);
 }
 
 static RtStatus check_rays(const Run *run, RtError *error) {
