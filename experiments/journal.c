@@ -1,6 +1,7 @@
 #include "experiments/journal.h"
 
 #include "base/memory.h"
+#include "experiments/json.h"
 #include "experiments/machine.h"
 
 #include <errno.h>
@@ -14,17 +15,10 @@ enum { MOST_BYTES = 1 << 28 }; /* of a journal */
 
 /* ---- to JSON ---- */
 
-static json_t *hex(uint64_t value) {
-    return json_sprintf("%016" PRIx64, value);
-}
-
-static json_t *number(double value) {
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *header_json(const RtExperiment *experiment) {
     return json_pack("{s:s, s:o, s:b, s:s}", "experiment", experiment->name, "hash",
-                     hex(experiment->fingerprint), "quick", experiment->quick, "build", rt_build_identity());
+                     rt_json_hex(experiment->fingerprint), "quick", experiment->quick, "build",
+                     rt_build_identity());
 }
 
 static json_t *trial_json(const RtTrialResult *trial) {
@@ -32,11 +26,11 @@ static json_t *trial_json(const RtTrialResult *trial) {
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         json_object_set_new(sets, rt_ray_kind_name((RtRayKind)k),
                             json_pack("{s:I, s:o}", "rays", (json_int_t)trial->rays[k], "hash",
-                                      hex(trial->ray_fingerprints[k])));
+                                      rt_json_hex(trial->ray_fingerprints[k])));
     }
     return json_pack("{s:I, s:I, s:I, s:o, s:o}", "objects", (json_int_t)trial->objects, "width",
-                     (json_int_t)trial->width, "height", (json_int_t)trial->height, "hash", hex(trial->scene),
-                     "sets", sets);
+                     (json_int_t)trial->width, "height", (json_int_t)trial->height, "hash",
+                     rt_json_hex(trial->scene), "sets", sets);
 }
 
 static json_t *build_json(const RtBuildResult *build) {
@@ -46,15 +40,12 @@ static json_t *build_json(const RtBuildResult *build) {
                      (json_int_t)d->interior, "leaves", (json_int_t)d->leaves, "empty_leaves",
                      (json_int_t)d->empty_leaves, "references", (json_int_t)d->references, "depth",
                      (json_int_t)d->depth, "bytes", (json_int_t)d->bytes, "predicted_cost",
-                     number(d->predicted_cost));
+                     rt_json_number(d->predicted_cost));
 }
 
 static json_t *count_json(const RtCell *cell) {
-    json_t *object = json_pack("{s:I}", "differ", (json_int_t)cell->differ);
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        json_object_set_new(object, rt_tally_name(i),
-                            json_integer((json_int_t)rt_tally_get(&cell->tally, i)));
-    }
+    json_t *object = rt_json_tally(&cell->tally);
+    json_object_set_new(object, "differ", json_integer((json_int_t)cell->differ));
     return object;
 }
 

@@ -1,14 +1,10 @@
 #include "experiments/manifest.h"
 
 #include "base/parallel.h"
+#include "experiments/json.h"
 #include "experiments/machine.h"
 
-#include <inttypes.h>
 #include <time.h>
-
-static json_t *hex(uint64_t value) {
-    return json_sprintf("%016" PRIx64, value);
-}
 
 static json_t *scenes_json(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
@@ -20,15 +16,15 @@ static json_t *scenes_json(const RtResults *results) {
             RtRayKind kind = experiment->kinds[k];
             json_object_set_new(sets, rt_ray_kind_name(kind),
                                 json_pack("{s:I, s:o}", "rays", (json_int_t)trial->rays[kind], "hash",
-                                          hex(trial->ray_fingerprints[kind])));
+                                          rt_json_hex(trial->ray_fingerprints[kind])));
         }
         json_array_append_new(
             list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:I, s:o}", "label",
                             experiment->trials[t].label, "scene", experiment->trials[t].spec, "skipped",
-                            trial->skipped, "objects", (json_int_t)trial->objects, "hash", hex(trial->scene),
-                            "width", (json_int_t)trial->width, "height", (json_int_t)trial->height, "corners",
-                            experiment->trials[t].corners, "depth", (json_int_t)experiment->trials[t].depth,
-                            "rays", sets));
+                            trial->skipped, "objects", (json_int_t)trial->objects, "hash",
+                            rt_json_hex(trial->scene), "width", (json_int_t)trial->width, "height",
+                            (json_int_t)trial->height, "corners", experiment->trials[t].corners, "depth",
+                            (json_int_t)experiment->trials[t].depth, "rays", sets));
     }
     return list;
 }
@@ -52,7 +48,7 @@ static json_t *manifest_json(const RtResults *results, const RtTrialOptions *opt
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     return json_pack(
         "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:s, s:s, s:i, s:i, s:o, s:o, s:o}", "experiment",
-        experiment->name, "file", experiment->path, "hash", hex(experiment->fingerprint), "question",
+        experiment->name, "file", experiment->path, "hash", rt_json_hex(experiment->fingerprint), "question",
         experiment->question, "prediction", experiment->prediction, "quick", experiment->quick, "seed",
         (json_int_t)experiment->seed, "limit", (json_int_t)experiment->limit, "rounds",
         (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
@@ -64,18 +60,8 @@ static json_t *manifest_json(const RtResults *results, const RtTrialOptions *opt
 RtStatus rt_manifest_write(const RtResults *results, const RtTrialOptions *options, const char *directory,
                            RtError *error) {
     char path[RT_MAX_PATH];
-    RtOutput output;
     RT_TRY(rt_path_join(directory, "manifest.json", path, error));
-    json_t *manifest = manifest_json(results, options);
-    if (!manifest) return rt_fail_memory(error, "the manifest", 0);
-    RtStatus status = rt_output_open(&output, path, error);
-    if (status == RT_OK) {
-        json_dumpf(manifest, output.file, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-        fputc('\n', output.file);
-        status = rt_output_commit(&output, error);
-    }
-    json_decref(manifest);
-    return status;
+    return rt_json_save(path, manifest_json(results, options), error);
 }
 
 RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error) {

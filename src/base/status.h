@@ -28,7 +28,7 @@ RtStatus rt_fail(RtError *error, RtStatus status, const char *format, ...)
 RtStatus rt_fail_at(RtError *error, const char *file, size_t line, size_t column, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 
-/* Records that `bytes` could not be had for `what`, and returns RT_NO_MEMORY. */
+/* Records that `bytes` (0: nobody knows how many) could not be had for `what`, and returns RT_NO_MEMORY. */
 RtStatus rt_fail_memory(RtError *error, const char *what, size_t bytes);
 
 /* Returns from the calling function with the status of `expr` unless it is RT_OK. */

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
+#include "experiments/json.h"
 #include "experiments/machine.h"
 #include "experiments/tables.h"
 #include "render/frame.h"
@@ -157,32 +158,20 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 /* ---- output ---- */
 
-static json_t *number(double value) {
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *row_json(const RtResults *results, uint32_t c, RtRayKind kind) {
     const RtCell *cell = rt_cell_at(results, 0, c, kind);
     const RtBuildResult *build = rt_build_at(results, 0, c);
-    const RtDescription *d = &build->shape;
-    json_t *structure = json_pack("{s:I, s:I, s:I, s:I, s:I, s:o}", "interior", (json_int_t)d->interior,
-                                  "leaves", (json_int_t)d->leaves, "empty_leaves",
-                                  (json_int_t)d->empty_leaves, "references", (json_int_t)d->references,
-                                  "depth", (json_int_t)d->depth, "predicted_cost", number(d->predicted_cost));
-    json_t *counts = isfinite(rt_cell_per_ray(results, 0, c, kind, cell->tally.object_tests)) ? json_object()
-                                                                                              : json_null();
-    for (size_t i = 0; json_is_object(counts) && i < RT_TALLY_COUNTER_COUNT; i++) {
-        json_object_set_new(counts, rt_tally_name(i),
-                            json_integer((json_int_t)rt_tally_get(&cell->tally, i)));
-    }
+    bool counted = isfinite(rt_cell_per_ray(results, 0, c, kind, cell->tally.object_tests));
     double unknown = cell->timed ? 1 : (double)NAN;
     return json_pack(
         "{s:s, s:s, s:s, s:I, s:I, s:f, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
         results->experiment->trials[0].spec, "accel", build->spec, "kind", rt_ray_kind_name(kind), "rays",
         (json_int_t)cell->tally.rays, "hits", (json_int_t)cell->tally.hits, "build_seconds", build->seconds,
-        "bytes", (json_int_t)d->bytes, "structure", structure, "counts", counts, "mrays_per_s",
-        number(unknown * 1e-6 / cell->seconds.median), "ratio", number(unknown * cell->ratio.median),
-        "ratio_low", number(unknown * cell->ratio.low), "ratio_high", number(unknown * cell->ratio.high));
+        "bytes", (json_int_t)build->shape.bytes, "structure", rt_json_structure(&build->shape), "counts",
+        counted ? rt_json_tally(&cell->tally) : json_null(), "mrays_per_s",
+        rt_json_number(unknown * 1e-6 / cell->seconds.median), "ratio",
+        rt_json_number(unknown * cell->ratio.median), "ratio_low", rt_json_number(unknown * cell->ratio.low),
+        "ratio_high", rt_json_number(unknown * cell->ratio.high));
 }
 
 static json_t *null_json(const RtCell *cell, RtRayKind kind) {

@@ -1,11 +1,11 @@
 /* raytally render: a picture of a scene, and what it cost. The timed kernels make the picture; where counts
  * are asked for, a second frame is traced by the counted ones. */
 #include "base/clock.h"
-#include "base/file.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "cli/cli.h"
 #include "experiments/equivalence.h"
+#include "experiments/json.h"
 #include "experiments/rayset.h"
 #include "render/heatmap.h"
 #include "render/image.h"
@@ -210,14 +210,6 @@ static uint64_t total_rays(const Run *run) {
     return sum;
 }
 
-static json_t *tally_json(const RtTally *tally) {
-    json_t *object = json_object();
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        json_object_set_new(object, rt_tally_name(i), json_integer((json_int_t)rt_tally_get(tally, i)));
-    }
-    return object;
-}
-
 static json_t *stats_json(const Run *run) {
     const RtSampling *s = &run->timed.sampling;
     const Options *o = run->options;
@@ -227,13 +219,8 @@ static json_t *stats_json(const Run *run) {
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         if (run->rays[kind])
             json_object_set_new(kinds, rt_ray_kind_name((RtRayKind)kind),
-                                tally_json(&run->counted.tallies[kind]));
+                                rt_json_tally(&run->counted.tallies[kind]));
     }
-    json_t *structure = json_pack("{s:I, s:I, s:I, s:I, s:I}", "interior", (json_int_t)d.interior, "leaves",
-                                  (json_int_t)d.leaves, "empty_leaves", (json_int_t)d.empty_leaves,
-                                  "references", (json_int_t)d.references, "depth", (json_int_t)d.depth);
-    json_object_set_new(structure, "predicted_cost",
-                        isfinite(d.predicted_cost) ? json_real(d.predicted_cost) : json_null());
     uint64_t rays = total_rays(run);
     double mrays = run->timed.seconds > 0 ? (double)rays * 1e-6 / run->timed.seconds : 0;
     return json_pack("{s:s, s:s, s:I, s:I, s:i, s:i, s:i, s:b, s:i, s:i, s:f, s:I, s:o, s:I, s:f, s:f, s:o}",
@@ -242,20 +229,13 @@ static json_t *stats_json(const Run *run) {
                      (json_int_t)run->scene.light_count, "width", (int)s->width, "height", (int)s->height,
                      "samples", (int)s->samples, "corners", (int)s->corners, "depth", (int)o->depth,
                      "threads", rt_thread_count(o->threads), "build_seconds", run->build_seconds, "bytes",
-                     (json_int_t)d.bytes, "structure", structure, "rays", (json_int_t)rays, "seconds",
-                     run->timed.seconds, "mrays_per_s", mrays, "kinds", kinds);
+                     (json_int_t)d.bytes, "structure", rt_json_structure(&d), "rays", (json_int_t)rays,
+                     "seconds", run->timed.seconds, "mrays_per_s", mrays, "kinds", kinds);
 }
 
 static RtStatus write_stats(const Run *run, RtError *error) {
     const char *path = run->options->stats;
-    if (!path) return RT_OK;
-    json_t *document = stats_json(run);
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    json_decref(document);
-    if (!text) return rt_fail(error, RT_NO_MEMORY, "%s: memory is short for the statistics", path);
-    RtStatus status = rt_file_write(path, text, strlen(text), error);
-    free(text);
-    return status;
+    return path ? rt_json_save(path, stats_json(run), error) : RT_OK;
 }
 
 static void print_summary(const Run *run) {

@@ -1,0 +1,28 @@
+/* JSON that several writers share: figures that may be unknown, tallies, structures, and documents as files.
+ */
+#ifndef RT_EXPERIMENTS_JSON_H
+#define RT_EXPERIMENTS_JSON_H
+
+#include "accel/accel.h"
+
+#include <jansson.h>
+
+/* Each gives a new reference, NULL where memory is short; json_pack then gives NULL, too. */
+
+/* The number, null for NAN and infinities. */
+json_t *rt_json_number(double value);
+
+/* A fingerprint: 16 hexadecimal digits. */
+json_t *rt_json_hex(uint64_t value);
+
+/* Every counter under its name. */
+json_t *rt_json_tally(const RtTally *tally);
+
+/* What `description` says of the structure, but for its bytes. */
+json_t *rt_json_structure(const RtDescription *description);
+
+/* Writes `document`, indented, to `path`, whole or not at all. NULL counts as short memory. Takes the
+ * reference. */
+RtStatus rt_json_save(const char *path, json_t *document, RtError *error);
+
+#endif
