@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <glob.h>
 #include <spawn.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -116,25 +115,30 @@ static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *er
     return rt_fail(error, RT_IO, "gnuplot failed: %s/plots/gnuplot.log tells why", directory);
 }
 
-/* Gives what was drawn its name, or takes it away where drawing failed. */
-static RtStatus settle(const char *directory, bool keep, RtError *error) {
-    char pattern[RT_MAX_PATH];
-    glob_t found;
-    RtStatus status = RT_OK;
-    RT_TRY(rt_path_join(directory, "plots/*.svg.tmp", pattern, error));
-    if (glob(pattern, 0, NULL, &found) != 0) return RT_OK;
-    for (size_t i = 0; i < found.gl_pathc; i++) {
-        char name[RT_MAX_PATH];
-        snprintf(name, sizeof name, "%.*s", (int)(strlen(found.gl_pathv[i]) - strlen(".tmp")),
-                 found.gl_pathv[i]);
-        if (!keep) {
-            remove(found.gl_pathv[i]);
-        } else if (rename(found.gl_pathv[i], name) != 0) {
-            status = rt_fail(error, RT_IO, "%s: renaming failed: %s", found.gl_pathv[i], strerror(errno));
-        }
+/* What becomes of the files that the scripts wrote: they get their names, or go where drawing failed. */
+typedef struct Settling {
+    bool keep;
+    RtStatus status;
+    RtError *error;
+} Settling;
+
+static void settle_file(void *context, const char *path) {
+    Settling *settling = context;
+    char name[RT_MAX_PATH];
+    snprintf(name, sizeof name, "%.*s", (int)(strlen(path) - strlen(".tmp")), path);
+    if (!settling->keep) {
+        remove(path);
+    } else if (rename(path, name) != 0) {
+        settling->status = rt_fail(settling->error, RT_IO, "%s: renaming failed: %s", path, strerror(errno));
     }
-    globfree(&found);
-    return status;
+}
+
+static RtStatus settle(const char *directory, bool keep, RtError *error) {
+    char plots[RT_MAX_PATH];
+    Settling settling = {keep, RT_OK, error};
+    RT_TRY(rt_path_join(directory, "plots", plots, error));
+    rt_directory_each(plots, ".svg.tmp", settle_file, &settling);
+    return settling.status;
 }
 
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error) {

@@ -6,7 +6,6 @@
 #include "experiments/plot.h"
 #include "experiments/tables.h"
 
-#include <glob.h>
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -115,27 +114,26 @@ static void put_head(FILE *out, const RtResults *results, const json_t *manifest
     put_text(out, text_at(machine, "cpu"));
     fputs(" &middot; raytally ", out);
     put_text(out, text_at(machine, "version"));
-    fprintf(out, " (%s%s)%s</div>\n", text_at(machine, "commit"),
-            json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
+    fputs(" (", out);
+    put_text(out, text_at(machine, "commit"));
+    fprintf(out, "%s)%s</div>\n", json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
             experiment->quick ? " &middot; <strong>quick variant</strong>" : "");
     put_card(out, "Question", experiment->question);
     put_card(out, "Prediction, written before the run", experiment->prediction);
 }
 
+static void put_plot(void *context, const char *path) {
+    FILE *out = context;
+    fputs("<figure>", out);
+    put_image(out, path, "image/svg+xml", "plot");
+    fputs("</figure>\n", out);
+}
+
 static void put_plots(FILE *out, const char *directory) {
-    char pattern[RT_MAX_PATH];
-    glob_t found;
-    if (rt_path_join(directory, "plots/*.svg", pattern, NULL) != RT_OK) return;
-    if (glob(pattern, 0, NULL, &found) != 0) {
-        fputs("<p class=\"meta\">No plots were drawn.</p>\n", out);
-        return;
-    }
-    for (size_t i = 0; i < found.gl_pathc; i++) {
-        fputs("<figure>", out);
-        put_image(out, found.gl_pathv[i], "image/svg+xml", "plot");
-        fputs("</figure>\n", out);
-    }
-    globfree(&found);
+    char plots[RT_MAX_PATH];
+    if (rt_path_join(directory, "plots", plots, NULL) != RT_OK) return;
+    if (rt_directory_each(plots, ".svg", put_plot, out) > 0) return;
+    fputs("<p class=\"meta\">No plots were drawn.</p>\n", out);
 }
 
 static void put_scenes(FILE *out, const RtResults *results, const char *directory) {

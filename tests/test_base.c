@@ -1,13 +1,16 @@
-/* base/: tallies, parameters, memory, rounding, random numbers. */
+/* base/: files, tallies, parameters, memory, rounding, random numbers. */
 #include "testing.h"
 
 #include "base/box.h"
+#include "base/file.h"
 #include "base/memory.h"
 #include "base/param.h"
 #include "base/random.h"
 #include "base/tally.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static void rounding_outward_brackets_the_number(void **state) {
     (void)state;
@@ -122,10 +125,38 @@ static void random_numbers_depend_on_seed_stream_and_place_alone(void **state) {
     assert_true(differ);
 }
 
+static void note_path(void *context, const char *path) {
+    char *list = context;
+    strcat(strcat(list, strrchr(path, '/')), " ");
+}
+
+static void files_are_listed_by_name_whatever_their_folder_is_called(void **state) {
+    (void)state;
+    static const char *const names[] = {"b.svg", "a.svg", "c.svg.tmp"};
+    char root[] = "/tmp/raytally_base_XXXXXX", folder[64], path[96], found[64] = "";
+    assert_non_null(mkdtemp(root));
+    snprintf(folder, sizeof folder, "%s/a[1]*?", root);
+    assert_ok(rt_directory_create(folder, error));
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        assert_ok(rt_file_write(path, "x", 1, error));
+    }
+    assert_int_equal(rt_directory_each(folder, ".svg", note_path, found), 2);
+    assert_string_equal(found, "/a.svg /b.svg ");
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        remove(path);
+    }
+    rmdir(folder);
+    rmdir(root);
+    assert_int_equal(rt_directory_each(folder, "", note_path, found), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rounding_outward_brackets_the_number),
         cmocka_unit_test(narrowing_rounds_also_where_widening_follows),
+        cmocka_unit_test(files_are_listed_by_name_whatever_their_folder_is_called),
         cmocka_unit_test(tallies_add_counter_by_counter),
         cmocka_unit_test(parameters_left_out_have_their_defaults),
         cmocka_unit_test(wrong_parameters_are_refused_with_what_would_be_right),

@@ -2,7 +2,9 @@
 
 #include "base/memory.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -94,6 +96,30 @@ RtStatus rt_directory_create(const char *path, RtError *error) {
     struct stat info;
     if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return RT_OK;
     return rt_fail(error, RT_IO, "%s: this is not a directory", path);
+}
+
+static bool ends_in(const char *name, const char *suffix) {
+    size_t length = strlen(name), tail = strlen(suffix);
+    return length >= tail && strcmp(name + length - tail, suffix) == 0;
+}
+
+size_t rt_directory_each(const char *folder, const char *suffix,
+                         void (*visit)(void *context, const char *path), void *context) {
+    struct dirent **entries;
+    int count = scandir(folder, &entries, NULL, alphasort);
+    if (count < 0) return 0;
+    size_t visited = 0;
+    for (int i = 0; i < count; i++) {
+        char path[RT_MAX_PATH];
+        const char *name = entries[i]->d_name;
+        if (ends_in(name, suffix) && rt_path_join(folder, name, path, NULL) == RT_OK) {
+            visit(context, path);
+            visited++;
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    return visited;
 }
 
 RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error) {

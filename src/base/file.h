@@ -35,6 +35,11 @@ bool rt_file_exists(const char *path);
 /* Creates the directory and its parents where they are missing. */
 RtStatus rt_directory_create(const char *path, RtError *error);
 
+/* Calls visit(context, path) for every file of the folder whose name ends in `suffix`, in the order of names,
+ * and gives their number: 0 also where the folder cannot be read. */
+size_t rt_directory_each(const char *folder, const char *suffix,
+                         void (*visit)(void *context, const char *path), void *context);
+
 /* "FOLDER/name" to out[0..RT_MAX_PATH); an absolute name, or an empty folder, gives the name alone. Refuses
  * what is too long. */
 RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error);
