@@ -2,6 +2,7 @@
  * one: libcyaml knows the shape, rt_experiment_check the meaning, rt_yaml_file_place the line. */
 #include "base/yaml_file.h"
 #include "experiments/experiment.h"
+#include "render/frame.h"
 
 #include <string.h>
 #include <xxhash.h>
@@ -106,18 +107,10 @@ static RtStatus parse_flag(const char *word, bool *flag, RtError *error) {
 }
 
 static RtStatus parse_size(const char *word, uint32_t *width, uint32_t *height, RtError *error) {
-    unsigned w = 0, h = 0;
-    int length = 0;
-    if (!*word) return RT_OK;
-    if (sscanf(word, "%5ux%5u%n", &w, &h, &length) != 2 || word[length] || w < 1 || h < 1 ||
-        w > RT_MAX_IMAGE_SIDE || h > RT_MAX_IMAGE_SIDE) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "'%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 512x512", word,
-                       RT_MAX_IMAGE_SIDE);
-    }
-    *width = w;
-    *height = h;
-    return RT_OK;
+    if (!*word || rt_image_size_parse(word, width, height)) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "'%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 512x512", word,
+                   RT_MAX_IMAGE_SIDE);
 }
 
 /* The status, its message led by the line of the value at `where`, an index into a list filled in. */
@@ -139,7 +132,7 @@ static RtStatus take_trial(const RtYamlFile *file, uint32_t i, const char *folde
     const TrialEntry *entry = &((const Document *)file->data)->scenes[i];
     RT_TRY(place(file, rt_trial_set_scene(trial, entry->scene, folder, error), "scenes#.scene", i, error));
     if (*entry->label) strcpy(trial->label, entry->label);
-    trial->depth = entry->depth ? entry->depth : 5;
+    trial->depth = entry->depth ? entry->depth : RT_DEFAULT_DEPTH;
     RT_TRY(
         place(file, parse_size(entry->size, &trial->width, &trial->height, error), "scenes#.size", i, error));
     RT_TRY(place(file, parse_flag(entry->corners, &trial->corners, error), "scenes#.corners", i, error));

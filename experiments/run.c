@@ -103,7 +103,7 @@ static RtStatus draw_scene(const RtScene *scene, const RtTrialResult *trial, con
     RtAccel *accel;
     RtFrame frame = {0};
     RtImage image = {0};
-    RtFrameOptions options = {.depth = 5};
+    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH};
     RT_TRY(rt_sampling_init(&options.sampling, trial->width, trial->height, 2, false, error));
     RT_TRY(rt_accel_open(rt_accel_default(), scene, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);

@@ -248,7 +248,7 @@ int rt_command_bench(int argc, char **argv) {
     }
     rt_experiment_init(o.experiment);
     o.experiment->trial_count = 1;
-    o.experiment->trials[0].depth = 5;
+    o.experiment->trials[0].depth = RT_DEFAULT_DEPTH;
     const struct argp argp = {
         options,
         parse_option,

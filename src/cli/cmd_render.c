@@ -306,7 +306,7 @@ int rt_command_render(int argc, char **argv) {
         "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
         "To begin with: raytally render balls -o balls.png";
     const struct argp argp = {options, parse_option, "SCENE", doc, 0, 0, 0};
-    Options o = {.accel = "bvh", .samples = 1, .depth = 5};
+    Options o = {.accel = "bvh", .samples = 1, .depth = RT_DEFAULT_DEPTH};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error = {RT_OK, ""};
     Run *run = rt_alloc(1, sizeof(Run));

@@ -102,13 +102,7 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
 }
 
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height) {
-    unsigned w, h;
-    int length = 0;
-    if (sscanf(text, "%5ux%5u%n", &w, &h, &length) != 2 || text[length] || w < 1 || h < 1 ||
-        w > RT_MAX_IMAGE_SIDE || h > RT_MAX_IMAGE_SIDE) {
-        argp_error(state, "--size: '%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 640x480",
-                   text, RT_MAX_IMAGE_SIDE);
-    }
-    *width = w;
-    *height = h;
+    if (rt_image_size_parse(text, width, height)) return;
+    argp_error(state, "--size: '%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 640x480", text,
+               RT_MAX_IMAGE_SIDE);
 }

@@ -12,8 +12,9 @@
 
 #include "accel/accel.h"
 
-#define RT_TILE      16
-#define RT_MAX_DEPTH 64
+#define RT_TILE          16
+#define RT_MAX_DEPTH     64
+#define RT_DEFAULT_DEPTH 5 /* levels where nobody asks for another number, as SPD does */
 
 /* A frame of more samples is refused: 8192 x 8192, which take 1.3 GB, counted 6.7 GB. */
 #define RT_MAX_FRAME_SAMPLES (UINT32_C(1) << 26)

@@ -1,5 +1,17 @@
 #include "scene/camera.h"
 
+#include <stdio.h>
+
+bool rt_image_size_parse(const char *text, uint32_t *width, uint32_t *height) {
+    unsigned w = 0, h = 0;
+    int length = 0;
+    if (sscanf(text, "%5ux%5u%n", &w, &h, &length) != 2 || text[length]) return false;
+    if (w < 1 || h < 1 || w > RT_MAX_IMAGE_SIDE || h > RT_MAX_IMAGE_SIDE) return false;
+    *width = w;
+    *height = h;
+    return true;
+}
+
 RtStatus rt_sampling_init(RtSampling *sampling, uint32_t width, uint32_t height, uint32_t samples,
                           bool corners, RtError *error) {
     if (width < 1 || height < 1 || width > RT_MAX_IMAGE_SIDE || height > RT_MAX_IMAGE_SIDE) {
