@@ -10,7 +10,13 @@
  * count in.
  *
  * An accelerator is built over a scene that must outlive it, and is read only from then on. What a traversal
- * writes to (mailboxes) lies in an RtQuery, one per thread. */
+ * writes to (mailboxes) lies in an RtQuery, one per thread.
+ *
+ * Overlays. An overlay answers rays of some kinds (RtAccelOps.kinds) and hands the others, and those that it
+ * cannot decide with certainty, to the accelerator below it, which may be an overlay in turn; a base, which
+ * answers every ray, lies at the bottom. rt_accel_build stacks them and hands back the topmost. A ray is
+ * counted in `rays` and `hits` once, by the layer that answers it, and in `passed_on` by each overlay that
+ * ought to have. */
 #ifndef RT_ACCEL_ACCEL_H
 #define RT_ACCEL_ACCEL_H
 
@@ -24,10 +30,12 @@ typedef struct RtAccelOps RtAccelOps;
 /* The first member of every accelerator's own struct. */
 typedef struct RtAccel {
     const RtAccelOps *ops;
-    const RtScene *scene; /* borrowed */
-    bool exact;           /* bit for bit like brute; false: judged by verdicts */
-    bool counts;          /* its counts are the same on every machine and belong into counts.csv */
-    RtTally build_tally;  /* tests made while building */
+    const RtScene *scene;  /* borrowed */
+    struct RtAccel *below; /* owned; NULL for a base. Set by rt_accel_build */
+    size_t scratch_room; /* bytes of a query's scratch memory that are this layer's. Set by rt_accel_build */
+    bool exact;          /* bit for bit like brute; false: judged by verdicts */
+    bool counts;         /* its counts are the same on every machine and belong into counts.csv */
+    RtTally build_tally; /* tests made while building */
 } RtAccel;
 
 /* What a structure looks like. Zero where a figure does not apply; predicted_cost is NaN where none is known.
@@ -43,16 +51,20 @@ typedef struct RtDescription {
                               file */
 } RtDescription;
 
-/* The four kernels. rays[0..count) are valid (rt_ray_is_valid); `scratch` is the query's; answers go to
- * hits[0..count) and blocked[0..count); tallies[RT_RAY_KIND_COUNT] are added to, by the kind of each ray. */
+/* The four kernels. rays[0..count) are valid (rt_ray_is_valid); `scratch` is the layer's part of the query's;
+ * answers go to hits[0..count) and blockers[0..count); tallies[RT_RAY_KIND_COUNT] are added to, by the kind
+ * of each ray. A blocker is any object that lies on the ray, RT_NO_OBJECT where none does, or
+ * RT_UNNAMED_OBJECT from those who know only that there is one. */
+#define RT_UNNAMED_OBJECT (UINT32_MAX - 1)
+
 typedef void RtNearestKernel(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
                              RtHit *hits);
 typedef void RtOccludedKernel(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                              bool *blocked);
+                              uint32_t *blockers);
 typedef void RtNearestCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
                               RtHit *hits, RtTally *tallies);
 typedef void RtOccludedCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                               bool *blocked, RtTally *tallies);
+                               uint32_t *blockers, RtTally *tallies);
 
 /* One accelerator, as a const table in its own file. Optional members may be NULL. */
 struct RtAccelOps {
@@ -61,9 +73,12 @@ struct RtAccelOps {
     const char *paper;   /* author, year, title, venue */
     const RtParam *params;
     size_t param_count;
+    uint32_t
+        kinds; /* of an overlay: the kinds of rays it answers, bits 1 << RtRayKind; 0: a base, answers all */
 
     /* Builds over `scene`, which is finished and may hold no object at all. values[param_count] are in range.
-     * On failure nothing is left behind. *out is owned by the caller: `destroy`. */
+     * On failure nothing is left behind. *out is owned by the caller: `destroy`, which leaves what lies below
+     * alone. An overlay is built without regard to what it will lie on. */
     RtStatus (*build)(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
     void (*destroy)(RtAccel *accel);
 
@@ -75,6 +90,11 @@ struct RtAccelOps {
     /* Optional: bytes of scratch memory per query; it starts zeroed and 64-byte aligned. */
     size_t (*scratch_bytes)(const RtAccel *accel);
 
+    /* Optional: brings the scratch memory back to what a fresh query has, as far as later counts could tell
+     * (rt_query_begin). */
+    void (*begin)(const RtAccel *accel, void *scratch);
+
+    /* Of this layer alone. */
     void (*describe)(const RtAccel *accel, RtDescription *out);
 
     /* RT_OK, or RT_MISMATCH with a message that names the first broken invariant. */
@@ -103,13 +123,21 @@ const char *rt_accel_default(void);
 
 /* ---- specs ---- */
 
+#define RT_MAX_LAYERS 4
+
 /* An accelerator with a value for each of its parameters. */
-typedef struct RtSpec {
+typedef struct RtSpecLayer {
     const RtAccelOps *ops;
     RtValue values[RT_MAX_PARAMS];
+} RtSpecLayer;
+
+/* Overlays, topmost first, and then the base: layers[layer_count - 1]. */
+typedef struct RtSpec {
+    uint32_t layer_count; /* 1..RT_MAX_LAYERS */
+    RtSpecLayer layers[RT_MAX_LAYERS];
 } RtSpec;
 
-/* Parses `name[:key=value[,key=value]...]`. */
+/* Parses `name[:key=value[,key=value]...]`, several of them joined by '+': overlays over one base. */
 RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
 
 /* The spec with every effective parameter, "grid:rule=woo,density=10,...", to out[0..RT_MAX_SPEC_CHARS). */
@@ -120,7 +148,20 @@ void rt_spec_format(const RtSpec *spec, char *out);
 /* Builds what the spec says over `scene`. Destroy with rt_accel_destroy. */
 RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
-void rt_accel_destroy(RtAccel *accel); /* NULL is allowed */
+void rt_accel_destroy(RtAccel *accel); /* with all below it; NULL is allowed */
+
+/* The layer at the bottom. */
+const RtAccel *rt_accel_base(const RtAccel *accel);
+
+/* All layers together: sums, the largest depth, and the predicted cost of the base. What an overlay itself
+ * has is the difference to the same base alone. */
+void rt_accel_describe(const RtAccel *accel, RtDescription *out);
+
+/* Of every layer. */
+RtStatus rt_accel_validate(const RtAccel *accel, RtError *error);
+
+/* Hands recorded answers to the layers that take them: see `learn` above. */
+RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
 
 /* The state of one thread's queries. */
 typedef struct RtQuery {
@@ -130,6 +171,11 @@ typedef struct RtQuery {
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);
 void rt_query_clear(RtQuery *query);
+
+/* Forgets what the rays before have left behind (the last occluders of a shadow cache), so that the counts of
+ * the rays that follow depend on them alone. To be called where a piece of work begins that is the same at
+ * any number of threads: a tile of a frame, a chunk of a ray set. Answers never depend on it. */
+void rt_query_begin(RtQuery *query);
 
 /* Nearest hits of a stream of valid rays: timed where `tallies` is NULL, else counted into
  * tallies[RT_RAY_KIND_COUNT]. */

@@ -67,17 +67,97 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
         }                                                                                                    \
     }                                                                                                        \
     static void occluded_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,         \
-                               bool *blocked) {                                                              \
+                               uint32_t *blockers) {                                                         \
         for (size_t i = 0; i < count; i++) {                                                                 \
-            blocked[i] = search_one(accel, scratch, &rays[i], true, NULL).object != RT_NO_OBJECT;            \
+            blockers[i] = search_one(accel, scratch, &rays[i], true, NULL).object;                           \
         }                                                                                                    \
     }                                                                                                        \
     static void occluded_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,       \
-                                 bool *blocked, RtTally *tallies) {                                          \
+                                 uint32_t *blockers, RtTally *tallies) {                                     \
         for (size_t i = 0; i < count; i++) {                                                                 \
             RtTally *tally = &tallies[rays[i].kind];                                                         \
-            blocked[i] = search_one(accel, scratch, &rays[i], true, tally).object != RT_NO_OBJECT;           \
+            blockers[i] = search_one(accel, scratch, &rays[i], true, tally).object;                          \
         }                                                                                                    \
+    }
+
+/* ---- overlays ---- */
+
+static inline void *rt_scratch_below(const RtAccel *accel, void *scratch) {
+    return (char *)scratch + accel->scratch_room;
+}
+
+/* Rays that are none of this overlay's business; `tallies` may be NULL. */
+RT_KERNEL void rt_hand_down_nearest(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                                    RtHit *hits, RtTally *tallies) {
+    const RtAccel *below = accel->below;
+    scratch = rt_scratch_below(accel, scratch);
+    if (tallies) {
+        below->ops->nearest_counted(below, scratch, rays, count, hits, tallies);
+    } else {
+        below->ops->nearest(below, scratch, rays, count, hits);
+    }
+}
+
+RT_KERNEL void rt_hand_down_occluded(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+                                     uint32_t *blockers, RtTally *tallies) {
+    const RtAccel *below = accel->below;
+    scratch = rt_scratch_below(accel, scratch);
+    if (tallies) {
+        below->ops->occluded_counted(below, scratch, rays, count, blockers, tallies);
+    } else {
+        below->ops->occluded(below, scratch, rays, count, blockers);
+    }
+}
+
+/* A ray that this overlay ought to answer and cannot. */
+RT_KERNEL uint32_t rt_pass_on_occluded(const RtAccel *accel, void *scratch, const RtRay *ray,
+                                       RtTally *tallies) {
+    uint32_t blocker;
+    if (tallies) tallies[ray->kind].passed_on++;
+    rt_hand_down_occluded(accel, scratch, ray, 1, &blocker, tallies);
+    return blocker;
+}
+
+/* A ray that this overlay has answered. Gives `blocker` back. */
+RT_KERNEL uint32_t rt_answer_occluded(uint32_t blocker, RtTally *tally) {
+    RT_COUNT(tally, rays, 1);
+    RT_COUNT(tally, hits, blocker != RT_NO_OBJECT);
+    return blocker;
+}
+
+/* The kernels of an overlay for shadow rays, from
+ *
+ *     uint32_t shade(const Type *self, void *scratch, const RtRay *ray, RtTally *tallies);
+ *
+ * which gives the blocker of one shadow ray, through rt_answer_occluded or rt_pass_on_occluded. Queries for
+ * the nearest hit, and rays of other kinds, are handed down in streams. */
+#define RT_DEFINE_SHADOW_KERNELS(Type, shade)                                                                \
+    RT_KERNEL void shade_all(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,           \
+                             uint32_t *blockers, RtTally *tallies) {                                         \
+        for (size_t i = 0, next; i < count; i = next) {                                                      \
+            for (next = i; next < count && rays[next].kind != RT_RAY_SHADOW; next++) {                       \
+            }                                                                                                \
+            if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, blockers + i, tallies);  \
+            for (; next < count && rays[next].kind == RT_RAY_SHADOW; next++) {                               \
+                blockers[next] = shade((const Type *)accel, scratch, &rays[next], tallies);                  \
+            }                                                                                                \
+        }                                                                                                    \
+    }                                                                                                        \
+    static void nearest_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,          \
+                              RtHit *hits) {                                                                 \
+        rt_hand_down_nearest(accel, scratch, rays, count, hits, NULL);                                       \
+    }                                                                                                        \
+    static void nearest_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,        \
+                                RtHit *hits, RtTally *tallies) {                                             \
+        rt_hand_down_nearest(accel, scratch, rays, count, hits, tallies);                                    \
+    }                                                                                                        \
+    static void occluded_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,         \
+                               uint32_t *blockers) {                                                         \
+        shade_all(accel, scratch, rays, count, blockers, NULL);                                              \
+    }                                                                                                        \
+    static void occluded_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,       \
+                                 uint32_t *blockers, RtTally *tallies) {                                     \
+        shade_all(accel, scratch, rays, count, blockers, tallies);                                           \
     }
 
 #endif

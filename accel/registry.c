@@ -10,7 +10,8 @@
     X(rt_bvh_ops)                                                                                            \
     X(rt_extents_ops)                                                                                        \
     X(rt_grid_ops)                                                                                           \
-    X(rt_ideal_ops)
+    X(rt_ideal_ops)                                                                                          \
+    X(rt_cache_ops)
 
 #ifdef RT_WITH_EMBREE
 #define EMBREE_ACCELERATORS(X) X(rt_embree_ops)

@@ -1,4 +1,5 @@
-/* Specs, "name:key=value,key=value", and what is common to all accelerators: building, queries, destroying.
+/* Specs, "name:key=value,key=value" with '+' between layers, and what is common to all accelerators:
+ * building, layers, queries, destroying.
  */
 #include "accel/accel.h"
 
@@ -7,32 +8,108 @@
 #include <stdio.h>
 #include <string.h>
 
-RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
-    char name[RT_MAX_NAME];
-    size_t length = strcspn(text, ":");
-    if (length == 0 || length >= sizeof name) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "'%.80s' is no spec of an accelerator: write NAME[:KEY=VALUE,...]", text);
+/* Where the first layer of `text` ends: at a '+' that is not that of an exponent, as in 1e+06. */
+static size_t layer_length(const char *text) {
+    size_t length = strcspn(text, "+");
+    while (text[length] == '+' && text[length + 1] >= '0' && text[length + 1] <= '9') {
+        length += 1 + strcspn(text + length + 1, "+");
     }
-    memcpy(name, text, length);
-    name[length] = '\0';
-    spec->ops = rt_accel_find(name, error);
-    if (!spec->ops) return RT_BAD_INPUT;
-    char what[RT_MAX_NAME + 16];
-    snprintf(what, sizeof what, "accelerator %s", name);
-    const char *params = text[length] == ':' ? text + length + 1 : NULL;
-    return rt_params_parse(spec->ops->params, spec->ops->param_count, params, what, spec->values, error);
+    return length;
+}
+
+static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, RtError *error) {
+    char copy[RT_MAX_SPEC_CHARS], what[RT_MAX_NAME + 16];
+    size_t name_chars = strcspn(text, ":+");
+    if (name_chars == 0 || name_chars >= RT_MAX_NAME || chars >= sizeof copy) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "'%.80s' is no spec of an accelerator: write NAME[:KEY=VALUE,...], overlays before it as "
+            "in OVERLAY+NAME",
+            text);
+    }
+    memcpy(copy, text, chars);
+    copy[chars] = '\0';
+    char *params = strchr(copy, ':');
+    if (params) *params++ = '\0';
+    layer->ops = rt_accel_find(copy, error);
+    if (!layer->ops) return error ? error->status : RT_BAD_INPUT;
+    snprintf(what, sizeof what, "accelerator %s", layer->ops->name);
+    return rt_params_parse(layer->ops->params, layer->ops->param_count, params, what, layer->values, error);
+}
+
+/* Overlays above, one base below. */
+static RtStatus check_layers(const RtSpec *spec, const char *text, RtError *error) {
+    for (uint32_t i = 0; i + 1 < spec->layer_count; i++) {
+        const char *name = spec->layers[i].ops->name;
+        if (spec->layers[i].ops->kinds) continue;
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "'%.80s': %s answers every ray, nothing can lie below it: what stands before a '+' is an "
+            "overlay; `raytally accels` says which are",
+            text, name);
+    }
+    const RtAccelOps *last = spec->layers[spec->layer_count - 1].ops;
+    if (!last->kinds) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "'%.80s': %s is an overlay and needs an accelerator below it: write %.80s+%s", text,
+                   last->name, text, rt_accel_default());
+}
+
+RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
+    const char *rest = text;
+    spec->layer_count = 0;
+    for (;;) {
+        size_t chars = layer_length(rest);
+        if (spec->layer_count == RT_MAX_LAYERS) {
+            return rt_fail(error, RT_BAD_INPUT, "'%.80s': more than %d accelerators one upon the other", text,
+                           RT_MAX_LAYERS);
+        }
+        RT_TRY(parse_layer(rest, chars, &spec->layers[spec->layer_count++], error));
+        if (rest[chars] == '\0') return check_layers(spec, text, error);
+        rest += chars + 1;
+    }
 }
 
 void rt_spec_format(const RtSpec *spec, char *out) {
-    int n = snprintf(out, RT_MAX_SPEC_CHARS, "%s%s", spec->ops->name, spec->ops->param_count ? ":" : "");
-    rt_params_format(spec->ops->params, spec->ops->param_count, spec->values, out + n,
-                     RT_MAX_SPEC_CHARS - (size_t)n);
+    size_t used = 0;
+    for (uint32_t i = 0; i < spec->layer_count && used < RT_MAX_SPEC_CHARS; i++) {
+        const RtSpecLayer *layer = &spec->layers[i];
+        snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%s%s%s", i > 0 ? "+" : "", layer->ops->name,
+                 layer->ops->param_count ? ":" : "");
+        used = strlen(out);
+        rt_params_format(layer->ops->params, layer->ops->param_count, layer->values, out + used,
+                         RT_MAX_SPEC_CHARS - used);
+        used = strlen(out);
+    }
+}
+
+/* ---- layers ---- */
+
+/* Puts `accel`, just built, upon `below`, which may be NULL. */
+static void stack(RtAccel *accel, RtAccel *below) {
+    size_t bytes = accel->ops->scratch_bytes ? accel->ops->scratch_bytes(accel) : 0;
+    accel->scratch_room = (bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
+    accel->below = below;
+    if (!below) return;
+    accel->exact = accel->exact && below->exact;
+    accel->counts = accel->counts && below->counts;
 }
 
 RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+    RtAccel *top = NULL;
     *out = NULL;
-    return spec->ops->build(scene, spec->values, out, error);
+    for (uint32_t i = spec->layer_count; i-- > 0;) {
+        RtAccel *accel = NULL;
+        RtStatus status = spec->layers[i].ops->build(scene, spec->layers[i].values, &accel, error);
+        if (status != RT_OK) {
+            rt_accel_destroy(top);
+            return status;
+        }
+        stack(accel, top);
+        top = accel;
+    }
+    *out = top;
+    return RT_OK;
 }
 
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error) {
@@ -43,20 +120,69 @@ RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, Rt
 }
 
 void rt_accel_destroy(RtAccel *accel) {
-    if (accel) accel->ops->destroy(accel);
+    while (accel) {
+        RtAccel *below = accel->below;
+        accel->ops->destroy(accel);
+        accel = below;
+    }
 }
+
+const RtAccel *rt_accel_base(const RtAccel *accel) {
+    while (accel->below) accel = accel->below;
+    return accel;
+}
+
+void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
+    accel->ops->describe(accel, out);
+    while ((accel = accel->below)) {
+        RtDescription own;
+        accel->ops->describe(accel, &own);
+        out->interior += own.interior;
+        out->leaves += own.leaves;
+        out->empty_leaves += own.empty_leaves;
+        out->references += own.references;
+        out->bytes += own.bytes;
+        if (own.depth > out->depth) out->depth = own.depth;
+        out->predicted_cost = own.predicted_cost;
+    }
+}
+
+RtStatus rt_accel_validate(const RtAccel *accel, RtError *error) {
+    for (; accel; accel = accel->below) RT_TRY(accel->ops->validate(accel, error));
+    return RT_OK;
+}
+
+RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error) {
+    for (; accel; accel = accel->below) {
+        if (accel->ops->learn) RT_TRY(accel->ops->learn(accel, rays, hits, count, error));
+    }
+    return RT_OK;
+}
+
+/* ---- queries ---- */
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
     *query = (RtQuery){accel, NULL};
-    if (!accel->ops->scratch_bytes) return RT_OK;
-    size_t bytes = accel->ops->scratch_bytes(accel);
+    size_t bytes = 0;
+    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
+    if (bytes == 0) return RT_OK;
     query->scratch = rt_alloc(bytes, 1);
-    return query->scratch ? RT_OK : rt_fail_memory(error, "the scratch memory of a query", bytes);
+    if (!query->scratch) return rt_fail_memory(error, "the scratch memory of a query", bytes);
+    rt_query_begin(query);
+    return RT_OK;
 }
 
 void rt_query_clear(RtQuery *query) {
     rt_free(query->scratch);
     *query = (RtQuery){NULL, NULL};
+}
+
+void rt_query_begin(RtQuery *query) {
+    char *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer; layer = layer->below) {
+        if (layer->ops->begin) layer->ops->begin(layer, scratch);
+        if (scratch) scratch += layer->scratch_room;
+    }
 }
 
 void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, RtTally *tallies) {
@@ -69,10 +195,16 @@ void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, Rt
 }
 
 void rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *blocked, RtTally *tallies) {
+    enum { STREAM = 1024 };
     const RtAccelOps *ops = query->accel->ops;
-    if (tallies) {
-        ops->occluded_counted(query->accel, query->scratch, rays, count, blocked, tallies);
-    } else {
-        ops->occluded(query->accel, query->scratch, rays, count, blocked);
+    uint32_t blockers[STREAM];
+    for (size_t first = 0; first < count; first += STREAM) {
+        size_t n = count - first < STREAM ? count - first : STREAM;
+        if (tallies) {
+            ops->occluded_counted(query->accel, query->scratch, rays + first, n, blockers, tallies);
+        } else {
+            ops->occluded(query->accel, query->scratch, rays + first, n, blockers);
+        }
+        for (size_t i = 0; i < n; i++) blocked[first + i] = blockers[i] != RT_NO_OBJECT;
     }
 }

@@ -163,9 +163,7 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
 RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
                               RtError *error) {
     *out = (RtEquivalence){0};
-    if (accel->ops->learn) {
-        RT_TRY(accel->ops->learn(accel, reference->rays, reference->hits, reference->count, error));
-    }
+    RT_TRY(rt_accel_learn(accel, reference->rays, reference->hits, reference->count, error));
     Job job = {.reference = reference, .accel = accel, .threads = threads};
     size_t chunks = (reference->count + CHUNK - 1) / CHUNK;
     job.parts = rt_alloc(chunks, sizeof(RtEquivalence));

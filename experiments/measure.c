@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Rays handed to a thread at a time; the chunks, not the threads, decide which thread traces what. */
+/* Rays handed to a thread at a time. */
 enum { CHUNK = 4096, MOST_REPEATS = 1000000 };
 
 /* One pass of an accelerator over a ray set. Either `hits` or `blocked` takes the answers. */
@@ -56,6 +56,7 @@ static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set,
 
 static void trace(Pass *pass, int thread, size_t first, size_t count) {
     const RtRay *rays = pass->set->rays + first;
+    rt_query_begin(&pass->queries[thread]);
     RtTally *tallies = pass->tallies ? pass->tallies[thread] : NULL;
     if (pass->blocked) {
         rt_occluded(&pass->queries[thread], rays, count, pass->blocked + first, tallies);
@@ -72,10 +73,13 @@ static RtStatus trace_chunk(void *context, size_t item, int thread, RtError *err
     return RT_OK;
 }
 
-/* A single thread gets the set as one stream, several share it by chunks. */
+/* Chunk by chunk also on a single thread: counts may depend on where chunks begin. */
 static RtStatus run_pass(Pass *pass, RtError *error) {
     if (pass->threads == 1) {
-        trace(pass, 0, 0, pass->set->count);
+        for (size_t first = 0; first < pass->set->count; first += CHUNK) {
+            size_t left = pass->set->count - first;
+            trace(pass, 0, first, left < CHUNK ? left : CHUNK);
+        }
         return RT_OK;
     }
     return rt_parallel_for((pass->set->count + CHUNK - 1) / CHUNK, pass->threads, trace_chunk, pass, error);

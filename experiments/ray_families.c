@@ -6,9 +6,10 @@
 
 typedef struct Maker {
     RtQuery *query;
-    const RtGeometry *geometry;
-    RtVec3d center; /* of the scene's box */
-    double size;    /* half its diagonal */
+    const RtScene *scene;
+    const RtGeometry *geometry; /* the scene's */
+    RtVec3d center;             /* of the scene's box */
+    double size;                /* half its diagonal */
     RtRandom random;
 } Maker;
 
@@ -215,6 +216,30 @@ static RtRay of_any_length(Maker *m) {
     return ray;
 }
 
+/* A shadow ray, as the renderer makes them or nearly so: off a surface, on it, at an edge, or from anywhere
+ * around; some with the wrong light, a limit of their own, or a direction that is not quite the light's. */
+static RtRay to_light(Maker *m) {
+    if (m->scene->light_count == 0) return chord(m);
+    uint32_t id, light = below(m, m->scene->light_count);
+    RtVec3d to = rt_widen(m->scene->lights[light].position), from;
+    switch (below(m, 4)) {
+    case 0: from = point_of_object(m, ON_SURFACE, &id); break;
+    case 1: from = point_of_object(m, ON_EDGE, &id); break;
+    case 2: from = point_in_scene(m); break;
+    default: from = rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
+    }
+    if (below(m, 2)) from = rt_add_scaledd(from, rt_subd(to, from), between(m, 0, 1e-4));
+    RtRay ray = {.org = rt_narrow(from), .tmax = 1, .kind = RT_RAY_SHADOW, .source = light};
+    ray.dir = rt_sub(m->scene->lights[light].position, ray.org);
+    switch (below(m, 16)) {
+    case 0: ray.source = below(m, m->scene->light_count + 2); break;
+    case 1: ray.tmax = (float)between(m, 0, 2); break;
+    case 2: ray.dir.at[below(m, 3)] *= 1 + 0x1p-20f; break;
+    default: break;
+    }
+    return ray;
+}
+
 static const struct {
     const char *name;
     RtRay (*make)(Maker *maker);
@@ -231,6 +256,7 @@ static const struct {
     {"from-afar", from_afar},
     {"ends-at-hit", ends_at_hit},
     {"of-any-length", of_any_length},
+    {"to-light", to_light},
 };
 
 size_t rt_ray_family_count(void) {
@@ -243,7 +269,8 @@ const char *rt_ray_family_name(size_t family) {
 
 void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t first, size_t count,
                         RtRay *rays) {
-    Maker maker = {.query = query, .geometry = &query->accel->scene->geometry, .size = 1};
+    Maker maker = {
+        .query = query, .scene = query->accel->scene, .geometry = &query->accel->scene->geometry, .size = 1};
     if (maker.geometry->object_count > 0) {
         const RtBox *box = &maker.geometry->box;
         maker.center = rt_widen(rt_box_center(*box));

@@ -195,7 +195,7 @@ static RtStatus build_all(Trial *trial, RtError *error) {
         *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
         result->seconds = seconds;
         rt_spec_format(&spec, result->spec);
-        accel->ops->describe(accel, &result->shape);
+        rt_accel_describe(accel, &result->shape);
         RT_TRY(tell(trial, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
     }
     return RT_OK;
@@ -236,8 +236,7 @@ static RtStatus deal_shares(Trial *trial, const RtRaySet *set, RtError *error) {
         uint64_t every = trial->experiment->contenders[spec_of(trial, c)].every;
         *share = (Share){.set = *set, .expected = trial->answers};
         if (every > 1) RT_TRY(thin_share(share, every, trial, set, error));
-        if (!accel->ops->learn) continue;
-        RT_TRY(accel->ops->learn(accel, share->set.rays, share->expected, share->set.count, error));
+        RT_TRY(rt_accel_learn(accel, share->set.rays, share->expected, share->set.count, error));
     }
     return RT_OK;
 }

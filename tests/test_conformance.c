@@ -65,7 +65,7 @@ static bool conforms(const Bench *bench, const char *spec) {
     }
     RtEquivalence result = {0};
     bool good = true;
-    if (accel->ops->validate(accel, &error) != RT_OK) {
+    if (rt_accel_validate(accel, &error) != RT_OK) {
         print_error("%s on %s is not valid: %s\n", spec, scene, error.message);
         good = false;
     }

@@ -154,7 +154,7 @@ static void counters_are_what_was_counted_by_hand(void **state) {
         RtQuery query;
         RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
         assert_ok(rt_accel_open(row->spec, &scene, &accel, error));
-        if (accel->ops->learn) assert_ok(accel->ops->learn(accel, rays, answers, RAY_COUNT, error));
+        assert_ok(rt_accel_learn(accel, rays, answers, RAY_COUNT, error));
         assert_ok(rt_query_init(&query, accel, error));
         RtHit hit;
         bool blocked;
@@ -228,6 +228,7 @@ static RtStatus count_piece(void *context, size_t piece, int thread, RtError *er
     const RtRay *piece_rays = count->stage->rays + piece * PIECE;
     RtHit hits[PIECE];
     bool blocked[PIECE];
+    rt_query_begin(&count->queries[thread]);
     for (size_t first = 0; first < PIECE; first += count->stream) {
         size_t n = PIECE - first < count->stream ? PIECE - first : count->stream;
         rt_nearest(&count->queries[thread], piece_rays + first, n, hits, count->nearest[thread]);
@@ -280,9 +281,7 @@ static void counts_do_not_depend_on_threads_or_streams(void **state) {
             RtStatus status = rt_accel_open(spec, &stage->scene, &accel, &error);
             if (status == RT_NOT_AVAILABLE) continue;
             assert_int_equal(status, RT_OK);
-            if (accel->ops->learn) {
-                assert_int_equal(accel->ops->learn(accel, stage->rays, stage->hits, RAYS, &error), RT_OK);
-            }
+            assert_int_equal(rt_accel_learn(accel, stage->rays, stage->hits, RAYS, &error), RT_OK);
             static Count first, other;
             first = (Count){.stage = stage, .accel = accel, .stream = 1};
             count_all(&first, 1);

@@ -46,19 +46,20 @@ static void lie_nearest_counted(const RtAccel *accel, void *scratch, const RtRay
 }
 
 static void lie_occluded(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count,
-                         bool *blocked) {
+                         uint32_t *blockers) {
     (void)scratch;
     const Liar *liar = (const Liar *)accel;
-    RtQuery query = liar->truth;
-    rt_occluded(&query, asked, count, blocked, NULL);
-    if (liar->lie == BLOCKED_IN_STREAMS_OF_64 && count == 64) blocked[63] = !blocked[63];
+    liar->truth.accel->ops->occluded(liar->truth.accel, liar->truth.scratch, asked, count, blockers);
+    if (liar->lie == BLOCKED_IN_STREAMS_OF_64 && count == 64) {
+        blockers[63] = blockers[63] == RT_NO_OBJECT ? 0 : RT_NO_OBJECT;
+    }
 }
 
 static void lie_occluded_counted(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count,
-                                 bool *blocked, RtTally *tallies) {
+                                 uint32_t *blockers, RtTally *tallies) {
     (void)scratch, (void)tallies;
-    RtQuery query = ((const Liar *)accel)->truth;
-    rt_occluded(&query, asked, count, blocked, NULL);
+    const RtQuery *truth = &((const Liar *)accel)->truth;
+    truth->accel->ops->occluded(truth->accel, truth->scratch, asked, count, blockers);
 }
 
 typedef struct Stage {

@@ -170,9 +170,9 @@ RT_KERNEL bool is_coherent(const RtRay *ray) {
     return ray->kind == RT_RAY_PRIMARY || ray->kind == RT_RAY_SHADOW;
 }
 
-/* Nearest hits to `hits`, or where that is NULL occlusion to `blocked`. */
+/* Nearest hits to `hits`, or where that is NULL blockers to `blockers`. */
 RT_KERNEL void answer(const RtEmbree *self, Batch *batch, const RtRay *rays, size_t count, RtHit *hits,
-                      bool *blocked, RtTally *tallies, bool user, unsigned lanes, bool stream) {
+                      uint32_t *blockers, RtTally *tallies, bool user, unsigned lanes, bool stream) {
     const size_t chunk = stream ? RT_EMBREE_STREAM_RAYS : RT_EMBREE_PACKET_RAYS;
     const bool any = !hits;
     for (size_t begin = 0; begin < count; begin += chunk) {
@@ -193,39 +193,40 @@ RT_KERNEL void answer(const RtEmbree *self, Batch *batch, const RtRay *rays, siz
         if (!user) denormals_restore(before);
         for (size_t i = 0; i < n; i++) {
             RtHit hit = user ? batch->searches[i].best : RT_MISS;
-            if (!any) {
-                if (!user) hit = native_hit(self, batch, lanes, i, &ray[i]);
-                hits[begin + i] = hit;
+            if (!user && !any) hit = native_hit(self, batch, lanes, i, &ray[i]);
+            if (!user && any && word_of(batch, lanes, i, RT_EMBREE_TFAR)->f < 0) {
+                hit.object = RT_UNNAMED_OBJECT;
+            }
+            if (any) {
+                blockers[begin + i] = hit.object;
             } else {
-                blocked[begin + i] =
-                    user ? hit.object != RT_NO_OBJECT : word_of(batch, lanes, i, RT_EMBREE_TFAR)->f < 0;
+                hits[begin + i] = hit;
             }
             if (tallies) {
-                bool found = any ? blocked[begin + i] : hit.object != RT_NO_OBJECT;
                 RT_COUNT(&tallies[ray[i].kind], rays, 1);
-                RT_COUNT(&tallies[ray[i].kind], hits, found);
+                RT_COUNT(&tallies[ray[i].kind], hits, hit.object != RT_NO_OBJECT);
             }
         }
     }
 }
 
 RT_KERNEL void answer_mode(const RtEmbree *self, Batch *batch, const RtRay *rays, size_t count, RtHit *hits,
-                           bool *blocked, RtTally *tallies, bool user) {
+                           uint32_t *blockers, RtTally *tallies, bool user) {
     switch (self->query) {
-    case RT_EMBREE_ONE: answer(self, batch, rays, count, hits, blocked, tallies, user, 1, false); break;
-    case RT_EMBREE_EIGHT: answer(self, batch, rays, count, hits, blocked, tallies, user, 8, false); break;
-    case RT_EMBREE_SIXTEEN: answer(self, batch, rays, count, hits, blocked, tallies, user, 16, false); break;
-    case RT_EMBREE_STREAM: answer(self, batch, rays, count, hits, blocked, tallies, user, 1, true); break;
+    case RT_EMBREE_ONE: answer(self, batch, rays, count, hits, blockers, tallies, user, 1, false); break;
+    case RT_EMBREE_EIGHT: answer(self, batch, rays, count, hits, blockers, tallies, user, 8, false); break;
+    case RT_EMBREE_SIXTEEN: answer(self, batch, rays, count, hits, blockers, tallies, user, 16, false); break;
+    case RT_EMBREE_STREAM: answer(self, batch, rays, count, hits, blockers, tallies, user, 1, true); break;
     }
 }
 
 RT_KERNEL void answer_all(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits,
-                          bool *blocked, RtTally *tallies) {
+                          uint32_t *blockers, RtTally *tallies) {
     const RtEmbree *self = (const RtEmbree *)accel;
     if (self->user) {
-        answer_mode(self, scratch, rays, count, hits, blocked, tallies, true);
+        answer_mode(self, scratch, rays, count, hits, blockers, tallies, true);
     } else {
-        answer_mode(self, scratch, rays, count, hits, blocked, tallies, false);
+        answer_mode(self, scratch, rays, count, hits, blockers, tallies, false);
     }
 }
 
@@ -240,11 +241,11 @@ void rt_embree_nearest_counted(const RtAccel *accel, void *scratch, const RtRay 
 }
 
 void rt_embree_occluded_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                              bool *blocked) {
-    answer_all(accel, scratch, rays, count, NULL, blocked, NULL);
+                              uint32_t *blockers) {
+    answer_all(accel, scratch, rays, count, NULL, blockers, NULL);
 }
 
 void rt_embree_occluded_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                                bool *blocked, RtTally *tallies) {
-    answer_all(accel, scratch, rays, count, NULL, blocked, tallies);
+                                uint32_t *blockers, RtTally *tallies) {
+    answer_all(accel, scratch, rays, count, NULL, blockers, tallies);
 }

@@ -21,7 +21,7 @@
     X(empty_steps, "steps that met no object: empty leaves and voxels")                                      \
     X(csg_tests, "leaf solids tested inside CSG trees")                                                      \
     X(repeats_avoided, "object tests that a mailbox saved")                                                  \
-    X(passed_on, "rays that an overlay handed to the accelerator below it")
+    X(passed_on, "rays of its own kind that an overlay handed to the accelerator below it")
 
 typedef struct RtTally {
 #define RT_TALLY_FIELD(name, meaning) uint64_t name;

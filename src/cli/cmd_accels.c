@@ -26,13 +26,26 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 static void print_accelerator(const RtAccelOps *ops) {
     printf("%s: %s\n  %s\n", ops->name, ops->summary, ops->paper);
+    if (ops->kinds) {
+        fputs("  an overlay, OVERLAY+ACCELERATOR: hands on all but rays of kind", stdout);
+        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+            if (ops->kinds >> kind & 1) printf(" %s", rt_ray_kind_name((RtRayKind)kind));
+        }
+        putchar('\n');
+    }
     rt_cli_print_params(ops->params, ops->param_count);
     putchar('\n');
 }
 
 static json_t *accelerator_json(const RtAccelOps *ops) {
-    return json_pack("{s:s, s:s, s:s, s:o}", "name", ops->name, "summary", ops->summary, "paper", ops->paper,
-                     "params", rt_cli_params_json(ops->params, ops->param_count));
+    json_t *kinds = json_array();
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        if (ops->kinds && !(ops->kinds >> kind & 1)) continue;
+        json_array_append_new(kinds, json_string(rt_ray_kind_name((RtRayKind)kind)));
+    }
+    return json_pack("{s:s, s:s, s:s, s:b, s:o, s:o}", "name", ops->name, "summary", ops->summary, "paper",
+                     ops->paper, "overlay", ops->kinds != 0, "kinds", kinds, "params",
+                     rt_cli_params_json(ops->params, ops->param_count));
 }
 
 int rt_command_accels(int argc, char **argv) {
@@ -63,7 +76,8 @@ int rt_command_accels(int argc, char **argv) {
     if (o.json) {
         rt_cli_print_json(json_pack("{s:O}", "accelerators", list));
     } else if (!only) {
-        puts("An accelerator is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in grid:density=4.");
+        puts("An accelerator is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in grid:density=4; overlays\n"
+             "come before it, as in OVERLAY+grid:density=4.");
     }
     json_decref(list);
     return RT_EXIT_OK;

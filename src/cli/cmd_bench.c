@@ -5,6 +5,7 @@
 #include "cli/progress.h"
 #include "experiments/json.h"
 #include "experiments/machine.h"
+#include "experiments/spread.h"
 #include "experiments/tables.h"
 #include "render/frame.h"
 
@@ -88,7 +89,11 @@ static void add_accels(RtExperiment *experiment, const char *text, struct argp_s
         add_accel(experiment, text, state);
         return;
     }
-    for (size_t i = 0; i < rt_accel_count(); i++) add_accel(experiment, rt_accel_at(i)->name, state);
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        rt_spread_spec(rt_accel_at(i), 0, spec);
+        add_accel(experiment, spec, state);
+    }
 }
 
 static void parse_kinds(RtExperiment *experiment, const char *text, struct argp_state *state) {

@@ -174,7 +174,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     RtSpec spec;
     RT_TRY(rt_spec_parse(o->accel, &spec, error));
     rt_spec_format(&spec, run->spec);
-    if (o->structure) RT_TRY(rt_structure_available(spec.ops, error));
+    if (o->structure) RT_TRY(rt_structure_available(spec.layers[spec.layer_count - 1].ops, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, &run->accel, error));
@@ -214,7 +214,7 @@ static json_t *stats_json(const Run *run) {
     const RtSampling *s = &run->timed.sampling;
     const Options *o = run->options;
     RtDescription d;
-    run->accel->ops->describe(run->accel, &d);
+    rt_accel_describe(run->accel, &d);
     json_t *kinds = json_object();
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         if (run->rays[kind])
@@ -242,7 +242,7 @@ static void print_summary(const Run *run) {
     const Options *o = run->options;
     const RtSampling *s = &run->timed.sampling;
     RtDescription d;
-    run->accel->ops->describe(run->accel, &d);
+    rt_accel_describe(run->accel, &d);
     printf("%s: %u objects, %u lights. %s: built in %.3g s, %.3g MB. %u x %u pixels%s, %u levels: ",
            run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
            run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,

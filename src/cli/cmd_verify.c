@@ -100,7 +100,7 @@ static RtStatus add_named(Options *o, const char *text, RtError *error) {
     RtSpec spec;
     RT_TRY(rt_spec_parse(text, &spec, error));
     RT_TRY(add_contender(o, text, true, error));
-    return o->spread ? add_registered(o, spec.ops, 1, error) : RT_OK;
+    return o->spread ? add_registered(o, spec.layers[0].ops, 1, error) : RT_OK;
 }
 
 static RtStatus choose_contenders(Options *o, RtError *error) {
@@ -217,7 +217,7 @@ static void report(Run *run, const RtEquivalence *result, const char *scene, con
 /* A broken structure is reported like a wrong answer; rays are traced through it all the same. */
 static RtStatus verify_built(Run *run, const RtReference *reference, RtAccel *accel, const char *scene,
                              const char *spec, RtError *error) {
-    RtStatus status = accel->ops->validate(accel, error);
+    RtStatus status = rt_accel_validate(accel, error);
     if (status == RT_MISMATCH) {
         clear_progress(run);
         fprintf(stderr, "raytally: %s on %s: %s\n", spec, scene, error->message);

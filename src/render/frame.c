@@ -218,6 +218,7 @@ static RtStatus trace_tile(void *context, size_t tile, int thread, RtError *erro
     const RtFrameOptions *o = job->options;
     Worker *worker = &job->workers[thread];
     worker->tile = tile;
+    rt_query_begin(&worker->query);
     make_primary_rays(worker, &worker->levels[0]);
     RT_TRY(trace_level(worker, 0, error));
     if (!o->progress) return RT_OK;

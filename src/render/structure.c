@@ -74,6 +74,7 @@ RtStatus rt_structure_available(const RtAccelOps *ops, RtError *error) {
 }
 
 RtStatus rt_draw_structure(RtImage *image, const RtAccel *accel, RtError *error) {
+    accel = rt_accel_base(accel);
     RT_TRY(rt_structure_available(accel->ops, error));
     RtDescription description;
     accel->ops->describe(accel, &description);

@@ -1,0 +1,97 @@
+/* cache: the shadow cache of Haines & Greenberg 1986, an overlay for shadow rays.
+ *
+ * Neighbouring points are mostly in the shadow of the same object. So the object that blocked the last ray to
+ * a light is tested first; where it blocks this one too, the ray is answered by one object test. Otherwise it
+ * is passed on, and the blocker that comes back, if any, is remembered.
+ *
+ * Layout: the scratch memory of a query holds one id per light, the last occluder or RT_NO_OBJECT. There is
+ * nothing else: no structure, no cost to build.
+ *
+ * Exact, because what is remembered is tested by its own hit function, and any blocker will do.
+ *
+ * Which object is remembered depends on the rays before. So that counts do not depend on the number of
+ * threads, rt_query_begin forgets all; between two of its calls the rays come in one order, in streams of any
+ * length. */
+#include "accel/kernel.h"
+
+#include "base/memory.h"
+
+typedef struct Cache {
+    RtAccel base;
+} Cache;
+
+extern const RtAccelOps rt_cache_ops;
+
+static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+    (void)values;
+    Cache *self = rt_alloc(1, sizeof(Cache));
+    if (!self) return rt_fail_memory(error, "cache", sizeof(Cache));
+    self->base = (RtAccel){.ops = &rt_cache_ops, .scene = scene, .exact = true, .counts = true};
+    *out = &self->base;
+    return RT_OK;
+}
+
+static void destroy(RtAccel *accel) {
+    rt_free(accel);
+}
+
+static size_t scratch_bytes(const RtAccel *accel) {
+    return accel->scene->light_count * sizeof(uint32_t);
+}
+
+static void begin(const RtAccel *accel, void *scratch) {
+    uint32_t *last = scratch;
+    for (uint32_t i = 0; i < accel->scene->light_count; i++) last[i] = RT_NO_OBJECT;
+}
+
+/* ---- queries ---- */
+
+RT_KERNEL uint32_t shade(const Cache *self, void *scratch, const RtRay *ray, RtTally *tallies) {
+    const RtScene *scene = self->base.scene;
+    RtTally *tally = tallies ? &tallies[RT_RAY_SHADOW] : NULL;
+    if (ray->source >= scene->light_count) return rt_pass_on_occluded(&self->base, scratch, ray, tallies);
+
+    uint32_t *last = (uint32_t *)scratch + ray->source;
+    if (*last != RT_NO_OBJECT) {
+        RtPreparedRay prepared = rt_ray_prepare(ray, &scene->geometry.box);
+        RtHit hit = RT_MISS;
+        RT_COUNT(tally, steps, 1);
+        if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally)) {
+            return rt_answer_occluded(*last, tally);
+        }
+    }
+    uint32_t blocker = rt_pass_on_occluded(&self->base, scratch, ray, tallies);
+    if (blocker < scene->geometry.object_count) *last = blocker;
+    return blocker;
+}
+
+RT_DEFINE_SHADOW_KERNELS(Cache, shade)
+
+/* ---- describe and validate ---- */
+
+static void describe(const RtAccel *accel, RtDescription *out) {
+    (void)accel;
+    *out = (RtDescription){.bytes = sizeof(Cache), .predicted_cost = (double)NAN};
+}
+
+static RtStatus validate(const RtAccel *accel, RtError *error) {
+    (void)accel, (void)error;
+    return RT_OK;
+}
+
+const RtAccelOps rt_cache_ops = {
+    .name = "cache",
+    .summary = "overlay: the object that blocked the last ray to a light is tested before all others",
+    .paper = "Haines & Greenberg 1986, The Light Buffer: A Shadow-Testing Accelerator, CG&A 6(9)",
+    .kinds = 1u << RT_RAY_SHADOW,
+    .build = build,
+    .destroy = destroy,
+    .nearest = nearest_timed,
+    .occluded = occluded_timed,
+    .nearest_counted = nearest_counted,
+    .occluded_counted = occluded_counted,
+    .scratch_bytes = scratch_bytes,
+    .begin = begin,
+    .describe = describe,
+    .validate = validate,
+};
