@@ -2,6 +2,8 @@
  */
 #include "accel/accel.h"
 
+#include "base/words.h"
+
 #include <string.h>
 
 /* X(ops) */
@@ -57,8 +59,9 @@ const RtAccelOps *rt_accel_find(const char *name, RtError *error) {
         return NULL;
     }
 #endif
-    const char *near = rt_nearest_name(name, names, REGISTRY_COUNT);
-    rt_fail(error, RT_BAD_INPUT, "there is no accelerator '%s'%s%s%s; `raytally accels` lists them", name,
-            near ? ": did you mean '" : "", near ? near : "", near ? "'?" : "");
+    char suggestion[RT_MAX_SUGGESTION];
+    rt_suggest(name, names, REGISTRY_COUNT, suggestion);
+    rt_fail(error, RT_BAD_INPUT, "there is no accelerator '%s'%s%s `raytally accels` lists them", name,
+            suggestion, *suggestion ? "" : ";");
     return NULL;
 }

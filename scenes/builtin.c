@@ -1,6 +1,7 @@
 #include "scenes/builtin.h"
 
 #include "base/memory.h"
+#include "base/words.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -33,16 +34,13 @@ const RtBuiltin *rt_builtin_find(const char *spec) {
 
 static RtStatus fail_unknown(const char *spec, RtError *error) {
     const char *names[BUILTIN_COUNT];
-    char list[256] = "", name[RT_MAX_NAME];
+    char list[256], name[RT_MAX_NAME], suggestion[RT_MAX_SUGGESTION];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(spec, ":"), spec);
-    for (size_t i = 0; i < BUILTIN_COUNT; i++) {
-        names[i] = builtins[i]->name;
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
-    }
-    const char *near = rt_nearest_name(name, names, BUILTIN_COUNT);
-    return rt_fail(error, RT_BAD_INPUT, "there is no built-in scene '%s'%s%s%s Built-in are: %s", name,
-                   near ? ": did you mean '" : "", near ? near : "", near ? "'?" : ".", list);
+    for (size_t i = 0; i < BUILTIN_COUNT; i++) names[i] = builtins[i]->name;
+    rt_join_names(names, BUILTIN_COUNT, list, sizeof list);
+    rt_suggest(name, names, BUILTIN_COUNT, suggestion);
+    return rt_fail(error, RT_BAD_INPUT, "there is no built-in scene '%s'%s%s Built-in are: %s", name,
+                   suggestion, *suggestion ? "" : ".", list);
 }
 
 static bool fits(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes) {

@@ -1,5 +1,7 @@
 #include "base/param.h"
 
+#include "base/words.h"
+
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
@@ -136,15 +138,12 @@ static RtStatus fail_unknown(const RtParam *table, size_t count, const char *key
     if (count == 0)
         return rt_fail(error, RT_BAD_INPUT, "%s has no parameters, so not '%s' either", what, key);
     const char *names[RT_MAX_PARAMS];
-    char list[512] = "";
-    for (size_t i = 0; i < count; i++) {
-        names[i] = table[i].name;
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
-    }
-    const char *near = rt_nearest_name(key, names, count);
-    return rt_fail(error, RT_BAD_INPUT, "%s has no parameter '%s'%s%s%s it has: %s", what, key,
-                   near ? ": did you mean '" : "", near ? near : "", near ? "'?" : ";", list);
+    char list[512], suggestion[RT_MAX_SUGGESTION];
+    for (size_t i = 0; i < count; i++) names[i] = table[i].name;
+    rt_join_names(names, count, list, sizeof list);
+    rt_suggest(key, names, count, suggestion);
+    return rt_fail(error, RT_BAD_INPUT, "%s has no parameter '%s'%s%s it has: %s", what, key, suggestion,
+                   *suggestion ? "" : ";", list);
 }
 
 /* One "key=value" of the text. */
@@ -192,38 +191,4 @@ RtStatus rt_params_parse(const RtParam *table, size_t count, const char *text, c
         RT_TRY(parse_setting(table, count, setting, what, given, values, error));
     }
     return RT_OK;
-}
-
-/* ---- suggestions ---- */
-
-/* Levenshtein distance, for words of up to 63 characters. */
-static size_t edit_distance(const char *a, const char *b) {
-    size_t row[64], n = strlen(b);
-    if (n > 63 || strlen(a) > 63) return 64;
-    for (size_t j = 0; j <= n; j++) row[j] = j;
-    for (size_t i = 0; a[i]; i++) {
-        size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (size_t j = 0; j < n; j++) {
-            size_t replace = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            size_t remove = row[j + 1] + 1, insert = row[j] + 1;
-            row[j + 1] = replace < remove ? (replace < insert ? replace : insert)
-                                          : (remove < insert ? remove : insert);
-        }
-    }
-    return row[n];
-}
-
-const char *rt_nearest_name(const char *word, const char *const *names, size_t count) {
-    const char *best = NULL;
-    size_t least = strlen(word) / 2 + 1;
-    for (size_t i = 0; i < count; i++) {
-        size_t distance = edit_distance(word, names[i]);
-        if (distance < least) {
-            least = distance;
-            best = names[i];
-        }
-    }
-    return best;
 }

@@ -59,7 +59,4 @@ void rt_param_range(const RtParam *param, char *out, size_t room);
 /* The `n`th value worth testing, as text, from `tries` or all choices; false when there are no more. */
 bool rt_param_try(const RtParam *param, size_t n, char *out, size_t room);
 
-/* Of `names[0..count)` the one that `word` most likely meant, or NULL if none is near (edit distance). */
-const char *rt_nearest_name(const char *word, const char *const *names, size_t count);
-
 #endif

@@ -1,7 +1,8 @@
 #include "base/ray.h"
 
+#include "base/words.h"
+
 #include <assert.h>
-#include <stdio.h>
 #include <string.h>
 
 static const char *const kind_names[RT_RAY_KIND_COUNT] = {
@@ -16,14 +17,12 @@ const char *rt_ray_kind_name(RtRayKind kind) {
 }
 
 RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error) {
-    char list[256] = "";
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        if (strcmp(kind_names[k], name) == 0) {
-            *kind = (RtRayKind)k;
-            return RT_OK;
-        }
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", k ? ", " : "", kind_names[k]);
+        if (strcmp(kind_names[k], name) != 0) continue;
+        *kind = (RtRayKind)k;
+        return RT_OK;
     }
+    char list[256];
+    rt_join_names(kind_names, RT_RAY_KIND_COUNT, list, sizeof list);
     return rt_fail(error, RT_BAD_INPUT, "there is no ray kind '%.40s'; the kinds are %s", name, list);
 }

@@ -3,7 +3,7 @@
  * comparisons. */
 #include "base/yaml_walk.h"
 
-#include "base/param.h"
+#include "base/words.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -228,13 +228,11 @@ static RtStatus check_key(Walk *walk, const cyaml_schema_field_t *fields, uint32
         snprintf(message, sizeof message, "'%s' is given twice: remove one", key);
         return fail(walk, event->start_mark, message);
     }
-    const char *near = strlen(key) < TEXT_CHARS ? rt_nearest_name(key, names, count) : NULL;
-    size_t used = (size_t)snprintf(message, sizeof message, "unknown key '%.*s'", TEXT_CHARS, key);
-    if (near) used += (size_t)snprintf(message + used, sizeof message - used, ": did you mean '%s'?", near);
-    for (uint32_t i = 0; i < count && used < sizeof message; i++) {
-        used += (size_t)snprintf(message + used, sizeof message - used, "%s%s",
-                                 i ? ", " : (near ? " The keys are: " : ": the keys are "), names[i]);
-    }
+    char list[PATH_CHARS / 2], suggestion[RT_MAX_SUGGESTION] = "";
+    rt_join_names(names, count, list, sizeof list);
+    if (strlen(key) < TEXT_CHARS) rt_suggest(key, names, count, suggestion);
+    snprintf(message, sizeof message, "unknown key '%.*s'%s%s%s", TEXT_CHARS, key, suggestion,
+             *suggestion ? " The keys are: " : ": the keys are ", list);
     return fail(walk, event->start_mark, message);
 }
 

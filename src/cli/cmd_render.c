@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/words.h"
 #include "cli/cli.h"
 #include "experiments/equivalence.h"
 #include "experiments/json.h"
@@ -64,11 +65,11 @@ static size_t counter_by_name(struct argp_state *state, const char *name) {
         names[i] = rt_tally_name(i);
         if (strcmp(names[i], name) == 0) return i;
     }
-    const char *near = rt_nearest_name(name, names, RT_TALLY_COUNTER_COUNT);
-    argp_error(
-        state,
-        "--heatmap: there is no counter '%s': it must be object_tests, extent_tests, steps or another%s%s%s",
-        name, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    char list[256], suggestion[RT_MAX_SUGGESTION];
+    rt_join_names(names, RT_TALLY_COUNTER_COUNT, list, sizeof list);
+    rt_suggest(name, names, RT_TALLY_COUNTER_COUNT, suggestion);
+    argp_error(state, "--heatmap: there is no counter '%s'%s%s%s", name, suggestion,
+               *suggestion ? " The counters are: " : ": the counters are ", list);
     return 0;
 }
 

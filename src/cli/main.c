@@ -1,14 +1,10 @@
-/* raytally: the list of commands, and what they share. */
+/* raytally: the list of commands. */
+#include "base/words.h"
 #include "cli/cli.h"
 
 #include <argp.h>
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-#include "base/param.h"
-#include "scene/camera.h"
 
 static const RtCommand commands[] = {
     {"accels", "[NAME]", "list the accelerators, their parameters, defaults, ranges and papers",
@@ -44,10 +40,10 @@ static void print_usage(FILE *to) {
 static int run_unknown(const char *name) {
     const char *names[COMMAND_COUNT];
     for (int i = 0; i < COMMAND_COUNT; i++) names[i] = commands[i].name;
-    const char *near = rt_nearest_name(name, names, COMMAND_COUNT);
-    fprintf(stderr, "raytally: there is no command '%s'", name);
-    if (near) fprintf(stderr, ": did you mean '%s'?", near);
-    fprintf(stderr, "\n`raytally --help` lists the commands.\n");
+    char suggestion[RT_MAX_SUGGESTION];
+    rt_suggest(name, names, COMMAND_COUNT, suggestion);
+    fprintf(stderr, "raytally: there is no command '%s'%s\n`raytally --help` lists the commands.\n", name,
+            suggestion);
     return RT_EXIT_BAD_INPUT;
 }
 
@@ -74,35 +70,4 @@ int main(int argc, char **argv) {
         return commands[i].run(argc - 1, argv + 1);
     }
     return run_unknown(name);
-}
-
-/* ---- shared by the commands ---- */
-
-int rt_cli_fail(const RtError *error) {
-    fprintf(stderr, "raytally: %s\n", error->message);
-    return error->status == RT_MISMATCH ? RT_EXIT_CHECK_FAILED : RT_EXIT_BAD_INPUT;
-}
-
-void rt_cli_print_json(json_t *document) {
-    json_dumpf(document, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    putchar('\n');
-    json_decref(document);
-}
-
-int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
-                       int64_t hi) {
-    char *end;
-    errno = 0;
-    long long value = strtoll(text, &end, 10);
-    if (end == text || *end || errno || value < lo || value > hi) {
-        argp_error(state, "%s: '%s' will not do: it must be a whole number %lld..%lld", option, text,
-                   (long long)lo, (long long)hi);
-    }
-    return value;
-}
-
-void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height) {
-    if (rt_image_size_parse(text, width, height)) return;
-    argp_error(state, "--size: '%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 640x480", text,
-               RT_MAX_IMAGE_SIDE);
 }

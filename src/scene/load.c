@@ -1,7 +1,7 @@
 #include "scene/load.h"
 
 #include "base/file.h"
-#include "base/param.h"
+#include "base/words.h"
 #include "scene/mesh.h"
 #include "scene/nff.h"
 #include "scene/yaml.h"

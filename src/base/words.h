@@ -1,0 +1,18 @@
+/* Words in messages: lists of the names there are, and the one that was probably meant. */
+#ifndef RT_BASE_WORDS_H
+#define RT_BASE_WORDS_H
+
+#include <stddef.h>
+
+/* Of `names[0..count)` the one that `word` most likely meant, or NULL if none is near (edit distance). */
+const char *rt_nearest_name(const char *word, const char *const *names, size_t count);
+
+#define RT_MAX_SUGGESTION 96
+
+/* ": did you mean 'NAME'?" with the nearest name, "" if none is near. */
+void rt_suggest(const char *word, const char *const *names, size_t count, char out[RT_MAX_SUGGESTION]);
+
+/* "a, b, c" to out[0..room), cut where there is too little room. */
+void rt_join_names(const char *const *names, size_t count, char *out, size_t room);
+
+#endif

@@ -1,0 +1,58 @@
+#include "cli/cli.h"
+
+#include "scene/camera.h"
+
+#include <argp.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+int rt_cli_fail(const RtError *error) {
+    fprintf(stderr, "raytally: %s\n", error->message);
+    return error->status == RT_MISMATCH ? RT_EXIT_CHECK_FAILED : RT_EXIT_BAD_INPUT;
+}
+
+void rt_cli_print_json(json_t *document) {
+    json_dumpf(document, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    putchar('\n');
+    json_decref(document);
+}
+
+void rt_cli_print_params(const RtParam *table, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        char range[RT_MAX_SPEC_CHARS];
+        rt_param_range(&table[i], range, sizeof range);
+        printf("  %-12s %s\n  %-12s   default %s (%s); %s\n", table[i].name, table[i].meaning, "",
+               table[i].standard, table[i].source, range);
+    }
+}
+
+json_t *rt_cli_params_json(const RtParam *table, size_t count) {
+    json_t *params = json_array();
+    for (size_t i = 0; i < count; i++) {
+        char range[RT_MAX_SPEC_CHARS];
+        rt_param_range(&table[i], range, sizeof range);
+        json_array_append_new(params, json_pack("{s:s, s:s, s:s, s:s, s:s}", "name", table[i].name, "default",
+                                                table[i].standard, "range", range, "meaning",
+                                                table[i].meaning, "source", table[i].source));
+    }
+    return params;
+}
+
+int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
+                       int64_t hi) {
+    char *end;
+    errno = 0;
+    long long value = strtoll(text, &end, 10);
+    if (end == text || *end || errno || value < lo || value > hi) {
+        argp_error(state, "%s: '%s' will not do: it must be a whole number %lld..%lld", option, text,
+                   (long long)lo, (long long)hi);
+    }
+    return value;
+}
+
+void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height) {
+    if (rt_image_size_parse(text, width, height)) return;
+    argp_error(state, "--size: '%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 640x480", text,
+               RT_MAX_IMAGE_SIDE);
+}
