@@ -59,6 +59,9 @@ refuses 'Usage: raytally COMMAND'
 refuses "no command 'rendr': did you mean 'render'.*--help" rendr
 refuses "unrecognized option '--bogus'.*--help" accels --bogus
 refuses "no accelerator 'grd': did you mean 'grid'.*raytally accels" accels grd
+"$program" accels >/dev/full 2>stderr
+[ $? = 2 ] && grep -q 'standard output' stderr || complain "raytally accels: a full disk goes unnoticed"
+rm stderr
 for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
     does "$command" --help
     refuses "unrecognized option '--bogus'.*$command --help" "$command" --bogus

@@ -67,7 +67,10 @@ int main(int argc, char **argv) {
         char title[64];
         snprintf(title, sizeof title, "raytally %s", name);
         argv[1] = title;
-        return commands[i].run(argc - 1, argv + 1);
+        int code = commands[i].run(argc - 1, argv + 1);
+        if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+        fprintf(stderr, "raytally: writing to standard output failed: is the disk full?\n");
+        return RT_EXIT_BAD_INPUT;
     }
     return run_unknown(name);
 }
