@@ -16,23 +16,10 @@ typedef struct Reader {
     RtError *error;
 } Reader;
 
-/* What a node does first, then what is above it. */
-static RtTransform compose(const RtTransform *above, const struct aiMatrix4x4 *node) {
-    const double n[4][4] = {
-        {(double)node->a1, (double)node->a2, (double)node->a3, (double)node->a4},
-        {(double)node->b1, (double)node->b2, (double)node->b3, (double)node->b4},
-        {(double)node->c1, (double)node->c2, (double)node->c3, (double)node->c4},
-        {0, 0, 0, 1},
-    };
-    RtTransform both;
-    for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 4; column++) {
-            double sum = 0;
-            for (int i = 0; i < 4; i++) sum += above->m[row][i] * n[i][column];
-            both.m[row][column] = sum;
-        }
-    }
-    return both;
+static RtTransform transform_of(const struct aiMatrix4x4 *m) {
+    return (RtTransform){{{(double)m->a1, (double)m->a2, (double)m->a3, (double)m->a4},
+                          {(double)m->b1, (double)m->b2, (double)m->b3, (double)m->b4},
+                          {(double)m->c1, (double)m->c2, (double)m->c3, (double)m->c4}}};
 }
 
 /* Turns the inside out: then corners are taken in reverse, and normals, which go by cofactors, change sign.
@@ -96,7 +83,7 @@ static RtStatus add_mesh(const Reader *r, const struct aiMesh *mesh, const RtTra
 }
 
 static RtStatus add_node(const Reader *r, const struct aiNode *node, const RtTransform *above) {
-    RtTransform transform = compose(above, &node->mTransformation);
+    RtTransform own = transform_of(&node->mTransformation), transform = rt_transform_compose(&own, above);
     for (unsigned i = 0; i < node->mNumMeshes; i++) {
         RT_TRY(add_mesh(r, r->file->mMeshes[node->mMeshes[i]], &transform));
     }

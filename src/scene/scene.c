@@ -144,6 +144,13 @@ RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
     return RT_OK;
 }
 
+/* The bytes of these are hashed, so they have no padding. */
+_Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "a sphere has no padding");
+_Static_assert(sizeof(RtCone) == 8 * sizeof(float) + 8 * sizeof(double), "a cone has no padding");
+_Static_assert(sizeof(RtMaterial) == RT_MAX_NAME + 10 * sizeof(float), "a material has no padding");
+_Static_assert(sizeof(RtLight) == 6 * sizeof(float), "a light has no padding");
+_Static_assert(sizeof(RtCamera) == 11 * sizeof(float) + 2 * sizeof(uint32_t), "a camera has no padding");
+
 uint64_t rt_scene_fingerprint(const RtScene *scene) {
     const RtGeometry *g = &scene->geometry;
     XXH3_state_t *state = XXH3_createState();

@@ -4,8 +4,7 @@ RtTransform rt_transform_identity(void) {
     return (RtTransform){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 }
 
-/* `first`, and then `second`. */
-static RtTransform compose(const RtTransform *first, const RtTransform *second) {
+RtTransform rt_transform_compose(const RtTransform *first, const RtTransform *second) {
     RtTransform both;
     for (int row = 0; row < 3; row++) {
         const double *s = second->m[row];
@@ -32,7 +31,7 @@ RtStatus rt_transform_scale(RtTransform *transform, RtVec3 factors, RtError *err
     }
     RtTransform step = rt_transform_identity();
     for (int a = 0; a < 3; a++) step.m[a][a] = (double)factors.at[a];
-    *transform = compose(transform, &step);
+    *transform = rt_transform_compose(transform, &step);
     return RT_OK;
 }
 
@@ -77,7 +76,7 @@ RtStatus rt_transform_rotate(RtTransform *transform, RtVec3 axis, double degrees
         step.m[b][a] += s * u.at[next];
         step.m[a][b] -= s * u.at[next];
     }
-    *transform = compose(transform, &step);
+    *transform = rt_transform_compose(transform, &step);
     return RT_OK;
 }
 

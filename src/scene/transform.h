@@ -1,7 +1,7 @@
 /* Affine transforms in double: what places meshes and built-in scenes in a scene.
  *
  * A point p (a column) goes to m[.][0..2] p + m[.][3]. Transforms keep the orientation of space (determinant
- * above 0): mirrors would turn surfaces inside out, and no function here makes one. */
+ * above 0): mirrors would turn surfaces inside out, and no function here makes one of others. */
 #ifndef RT_SCENE_TRANSFORM_H
 #define RT_SCENE_TRANSFORM_H
 
@@ -13,6 +13,9 @@ typedef struct RtTransform {
 } RtTransform;
 
 RtTransform rt_transform_identity(void);
+
+/* Does what `first` does, and then what `second` does. */
+RtTransform rt_transform_compose(const RtTransform *first, const RtTransform *second);
 
 /* The step makers below change *transform so that it does what it did and then the new step, and refuse, with
  * a message without a place, numbers that are not finite and what is named. */
