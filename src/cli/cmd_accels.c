@@ -51,14 +51,11 @@ static json_t *accelerator_json(const RtAccelOps *ops) {
 int rt_command_accels(int argc, char **argv) {
     Options o = {0};
     const struct argp argp = {
-        options,
-        parse_option,
-        "[NAME]",
-        "List the accelerators, or explain the one called NAME: its parameters with defaults "
-        "and ranges, and the paper it follows.",
-        0,
-        0,
-        0};
+        .options = options,
+        .parser = parse_option,
+        .args_doc = "[NAME]",
+        .doc = "List the accelerators, or explain the one called NAME: its parameters with defaults "
+               "and ranges, and the paper it follows."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
     const RtAccelOps *only = o.name ? rt_accel_find(o.name, &error) : NULL;

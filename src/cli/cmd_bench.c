@@ -255,16 +255,13 @@ int rt_command_bench(int argc, char **argv) {
     o.experiment->trial_count = 1;
     o.experiment->trials[0].depth = RT_DEFAULT_DEPTH;
     const struct argp argp = {
-        options,
-        parse_option,
-        "SCENE",
-        "Count and time accelerators on the rays of one scene, and compare them."
-        "\vSCENE is a file or a built-in, as in balls:size=3. Every accelerator gets the "
-        "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
-        "  raytally bench balls --accel bvh --accel grid --accel brute --every 100",
-        0,
-        0,
-        0};
+        .options = options,
+        .parser = parse_option,
+        .args_doc = "SCENE",
+        .doc = "Count and time accelerators on the rays of one scene, and compare them."
+               "\vSCENE is a file or a built-in, as in balls:size=3. Every accelerator gets the "
+               "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
+               "  raytally bench balls --accel bvh --accel grid --accel brute --every 100"};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtStatus status = bench(&o, &error);
     rt_free(o.experiment);

@@ -136,15 +136,12 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
 
 int rt_command_info(int argc, char **argv) {
     const struct argp argp = {
-        options,
-        parse_option,
-        "SCENE",
-        "Say what is in a scene: objects by shape, bounds, materials, lights, the camera, "
-        "memory, and a fingerprint that changes with anything that can change an answer. "
-        "SCENE is a file or a built-in such as balls:size=5.",
-        0,
-        0,
-        0};
+        .options = options,
+        .parser = parse_option,
+        .args_doc = "SCENE",
+        .doc = "Say what is in a scene: objects by shape, bounds, materials, lights, the camera, "
+               "memory, and a fingerprint that changes with anything that can change an answer. "
+               "SCENE is a file or a built-in such as balls:size=5."};
     Options o = {0};
     RtScene scene;
     RtError error;

@@ -306,7 +306,7 @@ int rt_command_render(int argc, char **argv) {
     static const char doc[] =
         "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
         "To begin with: raytally render balls -o balls.png";
-    const struct argp argp = {options, parse_option, "SCENE", doc, 0, 0, 0};
+    const struct argp argp = {.options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc};
     Options o = {.accel = "bvh", .samples = 1, .depth = RT_DEFAULT_DEPTH};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error = {RT_OK, ""};

@@ -69,15 +69,13 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
 
 int rt_command_run(int argc, char **argv) {
     Options o = {.timing = 1};
-    const struct argp argp = {options,
-                              parse_option,
-                              "EXPERIMENT.yaml",
-                              "Run an experiment and write its result directory: counts.csv, times.csv, "
-                              "manifest.json, plots, images and report.html."
-                              "\vexperiments/README.md tells how to write one.",
-                              0,
-                              0,
-                              0};
+    const struct argp argp = {.options = options,
+                              .parser = parse_option,
+                              .args_doc = "EXPERIMENT.yaml",
+                              .doc =
+                                  "Run an experiment and write its result directory: counts.csv, times.csv, "
+                                  "manifest.json, plots, images and report.html."
+                                  "\vexperiments/README.md tells how to write one."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);

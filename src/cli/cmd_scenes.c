@@ -28,7 +28,7 @@ static json_t *scene_json(const RtBuiltin *builtin) {
 
 int rt_command_scenes(int argc, char **argv) {
     const struct argp argp = {
-        options, parse_option, 0, "List the built-in scenes and their parameters.", 0, 0, 0};
+        .options = options, .parser = parse_option, .doc = "List the built-in scenes and their parameters."};
     bool json = false;
     argp_parse(&argp, argc, argv, 0, 0, &json);
     json_t *list = json_array();

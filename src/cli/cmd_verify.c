@@ -291,17 +291,15 @@ int rt_command_verify(int argc, char **argv) {
     static Options o;
     o = (Options){.rays = 100000, .seed = 1};
     const struct argp argp = {
-        options,
-        parse_option,
-        "[SCENE...]",
-        "Verify that accelerators answer every ray of each SCENE (a few small built-in ones if none is "
-        "given) "
-        "like brute: the same object and the same bits of t, timed and counted, singly and in streams.\v"
-        "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
-        "marginal (explained by rounding) or wrong. Exit code 1 if anything is wrong.",
-        0,
-        0,
-        0};
+        .options = options,
+        .parser = parse_option,
+        .args_doc = "[SCENE...]",
+        .doc =
+            "Verify that accelerators answer every ray of each SCENE (a few small built-in ones if none is "
+            "given) like brute: the same object and the same bits of t, timed and counted, singly and in "
+            "streams.\v"
+            "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
+            "marginal (explained by rounding) or wrong. Exit code 1 if anything is wrong."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     if (o.scene_count == 0) {
         o.scene_count = sizeof default_scenes / sizeof default_scenes[0];

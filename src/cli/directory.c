@@ -21,7 +21,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 int rt_cli_directory(int argc, char **argv, const char *help, RtDirectoryWork *work) {
     const char *directory = NULL;
-    const struct argp argp = {0, parse_option, "DIR", help, 0, 0, 0};
+    const struct argp argp = {.parser = parse_option, .args_doc = "DIR", .doc = help};
     argp_parse(&argp, argc, argv, 0, 0, &directory);
     RtError error;
     RtResults results = {0};
