@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "experiments/measure.h"
 #include "scene/load.h"
 
@@ -295,7 +296,7 @@ static RtStatus keep_times(Trial *trial, RtRayKind kind, const RtTimed *timed, c
         if (cell->timed) continue;
         cell->timed = true;
         cell->rounds = rounds;
-        cell->threads = trial->options->timing;
+        cell->threads = rt_thread_count(trial->options->timing);
         cell->tally.rays = timed[i].set->count;
         cell->seconds = rt_estimate(timed[i].seconds, rounds, seed);
         cell->wall = rt_estimate(timed[i].wall, rounds, seed);

@@ -125,7 +125,7 @@ static void covered(const RtGrid *grid, int axis, float lo, float hi, uint32_t *
     *last = i;
 }
 
-/* Calls for the range of voxels of an object's box. */
+/* The range of voxels that an object's box touches, first to last on each axis. */
 static void covered_voxels(const RtGrid *grid, const RtBox *box, uint32_t from[3], uint32_t to[3]) {
     for (int a = 0; a < 3; a++) covered(grid, a, box->lo.at[a], box->hi.at[a], &from[a], &to[a]);
 }

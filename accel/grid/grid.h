@@ -1,10 +1,9 @@
 /* The inside of grid: its data, shared by the files of this folder.
  *
- * Per axis the planes between voxels, planes[axis][0..n]; all lists in one array, `ids`, voxel after voxel, x
- * fastest; the list of voxel v at first[v]..first[v + 1].
- * Invariant: an object is in the list of every voxel whose closed interval of planes meets its box, on every
- * axis.
- */
+ * Per axis the planes between voxels, planes[axis][0..n[axis]]; all lists in one array, `ids`, voxel after
+ * voxel, x fastest; the list of voxel v is ids[first[v]..first[v + 1]). Invariant: an object is in the list
+ * of each voxel whose closed intervals of planes meet its box on all three axes, and of no other; a list is
+ * ascending. */
 #ifndef RT_ACCEL_GRID_GRID_H
 #define RT_ACCEL_GRID_GRID_H
 
