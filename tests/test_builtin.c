@@ -94,6 +94,31 @@ static void balls_and_tetra_print_as_when_they_were_compared_with_the_databases(
     XXH3_freeState(hash);
 }
 
+/* Two triangles, of which number `with` has vertex normals. */
+static uint64_t fingerprint_with_normals(uint32_t with) {
+    static const RtVec3 vertices[2][3] = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                          {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
+    static const RtVec3 normals[3] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
+    RtScene scene;
+    uint32_t material;
+    RtMaterial standard = rt_default_material();
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &standard, &material, error));
+    for (uint32_t i = 0; i < 2; i++) {
+        assert_ok(rt_scene_add_triangle(&scene, material, vertices[i], i == with ? normals : NULL, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    uint64_t fingerprint = rt_scene_fingerprint(&scene);
+    rt_scene_clear(&scene);
+    return fingerprint;
+}
+
+static void a_fingerprint_tells_which_triangle_has_normals(void **state) {
+    (void)state;
+    assert_int_not_equal(fingerprint_with_normals(0), fingerprint_with_normals(1));
+    assert_int_equal(fingerprint_with_normals(1), fingerprint_with_normals(1));
+}
+
 static void random_scenes_depend_on_the_seed_alone(void **state) {
     (void)state;
     RtScene a = open_scene("random:n=500,shape=mixed,seed=7"),
@@ -221,6 +246,7 @@ int main(void) {
         cmocka_unit_test(balls_and_tetra_have_the_counts_of_the_databases),
         cmocka_unit_test(balls_lie_where_the_databases_have_them),
         cmocka_unit_test(balls_and_tetra_print_as_when_they_were_compared_with_the_databases),
+        cmocka_unit_test(a_fingerprint_tells_which_triangle_has_normals),
         cmocka_unit_test(random_scenes_depend_on_the_seed_alone),
         cmocka_unit_test(a_random_object_does_not_depend_on_those_before_it),
         cmocka_unit_test(one_narrow_cluster_lies_together),

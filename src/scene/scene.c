@@ -165,6 +165,9 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
     for (uint32_t i = 0; i < g->polygon_count; i++) ADD(&g->polygons[i].count, 1);
     ADD(g->cones, g->cone_count);
     ADD(g->vertex_normals, g->vertex_normal_count);
+    /* Which triangles they belong to; where all have some, that is known. */
+    bool some = g->vertex_normal_count > 0 && g->vertex_normal_count < g->triangle_count;
+    if (some) ADD(g->triangle_normals, g->triangle_count);
     for (uint32_t i = 0; i < scene->material_count; i++) { /* all but the name */
         XXH3_64bits_update(state, &scene->materials[i].color,
                            sizeof(RtMaterial) - offsetof(RtMaterial, color));
