@@ -81,12 +81,12 @@ typedef struct RtHit {
 typedef struct RtPreparedRay {
     const RtRay *original; /* what it was made from */
     RtVec3 org, dir;
-    float tmin, tmax;                /* tmax finite: a hit at infinity is none */
-    float inv[3];                    /* 1 / dir, possibly infinite */
-    float org_near[3], org_far[3];   /* origins moved by the thickness */
-    uint32_t negative[3];            /* 1 where dir has its sign bit set, -0 included */
-    int kx, ky, kz;                  /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
-    float shear_x, shear_y, shear_z; /* dir[kx] / dir[kz], dir[ky] / dir[kz], 1 / dir[kz] */
+    float tmin, tmax;              /* tmax finite: a hit at infinity is none */
+    float inv[3];                  /* 1 / dir, possibly infinite */
+    float org_near[3], org_far[3]; /* origins moved by the thickness */
+    uint32_t negative[3];          /* 1 where dir has its sign bit set, -0 included */
+    int kx, ky, kz;                /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
+    float shear_x, shear_y;        /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
 } RtPreparedRay;
 
 static inline bool rt_ray_is_valid(const RtRay *ray) {
@@ -142,7 +142,6 @@ static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_
     p.ky = p.kx == 2 ? 0 : p.kx + 1;
     p.shear_x = p.dir.at[p.kx] * p.inv[p.kz];
     p.shear_y = p.dir.at[p.ky] * p.inv[p.kz];
-    p.shear_z = p.inv[p.kz];
     return p;
 }
 

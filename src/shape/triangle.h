@@ -2,11 +2,14 @@
  *
  * Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2(1)): vertices are moved to the
  * ray's origin and sheared until the ray is the z axis; the three edge functions of the projection decide.
- * The transformed position of a shared vertex is the same for every triangle that shares it, and where an
- * edge function is 0 in float32 it is evaluated again in double, where its sign is exact: so neighbours
- * agree, and a ray cannot pass between them.
+ * The transformed position of a shared vertex is the same for every triangle that shares it, and the signs of
+ * edge functions are exact: so neighbours agree, and a ray cannot pass between them.
  *
- * All arithmetic is float32 + - * / in a fixed order, for SIMD kernels to repeat bit for bit. */
+ * An edge function in float32 has the right sign or is 0, because rounding is monotone; that turns nearly all
+ * rays away. Only for the rest are the functions evaluated in double, where products of two float32 are exact
+ * and one rounding is left. Their ratios, the weights, are then right too: on a sliver those of float32 would
+ * be noise, and the t with them. Only + - * / in a fixed order, for SIMD kernels to repeat bit for bit: in
+ * float32 up to the first test, and in double for the few lanes that pass it. */
 #ifndef RT_SHAPE_TRIANGLE_H
 #define RT_SHAPE_TRIANGLE_H
 
@@ -44,21 +47,18 @@ static inline bool rt_triangle_hit(const RtTriangle *triangle, const RtPreparedR
         x[i] = v[ray->kx] - ray->org.at[ray->kx] - ray->shear_x * z[i];
         y[i] = v[ray->ky] - ray->org.at[ray->ky] - ray->shear_y * z[i];
     }
-    float u = x[2] * y[1] - y[2] * x[1];
-    float v = x[0] * y[2] - y[0] * x[2];
-    float w = x[1] * y[0] - y[1] * x[0];
-    if (u == 0 || v == 0 || w == 0) {
-        u = (float)((double)x[2] * (double)y[1] - (double)y[2] * (double)x[1]);
-        v = (float)((double)x[0] * (double)y[2] - (double)y[0] * (double)x[2]);
-        w = (float)((double)x[1] * (double)y[0] - (double)y[1] * (double)x[0]);
-    }
+    float fu = x[2] * y[1] - y[2] * x[1];
+    float fv = x[0] * y[2] - y[0] * x[2];
+    float fw = x[1] * y[0] - y[1] * x[0];
+    if ((fu < 0 || fv < 0 || fw < 0) && (fu > 0 || fv > 0 || fw > 0)) return false;
+    double u = (double)x[2] * (double)y[1] - (double)y[2] * (double)x[1];
+    double v = (double)x[0] * (double)y[2] - (double)y[0] * (double)x[2];
+    double w = (double)x[1] * (double)y[0] - (double)y[1] * (double)x[0];
     if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
-    float determinant = u + v + w;
+    double determinant = u + v + w;
     if (determinant == 0) return false;
-    /* Weights first: u * z would underflow in scenes of size 2^-40. */
-    float scale = 1 / determinant;
-    float depth = (u * scale) * z[0] + (v * scale) * z[1] + (w * scale) * z[2];
-    *t = depth * ray->shear_z;
+    double depth = (u * (double)z[0] + v * (double)z[1] + w * (double)z[2]) / determinant;
+    *t = (float)(depth / (double)ray->dir.at[ray->kz]);
     RtBox own = rt_triangle_box(triangle);
     return rt_box_admit(&own, ray, t);
 }
