@@ -46,7 +46,7 @@ typedef struct RtDescription {
     uint64_t empty_leaves; /* of them, those without an object */
     uint64_t references;   /* entries in all lists of objects */
     uint64_t depth;        /* of the deepest leaf, the root being 0 */
-    uint64_t bytes;        /* of the structure, without the scene */
+    uint64_t bytes;        /* of its arrays: without the scene, and without what is one per accelerator */
     double predicted_cost; /* expected cost of a random line through the box, in object tests (SAH); see the
                               file */
 } RtDescription;

@@ -33,7 +33,7 @@ RT_DEFINE_KERNELS(Brute, search)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     uint32_t count = accel->scene->geometry.object_count;
-    *out = (RtDescription){.references = count, .bytes = sizeof(Brute), .predicted_cost = count};
+    *out = (RtDescription){.references = count, .predicted_cost = count};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

@@ -281,7 +281,7 @@ static void survey_node(void *context, const Node *node, uint32_t depth) {
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     const Bvh *bvh = (const Bvh *)accel;
-    *out = (RtDescription){.bytes = sizeof(Bvh) + bvh->node_count * sizeof(Node) +
+    *out = (RtDescription){.bytes = bvh->node_count * sizeof(Node) +
                                     accel->scene->geometry.object_count * sizeof(uint32_t)};
     if (bvh->node_count == 0) return;
     Survey survey = {bvh, out, 0};

@@ -71,7 +71,7 @@ RT_DEFINE_SHADOW_KERNELS(Cache, shade)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     (void)accel;
-    *out = (RtDescription){.bytes = sizeof(Cache), .predicted_cost = (double)NAN};
+    *out = (RtDescription){.predicted_cost = (double)NAN};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

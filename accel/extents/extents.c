@@ -239,7 +239,7 @@ static void describe(const RtAccel *accel, RtDescription *out) {
     double sum = 0, whole = rt_box_half_area(accel->scene->geometry.box);
     for (uint32_t id = 0; id < count; id++) sum += half_area(self, id);
     *out = (RtDescription){.references = count,
-                           .bytes = sizeof(RtExtents) + count * bytes_each(self),
+                           .bytes = count * bytes_each(self),
                            .predicted_cost = count == 0  ? 0
                                              : whole > 0 ? sum / whole
                                                          : NAN};

@@ -28,7 +28,7 @@ static RtStatus each_voxel(const RtGrid *grid,
 void rt_grid_describe(const RtAccel *accel, RtDescription *out) {
     const RtGrid *grid = (const RtGrid *)accel;
     size_t voxels = rt_grid_voxel_count(grid);
-    *out = (RtDescription){.bytes = sizeof(RtGrid), .predicted_cost = (double)NAN};
+    *out = (RtDescription){.predicted_cost = (double)NAN};
     if (voxels == 0) return;
     out->leaves = voxels;
     out->references = grid->first[voxels];

@@ -13,6 +13,10 @@ int rt_cli_fail(const RtError *error) {
 }
 
 void rt_cli_print_json(json_t *document) {
+    if (!document) {
+        fprintf(stderr, "raytally: out of memory for the JSON document\n");
+        exit(RT_EXIT_BAD_INPUT);
+    }
     json_dumpf(document, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     putchar('\n');
     json_decref(document);
