@@ -9,14 +9,14 @@
  * stack of a traversal. Counting: an extent test per box tested, the root's included; a step per node
  * visited. */
 #include "accel/kernel.h"
-
+#include "accel/split.h"
 #include "base/memory.h"
 
 #include <assert.h>
 #include <string.h>
 
 /* From this depth on nodes are halved by number, so 2^28 objects end above MAX_DEPTH. */
-enum { MAX_DEPTH = 64, HALVE_DEPTH = 34, MAX_BINS = 64 };
+enum { MAX_DEPTH = 64, HALVE_DEPTH = 34 };
 
 enum { PARAM_BINS, PARAM_LEAF, PARAM_TRAVERSAL, PARAM_COUNT };
 
@@ -25,7 +25,7 @@ static const RtParam params[PARAM_COUNT] = {
                     .type = RT_PARAM_INT,
                     .standard = "16",
                     .lo = 2,
-                    .hi = MAX_BINS,
+                    .hi = RT_MAX_BINS,
                     .meaning = "bins along each axis in which split positions are sought",
                     .source = "Wald 2007",
                     .tries = "2|5|64"},
@@ -72,83 +72,16 @@ typedef struct Builder {
     int bins;
 } Builder;
 
-typedef struct Split {
-    double cost; /* of the node if split here, in object tests times its area */
-    int axis, bin;
-    float lo, scale; /* bin of a centre c: (c - lo) * scale */
-} Split;
-
-typedef struct Bin {
-    RtBox box;
-    uint32_t count;
-} Bin;
-
-static int bin_of(const RtBox *box, int axis, float lo, float scale, int bins) {
-    int bin = (int)((rt_box_center(*box).at[axis] - lo) * scale);
-    return bin < 0 ? 0 : bin >= bins ? bins - 1 : bin;
-}
-
-/* Improves `best` by the best split of ids[0..count) along `axis`, whose centres lie in [lo, hi]. */
-static void try_axis(const Builder *b, const uint32_t *ids, uint32_t count, int axis, float lo, float hi,
-                     Split *best) {
-    Bin bins[MAX_BINS];
-    float scale = (float)b->bins / (hi - lo);
-    if (!(hi > lo) || !isfinite(scale)) return;
-    for (int i = 0; i < b->bins; i++) bins[i] = (Bin){RT_EMPTY_BOX, 0};
-    for (uint32_t i = 0; i < count; i++) {
-        Bin *bin = &bins[bin_of(&b->boxes[ids[i]], axis, lo, scale, b->bins)];
-        bin->box = rt_box_union(bin->box, b->boxes[ids[i]]);
-        bin->count++;
-    }
-    /* Costs of all right sides in one sweep, then left sides against them. */
-    double right_cost[MAX_BINS];
-    RtBox box = RT_EMPTY_BOX;
-    uint32_t n = 0;
-    for (int i = b->bins - 1; i > 0; i--) {
-        box = rt_box_union(box, bins[i].box);
-        n += bins[i].count;
-        right_cost[i] = rt_box_half_area(box) * n;
-    }
-    box = RT_EMPTY_BOX;
-    n = 0;
-    for (int i = 1; i < b->bins; i++) {
-        box = rt_box_union(box, bins[i - 1].box);
-        n += bins[i - 1].count;
-        double cost = rt_box_half_area(box) * n + right_cost[i];
-        if (n == 0 || n == count || !(cost < best->cost)) continue;
-        *best = (Split){cost, axis, i, lo, scale};
-    }
-}
-
-/* Moves the ids that go left to the front, and gives their number. */
-static uint32_t partition(const Builder *b, uint32_t *ids, uint32_t count, const Split *split) {
-    uint32_t left = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t id = ids[i];
-        if (bin_of(&b->boxes[id], split->axis, split->lo, split->scale, b->bins) >= split->bin) continue;
-        ids[i] = ids[left];
-        ids[left++] = id;
-    }
-    return left;
-}
-
 /* How many of ids[0..count) go to the left child, now in front; 0 for a leaf. */
 static uint32_t divide(const Builder *b, const Node *node, uint32_t *ids, uint32_t count, int depth) {
     if (count == 1) return 0;
-    Split best = {.cost = INFINITY};
-    if (depth < HALVE_DEPTH) {
-        RtBox centers = RT_EMPTY_BOX;
-        for (uint32_t i = 0; i < count; i++)
-            centers = rt_box_add_point(centers, rt_box_center(b->boxes[ids[i]]));
-        for (int axis = 0; axis < 3; axis++) {
-            try_axis(b, ids, count, axis, centers.lo.at[axis], centers.hi.at[axis], &best);
-        }
-    }
+    RtSplit best = {.cost = INFINITY};
+    if (depth < HALVE_DEPTH) best = rt_split_find(b->boxes, ids, count, b->bins);
     double area = rt_box_half_area(node->box);
     bool pays = best.cost + b->bvh->traversal_cost * area < area * count;
     if (count <= b->bvh->leaf_limit && !pays) return 0;
     /* Coincident centres, or too deep: halves of equal number, in the order they have. */
-    return best.cost < INFINITY ? partition(b, ids, count, &best) : count / 2;
+    return best.cost < INFINITY ? rt_split_partition(&best, b->boxes, ids, count) : count / 2;
 }
 
 /* Makes node `index` from ids[first..first + count). */

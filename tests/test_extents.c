@@ -360,28 +360,28 @@ static void validate_names_the_extent_that_is_too_small(void **state) {
     (void)state;
     RtScene scene = three_spheres_in_a_row();
     RtExtents *extents = open_extents(&scene, "extents:kind=sphere");
-    extents->balls[1].radius *= 1 - 1e-6;
-    assert_broken(extents, "the sphere of object 1 (sphere) does not contain it along (1, 0, 0)");
+    extents->set.balls[1].radius *= 1 - 1e-6;
+    assert_broken(extents, "the sphere 1 does not contain object 1 (sphere) along (1, 0, 0)");
 
     extents = open_extents(&scene, "extents:kind=obb");
-    extents->boxes[2].half[1] *= 1 - 1e-6;
-    assert_broken(extents, "the oriented box of object 2 (sphere) does not contain it");
+    extents->set.oriented[2].half[1] *= 1 - 1e-6;
+    assert_broken(extents, "the oriented box 2 does not contain object 2 (sphere)");
 
     extents = open_extents(&scene, "extents:kind=obb");
-    extents->boxes[0].axes[1] = extents->boxes[0].axes[0];
-    assert_broken(extents, "the axes of the oriented box of object 0 are not orthonormal");
+    extents->set.oriented[0].axes[1] = extents->set.oriented[0].axes[0];
+    assert_broken(extents, "the axes of the oriented box 0 are not orthonormal");
 
     extents = open_extents(&scene, "extents:kind=slabs,slabs=5");
-    extents->slabs[5 + 4].hi -= 0.5f;
-    assert_broken(extents, "the set of slabs of object 1 (sphere) does not contain it");
+    extents->set.slabs[5 + 4].hi -= 0.5f;
+    assert_broken(extents, "the set of slabs 1 does not contain object 1 (sphere)");
 
     extents = open_extents(&scene, "extents:kind=slabs,slabs=3");
-    extents->slabs[0].lo = NAN;
-    assert_broken(extents, "the set of slabs of object 0 (sphere) does not contain it along (-1, 0, 0)");
+    extents->set.slabs[0].lo = NAN;
+    assert_broken(extents, "the set of slabs 0 does not contain object 0 (sphere) along (-1, 0, 0)");
 
     extents = open_extents(&scene, "extents:kind=box");
     scene.geometry.boxes[1].hi.y = 0.5f;
-    assert_broken(extents, "the box of object 1 (sphere) does not contain it along (0, 1, 0)");
+    assert_broken(extents, "the box 1 does not contain object 1 (sphere) along (0, 1, 0)");
     rt_scene_clear(&scene);
 }
 

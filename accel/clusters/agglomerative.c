@@ -1,0 +1,54 @@
+/* Agglomerative clustering (Walter, Bala, Kulkarni & Pingali 2008): the two nearest clusters are united,
+ * until one is left.
+ *
+ * The box about a union and a third is never smaller than the box about either part and the third. So two
+ * clusters that are each other's nearest may be united at once: nothing that happens elsewhere comes between
+ * them, and the tree is that of always uniting the nearest pair of all (up to equal distances). They are
+ * found by following chains from a cluster to its nearest, to that one's nearest and so on, along which
+ * distances strictly fall; a union leaves the rest of the chain good, so each step is made once. Chains begin
+ * at every slot in turn, round and round, which makes coincident objects a balanced tree. */
+#include "accel/clusters/neighbours.h"
+
+#include "base/memory.h"
+
+typedef struct Link {
+    uint32_t cluster;
+    double distance; /* from the link before */
+} Link;
+
+static uint32_t next_start(const RtNeighbours *neighbours, uint32_t *slot) {
+    for (;; *slot = *slot + 1 < neighbours->capacity ? *slot + 1 : 0) {
+        uint32_t cluster = neighbours->cluster_at[*slot];
+        if (cluster == RT_NO_CLUSTER) continue;
+        *slot = *slot + 1 < neighbours->capacity ? *slot + 1 : 0;
+        return cluster;
+    }
+}
+
+static void unite_all(RtClusterTree *tree, RtNeighbours *neighbours, Link *chain) {
+    uint32_t length = 0, slot = 0;
+    for (uint32_t left = tree->count; left > 1;) {
+        if (length == 0) chain[length++] = (Link){next_start(neighbours, &slot), INFINITY};
+        double distance;
+        const Link *last = &chain[length - 1];
+        uint32_t nearest = rt_neighbours_nearest(neighbours, last->cluster, &distance);
+        if (distance < last->distance) {
+            chain[length++] = (Link){nearest, distance};
+            continue;
+        }
+        uint32_t before = chain[length - 2].cluster;
+        rt_neighbours_unite(neighbours, before, last->cluster, rt_cluster_unite(tree, before, last->cluster));
+        length -= 2;
+        left--;
+    }
+}
+
+RtStatus rt_cluster_agglomerative(RtClusterTree *tree, RtError *error) {
+    RtNeighbours neighbours;
+    RT_TRY(rt_neighbours_init(&neighbours, tree, error));
+    Link *chain = rt_alloc((size_t)tree->count + 1, sizeof(Link));
+    if (chain) unite_all(tree, &neighbours, chain);
+    rt_free(chain);
+    rt_neighbours_clear(&neighbours);
+    return chain ? RT_OK : rt_fail_memory(error, "a chain of clusters", tree->count * sizeof(Link));
+}

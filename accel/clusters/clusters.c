@@ -1,0 +1,291 @@
+/* clusters: a hierarchy of extents of any kind, made by clustering objects.
+ *
+ * Papers: Rubin & Whitted 1980 (hierarchies of bounding volumes), Goldsmith & Salmon 1987, Walter et al.
+ * 2008, Meister & Bittner 2018 (four ways to cluster; tree.h). All cluster boxes by their surface; the
+ * extents, of whichever kind, are fitted to the objects of each node afterwards, not to the extents below.
+ *
+ * Layout: one array of 32-byte nodes, the children of a node side by side; one array of object ids, of which
+ * a leaf owns a run; one extent per node. Exact by accel/extent.h: what misses the extent of a group misses
+ * its objects, and a node is dropped only if its box begins beyond the best hit, so ties survive. No leaf is
+ * deeper than RT_CLUSTER_MAX_DEPTH, which bounds the stack.
+ *
+ * Counting: a step per node visited. With traversal_order=fixed children are taken as they stand and a node's
+ * extent is tested when its turn comes (Rubin & Whitted); with nearest all children of a node are tested when
+ * it is visited, and then taken by where the ray enters them. */
+#include "accel/clusters/clusters.h"
+
+#include "base/memory.h"
+
+extern const RtAccelOps rt_clusters_ops;
+
+typedef enum Method { AGGLOMERATIVE, PLOC, GOLDSMITH_SALMON, RUBIN_WHITTED, SAH } Method;
+
+enum {
+    PARAM_METHOD,
+    PARAM_EXTENT,
+    PARAM_SLABS,
+    PARAM_WIDTH,
+    PARAM_LEAF,
+    PARAM_TRAVERSAL_ORDER,
+    PARAM_RADIUS,
+    PARAM_ORDER,
+    PARAM_TRIES,
+    PARAM_SEED,
+    PARAM_COUNT
+};
+
+static const RtParam params[PARAM_COUNT] = {
+    [PARAM_METHOD] = {.name = "method",
+                      .type = RT_PARAM_CHOICE,
+                      .standard = "agglomerative",
+                      .choices = "agglomerative|ploc|goldsmith-salmon|rubin-whitted|sah",
+                      .meaning = "nearest pairs; nearest in Morton order; insertion; medians; SAH in 16 bins",
+                      .source = "Walter et al. 2008"},
+    [PARAM_EXTENT] = {.name = "extent",
+                      .type = RT_PARAM_CHOICE,
+                      .standard = "box",
+                      .choices = RT_EXTENT_KINDS,
+                      .meaning =
+                          "the extents of nodes: axis-aligned boxes, spheres, oriented boxes, or slabs",
+                      .source = "the cheapest test"},
+    [PARAM_SLABS] = {.name = "slabs",
+                     .type = RT_PARAM_INT,
+                     .standard = "7",
+                     .lo = 3,
+                     .hi = RT_MAX_SLABS,
+                     .meaning = "plane sets of extent=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces",
+                     .source = "Kay & Kajiya 1986",
+                     .tries = "3|13"},
+    [PARAM_WIDTH] = {.name = "width",
+                     .type = RT_PARAM_INT,
+                     .standard = "2",
+                     .lo = 2,
+                     .hi = RT_CLUSTER_MAX_WIDTH,
+                     .meaning = "most children of a node: the largest are opened into their parents",
+                     .source = "clustering makes binary trees",
+                     .tries = "3|4|16"},
+    [PARAM_LEAF] = {.name = "leaf",
+                    .type = RT_PARAM_INT,
+                    .standard = "1",
+                    .lo = 1,
+                    .hi = 1024,
+                    .meaning = "most objects of a leaf; several share one where that costs no more by SAH",
+                    .source = "an extent about every object",
+                    .tries = "2|8|64"},
+    [PARAM_TRAVERSAL_ORDER] = {.name = "traversal_order",
+                               .type = RT_PARAM_CHOICE,
+                               .standard = "nearest",
+                               .choices = "fixed|nearest",
+                               .meaning = "children as they stand, or by where the ray enters them",
+                               .source = "Kay & Kajiya 1986"},
+    [PARAM_RADIUS] = {.name = "radius",
+                      .type = RT_PARAM_INT,
+                      .standard = "25",
+                      .lo = 1,
+                      .hi = 1024,
+                      .meaning = "method=ploc: neighbours searched on either side",
+                      .source = "Meister & Bittner 2018",
+                      .tries = "1|100"},
+    [PARAM_ORDER] = {.name = "order",
+                     .type = RT_PARAM_CHOICE,
+                     .standard = "random",
+                     .choices = "given|random",
+                     .meaning = "method=goldsmith-salmon: order of insertion, that of ids or a random one",
+                     .source = "Goldsmith & Salmon 1987"},
+    [PARAM_TRIES] = {.name = "tries",
+                     .type = RT_PARAM_INT,
+                     .standard = "1",
+                     .lo = 1,
+                     .hi = 1000,
+                     .meaning =
+                         "method=goldsmith-salmon: orders tried, all but the first random; the best is kept",
+                     .source = "Goldsmith & Salmon 1987",
+                     .tries = "3"},
+    [PARAM_SEED] = {.name = "seed",
+                    .type = RT_PARAM_INT,
+                    .standard = "1",
+                    .lo = 0,
+                    .hi = 1e9,
+                    .meaning = "method=goldsmith-salmon: seed of the random orders",
+                    .source = "any",
+                    .tries = "2"},
+};
+
+/* ---- build ---- */
+
+static void destroy(RtAccel *accel) {
+    RtClusters *self = (RtClusters *)accel;
+    rt_extent_set_clear(&self->set);
+    rt_free(self->nodes);
+    rt_free(self->ids);
+    rt_free(self);
+}
+
+static RtStatus cluster(RtClusterTree *tree, const RtValue *values, RtError *error) {
+    const RtInsertionOrder order = {values[PARAM_ORDER].choice == 1, (uint32_t)values[PARAM_TRIES].i,
+                                    (uint64_t)values[PARAM_SEED].i};
+    switch ((Method)values[PARAM_METHOD].choice) {
+    case AGGLOMERATIVE: return rt_cluster_agglomerative(tree, error);
+    case PLOC: return rt_cluster_ploc(tree, (uint32_t)values[PARAM_RADIUS].i, error);
+    case GOLDSMITH_SALMON: return rt_cluster_insertion(tree, &order, error);
+    case RUBIN_WHITTED: return rt_cluster_topdown(tree, 0, error);
+    case SAH: break;
+    }
+    return rt_cluster_topdown(tree, 16, error);
+}
+
+static RtStatus make_nodes(RtClusters *self, const RtValue *values, RtError *error) {
+    const RtGeometry *geometry = &self->base.scene->geometry;
+    RtClusterTree tree;
+    RT_TRY(rt_cluster_tree_init(&tree, geometry->boxes, geometry->object_count, error));
+    RtStatus status = cluster(&tree, values, error);
+    if (status == RT_OK) status = rt_cluster_tree_limit_depth(&tree, error);
+    if (status == RT_OK) status = rt_clusters_layout(self, &tree, error);
+    rt_cluster_tree_clear(&tree);
+    return status;
+}
+
+static RtStatus fill(RtClusters *self, const RtValue *values, RtError *error) {
+    uint32_t count = self->base.scene->geometry.object_count;
+    size_t most = count > 0 ? 2 * (size_t)count - 1 : 0;
+    self->nodes = rt_alloc(most, sizeof(RtClusterNode));
+    self->ids = rt_alloc(count, sizeof(uint32_t));
+    if (!self->nodes || !self->ids)
+        return rt_fail_memory(error, "clusters", most * sizeof(RtClusterNode) + count * sizeof(uint32_t));
+    if (count > 0) RT_TRY(make_nodes(self, values, error));
+    RT_TRY(rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_EXTENT].choice,
+                              (uint32_t)values[PARAM_SLABS].i, self->node_count, error));
+    for (uint32_t index = 0; index < self->node_count; index++) {
+        RtGroup group = rt_cluster_group(self, index);
+        rt_extent_fit(&self->set, index, &group);
+    }
+    return RT_OK;
+}
+
+static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+    RtClusters *self = rt_alloc(1, sizeof(RtClusters));
+    if (!self) return rt_fail_memory(error, "clusters", sizeof(RtClusters));
+    self->base = (RtAccel){.ops = &rt_clusters_ops, .scene = scene, .exact = true, .counts = true};
+    self->width = (uint32_t)values[PARAM_WIDTH].i;
+    self->leaf_limit = (uint32_t)values[PARAM_LEAF].i;
+    self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
+    RtStatus status = fill(self, values, error);
+    if (status == RT_OK)
+        *out = &self->base;
+    else
+        destroy(&self->base);
+    return status;
+}
+
+/* ---- queries ---- */
+
+typedef struct StackEntry {
+    uint32_t node;
+    float enter; /* no hit below the node comes before this */
+} StackEntry;
+
+/* Every level leaves at most all children but one waiting. */
+enum { STACK_SIZE = RT_CLUSTER_MAX_DEPTH * (RT_CLUSTER_MAX_WIDTH - 1) + 1 };
+
+/* Puts `entry` among stack[bottom..top), of which the topmost is entered first and equal ones keep the order
+ * in which they came. */
+static inline void push_by_entry(StackEntry *stack, uint32_t bottom, uint32_t top, StackEntry entry) {
+    for (; top > bottom && stack[top - 1].enter <= entry.enter; top--) stack[top] = stack[top - 1];
+    stack[top] = entry;
+}
+
+/* `kind` is a constant where this is inlined. */
+RT_KERNEL void traverse(const RtClusters *self, RtExtentKind kind, const RtPreparedRay *ray, bool any,
+                        RtHit *best, RtTally *tally) {
+    const RtGeometry *geometry = &self->base.scene->geometry;
+    StackEntry stack[STACK_SIZE];
+    uint32_t stacked = 0;
+    float enter;
+    if (self->node_count == 0) return;
+    RtLine line = rt_line(&self->set, kind, &geometry->box, ray);
+    RT_COUNT(tally, extent_tests, 1);
+    if (!rt_extent_hit(&self->set, kind, 0, &self->nodes[0].box, ray, &line, ray->tmax, &enter)) return;
+    stack[stacked++] = (StackEntry){0, enter};
+    while (stacked > 0) {
+        StackEntry at = stack[--stacked];
+        const RtClusterNode *node = &self->nodes[at.node];
+        if (self->nearest_first) {
+            if (at.enter > rt_limit(ray, best)) continue;
+        } else if (at.node > 0) {
+            RT_COUNT(tally, extent_tests, 1);
+            float limit = rt_limit(ray, best);
+            if (!rt_extent_hit(&self->set, kind, at.node, &node->box, ray, &line, limit, &enter)) continue;
+        }
+        RT_COUNT(tally, steps, 1);
+        uint32_t first = node->first, end = first + rt_cluster_fanout(node);
+        if (rt_cluster_is_leaf(node)) {
+            for (uint32_t i = first; i < end; i++) {
+                if (rt_test_object(geometry, self->ids[i], ray, any, best, tally)) return;
+            }
+        } else if (self->nearest_first) {
+            uint32_t bottom = stacked;
+            float limit = rt_limit(ray, best);
+            RT_COUNT(tally, extent_tests, end - first);
+            for (uint32_t i = first; i < end; i++) {
+                const RtBox *box = &self->nodes[i].box;
+                if (!rt_extent_hit(&self->set, kind, i, box, ray, &line, limit, &enter)) continue;
+                push_by_entry(stack, bottom, stacked++, (StackEntry){i, enter});
+            }
+        } else {
+            for (uint32_t i = end; i-- > first;) stack[stacked++] = (StackEntry){i, 0};
+        }
+    }
+}
+
+RT_KERNEL void search(const RtClusters *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
+    (void)scratch;
+    switch (self->set.kind) {
+    case RT_EXTENT_BOX: traverse(self, RT_EXTENT_BOX, ray, any, best, tally); break;
+    case RT_EXTENT_SPHERE: traverse(self, RT_EXTENT_SPHERE, ray, any, best, tally); break;
+    case RT_EXTENT_OBB: traverse(self, RT_EXTENT_OBB, ray, any, best, tally); break;
+    case RT_EXTENT_SLABS: traverse(self, RT_EXTENT_SLABS, ray, any, best, tally); break;
+    case RT_EXTENT_KIND_COUNT: break;
+    }
+}
+
+RT_DEFINE_KERNELS(RtClusters, search)
+
+/* ---- looking at it ---- */
+
+typedef struct Drawing {
+    const RtClusters *self;
+    void (*draw)(void *context, const RtBox *box, uint32_t depth);
+    void *context;
+} Drawing;
+
+static void draw_node(const Drawing *drawing, uint32_t index, uint32_t depth) {
+    const RtClusterNode *node = &drawing->self->nodes[index];
+    drawing->draw(drawing->context, &node->box, depth);
+    if (rt_cluster_is_leaf(node)) return;
+    for (uint32_t i = 0; i < node->count; i++) draw_node(drawing, node->first + i, depth + 1);
+}
+
+static void each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
+                     void *context) {
+    Drawing drawing = {(const RtClusters *)accel, draw, context};
+    if (drawing.self->node_count > 0) draw_node(&drawing, 0, 0);
+}
+
+const RtAccelOps rt_clusters_ops = {
+    .name = "clusters",
+    .summary =
+        "hierarchy of extents of any kind, by clustering objects from the bottom, the top or one by one",
+    .paper = "Walter, Bala, Kulkarni & Pingali 2008, Fast Agglomerative Clustering for Rendering, RT'08",
+    .params = params,
+    .param_count = PARAM_COUNT,
+    .build = build,
+    .destroy = destroy,
+    .nearest = nearest_timed,
+    .occluded = occluded_timed,
+    .nearest_counted = nearest_counted,
+    .occluded_counted = occluded_counted,
+    .describe = rt_clusters_describe,
+    .validate = rt_clusters_validate,
+    .each_box = each_box,
+};
