@@ -71,6 +71,42 @@ static const Row rows[] = {
      true,
      {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
 
+    /* clusters: a step per node visited. A root and two leaves, as of bvh; with traversal_order=fixed an extent
+     * is tested when its turn comes, so `occluded` has never asked for the second leaf's. BETWEEN enters the
+     * ball about both spheres, but neither's own; the slabs about both turn it away at once. */
+    {"clusters",
+     THROUGH,
+     false,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 3, .steps = 2}},
+    {"clusters:extent=sphere",
+     THROUGH,
+     false,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 3, .steps = 2}},
+    {"clusters:method=sah",
+     THROUGH,
+     true,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 3, .steps = 2}},
+    {"clusters:traversal_order=fixed",
+     THROUGH,
+     false,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 3, .steps = 2}},
+    {"clusters:traversal_order=fixed",
+     THROUGH,
+     true,
+     {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 2, .steps = 2}},
+    {"clusters:extent=box", BETWEEN, false, {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3}},
+    {"clusters:extent=sphere", BETWEEN, true, {.rays = 1, .extent_tests = 3, .steps = 1}},
+    {"clusters:traversal_order=fixed,extent=box",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3}},
+    {"clusters:traversal_order=fixed,extent=sphere",
+     BETWEEN,
+     true,
+     {.rays = 1, .extent_tests = 3, .steps = 1}},
+    {"clusters:extent=slabs,slabs=13", BETWEEN, false, {.rays = 1, .extent_tests = 1}},
+    {"clusters", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+
     /* grid: an extent test for its box; a step per voxel. Three voxels along x, of width 4/3: sphere 0 in the
      * first, none in the second, sphere 1 in the third, which THROUGH does not reach. */
     {"grid:resolution=3x1x1",

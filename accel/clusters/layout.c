@@ -138,8 +138,8 @@ void rt_clusters_describe(const RtAccel *accel, RtDescription *out) {
 typedef struct Check {
     const RtClusters *self;
     RtError *error;
-    uint32_t *seen;         /* [objects] how often each is in a leaf */
-    uint32_t nodes_visited; /* a node is visited once, or there is a loop */
+    uint32_t *seen;   /* [objects] how often each is in a leaf */
+    uint32_t reached; /* nodes */
 } Check;
 
 static RtStatus check_leaf(const Check *check, uint32_t index) {
@@ -162,14 +162,16 @@ static RtStatus check_node(Check *check, uint32_t index, uint32_t depth) {
     const RtClusterNode *node = &self->nodes[index];
     uint32_t fanout = rt_cluster_fanout(node), first = node->first;
     bool leaf = rt_cluster_is_leaf(node);
-    if (depth > RT_CLUSTER_MAX_DEPTH || ++check->nodes_visited > self->node_count)
+    if (depth > RT_CLUSTER_MAX_DEPTH)
         return rt_fail(check->error, RT_MISMATCH, "clusters: node %u is too deep", index);
+    if (++check->reached > self->node_count)
+        return rt_fail(check->error, RT_MISMATCH, "clusters: node %u has two parents", index);
     uint32_t least = leaf ? 1 : 2, most = leaf ? self->leaf_limit : self->width;
     if (fanout < least || fanout > most)
         return rt_fail(check->error, RT_MISMATCH, "clusters: node %u has %u %s, not %u to %u", index, fanout,
                        leaf ? "objects" : "children", least, most);
     if (leaf) return check_leaf(check, index);
-    if (first <= index || first > self->node_count - fanout)
+    if (first <= index || (uint64_t)first + fanout > self->node_count)
         return rt_fail(check->error, RT_MISMATCH, "clusters: node %u has children that are not there", index);
     for (uint32_t child = first; child < first + fanout; child++) {
         RT_TRY(check_node(check, child, depth + 1));
@@ -189,6 +191,9 @@ static RtStatus check_all(Check *check) {
         return rt_fail(check->error, RT_MISMATCH, "clusters: object %u is in %u leaves, not in one", id,
                        check->seen[id]);
     }
+    if (check->reached < self->node_count)
+        return rt_fail(check->error, RT_MISMATCH, "clusters: %u of %u nodes are in the tree", check->reached,
+                       self->node_count);
     for (uint32_t index = 0; index < self->node_count; index++) {
         RtGroup group = rt_cluster_group(self, index);
         RT_TRY(rt_extent_check(&self->set, index, &group, "clusters", check->error));
