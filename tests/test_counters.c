@@ -71,9 +71,9 @@ static const Row rows[] = {
      true,
      {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
 
-    /* clusters: a step per node visited. A root and two leaves, as of bvh; with traversal_order=fixed an extent
-     * is tested when its turn comes, so `occluded` has never asked for the second leaf's. BETWEEN enters the
-     * ball about both spheres, but neither's own; the slabs about both turn it away at once. */
+    /* clusters: a step per node visited. A root and two leaves, as of bvh; with traversal_order=fixed an
+     * extent is tested when its turn comes, so `occluded` has never asked for the second leaf's. BETWEEN
+     * enters the ball about both spheres, but neither's own; the slabs about both turn it away at once. */
     {"clusters",
      THROUGH,
      false,

@@ -123,7 +123,7 @@ static void survey_node(Survey *survey, uint32_t index, uint32_t depth) {
  * one of which counts as much as one object test. */
 void rt_clusters_describe(const RtAccel *accel, RtDescription *out) {
     const RtClusters *self = (const RtClusters *)accel;
-    *out = (RtDescription){.bytes = sizeof(RtClusters) + self->node_count * sizeof(RtClusterNode) +
+    *out = (RtDescription){.bytes = self->node_count * sizeof(RtClusterNode) +
                                     accel->scene->geometry.object_count * sizeof(uint32_t) +
                                     rt_extent_set_bytes(&self->set)};
     if (self->node_count == 0) return;

@@ -22,7 +22,7 @@ static void set_slot(RtNeighbours *self, uint32_t slot, uint32_t cluster) {
 }
 
 static void fit_node(RtNeighbours *self, uint32_t node) {
-    const RtNeighbourBound *a = &self->bounds[2 * node], *b = a + 1;
+    const RtNeighbourBound *a = self->bounds + 2 * (size_t)node, *b = a + 1;
     RtNeighbourBound bound = {rt_vec_max(a->lo, b->lo), rt_vec_min(a->hi, b->hi),
                               rt_vec_min(a->size, b->size)};
     self->bounds[node] = bound;

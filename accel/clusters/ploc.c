@@ -95,7 +95,7 @@ RtStatus rt_cluster_ploc(RtClusterTree *tree, uint32_t radius, RtError *error) {
     uint32_t *row = rt_alloc(tree->count, sizeof(uint32_t));
     uint32_t *nearest = rt_alloc(tree->count, sizeof(uint32_t));
     RtStatus status = row && nearest ? order_objects(tree, row, error)
-                                     : rt_fail_memory(error, "clusters", tree->count * 2 * sizeof(uint32_t));
+                                     : rt_fail_memory(error, "clusters", tree->count * sizeof(uint32_t) * 2);
     uint32_t count = tree->count;
     while (status == RT_OK && count > 1) count = unite_pairs(tree, row, nearest, count, radius);
     rt_free(row);

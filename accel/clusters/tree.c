@@ -114,7 +114,7 @@ RtStatus rt_cluster_tree_limit_depth(RtClusterTree *tree, RtError *error) {
     if (!block || !list.boxes) {
         rt_free(block);
         rt_free(list.boxes);
-        return rt_fail_memory(error, "limiting the depth of clusters", used * 5 * sizeof(uint32_t));
+        return rt_fail_memory(error, "limiting the depth of clusters", used * sizeof(uint32_t) * 5);
     }
     list.order = block;
     list.depth = block + used;
