@@ -88,7 +88,7 @@ static void layers_are_described_together(void **state) {
     rt_accel_describe(top, &of_top);
     assert_int_equal(of_top.leaves, 3);
     assert_int_equal(of_top.references, of_base.references);
-    assert_true(of_top.bytes > of_base.bytes);
+    assert_int_equal(of_top.bytes, of_base.bytes); /* the cache keeps what it remembers in each query */
     assert_string_equal(rt_accel_base(top)->ops->name, "grid");
     assert_ok(rt_accel_validate(top, error));
     rt_accel_destroy(base);
