@@ -290,6 +290,29 @@ static void user_mode_finds_hits_at_the_very_ends_of_the_interval(void **state) 
     rt_scene_clear(&scene);
 }
 
+/* Directions so long that a step between two values of t is as large as an object, or as the scene. */
+static void user_mode_is_brute_where_t_is_denormal(void **state) {
+    (void)state;
+    static const float sizes[] = {1e-9f, 1e-8f, 1e-7f};
+    static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        RtScene scene;
+        make_soup(&scene, 40, 1, sizes[i]);
+        Rays rays = make_rays(&scene, 4000, sizes[i], 3);
+        for (size_t k = 0; k < rays.count; k++) {
+            RtRay *ray = &rays.rays[k];
+            RtVec3d dir = rt_widen(ray->dir);
+            ray->dir = rt_narrow(rt_scaled(dir, 0x1p126 / fabs(dir.at[rt_major_axis(ray->dir)])));
+            ray->tmin = k % 3 ? 0 : 0x1p-149f;
+            ray->tmax = INFINITY;
+            assert_true(rt_ray_is_valid(ray));
+        }
+        compare_with_brute(&scene, rays, specs, 2);
+        rt_free(rays.rays);
+        rt_scene_clear(&scene);
+    }
+}
+
 static void user_mode_counts_tests_where_it_is_asked_to(void **state) {
     (void)state;
     RtScene scene;
@@ -442,6 +465,7 @@ int main(void) {
         cmocka_unit_test(user_mode_is_brute_by_every_isa_and_quality),
         cmocka_unit_test(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away),
         cmocka_unit_test(user_mode_finds_hits_at_the_very_ends_of_the_interval),
+        cmocka_unit_test(user_mode_is_brute_where_t_is_denormal),
         cmocka_unit_test(user_mode_counts_tests_where_it_is_asked_to),
         cmocka_unit_test(native_mode_agrees_with_brute_on_triangles),
         cmocka_unit_test(native_mode_sees_every_shape),

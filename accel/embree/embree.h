@@ -12,7 +12,8 @@
  *
  * twice the thickness of any ray whose origin is within reach, and the other half covers the rounding of
  * Embree's box test (at most 2^-22 R + 2^-23 (M + R) in the place of a plane, robust or not, with or without
- * fused multiply-add) and of ours. A ray from farther away is answered by testing every object. Embree takes
+ * fused multiply-add) and of ours. A ray from farther away is answered by testing every object, and so is one
+ * with dir so long that the rounding of a denormal t moves its hit by more than growth / 4. Embree takes
  * |dir| < 1e-18 for 1e-18, so directions are brought to ordinary lengths by a power of two. A search keeps
  * its own best hit and gives Embree a tfar that lies above it by 2^-20, so that ties and near ties are
  * proposed too, whatever Embree does at t = tfar. */

@@ -107,7 +107,13 @@ static __attribute__((noinline)) void test_all_counted(const RtGeometry *geometr
     rt_test_all(geometry, &search->ray, any, &search->best, search->tally);
 }
 
-/* A ray from beyond reach is answered here and now, and sent along as an inactive one. */
+/* Is what Embree proposes for this ray all there is to find (embree.h)? |dir| is at most 2^17 * shrink. */
+RT_KERNEL bool may_ask(const RtEmbree *self, const RtRay *ray, double shrink) {
+    return rt_thickness(ray->org, &self->base.scene->geometry.box) <= self->max_thickness &&
+           0x1p-150 * 0x1p17 * shrink <= 0.25 * (double)self->growth;
+}
+
+/* A ray that Embree may not be asked about is answered here and now, and sent along as an inactive one. */
 RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
                           bool any, RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
@@ -119,7 +125,7 @@ RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, si
     search->tally = tally;
     float tnear = (float)((double)ray->tmin * search->shrink * (1 - 0x1p-20));
     put_ray(batch, lanes, i, ray, stretch, tnear, rt_embree_limit(ray->tmax, search->shrink));
-    if (rt_thickness(ray->org, &geometry->box) <= self->max_thickness) return;
+    if (may_ask(self, ray, search->shrink)) return;
     if (tally) {
         test_all_counted(geometry, search, any);
     } else {
