@@ -10,6 +10,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static void rounding_outward_brackets_the_number(void **state) {
@@ -70,6 +71,28 @@ static const RtParam table[] = {
      .source = "s"},
     {.name = "mailbox", .type = RT_PARAM_FLAG, .standard = "on", .meaning = "m", .source = "s"},
 };
+
+/* Opening a pipe would wait for its other end; renaming a file to a device would replace the device. */
+static void what_is_not_a_file_is_neither_read_nor_replaced(void **state) {
+    (void)state;
+    static const char *const pipe = RT_BINARY_DIR "/test_base.pipe";
+    remove(pipe);
+    assert_int_equal(mkfifo(pipe, 0600), 0);
+    const char *const paths[] = {pipe, "/dev/zero", RT_BINARY_DIR};
+    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
+        RtError problem;
+        RtOutput output;
+        char *data, temporary[RT_MAX_PATH + 8];
+        size_t size;
+        assert_int_equal(rt_file_read(paths[i], 1 << 20, &data, &size, &problem), RT_BAD_INPUT);
+        assert_non_null(strstr(problem.message, "not a file"));
+        assert_int_equal(rt_output_open(&output, paths[i], &problem), RT_IO);
+        assert_non_null(strstr(problem.message, paths[i]));
+        snprintf(temporary, sizeof temporary, "%s.tmp", paths[i]);
+        assert_false(rt_file_exists(temporary));
+    }
+    remove(pipe);
+}
 
 static void parameters_left_out_have_their_defaults(void **state) {
     (void)state;
@@ -157,6 +180,7 @@ int main(void) {
         cmocka_unit_test(rounding_outward_brackets_the_number),
         cmocka_unit_test(narrowing_rounds_also_where_widening_follows),
         cmocka_unit_test(files_are_listed_by_name_whatever_their_folder_is_called),
+        cmocka_unit_test(what_is_not_a_file_is_neither_read_nor_replaced),
         cmocka_unit_test(tallies_add_counter_by_counter),
         cmocka_unit_test(parameters_left_out_have_their_defaults),
         cmocka_unit_test(wrong_parameters_are_refused_with_what_would_be_right),

@@ -134,6 +134,10 @@ static void a_scene_with_other_shapes_is_not_written_as_a_mesh(void **state) {
     rt_scene_clear(&scene);
 }
 
+#define PLY(faces)                                                                                           \
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"        \
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" faces
+
 static void bad_meshes_are_refused_with_what_is_wrong(void **state) {
     (void)state;
     const struct {
@@ -147,6 +151,9 @@ static void bad_meshes_are_refused_with_what_is_wrong(void **state) {
         {OBJ_NAME, "v 0 0 0\nv 1 0 0\nf 1 2 9\n", ""},
         {RT_BINARY_DIR "/test_mesh.glb", "glTF but not really", "Assimp cannot read"},
         {RT_BINARY_DIR "/test_mesh.stl", "solid\nfacet", ""},
+        {RT_BINARY_DIR "/test_mesh.ply", PLY("0\n"), "has no corners"},
+        {RT_BINARY_DIR "/test_mesh.ply", PLY("4 0 1 2 99999999\n"), "names vertex 99999999 of 3"},
+        {RT_BINARY_DIR "/test_mesh.ply", PLY("5 0 1 2 0 -1\n"), "names vertex 4294967295 of 3"},
         {RT_BINARY_DIR "/test_mesh.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n",
          ""},
     };
@@ -164,7 +171,7 @@ static void bad_meshes_are_refused_with_what_is_wrong(void **state) {
     RtScene scene = {0};
     RtError problem;
     assert_int_equal(rt_mesh_append(&scene, "no_such.obj", 0, NULL, &problem), RT_BAD_INPUT);
-    assert_non_null(strstr(problem.message, "no such file"));
+    assert_non_null(strstr(problem.message, "No such file"));
 }
 
 static void assimp_says_nothing_on_the_terminal(void **state) {

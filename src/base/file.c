@@ -17,6 +17,11 @@ RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
     output->file = NULL;
     if (strlen(path) >= RT_MAX_PATH)
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
+    struct stat info;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) {
+        return rt_fail(error, RT_IO, "%s is a %s: give the name of a file", path,
+                       S_ISDIR(info.st_mode) ? "folder" : "device or pipe, which a file would replace");
+    }
     strcpy(output->path, path);
     snprintf(output->temporary, sizeof output->temporary, "%s.tmp", path);
     output->file = fopen(output->temporary, "wb");
@@ -51,7 +56,6 @@ static RtStatus read_all(FILE *file, const char *path, size_t limit, char **data
                          RtError *error) {
     struct stat info;
     if (fstat(fileno(file), &info) != 0) return fail_io(error, "reading", path);
-    if (!S_ISREG(info.st_mode)) return rt_fail(error, RT_BAD_INPUT, "%s: this is not a file", path);
     if ((uint64_t)info.st_size > limit) {
         return rt_fail(error, RT_BAD_INPUT, "%s: %lld bytes are too many: the limit is %zu", path,
                        (long long)info.st_size, limit);
@@ -68,11 +72,21 @@ static RtStatus read_all(FILE *file, const char *path, size_t limit, char **data
     return RT_OK;
 }
 
+RtStatus rt_file_open(const char *path, FILE **file, RtError *error) {
+    struct stat info;
+    /* Before it is opened: opening a pipe waits for somebody to write to it. */
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+        return rt_fail(error, RT_BAD_INPUT, "%s: this is not a file", path);
+    *file = fopen(path, "rb");
+    if (*file) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+}
+
 RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error) {
     *data = NULL;
     *size = 0;
-    FILE *file = fopen(path, "rb");
-    if (!file) return rt_fail(error, RT_BAD_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    FILE *file;
+    RT_TRY(rt_file_open(path, &file, error));
     RtStatus status = read_all(file, path, limit, data, size, error);
     fclose(file);
     return status;

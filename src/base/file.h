@@ -16,6 +16,7 @@ typedef struct RtOutput {
     char path[RT_MAX_PATH], temporary[RT_MAX_PATH + 8];
 } RtOutput;
 
+/* Refuses a `path` that is there and not a regular file: renaming would replace /dev/null, say. */
 RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error);
 
 /* Flushes to the disk and renames; a failed write of any time before is reported here, and discards. */
@@ -26,6 +27,11 @@ void rt_output_discard(RtOutput *output);
 
 /* Writes `size` bytes to `path`, in this way. */
 RtStatus rt_file_write(const char *path, const void *data, size_t size, RtError *error);
+
+/* Opens a regular file for reading; anything else (a folder, a device, a pipe that nobody writes to) is
+ * refused.
+ */
+RtStatus rt_file_open(const char *path, FILE **file, RtError *error);
 
 /* The whole file, with a 0 after its last byte; refuses more than `limit` bytes. Free with rt_free. */
 RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error);

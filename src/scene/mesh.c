@@ -2,6 +2,8 @@
  * are multiplied on the way down, in double, and every vertex is rounded to float32 once. */
 #include "scene/mesh.h"
 
+#include "base/file.h"
+
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -34,6 +36,26 @@ static RtVec3 vector_at(const struct aiVector3D *vectors, unsigned i) {
     return rt_vec3(vectors[i].x, vectors[i].y, vectors[i].z);
 }
 
+/* Assimp does not look before it splits polygons: it reads vertices that are not there, and stops the program
+ * at a face without corners. */
+static RtStatus check_faces(const struct aiMesh *mesh, const char *path, RtError *error) {
+    for (unsigned face = 0; face < mesh->mNumFaces; face++) {
+        const struct aiFace *f = &mesh->mFaces[face];
+        if (f->mNumIndices == 0) {
+            return rt_fail_at(error, path, 0, 0,
+                              "face %u of mesh '%.60s' (counted from 0) has no corners: the file is damaged",
+                              face, mesh->mName.data);
+        }
+        for (unsigned i = 0; i < f->mNumIndices; i++) {
+            if (f->mIndices[i] < mesh->mNumVertices) continue;
+            return rt_fail_at(error, path, 0, 0,
+                              "face %u of mesh '%.60s' names vertex %u of %u: the file is damaged", face,
+                              mesh->mName.data, f->mIndices[i], mesh->mNumVertices);
+        }
+    }
+    return RT_OK;
+}
+
 static RtStatus check_vertices(const Reader *r, const struct aiMesh *mesh) {
     for (unsigned i = 0; i < mesh->mNumVertices; i++) {
         RtVec3 v = vector_at(mesh->mVertices, i);
@@ -53,11 +75,6 @@ static RtStatus add_face(const Reader *r, const struct aiMesh *mesh, unsigned fa
     bool has_normals = mesh->mNormals != NULL;
     for (int i = 0; i < 3; i++) {
         unsigned vertex = mesh->mFaces[face].mIndices[mirror ? 2 - i : i];
-        if (vertex >= mesh->mNumVertices) {
-            return rt_fail_at(r->error, r->path, 0, 0,
-                              "face %u of mesh '%.60s' names vertex %u of %u: the file is damaged", face,
-                              mesh->mName.data, vertex, mesh->mNumVertices);
-        }
         vertices[i] = rt_transform_point(transform, vector_at(mesh->mVertices, vertex));
         if (!has_normals) continue;
         RtVec3 normal = vector_at(mesh->mNormals, vertex);
@@ -118,6 +135,21 @@ static RtStatus check_header(FILE *file, const char *path, RtError *error) {
     return RT_OK;
 }
 
+/* The file as Assimp reads it, with all polygons split into triangles; aiReleaseImport. */
+static RtStatus import(const char *path, const struct aiScene **out, RtError *error) {
+    const struct aiScene *file = aiImportFile(path, 0);
+    if (!file) return rt_fail_at(error, path, 0, 0, "Assimp cannot read this file: %s", aiGetErrorString());
+    for (unsigned i = 0; i < file->mNumMeshes; i++) {
+        RtStatus status = check_faces(file->mMeshes[i], path, error);
+        if (status == RT_OK) continue;
+        aiReleaseImport(file);
+        return status;
+    }
+    *out = aiApplyPostProcessing(file, aiProcess_Triangulate); /* which on failure has freed the file */
+    if (*out) return RT_OK;
+    return rt_fail_at(error, path, 0, 0, "Assimp cannot split its polygons into triangles");
+}
+
 bool rt_mesh_reads(const char *extension) {
     char dotted[16];
     if (strlen(extension) + 2 > sizeof dotted || !extension[0]) return false;
@@ -127,13 +159,13 @@ bool rt_mesh_reads(const char *extension) {
 
 RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
                         RtError *error) {
-    FILE *opened = fopen(path, "rb");
-    if (!opened) return rt_fail_at(error, path, 0, 0, "there is no such file, or no right to it");
+    FILE *opened;
+    RT_TRY(rt_file_open(path, &opened, error));
     RtStatus status = check_header(opened, path, error);
     fclose(opened);
     if (status != RT_OK) return status;
-    const struct aiScene *file = aiImportFile(path, aiProcess_Triangulate);
-    if (!file) return rt_fail_at(error, path, 0, 0, "Assimp cannot read this file: %s", aiGetErrorString());
+    const struct aiScene *file;
+    RT_TRY(import(path, &file, error));
     RtTransform identity = rt_transform_identity();
     Reader reader = {path, file, scene, material, error};
     uint32_t before = scene->geometry.object_count;
