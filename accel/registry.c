@@ -14,7 +14,8 @@
     X(rt_extents_ops)                                                                                        \
     X(rt_grid_ops)                                                                                           \
     X(rt_ideal_ops)                                                                                          \
-    X(rt_cache_ops)
+    X(rt_cache_ops)                                                                                          \
+    X(rt_light_ops)
 
 #ifdef RT_WITH_EMBREE
 #define EMBREE_ACCELERATORS(X) X(rt_embree_ops)

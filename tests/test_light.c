@@ -1,0 +1,353 @@
+/* The light buffer: what it counts, what it passes on, lights in awkward places, and its invariants broken.
+ */
+#include "testing.h"
+
+#include "accel/light/light.h"
+#include "base/memory.h"
+#include "base/random.h"
+
+#include <math.h>
+#include <string.h>
+
+static void begin_scene(RtScene *scene) {
+    RtMaterial material = rt_default_material();
+    uint32_t m;
+    rt_scene_init(scene);
+    assert_ok(rt_scene_add_material(scene, &material, &m, error));
+}
+
+/* A screen, polygon 0, at z = 5 from -4 to 4, and a sphere of radius 1 above its middle, at z = 8; the light
+ * at z = 10. */
+static void make_screen(RtScene *scene) {
+    const RtVec3 square[4] = {{{-4, -4, 5}}, {{4, -4, 5}}, {{4, 4, 5}}, {{-4, 4, 5}}};
+    begin_scene(scene);
+    assert_ok(rt_scene_add_polygon(scene, 0, square, 4, error));
+    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0, 0, 8), 1, error));
+    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0, 0, 0), 1, error)); /* in the dark */
+    assert_ok(rt_scene_add_light(scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+static RtRay shadow_ray(const RtScene *scene, RtVec3 from, uint32_t light) {
+    return (RtRay){.org = from,
+                   .dir = rt_sub(scene->lights[light].position, from),
+                   .tmax = 1,
+                   .kind = RT_RAY_SHADOW,
+                   .source = light};
+}
+
+/* ---- counted by hand ---- */
+
+typedef struct Row {
+    const char *spec;
+    RtRay ray;
+    bool blocked;
+    RtTally expected;
+} Row;
+
+static void check_rows(const RtScene *scene, const Row *rows, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        RtAccel *accel;
+        RtQuery query;
+        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+        bool blocked;
+        assert_ok(rt_accel_open(rows[i].spec, scene, &accel, error));
+        assert_ok(rt_query_init(&query, accel, error));
+        rt_occluded(&query, &rows[i].ray, 1, &blocked, tallies);
+        if (blocked != rows[i].blocked) fail_msg("row %zu: blocked is %d", i, blocked);
+        for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
+            uint64_t got = rt_tally_get(&tallies[RT_RAY_SHADOW], c),
+                     hand = rt_tally_get(&rows[i].expected, c);
+            if (got != hand)
+                fail_msg("row %zu, %s: %d, by hand %d", i, rt_tally_name(c), (int)got, (int)hand);
+        }
+        rt_query_clear(&query);
+        rt_accel_destroy(accel);
+    }
+}
+
+static void it_counts_what_was_counted_by_hand(void **state) {
+    (void)state;
+    RtScene scene;
+    make_screen(&scene);
+    RtRay above = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 6), 0);    /* under the sphere, above the screen */
+    RtRay below = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 3), 0);    /* under both */
+    RtRay high = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 9.02f), 0); /* above both */
+    RtRay askew = below, foreign = below, longer = below, away = below;
+    askew.dir.x *= 1.5f;
+    foreign.source = 1;
+    longer.tmax = 2;
+    away.org.z = -1000;
+    away.dir.z = 1010;
+    const Row rows[] = {
+        /* One cell a face: the list downwards is sphere 1 (depth 1), polygon 0 (5), sphere 2 (9). */
+        {"light:cells=1+brute",
+         above,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
+        {"light:cells=1,extents=off+brute",
+         above,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .steps = 1}},
+        /* No object is less deep than 0.98. */
+        {"light:cells=1+brute", high, false, {.rays = 1}},
+        /* With 16 cells sphere 1 covers the cell around its middle: it is what hides the depths. */
+        {"light:cells=16+brute",
+         below,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
+        /* What is no ray to a light is passed on, where brute tests in order of shape: sphere 1 first. */
+        {"light+brute",
+         foreign,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
+        {"light+brute",
+         longer,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
+        {"light+brute",
+         askew,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
+        /* Nor is one from outside the domain. */
+        {"light+brute",
+         away,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
+    };
+    check_rows(&scene, rows, sizeof rows / sizeof rows[0]);
+    rt_scene_clear(&scene);
+}
+
+static const RtLightBuffer *open_buffer(const char *spec, const RtScene *scene, RtAccel **accel) {
+    assert_ok(rt_accel_open(spec, scene, accel, error));
+    return (const RtLightBuffer *)*accel;
+}
+
+/* A cell of the face that looks down, -z, from the first light. */
+static size_t cell_at(const RtLightBuffer *buffer, uint32_t column, uint32_t row) {
+    return rt_light_face(buffer, 0, 4) + (size_t)row * buffer->n + column;
+}
+
+static void full_occlusion_ends_lists_at_what_covers_a_cell(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *on, *off;
+    make_screen(&scene);
+    const RtLightBuffer *cut = open_buffer("light:cells=16+brute", &scene, &on);
+    const RtLightBuffer *whole = open_buffer("light:cells=16,full_occlusion=off+brute", &scene, &off);
+    /* The middle of the face is under the sphere, the cell at u = w = 0.6 beside it, over the screen.
+     */
+    size_t middle = cell_at(cut, 8, 8), beside = cell_at(cut, 12, 12);
+    assert_null(whole->covers);
+    assert_int_equal(whole->first[middle + 1] - whole->first[middle], 3);
+    assert_int_equal(cut->covers[middle].id, 1);
+    assert_int_equal(cut->covers[beside].id, 0);
+    assert_int_equal(cut->first[middle + 1] - cut->first[middle], 1);
+    assert_true(cut->covers[middle].depth >= 3 && cut->covers[middle].depth < 3.01f);
+    assert_true(cut->covers[beside].depth >= 5 && cut->covers[beside].depth < 5.01f);
+    /* Where the screen ends nothing is covered: its rim is at u = 0.8. */
+    for (uint32_t i = 0; i < 16; i++) {
+        assert_int_equal(cut->covers[cell_at(cut, i, 15)].id, RT_NO_OBJECT);
+    }
+    assert_ok(rt_accel_validate(on, error));
+    assert_ok(rt_accel_validate(off, error));
+    rt_accel_destroy(on);
+    rt_accel_destroy(off);
+    rt_scene_clear(&scene);
+}
+
+static void a_concave_polygon_covers_no_cell_of_its_notch(void **state) {
+    (void)state;
+    /* A square with a notch down to its middle. */
+    const RtVec3 notched[5] = {{{-8, -8, 5}}, {{8, -8, 5}}, {{8, 8, 5}}, {{0, 0, 5}}, {{-8, 8, 5}}};
+    RtScene scene;
+    RtAccel *accel;
+    begin_scene(&scene);
+    assert_ok(rt_scene_add_polygon(&scene, 0, notched, 5, error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    const RtLightBuffer *buffer = open_buffer("light:cells=16+brute", &scene, &accel);
+    assert_int_equal(buffer->covers[cell_at(buffer, 8, 2)].id, 0);
+    assert_int_equal(buffer->covers[cell_at(buffer, 8, 12)].id, RT_NO_OBJECT);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+/* ---- lights in awkward places ---- */
+
+static RtVec3 random_point(RtRandom *random, float size) {
+    RtVec3d d = rt_random_direction(random);
+    return rt_narrow(rt_scaled(d, (double)(size * rt_random_unit(random))));
+}
+
+static RtVec3 moved(RtVec3 p, float by) {
+    return rt_add(p, rt_vec3(by, by, by));
+}
+
+/* Some of each shape about (away, away, away), and lights inside a sphere and on it, in the plane of a
+ * polygon and at its vertex, on an axis through a centre, close by and far off. */
+static void make_awkward(RtScene *scene, float away) {
+    RtRandom random = rt_random(5, 0);
+    begin_scene(scene);
+    for (int i = 0; i < 40; i++) {
+        RtVec3 a = moved(random_point(&random, 4), away), b = rt_add(a, random_point(&random, 1));
+        RtVec3 triangle[3] = {a, b, rt_add(a, random_point(&random, 2))};
+        assert_ok(rt_scene_add_triangle(scene, 0, triangle, NULL, error));
+        assert_ok(rt_scene_add_sphere(scene, 0, moved(random_point(&random, 4), away), 0.3f, error));
+        if (i % 4 == 0)
+            assert_ok(rt_scene_add_cone(scene, 0, a, 0.2f, rt_add(a, rt_vec3(0, 0.5f, 1)), 0.1f, error));
+    }
+    RtVec3 square[4] = {moved(rt_vec3(-5, -5, -4), away), moved(rt_vec3(5, -5, -4), away),
+                        moved(rt_vec3(5, 5, -4), away), moved(rt_vec3(-5, 5, -4), away)};
+    assert_ok(rt_scene_add_polygon(scene, 0, square, 4, error));
+    assert_ok(rt_scene_add_sphere(scene, 0, moved(rt_vec3(0, 0, 0), away), 1, error));
+    const RtVec3 places[] = {{{0.1f, 0, 0}}, {{0, 0, 1}}, {{2, 2, -4}},      {{-5, -5, -4}},
+                             {{0, 0, 6}},    {{3, 3, 3}}, {{1e5f, 3, 2e4f}}, {{-9, 9, 9}}};
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        assert_ok(rt_scene_add_light(scene, moved(places[i], away), rt_vec3(1, 1, 1), error));
+    }
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+enum { AWKWARD_RAYS = 40000 };
+
+/* Rays from anywhere, from vertices and poles, and from points just off the edges between cells. */
+static void make_awkward_rays(const RtScene *scene, RtRay *rays, float away) {
+    RtRandom random = rt_random(6, 0);
+    for (size_t i = 0; i < AWKWARD_RAYS; i++) {
+        uint32_t light = (uint32_t)i % scene->light_count, k = rt_random_bits(&random);
+        RtVec3 from = moved(random_point(&random, 6), away);
+        if (k % 4 == 0) from = scene->geometry.triangles[k / 4 % 40].v[k / 256 % 3];
+        if (k % 4 == 1) {
+            RtVec3 to = scene->lights[light].position;
+            float depth = 5 * rt_random_unit(&random), u = (float)((int)(k / 4 % 17) - 8) / 8;
+            from = rt_add(to, rt_vec3(u * depth, (k & 64 ? u : 0.3f) * depth, k & 128 ? depth : -depth));
+        }
+        rays[i] = shadow_ray(scene, from, light);
+        if (!rt_ray_is_valid(&rays[i])) rays[i] = shadow_ray(scene, moved(rt_vec3(5, 5, 5), away), light);
+    }
+}
+
+static void lights_in_awkward_places_are_answered_like_brute(void **state) {
+    (void)state;
+    static RtRay rays[AWKWARD_RAYS];
+    static bool expected[AWKWARD_RAYS], got[AWKWARD_RAYS];
+    const char *specs[] = {"brute",
+                           "light:cells=1+bvh",
+                           "light:cells=16+bvh",
+                           "light:cells=61,extents=off+bvh",
+                           "light:cells=16,full_occlusion=off+bvh",
+                           "cache+light+bvh"};
+    const float places[] = {0, 1000};
+    for (size_t p = 0; p < 2; p++) {
+        RtScene scene;
+        make_awkward(&scene, places[p]);
+        make_awkward_rays(&scene, rays, places[p]);
+        for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+            RtAccel *accel;
+            RtQuery query;
+            RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+            assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
+            assert_ok(rt_accel_validate(accel, error));
+            assert_ok(rt_query_init(&query, accel, error));
+            rt_occluded(&query, rays, AWKWARD_RAYS, i ? got : expected, tallies);
+            for (size_t k = 0; i && k < AWKWARD_RAYS; k++) {
+                if (got[k] != expected[k]) fail_msg("%s at %g: ray %zu", specs[i], (double)places[p], k);
+            }
+            assert_int_equal(tallies[RT_RAY_SHADOW].rays, AWKWARD_RAYS);
+            assert_true(tallies[RT_RAY_SHADOW].passed_on < AWKWARD_RAYS / 2 || strstr(specs[i], "cache"));
+            rt_query_clear(&query);
+            rt_accel_destroy(accel);
+        }
+        rt_scene_clear(&scene);
+    }
+}
+
+/* ---- limits and invariants ---- */
+
+static void too_many_cells_are_refused_with_a_number_that_fits(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtError error = {RT_OK, ""};
+    make_awkward(&scene, 0);
+    assert_int_equal(rt_accel_open("light:cells=4096+bvh", &scene, &accel, &error), RT_BAD_INPUT);
+    const char *fits = strstr(error.message, "cells=");
+    assert_non_null(fits);
+    /* 8 lights x 6 faces x 12 bytes a cell in 4 GiB. */
+    assert_string_equal(fits, "cells=2730 would fit");
+    rt_scene_clear(&scene);
+}
+
+static void assert_broken(RtAccel *accel, const char *says) {
+    RtError error = {RT_OK, ""};
+    assert_int_equal(rt_accel_validate(accel, &error), RT_MISMATCH);
+    if (!strstr(error.message, says)) fail_msg("%s", error.message);
+}
+
+static void each_broken_invariant_is_named(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    make_awkward(&scene, 0);
+    assert_ok(rt_accel_open("light:cells=8+brute", &scene, &accel, error));
+    RtLightBuffer *buffer = (RtLightBuffer *)accel;
+    assert_ok(rt_accel_validate(accel, error));
+
+    size_t cell = 0;
+    while (buffer->first[cell + 1] - buffer->first[cell] < 2) cell++;
+    RtLightEntry *list = &buffer->entries[buffer->first[cell]], kept = list[0];
+    list[0] = list[1];
+    list[1] = kept;
+    assert_broken(accel, "lacks object");
+    list[1] = list[0];
+    list[0] = kept;
+    list[0].depth += 1;
+    assert_broken(accel, "lacks object");
+    list[0] = kept;
+
+    buffer->first[cell + 1] -= 1;
+    assert_broken(accel, "lacks object");
+    buffer->first[cell + 1] += 1;
+    uint32_t end = buffer->first[cell + 1];
+    buffer->first[cell + 1] = 0;
+    buffer->first[cell] = 1;
+    assert_broken(accel, "ends before it begins");
+    buffer->first[cell + 1] = end;
+    buffer->first[cell] = (uint32_t)(list - buffer->entries);
+
+    size_t covered = 0;
+    while (buffer->covers[covered].id == RT_NO_OBJECT) covered++;
+    RtLightCover cover = buffer->covers[covered];
+    buffer->covers[covered].depth /= 2;
+    assert_broken(accel, "is not covered");
+    buffer->covers[covered].id ^= 1;
+    assert_broken(accel, "is not covered");
+    buffer->covers[covered] = cover;
+
+    assert_true(buffer->near_first[1] > 0); /* the first light is inside a sphere */
+    buffer->near[0] ^= 1;
+    assert_broken(accel, "near list");
+    buffer->near[0] ^= 1;
+    assert_ok(rt_accel_validate(accel, error));
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    return rt_alloc_live() == 0 ? 0 : -1;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_counts_what_was_counted_by_hand),
+        cmocka_unit_test(full_occlusion_ends_lists_at_what_covers_a_cell),
+        cmocka_unit_test(a_concave_polygon_covers_no_cell_of_its_notch),
+        cmocka_unit_test(lights_in_awkward_places_are_answered_like_brute),
+        cmocka_unit_test(too_many_cells_are_refused_with_a_number_that_fits),
+        cmocka_unit_test(each_broken_invariant_is_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, tear_down);
+}
