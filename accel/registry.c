@@ -13,6 +13,7 @@
     X(rt_clusters_ops)                                                                                       \
     X(rt_extents_ops)                                                                                        \
     X(rt_grid_ops)                                                                                           \
+    X(rt_octree_ops)                                                                                         \
     X(rt_ideal_ops)                                                                                          \
     X(rt_cache_ops)                                                                                          \
     X(rt_light_ops)

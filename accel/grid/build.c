@@ -224,12 +224,7 @@ RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **ou
     grid->box = scene->geometry.box;
     grid->mailbox = values[RT_GRID_MAILBOX].flag;
     if (scene->geometry.object_count > 0) {
-        for (int a = 0; a < 3; a++) {
-            double lo = (double)grid->box.lo.at[a], hi = (double)grid->box.hi.at[a];
-            double grow = values[RT_GRID_MARGIN].f * (hi - lo) / 2;
-            grid->box.lo.at[a] = rt_float_below(lo - grow);
-            grid->box.hi.at[a] = rt_float_above(hi + grow);
-        }
+        grid->box = rt_box_widened(grid->box, values[RT_GRID_MARGIN].f);
         choose_resolution(grid, scene->geometry.object_count, values, grid->n);
         RtStatus status = make_lists(grid, error);
         if (status != RT_OK) {

@@ -19,26 +19,11 @@
  *
  * Counting: an extent test for the box of the grid; a step per voxel visited. */
 #include "accel/grid/grid.h"
-#include "accel/kernel.h"
-
-#include <string.h>
-
-/* The mailbox of one thread: the number of the ray that last tested each object. */
-typedef struct Mailbox {
-    uint32_t ray;
-    uint32_t last[]; /* [object_count] */
-} Mailbox;
+#include "accel/mailbox.h"
 
 static size_t scratch_bytes(const RtAccel *accel) {
     const RtGrid *grid = (const RtGrid *)accel;
-    return grid->mailbox ? sizeof(Mailbox) + accel->scene->geometry.object_count * sizeof(uint32_t) : 0;
-}
-
-static void next_ray(const RtGrid *grid, Mailbox *mailbox) {
-    if (++mailbox->ray == 0) {
-        memset(mailbox->last, 0, grid->base.scene->geometry.object_count * sizeof(uint32_t));
-        mailbox->ray = 1;
-    }
+    return grid->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
 }
 
 /* One axis of the walk. Intervals are numbered along the ray: 0 is the first it can meet. */
@@ -95,27 +80,17 @@ RT_KERNEL bool retire(Axis *axis, float t) {
     return true;
 }
 
-RT_KERNEL bool visit_voxel(const RtGrid *self, Mailbox *mailbox, size_t voxel, const RtPreparedRay *ray,
+RT_KERNEL bool visit_voxel(const RtGrid *self, RtMailbox *mailbox, size_t voxel, const RtPreparedRay *ray,
                            bool any, RtHit *best, RtTally *tally) {
     uint32_t from = self->first[voxel], to = self->first[voxel + 1];
     RT_COUNT(tally, steps, 1);
     RT_COUNT(tally, empty_steps, from == to);
-    for (uint32_t i = from; i < to; i++) {
-        uint32_t id = self->ids[i];
-        if (mailbox) {
-            if (mailbox->last[id] == mailbox->ray) {
-                RT_COUNT(tally, repeats_avoided, 1);
-                continue;
-            }
-            mailbox->last[id] = mailbox->ray;
-        }
-        if (rt_test_object(&self->base.scene->geometry, id, ray, any, best, tally)) return true;
-    }
-    return false;
+    return rt_test_list(&self->base.scene->geometry, mailbox, self->ids + from, to - from, ray, any, best,
+                        tally);
 }
 
 /* Visits the voxels of all current intervals, but of axis `entered` only the newest. */
-RT_KERNEL bool visit_current(const RtGrid *self, Mailbox *mailbox, const Axis axes[3], int entered,
+RT_KERNEL bool visit_current(const RtGrid *self, RtMailbox *mailbox, const Axis axes[3], int entered,
                              const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     uint32_t from[3], i[3], at[3];
     for (int a = 0; a < 3; a++) from[a] = a == entered ? axes[a].hi : axes[a].lo;
@@ -137,8 +112,8 @@ RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ra
     if (self->n[0] == 0) return;
     RT_COUNT(tally, extent_tests, 1);
     if (!rt_box_hit(&self->box, ray, ray->tmax, &t)) return;
-    Mailbox *mailbox = self->mailbox ? scratch : NULL;
-    if (mailbox) next_ray(self, mailbox);
+    RtMailbox *mailbox = self->mailbox ? scratch : NULL;
+    rt_mailbox_next_ray(mailbox, &self->base.scene->geometry);
     Axis axes[3];
     for (int a = 0; a < 3; a++) axes[a] = start_axis(self, ray, a, t);
     int entered = -1;

@@ -69,6 +69,17 @@ static inline RtVec3 rt_box_center(RtBox a) {
     return rt_add(rt_scale(a.lo, 0.5f), rt_scale(a.hi, 0.5f));
 }
 
+/* A box that is wider by `part` of its width along each axis, at both ends alike; never narrower. */
+static inline RtBox rt_box_widened(RtBox a, double part) {
+    for (int i = 0; i < 3; i++) {
+        double lo = (double)a.lo.at[i], hi = (double)a.hi.at[i];
+        double grow = part * (hi - lo) / 2;
+        a.lo.at[i] = rt_float_below(lo - grow);
+        a.hi.at[i] = rt_float_above(hi + grow);
+    }
+    return a;
+}
+
 /* Half the surface area, in double because float32 would under- or overflow; 0 for the empty box. */
 static inline double rt_box_half_area(RtBox a) {
     if (rt_box_is_empty(a)) return 0;

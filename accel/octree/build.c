@@ -1,0 +1,305 @@
+/* Building an octree, level by level: a leaf's list goes to the array of all lists, an inner node's is dealt
+ * to the lists of its eight children, the next level. What a node's children would take is counted before it
+ * is taken.
+ *
+ * Split planes: Glassner 1984 (the centre); Whang et al. 1995, Octree-R (by cost, each axis on its own). */
+#include "accel/octree/octree.h"
+
+#include "base/memory.h"
+
+/* Above this many bytes of nodes and lists an octree is refused. */
+#define MAX_BYTES (UINT64_C(4) << 30)
+
+/* Planes tried between the spatial and the object median, both included. */
+enum { CANDIDATES = 10 };
+
+const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {
+    [RT_OCTREE_MAX_OBJECTS] = {.name = "max_objects",
+                               .type = RT_PARAM_INT,
+                               .standard = "1",
+                               .lo = 1,
+                               .hi = 1e6,
+                               .meaning = "a cell with at most so many objects is not divided",
+                               .source = "Havran 1999, RTN 12(2)",
+                               .tries = "2|1000000"},
+    [RT_OCTREE_MAX_DEPTH] = {.name = "max_depth",
+                             .type = RT_PARAM_INT,
+                             .standard = "-1",
+                             .lo = -1,
+                             .hi = RT_OCTREE_DEPTH_LIMIT,
+                             .meaning =
+                                 "depth at which cells are divided no more, the root's being 0; -1: two "
+                                 "more than gives a cell per object",
+                             .source = "the best depths of Havran 1999: 5 to 7 for 8000 objects",
+                             .tries = "0|4|6"},
+    [RT_OCTREE_SPLIT] = {.name = "split",
+                         .type = RT_PARAM_CHOICE,
+                         .standard = "centre",
+                         .choices = "centre|cost",
+                         .meaning = "where a cell is cut: its centre, or the cheapest of ten planes per axis",
+                         .source = "Glassner 1984"},
+    [RT_OCTREE_MARGIN] = {.name = "margin",
+                          .type = RT_PARAM_FLOAT,
+                          .standard = "0",
+                          .lo = 0,
+                          .hi = 1,
+                          .meaning = "how much wider than the scene's box the root is, as a part of it",
+                          .source = "the published scene boxes are a little wider than tight",
+                          .tries = "0.01|1"},
+    [RT_OCTREE_MAILBOX] = {.name = "mailbox",
+                           .type = RT_PARAM_FLAG,
+                           .standard = "on",
+                           .meaning = "do not test an object twice for one ray",
+                           .source = "Kirk & Arvo 1991"},
+    [RT_OCTREE_TRAVERSAL] = {.name = "traversal",
+                             .type = RT_PARAM_CHOICE,
+                             .standard = "parametric",
+                             .choices = "points|neighbours|parametric",
+                             .meaning =
+                                 "next leaf: sought from the root, from an ancestor, or left on a stack",
+                             .source = "Havran 1999: fewest steps"},
+};
+
+typedef struct Builder {
+    RtOctree *tree;
+    const RtBox *objects; /* their boxes */
+    uint64_t limit;
+    uint32_t depth; /* of the current level */
+    uint32_t node_capacity, box_capacity, id_capacity;
+    /* The lists of the current level and of the next, node after node. */
+    uint32_t *list, *next;
+    uint32_t next_count, next_capacity;
+    float *centers; /* [object_count] scratch for medians */
+} Builder;
+
+/* ---- split planes ---- */
+
+/* A plane strictly inside, or the upper one: see octree.h. */
+static float inside(double at, float lo, float hi) {
+    float split = (float)at;
+    return split > lo && split < hi ? split : hi;
+}
+
+static float centre(float lo, float hi) {
+    return inside(0.5 * (double)lo + 0.5 * (double)hi, lo, hi);
+}
+
+/* The element that sorting would put in the middle (Hoare's selection); reorders values[0..count). */
+static float median(float *values, uint32_t count) {
+    int64_t lo = 0, hi = (int64_t)count - 1, middle = count / 2;
+    while (lo < hi) {
+        float pivot = values[middle];
+        int64_t i = lo, j = hi;
+        while (i <= j) {
+            while (values[i] < pivot) i++;
+            while (values[j] > pivot) j--;
+            if (i > j) break;
+            float swapped = values[i];
+            values[i++] = values[j];
+            values[j--] = swapped;
+        }
+        if (j < middle) lo = i;
+        if (i > middle) hi = j;
+    }
+    return values[middle];
+}
+
+/* Octree-R: of ten planes from the spatial median to the object median, the one of the least cost
+ * (MacDonald & Booth 1990). */
+static float cheapest(const Builder *b, const RtBox *cell, int axis, const uint32_t *ids, uint32_t count) {
+    float lo = cell->lo.at[axis], hi = cell->hi.at[axis], best = centre(lo, hi);
+    RtVec3d size = rt_subd(rt_widen(cell->hi), rt_widen(cell->lo));
+    double across = size.at[(axis + 1) % 3] + size.at[(axis + 2) % 3];
+    double face = size.at[(axis + 1) % 3] * size.at[(axis + 2) % 3];
+    for (uint32_t i = 0; i < count; i++) {
+        float center = rt_box_center(b->objects[ids[i]]).at[axis];
+        b->centers[i] = rt_minf(rt_maxf(center, lo), hi);
+    }
+    double from = (double)best, to = (double)median(b->centers, count), least = INFINITY;
+    for (int k = 0; k < CANDIDATES; k++) {
+        float split = inside(from + (to - from) * k / (CANDIDATES - 1), lo, hi);
+        if (split == hi) continue;
+        uint32_t below = 0, above = 0; /* objects that are cut are in both */
+        for (uint32_t i = 0; i < count; i++) {
+            below += b->objects[ids[i]].lo.at[axis] <= split;
+            above += b->objects[ids[i]].hi.at[axis] >= split;
+        }
+        double left = (double)split - (double)lo, right = (double)hi - (double)split;
+        double cost = below * (2 * left * across + face) + above * (2 * right * across + face);
+        if (!(cost < least)) continue;
+        least = cost;
+        best = split;
+    }
+    return best;
+}
+
+static RtVec3 choose_split(const Builder *b, const RtBox *cell, const uint32_t *ids, uint32_t count) {
+    RtVec3 split;
+    for (int a = 0; a < 3; a++) {
+        split.at[a] = b->tree->split == RT_OCTREE_COST ? cheapest(b, cell, a, ids, count)
+                                                       : centre(cell->lo.at[a], cell->hi.at[a]);
+    }
+    return split;
+}
+
+bool rt_octree_divisible(const RtBox *boxes, const RtBox *cell, const uint32_t *ids, uint32_t count) {
+    bool room = false;
+    for (int a = 0; a < 3; a++) room |= centre(cell->lo.at[a], cell->hi.at[a]) < cell->hi.at[a];
+    for (uint32_t i = 0; room && i < count; i++) {
+        if (!rt_box_contains(boxes[ids[i]], *cell)) return true;
+    }
+    return false;
+}
+
+/* ---- levels ---- */
+
+static RtStatus refuse(const Builder *b, double bytes, RtError *error) {
+    return rt_fail(error, RT_BAD_INPUT,
+                   "an octree of max_depth=%u, max_objects=%u would take %.3g GiB and more at depth %u, more "
+                   "than %.3g GiB: max_depth=%u would fit",
+                   b->tree->max_depth, b->tree->max_objects, bytes / 0x1p30, b->depth + 1,
+                   (double)b->limit / 0x1p30, b->depth);
+}
+
+/* Makes room for `nodes` more nodes, `ids` more entries of leaves and `next` more of the next level. */
+static RtStatus make_room(Builder *b, uint64_t nodes, uint64_t ids, uint64_t next, RtError *error) {
+    RtOctree *tree = b->tree;
+    nodes += tree->node_count;
+    ids += tree->id_count;
+    next += b->next_count;
+    uint64_t bytes = nodes * (sizeof(RtOctreeNode) + sizeof(RtBox)) + (ids + next) * sizeof(uint32_t);
+    if (bytes > b->limit) return refuse(b, (double)bytes, error);
+    RT_TRY(rt_reserve(&tree->nodes, &b->node_capacity, nodes, sizeof(RtOctreeNode), error));
+    RT_TRY(rt_reserve(&tree->boxes, &b->box_capacity, nodes, sizeof(RtBox), error));
+    RT_TRY(rt_reserve(&tree->ids, &b->id_capacity, ids, sizeof(uint32_t), error));
+    return rt_reserve(&b->next, &b->next_capacity, next, sizeof(uint32_t), error);
+}
+
+/* Two more than the least depth at which there are as many cells as objects. */
+static uint32_t usual_depth(uint32_t objects) {
+    uint32_t depth = 2;
+    for (uint64_t cells = 1; cells < objects; cells *= 8) depth++;
+    return depth;
+}
+
+static RtStatus make_leaf(Builder *b, uint32_t index, const uint32_t *ids, uint32_t count, RtError *error) {
+    RtOctree *tree = b->tree;
+    RT_TRY(make_room(b, 0, count, 0, error));
+    tree->nodes[index].first = tree->id_count;
+    for (uint32_t i = 0; i < count; i++) tree->ids[tree->id_count++] = ids[i];
+    return RT_OK;
+}
+
+/* Deals the objects ids[0..count) to eight new children: a count pass, room, a fill pass. */
+static RtStatus divide(Builder *b, uint32_t index, const uint32_t *ids, uint32_t count, RtError *error) {
+    RtOctree *tree = b->tree;
+    RtBox cell = tree->boxes[index];
+    RtVec3 split = choose_split(b, &cell, ids, count);
+    uint32_t length[8] = {0}, end[8];
+    uint64_t total = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t children = rt_octree_sides(&cell, split, &b->objects[ids[i]]);
+        for (uint32_t c = 0; c < 8; c++) length[c] += children >> c & 1;
+    }
+    for (uint32_t c = 0; c < 8; c++) total += length[c];
+    RT_TRY(make_room(b, 8, 0, total, error));
+    RtOctreeNode *node = &tree->nodes[index];
+    node->split = split;
+    node->first = tree->node_count;
+    node->count = RT_OCTREE_INNER;
+    for (uint32_t c = 0; c < 8; c++) {
+        tree->boxes[tree->node_count] = rt_octree_child_box(cell, split, c);
+        tree->nodes[tree->node_count++] =
+            (RtOctreeNode){.first = b->next_count, .count = length[c], .parent = index};
+        end[c] = b->next_count;
+        b->next_count += length[c];
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t children = rt_octree_sides(&cell, split, &b->objects[ids[i]]);
+        for (uint32_t c = 0; c < 8; c++) {
+            if (children >> c & 1) b->next[end[c]++] = ids[i];
+        }
+    }
+    return RT_OK;
+}
+
+/* Until it is turned into a leaf or divided, a node's list is at `first` of the current level's. */
+static RtStatus build_level(Builder *b, uint32_t from, uint32_t to, RtError *error) {
+    RtOctree *tree = b->tree;
+    for (uint32_t index = from; index < to; index++) {
+        uint32_t count = tree->nodes[index].count;
+        const uint32_t *ids = b->list + tree->nodes[index].first;
+        bool small = count <= tree->max_objects || b->depth == tree->max_depth;
+        if (small || !rt_octree_divisible(b->objects, &tree->boxes[index], ids, count)) {
+            RT_TRY(make_leaf(b, index, ids, count, error));
+        } else {
+            RT_TRY(divide(b, index, ids, count, error));
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus build_levels(Builder *b, RtBox root, uint32_t object_count, RtError *error) {
+    RtOctree *tree = b->tree;
+    b->list = rt_alloc(object_count, sizeof(uint32_t));
+    b->centers = rt_alloc(tree->split == RT_OCTREE_COST ? object_count : 0, sizeof(float));
+    if (!b->list || !b->centers) {
+        return rt_fail_memory(error, "building an octree", object_count * sizeof(uint32_t));
+    }
+    RT_TRY(make_room(b, 1, 0, 0, error));
+    for (uint32_t i = 0; i < object_count; i++) b->list[i] = i;
+    tree->nodes[0] = (RtOctreeNode){.first = 0, .count = object_count};
+    tree->boxes[0] = root;
+    tree->node_count = 1;
+    for (uint32_t from = 0, to = 1; from < to; from = to, to = tree->node_count, b->depth++) {
+        RT_TRY(build_level(b, from, to, error));
+        rt_free(b->list);
+        b->list = b->next;
+        b->next = NULL;
+        b->next_count = b->next_capacity = 0;
+    }
+    return RT_OK;
+}
+
+void rt_octree_destroy(RtAccel *accel) {
+    RtOctree *tree = (RtOctree *)accel;
+    rt_free(tree->nodes);
+    rt_free(tree->boxes);
+    rt_free(tree->ids);
+    rt_free(tree);
+}
+
+RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
+                                RtError *error) {
+    const RtGeometry *g = &scene->geometry;
+    int64_t depth = values[RT_OCTREE_MAX_DEPTH].i;
+    RtOctree *tree = rt_alloc(1, sizeof(RtOctree));
+    if (!tree) return rt_fail_memory(error, "an octree", sizeof(RtOctree));
+    *tree = (RtOctree){
+        .base = {.ops = &rt_octree_ops, .scene = scene, .exact = true, .counts = true},
+        .max_objects = (uint32_t)values[RT_OCTREE_MAX_OBJECTS].i,
+        .max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth,
+        .split = values[RT_OCTREE_SPLIT].choice,
+        .traversal = values[RT_OCTREE_TRAVERSAL].choice,
+        .mailbox = values[RT_OCTREE_MAILBOX].flag,
+    };
+    Builder builder = {.tree = tree, .objects = g->boxes, .limit = limit};
+    RtStatus status = RT_OK;
+    if (g->object_count > 0) {
+        RtBox root = rt_box_widened(g->box, values[RT_OCTREE_MARGIN].f);
+        status = build_levels(&builder, root, g->object_count, error);
+    }
+    rt_free(builder.list);
+    rt_free(builder.next);
+    rt_free(builder.centers);
+    if (status != RT_OK) {
+        rt_octree_destroy(&tree->base);
+        return status;
+    }
+    *out = &tree->base;
+    return RT_OK;
+}
+
+RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+    return rt_octree_build_within(MAX_BYTES, scene, values, out, error);
+}

@@ -1,0 +1,294 @@
+/* octree: cells cut into eight until each holds few objects; a ray tests the objects of the leaves it meets.
+ *
+ * Papers: Glassner 1984 (traversal=points: every next leaf is sought from the root); Samet 1989 (neighbours:
+ * from the nearest common ancestor); Gargantini & Atkinson 1993, Revelles, Ureña & Lastra 2000 (parametric:
+ * one descent by the ray's parameters at the planes).
+ *
+ * Layout and invariants: octree.h. Exactness: no point is nudged, and none computed. By base/ray.h a hit lies
+ * at a t at which the thick ray is in the object's own box, so in a leaf that lists it; the ray is in a cell
+ * at t unless it has not yet crossed one of its near planes, (plane - org_near) * inv > t, or has crossed one
+ * of its far planes, (plane - org_far) * inv < t. (A crossing is NaN for a ray that runs exactly in the moved
+ * plane: it is in the cells on both sides.) A leaf met may be visited in any order, and may be left out once
+ * it is entered beyond the best t.
+ *
+ * `parametric` visits the nodes whose thick intervals overlap, nearest first; children inherit the crossings
+ * of their parent and add those of its split.
+ *
+ * `points` and `neighbours` keep the cells that the ray is in: one, two while it crosses a plane, more near
+ * edges. They go from crossing to crossing: where the ray enters what lies beyond face p of a current cell L,
+ * at t, they visit every leaf that lies beyond p and that the ray is in at t. None is missed: let Q be
+ * entered at t, last through its plane p of axis a. Just before p, and along the other axes where Q and the
+ * ray at t meet, lies a leaf L; it ends at p (else it would overlap Q), and the ray is in it at t, so L is
+ * current, and was to be left through p at t. The least ancestor of L that goes on beyond p holds Q, for it
+ * holds the points on both sides of p: that is where `neighbours` begins. A current cell is found again while
+ * it is still current, so that none is visited twice. Rays for which MAX_CELLS are not enough (so far away
+ * that float32 can hardly tell cells apart) are handed to `parametric`.
+ *
+ * Counting: an extent test for the box of the root; a step per node visited, on the way down or up; an empty
+ * step per empty leaf. */
+#include "accel/octree/octree.h"
+#include "accel/mailbox.h"
+
+/* A descent leaves at most 7 nodes of each depth behind. */
+enum { MAX_STACK = 7 * RT_OCTREE_DEPTH_LIMIT + 8, MAX_CELLS = 64 };
+
+static size_t scratch_bytes(const RtAccel *accel) {
+    const RtOctree *tree = (const RtOctree *)accel;
+    return tree->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
+}
+
+RT_KERNEL float near_crossing(const RtPreparedRay *ray, int axis, float plane) {
+    return (plane - ray->org_near[axis]) * ray->inv[axis];
+}
+
+RT_KERNEL float far_crossing(const RtPreparedRay *ray, int axis, float plane) {
+    return (plane - ray->org_far[axis]) * ray->inv[axis];
+}
+
+/* The children on the near side of a split along an axis, as the ray comes. */
+RT_KERNEL uint32_t near_side(const RtPreparedRay *ray, int axis) {
+    return ray->negative[axis] ? rt_octree_upper(axis) : rt_octree_lower(axis);
+}
+
+RT_KERNEL bool visit_leaf(const RtOctree *self, RtMailbox *mailbox, const RtOctreeNode *leaf,
+                          const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+    RT_COUNT(tally, empty_steps, leaf->count == 0);
+    return rt_test_list(&self->base.scene->geometry, mailbox, self->ids + leaf->first, leaf->count, ray, any,
+                        best, tally);
+}
+
+/* ---- parametric ---- */
+
+/* A node with the crossings of its planes. */
+typedef struct Span {
+    uint32_t node;
+    float enter, near[3], far[3];
+} Span;
+
+RT_KERNEL bool span_meets(Span *span, float tmin, float limit) {
+    float near = tmin, far = limit;
+    for (int a = 0; a < 3; a++) {
+        near = rt_maxf(span->near[a], near);
+        far = rt_minf(span->far[a], far);
+    }
+    span->enter = near;
+    return near <= far;
+}
+
+/* Puts the children that the ray meets onto the stack, the one it enters first on top; gives their number. */
+RT_KERNEL uint32_t push_children(const RtOctree *self, const RtPreparedRay *ray, const Span *parent,
+                                 float limit, Span *stack) {
+    const RtOctreeNode *node = &self->nodes[parent->node];
+    float near[3], far[3];
+    uint32_t children = 0xff, pushed = 0;
+    for (int a = 0; a < 3; a++) {
+        near[a] = near_crossing(ray, a, node->split.at[a]);
+        far[a] = far_crossing(ray, a, node->split.at[a]);
+        if (far[a] < parent->enter) children &= ~near_side(ray, a);
+        if (near[a] > limit) children &= near_side(ray, a);
+    }
+    for (; children; children &= children - 1) {
+        uint32_t place = (uint32_t)__builtin_ctz(children), i = pushed;
+        Span child = {.node = node->first + place};
+        for (int a = 0; a < 3; a++) {
+            bool first = near_side(ray, a) >> place & 1;
+            child.near[a] = first ? parent->near[a] : near[a];
+            child.far[a] = first ? far[a] : parent->far[a];
+        }
+        if (!span_meets(&child, ray->tmin, limit)) continue;
+        for (; i > 0 && stack[i - 1].enter < child.enter; i--) stack[i] = stack[i - 1];
+        stack[i] = child;
+        pushed++;
+    }
+    return pushed;
+}
+
+RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPreparedRay *ray, bool any,
+                       RtHit *best, RtTally *tally) {
+    Span stack[MAX_STACK], span = {.node = 0};
+    uint32_t stacked = 0;
+    for (int a = 0; a < 3; a++) {
+        const RtBox *root = &self->boxes[0];
+        span.near[a] = near_crossing(ray, a, (ray->negative[a] ? root->hi : root->lo).at[a]);
+        span.far[a] = far_crossing(ray, a, (ray->negative[a] ? root->lo : root->hi).at[a]);
+    }
+    if (!span_meets(&span, ray->tmin, rt_limit(ray, best))) return;
+    for (;;) {
+        const RtOctreeNode *node = &self->nodes[span.node];
+        RT_COUNT(tally, steps, 1);
+        if (node->count == RT_OCTREE_INNER) {
+            stacked += push_children(self, ray, &span, rt_limit(ray, best), stack + stacked);
+        } else if (visit_leaf(self, mailbox, node, ray, any, best, tally)) {
+            return;
+        }
+        do {
+            if (stacked == 0) return;
+            span = stack[--stacked];
+        } while (span.enter > rt_limit(ray, best));
+    }
+}
+
+/* ---- points and neighbours ---- */
+
+/* A leaf that the ray is in. */
+typedef struct Cell {
+    uint32_t node;
+    float leave;   /* when the ray has left it */
+    float next[3]; /* when the ray enters what lies beyond its far face; INFINITY: never, or seen to */
+} Cell;
+
+/* Where next to look for leaves. */
+typedef struct Crossing {
+    float t, plane;
+    int axis;       /* the leaf lies beyond `plane` of this axis; -1: anywhere */
+    uint32_t start; /* from this node downward */
+} Crossing;
+
+RT_KERNEL float far_plane(const RtPreparedRay *ray, const RtBox *box, int axis) {
+    return (ray->negative[axis] ? box->lo : box->hi).at[axis];
+}
+
+RT_KERNEL Cell make_cell(const RtOctree *self, const RtPreparedRay *ray, uint32_t index, float t) {
+    Cell cell = {.node = index, .leave = INFINITY};
+    for (int a = 0; a < 3; a++) {
+        cell.leave = rt_minf(far_crossing(ray, a, far_plane(ray, &self->boxes[index], a)), cell.leave);
+    }
+    for (int a = 0; a < 3; a++) {
+        float plane = far_plane(ray, &self->boxes[index], a), next = near_crossing(ray, a, plane);
+        bool ahead = next >= t && next <= cell.leave && plane != far_plane(ray, &self->boxes[0], a);
+        cell.next[a] = ahead ? next : INFINITY;
+    }
+    return cell;
+}
+
+/* The children of an inner node in which leaves at the crossing may be, as bits. */
+RT_KERNEL uint32_t children_at(const RtPreparedRay *ray, const RtOctreeNode *node, const Crossing *at) {
+    uint32_t children = 0xff;
+    for (int a = 0; a < 3; a++) {
+        float split = node->split.at[a];
+        if (a == at->axis) {
+            bool beyond = ray->negative[a] ? split >= at->plane : split <= at->plane;
+            children &= beyond ? ~near_side(ray, a) : near_side(ray, a);
+        } else {
+            if (far_crossing(ray, a, split) < at->t) children &= ~near_side(ray, a);
+            if (near_crossing(ray, a, split) > at->t) children &= near_side(ray, a);
+        }
+    }
+    return children;
+}
+
+RT_KERNEL bool is_current(const Cell *cells, uint32_t count, uint32_t node) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (cells[i].node == node) return true;
+    }
+    return false;
+}
+
+/* Visits the leaves of a crossing and makes them current. True if the search is over, or *count is one more
+ * than MAX_CELLS. */
+RT_KERNEL bool enter_leaves(const RtOctree *self, RtMailbox *mailbox, const Crossing *at, Cell *cells,
+                            uint32_t *count, const RtPreparedRay *ray, bool any, RtHit *best,
+                            RtTally *tally) {
+    uint32_t stack[MAX_STACK], stacked = 0, index = at->start;
+    for (;;) {
+        const RtOctreeNode *node = &self->nodes[index];
+        RT_COUNT(tally, steps, 1);
+        if (node->count == RT_OCTREE_INNER) {
+            uint32_t children = children_at(ray, node, at);
+            for (; children; children &= children - 1) {
+                stack[stacked++] = node->first + (uint32_t)__builtin_ctz(children);
+            }
+        } else if (!is_current(cells, *count, index)) {
+            if (*count == MAX_CELLS) {
+                ++*count;
+                return true;
+            }
+            cells[(*count)++] = make_cell(self, ray, index, at->t);
+            if (visit_leaf(self, mailbox, node, ray, any, best, tally)) return true;
+        }
+        if (stacked == 0) return false;
+        index = stack[--stacked];
+    }
+}
+
+/* The soonest crossing out of a current cell, which is then marked as seen to; its t is INFINITY if there is
+ * none. */
+RT_KERNEL Crossing next_crossing(const RtOctree *self, const RtPreparedRay *ray, Cell *cells,
+                                 uint32_t count) {
+    Crossing soonest = {.t = INFINITY};
+    uint32_t from = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        for (int a = 0; a < 3; a++) {
+            if (!(cells[i].next[a] < soonest.t)) continue;
+            soonest.t = cells[i].next[a];
+            soonest.axis = a;
+            from = i;
+        }
+    }
+    if (soonest.t == INFINITY) return soonest;
+    cells[from].next[soonest.axis] = INFINITY;
+    soonest.start = cells[from].node;
+    soonest.plane = far_plane(ray, &self->boxes[soonest.start], soonest.axis);
+    return soonest;
+}
+
+/* From a leaf up to the least ancestor that goes on beyond the leaf's far face along an axis. */
+RT_KERNEL uint32_t climb(const RtOctree *self, const RtPreparedRay *ray, uint32_t index, int axis,
+                         RtTally *tally) {
+    for (;;) {
+        bool first = near_side(ray, axis) >> rt_octree_place(index) & 1;
+        index = self->nodes[index].parent;
+        if (first) return index;
+        RT_COUNT(tally, steps, 1);
+    }
+}
+
+/* False if the ray is in too many cells at once. */
+RT_KERNEL bool walk(const RtOctree *self, RtMailbox *mailbox, float enter, const RtPreparedRay *ray, bool any,
+                    RtHit *best, RtTally *tally) {
+    Cell cells[MAX_CELLS];
+    uint32_t count = 0;
+    Crossing at = {.t = enter, .axis = -1, .start = 0};
+    for (;;) {
+        if (enter_leaves(self, mailbox, &at, cells, &count, ray, any, best, tally)) return count <= MAX_CELLS;
+        at = next_crossing(self, ray, cells, count);
+        if (at.t > rt_limit(ray, best)) return true;
+        for (uint32_t i = count; i-- > 0;) {
+            if (cells[i].leave < at.t) cells[i] = cells[--count];
+        }
+        at.start = self->traversal == RT_OCTREE_POINTS ? 0 : climb(self, ray, at.start, at.axis, tally);
+    }
+}
+
+RT_KERNEL void search(const RtOctree *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
+    float enter;
+    if (self->node_count == 0) return;
+    RT_COUNT(tally, extent_tests, 1);
+    if (!rt_box_hit(&self->boxes[0], ray, ray->tmax, &enter)) return;
+    RtMailbox *mailbox = self->mailbox ? scratch : NULL;
+    rt_mailbox_next_ray(mailbox, &self->base.scene->geometry);
+    if (self->traversal != RT_OCTREE_PARAMETRIC && walk(self, mailbox, enter, ray, any, best, tally)) return;
+    descend(self, mailbox, ray, any, best, tally);
+}
+
+RT_DEFINE_KERNELS(RtOctree, search)
+
+const RtAccelOps rt_octree_ops = {
+    .name = "octree",
+    .summary = "cells cut into eight until each holds few objects, met by a ray in one of three ways",
+    .paper = "Glassner 1984, Space Subdivision for Fast Ray Tracing, CG&A 4(10); Revelles, Ureña & Lastra "
+             "2000, An Efficient Parametric Algorithm for Octree Traversal, WSCG",
+    .params = rt_octree_params,
+    .param_count = RT_OCTREE_PARAM_COUNT,
+    .build = rt_octree_build,
+    .destroy = rt_octree_destroy,
+    .nearest = nearest_timed,
+    .occluded = occluded_timed,
+    .nearest_counted = nearest_counted,
+    .occluded_counted = occluded_counted,
+    .scratch_bytes = scratch_bytes,
+    .describe = rt_octree_describe,
+    .validate = rt_octree_validate,
+    .each_box = rt_octree_each_box,
+};

@@ -1,0 +1,110 @@
+/* The inside of octree: its data, shared by the files of this folder.
+ *
+ * Nodes in one flat array, level by level: the root is node 0, the eight children of a node lie side by side,
+ * after it. Bit a of a child's place among the eight says on which side of its parent's `split` it lies along
+ * axis a (0 = lower). All lists of objects in one array, `ids`, leaf after leaf.
+ *
+ * Invariants: the cells of children are the cell of their parent cut at its split, so neighbours share the
+ * same bits of a plane. A split lies strictly between the planes of its cell or, where float32 has nothing in
+ * between, on the upper one; then the upper children have no width and never hold an object
+ * (rt_octree_sides). An object is in the list of every other leaf whose closed cell meets its box. No leaf is
+ * deeper than max_depth, which bounds the stacks of traversals. */
+#ifndef RT_ACCEL_OCTREE_OCTREE_H
+#define RT_ACCEL_OCTREE_OCTREE_H
+
+#include "accel/accel.h"
+
+enum {
+    RT_OCTREE_MAX_OBJECTS,
+    RT_OCTREE_MAX_DEPTH,
+    RT_OCTREE_SPLIT,
+    RT_OCTREE_MARGIN,
+    RT_OCTREE_MAILBOX,
+    RT_OCTREE_TRAVERSAL,
+    RT_OCTREE_PARAM_COUNT
+};
+extern const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT];
+
+/* In the order of the choices of the parameters. */
+enum { RT_OCTREE_CENTRE, RT_OCTREE_COST };
+enum { RT_OCTREE_POINTS, RT_OCTREE_NEIGHBOURS, RT_OCTREE_PARAMETRIC };
+
+enum { RT_OCTREE_DEPTH_LIMIT = 20 };
+
+/* RtOctreeNode.count of an inner node. */
+#define RT_OCTREE_INNER UINT32_MAX
+
+typedef struct RtOctreeNode {
+    RtVec3 split;    /* inner: the planes between its children */
+    uint32_t first;  /* inner: the first of its children; leaf: the first of its ids */
+    uint32_t count;  /* leaf: length of its list */
+    uint32_t parent; /* 0 for the root */
+} RtOctreeNode;
+
+typedef struct RtOctree {
+    RtAccel base;
+    RtOctreeNode *nodes; /* [node_count], 0 if there is no object */
+    RtBox *boxes;        /* [node_count] their cells */
+    uint32_t *ids;       /* [id_count] */
+    uint32_t node_count, id_count;
+    uint32_t max_objects, max_depth, split, traversal;
+    bool mailbox;
+} RtOctree;
+
+extern const RtAccelOps rt_octree_ops;
+
+/* build.c. `limit`: bytes of nodes and lists above which the octree is refused. */
+RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
+                                RtError *error);
+void rt_octree_destroy(RtAccel *accel);
+
+/* Whether cutting the cell further can separate its objects ids[0..count) at all: some object does not fill
+ * it, and float32 has a plane inside it. */
+bool rt_octree_divisible(const RtBox *boxes, const RtBox *cell, const uint32_t *ids, uint32_t count);
+
+/* survey.c */
+void rt_octree_describe(const RtAccel *accel, RtDescription *out);
+RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
+void rt_octree_each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
+                        void *context);
+
+/* Of eight children, as bits, those on the lower and those on the upper side along an axis. */
+static inline uint32_t rt_octree_lower(int axis) {
+    return axis == 0 ? 0x55 : axis == 1 ? 0x33 : 0x0f;
+}
+
+static inline uint32_t rt_octree_upper(int axis) {
+    return 0xff ^ rt_octree_lower(axis);
+}
+
+/* The place of a node other than the root among the children of its parent: blocks of eight follow the root.
+ */
+static inline uint32_t rt_octree_place(uint32_t index) {
+    return (index - 1) & 7;
+}
+
+/* The children, as bits, that an object with this box belongs to; it meets the cell. */
+static inline uint32_t rt_octree_sides(const RtBox *cell, RtVec3 split, const RtBox *object) {
+    uint32_t children = 0xff;
+    for (int a = 0; a < 3; a++) {
+        bool lower = object->lo.at[a] <= split.at[a];
+        bool upper = object->hi.at[a] >= split.at[a] && split.at[a] < cell->hi.at[a];
+        children &= (lower ? rt_octree_lower(a) : 0) | (upper ? rt_octree_upper(a) : 0);
+    }
+    return children;
+}
+
+/* The cell of the child at `place` among eight. */
+static inline RtBox rt_octree_child_box(RtBox cell, RtVec3 split, uint32_t place) {
+    for (int a = 0; a < 3; a++) {
+        if (place >> a & 1) {
+            cell.lo.at[a] = split.at[a];
+        } else {
+            cell.hi.at[a] = split.at[a];
+        }
+    }
+    return cell;
+}
+
+#endif

@@ -1,0 +1,172 @@
+/* Describing, validating and drawing an octree. */
+#include "accel/octree/octree.h"
+
+#include "base/memory.h"
+
+/* Parents come before their children, so this ends. */
+static uint32_t depth_of(const RtOctree *tree, uint32_t index) {
+    uint32_t depth = 0;
+    for (; index > 0; index = tree->nodes[index].parent) depth++;
+    return depth;
+}
+
+/* The predicted cost is the number of object tests that a random line through the root is expected to need,
+ * without a mailbox and if nothing stopped it: it meets a leaf with the ratio of their areas. */
+void rt_octree_describe(const RtAccel *accel, RtDescription *out) {
+    const RtOctree *tree = (const RtOctree *)accel;
+    *out = (RtDescription){.bytes = tree->node_count * (sizeof(RtOctreeNode) + sizeof(RtBox)) +
+                                    tree->id_count * sizeof(uint32_t),
+                           .references = tree->id_count,
+                           .predicted_cost = (double)NAN};
+    if (tree->node_count == 0) return;
+    double tests = 0, area = rt_box_half_area(tree->boxes[0]);
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        const RtOctreeNode *node = &tree->nodes[i];
+        bool leaf = node->count != RT_OCTREE_INNER;
+        out->interior += !leaf;
+        out->leaves += leaf;
+        out->empty_leaves += node->count == 0;
+        if (leaf) tests += rt_box_half_area(tree->boxes[i]) * node->count;
+    }
+    out->depth = depth_of(tree, tree->node_count - 1);
+    if (area > 0) out->predicted_cost = tests / area;
+}
+
+/* ---- validate ---- */
+
+typedef struct Check {
+    const RtOctree *tree;
+    const RtGeometry *geometry;
+    RtError *error;
+    uint64_t *listed; /* [object_count] leaves that list each object */
+} Check;
+
+static bool same_box(RtBox a, RtBox b) {
+    return rt_box_contains(a, b) && rt_box_contains(b, a);
+}
+
+/* A node other than the root: its parent, its cell, its depth. */
+static RtStatus check_place(const Check *check, uint32_t index) {
+    const RtOctree *tree = check->tree;
+    uint32_t parent = tree->nodes[index].parent;
+    const RtOctreeNode *above = &tree->nodes[parent];
+    if (parent >= index || above->count != RT_OCTREE_INNER ||
+        above->first != index - rt_octree_place(index)) {
+        return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent", index);
+    }
+    RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_place(index));
+    if (!same_box(cell, tree->boxes[index])) {
+        return rt_fail(check->error, RT_MISMATCH, "octree: the cell of node %u is not cut from its parent's",
+                       index);
+    }
+    if (depth_of(tree, index) > tree->max_depth) {
+        return rt_fail(check->error, RT_MISMATCH, "octree: node %u is deeper than %u", index,
+                       tree->max_depth);
+    }
+    return RT_OK;
+}
+
+static RtStatus check_inner(const Check *check, uint32_t index) {
+    const RtOctree *tree = check->tree;
+    const RtOctreeNode *node = &tree->nodes[index];
+    const RtBox *cell = &tree->boxes[index];
+    if (node->first <= index || rt_octree_place(node->first) != 0 || node->first > tree->node_count - 8) {
+        return rt_fail(check->error, RT_MISMATCH, "octree: the children of node %u are not where nodes are",
+                       index);
+    }
+    for (int a = 0; a < 3; a++) {
+        float split = node->split.at[a];
+        if ((split > cell->lo.at[a] && split < cell->hi.at[a]) || split == cell->hi.at[a]) continue;
+        return rt_fail(check->error, RT_MISMATCH, "octree: the split of node %u lies outside its cell",
+                       index);
+    }
+    for (uint32_t place = 0; place < 8; place++) {
+        if (tree->nodes[node->first + place].parent == index) continue;
+        return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent",
+                       node->first + place);
+    }
+    return RT_OK;
+}
+
+static RtStatus check_list(const Check *check, uint32_t index) {
+    const RtOctree *tree = check->tree;
+    const RtOctreeNode *leaf = &tree->nodes[index];
+    const RtGeometry *g = check->geometry;
+    if (leaf->first > tree->id_count || leaf->count > tree->id_count - leaf->first) {
+        return rt_fail(check->error, RT_MISMATCH, "octree: the list of leaf %u is not where lists are",
+                       index);
+    }
+    const uint32_t *ids = tree->ids + leaf->first;
+    for (uint32_t i = 0; i < leaf->count; i++) {
+        if (ids[i] >= g->object_count || (i > 0 && ids[i - 1] >= ids[i])) {
+            return rt_fail(check->error, RT_MISMATCH, "octree: the list of leaf %u is not ascending ids",
+                           index);
+        }
+        RtBox common = {rt_vec_max(tree->boxes[index].lo, g->boxes[ids[i]].lo),
+                        rt_vec_min(tree->boxes[index].hi, g->boxes[ids[i]].hi)};
+        if (rt_box_is_empty(common)) {
+            return rt_fail(check->error, RT_MISMATCH,
+                           "octree: leaf %u lists object %u, which it does not touch", index, ids[i]);
+        }
+        check->listed[ids[i]]++;
+    }
+    if (leaf->count > tree->max_objects && depth_of(tree, index) < tree->max_depth &&
+        rt_octree_divisible(g->boxes, &tree->boxes[index], ids, leaf->count)) {
+        return rt_fail(check->error, RT_MISMATCH, "octree: leaf %u holds %u objects and could be divided",
+                       index, leaf->count);
+    }
+    return RT_OK;
+}
+
+/* Leaves that must list an object with this box. */
+static uint64_t leaves_touched(const RtOctree *tree, uint32_t index, const RtBox *object) {
+    const RtOctreeNode *node = &tree->nodes[index];
+    if (node->count != RT_OCTREE_INNER) return 1;
+    uint32_t children = rt_octree_sides(&tree->boxes[index], node->split, object);
+    uint64_t touched = 0;
+    for (uint32_t place = 0; place < 8; place++) {
+        if (children >> place & 1) touched += leaves_touched(tree, node->first + place, object);
+    }
+    return touched;
+}
+
+static RtStatus check_all(const Check *check) {
+    const RtOctree *tree = check->tree;
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        if (i > 0) RT_TRY(check_place(check, i));
+        bool leaf = tree->nodes[i].count != RT_OCTREE_INNER;
+        RT_TRY(leaf ? check_list(check, i) : check_inner(check, i));
+    }
+    for (uint32_t id = 0; id < check->geometry->object_count; id++) {
+        uint64_t touched = leaves_touched(tree, 0, &check->geometry->boxes[id]);
+        if (check->listed[id] == touched) continue;
+        return rt_fail(check->error, RT_MISMATCH,
+                       "octree: object %u belongs to %llu leaves, but %llu list it", id,
+                       (unsigned long long)touched, (unsigned long long)check->listed[id]);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_octree_validate(const RtAccel *accel, RtError *error) {
+    const RtOctree *tree = (const RtOctree *)accel;
+    const RtGeometry *g = &accel->scene->geometry;
+    if (tree->node_count == 0) return RT_OK;
+    if (!rt_box_contains(tree->boxes[0], g->box)) {
+        return rt_fail(error, RT_MISMATCH, "octree: its root does not contain the scene");
+    }
+    Check check = {tree, g, error, rt_alloc(g->object_count, sizeof(uint64_t))};
+    if (!check.listed) {
+        return rt_fail_memory(error, "validating an octree", g->object_count * sizeof(uint64_t));
+    }
+    RtStatus status = check_all(&check);
+    rt_free(check.listed);
+    return status;
+}
+
+void rt_octree_each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
+                        void *context) {
+    const RtOctree *tree = (const RtOctree *)accel;
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        if (tree->nodes[i].count > 0) draw(context, &tree->boxes[i], depth_of(tree, i));
+    }
+}

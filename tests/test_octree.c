@@ -1,0 +1,265 @@
+/* accel/octree/ from the inside: its invariants, broken on purpose, what goes into which cell, its limits. */
+#include "testing.h"
+
+#include "accel/octree/octree.h"
+#include "base/memory.h"
+#include "experiments/equivalence.h"
+#include "experiments/families.h"
+#include "scene/load.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
+static void make_lattice(RtScene *scene, int nx, int ny, int nz) {
+    uint32_t material;
+    RtMaterial grey = rt_default_material();
+    rt_scene_init(scene);
+    assert_ok(rt_scene_add_material(scene, &grey, &material, error));
+    for (int x = 0; x < nx; x++) {
+        for (int y = 0; y < ny; y++) {
+            for (int z = 0; z < nz; z++) {
+                RtVec3 center = {(float)x, (float)y, (float)z};
+                assert_ok(rt_scene_add_sphere(scene, material, center, 0.5f, error));
+            }
+        }
+    }
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+/* Spheres of radius 1/4 along the x axis. */
+static void make_row(RtScene *scene, const float *x, int count) {
+    uint32_t material;
+    RtMaterial grey = rt_default_material();
+    rt_scene_init(scene);
+    assert_ok(rt_scene_add_material(scene, &grey, &material, error));
+    for (int i = 0; i < count; i++) {
+        assert_ok(rt_scene_add_sphere(scene, material, rt_vec3(x[i], 0, 0), 0.25f, error));
+    }
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+static RtOctree *make_octree(const RtScene *scene, const char *spec) {
+    RtAccel *accel = NULL;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    return (RtOctree *)accel;
+}
+
+static RtDescription description_of(const RtScene *scene, const char *spec) {
+    RtDescription description;
+    RtOctree *tree = make_octree(scene, spec);
+    assert_ok(rt_octree_validate(&tree->base, error));
+    rt_octree_describe(&tree->base, &description);
+    rt_octree_destroy(&tree->base);
+    return description;
+}
+
+/* The planes of the root's split go halfway through the box, where all eight spheres touch one another's. */
+static void objects_go_into_every_leaf_they_touch(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 2, 2, 2);
+    RtDescription d = description_of(&scene, "octree:max_depth=1");
+    assert_int_equal(d.interior, 1);
+    assert_int_equal(d.leaves, 8);
+    assert_int_equal(d.references, 64);
+    assert_true(fabs(d.predicted_cost - 64.0 / 4.0) < 1e-6);
+    d = description_of(&scene, "octree:max_depth=0");
+    assert_int_equal(d.interior, 0);
+    assert_int_equal(d.references, 8);
+    rt_scene_clear(&scene);
+}
+
+/* Of three spheres at 0, 1 and 9 the median is 1, which is nearer to them than the centre, 4.5. */
+static void a_split_by_cost_is_nearer_to_the_objects(void **state) {
+    (void)state;
+    RtScene apart;
+    const float x[3] = {0, 1, 9};
+    make_row(&apart, x, 3);
+    RtOctree *centre = make_octree(&apart, "octree:split=centre");
+    RtOctree *cost = make_octree(&apart, "octree:split=cost");
+    assert_true(centre->nodes[0].split.x == 4.5f);
+    assert_true(cost->nodes[0].split.x < 4.5f && cost->nodes[0].split.x >= 1);
+    assert_ok(rt_octree_validate(&cost->base, error));
+    rt_octree_destroy(&centre->base);
+    rt_octree_destroy(&cost->base);
+    rt_scene_clear(&apart);
+}
+
+/* Havran 1999, RTN 12(2), rows Octree84-C; tetra with its box enlarged by 1 %. */
+static void structures_of_balls_and_tetra_are_those_of_havran(void **state) {
+    (void)state;
+    const struct {
+        const char *scene, *spec;
+        uint64_t interior, leaves, empty, references;
+    } rows[] = {
+        {"balls", "octree:max_depth=4,max_objects=1", 57, 400, 300, 0},
+        {"tetra", "octree:max_depth=4,max_objects=1,margin=0.01", 305, 2136, 1072, 13312},
+        {"tetra", "octree:max_depth=5,max_objects=1,margin=0.01", 1369, 9584, 4764, 32768},
+        {"tetra", "octree:max_depth=6,max_objects=1,margin=0.01", 6189, 43324, 21100, 110592},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        RtScene scene;
+        assert_ok(rt_scene_open(rows[i].scene, &scene, error));
+        RtDescription d = description_of(&scene, rows[i].spec);
+        assert_int_equal(d.interior, rows[i].interior);
+        assert_int_equal(d.leaves, rows[i].leaves);
+        assert_int_equal(d.empty_leaves, rows[i].empty);
+        if (rows[i].references) assert_int_equal(d.references, rows[i].references);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* Thirty objects that fill the same box cannot be separated: no depth is spent on it. */
+static void coincident_objects_stay_in_one_leaf(void **state) {
+    (void)state;
+    RtScene same;
+    const float x[30] = {0};
+    make_row(&same, x, 30);
+    assert_int_equal(description_of(&same, "octree:max_depth=20").leaves, 1);
+    assert_int_equal(description_of(&same, "octree:max_depth=3,margin=0.1").depth, 3);
+    rt_scene_clear(&same);
+}
+
+static void assert_broken(const RtOctree *tree, const char *phrase) {
+    RtError error = {RT_OK, ""};
+    assert_int_equal(rt_octree_validate(&tree->base, &error), RT_MISMATCH);
+    if (!strstr(error.message, phrase)) fail_msg("validate said: %s", error.message);
+}
+
+/* The first leaf, from the root on, with `least` objects or more. */
+static uint32_t find_leaf(const RtOctree *tree, uint32_t least) {
+    uint32_t i = 0;
+    while (tree->nodes[i].count == RT_OCTREE_INNER || tree->nodes[i].count < least) i++;
+    return i;
+}
+
+static void validate_names_each_invariant_that_is_broken(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 4, 4, 4);
+    RtOctree *tree = make_octree(&scene, "octree:max_depth=3,margin=0.1");
+    assert_ok(rt_octree_validate(&tree->base, error));
+    RtOctreeNode *root = &tree->nodes[0], saved = *root, saved_child = tree->nodes[1];
+    RtBox box = tree->boxes[0];
+
+    tree->boxes[0].hi.z = 1;
+    assert_broken(tree, "root does not contain");
+    tree->boxes[0] = box;
+
+    root->first = tree->node_count - 7;
+    assert_broken(tree, "not where nodes are");
+    *root = saved;
+    root->split.y = 100;
+    assert_broken(tree, "outside its cell");
+    *root = saved;
+
+    tree->nodes[1].parent = 9;
+    assert_broken(tree, "no child of its parent");
+    tree->nodes[1] = saved_child;
+
+    box = tree->boxes[5];
+    tree->boxes[5].lo.x -= 1;
+    assert_broken(tree, "not cut from its parent's");
+    tree->boxes[5] = box;
+
+    tree->max_depth = 2;
+    assert_broken(tree, "deeper than 2");
+    tree->max_depth = 20;
+    assert_broken(tree, "could be divided");
+    tree->max_depth = 3;
+
+    RtOctreeNode *leaf = &tree->nodes[find_leaf(tree, 2)];
+    saved = *leaf;
+    leaf->first = tree->id_count - leaf->count + 1;
+    assert_broken(tree, "not where lists are");
+    *leaf = saved;
+    uint32_t *last = &tree->ids[leaf->first + leaf->count - 1], id = *last;
+    *last = 63;
+    assert_broken(tree, "which it does not touch");
+    *last = 64;
+    assert_broken(tree, "not ascending ids");
+    *last = id;
+    leaf->count--;
+    assert_broken(tree, "leaves, but");
+
+    rt_octree_destroy(&tree->base);
+    rt_scene_clear(&scene);
+}
+
+static void an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 2, 2, 2);
+    RtAccel *accel = NULL;
+    RtValue values[RT_OCTREE_PARAM_COUNT];
+    RtError refusal = {RT_OK, ""};
+    const uint64_t limit = 1 << 16;
+    assert_ok(rt_params_parse(rt_octree_params, RT_OCTREE_PARAM_COUNT, "max_depth=20,margin=0.01", "octree",
+                              values, error));
+    int64_t live = rt_alloc_live();
+    assert_int_equal(rt_octree_build_within(limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+    const char *remedy = strstr(refusal.message, ": max_depth=");
+    assert_non_null(remedy);
+    assert_int_equal(rt_alloc_live(), live);
+
+    /* It does, and one more does not. */
+    assert_int_equal(sscanf(remedy, ": max_depth=%ld", &values[RT_OCTREE_MAX_DEPTH].i), 1);
+    assert_ok(rt_octree_build_within(limit, &scene, values, &accel, error));
+    rt_octree_destroy(accel);
+    values[RT_OCTREE_MAX_DEPTH].i++;
+    assert_int_equal(rt_octree_build_within(limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+    rt_scene_clear(&scene);
+}
+
+/* Every traversal together with what the spread of the conformance test leaves at its default. */
+static void every_traversal_answers_like_brute_in_every_structure(void **state) {
+    (void)state;
+    static const char *const traversals[] = {"points", "neighbours", "parametric"};
+    static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_objects=3",
+                                           "max_depth=0", "max_depth=6,mailbox=off"};
+    enum { RAYS = 128, MAX_RAYS = 64 * RAYS };
+    static RtRay rays[MAX_RAYS];
+    for (size_t s = 0; s < rt_scene_family_count(); s++) {
+        RtScene scene;
+        RtAccel *brute, *accel;
+        RtQuery query;
+        RtReference reference;
+        size_t count = rt_ray_family_count() * RAYS;
+        assert_true(count <= MAX_RAYS);
+        assert_ok(rt_scene_family_build(s, 7, &scene, error));
+        assert_ok(rt_accel_open("brute", &scene, &brute, error));
+        assert_ok(rt_query_init(&query, brute, error));
+        for (size_t f = 0; f < rt_ray_family_count(); f++) {
+            rt_ray_family_fill(f, &query, 7, 0, RAYS, rays + f * RAYS);
+        }
+        rt_query_clear(&query);
+        assert_ok(rt_reference_init(&reference, brute, rays, count, 0, error));
+        for (size_t i = 0; i < 12; i++) {
+            RtEquivalence result = {0};
+            char spec[RT_MAX_SPEC_CHARS];
+            snprintf(spec, sizeof spec, "octree:traversal=%s,%s", traversals[i % 3], settings[i / 3]);
+            assert_ok(rt_accel_open(spec, &scene, &accel, error));
+            assert_ok(rt_octree_validate(accel, error));
+            assert_ok(rt_equivalence_check(&reference, accel, 0, &result, error));
+            if (result.any_wrong) fail_msg("%s is wrong on %s", spec, scene.name);
+            rt_accel_destroy(accel);
+        }
+        rt_reference_clear(&reference);
+        rt_accel_destroy(brute);
+        rt_scene_clear(&scene);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(objects_go_into_every_leaf_they_touch),
+        cmocka_unit_test(a_split_by_cost_is_nearer_to_the_objects),
+        cmocka_unit_test(structures_of_balls_and_tetra_are_those_of_havran),
+        cmocka_unit_test(coincident_objects_stay_in_one_leaf),
+        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
+        cmocka_unit_test(an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit),
+        cmocka_unit_test(every_traversal_answers_like_brute_in_every_structure),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
