@@ -47,10 +47,7 @@ const RtAccelOps rt_brute_ops = {
     .paper = "Whitted 1980, An Improved Illumination Model for Shaded Display, CACM 23(6)",
     .build = build,
     .destroy = destroy,
-    .nearest = nearest_timed,
-    .occluded = occluded_timed,
-    .nearest_counted = nearest_counted,
-    .occluded_counted = occluded_counted,
+    RT_KERNEL_OPS,
     .describe = describe,
     .validate = validate,
 };

@@ -7,8 +7,8 @@
  *
  * which improves *best, and which may return as soon as rt_test_object or rt_test_all says that the search is
  * over. `any` and the nullness of `tally` are constants where it is inlined. RT_DEFINE_KERNELS(Type, search)
- * then defines nearest_timed, nearest_counted, occluded_timed and occluded_counted for the table of
- * operations. */
+ * then defines nearest_timed, nearest_counted, occluded_timed and occluded_counted, which RT_KERNEL_OPS puts
+ * into the table of operations. */
 #ifndef RT_ACCEL_KERNEL_H
 #define RT_ACCEL_KERNEL_H
 
@@ -44,6 +44,11 @@ RT_KERNEL bool rt_test_all(const RtGeometry *geometry, const RtPreparedRay *ray,
 RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
     return rt_minf(best->t, ray->tmax);
 }
+
+/* The kernels that RT_DEFINE_KERNELS or RT_DEFINE_SHADOW_KERNELS has defined, as members of RtAccelOps. */
+#define RT_KERNEL_OPS                                                                                        \
+    .nearest = nearest_timed, .occluded = occluded_timed, .nearest_counted = nearest_counted,                \
+    .occluded_counted = occluded_counted
 
 /* The search for one ray, and the bookkeeping common to all. */
 #define RT_DEFINE_KERNELS(Type, search)                                                                      \

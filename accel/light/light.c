@@ -79,10 +79,7 @@ const RtAccelOps rt_light_ops = {
     .kinds = 1u << RT_RAY_SHADOW,
     .build = rt_light_build,
     .destroy = rt_light_destroy,
-    .nearest = nearest_timed,
-    .occluded = occluded_timed,
-    .nearest_counted = nearest_counted,
-    .occluded_counted = occluded_counted,
+    RT_KERNEL_OPS,
     .describe = rt_light_describe,
     .validate = rt_light_validate,
 };
