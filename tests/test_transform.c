@@ -1,7 +1,7 @@
 /* scene/transform: steps in order, exact quarter turns, normals, uniform scale. */
 #include "testing.h"
 
-#include "scene/transform.h"
+#include "base/transform.h"
 
 #include <string.h>
 

@@ -9,7 +9,7 @@
 #define RT_SCENE_MESH_H
 
 #include "scene/scene.h"
-#include "scene/transform.h"
+#include "base/transform.h"
 
 #include <stdio.h>
 

@@ -2,8 +2,8 @@
  *
  * A point p (a column) goes to m[.][0..2] p + m[.][3]. Transforms keep the orientation of space (determinant
  * above 0): mirrors would turn surfaces inside out, and no function here makes one of others. */
-#ifndef RT_SCENE_TRANSFORM_H
-#define RT_SCENE_TRANSFORM_H
+#ifndef RT_BASE_TRANSFORM_H
+#define RT_BASE_TRANSFORM_H
 
 #include "base/status.h"
 #include "base/vec.h"

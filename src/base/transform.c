@@ -1,4 +1,4 @@
-#include "scene/transform.h"
+#include "base/transform.h"
 
 RtTransform rt_transform_identity(void) {
     return (RtTransform){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
