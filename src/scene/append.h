@@ -2,8 +2,8 @@
 #ifndef RT_SCENE_APPEND_H
 #define RT_SCENE_APPEND_H
 
-#include "scene/scene.h"
 #include "base/transform.h"
+#include "scene/scene.h"
 
 /* Appends the objects of `from`, in their order and with their materials (one that `to` has already, name and
  * all, is shared), moved by `transform` or as they are if that is NULL. Lights and camera of `from` are left

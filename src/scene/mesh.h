@@ -8,8 +8,8 @@
 #ifndef RT_SCENE_MESH_H
 #define RT_SCENE_MESH_H
 
-#include "scene/scene.h"
 #include "base/transform.h"
+#include "scene/scene.h"
 
 #include <stdio.h>
 
