@@ -156,6 +156,99 @@ static void boxes_touch_their_objects(void **state) {
     rt_geometry_clear(&g);
 }
 
+/* ---- the smallest balls ---- */
+
+enum { MOST_POINTS = 1000 };
+
+/* The points of an object that its ball is about; circles are sampled. */
+static uint32_t extreme_points(const RtGeometry *g, uint32_t id, RtVec3d *points) {
+    uint32_t index = rt_ref_index(g->objects[id]), count = 0;
+    if (rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE) {
+        for (; count < 3; count++) points[count] = rt_widen(g->triangles[index].v[count]);
+    }
+    if (rt_ref_shape(g->objects[id]) == RT_SHAPE_POLYGON) {
+        const RtPolygon *polygon = &g->polygons[index];
+        const RtVec3 *vertices = g->polygon_vertices + polygon->first;
+        for (; count < polygon->count; count++) points[count] = rt_widen(vertices[count]);
+    }
+    if (rt_ref_shape(g->objects[id]) == RT_SHAPE_CONE) {
+        const RtCone *cone = &g->cones[index];
+        RtVec3d axes[3];
+        rt_object_frame(g, id, axes);
+        for (; count < MOST_POINTS; count++) {
+            bool base = count % 2 == 0;
+            double angle = count * 6.283185307179586 / MOST_POINTS;
+            double radius = (double)(base ? cone->base_radius : cone->apex_radius);
+            RtVec3d p =
+                rt_add_scaledd(rt_widen(base ? cone->base : cone->apex), axes[1], radius * cos(angle));
+            points[count] = rt_add_scaledd(p, axes[2], radius * sin(angle));
+        }
+    }
+    return count;
+}
+
+static double reach_from(RtVec3d center, const RtVec3d *points, uint32_t count) {
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++) most = fmax(most, rt_lengthd(rt_subd(points[i], center)));
+    return most;
+}
+
+/* The reach is a convex function of the centre: where no centre nearby is better, none is. `slack` is a part
+ * of the radius. */
+static void check_smallest(const RtGeometry *g, uint32_t id, double slack, RtRandom *random) {
+    RtVec3d points[MOST_POINTS];
+    uint32_t count = extreme_points(g, id, points);
+    RtBall ball = rt_object_ball(g, id);
+    for (int i = 0; count > 0 && i < 200; i++) {
+        double step = ball.radius / (double)(1 << i % 20);
+        RtVec3d other = rt_add_scaledd(ball.center, rt_random_direction(random), step);
+        if (reach_from(other, points, count) >= ball.radius * (1 - slack)) continue;
+        fail_msg("the ball of object %u, a %s, is not the smallest", id,
+                 rt_shape_name(rt_ref_shape(g->objects[id])));
+    }
+}
+
+/* In a plane of its own: a random number of vertices on a curve between a circle and a square, with dents. */
+static void add_planar_polygon(RtGeometry *g, RtRandom *random) {
+    RtVec3 vertices[100];
+    uint32_t count = 3 + rt_random_bits(random) % 98;
+    int axis = (int)(rt_random_bits(random) % 3);
+    for (uint32_t i = 0; i < count; i++) {
+        double angle = i * 6.283185307179586 / count, across = between(random, 0.5, 1);
+        vertices[i] = rt_vec3(1, 1, 1);
+        vertices[i].at[(axis + 1) % 3] = (float)(across * cos(angle));
+        vertices[i].at[(axis + 2) % 3] = (float)(3 * across * sin(angle));
+    }
+    assert_ok(rt_geometry_add_polygon(g, vertices, count, error));
+}
+
+static void balls_are_the_smallest_there_are(void **state) {
+    (void)state;
+    RtRandom random = rt_random(7, 0);
+    RtGeometry g = make_objects(&random, 0), planar = {0};
+    for (int i = 0; i < 100; i++) add_planar_polygon(&planar, &random);
+    assert_ok(rt_geometry_finish(&planar, error));
+    for (uint32_t id = 0; id < planar.object_count; id++) check_smallest(&planar, id, 1e-6, &random);
+    for (uint32_t id = 0; id < g.object_count; id++) {
+        bool warped = rt_ref_shape(g.objects[id]) == RT_SHAPE_POLYGON;
+        bool sampled = rt_ref_shape(g.objects[id]) == RT_SHAPE_CONE;
+        check_smallest(&g, id, warped ? 1e-2 : sampled ? 1e-5 : 1e-6, &random);
+    }
+    rt_geometry_clear(&planar);
+    rt_geometry_clear(&g);
+}
+
+static void the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle(void **state) {
+    (void)state;
+    RtVec3 circle[MOST_POINTS];
+    for (int i = 0; i < MOST_POINTS; i++) {
+        circle[i] = rt_vec3((float)cos(i * 6.283185307179586 / MOST_POINTS),
+                            (float)sin(i * 6.283185307179586 / MOST_POINTS), 0);
+    }
+    RtBall ball = rt_ball_of_points(circle, MOST_POINTS);
+    assert_true(fabs(ball.radius - 1) < 1e-6 && rt_lengthd(ball.center) < 1e-6);
+}
+
 static void the_box_of_a_polygon_in_a_coordinate_plane_is_flat_and_exact(void **state) {
     (void)state;
     RtGeometry g = {0};
@@ -189,6 +282,8 @@ int main(void) {
         cmocka_unit_test(extents_hold_a_thousand_points_of_every_surface),
         cmocka_unit_test(extents_hold_them_far_from_the_zero_of_coordinates),
         cmocka_unit_test(boxes_touch_their_objects),
+        cmocka_unit_test(balls_are_the_smallest_there_are),
+        cmocka_unit_test(the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle),
         cmocka_unit_test(the_box_of_a_polygon_in_a_coordinate_plane_is_flat_and_exact),
         cmocka_unit_test(frames_are_orthonormal),
     };

@@ -1,6 +1,8 @@
-/* Smallest enclosing balls. For few points every ball that is spanned by two or by three of them is tried,
- * and the smallest that holds all is the answer: a minimal ball of coplanar points is always of that kind
- * (and three points are always coplanar; for a planar polygon so are all). */
+/* Smallest enclosing balls, by few points that span one: as long as a point lies outside the smallest ball
+ * about those, the farthest joins them, and those that the next ball does not need leave. The ball grows at
+ * every step, so no choice comes back (an LP-type problem: Sharir & Welzl 1992). For coplanar points a ball
+ * is spanned by two or by three of them, so that at most four are looked at together; three points are always
+ * coplanar, and so are those of a planar polygon. */
 #include "shape/ball.h"
 
 static double distance_squared(RtVec3d a, RtVec3d b) {
@@ -29,24 +31,34 @@ static bool circumcenter(RtVec3d a, RtVec3d b, RtVec3d c, RtVec3d *center) {
     return true;
 }
 
-static void keep_smaller(RtBall *best, RtVec3d center, const RtVec3 *points, size_t count) {
-    RtBall ball = ball_about(center, points, count);
-    if (ball.radius < best->radius) *best = ball;
+/* Points that span a ball, and room for one more. */
+typedef struct Span {
+    RtVec3 points[4];
+    size_t count;
+} Span;
+
+/* The ball about two or three of the points, if it holds all of `span` and is smaller than *best; then those
+ * points are put to *least. `c` may be `b`. */
+static void try_span(const Span *span, size_t a, size_t b, size_t c, RtBall *best, Span *least) {
+    const RtVec3 *p = span->points;
+    RtVec3d center = rt_scaled(rt_addd(rt_widen(p[a]), rt_widen(p[b])), 0.5);
+    if (c != b && !circumcenter(rt_widen(p[a]), rt_widen(p[b]), rt_widen(p[c]), &center)) return;
+    RtBall ball = ball_about(center, p, span->count);
+    if (!(ball.radius < best->radius)) return;
+    *best = ball;
+    *least = (Span){{p[a], p[b], p[c]}, c == b ? 2 : 3};
 }
 
-static RtBall exact_ball(const RtVec3 *points, size_t count) {
-    RtBall best = ball_about(rt_widen(points[0]), points, count);
-    for (size_t i = 0; i < count; i++) {
-        for (size_t j = i + 1; j < count; j++) {
-            RtVec3d a = rt_widen(points[i]), b = rt_widen(points[j]);
-            keep_smaller(&best, rt_scaled(rt_addd(a, b), 0.5), points, count);
-            for (size_t k = j + 1; k < count; k++) {
-                RtVec3d center;
-                if (circumcenter(a, b, rt_widen(points[k]), &center))
-                    keep_smaller(&best, center, points, count);
-            }
+/* The smallest ball about the points of `span`, which is left with those that span it. */
+static RtBall spanned_ball(Span *span) {
+    RtBall best = ball_about(rt_widen(span->points[0]), span->points, span->count);
+    Span least = {{span->points[0]}, 1};
+    for (size_t i = 0; i < span->count; i++) {
+        for (size_t j = i + 1; j < span->count; j++) {
+            for (size_t k = j; k < span->count; k++) try_span(span, i, j, k, &best, &least);
         }
     }
+    *span = least;
     return best;
 }
 
@@ -59,23 +71,15 @@ static size_t farthest(RtVec3d from, const RtVec3 *points, size_t count) {
     return best;
 }
 
-/* Ritter 1990, "An Efficient Bounding Sphere": start from two distant points, grow towards each point
- * outside. */
-static RtBall ritter_ball(const RtVec3 *points, size_t count) {
-    RtVec3d a = rt_widen(points[farthest(rt_widen(points[0]), points, count)]);
-    RtVec3d b = rt_widen(points[farthest(a, points, count)]);
-    RtBall ball = {rt_scaled(rt_addd(a, b), 0.5), sqrt(distance_squared(a, b)) / 2};
-    for (size_t i = 0; i < count; i++) {
-        RtVec3d p = rt_widen(points[i]);
-        double d = sqrt(distance_squared(ball.center, p));
-        if (d <= ball.radius) continue;
-        double radius = (ball.radius + d) / 2;
-        ball.center = rt_add_scaledd(ball.center, rt_subd(p, ball.center), (d - radius) / d);
-        ball.radius = radius;
-    }
-    return ball_about(ball.center, points, count);
-}
-
 RtBall rt_ball_of_points(const RtVec3 *points, size_t count) {
-    return count <= RT_BALL_EXACT_POINTS ? exact_ball(points, count) : ritter_ball(points, count);
+    Span span = {{points[0]}, 1};
+    RtBall best = ball_about(rt_widen(points[0]), points, count), ball = {best.center, 0};
+    for (;;) {
+        double before = ball.radius;
+        span.points[span.count++] = points[farthest(ball.center, points, count)];
+        ball = spanned_ball(&span);
+        if (!(ball.radius > before)) return best;
+        RtBall whole = ball_about(ball.center, points, count);
+        if (whole.radius < best.radius) best = whole;
+    }
 }
