@@ -1,16 +1,13 @@
 #include "experiments/measure.h"
 
-#include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/random.h"
+#include "experiments/rounds.h"
 
-#include <assert.h>
-#include <math.h>
 #include <string.h>
 
 /* Rays handed to a thread at a time. */
-enum { CHUNK = 4096, MOST_REPEATS = 1000000 };
+enum { CHUNK = 4096 };
 
 /* One pass of an accelerator over a ray set. Either `hits` or `blocked` takes the answers. */
 typedef struct Pass {
@@ -124,71 +121,28 @@ RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit
 
 /* ---- timing ---- */
 
-/* A contender of the rounds, ready to run. */
-typedef struct Runner {
-    Pass pass;
-    uint32_t repeats;
-} Runner;
-
-/* Runs `repeats` times; seconds of both clocks for all of them. */
-static RtStatus time_runner(Runner *runner, double *processor, double *wall, RtError *error) {
-    double processor_start = rt_thread_seconds(), wall_start = rt_wall_seconds();
-    for (uint32_t i = 0; i < runner->repeats; i++) RT_TRY(run_pass(&runner->pass, error));
-    *wall = rt_wall_seconds() - wall_start;
-    *processor = runner->pass.threads == 1 ? rt_thread_seconds() - processor_start : *wall;
-    return RT_OK;
+static RtStatus run_runner(void *context, RtError *error) {
+    return run_pass(context, error);
 }
 
-/* Brings code and data into the caches, and finds how often each must run to last `least` seconds. */
-static RtStatus warm_up(Runner *runners, size_t count, double least, RtError *error) {
-    for (size_t i = 0; i < count; i++) {
-        double processor, wall;
-        runners[i].repeats = 1;
-        RT_TRY(time_runner(&runners[i], &processor, &wall, error));
-        double seconds = processor > 1e-9 ? processor : 1e-9;
-        runners[i].repeats = (uint32_t)fmin(fmax(ceil(least / seconds), 1), MOST_REPEATS);
-    }
-    return RT_OK;
-}
-
-static void shuffle(size_t *order, size_t count, RtRandom *random) {
-    for (size_t i = count; i > 1; i--) {
-        size_t k = ((uint64_t)rt_random_bits(random) * i) >> 32, other = order[k];
-        order[k] = order[i - 1];
-        order[i - 1] = other;
-    }
-}
-
-static RtStatus run_rounds(Runner *runners, RtTimed *timed, size_t *order, size_t count,
-                           const RtTiming *timing, RtError *error) {
-    RtRandom random = rt_random(timing->seed, 0);
-    for (size_t i = 0; i < count; i++) order[i] = i;
-    RT_TRY(warm_up(runners, count, timing->least, error));
-    for (uint32_t round = 0; round < timing->rounds; round++) {
-        shuffle(order, count, &random);
-        for (size_t i = 0; i < count; i++) {
-            size_t k = order[i];
-            double processor, wall, rays = runners[k].repeats * (double)timed[k].set->count;
-            RT_TRY(time_runner(&runners[k], &processor, &wall, error));
-            timed[k].seconds[round] = processor / rays;
-            timed[k].wall[round] = wall / rays;
-        }
-    }
-    return RT_OK;
-}
-
-RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, RtError *error) {
-    assert(timing->rounds >= 1 && timing->rounds <= RT_MAX_ROUNDS);
-    Runner *runners = rt_alloc(count, sizeof(Runner));
-    size_t *order = rt_alloc(count, sizeof(size_t));
+RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, RtError *error) {
+    Pass *passes = rt_alloc(count, sizeof(Pass));
+    RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
     RtStatus status = RT_OK;
-    if (!runners || !order) status = rt_fail_memory(error, "the rounds", count * sizeof(Runner));
+    if (!passes || !runners) status = rt_fail_memory(error, "the rounds", count * sizeof(Pass));
     for (size_t i = 0; status == RT_OK && i < count; i++) {
-        status = pass_init(&runners[i].pass, timed[i].accel, timed[i].set, timing->threads, false, error);
+        status = pass_init(&passes[i], timed[i].accel, timed[i].set, timing->threads, false, error);
+        runners[i] = (RtRunner){.run = run_runner,
+                                .context = &passes[i],
+                                .work = (double)timed[i].set->count,
+                                .parallel = passes[i].threads > 1,
+                                .seconds = timed[i].seconds,
+                                .wall = timed[i].wall};
     }
-    if (status == RT_OK) status = run_rounds(runners, timed, order, count, timing, error);
-    for (size_t i = 0; runners && i < count; i++) pass_clear(&runners[i].pass);
+    const RtRounds rounds = {timing->rounds, timing->least, timing->seed};
+    if (status == RT_OK) status = rt_rounds_run(runners, count, &rounds, error);
+    for (size_t i = 0; passes && i < count; i++) pass_clear(&passes[i]);
+    rt_free(passes);
     rt_free(runners);
-    rt_free(order);
     return status;
 }

@@ -41,7 +41,7 @@ typedef struct RtTiming {
     uint64_t seed;   /* of the order */
 } RtTiming;
 
-/* Times timed[0..count) in rounds; in each round all of them once, in an order drawn anew. */
-RtStatus rt_measure_time(RtTimed *timed, size_t count, const RtTiming *timing, RtError *error);
+/* Times timed[0..count) in interleaved rounds (rounds.h). */
+RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, RtError *error);
 
 #endif

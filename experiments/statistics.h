@@ -7,9 +7,7 @@
 #ifndef RT_EXPERIMENTS_STATISTICS_H
 #define RT_EXPERIMENTS_STATISTICS_H
 
-#include <stdint.h>
-
-#define RT_MAX_ROUNDS 1000 /* measurements of one thing */
+#include "experiments/rounds.h"
 
 typedef struct RtEstimate {
     double median, low, high; /* low..high: the 95 % interval of the median */
