@@ -190,4 +190,16 @@ RT_KERNEL bool rt_extent_hit(const RtExtentSet *set, RtExtentKind kind, uint32_t
     return rt_line_meets_slabs(line, set->slabs + (size_t)index * set->slabs_each, set->slabs_each);
 }
 
+/* Calls one of four copies of the inlined function f(kind, ...), in each of which `kind` is a constant. */
+#define RT_BY_EXTENT_KIND(kind, f, ...)                                                                      \
+    do {                                                                                                     \
+        switch (kind) {                                                                                      \
+        case RT_EXTENT_BOX: f(RT_EXTENT_BOX, __VA_ARGS__); break;                                            \
+        case RT_EXTENT_SPHERE: f(RT_EXTENT_SPHERE, __VA_ARGS__); break;                                      \
+        case RT_EXTENT_OBB: f(RT_EXTENT_OBB, __VA_ARGS__); break;                                            \
+        case RT_EXTENT_SLABS: f(RT_EXTENT_SLABS, __VA_ARGS__); break;                                        \
+        case RT_EXTENT_KIND_COUNT: break;                                                                    \
+        }                                                                                                    \
+    } while (0)
+
 #endif

@@ -195,7 +195,7 @@ static inline void push_by_entry(StackEntry *stack, uint32_t bottom, uint32_t to
 }
 
 /* `kind` is a constant where this is inlined. */
-RT_KERNEL void traverse(const RtClusters *self, RtExtentKind kind, const RtPreparedRay *ray, bool any,
+RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPreparedRay *ray, bool any,
                         RtHit *best, RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
     StackEntry stack[STACK_SIZE];
@@ -240,13 +240,7 @@ RT_KERNEL void traverse(const RtClusters *self, RtExtentKind kind, const RtPrepa
 RT_KERNEL void search(const RtClusters *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     (void)scratch;
-    switch (self->set.kind) {
-    case RT_EXTENT_BOX: traverse(self, RT_EXTENT_BOX, ray, any, best, tally); break;
-    case RT_EXTENT_SPHERE: traverse(self, RT_EXTENT_SPHERE, ray, any, best, tally); break;
-    case RT_EXTENT_OBB: traverse(self, RT_EXTENT_OBB, ray, any, best, tally); break;
-    case RT_EXTENT_SLABS: traverse(self, RT_EXTENT_SLABS, ray, any, best, tally); break;
-    case RT_EXTENT_KIND_COUNT: break;
-    }
+    RT_BY_EXTENT_KIND(self->set.kind, traverse, self, ray, any, best, tally);
 }
 
 RT_DEFINE_KERNELS(RtClusters, search)

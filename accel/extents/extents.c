@@ -60,7 +60,7 @@ static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out
 
 /* ---- tracing ---- */
 
-RT_KERNEL void scan(const RtExtents *self, RtExtentKind kind, const RtPreparedRay *ray, bool any, RtHit *best,
+RT_KERNEL void scan(RtExtentKind kind, const RtExtents *self, const RtPreparedRay *ray, bool any, RtHit *best,
                     RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
     const RtExtentSet *set = &self->set;
@@ -78,13 +78,7 @@ RT_KERNEL void scan(const RtExtents *self, RtExtentKind kind, const RtPreparedRa
 RT_KERNEL void search(const RtExtents *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     (void)scratch;
-    switch (self->set.kind) {
-    case RT_EXTENT_BOX: scan(self, RT_EXTENT_BOX, ray, any, best, tally); break;
-    case RT_EXTENT_SPHERE: scan(self, RT_EXTENT_SPHERE, ray, any, best, tally); break;
-    case RT_EXTENT_OBB: scan(self, RT_EXTENT_OBB, ray, any, best, tally); break;
-    case RT_EXTENT_SLABS: scan(self, RT_EXTENT_SLABS, ray, any, best, tally); break;
-    case RT_EXTENT_KIND_COUNT: break;
-    }
+    RT_BY_EXTENT_KIND(self->set.kind, scan, self, ray, any, best, tally);
 }
 
 RT_DEFINE_KERNELS(RtExtents, search)
