@@ -109,27 +109,32 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
 
 /* ---- random rays ---- */
 
-static RtVec3 point_of_sphere(RtRandom *random, RtVec3d center, double radius) {
-    RtVec3 p = rt_narrow(rt_add_scaledd(center, rt_random_direction(random), radius));
+static RtVec3 point_of_sphere(RtRandom *random, const RtBall *sphere) {
+    RtVec3 p = rt_narrow(rt_add_scaledd(sphere->center, rt_random_direction(random), sphere->radius));
     for (int a = 0; a < 3; a++) {
         p.at[a] = rt_maxf(-RT_MAX_COORDINATE, rt_minf(p.at[a], RT_MAX_COORDINATE));
     }
     return p;
 }
 
-RtRay rt_random_chord(const RtBox *box, RtRandom *random) {
-    RtVec3d center = {0, 0, 0};
-    double radius = 1;
-    if (!rt_box_is_empty(*box)) {
-        center = rt_widen(rt_box_center(*box));
-        radius = rt_lengthd(rt_subd(rt_widen(box->hi), center));
-    }
-    RtVec3 from = point_of_sphere(random, center, radius);
-    RtVec3 to = point_of_sphere(random, center, radius);
+RtBall rt_bounding_sphere(const RtBox *box) {
+    if (rt_box_is_empty(*box)) return (RtBall){{0, 0, 0}, 1};
+    RtVec3d center = rt_widen(rt_box_center(*box));
+    return (RtBall){center, rt_lengthd(rt_subd(rt_widen(box->hi), center))};
+}
+
+RtRay rt_sphere_chord(const RtBall *sphere, RtRandom *random) {
+    RtVec3 from = point_of_sphere(random, sphere);
+    RtVec3 to = point_of_sphere(random, sphere);
     RtVec3 dir = rt_sub(to, from);
     /* So small a sphere, or so far from the origin, that its points coincide in float32: any direction. */
     if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir = rt_narrow(rt_random_direction(random));
     return (RtRay){.org = from, .dir = dir, .tmin = 0, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+}
+
+RtRay rt_random_chord(const RtBox *box, RtRandom *random) {
+    RtBall sphere = rt_bounding_sphere(box);
+    return rt_sphere_chord(&sphere, random);
 }
 
 static RtStatus make_chunk(void *context, size_t item, int thread, RtError *error) {

@@ -38,8 +38,15 @@ RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, RtRaySet *to, RtE
 
 void rt_rayset_clear(RtRaySet *set);
 
-/* One random ray: from one uniform point of the bounding sphere of `box` towards another, dir not normalised,
- * so that t = 1 is the other point; tmin 0, tmax infinite. The empty box counts as the unit sphere. */
+/* The sphere through the corners of `box`; the unit sphere for the empty box. */
+RtBall rt_bounding_sphere(const RtBox *box);
+
+/* One random ray: from one uniform point of `sphere` towards another, dir not normalised, so that t = 1 is
+ * the other point; tmin 0, tmax infinite. Such chords are uniformly distributed lines: by direction, and
+ * across it by area. */
+RtRay rt_sphere_chord(const RtBall *sphere, RtRandom *random);
+
+/* The same of the bounding sphere of `box`. */
 RtRay rt_random_chord(const RtBox *box, RtRandom *random);
 
 #endif
