@@ -5,13 +5,13 @@
 
 /* Objects whose extents are in the list, evenly spread over the population; lines that go through it; rays
  * for object tests. */
-enum { SAMPLE = 256, LINES = 64, TRIES = 4 };
+enum { SAMPLE = 256, LINES = 64, CHORDS = 512, TRIES = 8192 };
 
 typedef struct PreparedRays {
     uint32_t count;
-    RtRay rays[SAMPLE * TRIES];
-    RtPreparedRay prepared[SAMPLE * TRIES];
-    uint32_t ids[SAMPLE * TRIES]; /* the object that each is for */
+    RtRay rays[CHORDS];
+    RtPreparedRay prepared[CHORDS];
+    uint32_t ids[CHORDS]; /* the object that each is for */
 } PreparedRays;
 
 /* What all runners share. */
@@ -85,14 +85,15 @@ static void fill_bench(Bench *bench, const RtPopulation *population, uint64_t se
         uint32_t id = population->ids[(uint64_t)i * population->count / bench->count];
         bench->ids[i] = id;
         bench->boxes[i] = geometry->boxes[id];
+    }
+    for (uint32_t k = 0; k < TRIES && bench->chords.count < CHORDS; k++) {
+        uint32_t id = bench->ids[k % bench->count];
         RtBall sphere = rt_sphere_about_extents(geometry, id);
-        for (int k = 0; k < TRIES; k++) {
-            RtRay ray = rt_sphere_chord(&sphere, &random);
-            RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
-            float enter;
-            bool met = rt_box_hit(&geometry->boxes[id], &prepared, prepared.tmax, &enter);
-            if (met) add_ray(&bench->chords, geometry, &ray, id);
-        }
+        RtRay ray = rt_sphere_chord(&sphere, &random);
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
+        float enter;
+        bool met = rt_box_hit(&geometry->boxes[id], &prepared, prepared.tmax, &enter);
+        if (met) add_ray(&bench->chords, geometry, &ray, id);
     }
     for (uint32_t k = 0; k < LINES; k++) {
         RtRay ray = rt_random_chord(&geometry->box, &random);

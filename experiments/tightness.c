@@ -69,6 +69,15 @@ typedef struct Survey {
     RtTightness *out;  /* [count] */
 } Survey;
 
+/* A random line that meets the sphere, as a ray from so far behind it that nothing is turned away for lying
+ * behind the ray: extents stick out of the box of their object. */
+static RtRay random_line(const RtBall *sphere, RtRandom *random) {
+    RtRay ray = rt_sphere_chord(sphere, random);
+    RtVec3d back = rt_scaled(rt_normalized(rt_widen(ray.dir)), -4 * sphere->radius);
+    ray.org = rt_narrow(rt_addd(rt_widen(ray.org), back));
+    return ray;
+}
+
 static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
     const RtGeometry *geometry = survey->population->geometry;
     uint32_t id = survey->population->ids[index];
@@ -77,8 +86,8 @@ static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
         survey->sets[c] = fit(geometry, id, survey->choices[c], &survey->rooms[c]);
     }
     for (uint64_t k = 0; k < lines; k++) {
-        RtRay chord = rt_sphere_chord(&survey->spheres[index], &random);
-        RtPreparedRay ray = rt_ray_prepare(&chord, &geometry->box);
+        RtRay through = random_line(&survey->spheres[index], &random);
+        RtPreparedRay ray = rt_ray_prepare(&through, &geometry->box);
         RtHit hit = RT_MISS;
         bool met = rt_test_object(geometry, id, &ray, true, &hit, NULL);
         for (size_t c = 0; c < survey->count; c++) {

@@ -70,6 +70,10 @@ for command in render info convert; do
     refuses "raytally $command: .*raytally $command" $command
 done
 refuses 'one SCENE at a time' info balls balls
+does info balls:size=1 --extents --rays 1000
+does info balls:size=1 --extents=all --rays 1000 --json
+refuses "extents: 'some'.*--extents=all" info balls --extents=some
+refuses "rays: '0'.*1\.\." info balls --extents --rays 0
 refuses "rays: '1000000000000'.*1\.\." verify --rays 1000000000000
 refuses "rays: '0'.*1\.\." verify --rays 0
 refuses "no accelerator 'nope'" verify --accel nope

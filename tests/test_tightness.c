@@ -85,6 +85,18 @@ static void extents_about_a_square_on_its_corner_are_as_calculated(void **state)
     assert_tight(&found[SLABS_13]); /* its edges run along two of the plane sets */
 }
 
+/* The sphere sticks out of the box on four sides. */
+static void a_sphere_about_a_square_along_the_axes_has_pi_times_its_area(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    RtTightness found[CHOICES];
+    const RtVec3 v[4] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
+    count(&g, RT_SHAPE_POLYGON, found);
+    assert_ratio(&found[SPHERE], PI);
+    assert_tight(&found[BOX]);
+}
+
 static void extents_about_a_right_triangle_are_as_calculated(void **state) {
     (void)state;
     RtGeometry g = {0};
@@ -159,6 +171,7 @@ int main(void) {
         cmocka_unit_test(a_box_about_a_sphere_has_six_over_pi_of_its_area),
         cmocka_unit_test(more_slabs_are_never_looser),
         cmocka_unit_test(extents_about_a_square_on_its_corner_are_as_calculated),
+        cmocka_unit_test(a_sphere_about_a_square_along_the_axes_has_pi_times_its_area),
         cmocka_unit_test(extents_about_a_right_triangle_are_as_calculated),
         cmocka_unit_test(many_objects_count_by_their_areas),
         cmocka_unit_test(only_the_objects_of_the_shape_count),

@@ -1,14 +1,17 @@
 /* raytally info: what is in a scene. */
 #include "cli/cli.h"
+#include "cli/extents_table.h"
 #include "scene/load.h"
 
 #include <argp.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 typedef struct Options {
     const char *scene;
-    bool json;
+    bool json, extents, every_slabs;
+    uint64_t rays, seed;
 } Options;
 
 /* What is counted for both kinds of output. */
@@ -18,12 +21,28 @@ typedef struct Counts {
     char fingerprint[17];
 } Counts;
 
-static const struct argp_option options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};
+static const struct argp_option options[] = {
+    {"extents", 'e', "all", OPTION_ARG_OPTIONAL,
+     "Also measure how tight the extents of the objects are and what their tests take: boxes, spheres, "
+     "oriented boxes, 3, 7 and 13 slabs, or with =all every number of slabs",
+     0},
+    {"rays", 'n', "N", 0, "Random lines a shape that --extents counts with (100000)", 0},
+    {"seed", 's', "S", 0, "Seed of these lines (1)", 0},
+    {"json", 'j', 0, 0, "One JSON document on stdout", 0},
+    {0}};
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     Options *o = state->input;
     switch (key) {
     case 'j': o->json = true; return 0;
+    case 'e':
+        o->extents = true;
+        o->every_slabs = argument != NULL;
+        if (argument && strcmp(argument, "all") != 0)
+            argp_error(state, "--extents: '%s' will not do: it is --extents or --extents=all", argument);
+        return 0;
+    case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 1000000000); return 0;
+    case 's': o->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
     case ARGP_KEY_ARG:
         if (o->scene) argp_error(state, "one SCENE at a time");
         o->scene = argument;
@@ -134,6 +153,23 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
                      (json_int_t)rt_scene_bytes(scene));
 }
 
+/* ---- the command ---- */
+
+static RtStatus show(const RtScene *scene, const Options *o, RtError *error) {
+    Counts counts = count(scene);
+    RtExtentsTable table;
+    if (o->extents) RT_TRY(rt_extents_table(&table, scene, o->every_slabs, o->rays, o->seed, error));
+    if (o->json) {
+        json_t *info = info_json(scene, &counts);
+        if (o->extents) json_object_set_new(info, "extents", rt_extents_table_json(&table));
+        rt_cli_print_json(info);
+    } else {
+        print_info(scene, &counts);
+        if (o->extents) rt_extents_table_print(&table);
+    }
+    return RT_OK;
+}
+
 int rt_command_info(int argc, char **argv) {
     const struct argp argp = {
         .options = options,
@@ -142,17 +178,12 @@ int rt_command_info(int argc, char **argv) {
         .doc = "Say what is in a scene: objects by shape, bounds, materials, lights, the camera, "
                "memory, and a fingerprint that changes with anything that can change an answer. "
                "SCENE is a file or a built-in such as balls:size=5."};
-    Options o = {0};
+    Options o = {.rays = 100000, .seed = 1};
     RtScene scene;
     RtError error;
     argp_parse(&argp, argc, argv, 0, 0, &o);
     if (rt_scene_open(o.scene, &scene, &error) != RT_OK) return rt_cli_fail(&error);
-    Counts counts = count(&scene);
-    if (o.json) {
-        rt_cli_print_json(info_json(&scene, &counts));
-    } else {
-        print_info(&scene, &counts);
-    }
+    RtStatus status = show(&scene, &o, &error);
     rt_scene_clear(&scene);
-    return RT_EXIT_OK;
+    return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }
