@@ -3,6 +3,8 @@
 #include "base/memory.h"
 #include "experiments/rayset.h"
 
+#include <assert.h>
+
 /* Objects whose extents are in the list, evenly spread over the population; lines that go through it; rays
  * for object tests. */
 enum { SAMPLE = 256, LINES = 64, CHORDS = 512, TRIES = 8192 };
@@ -79,6 +81,7 @@ static void add_ray(PreparedRays *to, const RtGeometry *geometry, const RtRay *r
 static void fill_bench(Bench *bench, const RtPopulation *population, uint64_t seed) {
     const RtGeometry *geometry = population->geometry;
     RtRandom random = rt_random(seed, 1);
+    assert(population->count > 0);
     bench->geometry = geometry;
     bench->count = population->count < SAMPLE ? population->count : SAMPLE;
     for (uint32_t i = 0; i < bench->count; i++) {
