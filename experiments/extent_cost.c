@@ -137,13 +137,12 @@ static void weigh(const Times *times, size_t choice, double tests, double met, d
 static void conclude(const Times *times, const RtPopulation *population, const RtTightness *tightness,
                      RtExtentCost *out) {
     uint32_t rounds = times->rounds->rounds;
-    uint64_t seed = times->rounds->seed;
     double *first = row(times, times->count + 1), *own = row(times, times->count + 2);
     weigh(times, 0, population->count, tightness[0].met, first);
     for (size_t c = 0; c < times->count; c++) {
         weigh(times, c, population->count, tightness[c].met, own);
-        out[c] = (RtExtentCost){rt_estimate(row(times, c), rounds, seed), rt_estimate(own, rounds, seed),
-                                rt_estimate_ratio(own, first, rounds, seed)};
+        out[c] = (RtExtentCost){rt_estimate(row(times, c), rounds), rt_estimate(own, rounds),
+                                rt_estimate_ratio(own, first, rounds)};
     }
 }
 
@@ -182,7 +181,7 @@ RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoic
     if (status == RT_OK) status = run(&times, bench, extents, error);
     if (status == RT_OK) {
         conclude(&times, population, tightness, out);
-        *object = rt_estimate(row(&times, count), rounds->rounds, rounds->seed);
+        *object = rt_estimate(row(&times, count), rounds->rounds);
         if (bench->chords.count == 0)
             *object = (RtEstimate){(double)NAN, (double)NAN, (double)NAN, (double)NAN};
     }

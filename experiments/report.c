@@ -218,12 +218,14 @@ static void put_cell(FILE *out, const RtResults *results, uint32_t t, uint32_t c
 
 static void put_cells(FILE *out, const RtResults *results, uint32_t t) {
     const RtExperiment *experiment = results->experiment;
+    char interval[RT_MAX_INTERVAL_TITLE];
     fputs(
         "<details><summary>By ray kind, with intervals</summary><div class=\"wide\"><table><thead><tr>"
         "<th>accelerator</th><th>kind</th><th>rays</th><th>object tests / ray</th><th>extent tests / ray</th>"
-        "<th>steps / ray</th><th>ns / ray</th><th>least</th><th>ratio</th><th>95 %</th><th>differ</th></tr>"
-        "</thead><tbody>\n",
+        "<th>steps / ray</th><th>ns / ray</th><th>least</th><th>ratio</th><th>",
         out);
+    rt_interval_title(experiment, interval);
+    fprintf(out, "%s</th><th>differ</th></tr></thead><tbody>\n", interval);
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
         for (uint32_t c = 0; c <= experiment->contender_count; c++) {
             put_cell(out, results, t, c, experiment->kinds[k]);
@@ -262,19 +264,23 @@ static void put_members(FILE *out, const json_t *object) {
 }
 
 static void put_method(FILE *out, const RtResults *results, const json_t *manifest) {
-    char sentence[256];
+    char sentence[RT_MAX_SENTENCE], interval[RT_MAX_INTERVAL_TITLE];
     fputs(
         "<h2>How it was measured</h2>\n<p>Every accelerator got the same recorded rays. Counting and timing "
         "are "
         "separate passes. Times are medians over rounds in which all accelerators took turns in random "
         "order; "
-        "ratios are throughput over the baseline's, paired within a round, with the 95 % bootstrap interval "
-        "of "
-        "their median. Totals weigh each ray kind by the size of its set. Shadow rays stop at any hit. "
+        "ratios are throughput over the baseline's, paired within a round. Intervals are those of order "
+        "statistics: they hold the median with a probability of at least ",
+        out);
+    rt_interval_title(results->experiment, interval);
+    fprintf(out, "%s", interval);
+    fputs(
+        ". Totals weigh each ray kind by the size of its set. Shadow rays stop at any hit. "
         "<em>ideal</em> knows the answers beforehand: it is the floor. <em>differ</em> counts answers unlike "
         "the reference; an exact accelerator has none, or the run would have failed.</p>\n<p>",
         out);
-    rt_null_sentence(results, sentence, sizeof sentence);
+    rt_null_sentence(results, sentence);
     put_text(out, sentence);
     fputs("</p>\n<details><summary>Counters</summary><dl>", out);
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {

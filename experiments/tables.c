@@ -89,7 +89,7 @@ static void put_times(FILE *out, const RtResults *results, uint32_t t, uint32_t 
     const RtBuildResult *build = rt_build_at(results, t, c);
     if (!cell->timed) return;
     put_identity(out, results, t, c, kind);
-    fprintf(out, ",%d,%" PRIu32, cell->threads, cell->rounds);
+    fprintf(out, ",%d,%" PRIu32 ",%.6g", cell->threads, cell->rounds, rt_interval_coverage(cell->rounds));
     put_estimate(out, &cell->seconds, 1e9);
     fprintf(out, ",%.6g", 1e9 * cell->seconds.least);
     put_estimate(out, &cell->wall, 1e9);
@@ -104,7 +104,8 @@ static void put_times(FILE *out, const RtResults *results, uint32_t t, uint32_t 
 
 void rt_times_csv(const RtResults *results, FILE *out) {
     fputs(identity, out);
-    fputs(",threads,rounds,ns,ns_low,ns_high,ns_least,wall_ns,wall_ns_low,wall_ns_high,mrays_per_s,ratio,"
+    fputs(",threads,rounds,coverage,ns,ns_low,ns_high,ns_least,wall_ns,wall_ns_low,wall_ns_high,mrays_per_s,"
+          "ratio,"
           "ratio_low,"
           "ratio_high,build_seconds,bytes,object_tests,extent_tests,steps,differ\n",
           out);
@@ -186,14 +187,23 @@ static void print_cell(FILE *out, const RtResults *results, uint32_t t, uint32_t
     print_build(out, rt_build_at(results, t, c));
 }
 
+void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]) {
+    double coverage = rt_interval_coverage(experiment->rounds);
+    snprintf(out, RT_MAX_INTERVAL_TITLE, "%.3g %%",
+             experiment->rounds >= RT_FULL_ROUNDS ? 95 : 100 * coverage);
+}
+
 void rt_print_cells(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
+    char interval[RT_MAX_INTERVAL_TITLE], title[RT_MAX_INTERVAL_TITLE + 2];
+    rt_interval_title(experiment, interval);
+    snprintf(title, sizeof title, "[%s]", interval);
     for (uint32_t t = 0; t < experiment->trial_count; t++) {
         if (!results->trials[t].known) continue;
         print_scene(out, results, t);
         fprintf(out, "%-*s  %-12s %9s %9s %9s %9s %8s %7s %-16s %8s %8s\n", label_width(experiment),
                 "accelerator", "kind", "rays", "tests/ray", "ext./ray", "steps/ray", "Mrays/s", "ratio",
-                "[95 %]", "build ms", "MB");
+                title, "build ms", "MB");
         for (uint32_t k = 0; k < experiment->kind_count; k++) {
             RtRayKind kind = experiment->kinds[k];
             for (uint32_t c = 0; c <= experiment->contender_count; c++) {
@@ -227,7 +237,8 @@ void rt_print_totals(const RtResults *results, FILE *out) {
     }
 }
 
-void rt_null_sentence(const RtResults *results, char *out, size_t room) {
+void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
+    const size_t room = RT_MAX_SENTENCE;
     uint32_t runs, straddling;
     rt_null_verdict(results, &runs, &straddling);
     out[0] = '\0';
@@ -235,10 +246,20 @@ void rt_null_sentence(const RtResults *results, char *out, size_t room) {
     int n =
         snprintf(out, room, "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " intervals straddle 1",
                  results->experiment->contenders[results->experiment->baseline].label, straddling, runs);
-    uint32_t misses = runs - straddling;
-    const char *verdict = misses == 0 ? ", as they should."
-                          : misses <= 1 + runs / 10
-                              ? "; one in twenty may miss by chance."
-                              : ": this machine was not quiet; take small differences for noise.";
-    if (n > 0 && (size_t)n < room) snprintf(out + n, room - (size_t)n, "%s", verdict);
+    uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
+    double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
+    if (misses == 0) {
+        n += snprintf(out + n, room - (size_t)n, ", as they should.");
+    } else if (misses <= 1 + 2 * chance * runs) {
+        n += snprintf(out + n, room - (size_t)n, "; %.2g %% of them miss by chance.", 100 * chance);
+    } else {
+        n += snprintf(out + n, room - (size_t)n,
+                      ": this machine was not quiet; take small differences for noise.");
+    }
+    if (rounds >= RT_FULL_ROUNDS) return;
+    snprintf(out + n, room - (size_t)n,
+             " Rounds: %" PRIu32
+             ", too few for 95 %%; an interval is all that was measured and holds the median in "
+             "%.3g %%. Take %d or more.",
+             rounds, 100 * coverage, RT_FULL_ROUNDS);
 }

@@ -19,8 +19,14 @@ void rt_times_csv(const RtResults *results, FILE *out);
 void rt_print_cells(const RtResults *results, FILE *out);
 void rt_print_totals(const RtResults *results, FILE *out);
 
-/* "12 of 12 null runs straddle 1.", and what to think of it otherwise; "" where none was timed. */
-void rt_null_sentence(const RtResults *results, char *out, size_t room);
+/* "12 of 12 null runs straddle 1.", and what to think of it otherwise; and where rounds are too few, what
+ * their intervals are worth. "" where none was timed. */
+#define RT_MAX_SENTENCE 384
+void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
+
+/* What the intervals cover at least: "95 %", or less where rounds are too few. */
+#define RT_MAX_INTERVAL_TITLE 16
+void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]);
 
 /* A figure in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Room for 16. An amount
  * below 0.001 is "<0.001" where a figure is 1.2e-04. */

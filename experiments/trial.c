@@ -289,7 +289,6 @@ static RtStatus count_kind(Trial *trial, RtRayKind kind, RtError *error) {
 static RtStatus keep_times(Trial *trial, RtRayKind kind, const RtTimed *timed, const uint32_t *who,
                            size_t count, RtError *error) {
     uint32_t rounds = trial->experiment->rounds, baseline = 0;
-    uint64_t seed = trial->experiment->seed;
     while (who[baseline] != trial->experiment->baseline) baseline++;
     for (size_t i = 0; i < count; i++) {
         RtCell *cell = rt_cell_at(trial->results, trial->index, who[i], kind);
@@ -298,9 +297,9 @@ static RtStatus keep_times(Trial *trial, RtRayKind kind, const RtTimed *timed, c
         cell->rounds = rounds;
         cell->threads = rt_thread_count(trial->options->timing);
         cell->tally.rays = timed[i].set->count;
-        cell->seconds = rt_estimate(timed[i].seconds, rounds, seed);
-        cell->wall = rt_estimate(timed[i].wall, rounds, seed);
-        cell->ratio = rt_estimate_ratio(timed[baseline].seconds, timed[i].seconds, rounds, seed);
+        cell->seconds = rt_estimate(timed[i].seconds, rounds);
+        cell->wall = rt_estimate(timed[i].wall, rounds);
+        cell->ratio = rt_estimate_ratio(timed[baseline].seconds, timed[i].seconds, rounds);
         RT_TRY(tell(trial, RT_EVENT_TIME, who[i], kind, error));
     }
     return RT_OK;

@@ -47,8 +47,9 @@ static const struct argp_option options[] = {
      "Ray kinds: primary, shadow, reflection, transmission, diffuse, random (all)", 0},
     {"limit", OPT_LIMIT, "N", 0, "Rays of a kind at most; a larger set is thinned evenly (100000)", 0},
     {"baseline", OPT_BASELINE, "SPEC", 0, "The accelerator that ratios refer to (the first)", 0},
-    {"rounds", OPT_ROUNDS, "N", 0, "Times each is timed, in an order drawn anew (10)", 0},
-    {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays, orders and intervals (1)", 0},
+    {"rounds", OPT_ROUNDS, "N", 0,
+     "Times each is timed, in an order drawn anew (10); 6 at least for intervals of 95 %", 0},
+    {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays and of orders (1)", 0},
     {"threads", OPT_THREADS, "N", 0,
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and counting on all; on "
      "several, wall time is compared",
@@ -169,19 +170,21 @@ static json_t *row_json(const RtResults *results, uint32_t c, RtRayKind kind) {
     bool counted = isfinite(rt_cell_per_ray(results, 0, c, kind, cell->tally.object_tests));
     double unknown = cell->timed ? 1 : (double)NAN;
     return json_pack(
-        "{s:s, s:s, s:s, s:I, s:I, s:f, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+        "{s:s, s:s, s:s, s:I, s:I, s:f, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
         results->experiment->trials[0].spec, "accel", build->spec, "kind", rt_ray_kind_name(kind), "rays",
         (json_int_t)cell->tally.rays, "hits", (json_int_t)cell->tally.hits, "build_seconds", build->seconds,
         "bytes", (json_int_t)build->shape.bytes, "structure", rt_json_structure(&build->shape), "counts",
         counted ? rt_json_tally(&cell->tally) : json_null(), "mrays_per_s",
         rt_json_number(unknown * 1e-6 / cell->seconds.median), "ratio",
         rt_json_number(unknown * cell->ratio.median), "ratio_low", rt_json_number(unknown * cell->ratio.low),
-        "ratio_high", rt_json_number(unknown * cell->ratio.high));
+        "ratio_high", rt_json_number(unknown * cell->ratio.high), "ratio_coverage",
+        cell->timed ? json_real(rt_interval_coverage(cell->rounds)) : json_null());
 }
 
 static json_t *null_json(const RtCell *cell, RtRayKind kind) {
-    return json_pack("{s:s, s:f, s:f, s:f, s:b}", "kind", rt_ray_kind_name(kind), "ratio", cell->ratio.median,
-                     "ratio_low", cell->ratio.low, "ratio_high", cell->ratio.high, "straddles_1",
+    return json_pack("{s:s, s:f, s:f, s:f, s:f, s:b}", "kind", rt_ray_kind_name(kind), "ratio",
+                     cell->ratio.median, "ratio_low", cell->ratio.low, "ratio_high", cell->ratio.high,
+                     "ratio_coverage", rt_interval_coverage(cell->rounds), "straddles_1",
                      cell->ratio.low <= 1 && 1 <= cell->ratio.high);
 }
 
@@ -217,9 +220,9 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
     if (o->json) {
         print_json(results);
     } else {
-        char sentence[256];
+        char sentence[RT_MAX_SENTENCE];
         rt_print_cells(results, stdout);
-        rt_null_sentence(results, sentence, sizeof sentence);
+        rt_null_sentence(results, sentence);
         if (sentence[0]) printf("\n%s\n", sentence);
     }
     return RT_OK;

@@ -46,7 +46,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 }
 
 static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) {
-    char directory[RT_MAX_PATH], sentence[256];
+    char directory[RT_MAX_PATH], sentence[RT_MAX_SENTENCE];
     RtResults results;
     RT_TRY(rt_experiment_load(experiment, o->path, o->quick, error));
     snprintf(directory, sizeof directory, "results/%s", experiment->name);
@@ -60,7 +60,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     rt_progress_end(&progress);
     if (status == RT_OK) {
         rt_print_totals(&results, stdout);
-        rt_null_sentence(&results, sentence, sizeof sentence);
+        rt_null_sentence(&results, sentence);
         printf("\n%s\nReport: %s/report.html\n", sentence, how.directory);
     }
     rt_results_clear(&results);
