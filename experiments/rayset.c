@@ -158,8 +158,7 @@ static RtStatus make_random(Recorder *recorder, RtError *error) {
 /* ---- recording ---- */
 
 static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *frame, RtError *error) {
-    RtFrameOptions options = {.sampling = recorder->recording->sampling,
-                              .depth = recorder->recording->depth,
+    RtFrameOptions options = {.depth = recorder->recording->depth,
                               .threads = recorder->recording->threads,
                               .sink = record,
                               .sink_context = recorder};
@@ -176,7 +175,7 @@ static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *fra
 
 RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording,
                           RtError *error) {
-    const RtSampling *sampling = &recording->sampling;
+    const RtSampling *sampling = &accel->scene->sampling;
     size_t across = (sampling->columns + RT_TILE - 1) / RT_TILE;
     size_t down = (sampling->rows + RT_TILE - 1) / RT_TILE;
     Recorder recorder = {

@@ -1,9 +1,9 @@
 /* Ray sets: rays of one kind recorded from one scene, to be replayed to every accelerator alike.
  *
- * Primary, shadow, reflection and transmission rays are those of a frame, in the order in which the frame's
- * tiles produce them (tile after tile), whatever the number of threads. Diffuse rays start at the primary
- * hits, cosine-distributed about the normal; random rays are chords of the scene's bounding sphere between
- * two uniform points of it. */
+ * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order in which
+ * the frame's tiles produce them (tile after tile), whatever the number of threads. Diffuse rays start at the
+ * primary hits, cosine-distributed about the normal; random rays are chords of the scene's bounding sphere
+ * between two uniform points of it. */
 #ifndef RT_EXPERIMENTS_RAYSET_H
 #define RT_EXPERIMENTS_RAYSET_H
 
@@ -18,11 +18,10 @@ typedef struct RtRaySet {
 } RtRaySet;
 
 typedef struct RtRecording {
-    RtSampling sampling; /* of the frame */
-    uint32_t depth;      /* levels of the ray tree */
-    uint64_t seed;       /* of diffuse and random rays */
-    uint64_t random;     /* number of random rays */
-    int threads;         /* 0 = all processors; does not change the sets */
+    uint32_t depth;  /* levels of the ray tree */
+    uint64_t seed;   /* of diffuse and random rays */
+    uint64_t random; /* number of random rays */
+    int threads;     /* 0 = all processors; does not change the sets */
 } RtRecording;
 
 /* Fills sets[RT_RAY_KIND_COUNT], indexed by kind; a kind that the scene does not produce gets an empty set.

@@ -98,13 +98,12 @@ static RtStatus write_table(const Run *run, const char *name, WriteTable write, 
     return rt_output_commit(&output, error);
 }
 
-static RtStatus draw_scene(const RtScene *scene, const RtTrialResult *trial, const char *path,
-                           RtError *error) {
+static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, const char *path, RtError *error) {
     RtAccel *accel;
     RtFrame frame = {0};
     RtImage image = {0};
     RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH};
-    RT_TRY(rt_sampling_init(&options.sampling, trial->width, trial->height, 2, false, error));
+    RT_TRY(rt_scene_sample(scene, trial->width, trial->height, 2, false, error));
     RT_TRY(rt_accel_open(rt_accel_default(), scene, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
     if (status == RT_OK) status = rt_image_from_frame(&image, &frame, error);

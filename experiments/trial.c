@@ -115,10 +115,9 @@ static RtStatus keep_sets(Trial *trial, const RtRaySet *recorded, RtError *error
     return RT_OK;
 }
 
-static RtStatus record_rays(Trial *trial, RtSampling sampling, RtError *error) {
+static RtStatus record_rays(Trial *trial, RtError *error) {
     const RtTrial *setup = &trial->experiment->trials[trial->index];
-    RtRecording recording = {.sampling = sampling,
-                             .depth = setup->depth,
+    RtRecording recording = {.depth = setup->depth,
                              .seed = trial->experiment->seed,
                              .random = trial->experiment->limit,
                              .threads = trial->options->threads};
@@ -131,12 +130,12 @@ static RtStatus record_rays(Trial *trial, RtSampling sampling, RtError *error) {
 }
 
 /* Fills the trial's part of the results, or holds it against what an earlier run found. */
-static RtStatus describe_trial(Trial *trial, RtSampling sampling, RtError *error) {
+static RtStatus describe_trial(Trial *trial, RtError *error) {
     RtTrialResult *result = &trial->results->trials[trial->index];
     RtTrialResult now = {.known = true,
                          .objects = trial->scene.geometry.object_count,
-                         .width = sampling.width,
-                         .height = sampling.height,
+                         .width = trial->scene.sampling.width,
+                         .height = trial->scene.sampling.height,
                          .scene = rt_scene_fingerprint(&trial->scene)};
     bool same = now.scene == result->scene;
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
@@ -158,12 +157,9 @@ static RtStatus prepare(Trial *trial, RtError *error) {
     RT_TRY(open_scene(trial, error));
     if (trial->results->trials[trial->index].skipped) return RT_OK;
     const RtTrial *setup = &trial->experiment->trials[trial->index];
-    const RtCamera *camera = &trial->scene.camera;
-    RtSampling sampling;
-    RT_TRY(rt_sampling_init(&sampling, setup->width ? setup->width : camera->width,
-                            setup->height ? setup->height : camera->height, 1, setup->corners, error));
-    RT_TRY(record_rays(trial, sampling, error));
-    return describe_trial(trial, sampling, error);
+    RT_TRY(rt_scene_sample(&trial->scene, setup->width, setup->height, 1, setup->corners, error));
+    RT_TRY(record_rays(trial, error));
+    return describe_trial(trial, error);
 }
 
 /* Builds one contender up to MOST_BUILDS times, keeps the last, and gives the median of the seconds. */

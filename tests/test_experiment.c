@@ -286,8 +286,8 @@ static void a_count_is_the_sum_over_threads_and_finds_wrong_answers(void **state
     RtRecording recording = {.depth = 1, .seed = 1, .random = 10000, .threads = 1};
     RtCount count;
     assert_ok(rt_scene_open("balls:size=1", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 8, 8, 1, false, error));
     assert_ok(rt_accel_open("brute", &scene, &accel, error));
-    assert_ok(rt_sampling_init(&recording.sampling, 8, 8, 1, false, error));
     assert_ok(rt_rayset_record(sets, accel, &recording, error));
     const RtRaySet *set = &sets[RT_RAY_RANDOM];
     RtHit *expected = rt_alloc(set->count, sizeof(RtHit));

@@ -25,7 +25,8 @@ static void open_scene(RtScene *scene) {
     RtVec3 corners[4] = {{-3, -3, -2}, {3, -3, -2}, {3, 3, -2}, {-3, 3, -2}};
     rt_scene_init(scene);
     scene->background = rt_vec3(0, 0, 1);
-    scene->camera = (RtCamera){.from = {0, 0, 10}, .at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 45};
+    scene->camera =
+        (RtCamera){.from = {0, 0, 10}, .at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 45, .width = 1, .height = 1};
     assert_ok(rt_scene_add_material(scene, &material, &red, error));
     assert_ok(rt_scene_add_polygon(scene, red, corners, 4, error));
     assert_ok(rt_scene_add_sphere(scene, red, rt_vec3(0, 0, 0), 1, error));
@@ -38,7 +39,7 @@ static RtFrame trace(const char *spec, uint32_t width, uint32_t height, uint32_t
     RtFrame frame;
     RtFrameOptions options = {.depth = 1, .threads = 1, .counted = true};
     open_scene(&scene);
-    assert_ok(rt_sampling_init(&options.sampling, width, height, samples, corners, error));
+    assert_ok(rt_scene_sample(&scene, width, height, samples, corners, error));
     assert_ok(rt_accel_open(spec, &scene, &accel, error));
     assert_ok(rt_frame_trace(&frame, accel, &options, error));
     rt_accel_destroy(accel);

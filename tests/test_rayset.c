@@ -24,13 +24,11 @@ static void make_scene(RtScene *scene) {
     assert_ok(rt_scene_add_light(scene, rt_vec3(5, -5, 8), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_add_light(scene, rt_vec3(-5, -5, 8), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(scene, error));
+    assert_ok(rt_scene_sample(scene, 50, 37, 1, false, error)); /* not a multiple of the tile */
 }
 
 static RtRecording make_recording(int threads) {
-    RtRecording recording = {.depth = 4, .seed = 7, .random = 10000, .threads = threads};
-    /* Not a multiple of the tile. */
-    assert_ok(rt_sampling_init(&recording.sampling, 50, 37, 1, false, error));
-    return recording;
+    return (RtRecording){.depth = 4, .seed = 7, .random = 10000, .threads = threads};
 }
 
 typedef struct Stage {
@@ -173,9 +171,9 @@ static void thinning_keeps_every_nth_ray_and_a_limit_holds(void **state) {
 }
 
 static void every_allocation_of_a_recording_may_fail(void **state) {
-    const Stage *stage = *state;
+    Stage *stage = *state;
     RtRecording recording = make_recording(1);
-    assert_ok(rt_sampling_init(&recording.sampling, 20, 20, 1, false, error));
+    assert_ok(rt_scene_sample(&stage->scene, 20, 20, 1, false, error));
     int64_t live = rt_alloc_live();
     RtStatus status = RT_NO_MEMORY;
     for (uint64_t nth = 1; status != RT_OK; nth++) {
@@ -188,6 +186,7 @@ static void every_allocation_of_a_recording_may_fail(void **state) {
         for (int kind = 0; status == RT_OK && kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
         assert_int_equal(rt_alloc_live(), live);
     }
+    assert_ok(rt_scene_sample(&stage->scene, 50, 37, 1, false, error));
 }
 
 int main(void) {

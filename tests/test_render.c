@@ -16,7 +16,8 @@ static void start_scene(RtScene *scene, RtMaterial material) {
     rt_scene_init(scene);
     assert_ok(rt_scene_add_material(scene, &material, &index, error));
     scene->background = rt_vec3(0, 0, 0);
-    scene->camera = (RtCamera){.from = {0, 0, 10}, .at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 40};
+    scene->camera =
+        (RtCamera){.from = {0, 0, 10}, .at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 40, .width = 1, .height = 1};
 }
 
 static void add_square(RtScene *scene, float half, float z) {
@@ -24,10 +25,9 @@ static void add_square(RtScene *scene, float half, float z) {
     assert_ok(rt_scene_add_polygon(scene, 0, corners, 4, error));
 }
 
-static RtFrameOptions options_for(uint32_t width, uint32_t height, bool corners) {
-    RtFrameOptions options = {.depth = 5, .threads = 1};
-    assert_ok(rt_sampling_init(&options.sampling, width, height, 1, corners, error));
-    return options;
+static RtFrameOptions options_for(RtScene *scene, uint32_t width, uint32_t height, bool corners) {
+    assert_ok(rt_scene_sample(scene, width, height, 1, corners, error));
+    return (RtFrameOptions){.depth = 5, .threads = 1};
 }
 
 static RtFrame trace(const RtScene *scene, const RtFrameOptions *options) {
@@ -66,7 +66,7 @@ static void a_point_is_shaded_by_the_sum_of_all_five_terms(void **state) {
     add_square(&scene, 1, 0);
     assert_ok(rt_scene_add_light(&scene, rt_vec3(5, 0, 5), rt_vec3(2, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
-    RtFrameOptions options = options_for(1, 1, false);
+    RtFrameOptions options = options_for(&scene, 1, 1, false);
     RtFrame frame = trace(&scene, &options);
     double cosine = sqrt(0.5);
     assert_near(frame.color[0].x, 0.1 * 0.5 * 1 + 2 * (0.4 * cosine * 0.5 + 0.3 * 0.5), 1e-5);
@@ -86,7 +86,7 @@ static void an_object_between_point_and_light_takes_the_light_away(void **state)
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(2, 0, 2), 0.5f, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(4, 0, 4), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
-    RtFrameOptions options = options_for(1, 1, false);
+    RtFrameOptions options = options_for(&scene, 1, 1, false);
     RtFrame frame = trace(&scene, &options);
     assert_true(frame.color[0].x == 0);
     rt_frame_clear(&frame);
@@ -193,7 +193,7 @@ static void two_mirrors_return_a_ray_as_often_as_the_depth_allows(void **state) 
     assert_ok(rt_scene_finish(&scene, error));
     const uint32_t depths[] = {1, 2, 5, RT_MAX_DEPTH};
     for (size_t i = 0; i < sizeof depths / sizeof depths[0]; i++) {
-        RtFrameOptions options = options_for(1, 1, false);
+        RtFrameOptions options = options_for(&scene, 1, 1, false);
         options.depth = depths[i];
         options.counted = true;
         RtFrame frame = trace(&scene, &options);
@@ -254,7 +254,7 @@ static void a_frame_is_the_same_bytes_on_any_number_of_threads_counted_or_timed(
     (void)state;
     RtScene scene;
     busy_scene(&scene);
-    RtFrameOptions options = options_for(70, 41, false);
+    RtFrameOptions options = options_for(&scene, 70, 41, false);
     options.depth = 7; /* streams above 1024 rays are cut */
     options.counted = true;
     RtFrame one = trace(&scene, &options);
@@ -276,7 +276,7 @@ static void what_the_samples_cost_adds_up_to_the_tallies_by_kind(void **state) {
     (void)state;
     RtScene scene;
     busy_scene(&scene);
-    RtFrameOptions options = options_for(20, 20, false);
+    RtFrameOptions options = options_for(&scene, 20, 20, false);
     options.counted = true;
     RtFrame frame = trace(&scene, &options);
     RtTally by_sample = {0}, by_kind = {0};
@@ -295,7 +295,7 @@ static void corner_sampling_traces_one_more_ray_than_pixels_a_side(void **state)
     (void)state;
     RtScene scene;
     busy_scene(&scene);
-    RtFrameOptions options = options_for(32, 16, true);
+    RtFrameOptions options = options_for(&scene, 32, 16, true);
     options.counted = true;
     options.depth = 1;
     RtFrame frame = trace(&scene, &options);
@@ -329,7 +329,7 @@ static void the_sink_sees_every_ray_that_is_counted(void **state) {
     RtScene scene;
     busy_scene(&scene);
     Seen seen = {.lock = PTHREAD_MUTEX_INITIALIZER, .fail_at_tile = SIZE_MAX};
-    RtFrameOptions options = options_for(40, 40, false);
+    RtFrameOptions options = options_for(&scene, 40, 40, false);
     options.counted = true;
     options.threads = 2;
     options.sink = see;
@@ -351,7 +351,7 @@ static void a_sink_that_fails_stops_the_frame_and_leaves_nothing(void **state) {
     RtAccel *accel;
     assert_ok(rt_accel_open("brute", &scene, &accel, error));
     Seen seen = {.lock = PTHREAD_MUTEX_INITIALIZER, .fail_at_tile = 3};
-    RtFrameOptions options = options_for(64, 64, false);
+    RtFrameOptions options = options_for(&scene, 64, 64, false);
     options.sink = see;
     options.sink_context = &seen;
     int64_t live = rt_alloc_live();
@@ -371,7 +371,7 @@ static void a_frame_without_memory_is_a_status_and_leaks_nothing(void **state) {
     busy_scene(&scene);
     RtAccel *accel;
     assert_ok(rt_accel_open("brute", &scene, &accel, error));
-    RtFrameOptions options = options_for(4, 4, false);
+    RtFrameOptions options = options_for(&scene, 4, 4, false);
     options.counted = true;
     int64_t live = rt_alloc_live();
     RtFrame frame;
@@ -405,7 +405,7 @@ static void nothing_shadows_itself(void **state) {
             scene.camera.from = rt_vec3(0.1f * s, -20 * s, 5 * s);
             assert_ok(rt_scene_add_light(&scene, rt_vec3(0, -25 * s, 5 * s), rt_vec3(1, 1, 1), error));
             assert_ok(rt_scene_finish(&scene, error));
-            RtFrameOptions options = options_for(64, 64, false);
+            RtFrameOptions options = options_for(&scene, 64, 64, false);
             options.counted = true;
             RtFrame frame = trace(&scene, &options);
             assert_true(frame.tallies[RT_RAY_SHADOW].rays > 400);

@@ -154,10 +154,7 @@ static void show_progress(void *context, size_t tiles_done, size_t tiles) {
 static RtStatus trace_frames(Run *run, RtError *error) {
     const Options *o = run->options;
     RtFrameOptions *f = &run->frame_options;
-    const RtCamera *camera = &run->scene.camera;
     *f = (RtFrameOptions){.depth = o->depth, .threads = o->threads};
-    RT_TRY(rt_sampling_init(&f->sampling, o->width ? o->width : camera->width,
-                            o->height ? o->height : camera->height, o->samples, o->corners, error));
     if (isatty(STDERR_FILENO)) f->progress = show_progress;
     f->progress_context = "tracing";
     f->sink = count_by_kind;
@@ -177,6 +174,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     rt_spec_format(&spec, run->spec);
     if (o->structure) RT_TRY(rt_structure_available(spec.layers[spec.layer_count - 1].ops, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
+    RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, &run->accel, error));
     run->build_seconds = rt_wall_seconds() - start;
@@ -289,8 +287,7 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
 static RtStatus check_rays(const Run *run, RtError *error) {
     if (!run->options->check) return RT_OK;
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
-    RtRecording recording = {
-        .sampling = run->timed.sampling, .depth = run->options->depth, .threads = run->options->threads};
+    RtRecording recording = {.depth = run->options->depth, .threads = run->options->threads};
     RtAccel *brute;
     RT_TRY(rt_accel_open("brute", &run->scene, &brute, error));
     RtStatus status = rt_rayset_record(sets, run->accel, &recording, error);

@@ -119,12 +119,12 @@ static RtStatus choose_contenders(Options *o, RtError *error) {
 
 /* ---- which rays ---- */
 
-/* A frame of about `samples` samples in the shape of the camera's image. */
-static RtStatus small_frame(const RtCamera *camera, uint64_t samples, RtSampling *sampling, RtError *error) {
-    double aspect = (double)camera->width / (double)camera->height;
+/* Has the scene sampled by about `samples` samples in the shape of the camera's image. */
+static RtStatus sample_sparsely(RtScene *scene, uint64_t samples, RtError *error) {
+    double aspect = (double)scene->camera.width / (double)scene->camera.height;
     double width = fmin(fmax(sqrt((double)samples * aspect), 1), RT_MAX_IMAGE_SIDE);
     double height = fmin(fmax(width / aspect, 1), RT_MAX_IMAGE_SIDE);
-    return rt_sampling_init(sampling, (uint32_t)width, (uint32_t)height, 1, false, error);
+    return rt_scene_sample(scene, (uint32_t)width, (uint32_t)height, 1, false, error);
 }
 
 /* Appends at most `limit` rays of `set`, evenly spread. */
@@ -152,7 +152,6 @@ static RtStatus mix_rays(const Options *o, const RtRaySet *sets, RtRay *rays, Rt
 static RtStatus make_rays(const Options *o, const RtAccel *brute, RtRay *rays, RtError *error) {
     RtRecording recording = {.depth = FRAME_DEPTH, .seed = o->seed, .random = o->rays, .threads = o->threads};
     RtRaySet sets[RT_RAY_KIND_COUNT];
-    RT_TRY(small_frame(&brute->scene->camera, o->rays / 4, &recording.sampling, error));
     RT_TRY(rt_rayset_record(sets, brute, &recording, error));
     RtStatus status = mix_rays(o, sets, rays, error);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
@@ -266,7 +265,8 @@ static RtStatus verify_scene(Run *run, const char *name, RtError *error) {
     RtScene scene;
     RtAccel *brute = NULL;
     RT_TRY(rt_scene_open(name, &scene, error));
-    RtStatus status = rt_accel_open("brute", &scene, &brute, error);
+    RtStatus status = sample_sparsely(&scene, run->options->rays / 4, error);
+    if (status == RT_OK) status = rt_accel_open("brute", &scene, &brute, error);
     if (status == RT_OK) {
         RtRay *rays = rt_alloc(run->options->rays, sizeof(RtRay));
         status = rays ? verify_with(run, brute, rays, name, error)

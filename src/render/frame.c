@@ -267,21 +267,21 @@ static RtStatus init_worker(Worker *worker, Job *job, const RtAccel *accel, RtEr
     return rt_query_init(&worker->query, accel, error);
 }
 
-static RtStatus init_frame(RtFrame *frame, const RtFrameOptions *o, RtError *error) {
-    size_t samples = (size_t)o->sampling.columns * o->sampling.rows;
+static RtStatus init_frame(RtFrame *frame, const RtSampling *sampling, bool counted, RtError *error) {
+    size_t samples = (size_t)sampling->columns * sampling->rows;
     if (samples > RT_MAX_FRAME_SAMPLES) {
         return rt_fail(error, RT_BAD_INPUT,
                        "a frame of %u x %u samples: at most %u samples fit; take a smaller image or fewer "
                        "samples a pixel",
-                       o->sampling.columns, o->sampling.rows, RT_MAX_FRAME_SAMPLES);
+                       sampling->columns, sampling->rows, RT_MAX_FRAME_SAMPLES);
     }
-    frame->sampling = o->sampling;
+    frame->sampling = *sampling;
     frame->color = rt_alloc(samples, sizeof(RtVec3));
     frame->object = rt_alloc(samples, sizeof(uint32_t));
     frame->depth = rt_alloc(samples, sizeof(float));
-    if (o->counted) frame->cost = rt_alloc(samples, sizeof(RtTally));
-    if (frame->color && frame->object && frame->depth && (frame->cost || !o->counted)) return RT_OK;
-    size_t each = sizeof(RtVec3) + sizeof(uint32_t) + sizeof(float) + (o->counted ? sizeof(RtTally) : 0);
+    if (counted) frame->cost = rt_alloc(samples, sizeof(RtTally));
+    if (frame->color && frame->object && frame->depth && (frame->cost || !counted)) return RT_OK;
+    size_t each = sizeof(RtVec3) + sizeof(uint32_t) + sizeof(float) + (counted ? sizeof(RtTally) : 0);
     return rt_fail_memory(error, "a frame", samples * each);
 }
 
@@ -322,10 +322,11 @@ RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptio
                        RT_MAX_DEPTH);
     }
     Job job = {.frame = frame, .options = options, .scene = accel->scene};
-    RT_TRY(rt_view_init(&job.view, &accel->scene->camera, options->sampling, error));
-    job.tiles_across = (options->sampling.columns + RT_TILE - 1) / RT_TILE;
-    job.tiles = job.tiles_across * ((options->sampling.rows + RT_TILE - 1) / RT_TILE);
-    RtStatus status = init_frame(frame, options, error);
+    const RtSampling *sampling = &accel->scene->sampling;
+    RT_TRY(rt_view_init(&job.view, &accel->scene->camera, *sampling, error));
+    job.tiles_across = (sampling->columns + RT_TILE - 1) / RT_TILE;
+    job.tiles = job.tiles_across * ((sampling->rows + RT_TILE - 1) / RT_TILE);
+    RtStatus status = init_frame(frame, sampling, options->counted, error);
     if (status == RT_OK) {
         int threads = rt_thread_count(options->threads);
         if ((size_t)threads > job.tiles) threads = (int)job.tiles;

@@ -25,7 +25,6 @@
 typedef RtStatus RtRaySink(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error);
 
 typedef struct RtFrameOptions {
-    RtSampling sampling;
     uint32_t depth;  /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
     int threads;     /* 0 = all processors */
     bool counted;    /* fill tallies and the count channels; else the timed kernels run */
@@ -47,7 +46,8 @@ typedef struct RtFrame {
     double seconds;                     /* wall time of the tracing */
 } RtFrame;
 
-/* Traces the frame. The scene is the accelerator's. Free with rt_frame_clear; after a failure it is empty. */
+/* Traces the frame. Scene and sampling are the accelerator's. Free with rt_frame_clear; after a failure it is
+ * empty. */
 RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error);
 void rt_frame_clear(RtFrame *frame);
 

@@ -141,7 +141,13 @@ RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
         RtVec3 position = rt_narrow(rt_addd(rt_widen(camera->from), above));
         RT_TRY(rt_scene_add_light(scene, position, rt_vec3(1, 1, 1), error));
     }
-    return RT_OK;
+    return rt_scene_sample(scene, 0, 0, 1, false, error);
+}
+
+RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32_t samples, bool corners,
+                         RtError *error) {
+    return rt_sampling_init(&scene->sampling, width ? width : scene->camera.width,
+                            height ? height : scene->camera.height, samples, corners, error);
 }
 
 /* The bytes of these are hashed, so they have no padding. */

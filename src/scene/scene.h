@@ -1,6 +1,7 @@
 /* A scene: objects in flat arrays (RtGeometry), a material per object, lights, a camera. It owns its memory;
  * a zeroed struct is the empty scene. Readers and generators fill it through the functions below, call
- * rt_scene_finish once, and from then on it is read only and may be shared by threads. */
+ * rt_scene_finish once, and from then on it is read only and may be shared by threads. Only its sampling may
+ * still change, as long as no accelerator stands over it. */
 #ifndef RT_SCENE_SCENE_H
 #define RT_SCENE_SCENE_H
 
@@ -43,6 +44,7 @@ typedef struct RtScene {
     RtVec3 ambient;    /* Ia */
     RtVec3 background; /* colour of a ray that hits nothing */
     RtCamera camera;
+    RtSampling sampling; /* of the camera's image: where primary rays go through */
 } RtScene;
 
 /* Gives the scene its default ambient light, background and camera settings. */
@@ -69,10 +71,16 @@ RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float
                            float apex_radius, RtError *error);
 
 /* Computes the boxes. Where no camera was given (from = at), places one that sees the whole scene, and where
- * there is no light, one beside that camera. */
+ * there is no light, one beside that camera. The sampling becomes one sample at each pixel's centre. */
 RtStatus rt_scene_finish(RtScene *scene, RtError *error);
 
-/* A hash of everything that can change an answer or a picture (geometry, materials, lights, camera). */
+/* Has the camera's image sampled in another way; a width or height of 0 is the camera's own. Refuses what
+ * rt_sampling_init refuses. */
+RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32_t samples, bool corners,
+                         RtError *error);
+
+/* A hash of everything that can change an answer or a picture (geometry, materials, lights, camera; not the
+ * sampling). */
 uint64_t rt_scene_fingerprint(const RtScene *scene);
 
 /* Bytes of memory that the scene holds. */
