@@ -115,8 +115,8 @@ struct RtAccelOps {
 size_t rt_accel_count(void);
 const RtAccelOps *rt_accel_at(size_t i);
 
-/* By name; NULL and a message that suggests the nearest name if there is none. */
-const RtAccelOps *rt_accel_find(const char *name, RtError *error);
+/* By name, to *out; where there is none, RT_BAD_INPUT and a message that suggests the nearest name. */
+RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error);
 
 /* The spec that is used where none is asked for: exact, and fast on every scene. */
 const char *rt_accel_default(void);

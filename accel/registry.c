@@ -49,22 +49,22 @@ const char *rt_accel_default(void) {
     return "bvh";
 }
 
-const RtAccelOps *rt_accel_find(const char *name, RtError *error) {
+RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error) {
     const char *names[REGISTRY_COUNT];
     for (size_t i = 0; i < REGISTRY_COUNT; i++) {
-        if (strcmp(registry[i]->name, name) == 0) return registry[i];
         names[i] = registry[i]->name;
+        if (strcmp(names[i], name) != 0) continue;
+        *out = registry[i];
+        return RT_OK;
     }
 #ifndef RT_WITH_EMBREE
     if (strcmp(name, "embree") == 0) {
-        rt_fail(error, RT_NOT_AVAILABLE,
-                "this raytally was built without Embree: install its package and build again");
-        return NULL;
+        return rt_fail(error, RT_NOT_AVAILABLE,
+                       "this raytally was built without Embree: install its package and build again");
     }
 #endif
     char suggestion[RT_MAX_SUGGESTION];
     rt_suggest(name, names, REGISTRY_COUNT, suggestion);
-    rt_fail(error, RT_BAD_INPUT, "there is no accelerator '%s'%s%s `raytally accels` lists them", name,
-            suggestion, *suggestion ? "" : ";");
-    return NULL;
+    return rt_fail(error, RT_BAD_INPUT, "there is no accelerator '%s'%s%s `raytally accels` lists them", name,
+                   suggestion, *suggestion ? "" : ";");
 }

@@ -31,8 +31,7 @@ static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, 
     copy[chars] = '\0';
     char *params = strchr(copy, ':');
     if (params) *params++ = '\0';
-    layer->ops = rt_accel_find(copy, error);
-    if (!layer->ops) return error ? error->status : RT_BAD_INPUT;
+    RT_TRY(rt_accel_find(copy, &layer->ops, error));
     snprintf(what, sizeof what, "accelerator %s", layer->ops->name);
     return rt_params_parse(layer->ops->params, layer->ops->param_count, params, what, layer->values, error);
 }

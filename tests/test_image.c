@@ -246,7 +246,9 @@ static void the_root_box_is_drawn_where_the_camera_sees_it(void **state) {
     assert_ok(rt_draw_structure(&image, accel, error));
     rt_image_clear(&image);
     rt_accel_destroy(accel);
-    assert_int_equal(rt_structure_available(rt_accel_find("brute", NULL), &refusal), RT_NOT_AVAILABLE);
+    const RtAccelOps *brute = NULL;
+    assert_ok(rt_accel_find("brute", &brute, error));
+    assert_int_equal(rt_structure_available(brute, &refusal), RT_NOT_AVAILABLE);
     rt_scene_clear(&scene);
 }
 

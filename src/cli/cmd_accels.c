@@ -58,8 +58,8 @@ int rt_command_accels(int argc, char **argv) {
                "and ranges, and the paper it follows."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
-    const RtAccelOps *only = o.name ? rt_accel_find(o.name, &error) : NULL;
-    if (o.name && !only) return rt_cli_fail(&error);
+    const RtAccelOps *only = NULL;
+    if (o.name && rt_accel_find(o.name, &only, &error) != RT_OK) return rt_cli_fail(&error);
     json_t *list = json_array();
     for (size_t i = 0; i < rt_accel_count(); i++) {
         const RtAccelOps *ops = rt_accel_at(i);
