@@ -1,0 +1,131 @@
+/* Layers: what is common to all accelerators, overlays stacked upon a base. Building, looking at and
+ * destroying a stack, and the queries that are asked of it. */
+#include "accel/accel.h"
+
+#include "base/memory.h"
+
+/* ---- layers ---- */
+
+/* Puts `accel`, just built, upon `below`, which may be NULL. */
+static void stack(RtAccel *accel, RtAccel *below) {
+    size_t bytes = accel->ops->scratch_bytes ? accel->ops->scratch_bytes(accel) : 0;
+    accel->scratch_room = (bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
+    accel->below = below;
+    if (!below) return;
+    accel->exact = accel->exact && below->exact;
+    accel->counts = accel->counts && below->counts;
+}
+
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+    RtAccel *top = NULL;
+    *out = NULL;
+    for (uint32_t i = spec->layer_count; i-- > 0;) {
+        RtAccel *accel = NULL;
+        RtStatus status = spec->layers[i].ops->build(scene, spec->layers[i].values, &accel, error);
+        if (status != RT_OK) {
+            rt_accel_destroy(top);
+            return status;
+        }
+        stack(accel, top);
+        top = accel;
+    }
+    *out = top;
+    return RT_OK;
+}
+
+RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+    RtSpec parsed;
+    *out = NULL;
+    RT_TRY(rt_spec_parse(spec, &parsed, error));
+    return rt_accel_build(&parsed, scene, out, error);
+}
+
+void rt_accel_destroy(RtAccel *accel) {
+    while (accel) {
+        RtAccel *below = accel->below;
+        accel->ops->destroy(accel);
+        accel = below;
+    }
+}
+
+const RtAccel *rt_accel_base(const RtAccel *accel) {
+    while (accel->below) accel = accel->below;
+    return accel;
+}
+
+void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
+    accel->ops->describe(accel, out);
+    while ((accel = accel->below)) {
+        RtDescription own;
+        accel->ops->describe(accel, &own);
+        out->interior += own.interior;
+        out->leaves += own.leaves;
+        out->empty_leaves += own.empty_leaves;
+        out->references += own.references;
+        out->bytes += own.bytes;
+        if (own.depth > out->depth) out->depth = own.depth;
+        out->predicted_cost = own.predicted_cost;
+    }
+}
+
+RtStatus rt_accel_validate(const RtAccel *accel, RtError *error) {
+    for (; accel; accel = accel->below) RT_TRY(accel->ops->validate(accel, error));
+    return RT_OK;
+}
+
+RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error) {
+    for (; accel; accel = accel->below) {
+        if (accel->ops->learn) RT_TRY(accel->ops->learn(accel, rays, hits, count, error));
+    }
+    return RT_OK;
+}
+
+/* ---- queries ---- */
+
+RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
+    *query = (RtQuery){accel, NULL};
+    size_t bytes = 0;
+    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
+    if (bytes == 0) return RT_OK;
+    query->scratch = rt_alloc(bytes, 1);
+    if (!query->scratch) return rt_fail_memory(error, "the scratch memory of a query", bytes);
+    rt_query_begin(query);
+    return RT_OK;
+}
+
+void rt_query_clear(RtQuery *query) {
+    rt_free(query->scratch);
+    *query = (RtQuery){NULL, NULL};
+}
+
+void rt_query_begin(RtQuery *query) {
+    char *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer; layer = layer->below) {
+        if (layer->ops->begin) layer->ops->begin(layer, scratch);
+        if (scratch) scratch += layer->scratch_room;
+    }
+}
+
+void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, RtTally *tallies) {
+    const RtAccelOps *ops = query->accel->ops;
+    if (tallies) {
+        ops->nearest_counted(query->accel, query->scratch, rays, count, hits, tallies);
+    } else {
+        ops->nearest(query->accel, query->scratch, rays, count, hits);
+    }
+}
+
+void rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *blocked, RtTally *tallies) {
+    enum { STREAM = 1024 };
+    const RtAccelOps *ops = query->accel->ops;
+    uint32_t blockers[STREAM];
+    for (size_t first = 0; first < count; first += STREAM) {
+        size_t n = count - first < STREAM ? count - first : STREAM;
+        if (tallies) {
+            ops->occluded_counted(query->accel, query->scratch, rays + first, n, blockers, tallies);
+        } else {
+            ops->occluded(query->accel, query->scratch, rays + first, n, blockers);
+        }
+        for (size_t i = 0; i < n; i++) blocked[first + i] = blockers[i] != RT_NO_OBJECT;
+    }
+}
