@@ -109,6 +109,11 @@ struct RtAccelOps {
     RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
 };
 
+/* For `build`: `bytes` for an accelerator's own struct, zeroed but for the RtAccel that it begins with, which
+ * is exact and counts; to *out, to be freed with rt_free. */
+RtStatus rt_accel_new(const RtAccelOps *ops, const RtScene *scene, size_t bytes, RtAccel **out,
+                      RtError *error);
+
 /* ---- the registry ---- */
 
 /* The registered accelerators, in the order in which they are listed: brute first. */

@@ -12,11 +12,7 @@ extern const RtAccelOps rt_brute_ops;
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     (void)values;
-    Brute *self = rt_alloc(1, sizeof(Brute));
-    if (!self) return rt_fail_memory(error, "brute", sizeof(Brute));
-    self->base = (RtAccel){.ops = &rt_brute_ops, .scene = scene, .exact = true, .counts = true};
-    *out = &self->base;
-    return RT_OK;
+    return rt_accel_new(&rt_brute_ops, scene, sizeof(Brute), out, error);
 }
 
 static void destroy(RtAccel *accel) {

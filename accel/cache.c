@@ -24,11 +24,7 @@ extern const RtAccelOps rt_cache_ops;
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     (void)values;
-    Cache *self = rt_alloc(1, sizeof(Cache));
-    if (!self) return rt_fail_memory(error, "cache", sizeof(Cache));
-    self->base = (RtAccel){.ops = &rt_cache_ops, .scene = scene, .exact = true, .counts = true};
-    *out = &self->base;
-    return RT_OK;
+    return rt_accel_new(&rt_cache_ops, scene, sizeof(Cache), out, error);
 }
 
 static void destroy(RtAccel *accel) {

@@ -19,11 +19,7 @@ extern const RtAccelOps rt_ideal_ops;
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     (void)values;
-    Ideal *self = rt_alloc(1, sizeof(Ideal));
-    if (!self) return rt_fail_memory(error, "ideal", sizeof(Ideal));
-    self->base = (RtAccel){.ops = &rt_ideal_ops, .scene = scene, .exact = true, .counts = true};
-    *out = &self->base;
-    return RT_OK;
+    return rt_accel_new(&rt_ideal_ops, scene, sizeof(Ideal), out, error);
 }
 
 static void destroy(RtAccel *accel) {

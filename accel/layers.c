@@ -4,7 +4,14 @@
 
 #include "base/memory.h"
 
-/* ---- layers ---- */
+RtStatus rt_accel_new(const RtAccelOps *ops, const RtScene *scene, size_t bytes, RtAccel **out,
+                      RtError *error) {
+    RtAccel *accel = rt_alloc(1, bytes);
+    if (!accel) return rt_fail_memory(error, ops->name, bytes);
+    *accel = (RtAccel){.ops = ops, .scene = scene, .exact = true, .counts = true};
+    *out = accel;
+    return RT_OK;
+}
 
 /* Puts `accel`, just built, upon `below`, which may be NULL. */
 static void stack(RtAccel *accel, RtAccel *below) {

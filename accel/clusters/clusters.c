@@ -163,17 +163,17 @@ static RtStatus fill(RtClusters *self, const RtValue *values, RtError *error) {
 }
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    RtClusters *self = rt_alloc(1, sizeof(RtClusters));
-    if (!self) return rt_fail_memory(error, "clusters", sizeof(RtClusters));
-    self->base = (RtAccel){.ops = &rt_clusters_ops, .scene = scene, .exact = true, .counts = true};
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_clusters_ops, scene, sizeof(RtClusters), &accel, error));
+    RtClusters *self = (RtClusters *)accel;
     self->width = (uint32_t)values[PARAM_WIDTH].i;
     self->leaf_limit = (uint32_t)values[PARAM_LEAF].i;
     self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
     RtStatus status = fill(self, values, error);
     if (status == RT_OK)
-        *out = &self->base;
+        *out = accel;
     else
-        destroy(&self->base);
+        destroy(accel);
     return status;
 }
 

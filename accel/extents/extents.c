@@ -41,20 +41,20 @@ static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     const RtGeometry *geometry = &scene->geometry;
-    RtExtents *self = rt_alloc(1, sizeof(RtExtents));
-    if (!self) return rt_fail_memory(error, "extents", sizeof(RtExtents));
-    self->base = (RtAccel){.ops = &rt_extents_ops, .scene = scene, .exact = true, .counts = true};
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_extents_ops, scene, sizeof(RtExtents), &accel, error));
+    RtExtents *self = (RtExtents *)accel;
     RtStatus status = rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_KIND].choice,
                                          (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);
     if (status != RT_OK) {
-        destroy(&self->base);
+        destroy(accel);
         return status;
     }
     for (uint32_t id = 0; id < geometry->object_count; id++) {
         RtGroup group = group_of(geometry, &id);
         rt_extent_fit(&self->set, id, &group);
     }
-    *out = &self->base;
+    *out = accel;
     return RT_OK;
 }
 
