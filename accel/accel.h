@@ -66,6 +66,12 @@ typedef void RtNearestCounted(const RtAccel *accel, void *scratch, const RtRay *
 typedef void RtOccludedCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
                                uint32_t *blockers, RtTally *tallies);
 
+/* Who looks at the boxes of a structure: one call of `show` each, with its depth below the root. */
+typedef struct RtBoxViewer {
+    void (*show)(void *context, const RtBox *box, uint32_t depth);
+    void *context;
+} RtBoxViewer;
+
 /* One accelerator, as a const table in its own file. Optional members may be NULL. */
 struct RtAccelOps {
     const char *name;    /* as in a spec */
@@ -100,9 +106,8 @@ struct RtAccelOps {
     /* RT_OK, or RT_MISMATCH with a message that names the first broken invariant. */
     RtStatus (*validate)(const RtAccel *accel, RtError *error);
 
-    /* Optional: the boxes of the structure down to `depth`, one call of `draw` each; for pictures. */
-    void (*each_box)(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
-                     void *context);
+    /* Optional: shows the boxes of the structure, for pictures. */
+    void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
 
     /* Optional: takes recorded answers for rays[0..count), which stay where they are while the accelerator is
      * asked about them; only `ideal` does. */

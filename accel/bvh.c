@@ -271,21 +271,14 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     return check.status;
 }
 
-typedef struct Drawing {
-    void (*draw)(void *context, const RtBox *box, uint32_t depth);
-    void *context;
-} Drawing;
-
-static void draw_node(void *context, const Node *node, uint32_t depth) {
-    const Drawing *drawing = context;
-    drawing->draw(drawing->context, &node->box, depth);
+static void show_node(void *context, const Node *node, uint32_t depth) {
+    const RtBoxViewer *viewer = context;
+    viewer->show(viewer->context, &node->box, depth);
 }
 
-static void each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
-                     void *context) {
+static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const Bvh *bvh = (const Bvh *)accel;
-    Drawing drawing = {draw, context};
-    if (bvh->node_count > 0) walk(bvh, 0, 0, draw_node, &drawing);
+    if (bvh->node_count > 0) walk(bvh, 0, 0, show_node, &viewer);
 }
 
 const RtAccelOps rt_bvh_ops = {

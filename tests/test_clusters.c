@@ -136,7 +136,7 @@ static void pictures_get_every_node_with_its_depth(void **state) {
     RtScene scene = make_row(4);
     RtClusters *self = make_clusters(&scene, "clusters");
     uint32_t at_depth[3] = {0};
-    self->base.ops->each_box(&self->base, count_box, at_depth);
+    self->base.ops->each_box(&self->base, (RtBoxViewer){count_box, at_depth});
     assert_int_equal(at_depth[0], 1);
     assert_int_equal(at_depth[1], 2);
     assert_int_equal(at_depth[2], 4);

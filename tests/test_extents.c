@@ -336,7 +336,7 @@ static void each_box_gives_the_box_of_every_object(void **state) {
     RtAccel *accel;
     uint32_t boxes = 0;
     assert_ok(rt_accel_open("extents", &scene, &accel, error));
-    accel->ops->each_box(accel, count_box, &boxes);
+    accel->ops->each_box(accel, (RtBoxViewer){count_box, &boxes});
     assert_int_equal(boxes, 3);
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);

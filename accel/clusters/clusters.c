@@ -247,23 +247,16 @@ RT_DEFINE_KERNELS(RtClusters, search)
 
 /* ---- looking at it ---- */
 
-typedef struct Drawing {
-    const RtClusters *self;
-    void (*draw)(void *context, const RtBox *box, uint32_t depth);
-    void *context;
-} Drawing;
-
-static void draw_node(const Drawing *drawing, uint32_t index, uint32_t depth) {
-    const RtClusterNode *node = &drawing->self->nodes[index];
-    drawing->draw(drawing->context, &node->box, depth);
+static void show_node(const RtClusters *self, uint32_t index, uint32_t depth, RtBoxViewer viewer) {
+    const RtClusterNode *node = &self->nodes[index];
+    viewer.show(viewer.context, &node->box, depth);
     if (rt_cluster_is_leaf(node)) return;
-    for (uint32_t i = 0; i < node->count; i++) draw_node(drawing, node->first + i, depth + 1);
+    for (uint32_t i = 0; i < node->count; i++) show_node(self, node->first + i, depth + 1, viewer);
 }
 
-static void each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
-                     void *context) {
-    Drawing drawing = {(const RtClusters *)accel, draw, context};
-    if (drawing.self->node_count > 0) draw_node(&drawing, 0, 0);
+static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    const RtClusters *self = (const RtClusters *)accel;
+    if (self->node_count > 0) show_node(self, 0, 0, viewer);
 }
 
 const RtAccelOps rt_clusters_ops = {

@@ -111,10 +111,10 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
     return RT_OK;
 }
 
-static void each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
-                     void *context) {
+static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGeometry *geometry = &accel->scene->geometry;
-    for (uint32_t id = 0; id < geometry->object_count; id++) draw(context, &geometry->boxes[id], 0);
+    for (uint32_t id = 0; id < geometry->object_count; id++)
+        viewer.show(viewer.context, &geometry->boxes[id], 0);
 }
 
 const RtAccelOps rt_extents_ops = {

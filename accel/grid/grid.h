@@ -38,8 +38,7 @@ void rt_grid_destroy(RtAccel *accel);
 /* survey.c */
 void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
-void rt_grid_each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
-                      void *context);
+void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);
 
 static inline size_t rt_grid_voxel_count(const RtGrid *grid) {
     return (size_t)grid->n[0] * grid->n[1] * grid->n[2];

@@ -114,24 +114,17 @@ RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
     return status;
 }
 
-typedef struct Drawing {
-    void (*draw)(void *context, const RtBox *box, uint32_t depth);
-    void *context;
-} Drawing;
-
-static RtStatus draw_voxel(void *context, const RtGrid *grid, const uint32_t at[3]) {
-    const Drawing *drawing = context;
+static RtStatus show_voxel(void *context, const RtGrid *grid, const uint32_t at[3]) {
+    const RtBoxViewer *viewer = context;
     size_t voxel = rt_grid_voxel_at(grid, at);
     RtBox box = voxel_box(grid, at);
-    if (grid->first[voxel] < grid->first[voxel + 1]) drawing->draw(drawing->context, &box, 1);
+    if (grid->first[voxel] < grid->first[voxel + 1]) viewer->show(viewer->context, &box, 1);
     return RT_OK;
 }
 
-void rt_grid_each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
-                      void *context) {
+void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGrid *grid = (const RtGrid *)accel;
-    Drawing drawing = {draw, context};
     if (rt_grid_voxel_count(grid) == 0) return;
-    draw(context, &grid->box, 0);
-    each_voxel(grid, draw_voxel, &drawing);
+    viewer.show(viewer.context, &grid->box, 0);
+    each_voxel(grid, show_voxel, &viewer);
 }

@@ -66,8 +66,7 @@ bool rt_octree_divisible(const RtBox *boxes, const RtBox *cell, const uint32_t *
 /* survey.c */
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
-void rt_octree_each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
-                        void *context);
+void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer);
 
 /* Of eight children, as bits, those on the lower and those on the upper side along an axis. */
 static inline uint32_t rt_octree_lower(int axis) {

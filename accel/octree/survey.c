@@ -163,10 +163,9 @@ RtStatus rt_octree_validate(const RtAccel *accel, RtError *error) {
     return status;
 }
 
-void rt_octree_each_box(const RtAccel *accel, void (*draw)(void *context, const RtBox *box, uint32_t depth),
-                        void *context) {
+void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtOctree *tree = (const RtOctree *)accel;
     for (uint32_t i = 0; i < tree->node_count; i++) {
-        if (tree->nodes[i].count > 0) draw(context, &tree->boxes[i], depth_of(tree, i));
+        if (tree->nodes[i].count > 0) viewer.show(viewer.context, &tree->boxes[i], depth_of(tree, i));
     }
 }
