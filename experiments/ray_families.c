@@ -17,15 +17,12 @@ static uint32_t below(Maker *m, uint32_t n) {
     return rt_random_bits(&m->random) % n;
 }
 
-static double between(Maker *m, double lo, double hi) {
-    return lo + (hi - lo) * (double)rt_random_unit(&m->random);
-}
-
 /* ---- points to start at and aim at ---- */
 
 static RtVec3d point_in_box(Maker *m, const RtBox *box) {
     RtVec3d p;
-    for (int a = 0; a < 3; a++) p.at[a] = between(m, (double)box->lo.at[a], (double)box->hi.at[a]);
+    for (int a = 0; a < 3; a++)
+        p.at[a] = rt_random_betweend(&m->random, (double)box->lo.at[a], (double)box->hi.at[a]);
     return p;
 }
 
@@ -44,7 +41,7 @@ static const RtBox *some_box(Maker *m) {
 /* A point of a cone's side, or with `rim` of one of its circles. */
 static RtVec3d point_of_cone(Maker *m, const RtCone *cone, bool rim) {
     RtVec3d around = rt_normalized(rt_crossd(cone->axis, rt_random_direction(&m->random)));
-    double s = rim ? (double)below(m, 2) : between(m, 0, 1);
+    double s = rim ? (double)below(m, 2) : rt_random_betweend(&m->random, 0, 1);
     double radius = (double)cone->base_radius + cone->slope * cone->height * s;
     return rt_add_scaledd(rt_add_scaledd(rt_widen(cone->base), cone->axis, cone->height * s), around, radius);
 }
@@ -56,8 +53,8 @@ static RtVec3d point_of_vertices(Maker *m, const RtVec3 *v, uint32_t count, Wher
     uint32_t i = below(m, count);
     RtVec3d a = rt_widen(v[i]), b = rt_widen(v[(i + 1) % count]), c = rt_widen(v[(i + 2) % count]);
     if (where == AT_VERTEX) return a;
-    RtVec3d p = rt_add_scaledd(a, rt_subd(b, a), between(m, 0, 1));
-    return where == ON_EDGE ? p : rt_add_scaledd(p, rt_subd(c, p), between(m, 0, 1));
+    RtVec3d p = rt_add_scaledd(a, rt_subd(b, a), rt_random_betweend(&m->random, 0, 1));
+    return where == ON_EDGE ? p : rt_add_scaledd(p, rt_subd(c, p), rt_random_betweend(&m->random, 0, 1));
 }
 
 /* One of the six points at which a sphere touches its box, or any other. */
@@ -228,12 +225,12 @@ static RtRay to_light(Maker *m) {
     case 2: from = point_in_scene(m); break;
     default: from = rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
     }
-    if (below(m, 2)) from = rt_add_scaledd(from, rt_subd(to, from), between(m, 0, 1e-4));
+    if (below(m, 2)) from = rt_add_scaledd(from, rt_subd(to, from), rt_random_betweend(&m->random, 0, 1e-4));
     RtRay ray = {.org = rt_narrow(from), .tmax = 1, .kind = RT_RAY_SHADOW, .source = light};
     ray.dir = rt_sub(m->scene->lights[light].position, ray.org);
     switch (below(m, 16)) {
     case 0: ray.source = below(m, m->scene->light_count + 2); break;
-    case 1: ray.tmax = (float)between(m, 0, 2); break;
+    case 1: ray.tmax = (float)rt_random_betweend(&m->random, 0, 2); break;
     case 2: ray.dir.at[below(m, 3)] *= 1 + 0x1p-20f; break;
     default: break;
     }

@@ -21,12 +21,9 @@ typedef struct Recipe {
     double scale, offset; /* applied last: scale * p + (offset, offset, offset) */
 } Recipe;
 
-static double between(RtRandom *random, double lo, double hi) {
-    return lo + (hi - lo) * (double)rt_random_unit(random);
-}
-
 static RtVec3d in_cube(RtRandom *random) {
-    double x = between(random, -1, 1), y = between(random, -1, 1), z = between(random, -1, 1);
+    double x = rt_random_betweend(random, -1, 1), y = rt_random_betweend(random, -1, 1),
+           z = rt_random_betweend(random, -1, 1);
     return rt_vec3d(x, y, z);
 }
 
@@ -34,7 +31,7 @@ static RtVec3d in_cube(RtRandom *random) {
 
 static Place uniform(RtRandom *random, uint32_t i, uint32_t count) {
     (void)i, (void)count;
-    return (Place){in_cube(random), between(random, 0.02, 0.2)};
+    return (Place){in_cube(random), rt_random_betweend(random, 0.02, 0.2)};
 }
 
 static Place coincident(RtRandom *random, uint32_t i, uint32_t count) {
@@ -50,7 +47,7 @@ static Place on_a_line(RtRandom *random, uint32_t i, uint32_t count) {
 static Place in_a_plane(RtRandom *random, uint32_t i, uint32_t count) {
     (void)i, (void)count;
     RtVec3d p = in_cube(random);
-    return (Place){{p.x, p.y, 0.5}, between(random, 0.02, 0.2)};
+    return (Place){{p.x, p.y, 0.5}, rt_random_betweend(random, 0.02, 0.2)};
 }
 
 static Place huge_beside_tiny(RtRandom *random, uint32_t i, uint32_t count) {
@@ -63,7 +60,7 @@ static Place huge_beside_tiny(RtRandom *random, uint32_t i, uint32_t count) {
 static Place clustered(RtRandom *random, uint32_t i, uint32_t count) {
     (void)count;
     RtVec3d corner = {i & 1 ? 0.75 : -0.75, i & 2 ? 0.75 : -0.75, i & 4 ? 0.75 : -0.75};
-    return (Place){rt_add_scaledd(corner, in_cube(random), 0.01), between(random, 0.001, 0.005)};
+    return (Place){rt_add_scaledd(corner, in_cube(random), 0.01), rt_random_betweend(random, 0.001, 0.005)};
 }
 
 /* Every four in a row are alike. */
@@ -77,7 +74,7 @@ static Place duplicated(RtRandom *random, uint32_t i, uint32_t count) {
 static Place on_a_lattice(RtRandom *random, uint32_t i, uint32_t count) {
     (void)count, (void)i;
     RtVec3d p;
-    for (int a = 0; a < 3; a++) p.at[a] = floor(between(random, -4, 4)) / 4 + 0.125;
+    for (int a = 0; a < 3; a++) p.at[a] = floor(rt_random_betweend(random, -4, 4)) / 4 + 0.125;
     return (Place){p, 0.125};
 }
 
@@ -128,7 +125,7 @@ static RtStatus add_polygon(Builder *b, Place at, RtError *error) {
 static RtStatus add_cone(Builder *b, Place at, RtError *error) {
     RtVec3d axis = rt_random_direction(&b->random);
     double size = at.size * b->recipe->scale;
-    float base = (float)(size * between(&b->random, 0.2, 0.8));
+    float base = (float)(size * rt_random_betweend(&b->random, 0.2, 0.8));
     float apex = rt_random_bits(&b->random) % 2 ? base : 0; /* a cylinder or a full cone */
     return rt_scene_add_cone(b->scene, b->material, placed(b, at.center), base,
                              placed(b, rt_add_scaledd(at.center, axis, at.size)), apex, error);

@@ -6,10 +6,6 @@
 
 enum { POINTS = 1000, OBJECTS = 40 };
 
-static double between(RtRandom *random, double lo, double hi) {
-    return lo + (hi - lo) * (double)rt_random_unit(random);
-}
-
 static RtVec3 random_point(RtRandom *random, float shift) {
     RtVec3 p;
     for (int a = 0; a < 3; a++) p.at[a] = shift + rt_random_between(random, -1, 1);
@@ -21,7 +17,7 @@ static RtVec3 random_point(RtRandom *random, float shift) {
 /* On the side of a cone, a fifth of them on each of its circles. */
 static RtVec3d cone_point(const RtCone *cone, RtRandom *random) {
     RtVec3d across = rt_normalized(rt_crossd(rt_random_direction(random), cone->axis));
-    double u = between(random, -0.25, 1.25);
+    double u = rt_random_betweend(random, -0.25, 1.25);
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     double radius = (1 - u) * (double)cone->base_radius + u * (double)cone->apex_radius;
     RtVec3d on_axis = rt_add_scaledd(rt_scaled(rt_widen(cone->base), 1 - u), rt_widen(cone->apex), u);
@@ -37,7 +33,7 @@ static RtVec3d polygon_point(const RtPolygon *polygon, const RtVec3 *vertices, R
     do {
         RtVec3d b = rt_widen(vertices[rt_random_bits(random) % polygon->count]);
         RtVec3d c = rt_widen(vertices[rt_random_bits(random) % polygon->count]);
-        double s = between(random, 0, 1), r = between(random, 0, 1);
+        double s = rt_random_betweend(random, 0, 1), r = rt_random_betweend(random, 0, 1);
         p = rt_add_scaledd(rt_add_scaledd(a, rt_subd(b, a), s), rt_subd(c, b), s * r);
     } while (!rt_polygon_inside(polygon, vertices, p));
     double off = rt_dotd(polygon->normal, rt_subd(p, polygon->center));
@@ -46,7 +42,7 @@ static RtVec3d polygon_point(const RtPolygon *polygon, const RtVec3 *vertices, R
 }
 
 static RtVec3d triangle_point(const RtTriangle *triangle, RtRandom *random) {
-    double s = between(random, 0, 1), r = between(random, 0, 1);
+    double s = rt_random_betweend(random, 0, 1), r = rt_random_betweend(random, 0, 1);
     RtVec3d a = rt_widen(triangle->v[0]), b = rt_widen(triangle->v[1]), c = rt_widen(triangle->v[2]);
     return rt_add_scaledd(rt_add_scaledd(a, rt_subd(b, a), s), rt_subd(c, b), s * r);
 }
@@ -79,7 +75,7 @@ static void add_star(RtGeometry *g, RtRandom *random, RtVec3 center) {
     RtVec3 vertices[8];
     for (int i = 0; i < 8; i++) {
         RtVec3d p = rt_add_scaledd(rt_add_scaledd(rt_widen(center), u, at[i][0]), v, at[i][1]);
-        vertices[i] = rt_narrow(rt_add_scaledd(p, n, between(random, -8e-4, 8e-4)));
+        vertices[i] = rt_narrow(rt_add_scaledd(p, n, rt_random_betweend(random, -8e-4, 8e-4)));
     }
     assert_ok(rt_geometry_add_polygon(g, vertices, 8, error));
 }
@@ -214,7 +210,7 @@ static void add_planar_polygon(RtGeometry *g, RtRandom *random) {
     uint32_t count = 3 + rt_random_bits(random) % 98;
     int axis = (int)(rt_random_bits(random) % 3);
     for (uint32_t i = 0; i < count; i++) {
-        double angle = i * 6.283185307179586 / count, across = between(random, 0.5, 1);
+        double angle = i * 6.283185307179586 / count, across = rt_random_betweend(random, 0.5, 1);
         vertices[i] = rt_vec3(1, 1, 1);
         vertices[i].at[(axis + 1) % 3] = (float)(across * cos(angle));
         vertices[i].at[(axis + 2) % 3] = (float)(3 * across * sin(angle));

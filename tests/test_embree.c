@@ -24,21 +24,17 @@ int main(void) {
 
 /* ---- scenes and rays ---- */
 
-static RtVec3 point_in(RtRandom *random, float size) {
-    float x = rt_random_between(random, -size, size), y = rt_random_between(random, -size, size);
-    return rt_vec3(x, y, rt_random_between(random, -size, size));
-}
-
 static void add_triangle(RtScene *scene, RtRandom *random, float size, float edge) {
-    RtVec3 corner = point_in(random, size);
-    RtVec3 v[3] = {corner, rt_add(corner, point_in(random, edge)), rt_add(corner, point_in(random, edge))};
+    RtVec3 corner = rt_random_point(random, size);
+    RtVec3 v[3] = {corner, rt_add(corner, rt_random_point(random, edge)),
+                   rt_add(corner, rt_random_point(random, edge))};
     assert_ok(rt_scene_add_triangle(scene, 0, v, NULL, error));
 }
 
 /* A rectangle, in the plane z = const for every other one. */
 static void add_polygon(RtScene *scene, RtRandom *random, float size, float edge, bool flat) {
-    RtVec3 corner = point_in(random, size);
-    RtVec3 a = point_in(random, edge), b = point_in(random, edge);
+    RtVec3 corner = rt_random_point(random, size);
+    RtVec3 a = rt_random_point(random, edge), b = rt_random_point(random, edge);
     if (flat) a.z = b.z = 0;
     RtVec3 v[4] = {corner, rt_add(corner, a), rt_add(rt_add(corner, a), b), rt_add(corner, b)};
     assert_ok(rt_scene_add_polygon(scene, 0, v, 4, error));
@@ -54,13 +50,13 @@ static void make_soup(RtScene *scene, uint32_t count, uint32_t copies, float siz
         RtRandom random = rt_random(7, 1);
         for (uint32_t i = 0; i < count; i++) {
             float edge = size * 0.2f, radius = size * rt_random_between(&random, 0.01f, 0.1f);
-            RtVec3 center = point_in(&random, size);
+            RtVec3 center = rt_random_point(&random, size);
             switch (i % 4) {
             case 0: assert_ok(rt_scene_add_sphere(scene, 0, center, radius, error)); break;
             case 1: add_polygon(scene, &random, size, edge, i % 8 == 1); break;
             case 2: add_triangle(scene, &random, size, edge); break;
             case 3: {
-                RtVec3 apex = rt_add(center, point_in(&random, edge));
+                RtVec3 apex = rt_add(center, rt_random_point(&random, edge));
                 assert_ok(rt_scene_add_cone(scene, 0, center, radius, apex, radius * 0.5f, error));
                 break;
             }
@@ -142,7 +138,7 @@ static Rays make_plain_rays(size_t count, float size) {
     RtRandom random = rt_random(3, 3);
     for (size_t i = 0; i < count; i++) {
         RtVec3 from = rt_narrow(rt_scaled(rt_random_direction(&random), 3 * (double)size));
-        RtVec3 to = point_in(&random, size);
+        RtVec3 to = rt_random_point(&random, size);
         r.rays[i] = (RtRay){.org = from, .dir = rt_sub(to, from), .tmax = INFINITY};
         if (i % 2) r.rays[i].dir = rt_scale(r.rays[i].dir, i % 4 == 1 ? 1e30f : 1e-30f);
     }

@@ -12,11 +12,6 @@ static const char *const specs[] = {"extents:kind=box",           "extents:kind=
                                     "extents:kind=slabs,slabs=7", "extents:kind=slabs,slabs=13"};
 enum { SPEC_COUNT = sizeof specs / sizeof specs[0] };
 
-static RtVec3 random_point(RtRandom *random, float size) {
-    float x = rt_random_between(random, -size, size), y = rt_random_between(random, -size, size);
-    return rt_vec3(x, y, rt_random_between(random, -size, size));
-}
-
 /* ---- a soup of everything that is hard ---- */
 
 /* Coplanar to about 1/2000 of its size, the most that is let in: five points about `center`, one of them
@@ -28,15 +23,16 @@ static void add_warped_polygon(RtScene *scene, RtRandom *random, RtVec3 center) 
     for (int i = 0; i < 5; i++) {
         RtVec3d p = rt_add_scaledd(rt_widen(center), u, 0.2 * (double)at[i][0]);
         vertices[i] = rt_narrow(rt_add_scaledd(p, v, 0.2 * (double)at[i][1]));
-        vertices[i] = rt_add(vertices[i], random_point(random, 1e-4f));
+        vertices[i] = rt_add(vertices[i], rt_random_point(random, 1e-4f));
     }
     assert_ok(rt_scene_add_polygon(scene, 0, vertices, 5, error));
 }
 
 static void add_triangles(RtScene *scene, RtRandom *random, RtVec3 center) {
-    RtVec3 a = rt_add(center, random_point(random, 0.3f)), b = rt_add(center, random_point(random, 0.3f));
+    RtVec3 a = rt_add(center, rt_random_point(random, 0.3f)),
+           b = rt_add(center, rt_random_point(random, 0.3f));
     RtVec3 ordinary[3] = {center, a, b};
-    RtVec3 sliver[3] = {a, b, rt_add(rt_scale(rt_add(a, b), 0.5f), random_point(random, 1e-7f))};
+    RtVec3 sliver[3] = {a, b, rt_add(rt_scale(rt_add(a, b), 0.5f), rt_random_point(random, 1e-7f))};
     RtVec3 without_area[3] = {a, a, b};
     assert_ok(rt_scene_add_triangle(scene, 0, ordinary, NULL, error));
     assert_ok(rt_scene_add_triangle(scene, 0, sliver, NULL, error));
@@ -44,8 +40,8 @@ static void add_triangles(RtScene *scene, RtRandom *random, RtVec3 center) {
 }
 
 static void add_cones(RtScene *scene, RtRandom *random, RtVec3 center) {
-    RtVec3 apex = rt_add(center, random_point(random, 0.3f));
-    RtVec3 just_above = rt_add(center, random_point(random, 1e-6f));
+    RtVec3 apex = rt_add(center, rt_random_point(random, 0.3f));
+    RtVec3 just_above = rt_add(center, rt_random_point(random, 1e-6f));
     assert_ok(rt_scene_add_cone(scene, 0, center, 0.1f, apex, 0, error));
     assert_ok(rt_scene_add_cone(scene, 0, center, 0.02f, apex, 0.02f, error));
     if (memcmp(&center, &just_above, sizeof center) == 0) return;
@@ -60,7 +56,7 @@ static RtScene make_soup(uint64_t seed, float shift) {
     rt_scene_init(&scene);
     assert_ok(rt_scene_add_material(&scene, &material, &index, error));
     for (int i = 0; i < 6; i++) {
-        RtVec3 center = rt_add(random_point(&random, 1), rt_vec3(shift, 0, -shift));
+        RtVec3 center = rt_add(rt_random_point(&random, 1), rt_vec3(shift, 0, -shift));
         RtRandom again = random;
         for (int copy = 0; copy < 2; copy++) {
             random = again;

@@ -100,16 +100,12 @@ static bool reference(const RtGeometry *g, uint32_t id, const RtRay *ray, Real m
     return false;
 }
 
-static RtVec3 random_point(RtRandom *random) {
-    float x = rt_random_between(random, -1, 1), y = rt_random_between(random, -1, 1);
-    return rt_vec3(x, y, rt_random_between(random, -1, 1));
-}
-
 /* Polygons are triangles too, so that they lie in a plane exactly. */
 static RtGeometry random_objects(RtRandom *random) {
     RtGeometry g = {0};
     for (int i = 0; i < 50; i++) {
-        RtVec3 a = random_point(random), v[3] = {a, random_point(random), random_point(random)};
+        RtVec3 a = rt_random_point(random, 1),
+               v[3] = {a, rt_random_point(random, 1), rt_random_point(random, 1)};
         float r0 = rt_random_between(random, 0.1f, 1), r1 = rt_random_between(random, 0, 1);
         assert_ok(rt_geometry_add_sphere(&g, a, r0, error));
         assert_ok(rt_geometry_add_polygon(&g, v, 3, error));
@@ -188,12 +184,12 @@ static void t_of_a_needle_is_that_of_its_plane(void **state) {
     RtRandom random = rt_random(11, 0);
     int hits = 0;
     for (int i = 0; i < 20000; i++) {
-        RtVec3 v[3] = {random_point(&random), random_point(&random), rt_vec3(0, 0, 0)};
+        RtVec3 v[3] = {rt_random_point(&random, 1), rt_random_point(&random, 1), rt_vec3(0, 0, 0)};
         float thin = rt_random_between(&random, 0x1p-20f, 0x1p-14f), along = rt_random_unit(&random);
-        RtVec3 aside = rt_scale(random_point(&random), thin);
+        RtVec3 aside = rt_scale(rt_random_point(&random, 1), thin);
         v[2] = i % 2 ? rt_add(v[1], aside) : rt_add(rt_scale(rt_add(v[0], v[1]), 0.5f), aside);
         RtVec3 target = rt_add(v[0], rt_scale(rt_sub(v[1], v[0]), along));
-        RtRay ray = {.org = rt_scale(random_point(&random), 3), .tmin = 0, .tmax = INFINITY};
+        RtRay ray = {.org = rt_scale(rt_random_point(&random, 1), 3), .tmin = 0, .tmax = INFINITY};
         ray.dir = rt_sub(target, ray.org);
         RtGeometry g = {0};
         assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));

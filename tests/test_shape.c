@@ -251,8 +251,7 @@ static RtGeometry one_of_each(int exponent) {
 
 /* Through a point of [-1, 1]^3, from up to 3 before it. */
 static RtRay random_ray(RtRandom *random) {
-    RtVec3 target;
-    for (int a = 0; a < 3; a++) target.at[a] = rt_random_between(random, -1, 1);
+    RtVec3 target = rt_random_point(random, 1);
     RtVec3d dir = rt_random_direction(random);
     RtVec3d org = rt_add_scaledd(rt_widen(target), dir, -3 * (double)rt_random_unit(random));
     return make_ray(rt_narrow(org), rt_narrow(dir));

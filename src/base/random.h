@@ -29,6 +29,17 @@ static inline float rt_random_between(RtRandom *random, float lo, float hi) {
     return lo + (hi - lo) * rt_random_unit(random);
 }
 
+static inline double rt_random_betweend(RtRandom *random, double lo, double hi) {
+    return lo + (hi - lo) * (double)rt_random_unit(random);
+}
+
+/* Uniform in the cube of points with coordinates in [-size, size). */
+static inline RtVec3 rt_random_point(RtRandom *random, float size) {
+    RtVec3 p;
+    for (int a = 0; a < 3; a++) p.at[a] = rt_random_between(random, -size, size);
+    return p;
+}
+
 /* Uniform on the unit sphere, by rejection from the cube: no sine or cosine, the same bits everywhere. */
 RtVec3d rt_random_direction(RtRandom *random);
 
