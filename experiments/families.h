@@ -17,6 +17,7 @@ const char *rt_scene_family_name(size_t family);
  * family's. Owned by the caller: rt_scene_clear. */
 RtStatus rt_scene_family_build(size_t family, uint64_t seed, RtScene *scene, RtError *error);
 
+/* The first family is `chord`: random chords of the scene's bounding sphere. */
 size_t rt_ray_family_count(void);
 const char *rt_ray_family_name(size_t family);
 

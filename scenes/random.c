@@ -1,4 +1,5 @@
-/* random: n objects in the cube from -1 to 1, uniformly or in clusters.
+/* random: n objects in the cube from -1 to 1, uniformly, in clusters, or where they are hard on accelerators:
+ * all in one place, on a line, in a plane, huge beside tiny.
  *
  * Object i is made from the random numbers of stream i alone, so it does not depend on what came before.
  * Sizes are in units of the mean spacing (edge of the cube over the cube root of n): the density of the scene
@@ -9,23 +10,25 @@
 #include "scenes/builtin.h"
 
 enum { N, DISTRIBUTION, SHAPE, SEED, RADIUS, SPREAD, CLUSTERS, WIDTH };
-enum { UNIFORM, CLUSTERED };
+enum { UNIFORM, CLUSTERED, COINCIDENT, LINE, PLANE, STADIUM };
 enum { SPHERES, TRIANGLES, MIXED };
 
 static const RtParam params[] = {
     [N] = {.name = "n",
            .type = RT_PARAM_INT,
            .standard = "1000",
-           .lo = 1,
+           .lo = 0,
            .hi = RT_MAX_OBJECTS,
            .meaning = "objects",
            .source = "small enough to see",
-           .tries = "1|100|5000"},
+           .tries = "0|1|2|100|5000"},
     [DISTRIBUTION] = {.name = "distribution",
                       .type = RT_PARAM_CHOICE,
                       .standard = "uniform",
-                      .choices = "uniform|clustered",
-                      .meaning = "where the objects are",
+                      .choices = "uniform|clustered|coincident|line|plane|stadium",
+                      .meaning = "where the objects are: coincident: all in one place and alike; line: in a "
+                                 "row; plane: flat ones coplanar; stadium: tiny ones about the origin, and "
+                                 "every eighth huge",
                       .source = "the usual case"},
     [SHAPE] = {.name = "shape",
                .type = RT_PARAM_CHOICE,
@@ -96,58 +99,104 @@ static RtVec3d point_in_cluster(RtRandom *random, const RtValue *values) {
     return center;
 }
 
-static RtStatus add_triangle(RtScene *scene, uint32_t material, RtVec3d center, double radius,
-                             RtRandom *random, RtError *error) {
+/* In a stadium every eighth object is huge, and the others are tiny. */
+static const double stadium_scale[2] = {0x1p-10, 4};
+
+static bool is_huge(uint64_t i) {
+    return i % 8 == 0;
+}
+
+static RtVec3d center_of(uint64_t i, RtRandom *random, const RtValue *values) {
+    RtVec3d p;
+    switch (values[DISTRIBUTION].choice) {
+    case CLUSTERED: return point_in_cluster(random, values);
+    case COINCIDENT: return rt_vec3d(0.25, 0.5, -0.125);
+    case LINE: return rt_vec3d((2 * (double)i + 1) / (double)values[N].i - 1, 0.5, -0.125);
+    case PLANE: p = point_in_cube(random); return rt_vec3d(p.x, p.y, 0.5);
+    case STADIUM: p = point_in_cube(random); return is_huge(i) ? p : rt_scaled(p, stadium_scale[0]);
+    default: return point_in_cube(random);
+    }
+}
+
+/* ---- objects ---- */
+
+/* What an object is made of. */
+typedef struct Maker {
+    RtScene *scene;
+    RtRandom random;
+    uint32_t material;
+    bool flat; /* in a plane of constant z */
+    RtVec3d center;
+    double radius;
+} Maker;
+
+static RtVec3d direction(Maker *m) {
+    RtVec3d d = rt_random_direction(&m->random);
+    return m->flat ? rt_normalized(rt_vec3d(d.x, d.y, 0)) : d;
+}
+
+static RtStatus add_triangle(Maker *m, RtError *error) {
     RtVec3 vertices[3];
     for (int i = 0; i < 3; i++) {
-        vertices[i] = rt_narrow(rt_add_scaledd(center, rt_random_direction(random), radius));
+        vertices[i] = rt_narrow(rt_add_scaledd(m->center, direction(m), m->radius));
     }
-    return rt_scene_add_triangle(scene, material, vertices, NULL, error);
+    return rt_scene_add_triangle(m->scene, m->material, vertices, NULL, error);
 }
 
 /* An arrow head: concave, so that the test for being inside has something to do. */
-static RtStatus add_polygon(RtScene *scene, uint32_t material, RtVec3d center, double radius,
-                            RtRandom *random, RtError *error) {
+static RtStatus add_polygon(Maker *m, RtError *error) {
     static const double u[4] = {1, -0.7, -0.2, -0.7}, v[4] = {0, 0.7, 0, -0.7};
-    RtVec3d along = rt_random_direction(random);
+    RtVec3d along = direction(m);
     RtVec3d other = rt_vec3d(0, 0, 0);
-    other.at[rt_major_axis(rt_narrow(along)) == 0] = 1; /* an axis that `along` is not near */
+    other.at[m->flat ? 2 : rt_major_axis(rt_narrow(along)) == 0] = 1; /* an axis that `along` is not near */
     RtVec3d across = rt_normalized(rt_crossd(along, other));
     RtVec3 vertices[4];
     for (int i = 0; i < 4; i++) {
-        RtVec3d on_axis = rt_add_scaledd(center, along, u[i] * radius);
-        vertices[i] = rt_narrow(rt_add_scaledd(on_axis, across, v[i] * radius));
+        RtVec3d on_axis = rt_add_scaledd(m->center, along, u[i] * m->radius);
+        vertices[i] = rt_narrow(rt_add_scaledd(on_axis, across, v[i] * m->radius));
     }
-    return rt_scene_add_polygon(scene, material, vertices, 4, error);
+    return rt_scene_add_polygon(m->scene, m->material, vertices, 4, error);
 }
 
-static RtStatus add_cone(RtScene *scene, uint32_t material, RtVec3d center, double radius, RtRandom *random,
-                         RtError *error) {
-    RtVec3d half = rt_scaled(rt_random_direction(random), radius);
-    float base_radius = (float)(radius / 2), apex_radius = base_radius * rt_random_unit(random);
-    return rt_scene_add_cone(scene, material, rt_narrow(rt_subd(center, half)), base_radius,
-                             rt_narrow(rt_addd(center, half)), apex_radius, error);
+static RtStatus add_cone(Maker *m, RtError *error) {
+    RtVec3d half = rt_scaled(direction(m), m->radius);
+    float base_radius = (float)(m->radius / 2), apex_radius = base_radius * rt_random_unit(&m->random);
+    return rt_scene_add_cone(m->scene, m->material, rt_narrow(rt_subd(m->center, half)), base_radius,
+                             rt_narrow(rt_addd(m->center, half)), apex_radius, error);
 }
 
 static RtStatus add_object(RtScene *scene, uint64_t i, double mean_radius, const RtValue *values,
                            RtError *error) {
-    RtRandom random = rt_random((uint64_t)values[SEED].i, i);
-    RtVec3d center =
-        values[DISTRIBUTION].choice == CLUSTERED ? point_in_cluster(&random, values) : point_in_cube(&random);
-    double deviation = 2 * (double)rt_random_unit(&random) - 1;
-    double radius = mean_radius * (1 + values[SPREAD].f * deviation);
-    uint32_t material = (uint32_t)(i / 4 % scene->material_count);
+    uint32_t distribution = values[DISTRIBUTION].choice;
+    Maker m = {.scene = scene,
+               .random = rt_random((uint64_t)values[SEED].i, distribution == COINCIDENT ? 0 : i),
+               .material = (uint32_t)(i / 4 % scene->material_count),
+               .flat = distribution == PLANE};
+    m.center = center_of(i, &m.random, values);
+    double deviation = 2 * (double)rt_random_unit(&m.random) - 1;
+    m.radius = mean_radius * (1 + values[SPREAD].f * deviation);
+    if (distribution == STADIUM) m.radius *= stadium_scale[is_huge(i)];
     RtShape shape = values[SHAPE].choice == MIXED       ? (RtShape)(i % RT_SHAPE_COUNT)
                     : values[SHAPE].choice == TRIANGLES ? RT_SHAPE_TRIANGLE
                                                         : RT_SHAPE_SPHERE;
     switch (shape) {
-    case RT_SHAPE_POLYGON: return add_polygon(scene, material, center, radius, &random, error);
-    case RT_SHAPE_TRIANGLE: return add_triangle(scene, material, center, radius, &random, error);
-    case RT_SHAPE_CONE: return add_cone(scene, material, center, radius, &random, error);
+    case RT_SHAPE_POLYGON: return add_polygon(&m, error);
+    case RT_SHAPE_TRIANGLE: return add_triangle(&m, error);
+    case RT_SHAPE_CONE: return add_cone(&m, error);
     case RT_SHAPE_SPHERE:
     case RT_SHAPE_COUNT: break;
     }
-    return rt_scene_add_sphere(scene, material, rt_narrow(center), (float)radius, error);
+    return rt_scene_add_sphere(scene, m.material, rt_narrow(m.center), (float)m.radius, error);
+}
+
+/* On a line of length 2, in a square or in a cube of that edge. */
+static double mean_spacing(const RtValue *values) {
+    double n = (double)values[N].i;
+    switch (values[DISTRIBUTION].choice) {
+    case LINE: return 2 / n;
+    case PLANE: return 2 / sqrt(n);
+    default: return 2 / cbrt(n);
+    }
 }
 
 /* Two matte, a mirror and a glass, so that every kind of ray is traced. */
@@ -174,7 +223,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     RT_TRY(rt_scene_add_light(scene, rt_vec3(4, 3, 6), rt_vec3(0.6f, 0.6f, 0.6f), error));
     RT_TRY(rt_scene_add_light(scene, rt_vec3(5, -6, 2), rt_vec3(0.4f, 0.4f, 0.4f), error));
     /* float32 hides the last bits of the cube root, in which libraries differ. */
-    double mean_radius = (double)(float)(values[RADIUS].f * 2 / cbrt((double)values[N].i));
+    double mean_radius = (double)(float)(values[RADIUS].f * mean_spacing(values));
     for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) {
         RT_TRY(add_object(scene, i, mean_radius, values, error));
     }
@@ -184,7 +233,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
 extern const RtBuiltin rt_builtin_random;
 const RtBuiltin rt_builtin_random = {
     .name = "random",
-    .summary = "n random objects, uniform or in clusters, in four materials",
+    .summary = "n random objects, uniform, in clusters or in awkward places, in four materials",
     .source = "made for tests",
     .params = params,
     .param_count = sizeof params / sizeof params[0],

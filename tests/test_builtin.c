@@ -24,6 +24,7 @@ static void balls_and_tetra_have_the_counts_of_the_databases(void **state) {
         {"balls", 7381, 1, 0},   {"balls:size=1", 10, 1, 0}, {"balls:size=5", 66430, 1, 0},
         {"tetra", 0, 0, 4096},   {"tetra:size=1", 0, 0, 4},  {"tetra:size=9", 0, 0, 262144},
         {"random:n=7", 7, 0, 0}, {"random:n=1", 1, 0, 0},    {"random:n=8,shape=triangle", 0, 0, 8},
+        {"random:n=0", 0, 0, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene = open_scene(cases[i].spec);
@@ -32,6 +33,40 @@ static void balls_and_tetra_have_the_counts_of_the_databases(void **state) {
         assert_int_equal(scene.geometry.triangle_count, cases[i].triangles);
         rt_scene_clear(&scene);
     }
+}
+
+static RtVec3 extent_of(const RtScene *scene, uint32_t first, uint32_t count) {
+    RtBox box = RT_EMPTY_BOX;
+    for (uint32_t i = first; i < first + count; i++) box = rt_box_union(box, scene->geometry.boxes[i]);
+    return rt_sub(box.hi, box.lo);
+}
+
+static void random_objects_are_where_their_distribution_says(void **state) {
+    (void)state;
+    RtScene scene = open_scene("random:n=16,distribution=coincident");
+    for (uint32_t i = 1; i < 16; i++) {
+        assert_memory_equal(&scene.geometry.spheres[i], &scene.geometry.spheres[0], sizeof(RtSphere));
+    }
+    rt_scene_clear(&scene);
+
+    scene = open_scene("random:n=32,distribution=line,radius=0.1");
+    RtVec3 extent = extent_of(&scene, 0, 32);
+    assert_true(extent.x > 1.9f && extent.y < 0.02f && extent.z < 0.02f);
+    rt_scene_clear(&scene);
+
+    scene = open_scene("random:n=32,distribution=plane,shape=triangle");
+    assert_true(extent_of(&scene, 0, 32).z == 0);
+    rt_scene_clear(&scene);
+    scene = open_scene("random:n=32,distribution=plane,shape=mixed");
+    for (uint32_t i = 0; i < scene.geometry.polygon_vertex_count; i++) {
+        assert_true(scene.geometry.polygon_vertices[i].z == 0.5f);
+    }
+    rt_scene_clear(&scene);
+
+    scene = open_scene("random:n=32,distribution=stadium");
+    RtVec3 huge = extent_of(&scene, 8, 1), tiny = extent_of(&scene, 9, 7);
+    assert_true(huge.x > 0.1f && tiny.x < 0.01f && tiny.x > 0);
+    rt_scene_clear(&scene);
 }
 
 static void assert_printed(RtVec3 v, const char *expected) {
@@ -163,9 +198,9 @@ static void wrong_names_are_refused_with_what_would_be_right(void **state) {
         {"balls:size=1000000000", "1..7"},
         {"balls:sise=2", "did you mean 'size'?"},
         {"balls:4", "key=value"},
-        {"random:n=0", "1..268435456"},
-        {"random:n=1000000000", "1..268435456"},
-        {"random:n=nan", "1..268435456"},
+        {"random:n=-1", "0..268435456"},
+        {"random:n=1000000000", "0..268435456"},
+        {"random:n=nan", "0..268435456"},
         {"random:shape=cube", "sphere|triangle|mixed"},
         {"balls.nof", "'.nff'?"},
         {"tests/no_such_scene.nff", "there is no such file"},
@@ -244,6 +279,7 @@ static void every_failed_allocation_is_reported_and_leaves_nothing(void **state)
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(balls_and_tetra_have_the_counts_of_the_databases),
+        cmocka_unit_test(random_objects_are_where_their_distribution_says),
         cmocka_unit_test(balls_lie_where_the_databases_have_them),
         cmocka_unit_test(balls_and_tetra_print_as_when_they_were_compared_with_the_databases),
         cmocka_unit_test(a_fingerprint_tells_which_triangle_has_normals),

@@ -89,7 +89,7 @@ refuses 'scene\.txt.*\.yaml.*\.nff' render scene.txt -o x.png
 refuses 'size=1000000000.*1\.\.7' render balls:size=1000000000 -o x.png
 refuses "siz.*size" render balls:siz=2 -o x.png
 refuses 'a whole number' render balls:size=two -o x.png
-refuses '1\.\.' render random:n=0 -o x.png
+refuses '0\.\.' render random:n=-1 -o x.png
 
 # ---- scenes: what is in them ----
 

@@ -45,11 +45,9 @@ static const char *const stacks[] = {
 
 enum { STACK_COUNT = sizeof stacks / sizeof stacks[0] };
 
-static RtFrame trace(const RtAccel *accel, const Shot *shot, bool counted, int threads) {
+static RtFrame trace(const RtAccel *accel, bool counted, int threads) {
     RtFrame frame;
     RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads, .counted = counted};
-    assert_ok(
-        rt_sampling_init(&options.sampling, shot->width, shot->height, shot->samples, shot->corners, error));
     assert_ok(rt_frame_trace(&frame, accel, &options, error));
     return frame;
 }
@@ -84,8 +82,7 @@ static bool same_counts(const RtFrame *a, const RtFrame *b, const char *what) {
 }
 
 /* Compares the frames of one spec with `expected`; false, and a message, if one differs. */
-static bool makes_the_frame(const char *spec, const RtScene *scene, const Shot *shot,
-                            const RtFrame *expected) {
+static bool makes_the_frame(const char *spec, const RtScene *scene, const RtFrame *expected) {
     RtAccel *accel;
     RtError failure = {RT_OK, ""};
     RtStatus status = rt_accel_open(spec, scene, &accel, &failure);
@@ -93,8 +90,8 @@ static bool makes_the_frame(const char *spec, const RtScene *scene, const Shot *
     if (status != RT_OK) fail_msg("%s: %s", spec, failure.message);
     bool good = true;
     if (accel->exact) {
-        RtFrame timed = trace(accel, shot, false, 3), counted = trace(accel, shot, true, 1),
-                threaded = trace(accel, shot, true, 3);
+        RtFrame timed = trace(accel, false, 3), counted = trace(accel, true, 1),
+                threaded = trace(accel, true, 3);
         good = same_picture(&timed, expected, spec) && same_picture(&counted, expected, spec) &&
                same_picture(&threaded, expected, spec) && same_counts(&counted, &threaded, spec);
         rt_frame_clear(&timed);
@@ -112,15 +109,16 @@ static void every_accelerator_makes_the_frame_of_brute(void **state) {
     char spec[RT_MAX_SPEC_CHARS];
     size_t failures = 0;
     assert_ok(rt_scene_open(shot->scene, &scene, error));
+    assert_ok(rt_scene_sample(&scene, shot->width, shot->height, shot->samples, shot->corners, error));
     assert_ok(rt_accel_open("brute", &scene, &brute, error));
-    RtFrame expected = trace(brute, shot, false, 1);
+    RtFrame expected = trace(brute, false, 1);
     for (size_t i = 0; i < rt_accel_count(); i++) {
         for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
-            failures += !makes_the_frame(spec, &scene, shot, &expected);
+            failures += !makes_the_frame(spec, &scene, &expected);
         }
     }
     for (size_t i = 0; i < STACK_COUNT; i++) {
-        failures += !makes_the_frame(stacks[i], &scene, shot, &expected);
+        failures += !makes_the_frame(stacks[i], &scene, &expected);
     }
     rt_frame_clear(&expected);
     rt_accel_destroy(brute);

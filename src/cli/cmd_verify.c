@@ -1,10 +1,12 @@
 /* raytally verify: does every accelerator answer every ray like brute?
  *
- * Half of the rays are random chords, half come from a small frame of the scene's camera, in equal shares of
- * primary, shadow, reflection, transmission and diffuse rays as far as the scene produces them. */
+ * Half of the rays come from a small frame of the scene's camera, in equal shares of primary, shadow,
+ * reflection, transmission and diffuse rays as far as the scene produces them. The others are random chords
+ * or, with --families, rays of every family that is hard on accelerators, in equal shares. */
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "experiments/equivalence.h"
+#include "experiments/families.h"
 #include "experiments/rayset.h"
 #include "experiments/spread.h"
 #include "scene/load.h"
@@ -18,12 +20,22 @@
 #define MAX_SPECS   512
 #define FRAME_DEPTH 4
 
-/* More marginal answers than this part of all rays are too many to be called margins. */
+/* More marginal answers than this part of all rays are too many to be called margins; rays of the families
+ * are aimed at the margins, and may have any number. */
 #define MARGINAL_PART 0.01
 
-static const char *const default_scenes[] = {"balls:size=2", "tetra:size=3", "random:n=200,shape=mixed",
+static const char *const default_scenes[] = {"balls:size=2",
+                                             "tetra:size=3",
+                                             "random:n=0",
+                                             "random:n=1",
+                                             "random:n=2,shape=mixed",
+                                             "random:n=200,shape=mixed",
+                                             "random:n=500,shape=triangle",
                                              "random:n=500,distribution=clustered",
-                                             "random:n=500,shape=triangle"};
+                                             "random:n=40,shape=mixed,distribution=coincident",
+                                             "random:n=100,shape=mixed,distribution=line",
+                                             "random:n=100,shape=mixed,distribution=plane",
+                                             "random:n=200,shape=mixed,distribution=stadium"};
 
 /* One accelerator to verify. Those that were not asked for by name may be missing on this machine. */
 typedef struct Contender {
@@ -36,18 +48,21 @@ typedef struct Options {
     int scene_count;
     const char *accels[MAX_SPECS]; /* as given */
     int accel_count;
-    bool spread, json;
+    bool spread, families, json;
     int threads;
     uint64_t rays, seed;
     Contender contenders[MAX_SPECS]; /* what they stand for */
     int contender_count;
 } Options;
 
-enum { KEY_SPREAD = 256 };
+enum { KEY_SPREAD = 256, KEY_FAMILIES };
 
 static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0, "An accelerator, or `all` of them (the default); may be repeated", 0},
     {"spread", KEY_SPREAD, 0, 0, "Also each parameter of each at every value worth testing, one at a time",
+     0},
+    {"families", KEY_FAMILIES, 0, 0,
+     "Instead of random chords, rays that graze, start and end on surfaces, run along axes, edges and faces",
      0},
     {"rays", 'n', "N", 0, "Rays for each scene and accelerator (default 100000)", 0},
     {"seed", 's', "S", 0, "Of the random rays (default 1)", 0},
@@ -63,6 +78,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         o->accels[o->accel_count++] = argument;
         return 0;
     case KEY_SPREAD: o->spread = true; return 0;
+    case KEY_FAMILIES: o->families = true; return 0;
     case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 20000000); return 0;
     case 's': o->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
     case 't': o->threads = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
@@ -138,24 +154,36 @@ static RtStatus append(RtRay *rays, uint64_t *count, const RtRaySet *set, uint64
     return RT_OK;
 }
 
-/* Fills rays[0..o->rays): what the camera's kinds leave of their half goes to the random rays. */
-static RtStatus mix_rays(const Options *o, const RtRaySet *sets, RtRay *rays, RtError *error) {
-    uint64_t kinds = 0, count = 0;
-    for (int kind = 0; kind < RT_RAY_RANDOM; kind++) kinds += sets[kind].count > 0;
-    for (int kind = 0; kind < RT_RAY_RANDOM; kind++) {
-        if (sets[kind].count > 0) RT_TRY(append(rays, &count, &sets[kind], o->rays / 2 / kinds, error));
-    }
-    memcpy(rays + count, sets[RT_RAY_RANDOM].rays, (o->rays - count) * sizeof(RtRay));
-    return RT_OK;
-}
-
-static RtStatus make_rays(const Options *o, const RtAccel *brute, RtRay *rays, RtError *error) {
-    RtRecording recording = {.depth = FRAME_DEPTH, .seed = o->seed, .random = o->rays, .threads = o->threads};
+/* Appends the share of each kind of ray that the camera's frame produces in half of all. */
+static RtStatus append_camera_rays(const Options *o, const RtAccel *brute, RtRay *rays, uint64_t *count,
+                                   RtError *error) {
+    RtRecording recording = {.depth = FRAME_DEPTH, .seed = o->seed, .threads = o->threads};
     RtRaySet sets[RT_RAY_KIND_COUNT];
     RT_TRY(rt_rayset_record(sets, brute, &recording, error));
-    RtStatus status = mix_rays(o, sets, rays, error);
+    uint64_t kinds = 0;
+    for (int kind = 0; kind < RT_RAY_RANDOM; kind++) kinds += sets[kind].count > 0;
+    RtStatus status = RT_OK;
+    for (int kind = 0; kind < RT_RAY_RANDOM && status == RT_OK; kind++) {
+        if (sets[kind].count > 0) status = append(rays, count, &sets[kind], o->rays / 2 / kinds, error);
+    }
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
     return status;
+}
+
+/* Fills rays[0..o->rays): what the camera's kinds leave of their half goes to the families, the first of
+ * which is the chords. */
+static RtStatus make_rays(const Options *o, const RtAccel *brute, RtRay *rays, RtError *error) {
+    RtQuery query;
+    uint64_t count = 0, families = o->families ? rt_ray_family_count() : 1;
+    RT_TRY(append_camera_rays(o, brute, rays, &count, error));
+    RT_TRY(rt_query_init(&query, brute, error));
+    uint64_t left = o->rays - count;
+    for (uint64_t f = 0; f < families; f++) {
+        uint64_t first = left * f / families, end = left * (f + 1) / families;
+        rt_ray_family_fill((size_t)f, &query, o->seed, 0, (size_t)(end - first), rays + count + first);
+    }
+    rt_query_clear(&query);
+    return RT_OK;
 }
 
 /* ---- verifying ---- */
@@ -163,7 +191,8 @@ static RtStatus make_rays(const Options *o, const RtAccel *brute, RtRay *rays, R
 typedef struct Run {
     const Options *options;
     json_t *rows;
-    int scene; /* index, for progress */
+    int scene;                   /* index, for progress */
+    int scene_width, spec_width; /* of the columns */
     bool header_printed, failed, progress;
 } Run;
 
@@ -177,18 +206,27 @@ static void clear_progress(const Run *run) {
     if (run->progress) fputs("\r\033[K", stderr);
 }
 
-static void print_header(Run *run) {
-    if (run->header_printed) return;
-    run->header_printed = true;
-    printf("%-36s %-28s %10s %10s %8s %8s %8s %8s\n", "scene", "accelerator", "rays", "equal", "tie",
-           "marginal", "wrong", "occluded");
+static void widen(int *width, const char *text) {
+    if ((int)strlen(text) > *width) *width = (int)strlen(text);
 }
 
-static void print_row(const RtEquivalence *r, const char *scene, const char *spec) {
-    printf("%-36s %-28s %10llu %10llu %8llu %8llu %8llu %8llu\n", scene, spec, (unsigned long long)r->rays,
-           (unsigned long long)r->verdicts[RT_EQUAL], (unsigned long long)r->verdicts[RT_TIE],
-           (unsigned long long)r->verdicts[RT_MARGINAL], (unsigned long long)r->verdicts[RT_WRONG],
-           (unsigned long long)r->occluded_wrong);
+static void print_header(Run *run) {
+    const Options *o = run->options;
+    if (run->header_printed) return;
+    run->header_printed = true;
+    run->scene_width = (int)strlen("scene");
+    for (int i = 0; i < o->scene_count; i++) widen(&run->scene_width, o->scenes[i]);
+    run->spec_width = (int)strlen("accelerator");
+    for (int i = 0; i < o->contender_count; i++) widen(&run->spec_width, o->contenders[i].spec);
+    printf("%-*s %-*s %10s %10s %8s %8s %8s %8s\n", run->scene_width, "scene", run->spec_width, "accelerator",
+           "rays", "equal", "tie", "marginal", "wrong", "occluded");
+}
+
+static void print_row(const Run *run, const RtEquivalence *r, const char *scene, const char *spec) {
+    printf("%-*s %-*s %10llu %10llu %8llu %8llu %8llu %8llu\n", run->scene_width, scene, run->spec_width,
+           spec, (unsigned long long)r->rays, (unsigned long long)r->verdicts[RT_EQUAL],
+           (unsigned long long)r->verdicts[RT_TIE], (unsigned long long)r->verdicts[RT_MARGINAL],
+           (unsigned long long)r->verdicts[RT_WRONG], (unsigned long long)r->occluded_wrong);
     if (r->any_wrong) {
         char text[512];
         rt_witness_format(&r->first_wrong, text, sizeof text);
@@ -197,13 +235,14 @@ static void print_row(const RtEquivalence *r, const char *scene, const char *spe
 }
 
 static void report(Run *run, const RtEquivalence *result, const char *scene, const char *spec) {
-    bool too_marginal = (double)result->verdicts[RT_MARGINAL] > MARGINAL_PART * (double)result->rays;
+    bool too_marginal = !run->options->families &&
+                        (double)result->verdicts[RT_MARGINAL] > MARGINAL_PART * (double)result->rays;
     clear_progress(run);
     if (run->options->json) {
         json_array_append_new(run->rows, rt_equivalence_json(result, scene, spec, "brute"));
     } else {
         print_header(run);
-        print_row(result, scene, spec);
+        print_row(run, result, scene, spec);
         fflush(stdout);
     }
     if (too_marginal) {
