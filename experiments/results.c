@@ -67,7 +67,7 @@ static void add(Mean *mean, double value, double weight) {
 }
 
 RtTotal rt_results_total(const RtResults *results, uint32_t trial, uint32_t contender) {
-    Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0};
+    Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0}, baseline = {0};
     uint64_t rays = 0;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         RtRayKind kind = (RtRayKind)k;
@@ -78,9 +78,15 @@ RtTotal rt_results_total(const RtResults *results, uint32_t trial, uint32_t cont
         add(&object_tests, rt_cell_per_ray(results, trial, contender, kind, tally->object_tests), weight);
         add(&extent_tests, rt_cell_per_ray(results, trial, contender, kind, tally->extent_tests), weight);
         add(&steps, rt_cell_per_ray(results, trial, contender, kind, tally->steps), weight);
-        if (cell->timed) add(&seconds, cell->seconds.median, weight);
+        if (!cell->timed) continue;
+        add(&seconds, cell->seconds.median, weight);
+        add(&baseline, cell->ratio.median * cell->seconds.median, weight);
     }
     /* 0 / 0 is NAN: not known. */
-    return (RtTotal){rays, object_tests.sum / object_tests.weight, extent_tests.sum / extent_tests.weight,
-                     steps.sum / steps.weight, seconds.sum / seconds.weight};
+    return (RtTotal){.rays = rays,
+                     .object_tests = object_tests.sum / object_tests.weight,
+                     .extent_tests = extent_tests.sum / extent_tests.weight,
+                     .steps = steps.sum / steps.weight,
+                     .seconds = seconds.sum / seconds.weight,
+                     .ratio = baseline.sum / seconds.sum};
 }

@@ -32,7 +32,7 @@ typedef struct RtCell {
     int threads;        /* of the timing */
     RtEstimate seconds; /* a ray: processor time on one thread, wall time on several */
     RtEstimate wall;    /* a ray, on the wall clock */
-    RtEstimate ratio;   /* of throughput to the baseline's, paired by round */
+    RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
 } RtCell;
 
 typedef struct RtResults {
@@ -62,6 +62,7 @@ typedef struct RtTotal {
     uint64_t rays;                            /* measured */
     double object_tests, extent_tests, steps; /* a ray */
     double seconds;                           /* a ray */
+    double ratio;                             /* of throughput to the baseline's on the same rays */
 } RtTotal;
 
 RtTotal rt_results_total(const RtResults *results, uint32_t trial, uint32_t contender);

@@ -218,7 +218,6 @@ void rt_print_totals(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     for (uint32_t t = 0; t < experiment->trial_count; t++) {
         if (!results->trials[t].known) continue;
-        double baseline = rt_results_total(results, t, experiment->baseline).seconds;
         print_scene(out, results, t);
         fprintf(out, "%-*s %9s %9s %9s %9s %9s %8s %8s %8s\n", label_width(experiment), "accelerator", "rays",
                 "tests/ray", "ext./ray", "steps/ray", "ns/ray", "ratio", "build ms", "MB");
@@ -231,7 +230,7 @@ void rt_print_totals(const RtResults *results, FILE *out) {
             print_figure(out, 9, total.extent_tests);
             print_figure(out, 9, total.steps);
             print_figure(out, 9, 1e9 * total.seconds);
-            print_figure(out, 8, baseline / total.seconds);
+            print_figure(out, 8, total.ratio);
             print_build(out, rt_build_at(results, t, c));
         }
     }

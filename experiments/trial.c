@@ -15,12 +15,10 @@
 enum { MOST_BUILDS = 3 };
 static const double CHEAP_BUILD = 0.25; /* seconds */
 
-/* The rays that one contender gets of one kind, and the answers to them. */
+/* The rays that one contender gets of one kind, and the answers to them; views into what the trial owns. */
 typedef struct Share {
     RtRaySet set;
     const RtHit *expected;
-    RtRaySet thinned; /* owned where the contender is thinned, else empty */
-    RtHit *picked;    /* owned likewise */
 } Share;
 
 typedef struct Trial {
@@ -29,11 +27,11 @@ typedef struct Trial {
     const RtTrialOptions *options;
     uint32_t index, count; /* count: contenders and the null run */
     RtScene scene;
-    RtAccel *reference; /* answers */
-    RtAccel **accels;   /* [count], NULL for one that is missing */
-    RtRaySet sets[RT_RAY_KIND_COUNT];
-    Share *shares;  /* [count], of the kind at hand */
-    RtHit *answers; /* to the set of the kind at hand */
+    RtAccel *reference;               /* answers */
+    RtAccel **accels;                 /* [count], NULL for one that is missing */
+    RtRaySet sets[RT_RAY_KIND_COUNT]; /* behind the `count` rays of one at hand lie its thinned shares */
+    Share *shares;                    /* [count], of the kind at hand */
+    RtHit *answers;                   /* to the set of the kind at hand and the shares behind it */
 } Trial;
 
 /* ---- what is left to do ---- */
@@ -200,40 +198,56 @@ static RtStatus build_all(Trial *trial, RtError *error) {
 
 /* ---- the rays of one kind ---- */
 
-static void clear_shares(Trial *trial) {
+static uint64_t every_of(const Trial *trial, uint32_t contender) {
+    return trial->experiment->contenders[spec_of(trial, contender)].every;
+}
+
+/* Rays in a set that is thinned by `every`. */
+static uint64_t thinned_count(const RtRaySet *set, uint64_t every) {
+    return (set->count + every - 1) / every;
+}
+
+/* Rays of the set and of all shares that are thinned. */
+static uint64_t count_with_shares(const Trial *trial, const RtRaySet *set) {
+    uint64_t count = set->count;
     for (uint32_t c = 0; c < trial->count; c++) {
-        rt_rayset_clear(&trial->shares[c].thinned);
-        rt_free(trial->shares[c].picked);
-        trial->shares[c] = (Share){0};
+        if (trial->accels[c] && every_of(trial, c) > 1) count += thinned_count(set, every_of(trial, c));
     }
-    rt_free(trial->answers);
-    trial->answers = NULL;
+    return count;
 }
 
-static RtStatus thin_share(Share *share, uint64_t every, const Trial *trial, const RtRaySet *set,
-                           RtError *error) {
-    RT_TRY(rt_rayset_thin(set, every, &share->thinned, error));
-    share->picked = rt_alloc(share->thinned.count, sizeof(RtHit));
-    if (!share->picked) return rt_fail_memory(error, "answers", share->thinned.count * sizeof(RtHit));
-    for (uint64_t i = 0; i < share->thinned.count; i++) share->picked[i] = trial->answers[i * every];
-    share->set = share->thinned;
-    share->expected = share->picked;
-    return RT_OK;
+/* Picks the rays and answers of a share, to lie from `first` on. */
+static void thin_share(const Trial *trial, const RtRaySet *set, uint64_t every, uint64_t first,
+                       Share *share) {
+    share->set.rays = set->rays + first;
+    share->set.count = thinned_count(set, every);
+    share->expected = trial->answers + first;
+    for (uint64_t i = 0; i < share->set.count; i++) {
+        share->set.rays[i] = set->rays[i * every];
+        trial->answers[first + i] = trial->answers[i * every];
+    }
 }
 
-/* Gives every contender its share of the set, and the answers to those that learn. */
-static RtStatus deal_shares(Trial *trial, const RtRaySet *set, RtError *error) {
-    trial->answers = rt_alloc(set->count, sizeof(RtHit));
-    if (!trial->answers) return rt_fail_memory(error, "answers", set->count * sizeof(RtHit));
+/* Gives every contender its share of the set, and the answers to those that learn. Thinned shares are copies
+ * behind the set, in the same array: the baseline, which may be one that learns and knows rays by their
+ * places, is timed on all of them. */
+static RtStatus deal_shares(Trial *trial, RtRaySet *set, RtError *error) {
+    uint64_t all = count_with_shares(trial, set), used = set->count;
+    uint32_t capacity = (uint32_t)set->count;
+    RT_TRY(rt_reserve(&set->rays, &capacity, all, sizeof(RtRay), error));
+    trial->answers = rt_alloc(all, sizeof(RtHit));
+    if (!trial->answers) return rt_fail_memory(error, "answers", all * sizeof(RtHit));
     RT_TRY(rt_measure_answers(trial->reference, set, trial->options->threads, trial->answers, error));
     for (uint32_t c = 0; c < trial->count; c++) {
-        Share *share = &trial->shares[c];
-        RtAccel *accel = trial->accels[c];
-        if (!accel) continue;
-        uint64_t every = trial->experiment->contenders[spec_of(trial, c)].every;
-        *share = (Share){.set = *set, .expected = trial->answers};
-        if (every > 1) RT_TRY(thin_share(share, every, trial, set, error));
-        RT_TRY(rt_accel_learn(accel, share->set.rays, share->expected, share->set.count, error));
+        uint64_t every = every_of(trial, c);
+        if (!trial->accels[c]) continue;
+        trial->shares[c] = (Share){.set = *set, .expected = trial->answers};
+        if (every == 1) continue;
+        thin_share(trial, set, every, used, &trial->shares[c]);
+        used += trial->shares[c].set.count;
+    }
+    for (uint32_t c = 0; c < trial->count; c++) {
+        if (trial->accels[c]) RT_TRY(rt_accel_learn(trial->accels[c], set->rays, trial->answers, all, error));
     }
     return RT_OK;
 }
@@ -281,22 +295,67 @@ static RtStatus count_kind(Trial *trial, RtRayKind kind, RtError *error) {
 
 /* ---- timing ---- */
 
-/* Takes what was timed into the cells; timed[i] is contender who[i]. */
-static RtStatus keep_times(Trial *trial, RtRayKind kind, const RtTimed *timed, const uint32_t *who,
-                           size_t count, RtError *error) {
-    uint32_t rounds = trial->experiment->rounds, baseline = 0;
-    while (who[baseline] != trial->experiment->baseline) baseline++;
-    for (size_t i = 0; i < count; i++) {
-        RtCell *cell = rt_cell_at(trial->results, trial->index, who[i], kind);
-        if (cell->timed) continue;
+/* All that is timed against each other: each contender on its share, and the baseline on every share that is
+ * thinned, so that a ratio compares times on the same rays. */
+typedef struct Contest {
+    uint32_t count, rounds;
+    RtTimed *timed;  /* [count] */
+    double *seconds; /* [count][2][rounds], where they go */
+    uint32_t *place; /* [trial->count] of a contender among them */
+    uint32_t *rival; /* [trial->count] of the baseline on its rays */
+} Contest;
+
+static uint32_t enter(Contest *contest, const RtAccel *accel, const RtRaySet *set) {
+    double *place = contest->seconds + 2 * (size_t)contest->count * contest->rounds;
+    contest->timed[contest->count] = (RtTimed){accel, set, place, place + contest->rounds};
+    return contest->count++;
+}
+
+/* Clear it also after a failure. */
+static RtStatus contest_init(Contest *contest, const Trial *trial, RtError *error) {
+    const uint32_t baseline = trial->experiment->baseline;
+    size_t most = 2 * (size_t)trial->count, doubles = 2 * most * trial->experiment->rounds;
+    *contest = (Contest){.rounds = trial->experiment->rounds,
+                         .timed = rt_alloc(most, sizeof(RtTimed)),
+                         .seconds = rt_alloc(doubles, sizeof(double)),
+                         .place = rt_alloc(trial->count, sizeof(uint32_t)),
+                         .rival = rt_alloc(trial->count, sizeof(uint32_t))};
+    if (!contest->timed || !contest->seconds || !contest->place || !contest->rival) {
+        return rt_fail_memory(error, "times", doubles * sizeof(double));
+    }
+    for (uint32_t c = 0; c < trial->count; c++) {
+        if (trial->accels[c]) contest->place[c] = enter(contest, trial->accels[c], &trial->shares[c].set);
+    }
+    for (uint32_t c = 0; c < trial->count; c++) {
+        contest->rival[c] = contest->place[baseline];
+        if (!trial->accels[c] || every_of(trial, c) == 1) continue;
+        contest->rival[c] = enter(contest, trial->accels[baseline], &trial->shares[c].set);
+    }
+    return RT_OK;
+}
+
+static void contest_clear(Contest *contest) {
+    rt_free(contest->timed);
+    rt_free(contest->seconds);
+    rt_free(contest->place);
+    rt_free(contest->rival);
+}
+
+/* Takes what was timed into the cells. */
+static RtStatus keep_times(Trial *trial, RtRayKind kind, const Contest *contest, RtError *error) {
+    uint32_t rounds = contest->rounds;
+    for (uint32_t c = 0; c < trial->count; c++) {
+        RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
+        const RtTimed *own = &contest->timed[contest->place[c]], *rival = &contest->timed[contest->rival[c]];
+        if (!trial->accels[c] || cell->timed) continue;
         cell->timed = true;
         cell->rounds = rounds;
         cell->threads = rt_thread_count(trial->options->timing);
-        cell->tally.rays = timed[i].set->count;
-        cell->seconds = rt_estimate(timed[i].seconds, rounds);
-        cell->wall = rt_estimate(timed[i].wall, rounds);
-        cell->ratio = rt_estimate_ratio(timed[baseline].seconds, timed[i].seconds, rounds);
-        RT_TRY(tell(trial, RT_EVENT_TIME, who[i], kind, error));
+        cell->tally.rays = own->set->count;
+        cell->seconds = rt_estimate(own->seconds, rounds);
+        cell->wall = rt_estimate(own->wall, rounds);
+        cell->ratio = rt_estimate_ratio(rival->seconds, own->seconds, rounds);
+        RT_TRY(tell(trial, RT_EVENT_TIME, c, kind, error));
     }
     return RT_OK;
 }
@@ -307,23 +366,11 @@ static RtStatus time_kind(Trial *trial, RtRayKind kind, RtError *error) {
                        .least = 1e-3 * experiment->milliseconds,
                        .threads = trial->options->timing,
                        .seed = experiment->seed + (uint64_t)kind};
-    size_t count = 0, doubles = 2 * (size_t)trial->count * experiment->rounds;
-    RtTimed *timed = rt_alloc(trial->count, sizeof(RtTimed));
-    uint32_t *who = rt_alloc(trial->count, sizeof(uint32_t));
-    double *seconds = rt_alloc(doubles, sizeof(double));
-    RtStatus status = RT_OK;
-    if (!timed || !who || !seconds) status = rt_fail_memory(error, "times", doubles * sizeof(double));
-    for (uint32_t c = 0; status == RT_OK && c < trial->count; c++) {
-        if (!trial->accels[c]) continue;
-        double *place = seconds + 2 * count * experiment->rounds;
-        timed[count] = (RtTimed){trial->accels[c], &trial->shares[c].set, place, place + experiment->rounds};
-        who[count++] = c;
-    }
-    if (status == RT_OK) status = rt_measure_time(timed, count, &timing, error);
-    if (status == RT_OK) status = keep_times(trial, kind, timed, who, count, error);
-    rt_free(timed);
-    rt_free(who);
-    rt_free(seconds);
+    Contest contest;
+    RtStatus status = contest_init(&contest, trial, error);
+    if (status == RT_OK) status = rt_measure_time(contest.timed, contest.count, &timing, error);
+    if (status == RT_OK) status = keep_times(trial, kind, &contest, error);
+    contest_clear(&contest);
     return status;
 }
 
@@ -334,7 +381,8 @@ static RtStatus measure_kind(Trial *trial, RtRayKind kind, RtError *error) {
     RtStatus status = deal_shares(trial, &trial->sets[kind], error);
     if (status == RT_OK) status = count_kind(trial, kind, error);
     if (status == RT_OK && !trial->options->count_only) status = time_kind(trial, kind, error);
-    clear_shares(trial);
+    rt_free(trial->answers);
+    trial->answers = NULL;
     return status;
 }
 

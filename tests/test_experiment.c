@@ -309,6 +309,51 @@ static void a_count_is_the_sum_over_threads_and_finds_wrong_answers(void **state
     rt_scene_clear(&scene);
 }
 
+/* Times `spec` on every 16th primary ray of a cloud against `baseline` on all, and gives the cell. In a frame
+ * 16 wide those are the rays of the leftmost column, which pass by everything. */
+static RtCell time_thinned(Place *place, const char *baseline, const char *spec) {
+    RtExperiment *e = place->experiment;
+    RtTrialOptions options = {.threads = 1, .timing = 1};
+    RtResults results;
+    char where[RT_MAX_LABEL];
+    rt_experiment_init(e);
+    strcpy(e->name, "thinned");
+    e->milliseconds = 1;
+    e->kind_count = 1;
+    e->trial_count = 1;
+    e->trials[0].depth = 1;
+    e->trials[0].width = e->trials[0].height = 16;
+    e->contender_count = 2;
+    e->contenders[0] = (RtContender){.label = "all", .every = 1};
+    e->contenders[1] = (RtContender){.label = "some", .every = 16};
+    strcpy(e->contenders[0].spec, baseline);
+    strcpy(e->contenders[1].spec, spec);
+    assert_ok(rt_trial_set_scene(&e->trials[0], "random:n=300", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    assert_ok(rt_trial_run(&results, 0, &options, error));
+    RtCell cell = *rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    assert_true(fabs(rt_results_total(&results, 0, 1).ratio / cell.ratio.median - 1) < 1e-9);
+    rt_results_clear(&results);
+    return cell;
+}
+
+/* The hierarchy needs 1 extent test for each of these rays and 10 for one of all: on all rays the ratio would
+ * be 4 and more. */
+static void a_thinned_contender_is_compared_with_the_baseline_on_its_own_rays(void **state) {
+    RtCell cell = time_thinned(*state, "bvh", "bvh");
+    assert_int_equal(cell.tally.rays, 16);
+    assert_int_equal(cell.tally.extent_tests, 16);
+    assert_true(0.5 < cell.ratio.median && cell.ratio.median < 2);
+}
+
+/* ideal knows rays by their addresses; a ray that it does not know costs it 300 tests. */
+static void a_baseline_that_learns_knows_the_rays_of_thinned_contenders(void **state) {
+    RtCell cell = time_thinned(*state, "ideal", "ideal");
+    assert_int_equal(cell.tally.object_tests, cell.tally.hits);
+    assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
+}
+
 static void figures_are_about_four_characters(void **state) {
     (void)state;
     const struct {
@@ -338,6 +383,8 @@ int main(void) {
         IN_PLACE(the_report_has_the_question_and_nothing_outside_itself),
         IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional),
         cmocka_unit_test(a_count_is_the_sum_over_threads_and_finds_wrong_answers),
+        IN_PLACE(a_thinned_contender_is_compared_with_the_baseline_on_its_own_rays),
+        IN_PLACE(a_baseline_that_learns_knows_the_rays_of_thinned_contenders),
         cmocka_unit_test(figures_are_about_four_characters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
