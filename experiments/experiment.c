@@ -8,6 +8,7 @@
 void rt_experiment_init(RtExperiment *experiment) {
     memset(experiment, 0, sizeof *experiment);
     experiment->limit = 100000;
+    experiment->together = 1;
     experiment->rounds = 10;
     experiment->milliseconds = 20;
     experiment->seed = 1;
@@ -117,6 +118,8 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     RT_TRY(check_baseline(experiment, error));
     strcpy(where, "limit");
     RT_TRY(check_range("limit", experiment->limit, 1, RT_MAX_RAYS_A_KIND, error));
+    strcpy(where, "together");
+    RT_TRY(check_range("together", experiment->together, 1, RT_MAX_RAYS_A_KIND, error));
     strcpy(where, "rounds");
     RT_TRY(check_range("rounds", experiment->rounds, 1, RT_MAX_ROUNDS, error));
     strcpy(where, "milliseconds");

@@ -45,6 +45,7 @@ typedef struct RtExperiment {
     RtRayKind kinds[RT_RAY_KIND_COUNT];
     uint32_t kind_count;
     uint64_t limit;        /* rays of one kind at most; a larger set is thinned evenly */
+    uint64_t together;     /* neighbouring rays that are kept together where a set is thinned */
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
     uint32_t milliseconds; /* a short set is repeated within a round until it takes this long */
     uint64_t seed;
@@ -56,7 +57,8 @@ typedef struct RtExperiment {
     uint64_t fingerprint;     /* of the YAML's bytes */
 } RtExperiment;
 
-/* No scenes, no contenders, all ray kinds, and the defaults: limit 100000, 10 rounds, 20 milliseconds. */
+/* No scenes, no contenders, all ray kinds, and the defaults: limit 100000, rays kept singly, 10 rounds, 20
+ * milliseconds. */
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Whatever is wrong (unknown keys, specs that do not parse, labels used twice, a

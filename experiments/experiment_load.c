@@ -38,7 +38,7 @@ typedef struct Document {
     ContenderEntry accelerators[RT_MAX_CONTENDERS];
     Word rays[RT_RAY_KIND_COUNT], plots[RT_MAX_PLOTS];
     uint32_t scenes_count, accelerators_count, rays_count, plots_count;
-    uint64_t limit, seed;
+    uint64_t limit, together, seed;
     uint32_t rounds, milliseconds;
     Scale quick;
 } Document;
@@ -87,6 +87,7 @@ static const cyaml_schema_field_t document_fields[] = {
     CYAML_FIELD_STRING("baseline", OPTIONAL, Document, baseline, 1),
     CYAML_FIELD_SEQUENCE("rays", OPTIONAL, Document, rays, &word_schema, 1, RT_RAY_KIND_COUNT),
     CYAML_FIELD_UINT("limit", OPTIONAL, Document, limit),
+    CYAML_FIELD_UINT("together", OPTIONAL, Document, together),
     CYAML_FIELD_UINT("rounds", OPTIONAL, Document, rounds),
     CYAML_FIELD_UINT("milliseconds", OPTIONAL, Document, milliseconds),
     CYAML_FIELD_UINT("seed", OPTIONAL, Document, seed),
@@ -195,6 +196,7 @@ static RtStatus take_document(const RtYamlFile *file, bool quick, RtExperiment *
     strcpy(experiment->question, d->question);
     strcpy(experiment->prediction, d->prediction);
     if (d->limit) experiment->limit = d->limit;
+    if (d->together) experiment->together = d->together;
     if (d->rounds) experiment->rounds = d->rounds;
     if (d->milliseconds) experiment->milliseconds = d->milliseconds;
     if (d->seed) experiment->seed = d->seed;

@@ -47,10 +47,11 @@ static json_t *manifest_json(const RtResults *results, const RtTrialOptions *opt
     struct tm utc;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     return json_pack(
-        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:s, s:s, s:i, s:i, s:o, s:o, s:o}", "experiment",
-        experiment->name, "file", experiment->path, "hash", rt_json_hex(experiment->fingerprint), "question",
-        experiment->question, "prediction", experiment->prediction, "quick", experiment->quick, "seed",
-        (json_int_t)experiment->seed, "limit", (json_int_t)experiment->limit, "rounds",
+        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:s, s:s, s:i, s:i, s:o, s:o, s:o}",
+        "experiment", experiment->name, "file", experiment->path, "hash",
+        rt_json_hex(experiment->fingerprint), "question", experiment->question, "prediction",
+        experiment->prediction, "quick", experiment->quick, "seed", (json_int_t)experiment->seed, "limit",
+        (json_int_t)experiment->limit, "together", (json_int_t)experiment->together, "rounds",
         (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
         experiment->contenders[experiment->baseline].label, "date", date, "threads_counting",
         rt_thread_count(options->threads), "threads_timing", rt_thread_count(options->timing), "scenes",

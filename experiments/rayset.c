@@ -206,10 +206,29 @@ RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t every, RtRaySet *to, RtEr
     return RT_OK;
 }
 
-RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, RtRaySet *to, RtError *error) {
-    assert(limit > 0);
+/* Where the run of a group of `every` runs starts, in runs from the start of the group. At random, for a
+ * constant would pick columns of the image where `every` divides the runs of a row. */
+static uint64_t pick(uint64_t group, uint64_t every) {
+    RtRandom random = rt_random(0, group);
+    return (uint64_t)rt_random_bits(&random) * every >> 32;
+}
+
+RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t together, RtRaySet *to,
+                         RtError *error) {
+    assert(limit > 0 && together > 0);
     uint64_t every = (from->count + limit - 1) / limit;
-    return rt_rayset_thin(from, every ? every : 1, to, error);
+    if (together > limit / 64) together = limit / 64;
+    if (every <= 1 || together <= 1) return rt_rayset_thin(from, every ? every : 1, to, error);
+    RT_TRY(set_init(to, from->kind, limit, error));
+    to->count = 0;
+    for (uint64_t group = 0; group * every * together < from->count; group++) {
+        uint64_t first = (group * every + pick(group, every)) * together;
+        for (uint64_t i = first; i < first + together && i < from->count && to->count < limit; i++) {
+            to->rays[to->count++] = from->rays[i];
+        }
+    }
+    seal(to);
+    return RT_OK;
 }
 
 void rt_rayset_clear(RtRaySet *set) {

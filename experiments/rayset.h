@@ -32,8 +32,12 @@ RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecordin
 /* Keeps every `every`th ray, starting with the first; 1 keeps all. */
 RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t every, RtRaySet *to, RtError *error);
 
-/* At most `limit` rays, evenly spread: thins by ceil(count / limit). */
-RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, RtRaySet *to, RtError *error);
+/* At most `limit` rays, evenly spread, in runs of `together` neighbours: of every ceil(count / limit) runs
+ * one is kept. Runs of 1 thin the set as above: the widest spread, for counting. Longer ones, up to a
+ * sixteenth of `limit`, are picked at random within their group and keep the coherence that packets and
+ * caches live on, for timing. */
+RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t together, RtRaySet *to,
+                         RtError *error);
 
 void rt_rayset_clear(RtRaySet *set);
 

@@ -108,7 +108,8 @@ static RtStatus open_scene(Trial *trial, RtError *error) {
 static RtStatus keep_sets(Trial *trial, const RtRaySet *recorded, RtError *error) {
     for (uint32_t k = 0; k < trial->experiment->kind_count; k++) {
         RtRayKind kind = trial->experiment->kinds[k];
-        RT_TRY(rt_rayset_limit(&recorded[kind], trial->experiment->limit, &trial->sets[kind], error));
+        RT_TRY(rt_rayset_limit(&recorded[kind], trial->experiment->limit, trial->experiment->together,
+                               &trial->sets[kind], error));
     }
     return RT_OK;
 }

@@ -160,14 +160,40 @@ static void thinning_keeps_every_nth_ray_and_a_limit_holds(void **state) {
     rt_rayset_clear(&thin);
     const uint64_t limits[] = {1, 2, 1000, 1849, 1850, 5000};
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
-        assert_ok(rt_rayset_limit(set, limits[i], &thin, error));
+        assert_ok(rt_rayset_limit(set, limits[i], 1, &thin, error));
         assert_true(thin.count > 0 && thin.count <= limits[i]);
         rt_rayset_clear(&thin);
     }
     RtRaySet nothing = {.kind = RT_RAY_SHADOW};
-    assert_ok(rt_rayset_limit(&nothing, 10, &thin, error));
+    assert_ok(rt_rayset_limit(&nothing, 10, 1, &thin, error));
     assert_int_equal(thin.count, 0);
     rt_rayset_clear(&thin);
+}
+
+/* Asserts that `limit` keeps runs of `together` rays, one of every `every` runs, somewhere in its group. */
+static void assert_runs(const RtRaySet *set, uint64_t limit, uint64_t asked, uint64_t together,
+                        uint64_t every) {
+    RtRaySet kept;
+    bool moved = false;
+    assert_ok(rt_rayset_limit(set, limit, asked, &kept, error));
+    assert_true(kept.count <= limit && kept.count + 2 * together >= set->count / every);
+    for (uint64_t i = 0, from = 0; i < kept.count; i++, from++) {
+        while (from < set->count && memcmp(&kept.rays[i], &set->rays[from], sizeof(RtRay)) != 0) from++;
+        assert_true(from < set->count);
+        assert_int_equal(from % together, i % together);
+        assert_int_equal(from / (together * every), i / together);
+        moved |= from % (together * every) >= together;
+    }
+    assert_true(moved);
+    rt_rayset_clear(&kept);
+}
+
+static void a_limit_keeps_runs_of_neighbours_together_all_over_the_set(void **state) {
+    const Stage *stage = *state;
+    const RtRaySet *set = &stage->sets[RT_RAY_PRIMARY]; /* 1850 */
+    assert_runs(set, 1100, 16, 16, 2);
+    assert_runs(set, 600, 5, 5, 4);
+    assert_runs(set, 200, 256, 3, 10); /* 64 runs at least */
 }
 
 static void every_allocation_of_a_recording_may_fail(void **state) {
@@ -197,6 +223,7 @@ int main(void) {
         cmocka_unit_test(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface),
         cmocka_unit_test(random_rays_are_chords_between_uniform_points_of_the_sphere),
         cmocka_unit_test(thinning_keeps_every_nth_ray_and_a_limit_holds),
+        cmocka_unit_test(a_limit_keeps_runs_of_neighbours_together_all_over_the_set),
         cmocka_unit_test(every_allocation_of_a_recording_may_fail),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -27,6 +27,7 @@ enum {
     OPT_JSON,
     OPT_SEED,
     OPT_LIMIT,
+    OPT_TOGETHER,
     OPT_EVERY
 };
 
@@ -46,6 +47,8 @@ static const struct argp_option options[] = {
     {"rays", OPT_RAYS, "KIND,...", 0,
      "Ray kinds: primary, shadow, reflection, transmission, diffuse, random (all)", 0},
     {"limit", OPT_LIMIT, "N", 0, "Rays of a kind at most; a larger set is thinned evenly (100000)", 0},
+    {"together", OPT_TOGETHER, "N", 0,
+     "Neighbouring rays that are kept together where a set is thinned, for packets and caches (256)", 0},
     {"baseline", OPT_BASELINE, "SPEC", 0, "The accelerator that ratios refer to (the first)", 0},
     {"rounds", OPT_ROUNDS, "N", 0,
      "Times each is timed, in an order drawn anew (10); 6 at least for intervals of 95 %", 0},
@@ -124,6 +127,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case OPT_RAYS: parse_kinds(e, argument, state); return 0;
     case OPT_LIMIT:
         e->limit = (uint64_t)rt_cli_integer(state, "--limit", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
+        return 0;
+    case OPT_TOGETHER:
+        e->together = (uint64_t)rt_cli_integer(state, "--together", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
         return 0;
     case OPT_BASELINE: o->baseline = argument; return 0;
     case OPT_ROUNDS:
@@ -256,6 +262,7 @@ int rt_command_bench(int argc, char **argv) {
     }
     rt_experiment_init(o.experiment);
     o.experiment->trial_count = 1;
+    o.experiment->together = 256;
     o.experiment->trials[0].depth = RT_DEFAULT_DEPTH;
     const struct argp argp = {
         .options = options,

@@ -147,7 +147,7 @@ static RtStatus sample_sparsely(RtScene *scene, uint64_t samples, RtError *error
 static RtStatus append(RtRay *rays, uint64_t *count, const RtRaySet *set, uint64_t limit, RtError *error) {
     RtRaySet thin;
     if (limit == 0) return RT_OK;
-    RT_TRY(rt_rayset_limit(set, limit, &thin, error));
+    RT_TRY(rt_rayset_limit(set, limit, 1, &thin, error));
     memcpy(rays + *count, thin.rays, thin.count * sizeof(RtRay));
     *count += thin.count;
     rt_rayset_clear(&thin);
