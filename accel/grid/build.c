@@ -6,6 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
+enum { OVERLAP_BOX, OVERLAP_EXACT };
 enum { RULE_CUBIC, RULE_WOO, RULE_HETEROGENEOUS };
 enum { MAX_RESOLUTION = 4096 };
 
@@ -50,6 +51,12 @@ const RtParam rt_grid_params[RT_GRID_PARAM_COUNT] = {
                          .standard = "on",
                          .meaning = "do not test an object twice for one ray",
                          .source = "Kirk & Arvo 1991"},
+    [RT_GRID_OVERLAP] = {.name = "overlap",
+                         .type = RT_PARAM_CHOICE,
+                         .standard = "box",
+                         .choices = "box|exact",
+                         .meaning = "an object goes into the voxels that its box, or its surface, meets",
+                         .source = "boxes: Havran & Sixta 1999; exact: Akenine-Möller 2001"},
 };
 
 /* ---- resolution ---- */
@@ -111,51 +118,45 @@ static void choose_resolution(const RtGrid *grid, uint32_t objects, const RtValu
 
 /* ---- build ---- */
 
-/* The intervals of planes on `axis` that [lo, hi], which meets the grid, touches: first to last. */
-static void covered(const RtGrid *grid, int axis, float lo, float hi, uint32_t *first, uint32_t *last) {
-    const float *plane = grid->planes[axis];
-    uint32_t n = grid->n[axis];
-    float width = plane[n] - plane[0];
-    float guess = width > 0 ? (lo - plane[0]) / width * (float)n : 0;
-    uint32_t i = guess > 0 ? (uint32_t)rt_minf(guess, (float)(n - 1)) : 0;
-    while (i > 0 && plane[i] >= lo) i--;
-    while (i + 1 < n && plane[i + 1] < lo) i++;
-    *first = i;
-    while (i + 1 < n && plane[i + 1] <= hi) i++;
-    *last = i;
-}
+/* Where the lists grow: adds 1 to slot[v] for every voxel v taken, and stores the object at the slot before
+ * where there are `ids`. Used twice: to count the lists, and to fill them. */
+typedef struct Lists {
+    const RtGrid *grid;
+    uint32_t *slot, *ids;
+    uint32_t id;
+} Lists;
 
-/* The range of voxels that an object's box touches, first to last on each axis. */
-static void covered_voxels(const RtGrid *grid, const RtBox *box, uint32_t from[3], uint32_t to[3]) {
-    for (int a = 0; a < 3; a++) covered(grid, a, box->lo.at[a], box->hi.at[a], &from[a], &to[a]);
-}
-
-static uint64_t count_references(const RtGrid *grid) {
-    uint64_t sum = 0;
-    for (uint32_t id = 0; id < grid->base.scene->geometry.object_count; id++) {
-        uint32_t from[3], to[3];
-        covered_voxels(grid, &grid->base.scene->geometry.boxes[id], from, to);
-        sum += (uint64_t)(to[0] - from[0] + 1) * (to[1] - from[1] + 1) * (to[2] - from[2] + 1);
-    }
-    return sum;
-}
-
-/* Adds 1 to slot[v] for every voxel v an object touches; where `ids` is given, stores the object at the slot
- * before. Called twice: to count the lists, and to fill them. */
-static void scatter(const RtGrid *grid, uint32_t *slot, uint32_t *ids) {
-    for (uint32_t id = 0; id < grid->base.scene->geometry.object_count; id++) {
-        uint32_t from[3], to[3], at[3];
-        covered_voxels(grid, &grid->base.scene->geometry.boxes[id], from, to);
-        for (at[2] = from[2]; at[2] <= to[2]; at[2]++) {
-            for (at[1] = from[1]; at[1] <= to[1]; at[1]++) {
-                for (at[0] = from[0]; at[0] <= to[0]; at[0]++) {
-                    uint32_t *entry = &slot[rt_grid_voxel_at(grid, at)];
-                    if (ids) ids[*entry] = id;
-                    ++*entry;
-                }
+static void take(void *context, const RtGridRange *range) {
+    const Lists *lists = context;
+    uint32_t at[3];
+    for (at[2] = range->from[2]; at[2] <= range->to[2]; at[2]++) {
+        for (at[1] = range->from[1]; at[1] <= range->to[1]; at[1]++) {
+            for (at[0] = range->from[0]; at[0] <= range->to[0]; at[0]++) {
+                uint32_t *entry = &lists->slot[rt_grid_voxel_at(lists->grid, at)];
+                if (lists->ids) lists->ids[*entry] = lists->id;
+                ++*entry;
             }
         }
     }
+}
+
+static void scatter(const RtGrid *grid, uint32_t *slot, uint32_t *ids) {
+    Lists lists = {grid, slot, ids, 0};
+    for (; lists.id < grid->base.scene->geometry.object_count; lists.id++) {
+        rt_grid_place(grid, lists.id, take, &lists);
+    }
+}
+
+/* Entries of lists if each object goes into all that its box touches; of surfaces there are no more. */
+static uint64_t estimate_references(const RtGrid *grid) {
+    uint64_t sum = 0;
+    for (uint32_t id = 0; id < grid->base.scene->geometry.object_count; id++) {
+        RtGridRange range = rt_grid_touched(grid, &grid->base.scene->geometry.boxes[id]);
+        uint64_t product = 1;
+        for (int a = 0; a < 3; a++) product *= range.to[a] - range.from[a] + 1;
+        sum += product;
+    }
+    return sum;
 }
 
 static RtStatus make_planes(RtGrid *grid, RtError *error) {
@@ -187,14 +188,10 @@ static RtStatus refuse_size(const RtGrid *grid, uint64_t references, RtError *er
 static RtStatus make_lists(RtGrid *grid, RtError *error) {
     RT_TRY(refuse_size(grid, 0, error));
     RT_TRY(make_planes(grid, error));
-    uint64_t references = count_references(grid);
-    RT_TRY(refuse_size(grid, references, error));
+    RT_TRY(refuse_size(grid, estimate_references(grid), error));
     size_t voxels = rt_grid_voxel_count(grid);
     grid->first = rt_alloc(voxels + 1, sizeof(uint32_t));
-    grid->ids = rt_alloc(references, sizeof(uint32_t));
-    if (!grid->first || !grid->ids) {
-        return rt_fail_memory(error, "the lists of a grid", (voxels + 1 + references) * sizeof(uint32_t));
-    }
+    if (!grid->first) return rt_fail_memory(error, "the voxels of a grid", (voxels + 1) * sizeof(uint32_t));
     /* Count pass; ends of lists; fill pass, after which first[v] is the end of list v: shift by one. */
     scatter(grid, grid->first, NULL);
     uint32_t sum = 0;
@@ -203,6 +200,8 @@ static RtStatus make_lists(RtGrid *grid, RtError *error) {
         grid->first[v] = sum;
         sum += length;
     }
+    grid->ids = rt_alloc(sum, sizeof(uint32_t));
+    if (!grid->ids) return rt_fail_memory(error, "the lists of a grid", sum * sizeof(uint32_t));
     scatter(grid, grid->first, grid->ids);
     memmove(grid->first + 1, grid->first, voxels * sizeof(uint32_t));
     grid->first[0] = 0;
@@ -223,9 +222,11 @@ RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **ou
     grid->base = (RtAccel){.ops = &rt_grid_ops, .scene = scene, .exact = true, .counts = true};
     grid->box = scene->geometry.box;
     grid->mailbox = values[RT_GRID_MAILBOX].flag;
+    grid->surfaces = values[RT_GRID_OVERLAP].choice == OVERLAP_EXACT;
     if (scene->geometry.object_count > 0) {
         grid->box = rt_box_widened(grid->box, values[RT_GRID_MARGIN].f);
         choose_resolution(grid, scene->geometry.object_count, values, grid->n);
+        rt_grid_choose_margin(grid);
         RtStatus status = make_lists(grid, error);
         if (status != RT_OK) {
             rt_grid_destroy(&grid->base);

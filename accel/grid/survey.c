@@ -2,14 +2,12 @@
 #include "accel/grid/grid.h"
 
 #include "base/memory.h"
+#include "shape/overlap.h"
 
 static RtBox voxel_box(const RtGrid *grid, const uint32_t at[3]) {
-    RtBox box;
-    for (int a = 0; a < 3; a++) {
-        box.lo.at[a] = grid->planes[a][at[a]];
-        box.hi.at[a] = grid->planes[a][at[a] + 1];
-    }
-    return box;
+    RtGridRange range;
+    for (int a = 0; a < 3; a++) range.from[a] = range.to[a] = at[a];
+    return rt_grid_range_box(grid, &range);
 }
 
 /* Calls visit for every voxel in turn until it returns something else than RT_OK. */
@@ -65,7 +63,9 @@ static RtStatus check_voxel(void *context, const RtGrid *grid, const uint32_t at
                            "grid: the list of voxel (%u, %u, %u) is not ascending ids", at[0], at[1], at[2]);
         }
         RtBox common = {rt_vec_max(box.lo, g->boxes[id].lo), rt_vec_min(box.hi, g->boxes[id].hi)};
-        if (rt_box_is_empty(common)) {
+        bool apart = rt_box_is_empty(common);
+        if (grid->surfaces) apart |= !rt_object_meets_box(g, id, &box, grid->margin);
+        if (apart) {
             return rt_fail(check->error, RT_MISMATCH,
                            "grid: voxel (%u, %u, %u) lists object %u, which it does not touch", at[0], at[1],
                            at[2], id);
@@ -75,17 +75,34 @@ static RtStatus check_voxel(void *context, const RtGrid *grid, const uint32_t at
     return RT_OK;
 }
 
-/* Voxels that touch the object's box, counted plane by plane. */
-static uint64_t voxels_touched(const RtGrid *grid, const RtBox *box) {
-    uint64_t product = 1;
-    for (int a = 0; a < 3; a++) {
-        const float *plane = grid->planes[a];
-        uint64_t touched = 0;
-        for (uint32_t i = 0; i < grid->n[a]; i++)
-            touched += plane[i] <= box->hi.at[a] && plane[i + 1] >= box->lo.at[a];
-        product *= touched;
+/* The least voxel on `axis` that touches [lo, hi], and how many do, sought plane by plane. */
+static uint32_t count_touched(const RtGrid *grid, int axis, const RtBox *box, uint32_t *first) {
+    const float *plane = grid->planes[axis];
+    uint32_t count = 0;
+    for (uint32_t i = grid->n[axis]; i-- > 0;) {
+        if (!(plane[i] <= box->hi.at[axis] && plane[i + 1] >= box->lo.at[axis])) continue;
+        *first = i;
+        count++;
     }
-    return product;
+    return count;
+}
+
+/* Voxels that ought to list an object: one by one, where building halves ranges. */
+static uint64_t voxels_touched(const RtGrid *grid, uint32_t id) {
+    const RtGeometry *g = &grid->base.scene->geometry;
+    uint32_t first[3], n[3], at[3];
+    uint64_t met = 0;
+    for (int a = 0; a < 3; a++) n[a] = count_touched(grid, a, &g->boxes[id], &first[a]);
+    if (!grid->surfaces) return (uint64_t)n[0] * n[1] * n[2];
+    for (at[2] = first[2]; at[2] < first[2] + n[2]; at[2]++) {
+        for (at[1] = first[1]; at[1] < first[1] + n[1]; at[1]++) {
+            for (at[0] = first[0]; at[0] < first[0] + n[0]; at[0]++) {
+                RtBox box = voxel_box(grid, at);
+                met += rt_object_meets_box(g, id, &box, grid->margin);
+            }
+        }
+    }
+    return met;
 }
 
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
@@ -105,7 +122,7 @@ RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
     if (!check.listed) return rt_fail_memory(error, "validating a grid", g->object_count * sizeof(uint64_t));
     RtStatus status = each_voxel(grid, check_voxel, &check);
     for (uint32_t id = 0; status == RT_OK && id < g->object_count; id++) {
-        uint64_t touched = voxels_touched(grid, &g->boxes[id]);
+        uint64_t touched = voxels_touched(grid, id);
         if (check.listed[id] == touched) continue;
         status = rt_fail(error, RT_MISMATCH, "grid: object %u touches %llu voxels, but %llu list it", id,
                          (unsigned long long)touched, (unsigned long long)check.listed[id]);

@@ -18,7 +18,8 @@ static inline int rt_quadratic_roots(double a, double half_b, double c, double d
         roots[0] = -c / (2 * half_b);
         return 1;
     }
-    double first = q / a, second = q != 0 ? c / q : first;
+    /* Of a double root c / q is the rounding of c over that of b, near 0 anything. */
+    double first = q / a, second = discriminant > 0 ? c / q : first;
     roots[0] = first < second ? first : second;
     roots[1] = first < second ? second : first;
     return 2;

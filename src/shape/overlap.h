@@ -1,0 +1,14 @@
+/* Which boxes does the surface of an object meet? For structures that put an object only into such cells, not
+ * into all that its box touches. */
+#ifndef RT_SHAPE_OVERLAP_H
+#define RT_SHAPE_OVERLAP_H
+
+#include "shape/geometry.h"
+
+/* False only if every point of the surface of object `id`, as its hit function sees it, is more than `margin`
+ * from `box` along some axis; a box inside a sphere is not met. Nearly always false then, for all shapes but
+ * cones and concave polygons (taken as convex), where it may be true nearby. `margin` must be at least 2^-40
+ * of the largest coordinate of the scene and the box, to cover rounding. */
+bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin);
+
+#endif

@@ -1,0 +1,134 @@
+/* shape/overlap.h: which boxes the surface of an object meets, and grids that list objects by it. */
+#include "testing.h"
+
+#include "accel/grid/grid.h"
+#include "experiments/families.h"
+#include "shape/overlap.h"
+
+static const double margin = 1e-9;
+
+static RtBox cube(float x, float y, float z, float half) {
+    return (RtBox){{x - half, y - half, z - half}, {x + half, y + half, z + half}};
+}
+
+static bool meets(const RtGeometry *g, RtBox box) {
+    return rt_object_meets_box(g, 0, &box, margin);
+}
+
+static void a_box_inside_a_sphere_or_off_its_corner_is_not_met(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_false(meets(&g, cube(0, 0, 0, 0.5f)));
+    assert_true(meets(&g, cube(0, 0, 0, 0.6f))); /* its corners stick out */
+    assert_true(meets(&g, cube(1, 0, 0, 0.1f)));
+    assert_false(meets(&g, cube(0.9f, 0.9f, 0.9f, 0.1f))); /* inside the sphere's box */
+    rt_geometry_clear(&g);
+}
+
+static void a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges(void **state) {
+    (void)state;
+    const RtVec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_true(meets(&g, cube(0.25f, 0.25f, 0.25f, 0.01f)));
+    assert_false(meets(&g, cube(0.25f, 0.25f, 0.5f, 0.1f))); /* above the plane */
+    assert_false(meets(&g, cube(0.8f, 0.8f, 0.8f, 0.2f)));   /* beyond the slanted edge */
+    RtBox above = cube(0.25f, 0.25f, 0.5f, 0.1f);
+    assert_true(rt_object_meets_box(&g, 0, &above, 0.1));
+    rt_geometry_clear(&g);
+}
+
+static void a_slanted_polygon_is_met_like_a_triangle(void **state) {
+    (void)state;
+    const RtVec3 v[4] = {{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}};
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_true(meets(&g, cube(0.5f, 0.5f, 0.5f, 0.01f)));
+    assert_false(meets(&g, cube(0.25f, 0.5f, 0.75f, 0.2f)));
+    rt_geometry_clear(&g);
+}
+
+static void a_slanted_cylinder_leaves_corners_of_its_box_free(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 0.1f, rt_vec3(10, 10, 0), 0.1f, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_true(meets(&g, cube(5, 5, 0.1f, 0.01f)));
+    assert_false(meets(&g, cube(1, 9, 0, 0.5f)));
+    rt_geometry_clear(&g);
+}
+
+/* Points that rays hit are points of surfaces: boxes about them are met, whatever the shape. */
+static void boxes_about_hits_are_met(void **state) {
+    (void)state;
+    for (size_t family = 0; family < rt_scene_family_count(); family++) {
+        RtScene scene;
+        RtAccel *brute;
+        RtQuery query;
+        enum { RAYS = 500 };
+        RtRay rays[RAYS];
+        RtHit hits[RAYS];
+        assert_ok(rt_scene_family_build(family, 1, &scene, error));
+        assert_ok(rt_accel_open("brute", &scene, &brute, error));
+        assert_ok(rt_query_init(&query, brute, error));
+        rt_ray_family_fill(0, &query, 7, 0, RAYS, rays);
+        rt_nearest(&query, rays, RAYS, hits, NULL);
+        for (size_t i = 0; i < RAYS && scene.geometry.object_count > 0; i++) {
+            if (hits[i].object == RT_NO_OBJECT) continue;
+            RtVec3 p = rt_narrow(rt_ray_point(&rays[i], hits[i].t));
+            RtBox point = {p, p};
+            RtVec3 size = rt_box_size(scene.geometry.box);
+            double far = fabs((double)p.x) + fabs((double)p.y) + fabs((double)p.z);
+            double near = 0x1p-16 * rt_lengthd(rt_widen(size)) + 0x1p-22 * far;
+            if (!rt_object_meets_box(&scene.geometry, hits[i].object, &point, near)) {
+                fail_msg("%s: ray %zu hits object %u where it is not", scene.name, i, hits[i].object);
+            }
+        }
+        rt_query_clear(&query);
+        rt_accel_destroy(brute);
+        rt_scene_clear(&scene);
+    }
+}
+
+static RtDescription described(const RtScene *scene, const char *spec) {
+    RtAccel *grid;
+    RtDescription description;
+    assert_ok(rt_accel_open(spec, scene, &grid, error));
+    assert_ok(rt_accel_validate(grid, error));
+    rt_grid_describe(grid, &description);
+    rt_accel_destroy(grid);
+    return description;
+}
+
+/* One sphere in 4 x 4 x 4 voxels of half its radius: its box touches all of them, its surface all but the 8
+ * in the middle, whose farthest points are at 0.87 of the radius, as are the nearest of the corners. */
+static void a_grid_leaves_out_voxels_inside_a_sphere(void **state) {
+    (void)state;
+    RtScene scene;
+    RtMaterial grey = rt_default_material();
+    uint32_t material;
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
+    assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_int_equal(described(&scene, "grid:resolution=4x4x4").references, 64);
+    assert_int_equal(described(&scene, "grid:resolution=4x4x4,overlap=exact").references, 56);
+    assert_int_equal(described(&scene, "grid:resolution=1x1x1,overlap=exact").references, 1);
+    rt_scene_clear(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_box_inside_a_sphere_or_off_its_corner_is_not_met),
+        cmocka_unit_test(a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges),
+        cmocka_unit_test(a_slanted_polygon_is_met_like_a_triangle),
+        cmocka_unit_test(a_slanted_cylinder_leaves_corners_of_its_box_free),
+        cmocka_unit_test(boxes_about_hits_are_met),
+        cmocka_unit_test(a_grid_leaves_out_voxels_inside_a_sphere),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
