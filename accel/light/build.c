@@ -30,7 +30,11 @@ const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT] = {
                                  "end a list at the first object that covers the whole cell",
                                  "Haines & Greenberg 1986", NULL},
     [RT_LIGHT_EXTENTS] = {"extents", RT_PARAM_FLAG, "on", 0, 0, NULL,
-                          "test the box of an object of a list before the object", "this program", NULL},
+                          "test the box of an object of a list, and the side of its plane, before the object",
+                          "this program", NULL},
+    [RT_LIGHT_CACHE] = {"cache", RT_PARAM_FLAG, "on", 0, 0, NULL,
+                        "try the object that blocked the last ray in a cell first", "Haines & Greenberg 1986",
+                        NULL},
 };
 
 static int compare_entries(const void *a, const void *b) {
@@ -248,6 +252,7 @@ RtStatus rt_light_build(const RtScene *scene, const RtValue *values, RtAccel **o
     buffer->n = (uint32_t)values[RT_LIGHT_CELLS].i;
     buffer->full_occlusion = values[RT_LIGHT_FULL_OCCLUSION].flag;
     buffer->extents = values[RT_LIGHT_EXTENTS].flag;
+    buffer->cache = values[RT_LIGHT_CACHE].flag;
     uint32_t objects = scene->geometry.object_count;
     RtLightEntry *order = rt_alloc(objects, sizeof *order);
     RtStatus status = order ? RT_OK : rt_fail_memory(error, "a light buffer", objects * sizeof *order);

@@ -17,7 +17,7 @@
 
 #include "accel/accel.h"
 
-enum { RT_LIGHT_CELLS, RT_LIGHT_FULL_OCCLUSION, RT_LIGHT_EXTENTS, RT_LIGHT_PARAM_COUNT };
+enum { RT_LIGHT_CELLS, RT_LIGHT_FULL_OCCLUSION, RT_LIGHT_EXTENTS, RT_LIGHT_CACHE, RT_LIGHT_PARAM_COUNT };
 extern const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT];
 
 /* An object of a list. No point of it that can be hit is less deep. */
@@ -32,7 +32,7 @@ typedef RtLightEntry RtLightCover;
 typedef struct RtLightBuffer {
     RtAccel base;
     uint32_t n; /* cells along the edge of a face */
-    bool full_occlusion, extents;
+    bool full_occlusion, extents, cache;
     RtBox domain;          /* where rays start that are answered; empty without objects */
     double *margin;        /* [lights] by which boxes grow: see build.c */
     uint32_t *first;       /* [cells + 1] */
@@ -41,6 +41,12 @@ typedef struct RtLightBuffer {
     uint32_t *near_first;  /* [lights + 1] */
     uint32_t *near;        /* [near_first[lights]] */
 } RtLightBuffer;
+
+/* What a query remembers of a cell: which of `entries` blocked the last ray, if `epoch` is the query's.
+ * Scratch memory is [1 + cells] of them; that of a query's own epoch comes first. */
+typedef struct RtLightMemory {
+    uint32_t epoch, entry;
+} RtLightMemory;
 
 extern const RtAccelOps rt_light_ops;
 
