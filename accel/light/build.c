@@ -163,19 +163,51 @@ static uint64_t go_over_faces(RtLightBuffer *buffer, RtLightEntry *order, Pass p
     return sum;
 }
 
-static RtStatus refuse_size(const RtLightBuffer *buffer, uint64_t references, RtError *error) {
-    uint32_t lights = buffer->base.scene->light_count;
-    double a_cell = 4 + (buffer->covers || buffer->full_occlusion ? 8 : 0);
-    double cells = 6.0 * buffer->n * buffer->n * lights;
-    double bytes = cells * a_cell + 8 * (double)references, most = (double)MAX_BYTES;
-    if (bytes <= most && references < UINT32_MAX) return RT_OK;
-    double part = fmin(most / bytes, (double)UINT32_MAX / fmax((double)references, 1));
+/* At least as many list entries as there will be with n cells along an edge: the cells of all footprints. */
+static double bound_references(RtLightBuffer *buffer, uint32_t n) {
+    const RtScene *scene = buffer->base.scene;
+    uint32_t asked = buffer->n;
+    double sum = 0;
+    buffer->n = n;
+    for (uint32_t light = 0; light < scene->light_count; light++) {
+        for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
+            RtLightFootprint at;
+            bool near = rt_light_is_near(buffer, light, id);
+            sum += near;
+            for (int face = 0; !near && face < 6; face++) {
+                if (!rt_light_footprint(buffer, light, face, id, &at)) continue;
+                sum += (at.hi[0] - at.lo[0] + 1.0) * (at.hi[1] - at.lo[1] + 1.0);
+            }
+        }
+    }
+    buffer->n = asked;
+    return sum;
+}
+
+/* Bytes of the arrays, and of one query's memory; infinite if list entries cannot be numbered. */
+static double bound_bytes(const RtLightBuffer *buffer, uint32_t n, double references) {
+    size_t a_cell = sizeof(uint32_t) + (buffer->full_occlusion ? sizeof(RtLightCover) : 0) +
+                    (buffer->cache ? sizeof(RtLightMemory) : 0);
+    if (!(references < UINT32_MAX)) return INFINITY;
+    return 6.0 * n * n * buffer->base.scene->light_count * (double)a_cell +
+           references * (double)sizeof(RtLightEntry);
+}
+
+/* Before anything is made or gone over: a cell too many costs time as well. */
+static RtStatus refuse_size(RtLightBuffer *buffer, RtError *error) {
+    double references = bound_references(buffer, buffer->n), most = (double)MAX_BYTES;
+    if (bound_bytes(buffer, buffer->n, references) <= most) return RT_OK;
+    uint32_t fits = 1, too_many = buffer->n;
+    while (too_many - fits > 1) {
+        uint32_t n = fits + (too_many - fits) / 2;
+        bool is_fit = bound_bytes(buffer, n, bound_references(buffer, n)) <= most;
+        *(is_fit ? &fits : &too_many) = n;
+    }
     return rt_fail(
         error, RT_BAD_INPUT,
-        "a light buffer of %u x %u cells a face for %u lights with %.3g list entries would take %.1f GiB, "
-        "more than %.0f GiB: cells=%.0f would fit",
-        buffer->n, buffer->n, lights, (double)references, bytes / 0x1p30, most / 0x1p30,
-        fmax(floor(sqrt(part) * buffer->n), 1));
+        "a light buffer of %u x %u cells a face for %u lights with up to %.3g list entries would take "
+        "more than %.0f GiB: cells=%u would fit",
+        buffer->n, buffer->n, buffer->base.scene->light_count, references, most / 0x1p30, fits);
 }
 
 static RtStatus make_near_lists(RtLightBuffer *buffer, RtError *error) {
@@ -193,7 +225,6 @@ static RtStatus make_near_lists(RtLightBuffer *buffer, RtError *error) {
             }
             buffer->near_first[light + 1] = (uint32_t)count;
         }
-        RT_TRY(refuse_size(buffer, count, error));
         if (fill) break;
         buffer->near = rt_alloc(count, sizeof(uint32_t));
         if (!buffer->near)
@@ -214,7 +245,6 @@ static RtStatus make_lists(RtLightBuffer *buffer, RtLightEntry *order, RtError *
         go_over_faces(buffer, order, COVER);
     }
     uint64_t references = go_over_faces(buffer, order, COUNT);
-    RT_TRY(refuse_size(buffer, references, error));
     buffer->entries = rt_alloc(references, sizeof(RtLightEntry));
     if (!buffer->entries) {
         return rt_fail_memory(error, "the lists of a light buffer", references * sizeof(RtLightEntry));
@@ -257,6 +287,7 @@ RtStatus rt_light_build(const RtScene *scene, const RtValue *values, RtAccel **o
     RtLightEntry *order = rt_alloc(objects, sizeof *order);
     RtStatus status = order ? RT_OK : rt_fail_memory(error, "a light buffer", objects * sizeof *order);
     if (status == RT_OK) status = make_margins(buffer, error);
+    if (status == RT_OK) status = refuse_size(buffer, error);
     if (status == RT_OK) status = make_near_lists(buffer, error);
     if (status == RT_OK) status = make_lists(buffer, order, error);
     rt_free(order);

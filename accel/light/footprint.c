@@ -1,5 +1,19 @@
-/* Where on the faces of a light's cube an object is seen: its box by the rectangle around it, a sphere by the
- * cone that it fills, and what covers whole cells. All in double, in offsets from the light. */
+/* Where on the faces of a light's cube an object is seen, and what covers whole cells. All in double, in
+ * offsets from the light. An object is seen within the rectangle around its box; of the cells there,
+ *
+ * - balls (spheres, and those about cones) touch those that the cone that they fill meets: points of the cell
+ *   at depth z are at most z * half * sqrt(2) from its axis;
+ * - triangles and polygons touch those that no plane through the light and an edge parts from them. Let s be
+ *   the normal of such a plane, all vertices on its side s . v >= 0 but for rounding. A hit lies within the
+ *   margin of the object along each axis, for the reasons given in build.c and side.h, and so at
+ *   s . p >= -margin |s|_1; a polygon is hit in its plane, off its vertices by its warp along one axis, which
+ *   is added. The cell's points of depth z have s . p <= z M, where M is the largest of its corners at
+ * depth 1. With M < 0 and z at least the least depth d of the grown box: none in common if d M < -margin
+ * |s|_1. The slack is more than twice that: s, computed from a and b, is off by 2^-51 |a||b|, its products
+ * with a p as long as `reach` by 2^-50 |a||b| reach, where the margin is above 2^-18 reach. Where the light
+ * is within the margin of the object's depth (d <= 0) no cell is parted. A concave polygon has vertices on
+ * both sides of some edges, which then part nothing.
+ * - Other shapes touch all cells of the rectangle, and cover none. */
 #include "accel/light/light.h"
 
 /* An offset from the light in the axes of a face: u, w, depth. */
@@ -72,19 +86,65 @@ static double distance_squared(RtVec3d point, RtVec3d axis) {
     return rt_dotd(across, across) / rt_dotd(axis, axis);
 }
 
-/* Points of the cell at depth z are at most z * half from its axis; a sphere is at most center.z + radius
- * deep.
- */
+/* A ball's points are at most center.z + radius deep. */
+static bool ball_touches(const RtLightBuffer *buffer, RtVec3d center, double radius, RtVec3d axis) {
+    double half = 1.5 * (1.0 / buffer->n + RT_LIGHT_EDGE); /* above sqrt(2) */
+    double reach = radius + half * (center.z + radius);
+    return distance_squared(center, axis) <= reach * reach;
+}
+
+static double norm(RtVec3d v) {
+    return fabs(v.x) + fabs(v.y) + fabs(v.z);
+}
+
+/* Flat objects of more vertices are taken for their boxes: the test of all edges against all vertices is not
+ * worth it. */
+enum { MAX_EDGES = 8 };
+
+/* Does no plane through the light and an edge part the vertices, grown by `grow`, from the cell? */
+static bool outline_touches(const RtLightBuffer *buffer, const RtVec3d *vertices, uint32_t count, double grow,
+                            double least_depth, RtVec3d axis) {
+    double half = 1.0 / buffer->n + RT_LIGHT_EDGE;
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d a = vertices[i], b = vertices[(i + 1) % count], side = rt_crossd(a, b);
+        double lo = 0, hi = 0, middle = rt_dotd(side, axis), around = half * (fabs(side.x) + fabs(side.y));
+        for (uint32_t k = 0; k < count; k++) {
+            double at = rt_dotd(side, vertices[k]);
+            lo = fmin(lo, at);
+            hi = fmax(hi, at);
+        }
+        double slack = 2 * grow * (norm(side) + 0x1p-20 * norm(a) * norm(b));
+        if (lo > -slack && least_depth * (middle + around) < -2 * slack) return false;
+        if (hi < slack && least_depth * (middle - around) > 2 * slack) return false;
+    }
+    return true;
+}
+
 bool rt_light_touches(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
                       uint32_t row) {
     const RtGeometry *g = &buffer->base.scene->geometry;
-    if (rt_ref_shape(g->objects[id]) != RT_SHAPE_SPHERE) return true;
-    const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
-    RtVec3d center = offset(buffer, light, face, sphere->center);
-    double radius = (double)sphere->radius + 2 * buffer->margin[light];
-    double half = 1.5 * (1.0 / buffer->n + RT_LIGHT_EDGE); /* above sqrt(2) */
-    double reach = radius + half * (center.z + radius);
-    return distance_squared(center, cell_axis(buffer, column, row)) <= reach * reach;
+    uint32_t index = rt_ref_index(g->objects[id]), count = 3;
+    RtVec3d axis = cell_axis(buffer, column, row), lo, hi, offsets[MAX_EDGES];
+    double grow = buffer->margin[light];
+    const RtVec3 *vertices;
+    switch (rt_ref_shape(g->objects[id])) {
+    case RT_SHAPE_SPHERE:
+    case RT_SHAPE_CONE: {
+        RtBall ball = rt_object_ball(g, id);
+        return ball_touches(buffer, offsetd(buffer, light, face, ball.center), ball.radius + 2 * grow, axis);
+    }
+    case RT_SHAPE_TRIANGLE: vertices = g->triangles[index].v; break;
+    case RT_SHAPE_POLYGON:
+        vertices = g->polygon_vertices + g->polygons[index].first;
+        count = g->polygons[index].count;
+        grow += (double)g->polygons[index].warp;
+        break;
+    default: return true;
+    }
+    grown_box(buffer, light, face, id, &lo, &hi);
+    if (count > MAX_EDGES || !(lo.z > 0)) return true;
+    for (uint32_t i = 0; i < count; i++) offsets[i] = offset(buffer, light, face, vertices[i]);
+    return outline_touches(buffer, offsets, count, grow, lo.z, axis);
 }
 
 /* ---- covering ---- */
@@ -154,8 +214,7 @@ bool rt_light_covers(const RtLightBuffer *buffer, uint32_t light, int face, uint
                                 face_axes(face, polygon->normal), corners, &deepest);
         break;
     }
-    case RT_SHAPE_CONE:
-    case RT_SHAPE_COUNT: break;
+    default: break;
     }
     *depth = rt_float_above(deepest + buffer->margin[light]);
     return covers;
