@@ -4,6 +4,7 @@
 #include "accel/grid/grid.h"
 #include "base/memory.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
@@ -118,11 +119,35 @@ static void a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit(voi
     RtScene scene;
     make_lattice(&scene, 2, 2, 2);
     RtAccel *accel;
-    RtError error = {RT_OK, ""};
+    RtError refusal = {RT_OK, ""};
     int64_t live = rt_alloc_live();
-    assert_int_equal(rt_accel_open("grid:resolution=2000x2000x2000", &scene, &accel, &error), RT_BAD_INPUT);
-    assert_non_null(strstr(error.message, "would fit"));
+    assert_int_equal(rt_accel_open("grid:resolution=2000x2000x2000", &scene, &accel, &refusal), RT_BAD_INPUT);
+    assert_non_null(strstr(refusal.message, "would fit"));
     assert_int_equal(rt_alloc_live(), live);
+    assert_int_equal(rt_accel_open("grid:density=1e6,resolution=4096x4096x4096", &scene, &accel, &refusal),
+                     RT_BAD_INPUT);
+    assert_int_equal(rt_alloc_live(), live);
+
+    /* What is said to fit does, and one voxel more a side does not. */
+    static const char *const specs[] = {"density=1e6", "resolution=500x90x3", "overlap=exact,density=1e5"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        enum { LIMIT = 100000 };
+        RtValue values[RT_GRID_PARAM_COUNT];
+        uint32_t *n = values[RT_GRID_RESOLUTION].resolution;
+        assert_ok(rt_params_parse(rt_grid_params, RT_GRID_PARAM_COUNT, specs[i], "grid", values, error));
+        assert_int_equal(rt_grid_build_within(LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+        const char *remedy = strstr(refusal.message, ": resolution=");
+        assert_non_null(remedy);
+        assert_int_equal(sscanf(remedy, ": resolution=%ux%ux%u", &n[0], &n[1], &n[2]), 3);
+        assert_ok(rt_grid_build_within(LIMIT, &scene, values, &accel, error));
+        RtDescription description;
+        rt_grid_describe(accel, &description);
+        assert_true((description.leaves + description.references + 1) * sizeof(uint32_t) <= LIMIT);
+        rt_grid_destroy(accel);
+        uint32_t longest = n[0];
+        for (int a = 0; a < 3; a++) n[a] += n[a] == longest;
+        assert_int_equal(rt_grid_build_within(LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+    }
     rt_scene_clear(&scene);
 }
 

@@ -147,18 +147,6 @@ static void scatter(const RtGrid *grid, uint32_t *slot, uint32_t *ids) {
     }
 }
 
-/* Entries of lists if each object goes into all that its box touches; of surfaces there are no more. */
-static uint64_t estimate_references(const RtGrid *grid) {
-    uint64_t sum = 0;
-    for (uint32_t id = 0; id < grid->base.scene->geometry.object_count; id++) {
-        RtGridRange range = rt_grid_touched(grid, &grid->base.scene->geometry.boxes[id]);
-        uint64_t product = 1;
-        for (int a = 0; a < 3; a++) product *= range.to[a] - range.from[a] + 1;
-        sum += product;
-    }
-    return sum;
-}
-
 static RtStatus make_planes(RtGrid *grid, RtError *error) {
     size_t total = (size_t)grid->n[0] + grid->n[1] + grid->n[2] + 3;
     float *block = rt_alloc(total, sizeof(float));
@@ -173,22 +161,9 @@ static RtStatus make_planes(RtGrid *grid, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus refuse_size(const RtGrid *grid, uint64_t references, RtError *error) {
-    double voxels = (double)grid->n[0] * grid->n[1] * grid->n[2];
-    double bytes = 4 * (voxels + (double)references), most = (double)MAX_BYTES;
-    if (bytes <= most) return RT_OK;
-    double fits = fmax(floor(cube_root(most / bytes) * fmax(grid->n[0], fmax(grid->n[1], grid->n[2]))), 1);
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "a grid of %ux%ux%u voxels with %.3g list entries would take %.1f GiB, more than %.0f GiB: a "
-        "resolution of at most about %.0f a side would fit",
-        grid->n[0], grid->n[1], grid->n[2], (double)references, bytes / 0x1p30, most / 0x1p30, fits);
-}
-
-static RtStatus make_lists(RtGrid *grid, RtError *error) {
-    RT_TRY(refuse_size(grid, 0, error));
+static RtStatus make_lists(RtGrid *grid, uint64_t limit, RtError *error) {
+    RT_TRY(rt_grid_refuse(grid, limit, error));
     RT_TRY(make_planes(grid, error));
-    RT_TRY(refuse_size(grid, estimate_references(grid), error));
     size_t voxels = rt_grid_voxel_count(grid);
     grid->first = rt_alloc(voxels + 1, sizeof(uint32_t));
     if (!grid->first) return rt_fail_memory(error, "the voxels of a grid", (voxels + 1) * sizeof(uint32_t));
@@ -216,7 +191,8 @@ void rt_grid_destroy(RtAccel *accel) {
     rt_free(grid);
 }
 
-RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
+                              RtError *error) {
     RtGrid *grid = rt_alloc(1, sizeof(RtGrid));
     if (!grid) return rt_fail_memory(error, "a grid", sizeof(RtGrid));
     grid->base = (RtAccel){.ops = &rt_grid_ops, .scene = scene, .exact = true, .counts = true};
@@ -227,7 +203,7 @@ RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **ou
         grid->box = rt_box_widened(grid->box, values[RT_GRID_MARGIN].f);
         choose_resolution(grid, scene->geometry.object_count, values, grid->n);
         rt_grid_choose_margin(grid);
-        RtStatus status = make_lists(grid, error);
+        RtStatus status = make_lists(grid, limit, error);
         if (status != RT_OK) {
             rt_grid_destroy(&grid->base);
             return status;
@@ -235,4 +211,8 @@ RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **ou
     }
     *out = &grid->base;
     return RT_OK;
+}
+
+RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+    return rt_grid_build_within(MAX_BYTES, scene, values, out, error);
 }

@@ -54,7 +54,13 @@ RtGridRange rt_grid_touched(const RtGrid *grid, const RtBox *box);
 void rt_grid_place(const RtGrid *grid, uint32_t id, void (*take)(void *context, const RtGridRange *range),
                    void *context);
 
-/* build.c */
+/* limit.c: fails if voxels and lists would take more than `limit` bytes, with a resolution that would fit.
+ * Cheap and careful: it takes objects by their boxes, whatever the overlap. */
+RtStatus rt_grid_refuse(const RtGrid *grid, uint64_t limit, RtError *error);
+
+/* build.c; _within refuses above another limit than the usual one, for tests. */
+RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
+                              RtError *error);
 RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
 void rt_grid_destroy(RtAccel *accel);
 
