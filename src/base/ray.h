@@ -120,21 +120,28 @@ static inline float rt_shift(float thickness, float org) {
     return thickness + fabsf(org) * 0x1p-23f;
 }
 
+/* Gives the ray the thickness for boxes inside `around`. */
+static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
+    float thickness = rt_thickness(ray->org, around);
+    for (int a = 0; a < 3; a++) {
+        float org = ray->org.at[a], shift = rt_shift(thickness, org);
+        ray->org_near[a] = ray->negative[a] ? org - shift : org + shift;
+        ray->org_far[a] = ray->negative[a] ? org + shift : org - shift;
+    }
+}
+
 /* `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness. */
 static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_box) {
     RtPreparedRay p;
-    const float *org = ray->org.at, *dir = ray->dir.at;
-    float thickness = rt_thickness(ray->org, scene_box);
+    const float *dir = ray->dir.at;
     p.original = ray;
     p.org = ray->org;
     p.dir = ray->dir;
     for (int a = 0; a < 3; a++) {
         p.inv[a] = 1 / dir[a];
         p.negative[a] = signbit(dir[a]) ? 1 : 0;
-        float shift = rt_shift(thickness, org[a]);
-        p.org_near[a] = p.negative[a] ? org[a] - shift : org[a] + shift;
-        p.org_far[a] = p.negative[a] ? org[a] + shift : org[a] - shift;
     }
+    rt_ray_thicken(&p, scene_box);
     p.tmin = ray->tmin;
     p.tmax = rt_minf(ray->tmax, FLT_MAX);
     p.kz = rt_major_axis(ray->dir);
@@ -145,35 +152,48 @@ static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_
     return p;
 }
 
-/* The slab test (Kay & Kajiya 1986). True if the thick ray meets the box for some t in [ray->tmin, tmax];
- * then *enter is where, at least tmin. Where dir is 0, inv is infinite: the crossings are -inf or +inf, or
- * NaN for an origin exactly on a moved plane, and NaN is passed over: such a ray counts as inside. */
-static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float tmax, float *enter) {
-    float near = ray->tmin, far = tmax;
+/* The slab test (Kay & Kajiya 1986): brings [*near, *far] down to where the thick ray is within the box; none
+ * is left where *near > *far. Where dir is 0, inv is infinite: the crossings are -inf or +inf, or NaN for an
+ * origin exactly on a moved plane, and NaN is passed over: such a ray counts as inside. */
+static inline void rt_box_cut(const RtBox *box, const RtPreparedRay *ray, float *near, float *far) {
     for (int a = 0; a < 3; a++) {
         float first = ((ray->negative[a] ? box->hi : box->lo).at[a] - ray->org_near[a]) * ray->inv[a];
         float second = ((ray->negative[a] ? box->lo : box->hi).at[a] - ray->org_far[a]) * ray->inv[a];
-        near = rt_maxf(first, near);
-        far = rt_minf(second, far);
+        *near = rt_maxf(first, *near);
+        *far = rt_minf(second, *far);
     }
+}
+
+/* True if the thick ray meets the box for some t in [ray->tmin, tmax]; then *enter is where, at least tmin.
+ */
+static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float tmax, float *enter) {
+    float near = ray->tmin, far = tmax;
+    rt_box_cut(box, ray, &near, &far);
     *enter = near;
     return near <= far;
 }
 
-/* What makes a candidate t a hit on an object whose own box is `own`: the thick ray meets the box, t is
- * brought into [enter, leave] (it moves by rounding only), and then lies in [tmin, tmax]. NaN is refused. */
-static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, float *t) {
+/* The interval [*near, *far] of t in which the ray is within an object's box `own`, by the thickness of that
+ * box alone; none where *near > *far. */
+static inline void rt_box_own_span(const RtBox *own, const RtPreparedRay *ray, float *near, float *far) {
     const RtVec3 planes[2] = {own->lo, own->hi};
     float thickness = rt_thickness(ray->org, own);
-    float near = -INFINITY, far = INFINITY;
+    *near = -INFINITY, *far = INFINITY;
     for (int a = 0; a < 3; a++) {
         float outward = rt_shift(thickness, ray->org.at[a]);
         float shift = ray->negative[a] ? -outward : outward;
         float first = (planes[ray->negative[a]].at[a] - (ray->org.at[a] + shift)) * ray->inv[a];
         float second = (planes[1 - ray->negative[a]].at[a] - (ray->org.at[a] - shift)) * ray->inv[a];
-        near = rt_maxf(first, near);
-        far = rt_minf(second, far);
+        *near = rt_maxf(first, *near);
+        *far = rt_minf(second, *far);
     }
+}
+
+/* What makes a candidate t a hit on an object whose own box is `own`: the thick ray meets the box, t is
+ * brought into [enter, leave] (it moves by rounding only), and then lies in [tmin, tmax]. NaN is refused. */
+static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, float *t) {
+    float near, far;
+    rt_box_own_span(own, ray, &near, &far);
     if (!(near <= far)) return false;
     float clamped = *t < near ? near : *t > far ? far : *t;
     if (!(clamped >= ray->tmin && clamped <= ray->tmax)) return false;

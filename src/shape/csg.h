@@ -15,14 +15,19 @@
  * Hits are all places where the line enters or leaves: a ray that starts inside meets the far side.
  *
  * Layout. A tree is a program for a machine with a stack of lists of crossings: no recursion, at any depth.
- * The heavier operand of each operation comes first (Sethi & Ullman 1970), so that at most log2(solids) + 1
- * lists are on the stack at once.
+ * First comes the operand that may spare the other one, the left side of a difference and the smaller operand
+ * of an intersection, as long as few lists are on the stack; else the one that needs more of them (Sethi &
+ * Ullman 1970, "The Generation of Optimal Code for Arithmetic Expressions", JACM 17). So there are never more
+ * than RT_CSG_MAX_LISTS.
  *
  * Extents. A union's box is that about both, an intersection's what both have in common, a difference's that
- * of its left side. A node whose box the ray misses, or meets outside [tmin, tmax] only, is empty for the ray
- * and skipped whole. That loses nothing, bit for bit: all boxes of a tree are tested on one thick ray,
- * crossings are clamped to the interval of their own solid's box, and both are monotone in the planes of the
- * boxes (base/ray.h). Trees are made with or without the tests of inner nodes; the answers are the same. */
+ * of its left side. A node matters within the boxes of the nodes around it only: its own is cut down to what
+ * it has in common with them. A node whose box the ray misses, or meets outside [tmin, tmax] only, is empty
+ * for the ray and skipped whole. That loses nothing, bit for bit: all boxes of a tree are tested on one thick
+ * ray, crossings are clamped to the interval of their own solid's box, so a node has none outside of its own,
+ * and the interval of what boxes have in common is what their intervals have in common (base/ray.h). Trees
+ * are made with or without the tests of inner nodes; the answers are the same. Tests stand where they spare
+ * more than one solid to the lines that meet the nearest tested box around, by the ratio of areas. */
 #ifndef RT_SHAPE_CSG_H
 #define RT_SHAPE_CSG_H
 
@@ -42,7 +47,7 @@ typedef struct RtCsgNode {
     RtCsgOp op;
     RtCsgTerm left, right; /* RT_CSG_SOLID: left is the index in `solids`; RT_CSG_MOVE: left */
     RtTransform move;
-    uint64_t size; /* solids in the tree below, uses counted */
+    uint32_t size; /* solids in the tree below, uses counted */
 } RtCsgNode;
 
 /* Owns its arrays; a zeroed struct is empty. */
@@ -54,18 +59,19 @@ typedef struct RtCsgBuilder {
 
 void rt_csg_builder_clear(RtCsgBuilder *builder);
 
-/* A solid just added to builder->set. */
+/* A tree of more solids than this is refused: terms used again and again can make a short text an endless
+ * tree. */
+#define RT_CSG_MAX_SOLIDS (UINT32_C(1) << 24)
+
+/* A solid just added to builder->set, and its material. */
 RtStatus rt_csg_solid(RtCsgBuilder *builder, uint32_t solid, uint32_t material, RtCsgTerm *out,
                       RtError *error);
+/* Refuses a tree of more than RT_CSG_MAX_SOLIDS solids, uses counted. */
 RtStatus rt_csg_combine(RtCsgBuilder *builder, RtCsgOp op, RtCsgTerm left, RtCsgTerm right, RtCsgTerm *out,
                         RtError *error);
 /* `term` moved as a whole; what the term itself is stays where it was. */
 RtStatus rt_csg_move(RtCsgBuilder *builder, RtCsgTerm term, const RtTransform *move, RtCsgTerm *out,
                      RtError *error);
-
-/* A tree of more solids than this is refused: terms used again and again can make a short text an endless
- * tree. */
-#define RT_CSG_MAX_SOLIDS (UINT32_C(1) << 24)
 
 /* ---- trees that stand ---- */
 
@@ -73,18 +79,19 @@ typedef enum RtCsgOpcode {
     RT_CSG_TEST, /* a node begins: if the ray misses boxes[operand], push an empty list, go to `to` */
     RT_CSG_PUSH, /* push the crossings of solid `operand` */
     RT_CSG_SKIP_IF_EMPTY, /* if the top list is empty, go to `to`: the result is empty whatever comes */
-    RT_CSG_UNITE,         /* pop two lists, push their union, ... */
-    RT_CSG_INTERSECT,
-    RT_CSG_SUBTRACT,          /* the lower list minus the top one */
-    RT_CSG_SUBTRACT_REVERSED, /* the top list minus the lower one */
+    RT_CSG_APPLY,         /* pop two lists, push what RtCsgOp `operand` makes of them */
 } RtCsgOpcode;
 
 typedef struct RtCsgInstruction {
-    uint8_t code;     /* RtCsgOpcode */
-    uint8_t reversed; /* the top list is the left operand: it names the face */
+    uint8_t code;  /* RtCsgOpcode */
+    bool reversed; /* RT_CSG_APPLY: the top list is the left operand, not the lower one */
     uint32_t operand;
     uint32_t to; /* counted from the tree's first instruction */
 } RtCsgInstruction;
+
+/* The most lists that are ever on the stack: 16 where operands are ordered to be spared, and one more each
+ * time the tree doubles. */
+#define RT_CSG_MAX_LISTS 40
 
 /* One object. */
 typedef struct RtCsg {
@@ -93,7 +100,7 @@ typedef struct RtCsg {
     uint32_t most_crossings; /* room that a ray may need, in crossings, over all lists on the stack */
     bool extents;            /* made with tests of inner nodes */
     RtBox box;               /* of the result; a point where the result is certainly empty */
-    RtBox reach;             /* about all bounded solids: sets the thickness */
+    RtBox reach;             /* about the boxes of all solids, infinite sides left out: sets the thickness */
 } RtCsg;
 
 /* All trees of a geometry. Owns its arrays; a zeroed struct is empty. */
@@ -102,14 +109,15 @@ typedef struct RtCsgForest {
     uint32_t instruction_count, instruction_capacity;
     RtCsgInstruction *instructions;
     uint32_t box_count, box_capacity;
-    RtBox *boxes; /* of inner nodes */
+    RtBox *boxes; /* of inner nodes that are tested */
 } RtCsgForest;
 
 void rt_csg_forest_clear(RtCsgForest *forest);
 uint64_t rt_csg_forest_bytes(const RtCsgForest *forest);
 
-/* Fills *out with the tree below `root`, its parts appended to `forest`. Refuses a tree without end (a
- * half-space that nothing bounds) and one of more than RT_CSG_MAX_SOLIDS solids, and then changes nothing. */
+/* Fills *out with the tree below `root`, its parts appended to `forest`: each use of a solid becomes a solid
+ * of its own, in the order of the text, moved to where it is. Takes memory in proportion to their number.
+ * Refuses a tree without end (a half-space that nothing bounds), and then changes nothing. */
 RtStatus rt_csg_plant(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
                       RtCsg *out, RtError *error);
 
@@ -121,15 +129,19 @@ RtStatus rt_csg_transplant(RtCsgForest *forest, const RtCsgForest *from, const R
 
 /* The first crossing of the tree with t in [tmin, tmax] and within its box; false if there is none.
  * `tally` may be NULL: csg_tests counts the solids tested, extent_tests their boxes and those of inner nodes.
- * Where memory for a very long list cannot be had the ray misses, and rt_csg_ran_out_of_memory says so from
- * then on. */
+ * Lists of more than a few hundred crossings take memory from the heap, for the time of the call. Where it
+ * cannot be had the ray misses, and rt_csg_shortages goes up. */
 bool rt_csg_hit(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float *t,
                 RtTally *tally);
 
-/* Has any rt_csg_hit of this process lacked memory? To be asked when frames and measurements are done. */
-bool rt_csg_ran_out_of_memory(void);
+/* How many rt_csg_hit of this process have lacked memory so far. Whoever traces rays asks before and after:
+ * rt_csg_check fails with RT_NO_MEMORY if there have been more than `before`. */
+uint64_t rt_csg_shortages(void);
+RtStatus rt_csg_check(uint64_t before, RtError *error);
 
-/* What the ray meets at `t`, one of its hits: unit normal out of the tree, and the solid. */
+/* What the ray meets at `t`, one of its hits: unit normal out of the tree, and the solid. At a `t` that is
+ * none it is the nearest place of the ray's line; where there is no such place at all the normal is 0, the
+ * solid the tree's first. */
 typedef struct RtCsgFacet {
     RtVec3d normal;
     uint32_t solid; /* index in the set */

@@ -44,6 +44,7 @@ typedef struct RtPlane {
 typedef struct RtSolid {
     RtSolidKind kind;
     uint32_t material;     /* of the scene; nothing here reads it */
+    bool subtracted;       /* from its tree: its faces look inward (csg.h); nothing here reads it */
     uint32_t first, count; /* cone: its 2 caps (base first), polyhedron: its faces, in `planes`; mesh: in
                               `triangles` */
     double ratio;          /* cone, torus */

@@ -1,0 +1,228 @@
+/* Rays and trees: the machine that runs a tree's program (csg.h). Its stack of lists lies in one array of
+ * crossings, list after list; that array is on the C stack until a ray needs more. Two lists are merged to
+ * behind them, and the result moved down to where they began. */
+#include "shape/csg.h"
+
+#include "base/memory.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+#define INLINE static inline __attribute__((always_inline))
+
+/* Crossings on the C stack: 4 KB of them. */
+#define ROOM 256
+
+typedef struct Machine {
+    RtCrossing *crossings;
+    uint32_t capacity;
+    uint32_t depth;                        /* lists on the stack */
+    uint32_t starts[RT_CSG_MAX_LISTS + 1]; /* list i: crossings [starts[i], starts[i + 1]) */
+    RtCrossing *heap;                      /* NULL while the crossings are on the C stack */
+    RtCrossing room[ROOM];
+} Machine;
+
+static atomic_uint_fast64_t shortages;
+
+uint64_t rt_csg_shortages(void) {
+    return atomic_load(&shortages);
+}
+
+RtStatus rt_csg_check(uint64_t before, RtError *error) {
+    return rt_csg_shortages() == before ? RT_OK : rt_fail_memory(error, "a ray through a CSG tree", 0);
+}
+
+static void start(Machine *m) {
+    m->crossings = m->room;
+    m->capacity = ROOM;
+    m->depth = 0;
+    m->starts[0] = 0;
+    m->heap = NULL;
+}
+
+static bool grow(Machine *m, uint64_t needed) {
+    uint64_t capacity = needed > 2 * (uint64_t)m->capacity ? needed : 2 * (uint64_t)m->capacity;
+    RtCrossing *heap = capacity <= UINT32_MAX ? rt_alloc(capacity, sizeof(RtCrossing)) : NULL;
+    if (!heap) {
+        atomic_fetch_add(&shortages, 1);
+        return false;
+    }
+    memcpy(heap, m->crossings, m->starts[m->depth] * sizeof(RtCrossing));
+    rt_free(m->heap);
+    m->crossings = m->heap = heap;
+    m->capacity = (uint32_t)capacity;
+    return true;
+}
+
+/* Room for `more` crossings behind all lists. */
+static inline bool reserve(Machine *m, uint32_t more) {
+    uint64_t needed = (uint64_t)m->starts[m->depth] + more;
+    return needed <= m->capacity || grow(m, needed);
+}
+
+static inline void push(Machine *m, uint32_t count) {
+    m->starts[m->depth + 1] = m->starts[m->depth] + count;
+    m->depth++;
+}
+
+/* ---- operations ---- */
+
+static inline bool holds(RtCsgOp op, bool in_left, bool in_right) {
+    switch (op) {
+    case RT_CSG_UNION: return in_left || in_right;
+    case RT_CSG_INTERSECTION: return in_left && in_right;
+    case RT_CSG_DIFFERENCE: return in_left && !in_right;
+    }
+    return false;
+}
+
+/* The one rule of csg.h: place by place. Even a NaN is passed by. */
+static uint32_t merge(RtCsgOp op, const RtCrossing *left, const RtCrossing *left_end, const RtCrossing *right,
+                      const RtCrossing *right_end, RtCrossing *out) {
+    bool in_left = false, in_right = false, inside = false;
+    uint32_t count = 0;
+    while (left < left_end || right < right_end) {
+        bool leftmost = right == right_end || (left < left_end && left->t <= right->t);
+        float t = leftmost ? left->t : right->t;
+        const RtCrossing *from_left = left, *from_right = right;
+        while (left < left_end && !(left->t > t)) left++;
+        while (right < right_end && !(right->t > t)) right++;
+        bool left_turns = (left - from_left) % 2, right_turns = (right - from_right) % 2;
+        in_left ^= left_turns;
+        in_right ^= right_turns;
+        bool now = holds(op, in_left, in_right);
+        if (now == inside) continue;
+        inside = now;
+        out[count++] = left_turns && in_left == inside ? *from_left : *from_right;
+    }
+    return count;
+}
+
+static bool apply(Machine *m, RtCsgOp op, bool reversed) {
+    uint32_t lower = m->starts[m->depth - 2], top = m->starts[m->depth - 1], end = m->starts[m->depth];
+    bool left_empty = reversed ? top == end : lower == top;
+    bool right_empty = reversed ? lower == top : top == end;
+    m->depth--;
+    if (left_empty || right_empty) {
+        bool stays = op == RT_CSG_UNION || (op == RT_CSG_DIFFERENCE && right_empty);
+        m->starts[m->depth] = stays ? end : lower;
+        return true;
+    }
+    m->starts[m->depth] = end;
+    if (!reserve(m, end - lower)) return false;
+    const RtCrossing *begin = m->crossings + lower, *middle = m->crossings + top;
+    RtCrossing *behind = m->crossings + end;
+    uint32_t count = reversed ? merge(op, middle, behind, begin, middle, behind)
+                              : merge(op, begin, middle, middle, behind, behind);
+    memmove(m->crossings + lower, behind, count * sizeof(RtCrossing));
+    m->starts[m->depth] = lower + count;
+    return true;
+}
+
+/* ---- running a program ---- */
+
+INLINE bool push_solid(Machine *m, const RtSolidSet *set, uint32_t index, const RtSolidRay *ray,
+                       RtTally *tally) {
+    float near = -INFINITY, far = INFINITY;
+    RT_COUNT(tally, extent_tests, 1);
+    rt_box_cut(&set->solids[index].box, &ray->thick, &near, &far);
+    if (!(near <= far && near <= ray->thick.tmax && far >= ray->thick.tmin)) {
+        push(m, 0);
+        return true;
+    }
+    if (!reserve(m, rt_solid_most_crossings(&set->solids[index]))) return false;
+    RT_COUNT(tally, csg_tests, 1);
+    push(m, rt_solid_crossings(set, index, ray, near, far, m->crossings + m->starts[m->depth]));
+    return true;
+}
+
+/* Leaves one list on the stack; false where memory is short. */
+INLINE bool run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const RtSolidRay *ray,
+                RtTally *tally) {
+    const RtCsgInstruction *program = forest->instructions + tree->first;
+    float enter;
+    for (uint32_t i = 0; i < tree->count; i++) {
+        RtCsgInstruction instruction = program[i];
+        switch ((RtCsgOpcode)instruction.code) {
+        case RT_CSG_TEST:
+            RT_COUNT(tally, extent_tests, 1);
+            if (rt_box_hit(&forest->boxes[instruction.operand], &ray->thick, ray->thick.tmax, &enter)) break;
+            push(m, 0);
+            i = instruction.to - 1;
+            break;
+        case RT_CSG_PUSH:
+            if (!push_solid(m, &forest->set, instruction.operand, ray, tally)) return false;
+            break;
+        case RT_CSG_SKIP_IF_EMPTY:
+            if (m->starts[m->depth - 1] == m->starts[m->depth]) i = instruction.to - 1;
+            break;
+        case RT_CSG_APPLY:
+            if (!apply(m, (RtCsgOp)instruction.operand, instruction.reversed)) return false;
+            break;
+        }
+    }
+    return true;
+}
+
+static inline RtSolidRay solid_ray(const RtCsg *tree, const RtPreparedRay *ray) {
+    RtSolidRay solid = {rt_widen(ray->org), rt_widen(ray->dir), *ray};
+    rt_ray_thicken(&solid.thick, &tree->reach);
+    return solid;
+}
+
+/* Can rt_box_admit admit anything at all? An empty tree has a point for a box. */
+static inline bool comes_near(const RtCsg *tree, const RtPreparedRay *ray) {
+    float near, far;
+    rt_box_own_span(&tree->box, ray, &near, &far);
+    return near <= far && near <= ray->tmax && far >= ray->tmin && tree->box.lo.x < tree->box.hi.x;
+}
+
+INLINE bool search(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float *t,
+                   RtTally *tally) {
+    if (!comes_near(tree, ray)) return false;
+    RtSolidRay solid = solid_ray(tree, ray);
+    Machine m;
+    start(&m);
+    bool found = false;
+    uint32_t count = run(&m, forest, tree, &solid, tally) ? m.starts[1] : 0;
+    for (uint32_t i = 0; i < count && !found; i++) {
+        *t = m.crossings[i].t + 0.0f; /* of two faces one may be met at -0, the other at 0 */
+        found = *t >= ray->tmin && *t <= ray->tmax && rt_box_admit(&tree->box, ray, t);
+    }
+    rt_free(m.heap);
+    return found;
+}
+
+bool rt_csg_hit(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float *t,
+                RtTally *tally) {
+    return tally ? search(forest, tree, ray, t, tally) : search(forest, tree, ray, t, NULL);
+}
+
+/* ---- facets ---- */
+
+static RtCsgFacet facet_of(const RtCsgForest *forest, const RtPreparedRay *ray, const RtCrossing *crossing) {
+    RtVec3d point = rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), (double)crossing->t);
+    RtVec3d normal = rt_solid_normal(&forest->set, crossing->solid, crossing->face, point);
+    bool inward = forest->set.solids[crossing->solid].subtracted;
+    return (RtCsgFacet){inward ? rt_scaled(normal, -1) : normal, crossing->solid};
+}
+
+RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float t) {
+    RtCsgFacet facet = {{0, 0, 0}, tree->first_solid};
+    RtSolidRay solid = solid_ray(tree, ray);
+    Machine m;
+    start(&m);
+    uint32_t count = run(&m, forest, tree, &solid, NULL) ? m.starts[1] : 0;
+    const RtCrossing *best = NULL;
+    float least = INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        float at = m.crossings[i].t; /* as rt_csg_hit would say it */
+        (void)rt_box_admit(&tree->box, ray, &at);
+        if (!(fabsf(at - t) < least)) continue;
+        least = fabsf(at - t);
+        best = &m.crossings[i];
+    }
+    if (best) facet = facet_of(forest, ray, best);
+    rt_free(m.heap);
+    return facet;
+}
