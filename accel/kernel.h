@@ -45,7 +45,7 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
     return rt_minf(best->t, ray->tmax);
 }
 
-/* The kernels that RT_DEFINE_KERNELS or RT_DEFINE_SHADOW_KERNELS has defined, as members of RtAccelOps. */
+/* The kernels that one of the RT_DEFINE_..._KERNELS has defined, as members of RtAccelOps. */
 #define RT_KERNEL_OPS                                                                                        \
     .nearest = nearest_timed, .occluded = occluded_timed, .nearest_counted = nearest_counted,                \
     .occluded_counted = occluded_counted
@@ -91,78 +91,91 @@ static inline void *rt_scratch_below(const RtAccel *accel, void *scratch) {
     return (char *)scratch + accel->scratch_room;
 }
 
-/* Rays that are none of this overlay's business; `tallies` may be NULL. */
-RT_KERNEL void rt_hand_down_nearest(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                                    RtHit *hits, RtTally *tallies) {
-    const RtAccel *below = accel->below;
-    scratch = rt_scratch_below(accel, scratch);
-    if (tallies) {
-        below->ops->nearest_counted(below, scratch, rays, count, hits, tallies);
-    } else {
-        below->ops->nearest(below, scratch, rays, count, hits);
+/* What an overlay does with rays of one question, `nearest` or `occluded`, whose answers are of type Answer;
+ * `tallies` may be NULL.
+ *   rt_hand_down_...  rays that are none of its business
+ *   rt_pass_on_...    a ray that it ought to answer and cannot */
+#define RT_DEFINE_HAND_DOWN(question, Answer)                                                                \
+    RT_KERNEL void rt_hand_down_##question(const RtAccel *accel, void *scratch, const RtRay *rays,           \
+                                           size_t count, Answer *answers, RtTally *tallies) {                \
+        const RtAccel *below = accel->below;                                                                 \
+        scratch = rt_scratch_below(accel, scratch);                                                          \
+        if (tallies) {                                                                                       \
+            below->ops->question##_counted(below, scratch, rays, count, answers, tallies);                   \
+        } else {                                                                                             \
+            below->ops->question(below, scratch, rays, count, answers);                                      \
+        }                                                                                                    \
+    }                                                                                                        \
+    RT_KERNEL Answer rt_pass_on_##question(const RtAccel *accel, void *scratch, const RtRay *ray,            \
+                                           RtTally *tallies) {                                               \
+        Answer answer;                                                                                       \
+        if (tallies) tallies[ray->kind].passed_on++;                                                         \
+        rt_hand_down_##question(accel, scratch, ray, 1, &answer, tallies);                                   \
+        return answer;                                                                                       \
     }
+RT_DEFINE_HAND_DOWN(nearest, RtHit)
+RT_DEFINE_HAND_DOWN(occluded, uint32_t)
+
+/* A ray that this overlay has answered. Gives `hit` back, or `blocker`. */
+RT_KERNEL RtHit rt_answer_nearest(RtHit hit, RtTally *tally) {
+    RT_COUNT(tally, rays, 1);
+    RT_COUNT(tally, hits, hit.object != RT_NO_OBJECT);
+    return hit;
 }
 
-RT_KERNEL void rt_hand_down_occluded(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                                     uint32_t *blockers, RtTally *tallies) {
-    const RtAccel *below = accel->below;
-    scratch = rt_scratch_below(accel, scratch);
-    if (tallies) {
-        below->ops->occluded_counted(below, scratch, rays, count, blockers, tallies);
-    } else {
-        below->ops->occluded(below, scratch, rays, count, blockers);
-    }
-}
-
-/* A ray that this overlay ought to answer and cannot. */
-RT_KERNEL uint32_t rt_pass_on_occluded(const RtAccel *accel, void *scratch, const RtRay *ray,
-                                       RtTally *tallies) {
-    uint32_t blocker;
-    if (tallies) tallies[ray->kind].passed_on++;
-    rt_hand_down_occluded(accel, scratch, ray, 1, &blocker, tallies);
-    return blocker;
-}
-
-/* A ray that this overlay has answered. Gives `blocker` back. */
 RT_KERNEL uint32_t rt_answer_occluded(uint32_t blocker, RtTally *tally) {
     RT_COUNT(tally, rays, 1);
     RT_COUNT(tally, hits, blocker != RT_NO_OBJECT);
     return blocker;
 }
 
+/* The two kernels of a question that an overlay answers for rays of `own_kind`, one by one; runs of others
+ * are handed down in streams. */
+#define RT_ANSWER_QUESTION(Type, question, Answer, own_kind, answer_one)                                     \
+    RT_KERNEL void question##_all(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,      \
+                                  Answer *answers, RtTally *tallies) {                                       \
+        for (size_t i = 0, next; i < count; i = next) {                                                      \
+            for (next = i; next < count && rays[next].kind != (own_kind); next++) {                          \
+            }                                                                                                \
+            if (next > i) rt_hand_down_##question(accel, scratch, rays + i, next - i, answers + i, tallies); \
+            for (; next < count && rays[next].kind == (own_kind); next++) {                                  \
+                answers[next] = answer_one((const Type *)accel, scratch, &rays[next], tallies);              \
+            }                                                                                                \
+        }                                                                                                    \
+    }                                                                                                        \
+    RT_DEFINE_BOTH(question, Answer, question##_all)
+
+/* The two kernels of a question that an overlay does not answer for any ray. */
+#define RT_REFUSE_QUESTION(question, Answer) RT_DEFINE_BOTH(question, Answer, rt_hand_down_##question)
+
+/* Expands `all` into the timed and the counted kernel. */
+#define RT_DEFINE_BOTH(question, Answer, all)                                                                \
+    static void question##_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,       \
+                                 Answer *answers) {                                                          \
+        all(accel, scratch, rays, count, answers, NULL);                                                     \
+    }                                                                                                        \
+    static void question##_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,     \
+                                   Answer *answers, RtTally *tallies) {                                      \
+        all(accel, scratch, rays, count, answers, tallies);                                                  \
+    }
+
 /* The kernels of an overlay for shadow rays, from
  *
  *     uint32_t shade(const Type *self, void *scratch, const RtRay *ray, RtTally *tallies);
  *
- * which gives the blocker of one shadow ray, through rt_answer_occluded or rt_pass_on_occluded. Queries for
- * the nearest hit, and rays of other kinds, are handed down in streams. */
+ * which gives the blocker of one shadow ray, through rt_answer_occluded or rt_pass_on_occluded; and those of
+ * an overlay for primary rays, from
+ *
+ *     RtHit see(const Type *self, void *scratch, const RtRay *ray, RtTally *tallies);
+ *
+ * which gives the nearest hit of one, through rt_answer_nearest or rt_pass_on_nearest. All else is handed
+ * down. */
 #define RT_DEFINE_SHADOW_KERNELS(Type, shade)                                                                \
-    RT_KERNEL void shade_all(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,           \
-                             uint32_t *blockers, RtTally *tallies) {                                         \
-        for (size_t i = 0, next; i < count; i = next) {                                                      \
-            for (next = i; next < count && rays[next].kind != RT_RAY_SHADOW; next++) {                       \
-            }                                                                                                \
-            if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, blockers + i, tallies);  \
-            for (; next < count && rays[next].kind == RT_RAY_SHADOW; next++) {                               \
-                blockers[next] = shade((const Type *)accel, scratch, &rays[next], tallies);                  \
-            }                                                                                                \
-        }                                                                                                    \
-    }                                                                                                        \
-    static void nearest_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,          \
-                              RtHit *hits) {                                                                 \
-        rt_hand_down_nearest(accel, scratch, rays, count, hits, NULL);                                       \
-    }                                                                                                        \
-    static void nearest_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,        \
-                                RtHit *hits, RtTally *tallies) {                                             \
-        rt_hand_down_nearest(accel, scratch, rays, count, hits, tallies);                                    \
-    }                                                                                                        \
-    static void occluded_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,         \
-                               uint32_t *blockers) {                                                         \
-        shade_all(accel, scratch, rays, count, blockers, NULL);                                              \
-    }                                                                                                        \
-    static void occluded_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,       \
-                                 uint32_t *blockers, RtTally *tallies) {                                     \
-        shade_all(accel, scratch, rays, count, blockers, tallies);                                           \
-    }
+    RT_REFUSE_QUESTION(nearest, RtHit)                                                                       \
+    RT_ANSWER_QUESTION(Type, occluded, uint32_t, RT_RAY_SHADOW, shade)
+
+#define RT_DEFINE_PRIMARY_KERNELS(Type, see)                                                                 \
+    RT_ANSWER_QUESTION(Type, nearest, RtHit, RT_RAY_PRIMARY, see)                                            \
+    RT_REFUSE_QUESTION(occluded, uint32_t)
 
 #endif

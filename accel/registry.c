@@ -15,6 +15,7 @@
     X(rt_grid_ops)                                                                                           \
     X(rt_octree_ops)                                                                                         \
     X(rt_ideal_ops)                                                                                          \
+    X(rt_item_ops)                                                                                           \
     X(rt_cache_ops)                                                                                          \
     X(rt_light_ops)
 
