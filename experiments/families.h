@@ -13,16 +13,17 @@
 size_t rt_scene_family_count(void);
 const char *rt_scene_family_name(size_t family);
 
-/* Builds scene number `seed` of a family, finished, with 0 to a few hundred objects; its name is the
- * family's. Owned by the caller: rt_scene_clear. */
+/* Builds scene number `seed` of a family, finished, with 0 to a few hundred objects and an image of a
+ * thousand pixels; its name is the family's. Owned by the caller: rt_scene_clear. */
 RtStatus rt_scene_family_build(size_t family, uint64_t seed, RtScene *scene, RtError *error);
 
 /* The first family is `chord`: random chords of the scene's bounding sphere. */
 size_t rt_ray_family_count(void);
 const char *rt_ray_family_name(size_t family);
 
-/* Rays first..first+count-1 of a family for the scene of `query`, to rays[0..count): every one is valid, of
- * kind random. `query` belongs to any exact accelerator: some families need the hit of a ray. */
+/* Rays first..first+count-1 of a family for the scene of `query`, to rays[0..count): every one is valid. They
+ * are of kind random, but for those towards lights and through the samples of the image. `query` belongs to
+ * any exact accelerator: some families need the hit of a ray. */
 void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t first, size_t count,
                         RtRay *rays);
 

@@ -8,6 +8,7 @@ typedef struct Maker {
     RtQuery *query;
     const RtScene *scene;
     const RtGeometry *geometry; /* the scene's */
+    RtView view;                /* of its camera; without samples if that sees nothing */
     RtVec3d center;             /* of the scene's box */
     double size;                /* half its diagonal */
     RtRandom random;
@@ -237,6 +238,21 @@ static RtRay to_light(Maker *m) {
     return ray;
 }
 
+/* A primary ray of the scene's sampling, or nearly so: some of another sample, or not quite through it. */
+static RtRay through_sample(Maker *m) {
+    const RtSampling *s = &m->scene->sampling;
+    if (m->view.sampling.columns == 0) return chord(m);
+    RtRay ray = rt_view_ray(&m->view, below(m, s->columns), below(m, s->rows));
+    switch (below(m, 16)) {
+    case 0: ray.source = below(m, s->columns * s->rows + 2); break;
+    case 1: ray.tmax = (float)rt_random_betweend(&m->random, 0, 2 * m->size); break;
+    case 2: ray.dir.at[below(m, 3)] *= 1 + 0x1p-20f; break;
+    case 3: ray.org.at[below(m, 3)] += (float)m->size * 0x1p-10f; break;
+    default: break;
+    }
+    return ray;
+}
+
 static const struct {
     const char *name;
     RtRay (*make)(Maker *maker);
@@ -254,6 +270,7 @@ static const struct {
     {"ends-at-hit", ends_at_hit},
     {"of-any-length", of_any_length},
     {"to-light", to_light},
+    {"through-sample", through_sample},
 };
 
 size_t rt_ray_family_count(void) {
@@ -268,6 +285,7 @@ void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t f
                         RtRay *rays) {
     Maker maker = {
         .query = query, .scene = query->accel->scene, .geometry = &query->accel->scene->geometry, .size = 1};
+    rt_view_init(&maker.view, &maker.scene->camera, maker.scene->sampling, NULL);
     if (maker.geometry->object_count > 0) {
         const RtBox *box = &maker.geometry->box;
         maker.center = rt_widen(rt_box_center(*box));

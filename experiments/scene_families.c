@@ -238,6 +238,8 @@ static RtStatus fill(Builder *b, RtError *error) {
 RtStatus rt_scene_family_build(size_t family, uint64_t seed, RtScene *scene, RtError *error) {
     Builder builder = {.recipe = &recipes[family], .scene = scene, .random = rt_random(seed, family)};
     rt_scene_init(scene);
+    scene->camera.width = 40;
+    scene->camera.height = 30;
     snprintf(scene->name, sizeof scene->name, "%s", recipes[family].name);
     RtStatus status = fill(&builder, error);
     if (status != RT_OK) rt_scene_clear(scene);

@@ -41,6 +41,8 @@ static const char *const stacks[] = {
     "cache+light:cells=8,full_occlusion=off+clusters:extent=sphere",
     "light+cache+octree",
     "cache+cache+light:cells=1+brute",
+    "item+light:cells=16+grid",
+    "cache+item:settle=off+octree",
 };
 
 enum { STACK_COUNT = sizeof stacks / sizeof stacks[0] };
