@@ -48,6 +48,10 @@ static const Row rows[] = {
     {"ideal", BETWEEN, false, {.rays = 1}},
     {"ideal", BESIDE, true, {.rays = 1}},
 
+    /* item: whatever is not a primary ray is handed down untouched; test_item counts those that are not. */
+    {"item+brute", THROUGH, false, {.rays = 1, .hits = 1, .object_tests = 2, .object_hits = 2}},
+    {"item+brute", BESIDE, true, {.rays = 1, .object_tests = 2}},
+
     /* bvh: an extent test per box, the root's included; a step per node visited. With leaf=1 a root and two
      * leaves: THROUGH visits the root and the near leaf, and drops the far one, which begins at t = 4. */
     {"bvh:leaf=1",
