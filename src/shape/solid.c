@@ -1,0 +1,301 @@
+/* Sets of solids: adding, moving, and the dispatch on the kind. What a kind is stands in its own file,
+ * solid_KIND.c.
+ *
+ * Adding ends in rt_solid_finish, whatever the kind: planes and triangles are put behind those of the set,
+ * the box is made from them, and only when nothing can fail any more the set counts them. */
+#include "shape/solid.h"
+
+#include "base/memory.h"
+#include "shape/solid_parts.h"
+
+#include <assert.h>
+
+static const char *const kind_names[RT_SOLID_KIND_COUNT] = {
+#define NAME(CONSTANT, name) #name,
+    RT_SOLID_KINDS(NAME)
+#undef NAME
+};
+
+const char *rt_solid_kind_name(RtSolidKind kind) {
+    assert(kind < RT_SOLID_KIND_COUNT);
+    return kind_names[kind];
+}
+
+void rt_solid_set_clear(RtSolidSet *set) {
+    rt_free(set->solids);
+    rt_free(set->planes);
+    rt_free(set->triangles);
+    *set = (RtSolidSet){0};
+}
+
+uint64_t rt_solid_set_bytes(const RtSolidSet *set) {
+    return (uint64_t)set->solid_capacity * sizeof(RtSolid) + (uint64_t)set->plane_capacity * sizeof(RtPlane) +
+           (uint64_t)set->triangle_capacity * sizeof(RtTriangle);
+}
+
+/* ---- planes ---- */
+
+/* The axis along which the vector lies, or -1. */
+static int axis_of(RtVec3d v) {
+    int axis = -1;
+    for (int a = 0; a < 3; a++) {
+        if (v.at[a] == 0) continue;
+        if (axis >= 0) return -1;
+        axis = a;
+    }
+    return axis;
+}
+
+RtPlane rt_plane_through(RtVec3d point, RtVec3d normal) {
+    int axis = axis_of(normal);
+    if (axis >= 0) {
+        double sign = normal.at[axis] < 0 ? -1 : 1;
+        RtPlane plane = {.offset = sign * (double)(float)point.at[axis]};
+        plane.normal.at[axis] = sign;
+        return plane;
+    }
+    double most = fmax(fabs(normal.x), fmax(fabs(normal.y), fabs(normal.z)));
+    RtVec3d unit = rt_normalized(rt_scaled(normal, 1 / most));
+    return (RtPlane){unit, rt_dotd(unit, point)};
+}
+
+/* Normals go by the matrix of cofactors. */
+RtPlane rt_plane_moved(const RtPlane *plane, const RtTransform *move) {
+    RtVec3d x = rt_transform_column(move, 0), y = rt_transform_column(move, 1),
+            z = rt_transform_column(move, 2);
+    RtVec3d n = plane->normal, normal = rt_scaled(rt_crossd(y, z), n.x);
+    normal = rt_add_scaledd(normal, rt_crossd(z, x), n.y);
+    normal = rt_add_scaledd(normal, rt_crossd(x, y), n.z);
+    return rt_plane_through(rt_transform_exactly(move, rt_scaled(n, plane->offset)), normal);
+}
+
+/* ---- places ---- */
+
+RtVec3d rt_transform_exactly(const RtTransform *transform, RtVec3d point) {
+    RtVec3d moved;
+    for (int row = 0; row < 3; row++) {
+        const double *m = transform->m[row];
+        moved.at[row] = m[0] * point.x + m[1] * point.y + m[2] * point.z + m[3];
+    }
+    return moved;
+}
+
+RtStatus rt_solid_check_place(const RtTransform *place, RtError *error) {
+    RtVec3d x = rt_transform_column(place, 0), y = rt_transform_column(place, 1),
+            z = rt_transform_column(place, 2), by = rt_transform_column(place, 3);
+    double volume = rt_dotd(x, rt_crossd(y, z)), most = rt_lengthd(x) * rt_lengthd(y) * rt_lengthd(z);
+    if (!isfinite(most) || !isfinite(rt_lengthd(by))) {
+        return rt_fail(error, RT_BAD_INPUT, "the place of a solid is not made of finite numbers");
+    }
+    if (!(volume > 0x1p-40 * most)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "a solid would be flat, or turned inside out: its axes need some length each, and "
+                       "not to lie in one plane");
+    }
+    return RT_OK;
+}
+
+RtTransform rt_solid_place_about(RtVec3d origin, RtVec3d axis, double radius, double height) {
+    RtVec3d z = rt_normalized(axis), aside = {{0, 0, 0}};
+    int least = 0;
+    for (int a = 1; a < 3; a++) least = fabs(z.at[a]) < fabs(z.at[least]) ? a : least;
+    aside.at[least] = 1;
+    RtVec3d x = rt_normalized(rt_crossd(aside, z)), y = rt_crossd(z, x);
+    const RtVec3d columns[4] = {rt_scaled(x, radius), rt_scaled(y, radius), rt_scaled(z, height), origin};
+    RtTransform place;
+    for (int row = 0; row < 3; row++) {
+        for (int i = 0; i < 4; i++) place.m[row][i] = columns[i].at[row];
+    }
+    return place;
+}
+
+static void invert(RtSolid *solid) {
+    RtVec3d x = rt_transform_column(&solid->place, 0), y = rt_transform_column(&solid->place, 1),
+            z = rt_transform_column(&solid->place, 2);
+    RtVec3d yz = rt_crossd(y, z);
+    double volume = rt_dotd(x, yz);
+    solid->back[0] = rt_scaled(yz, 1 / volume);
+    solid->back[1] = rt_scaled(rt_crossd(z, x), 1 / volume);
+    solid->back[2] = rt_scaled(rt_crossd(x, y), 1 / volume);
+}
+
+/* The largest eigenvalue of the matrix G of dot products is at most its trace, and that of G^2 is its square:
+ * squaring again and again brings the bound down to it. */
+double rt_largest_stretch(RtVec3d x, RtVec3d y, RtVec3d z) {
+    enum { SQUARINGS = 30 };
+    const RtVec3d columns[3] = {x, y, z};
+    double g[3][3], traces[SQUARINGS];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) g[i][j] = rt_dotd(columns[i], columns[j]);
+    }
+    for (int k = 0; k < SQUARINGS; k++) {
+        double trace = g[0][0] + g[1][1] + g[2][2], squared[3][3];
+        traces[k] = trace;
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) {
+                squared[i][j] = 0;
+                for (int m = 0; m < 3; m++) squared[i][j] += g[i][m] / trace * (g[m][j] / trace);
+            }
+        }
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 3; j++) g[i][j] = squared[i][j];
+        }
+    }
+    double bound = 1;
+    for (int k = SQUARINGS; k-- > 0;) bound = traces[k] * sqrt(bound);
+    return sqrt(bound) * (1 + 0x1p-40);
+}
+
+/* ---- by kind ---- */
+
+uint32_t rt_solid_most_crossings(const RtSolid *solid) {
+    switch (solid->kind) {
+    case RT_SOLID_TORUS: return 4;
+    case RT_SOLID_MESH: return solid->count;
+    default: return 2;
+    }
+}
+
+uint32_t rt_solid_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
+                            float far, RtCrossing *out) {
+    switch (set->solids[index].kind) {
+#define CROSSINGS(CONSTANT, name)                                                                            \
+    case RT_SOLID_##CONSTANT: return rt_solid_##name##_crossings(set, index, ray, near, far, out);
+        RT_SOLID_KINDS(CROSSINGS)
+#undef CROSSINGS
+    case RT_SOLID_KIND_COUNT: break;
+    }
+    return 0;
+}
+
+RtVec3d rt_solid_normal(const RtSolidSet *set, uint32_t index, uint32_t face, RtVec3d point) {
+    const RtSolid *solid = &set->solids[index];
+    switch (solid->kind) {
+#define NORMAL(CONSTANT, name)                                                                               \
+    case RT_SOLID_##CONSTANT: return rt_solid_##name##_normal(set, solid, face, point);
+        RT_SOLID_KINDS(NORMAL)
+#undef NORMAL
+    case RT_SOLID_KIND_COUNT: break;
+    }
+    return rt_vec3d(0, 0, 0);
+}
+
+static double support(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction) {
+    switch (solid->kind) {
+#define SUPPORT(CONSTANT, name)                                                                              \
+    case RT_SOLID_##CONSTANT: return rt_solid_##name##_support(set, solid, direction);
+        RT_SOLID_KINDS(SUPPORT)
+#undef SUPPORT
+    case RT_SOLID_KIND_COUNT: break;
+    }
+    return INFINITY;
+}
+
+double rt_solid_support(const RtSolidSet *set, uint32_t index, RtVec3d direction) {
+    return support(set, &set->solids[index], direction);
+}
+
+RtBall rt_solid_ball(const RtSolidSet *set, uint32_t index) {
+    const RtSolid *solid = &set->solids[index];
+    switch (solid->kind) {
+#define BALL(CONSTANT, name)                                                                                 \
+    case RT_SOLID_##CONSTANT: return rt_solid_##name##_ball(set, solid);
+        RT_SOLID_KINDS(BALL)
+#undef BALL
+    case RT_SOLID_KIND_COUNT: break;
+    }
+    return (RtBall){{{0, 0, 0}}, INFINITY};
+}
+
+/* ---- adding ---- */
+
+/* By the support function, rounded outward; faces along an axis bound it exactly. */
+static RtBox box_of(const RtSolidSet *set, const RtSolid *solid) {
+    RtBox box = RT_EMPTY_BOX;
+    if (solid->kind == RT_SOLID_MESH) {
+        for (uint32_t i = 0; i < solid->count; i++)
+            box = rt_box_union(box, rt_triangle_box(&set->triangles[solid->first + i]));
+        return box;
+    }
+    for (int a = 0; a < 3; a++) {
+        RtVec3d up = {{a == 0, a == 1, a == 2}};
+        double hi = support(set, solid, up), lo = -support(set, solid, rt_scaled(up, -1));
+        double slack = 0x1p-50 * fabs(solid->place.m[a][3]);
+        box.lo.at[a] = rt_float_below(lo - slack - 0x1p-50 * fabs(lo));
+        box.hi.at[a] = rt_float_above(hi + slack + 0x1p-50 * fabs(hi));
+    }
+    for (uint32_t i = 0; i < solid->count; i++) {
+        const RtPlane *plane = &set->planes[solid->first + i];
+        int a = axis_of(plane->normal);
+        if (a < 0) continue;
+        if (plane->normal.at[a] > 0) box.hi.at[a] = rt_minf((float)plane->offset, box.hi.at[a]);
+        if (plane->normal.at[a] < 0) box.lo.at[a] = rt_maxf((float)-plane->offset, box.lo.at[a]);
+    }
+    return box;
+}
+
+static RtStatus check_box(const RtBox *box, RtError *error) {
+    for (int a = 0; a < 3; a++) {
+        const float sides[2] = {box->lo.at[a], box->hi.at[a]};
+        for (int i = 0; i < 2; i++) {
+            if (fabsf(sides[i]) <= RT_MAX_COORDINATE || sides[i] == (i ? INFINITY : -INFINITY)) continue;
+            return rt_fail(error, RT_BAD_INPUT,
+                           "a solid would reach to %g: coordinates go to %g at most; scale it down",
+                           (double)sides[i], (double)RT_MAX_COORDINATE);
+        }
+    }
+    return RT_OK;
+}
+
+RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, uint32_t *index, RtError *error) {
+    RT_TRY(rt_solid_check_place(&solid->place, error));
+    invert(solid);
+    solid->box = box_of(set, solid);
+    RT_TRY(check_box(&solid->box, error));
+    RT_TRY(rt_reserve(&set->solids, &set->solid_capacity, (uint64_t)set->solid_count + 1, sizeof(RtSolid),
+                      error));
+    *index = set->solid_count;
+    set->solids[set->solid_count++] = *solid;
+    *(solid->kind == RT_SOLID_MESH ? &set->triangle_count : &set->plane_count) += solid->count;
+    return RT_OK;
+}
+
+/* Puts the moved planes of a solid of `source` behind those of the set. */
+static RtStatus move_planes(RtSolidSet *set, const RtSolidSet *source, RtSolid *solid,
+                            const RtTransform *move, RtError *error) {
+    RT_TRY(rt_reserve(&set->planes, &set->plane_capacity, (uint64_t)set->plane_count + solid->count,
+                      sizeof(RtPlane), error));
+    for (uint32_t i = 0; i < solid->count; i++) {
+        const RtPlane *plane = &source->planes[solid->first + i];
+        set->planes[set->plane_count + i] = move ? rt_plane_moved(plane, move) : *plane;
+    }
+    solid->first = set->plane_count;
+    return RT_OK;
+}
+
+static RtStatus move_triangles(RtSolidSet *set, const RtSolidSet *source, RtSolid *solid,
+                               const RtTransform *move, RtError *error) {
+    RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + solid->count,
+                      sizeof(RtTriangle), error));
+    for (uint32_t i = 0; i < solid->count; i++) {
+        RtTriangle triangle = source->triangles[solid->first + i];
+        for (int v = 0; move && v < 3; v++) triangle.v[v] = rt_transform_point(move, triangle.v[v]);
+        set->triangles[set->triangle_count + i] = triangle;
+    }
+    solid->first = set->triangle_count;
+    return RT_OK;
+}
+
+RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t from, const RtTransform *move,
+                            uint32_t *index, RtError *error) {
+    RtSolid solid = source->solids[from];
+    if (move) RT_TRY(rt_solid_check_place(move, error));
+    if (solid.kind == RT_SOLID_MESH) {
+        RT_TRY(move_triangles(set, source, &solid, move, error));
+    } else {
+        RT_TRY(move_planes(set, source, &solid, move, error));
+    }
+    bool curved = solid.kind != RT_SOLID_MESH && solid.kind != RT_SOLID_POLYHEDRON;
+    if (curved && move) solid.place = rt_transform_compose(&solid.place, move);
+    return rt_solid_finish(set, &solid, index, error);
+}

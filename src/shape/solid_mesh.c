@@ -1,0 +1,234 @@
+/* The inside of a closed triangle mesh: every directed edge is there as often as its reverse, so that the
+ * surface has no border; more of it is entered than left, seen along any line, where the line is inside.
+ *
+ * A line meets a triangle by the winding number of its outline about the line (as seen along it: moved to the
+ * origin and sheared until the ray is the z axis, as in shape/triangle.h). The number is counted on the half
+ * line y = 0, x > 0: an edge from below (y < 0) to above that passes to the right of the origin gives 1, its
+ * reverse gives -1, any other nothing. What an edge gives is computed from the lower end to the upper one,
+ * whatever the direction: so it is the same bits, with the sign turned, for both triangles at the edge, and
+ * what all triangles give adds up to 0 exactly, whatever the rounding. A line through an edge or a vertex
+ * enters as often as it leaves, and crosses no triangle twice: one outline winds about the line once at most.
+ *
+ * t is that of the triangle's plane, kept within the triangle's depth: right for slivers and triangles seen
+ * edge-on, and for faces along an axis the same bits as any other solid's face there. */
+#include "base/memory.h"
+#include "shape/solid_parts.h"
+
+#include <stdlib.h>
+
+/* ---- crossings ---- */
+
+/* A vertex seen along the ray. */
+typedef struct Seen {
+    double x, y, z;
+} Seen;
+
+static Seen see(const RtSolidRay *ray, RtVec3 vertex) {
+    const RtPreparedRay *r = &ray->thick;
+    RtVec3d v = rt_subd(rt_widen(vertex), ray->org);
+    double z = v.at[r->kz] / ray->dir.at[r->kz];
+    return (Seen){v.at[r->kx] - ray->dir.at[r->kx] * z, v.at[r->ky] - ray->dir.at[r->ky] * z, z};
+}
+
+/* Does the edge from `lower` (y < 0) to `upper` (y >= 0) pass to the right of the origin? */
+static bool right(const Seen *lower, const Seen *upper) {
+    return lower->x * upper->y - upper->x * lower->y > 0;
+}
+
+static int winding(const Seen v[3]) {
+    int number = 0;
+    for (int i = 0; i < 3; i++) {
+        const Seen *from = &v[i], *to = &v[(i + 1) % 3];
+        if (from->y < 0 && to->y >= 0) number += right(from, to);
+        if (from->y >= 0 && to->y < 0) number -= right(to, from);
+    }
+    return number;
+}
+
+static RtPlane plane_of(const RtTriangle *triangle) {
+    RtVec3d a = rt_widen(triangle->v[0]), b = rt_widen(triangle->v[1]), c = rt_widen(triangle->v[2]);
+    return rt_plane_through(a, rt_crossd(rt_subd(b, a), rt_subd(c, a)));
+}
+
+/* The t of a triangle about whose outline the line winds; v[].z are those of its vertices. */
+static double depth_of(const RtTriangle *triangle, const RtSolidRay *ray, const Seen v[3]) {
+    RtPlane plane = plane_of(triangle);
+    double t = (plane.offset - rt_dotd(plane.normal, ray->org)) / rt_dotd(plane.normal, ray->dir);
+    double lo = fmin(fmin(v[0].z, v[1].z), v[2].z), hi = fmax(fmax(v[0].z, v[1].z), v[2].z);
+    return t > lo ? fmin(t, hi) : lo;
+}
+
+/* Puts a crossing among those before it, by t and then by face. In `solid` stands whether the line enters. */
+static void insert(RtCrossing *list, uint32_t count, RtCrossing crossing) {
+    uint32_t i = count;
+    for (; i > 0; i--) {
+        const RtCrossing *before = &list[i - 1];
+        if (before->t < crossing.t || (before->t == crossing.t && before->face < crossing.face)) break;
+        list[i] = *before;
+    }
+    list[i] = crossing;
+}
+
+/* The triangles that the line crosses. */
+static uint32_t collect(const RtTriangle *triangles, uint32_t count, const RtSolidRay *ray, float near,
+                        float far, RtCrossing *out) {
+    uint32_t found = 0;
+    bool backward = ray->thick.negative[ray->thick.kz] != 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const RtTriangle *triangle = &triangles[i];
+        const Seen v[3] = {see(ray, triangle->v[0]), see(ray, triangle->v[1]), see(ray, triangle->v[2])};
+        int number = winding(v);
+        if (number == 0) continue;
+        double t = rt_clampd(depth_of(triangle, ray, v), (double)near, (double)far);
+        bool enters = (number < 0) != backward;
+        insert(out, found++, (RtCrossing){(float)t, enters, i});
+    }
+    return found;
+}
+
+/* One place after the other: is the line inside before it, and after? The list shrinks where it stands. */
+uint32_t rt_solid_mesh_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
+                                 float far, RtCrossing *out) {
+    const RtSolid *solid = &set->solids[index];
+    uint32_t found = collect(set->triangles + solid->first, solid->count, ray, near, far, out);
+    uint32_t count = 0;
+    int64_t depth = 0;
+    for (uint32_t i = 0, next; i < found; i = next) {
+        int64_t before = depth;
+        RtCrossing entry = out[i], exit = out[i];
+        for (next = i; next < found && out[next].t == entry.t; next++) {
+            depth += out[next].solid ? 1 : -1;
+            if (out[next].solid && !entry.solid) entry = out[next];
+            if (!out[next].solid && exit.solid) exit = out[next];
+        }
+        if ((before > 0) == (depth > 0)) continue;
+        out[count++] = (RtCrossing){entry.t, index, depth > 0 ? entry.face : exit.face};
+    }
+    return count;
+}
+
+RtVec3d rt_solid_mesh_normal(const RtSolidSet *set, const RtSolid *solid, uint32_t face, RtVec3d point) {
+    (void)point;
+    return rt_triangle_normal(&set->triangles[solid->first + face]);
+}
+
+/* ---- extents ---- */
+
+double rt_solid_mesh_support(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction) {
+    double most = -INFINITY;
+    for (uint32_t i = 0; i < solid->count; i++)
+        most = fmax(most, rt_triangle_support(&set->triangles[solid->first + i], direction));
+    return most;
+}
+
+/* About the middle of the box. */
+RtBall rt_solid_mesh_ball(const RtSolidSet *set, const RtSolid *solid) {
+    RtVec3d center = rt_widen(rt_box_center(solid->box));
+    double most = 0;
+    for (uint32_t i = 0; i < solid->count; i++) {
+        for (int v = 0; v < 3; v++) {
+            RtVec3d from = rt_subd(rt_widen(set->triangles[solid->first + i].v[v]), center);
+            most = fmax(most, rt_dotd(from, from));
+        }
+    }
+    return (RtBall){center, sqrt(most) * (1 + 0x1p-50)};
+}
+
+/* ---- making ---- */
+
+/* An edge with its ends in order; `turned` is 1 where the triangle has it so, -1 where it has the reverse. */
+typedef struct Edge {
+    RtVec3 ends[2];
+    int turned;
+} Edge;
+
+static int compare_points(RtVec3 a, RtVec3 b) {
+    for (int i = 0; i < 3; i++) {
+        if (a.at[i] != b.at[i]) return a.at[i] < b.at[i] ? -1 : 1;
+    }
+    return 0;
+}
+
+static int compare_edges(const void *a, const void *b) {
+    const Edge *e = a, *f = b;
+    int order = compare_points(e->ends[0], f->ends[0]);
+    return order ? order : compare_points(e->ends[1], f->ends[1]);
+}
+
+static Edge edge_of(RtVec3 from, RtVec3 to) {
+    return compare_points(from, to) <= 0 ? (Edge){{from, to}, 1} : (Edge){{to, from}, -1};
+}
+
+/* Sorts the edges, and looks at those that are the same together. An edge from a point to itself is none. */
+static RtStatus check_edges(Edge *edges, size_t count, RtError *error) {
+    qsort(edges, count, sizeof *edges, compare_edges);
+    for (size_t i = 0, next; i < count; i = next) {
+        int64_t sum = 0;
+        for (next = i; next < count && compare_edges(&edges[i], &edges[next]) == 0; next++)
+            sum += edges[next].turned;
+        RtVec3 a = edges[i].ends[0], b = edges[i].ends[1];
+        if (sum == 0 || compare_points(a, b) == 0) continue;
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "the mesh is not closed: at the edge from (%g, %g, %g) to (%g, %g, %g) triangles on one "
+            "side have no neighbour that is turned alike; close the hole there, or turn them round",
+            (double)a.x, (double)a.y, (double)a.z, (double)b.x, (double)b.y, (double)b.z);
+    }
+    return RT_OK;
+}
+
+static RtStatus check_closed(const RtTriangle *triangles, uint32_t count, RtError *error) {
+    size_t edge_count = 3 * (size_t)count;
+    Edge *edges = rt_alloc(edge_count, sizeof *edges);
+    if (!edges) return rt_fail_memory(error, "the edges of a mesh", edge_count * sizeof *edges);
+    for (uint32_t i = 0; i < count; i++) {
+        const RtVec3 *v = triangles[i].v;
+        for (uint32_t k = 0; k < 3; k++) edges[3 * (size_t)i + k] = edge_of(v[k], v[(k + 1) % 3]);
+    }
+    RtStatus status = check_edges(edges, edge_count, error);
+    rt_free(edges);
+    return status;
+}
+
+/* The volume is that of the tetrahedra from one vertex to all triangles. */
+static RtStatus check_volume(const RtTriangle *triangles, uint32_t count, RtError *error) {
+    RtVec3d origin = rt_widen(triangles[0].v[0]);
+    double volume = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d v[3];
+        for (int k = 0; k < 3; k++) v[k] = rt_subd(rt_widen(triangles[i].v[k]), origin);
+        volume += rt_dotd(v[0], rt_crossd(v[1], v[2])) / 6;
+    }
+    if (volume > 0) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the volume in the mesh is %g: it must be above 0; if it is turned inside out, turn its "
+                   "triangles round (counter-clockwise seen from outside)",
+                   volume);
+}
+
+RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
+                           const RtTransform *place, uint32_t *index, RtError *error) {
+    if (count < 4) {
+        return rt_fail(error, RT_BAD_INPUT, "a closed mesh has 4 triangles at least; this one has %u", count);
+    }
+    RT_TRY(rt_solid_check_place(place, error));
+    RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + count,
+                      sizeof(RtTriangle), error));
+    RtTriangle *own = set->triangles + set->triangle_count;
+    for (uint32_t i = 0; i < count; i++) {
+        for (int v = 0; v < 3; v++) {
+            own[i].v[v] = rt_transform_point(place, triangles[i].v[v]);
+            if (!rt_finite(own[i].v[v])) {
+                return rt_fail(error, RT_BAD_INPUT, "vertex %d of triangle %u of the mesh is not finite", v,
+                               i);
+            }
+        }
+    }
+    RT_TRY(check_closed(own, count, error));
+    RT_TRY(check_volume(own, count, error));
+    RtSolid solid = {.kind = RT_SOLID_MESH,
+                     .first = set->triangle_count,
+                     .count = count,
+                     .place = rt_transform_identity()};
+    return rt_solid_finish(set, &solid, index, error);
+}
