@@ -226,49 +226,51 @@ static void describe(const RtAccel *accel, RtDescription *out) {
 typedef struct Check {
     const Bvh *bvh;
     RtError *error;
-    RtStatus status;
     uint32_t *seen; /* [object_count] how often each object is in a leaf */
 } Check;
 
-static RtStatus check_node(Check *check, const Node *node, uint32_t depth) {
-    const Bvh *bvh = check->bvh;
-    const RtGeometry *g = &bvh->base.scene->geometry;
-    uint32_t index = (uint32_t)(node - bvh->nodes);
-    if (depth >= MAX_DEPTH) return rt_fail(check->error, RT_MISMATCH, "bvh: node %u is too deep", index);
-    for (uint32_t i = 0; i < node->count; i++) {
-        uint32_t id = bvh->ids[node->first + i];
-        if (id >= g->object_count)
+static RtStatus check_leaf(const Check *check, const Node *leaf, uint32_t index) {
+    const RtGeometry *g = &check->bvh->base.scene->geometry;
+    for (uint64_t i = leaf->first; i < (uint64_t)leaf->first + leaf->count; i++) {
+        if (i >= g->object_count || check->bvh->ids[i] >= g->object_count)
             return rt_fail(check->error, RT_MISMATCH, "bvh: leaf %u holds no object", index);
-        check->seen[id]++;
-        if (rt_box_contains(node->box, g->boxes[id])) continue;
+        uint32_t id = check->bvh->ids[i];
+        if (++check->seen[id] > 1)
+            return rt_fail(check->error, RT_MISMATCH, "bvh: object %u is in a leaf twice, or in two", id);
+        if (rt_box_contains(leaf->box, g->boxes[id])) continue;
         return rt_fail(check->error, RT_MISMATCH, "bvh: leaf %u does not contain its object %u", index, id);
-    }
-    for (uint32_t side = 0; node->count == 0 && side < 2; side++) {
-        if (rt_box_contains(node->box, bvh->nodes[node->first + side].box)) continue;
-        return rt_fail(check->error, RT_MISMATCH, "bvh: node %u does not contain its child", index);
     }
     return RT_OK;
 }
 
-static void check_visit(void *context, const Node *node, uint32_t depth) {
-    Check *check = context;
-    if (check->status == RT_OK) check->status = check_node(check, node, depth);
+/* Ends whatever the nodes hold: children come after their parents, and no leaf is passed twice. */
+static RtStatus check_node(const Check *check, uint32_t index, uint32_t depth) {
+    const Bvh *bvh = check->bvh;
+    const Node *node = &bvh->nodes[index];
+    if (depth >= MAX_DEPTH) return rt_fail(check->error, RT_MISMATCH, "bvh: node %u is too deep", index);
+    if (node->count > 0) return check_leaf(check, node, index);
+    if (node->first <= index || node->first >= bvh->node_count - 1)
+        return rt_fail(check->error, RT_MISMATCH, "bvh: node %u has children that are not there", index);
+    for (uint32_t child = node->first; child < node->first + 2; child++) {
+        if (!rt_box_contains(node->box, bvh->nodes[child].box))
+            return rt_fail(check->error, RT_MISMATCH, "bvh: node %u does not contain its child", index);
+        RT_TRY(check_node(check, child, depth + 1));
+    }
+    return RT_OK;
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
     const Bvh *bvh = (const Bvh *)accel;
     uint32_t count = accel->scene->geometry.object_count;
     if (count == 0) return RT_OK;
-    Check check = {bvh, error, RT_OK, rt_alloc(count, sizeof(uint32_t))};
+    Check check = {bvh, error, rt_alloc(count, sizeof(uint32_t))};
     if (!check.seen) return rt_fail_memory(error, "validating a bvh", count * sizeof(uint32_t));
-    walk(bvh, 0, 0, check_visit, &check);
-    for (uint32_t id = 0; check.status == RT_OK && id < count; id++) {
-        if (check.seen[id] == 1) continue;
-        check.status =
-            rt_fail(error, RT_MISMATCH, "bvh: object %u is in %u leaves, not in one", id, check.seen[id]);
+    RtStatus status = check_node(&check, 0, 0);
+    for (uint32_t id = 0; status == RT_OK && id < count; id++) {
+        if (check.seen[id] == 0) status = rt_fail(error, RT_MISMATCH, "bvh: object %u is in no leaf", id);
     }
     rt_free(check.seen);
-    return check.status;
+    return status;
 }
 
 static void show_node(void *context, const Node *node, uint32_t depth) {

@@ -42,6 +42,10 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     Node root = bvh->nodes[0];
     bvh->nodes[0].box.hi.x -= 1;
     assert_broken(bvh, "does not contain its child");
+    bvh->nodes[0].first = 0;
+    assert_broken(bvh, "children that are not there");
+    bvh->nodes[0].first = bvh->node_count - 1;
+    assert_broken(bvh, "children that are not there");
     bvh->nodes[0] = root;
 
     for (uint32_t i = 0; i < bvh->node_count; i++) {
@@ -58,10 +62,32 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     make_row(&scene, 2, 0);
     Bvh *pair = make_bvh(&scene, "leaf=2");
     pair->ids[1] = pair->ids[0];
-    assert_broken(pair, "in 2 leaves");
+    assert_broken(pair, "object 0 is in a leaf twice");
     pair->ids[1] = 7;
     assert_broken(pair, "holds no object");
+    pair->ids[1] = 1 - pair->ids[0];
+    pair->nodes[0].first = 1;
+    assert_broken(pair, "holds no object");
+    pair->nodes[0].first = 0;
+    pair->nodes[0].count = 1;
+    assert_broken(pair, "is in no leaf");
     destroy(&pair->base);
+    rt_scene_clear(&scene);
+}
+
+/* Every inner node gets a leaf and the next inner node as children. */
+static void validate_names_a_node_that_is_too_deep(void **state) {
+    (void)state;
+    RtScene scene;
+    make_row(&scene, MAX_DEPTH + 2, 0);
+    Bvh *bvh = make_bvh(&scene, "leaf=1");
+    RtBox box = bvh->nodes[0].box;
+    for (uint32_t i = 0; i + 1 < scene.geometry.object_count; i++) {
+        bvh->nodes[2 * i] = (Node){.box = box, .first = 2 * i + 1};
+        bvh->nodes[2 * i + 1] = (Node){.box = box, .first = i, .count = 1};
+    }
+    assert_broken(bvh, "node 127 is too deep");
+    destroy(&bvh->base);
     rt_scene_clear(&scene);
 }
 
@@ -125,6 +151,7 @@ static void the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand(void *
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(validate_names_each_invariant_that_is_broken),
+        cmocka_unit_test(validate_names_a_node_that_is_too_deep),
         cmocka_unit_test(coincident_objects_are_halved_within_the_depth_limit),
         cmocka_unit_test(a_chain_of_growing_distances_stays_within_the_depth_limit),
         cmocka_unit_test(the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand),

@@ -257,6 +257,25 @@ static void counters_are_what_was_counted_by_hand(void **state) {
     assert_int_equal(wrong, 0);
 }
 
+static void ideal_is_broken_by_answers_that_are_no_objects(void **state) {
+    (void)state;
+    RtScene scene;
+    make_scene(&scene);
+    RtAccel *accel;
+    RtError problem = {RT_OK, ""};
+    RtHit told[RAY_COUNT];
+    for (size_t i = 0; i < RAY_COUNT; i++) told[i] = RT_MISS;
+    assert_ok(rt_accel_open("cache+ideal", &scene, &accel, error));
+    assert_ok(rt_accel_learn(accel, rays, told, RAY_COUNT, error));
+    assert_ok(rt_accel_validate(accel, error));
+    told[1].object = scene.geometry.object_count;
+    assert_ok(rt_accel_learn(accel, rays, told, RAY_COUNT, error));
+    assert_int_equal(rt_accel_validate(accel, &problem), RT_MISMATCH);
+    assert_non_null(strstr(problem.message, "ideal: the answer of ray 1"));
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
 /* ---- independent of threads and streams ---- */
 
 enum { RAYS = 3000, PIECE = 500 };
@@ -390,6 +409,7 @@ static void counts_do_not_depend_on_threads_or_streams(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(counters_are_what_was_counted_by_hand),
+        cmocka_unit_test(ideal_is_broken_by_answers_that_are_no_objects),
         cmocka_unit_test(counts_do_not_depend_on_threads_or_streams),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -420,6 +420,21 @@ static void an_empty_scene_is_hit_by_nothing(void **state) {
     rt_scene_clear(&scene);
 }
 
+static void a_scene_that_outgrows_its_structure_is_noticed_in_user_mode(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtError problem = {RT_OK, ""};
+    make_soup(&scene, 40, 1, 10);
+    assert_ok(rt_accel_open("embree:mode=user", &scene, &accel, error));
+    assert_ok(rt_accel_validate(accel, error));
+    scene.geometry.box.hi.y += 1;
+    assert_int_equal(rt_accel_validate(accel, &problem), RT_MISMATCH);
+    assert_non_null(strstr(problem.message, "bounds do not contain"));
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
 static void building_ten_times_leaks_nothing(void **state) {
     (void)state;
     RtScene scene;
@@ -467,6 +482,7 @@ int main(void) {
         cmocka_unit_test(native_mode_sees_every_shape),
         cmocka_unit_test(native_mode_takes_every_valid_ray),
         cmocka_unit_test(an_empty_scene_is_hit_by_nothing),
+        cmocka_unit_test(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode),
         cmocka_unit_test(building_ten_times_leaks_nothing),
         cmocka_unit_test(info_names_a_version_and_an_isa),
     };

@@ -551,6 +551,11 @@ static void each_broken_invariant_is_named(void **state) {
     buffer->near[0] ^= 1;
     assert_broken(accel, "near list");
     buffer->near[0] ^= 1;
+    buffer->near_first[1] += 1; /* one more for the first light, one fewer for the second */
+    assert_broken(accel, "near list of light 0");
+    buffer->near_first[1] -= 2;
+    assert_broken(accel, "near list of light 0");
+    buffer->near_first[1] += 1;
     assert_ok(rt_accel_validate(accel, error));
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);

@@ -75,11 +75,14 @@ static RtStatus check_covers(const RtLightBuffer *buffer, uint32_t light, int fa
 static RtStatus check_near(const RtLightBuffer *buffer, RtError *error) {
     uint32_t at = 0;
     for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
-        for (uint32_t id = 0; id < buffer->base.scene->geometry.object_count; id++) {
+        bool good = buffer->near_first[light] == at;
+        for (uint32_t id = 0; good && id < buffer->base.scene->geometry.object_count; id++) {
             if (!rt_light_is_near(buffer, light, id)) continue;
-            if (at < buffer->near_first[light + 1] && buffer->near[at++] == id) continue;
-            return rt_fail(error, RT_MISMATCH, "light: the near list of light %u lacks object %u", light, id);
+            good = at < buffer->near_first[light + 1] && buffer->near[at++] == id;
         }
+        if (good && buffer->near_first[light + 1] == at) continue;
+        return rt_fail(error, RT_MISMATCH,
+                       "light: the near list of light %u does not hold the objects that touch it", light);
     }
     return RT_OK;
 }
