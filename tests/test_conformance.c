@@ -1,6 +1,8 @@
 /* Conformance: every registered accelerator, at every value worth testing of each of its parameters, on every
  * family of scenes, answers every ray of every family like brute, bit for bit (or, where it is not exact,
- * without a wrong verdict). No accelerator is named here: a new one is covered once it is registered.
+ * without a wrong verdict); and so it does, over few objects or none, at the least and the greatest value of
+ * each number, beside every choice of the other parameters. No accelerator is named here: a new one is
+ * covered once it is registered.
  *
  * RT_SEED=N in the environment tries other scenes and rays of the same families (the default is 1). */
 #include "testing.h"
@@ -9,6 +11,7 @@
 #include "experiments/equivalence.h"
 #include "experiments/families.h"
 #include "experiments/spread.h"
+#include "scenes/builtin.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,17 +21,18 @@ enum { RAYS_PER_FAMILY = 256, MAX_SCENES = 64 };
 
 static uint64_t seed = 1;
 
-/* One family of scenes with its rays and the right answers. */
+/* A scene with its rays and the right answers. */
 typedef struct Bench {
     RtScene scene;
     RtAccel *brute;
     RtRay *rays;
     RtReference reference;
+    bool may_refuse; /* structures that would take too much memory, with a value that fits */
 } Bench;
 
-static void set_up(Bench *bench, size_t scene_family, size_t rays_per_family) {
+/* Over a scene that is there. */
+static void set_up_over(Bench *bench, size_t rays_per_family) {
     size_t families = rt_ray_family_count();
-    assert_ok(rt_scene_family_build(scene_family, seed, &bench->scene, error));
     assert_ok(rt_accel_open("brute", &bench->scene, &bench->brute, error));
     bench->rays = rt_alloc(families * rays_per_family, sizeof(RtRay));
     assert_non_null(bench->rays);
@@ -40,6 +44,12 @@ static void set_up(Bench *bench, size_t scene_family, size_t rays_per_family) {
     rt_query_clear(&query);
     assert_ok(rt_reference_init(&bench->reference, bench->brute, bench->rays, families * rays_per_family, 0,
                                 error));
+}
+
+static void set_up(Bench *bench, size_t scene_family, size_t rays_per_family) {
+    *bench = (Bench){0};
+    assert_ok(rt_scene_family_build(scene_family, seed, &bench->scene, error));
+    set_up_over(bench, rays_per_family);
 }
 
 static void tear_down(Bench *bench) {
@@ -59,6 +69,7 @@ static bool conforms(const Bench *bench, const char *spec) {
         print_message("%s on %s is skipped: %s\n", spec, scene, error.message);
         return true;
     }
+    if (status == RT_BAD_INPUT && bench->may_refuse && strstr(error.message, "would fit")) return true;
     if (status != RT_OK) {
         print_error("%s on %s cannot be built: %s\n", spec, scene, error.message);
         return false;
@@ -97,6 +108,66 @@ static void every_accelerator_answers_like_brute(void **state) {
     tear_down(&bench);
     assert_int_equal(failures, 0);
 }
+
+/* ---- extreme values ---- */
+
+/* More than this of anything changes nothing over few objects, but the time it takes. They are small and
+ * apart, so that even the deepest octree is no large one. */
+#define ENOUGH 64
+
+/* The `n`th extreme value of a number or a resolution, to out[0..64); false when there are no more. */
+static bool extreme_value(const RtParam *param, size_t n, char *out) {
+    double lo = param->lo, hi = param->hi;
+    switch (param->type) {
+    case RT_PARAM_INT:
+    case RT_PARAM_FLOAT: snprintf(out, 64, "%.17g", n ? fmin(hi, ENOUGH) : lo); return n < 2;
+    case RT_PARAM_RESOLUTION:
+        snprintf(out, 64, "%gx%gx%g", n == 1 ? hi : lo, lo, n == 2 ? hi : lo);
+        return n < 3;
+    case RT_PARAM_CHOICE:
+    case RT_PARAM_FLAG: break;
+    }
+    return false;
+}
+
+/* Parameter `p` at `value`, alone and beside each choice of the others. */
+static size_t failures_at(const Bench *bench, const RtAccelOps *ops, size_t p, const char *value) {
+    char spec[RT_MAX_SPEC_CHARS], choice[64], below[RT_MAX_NAME + 1] = "";
+    if (ops->kinds) snprintf(below, sizeof below, "+%s", rt_accel_default());
+    snprintf(spec, sizeof spec, "%s:%s=%s%s", ops->name, ops->params[p].name, value, below);
+    size_t failures = !conforms(bench, spec);
+    for (size_t c = 0; c < ops->param_count; c++) {
+        const RtParam *other = &ops->params[c];
+        if (other->type != RT_PARAM_CHOICE && other->type != RT_PARAM_FLAG) continue;
+        for (size_t k = 0; rt_param_try(other, k, choice, sizeof choice); k++) {
+            if (strcmp(choice, other->standard) == 0) continue;
+            snprintf(spec, sizeof spec, "%s:%s=%s,%s=%s%s", ops->name, ops->params[p].name, value,
+                     other->name, choice, below);
+            failures += !conforms(bench, spec);
+        }
+    }
+    return failures;
+}
+
+static void extreme_values_answer_like_brute(void **state) {
+    Bench bench = {.may_refuse = true};
+    char value[64];
+    size_t failures = 0;
+    assert_ok(rt_builtin_open(*state, &bench.scene, error));
+    set_up_over(&bench, RAYS_PER_FAMILY / 16);
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        for (size_t p = 0; p < ops->param_count; p++) {
+            for (size_t n = 0; extreme_value(&ops->params[p], n, value); n++) {
+                failures += failures_at(&bench, ops, p, value);
+            }
+        }
+    }
+    tear_down(&bench);
+    assert_int_equal(failures, 0);
+}
+
+/* ---- memory ---- */
 
 /* Embree allocates by itself and is not under our control. */
 static bool allocates_elsewhere(const RtAccelOps *ops) {
@@ -156,14 +227,25 @@ static void every_ray_of_every_family_is_valid_and_repeatable(void **state) {
     }
 }
 
+#define extremes_test(scene)                                                                                 \
+    { "extreme_values_answer_like_brute on " scene, extreme_values_answer_like_brute, NULL, NULL, scene }
+
+enum { FIXED_TESTS = 8 };
+
 int main(void) {
     static size_t families[MAX_SCENES];
     static char names[MAX_SCENES][128];
-    struct CMUnitTest tests[MAX_SCENES + 2] = {
+    struct CMUnitTest tests[MAX_SCENES + FIXED_TESTS] = {
         cmocka_unit_test(every_ray_of_every_family_is_valid_and_repeatable),
         cmocka_unit_test(every_allocation_of_a_build_may_fail),
+        extremes_test("random:n=0"),
+        extremes_test("random:n=1"),
+        extremes_test("random:n=2,shape=mixed"),
+        extremes_test("random:n=40,shape=mixed,radius=0.02"),
+        extremes_test("random:n=40,distribution=coincident"),
+        extremes_test("random:n=40,shape=mixed,distribution=stadium,radius=0.02"),
     };
-    size_t count = 2;
+    size_t count = FIXED_TESTS;
     const char *other_seed = getenv("RT_SEED");
     if (other_seed) seed = strtoull(other_seed, NULL, 10);
     if (rt_scene_family_count() > MAX_SCENES) return EXIT_FAILURE;
