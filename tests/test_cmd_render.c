@@ -95,6 +95,10 @@ static void a_check_compares_every_ray_with_brute(void **state) {
     assert_says("all 4096 primary rays answered like brute");
     assert_says("shadow rays answered like brute");
     assert_says("reflection rays answered like brute");
+    assert_says("the frame is brute's, bit for bit");
+    assert_int_equal(render("balls:size=2 --size 33x20 --corners --accel item+light+cache+octree --check"),
+                     0);
+    assert_says("the frame is brute's, bit for bit");
 }
 
 static void wrong_usage_exits_with_2_and_says_what_would_be_right(void **state) {

@@ -43,7 +43,8 @@ static const struct argp_option options[] = {
      "What each pixel cost: object_tests, extent_tests, steps, or any other counter", 0},
     {"structure", KEY_STRUCTURE, "FILE.png", 0, "The boxes of the accelerator over the image", 0},
     {"stats", KEY_STATS, "FILE.json", 0, "Counts by ray kind, times and sizes", 0},
-    {"check", KEY_CHECK, 0, 0, "Compare the answer to every ray with brute's; exit 1 if one differs", 0},
+    {"check", KEY_CHECK, 0, 0,
+     "Compare the answer to every ray, and the frame, with brute's; exit 1 if one differs", 0},
     {0}};
 
 static bool has_extension(const char *path, const char *extension) {
@@ -284,6 +285,29 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
                    rt_ray_kind_name(set->kind), witness);
 }
 
+/* The picture as a whole: what answers alike, stream by stream, must also add up alike. */
+static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error) {
+    const RtFrame *got = &run->timed;
+    RtFrame right;
+    RtFrameOptions plain = {.depth = run->options->depth, .threads = run->options->threads};
+    if (!run->accel->exact) return RT_OK;
+    RT_TRY(rt_frame_trace(&right, brute, &plain, error));
+    size_t i = 0, samples = (size_t)got->sampling.columns * got->sampling.rows;
+    while (i < samples && memcmp(&got->object[i], &right.object[i], sizeof *got->object) == 0 &&
+           memcmp(&got->depth[i], &right.depth[i], sizeof *got->depth) == 0 &&
+           memcmp(&got->color[i], &right.color[i], sizeof *got->color) == 0) {
+        i++;
+    }
+    rt_frame_clear(&right);
+    if (i < samples) {
+        return rt_fail(error, RT_MISMATCH,
+                       "%s: the frame differs from brute's in column %zu, row %zu of samples", run->spec,
+                       i % got->sampling.columns, i / got->sampling.columns);
+    }
+    printf("%s: the frame is brute's, bit for bit.\n", run->spec);
+    return RT_OK;
+}
+
 static RtStatus check_rays(const Run *run, RtError *error) {
     if (!run->options->check) return RT_OK;
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
@@ -294,6 +318,7 @@ static RtStatus check_rays(const Run *run, RtError *error) {
     for (int kind = 0; kind < RT_RAY_KIND_COUNT && status == RT_OK; kind++) {
         if (run->rays[kind] > 0) status = check_kind(run, brute, &sets[kind], error);
     }
+    if (status == RT_OK) status = check_frame(run, brute, error);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
     rt_accel_destroy(brute);
     return status;
