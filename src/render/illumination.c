@@ -4,6 +4,14 @@ static double max_norm(RtVec3d a) {
     return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
 }
 
+/* `way`: what the ray came, in the max norm. */
+static double offset_of(const RtGeometry *g, uint32_t object, RtVec3d point, double way) {
+    double reach = fmax(max_norm(point), way);
+    double own = (double)rt_thickness(rt_narrow(point), &g->boxes[object]);
+    double scene = (double)rt_thickness(rt_narrow(point), &g->box);
+    return 0x1p-21 * reach + 2 * own + fmin(scene, 0x1p-18 * reach);
+}
+
 RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit) {
     const RtGeometry *g = &scene->geometry;
     RtVec3d point = rt_ray_point(ray, hit.t);
@@ -12,15 +20,13 @@ RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit) {
     bool entering = rt_dotd(dir, normals.geometric) < 0;
     RtVec3d side = entering ? normals.geometric : rt_scaled(normals.geometric, -1);
     bool turn = rt_dotd(normals.shading, side) < 0;
-    double reach = fmax(max_norm(point), (double)hit.t * max_norm(dir));
-    double thickness = (double)rt_thickness(rt_narrow(point), &g->boxes[hit.object]);
     return (RtSurface){
         .material = &scene->materials[scene->material_of[hit.object]],
         .point = point,
         .arriving = rt_normalized(dir),
         .side = side,
         .normal = turn ? rt_scaled(normals.shading, -1) : normals.shading,
-        .offset = fmax(0x1p-18 * reach, thickness),
+        .offset = offset_of(g, hit.object, point, (double)hit.t * max_norm(dir)),
         .entering = entering,
     };
 }

@@ -10,13 +10,17 @@
  * again with the geometric one.
  *
  * Starting off the surface. Secondary rays start at point + side * offset (- side for what passes through),
- * tmin 0, with
+ * tmin 0. With reach = max(|point|, t * |dir|), in max norms, and rt_thickness at the point of the object's
+ * own box and of the scene's,
  *
- *   offset = max(2^-18 * max(|point|, t * |dir|), 2^-20 * farthest corner of the object's box),  in max
- * norms:
+ *   offset = 2^-21 * reach + 2 * own + min(scene, 2^-18 * reach).
  *
- * the first bounds the rounding of the point itself (a few 2^-24 of its coordinates and of the distance the
- * ray came), the second that of the object's hit function for a ray that starts next to it (rt_thickness).
+ * The first bounds the rounding of the point and of t (a few 2^-24), and what boxes move besides their
+ * thickness (rt_shift). The others are by how much box tests take boxes for thicker than they are: a ray that
+ * starts above that leaves the box of a floor, which is flat, behind and does not ask for the floor again.
+ * The second is the object's own, twice, for a hit may lie as much to the side; the third is that of a
+ * structure, which is the scene's, but only as far as the point's own size allows: in a scene of 10^6 with
+ * details of 1 it would take a ray through walls.
  *
  * Only + - * / sqrt lead to rays; pow is in colours alone. */
 #ifndef RT_RENDER_ILLUMINATION_H
