@@ -365,10 +365,590 @@ static void so_they_are_where_solids_are_turned_stretched_and_moved(void **state
     }
 }
 
+/* ---- by hand ---- */
+
+/* A line, in words, and where it crosses the solid: t of the crossings, ended by NAN. */
+typedef struct Case {
+    const char *what;
+    RtVec3 org, dir;
+    float t[5];
+} Case;
+
+static void check_cases(const RtSolidSet *set, uint32_t index, const Case *cases, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        RtRay ray = make_ray(cases[i].org, cases[i].dir);
+        List list = cross(set, index, &ray);
+        uint32_t expected = 0;
+        while (!isnan(cases[i].t[expected])) expected++;
+        bool same = list.count == expected;
+        for (uint32_t k = 0; same && k < expected; k++) same = list.at[k].t == cases[i].t[k];
+        if (same) continue;
+        fail_msg("%s %s: %u crossings, the first at %.9g", rt_solid_kind_name(set->solids[index].kind),
+                 cases[i].what, list.count, list.count ? (double)list.at[0].t : NAN);
+    }
+}
+
+#define CHECK(set, index, cases) check_cases(set, index, cases, sizeof cases / sizeof *(cases))
+
+static void a_box_has_no_skin(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"straight through", {{5, 0, 0}}, {{-2, 0, 0}}, {2, 3, NAN}},
+        {"from the inside", {{0, 0, 0}}, {{0, 0, 1}}, {-1, 1, NAN}},
+        {"behind the origin", {{5, 0, 0}}, {{1, 0, 0}}, {-6, -4, NAN}},
+        {"from a face inward", {{1, 0, 0}}, {{-1, 0, 0}}, {0, 2, NAN}},
+        {"from edge to edge", {{2, 2, 0}}, {{-1, -1, 0}}, {1, 3, NAN}},
+        {"from corner to corner", {{2, 2, 2}}, {{-1, -1, -1}}, {1, 3, NAN}},
+        {"in the plane of a face", {{5, 1, 0}}, {{-1, 0, 0}}, {NAN}},
+        {"in the plane of the face opposite", {{5, -1, 0}}, {{-1, 0, 0}}, {NAN}},
+        {"in the plane of a face, from there", {{0, 1, 0}}, {{-1, 0, 1}}, {NAN}},
+        {"along an edge", {{5, 1, 1}}, {{-1, 0, 0}}, {NAN}},
+        {"touching an edge", {{2, 0, 0}}, {{-1, 1, 0}}, {NAN}},
+        {"touching a corner", {{2, 0, 1}}, {{-1, 1, 0}}, {NAN}},
+        {"beside it", {{5, 1.5f, 0}}, {{-1, 0, 0}}, {NAN}},
+    };
+    RtSolidSet set = {0};
+    uint32_t box;
+    assert_ok(rt_solid_add_box(&set, rt_vec3(-1, -1, -1), rt_vec3(1, 1, 1), &box, error));
+    CHECK(&set, box, cases);
+    rt_solid_set_clear(&set);
+}
+
+static void a_half_space_has_no_end(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"into it", {{0, 0, 5}}, {{1, 0, -2}}, {2, INFINITY, NAN}},
+        {"out of it", {{0, 0, 0}}, {{0, 0, 2}}, {-INFINITY, 0.5f, NAN}},
+        {"along it, inside", {{0, 0, 0}}, {{1, 0, 0}}, {-INFINITY, INFINITY, NAN}},
+        {"along it, outside", {{0, 0, 2}}, {{1, 0, 0}}, {NAN}},
+        {"in its plane", {{0, 0, 1}}, {{1, 0, 0}}, {NAN}},
+    };
+    RtSolidSet set = {0};
+    uint32_t half;
+    assert_ok(rt_solid_add_half_space(&set, rt_vec3(7, 8, 1), rt_vec3(0, 0, 3), &half, error));
+    CHECK(&set, half, cases);
+    rt_solid_set_clear(&set);
+}
+
+static void a_sphere_that_is_touched_is_not_crossed(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"through its centre", {{1, 2, 10}}, {{0, 0, -1}}, {5, 9, NAN}},
+        {"from the centre", {{1, 2, 3}}, {{0, 0, 4}}, {-0.5f, 0.5f, NAN}},
+        {"from its surface", {{1, 2, 5}}, {{0, 0, -1}}, {0, 4, NAN}},
+        {"touched", {{3, 2, 10}}, {{0, 0, -1}}, {NAN}},
+        {"missed", {{3.5f, 2, 10}}, {{0, 0, -1}}, {NAN}},
+    };
+    RtSolidSet set = {0};
+    uint32_t sphere;
+    assert_ok(rt_solid_add_ellipsoid(&set, rt_vec3(1, 2, 3), rt_vec3(2, 2, 2), &sphere, error));
+    CHECK(&set, sphere, cases);
+    rt_solid_set_clear(&set);
+}
+
+/* Apex at (0, 0, 4), base of radius 2 at z = 0. */
+static void a_full_cone_ends_in_its_apex(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"along the axis", {{0, 0, 10}}, {{0, 0, -1}}, {6, 10, NAN}},
+        {"along the axis, upward", {{0, 0, -1}}, {{0, 0, 1}}, {1, 5, NAN}},
+        {"parallel to the axis", {{1, 0, 10}}, {{0, 0, -1}}, {8, 10, NAN}},
+        {"across", {{-5, 0, 2}}, {{1, 0, 0}}, {4, 6, NAN}},
+        {"across, above the apex", {{-5, 0, 5}}, {{1, 0, 0}}, {NAN}},
+        {"across, at the apex", {{-5, 0, 4}}, {{1, 0, 0}}, {NAN}},
+        {"through the apex, aslant and outside", {{-4, 0, 2}}, {{2, 0, 1}}, {NAN}},
+        {"through the apex, steep", {{-1, 0, 8}}, {{0.25f, 0, -1}}, {4, 8, NAN}},
+        {"along its side", {{0, 0, 4}}, {{0.5f, 0, -1}}, {NAN}},
+        {"parallel to its side, inside", {{-1, 0, 4}}, {{0.5f, 0, -1}}, {1, 4, NAN}},
+        {"parallel to its side, outside", {{1, 0, 4}}, {{0.5f, 0, -1}}, {NAN}},
+        {"in the plane of its base", {{-5, 0, 0}}, {{1, 0, 0}}, {NAN}},
+        {"touching the rim of its base", {{-2, -5, 0}}, {{0, 1, 0}}, {NAN}},
+    };
+    RtSolidSet set = {0};
+    uint32_t up, down;
+    assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0), 2, rt_vec3(0, 0, 4), 0, &up, error));
+    assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 4), 0, rt_vec3(0, 0, 0), 2, &down, error));
+    CHECK(&set, up, cases);
+    CHECK(&set, down, cases);
+    rt_solid_set_clear(&set);
+}
+
+static void a_cylinder_is_entered_by_cap_or_side(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"along the axis", {{-3, 0, 0}}, {{1, 0, 0}}, {3, 7, NAN}},
+        {"parallel to the axis", {{-3, 1, 1}}, {{2, 0, 0}}, {1.5f, 3.5f, NAN}},
+        {"across", {{2, -5, 0}}, {{0, 1, 0}}, {3, 7, NAN}},
+        {"cap to side", {{-2, 0, 0}}, {{1, 0.5f, 0}}, {2, 4, NAN}},
+        {"along its side", {{-3, 2, 0}}, {{1, 0, 0}}, {NAN}},
+        {"in the plane of a cap", {{4, -5, 0}}, {{0, 1, 0}}, {NAN}},
+        {"touching its side", {{-1, 2, -3}}, {{1, 0, 1}}, {NAN}},
+        {"outside, parallel to the axis", {{-3, 3, 1}}, {{1, 0, 0}}, {NAN}},
+    };
+    RtSolidSet set = {0};
+    uint32_t cylinder;
+    assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0), 2, rt_vec3(4, 0, 0), 2, &cylinder, error));
+    CHECK(&set, cylinder, cases);
+    RtRay ray = make_ray(rt_vec3(-2, 0, 0), rt_vec3(1, 0.5f, 0));
+    List list = cross(&set, cylinder, &ray);
+    assert_int_equal(list.at[0].face, 1);
+    assert_int_equal(list.at[1].face, 0);
+    rt_solid_set_clear(&set);
+}
+
+/* Circle of radius 2 in the plane z = 1, tube of radius 1. */
+static void a_torus_has_a_hole(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"across both sides", {{-5, 0, 1}}, {{1, 0, 0}}, {2, 4, 6, 8, NAN}},
+        {"through the hole", {{0, 0, 5}}, {{0, 0, -1}}, {NAN}},
+        {"through the hole, aslant", {{0, 0, 1}}, {{1, 0, 8}}, {NAN}},
+        {"through the tube", {{0, 2, 5}}, {{0, 0, -2}}, {1.5f, 2.5f, NAN}},
+        {"from inside the tube", {{2, 0, 1}}, {{0, 0, 1}}, {-1, 1, NAN}},
+        {"touched from outside", {{3, -4, 1}}, {{0, 1, 0}}, {NAN}},
+        {"touched on top", {{-5, 0, 2}}, {{1, 0, 0}}, {NAN}},
+        {"touched on top, from below", {{2, 0, -2}}, {{0, 0, 1}}, {2, 4, NAN}},
+        {"touched at the hole", {{0, 1, 5}}, {{0, 0, -1}}, {NAN}},
+        {"missed", {{-5, 0, 2.5f}}, {{1, 0, 0}}, {NAN}},
+    };
+    RtSolidSet set = {0};
+    uint32_t torus;
+    assert_ok(rt_solid_add_ring(&set, rt_vec3(0, 0, 1), rt_vec3(0, 0, 7), 2, 1, &torus, error));
+    CHECK(&set, torus, cases);
+
+    /* In the tube, touching the hole's rim on the way: two spans that touch are one. */
+    RtRay ray = make_ray(rt_vec3(1, -8, 1), rt_vec3(0, 1, 0));
+    List list = cross(&set, torus, &ray);
+    assert_int_equal(list.count, 2);
+    assert_float_equal(list.at[0].t, 8 - sqrtf(8), 1e-6f);
+    assert_float_equal(list.at[1].t, 8 + sqrtf(8), 1e-6f);
+    rt_solid_set_clear(&set);
+}
+
+/* ---- what different solids have in common ---- */
+
+static void assert_same_places(const List *a, const List *b, const RtRay *ray) {
+    bool same = a->count == b->count;
+    for (uint32_t i = 0; same && i < a->count; i++) same = a->at[i].t == b->at[i].t;
+    if (same) return;
+    fail_msg("%u and %u crossings, the first at %.9g and %.9g, from (%g, %g, %g) along (%g, %g, %g)",
+             a->count, b->count, (double)a->at[0].t, (double)b->at[0].t, (double)ray->org.x,
+             (double)ray->org.y, (double)ray->org.z, (double)ray->dir.x, (double)ray->dir.y,
+             (double)ray->dir.z);
+}
+
+static RtVec3 lattice(uint32_t number, int side) {
+    int n = (int)number;
+    return rt_vec3((float)(n % side - side / 2), (float)(n / side % side - side / 2),
+                   (float)(n / side / side - side / 2));
+}
+
+/* Lines from all points of a lattice to others, through edges and corners, along faces and edges. A mesh may
+ * take a line in a plane of its face for inside, where a box does not. */
+static void a_cube_of_triangles_is_a_box_even_at_edges_and_corners(void **state) {
+    (void)state;
+    RtSolidSet set = {0};
+    uint32_t box, mesh;
+    RtTriangle triangles[12];
+    RtTransform place = rt_transform_identity();
+    uint32_t count = cube_mesh(triangles);
+    assert_ok(rt_solid_add_box(&set, rt_vec3(-1, -1, -1), rt_vec3(1, 1, 1), &box, error));
+    assert_ok(rt_solid_add_mesh(&set, triangles, count, &place, &mesh, error));
+    for (uint32_t from = 0; from < 7 * 7 * 7; from++) {
+        for (uint32_t along = 0; along < 5 * 5 * 5; along++) {
+            if (along == 62) continue; /* nowhere */
+            RtRay ray = make_ray(lattice(from, 7), lattice(along, 5));
+            List of_box = cross(&set, box, &ray), of_mesh = cross(&set, mesh, &ray);
+            bool in_face = false;
+            for (int a = 0; a < 3; a++) in_face |= ray.dir.at[a] == 0 && fabsf(ray.org.at[a]) == 1;
+            if (!in_face) {
+                assert_same_places(&of_box, &of_mesh, &ray);
+            } else {
+                assert_int_equal(of_box.count, 0);
+                for (uint32_t i = 0; i < of_mesh.count; i++) {
+                    RtVec3d p = rt_ray_point(&ray, of_mesh.at[i].t);
+                    assert_true(fabs(p.x) <= 1 && fabs(p.y) <= 1 && fabs(p.z) <= 1);
+                }
+            }
+        }
+    }
+    rt_solid_set_clear(&set);
+}
+
+/* A box, the caps of a cylinder and a half-space, turned and moved alike; then not turned. */
+static void faces_in_one_plane_are_met_at_the_same_bits(void **state) {
+    (void)state;
+    RtRandom random = rt_random(3, 0);
+    for (int round = 0; round < 40; round++) {
+        RtTransform move = rt_transform_identity();
+        float size = rt_random_between(&random, 0.1f, 30);
+        assert_ok(rt_transform_scale(&move, rt_vec3(size, size, size), error));
+        if (round % 2) assert_ok(rt_transform_rotate(&move, rt_vec3(1, 2, 3), 36 * round, error));
+        assert_ok(rt_transform_translate(&move, rt_random_point(&random, 1000), error));
+        RtSolidSet set = {0};
+        uint32_t at[5];
+        assert_ok(rt_solid_add_box(&set, rt_vec3(-9, -9, 0.1f), rt_vec3(9, 9, 0.7f), &at[0], error));
+        assert_ok(rt_solid_add_box(&set, rt_vec3(-9, -9, 0.7f), rt_vec3(9, 9, 1.5f), &at[1], error));
+        assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0.1f), 9, rt_vec3(0, 0, 0.7f), 9, &at[2], error));
+        assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0.7f), 9, rt_vec3(0, 0, 0.1f), 5, &at[3], error));
+        assert_ok(rt_solid_add_half_space(&set, rt_vec3(3, 2, 0.7f), rt_vec3(0, 0, 1), &at[4], error));
+        for (int i = 0; i < 5; i++) assert_ok(rt_solid_add_moved(&set, &set, at[i], &move, &at[i], error));
+        for (int i = 0; i < 100; i++) {
+            RtVec3d aim = to_world(&move, rt_widen(rt_random_point(&random, 1)));
+            RtVec3d dir = rt_random_direction(&random), up = {{move.m[0][2], move.m[1][2], move.m[2][2]}};
+            if (fabs(rt_dotd(dir, up)) < 0.5 * rt_lengthd(up)) continue; /* too flat to go through caps */
+            RtRay ray = make_ray(rt_narrow(rt_add_scaledd(aim, dir, -2 * (double)size)), rt_narrow(dir));
+            List box = cross(&set, at[0], &ray), next = cross(&set, at[1], &ray),
+                 cylinder = cross(&set, at[2], &ray);
+            List frustum = cross(&set, at[3], &ray), half = cross(&set, at[4], &ray);
+            bool upward = rt_dotd(dir, up) > 0;
+            assert_int_equal(box.count, 2);
+            assert_int_equal(next.count, 2);
+            assert_true(box.at[upward].t == next.at[!upward].t);
+            assert_true(box.at[upward].t == half.at[upward].t);
+            assert_same_places(&box, &cylinder, &ray);
+            assert_same_places(&box, &frustum, &ray);
+        }
+        rt_solid_set_clear(&set);
+    }
+}
+/* ---- hulls ---- */
+
+static void the_hull_of_the_corners_of_a_box_is_the_box(void **state) {
+    (void)state;
+    RtRandom random = rt_random(4, 0);
+    RtSolidSet set = {0};
+    RtVec3 lo = rt_vec3(-0.7f, 2.1f, 100.3f), hi = rt_vec3(0.1f, 2.5f, 101), corners[10];
+    for (uint32_t i = 0; i < 8; i++)
+        corners[i] = rt_vec3((i & 1 ? hi : lo).x, (i & 2 ? hi : lo).y, (i & 4 ? hi : lo).z);
+    corners[8] = corners[3];
+    corners[9] = rt_vec3(0, 2.3f, 100.5f); /* inside */
+    uint32_t box, hull;
+    assert_ok(rt_solid_add_box(&set, lo, hi, &box, error));
+    assert_ok(rt_solid_add_hull(&set, corners, 10, &hull, error));
+    assert_int_equal(set.solids[hull].count, 6);
+    RtBox own = {lo, hi};
+    assert_memory_equal(&set.solids[hull].box, &own, sizeof own);
+    for (int i = 0; i < 1000; i++) {
+        RtRay ray = make_ray(rt_random_point(&random, 2), rt_vec3(0, 0, 0));
+        ray.dir = rt_sub(corners[i % 10], ray.org);
+        List a = cross(&set, box, &ray), b = cross(&set, hull, &ray);
+        assert_same_places(&a, &b, &ray);
+    }
+    rt_solid_set_clear(&set);
+}
+
+/* Of the plane of each three points with all others on one side: a definition, not the search. */
+static bool is_inside_hull(const RtVec3 *points, uint32_t count, Point p, long double close) {
+    long double most = -1;
+    for (uint32_t i = 0; i < count * count * count; i++) {
+        const RtVec3 *v[3] = {&points[i % count], &points[i / count % count], &points[i / count / count]};
+        long double ab[3], ac[3], n[3], below = 0, above = 0, at = 0, length = 0;
+        for (int a = 0; a < 3; a++) {
+            ab[a] = (long double)v[1]->at[a] - (long double)v[0]->at[a];
+            ac[a] = (long double)v[2]->at[a] - (long double)v[0]->at[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            int b = (a + 1) % 3, c = (a + 2) % 3;
+            n[a] = ab[b] * ac[c] - ab[c] * ac[b];
+            length += n[a] * n[a];
+        }
+        if (length < 1e-12L) continue;
+        length = sqrtl(length);
+        for (uint32_t k = 0; k < count; k++) {
+            long double height = 0;
+            for (int a = 0; a < 3; a++)
+                height += n[a] * ((long double)points[k].at[a] - (long double)v[0]->at[a]) / length;
+            below = height < below ? height : below, above = height > above ? height : above;
+        }
+        if (above > close) continue;
+        const long double q[3] = {p.x, p.y, p.z};
+        for (int a = 0; a < 3; a++) at += n[a] * (q[a] - (long double)v[0]->at[a]) / length;
+        most = most_of(most, at);
+    }
+    return most < 0;
+}
+
+static void hulls_of_random_points_hold_what_is_between_them(void **state) {
+    (void)state;
+    RtRandom random = rt_random(5, 0);
+    for (int round = 0; round < 30; round++) {
+        RtSolidSet set = {0};
+        RtVec3 points[12];
+        uint32_t count = 4 + (uint32_t)round % 9, hull;
+        for (uint32_t i = 0; i < count; i++) points[i] = rt_random_point(&random, 10);
+        assert_ok(rt_solid_add_hull(&set, points, count, &hull, error));
+        RtBox box = RT_EMPTY_BOX;
+        for (uint32_t i = 0; i < count; i++) box = rt_box_add_point(box, points[i]);
+        assert_true(rt_box_contains(set.solids[hull].box, box));
+        assert_true(rt_box_contains(rt_box_widened(box, 1e-5), set.solids[hull].box));
+        for (int i = 0; i < 40; i++) {
+            RtRay ray = make_ray(rt_random_point(&random, 10), rt_narrow(rt_random_direction(&random)));
+            List list = cross(&set, hull, &ray);
+            bool inside = list.count == 2 && list.at[0].t < 0 && list.at[1].t > 0;
+            Point p = {(long double)ray.org.x, (long double)ray.org.y, (long double)ray.org.z};
+            assert_true(inside == is_inside_hull(points, count, p, 1e-5L));
+        }
+        rt_solid_set_clear(&set);
+    }
+}
+
+/* ---- extents ---- */
+
+static void assert_near(double value, double expected, double slack) {
+    if (fabs(value - expected) > slack) fail_msg("%.17g is not %.17g", value, expected);
+}
+
+static void check_extents(const RtSolidSet *set, const Model *model, RtRandom *random) {
+    const RtSolid *solid = &set->solids[model->index];
+    RtBall ball = rt_solid_ball(set, model->index);
+    RtVec3d up = rt_random_direction(random);
+    double support = rt_solid_support(set, model->index, up), most = -INFINITY;
+    for (int i = 0; i < 400; i++) {
+        RtRay ray = random_ray(model, random, random_target(model, random), 3);
+        List list = cross(set, model->index, &ray);
+        for (uint32_t k = 0; k < list.count; k++) {
+            if (isinf(list.at[k].t)) continue;
+            RtVec3d p = rt_ray_point(&ray, list.at[k].t);
+            double noise = 1e-6 * rt_lengthd(rt_widen(rt_vec3((float)p.x, (float)p.y, (float)p.z))) +
+                           2 * ulp_at(model, &ray, (double)list.at[k].t) / stretch_of(model);
+            most = fmax(most, rt_dotd(p, up));
+            assert_true(rt_dotd(p, up) <= support + noise);
+            assert_true(rt_lengthd(rt_subd(p, ball.center)) <= ball.radius + noise);
+            for (int a = 0; a < 3; a++) {
+                assert_true(p.at[a] >= (double)solid->box.lo.at[a] - noise);
+                assert_true(p.at[a] <= (double)solid->box.hi.at[a] + noise);
+            }
+        }
+    }
+    double size = 0;
+    for (int a = 0; a < 3; a++) size += fabs(model->place.m[a][0]) + fabs(model->place.m[a][1]);
+    if (isfinite(support)) assert_true(most > support - 0.5 * size);
+}
+
+static void extents_hold_every_crossing(void **state) {
+    (void)state;
+    RtRandom random = rt_random(6, 0);
+    for (int round = 0; round < 30; round++) {
+        RtTransform place = rt_transform_identity();
+        RtVec3 factors = rt_vec3(2, rt_random_between(&random, 0.5f, 3), rt_random_between(&random, 0.5f, 3));
+        assert_ok(rt_transform_scale(&place, factors, error));
+        assert_ok(rt_transform_rotate(&place, rt_narrow(rt_random_direction(&random)), 77, error));
+        assert_ok(rt_transform_translate(&place, rt_random_point(&random, 10), error));
+        RtSolidSet set = {0};
+        Model models[MODELS];
+        add_models(&set, &place, models);
+        for (int i = 0; i < MODELS; i++) check_extents(&set, &models[i], &random);
+        rt_solid_set_clear(&set);
+    }
+}
+
+static void extents_are_tight_where_they_can_be_known(void **state) {
+    (void)state;
+    RtSolidSet set = {0};
+    uint32_t at;
+    RtVec3d aslant = {{3, 0, 4}};
+    assert_ok(rt_solid_add_ellipsoid(&set, rt_vec3(1, 2, 3), rt_vec3(2, 2, 2), &at, error));
+    assert_near(rt_solid_ball(&set, at).radius, 2, 1e-8);
+    assert_near(rt_solid_support(&set, at, aslant), 15 + 10, 1e-12);
+    assert_ok(rt_solid_add_ellipsoid(&set, rt_vec3(1, 2, 3), rt_vec3(1, 4, 2), &at, error));
+    assert_near(rt_solid_ball(&set, at).radius, 4, 1e-8);
+    assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0), 3, rt_vec3(0, 0, 8), 3, &at, error));
+    assert_near(rt_solid_ball(&set, at).radius, 5, 1e-8);
+    assert_near(rt_solid_ball(&set, at).center.z, 4, 1e-8);
+    assert_near(rt_solid_support(&set, at, aslant), 9 + 32, 1e-12);
+    assert_ok(rt_solid_add_frustum(&set, rt_vec3(0, 0, 0), 9, rt_vec3(0, 0, 1), 3, &at, error));
+    assert_near(rt_solid_ball(&set, at).radius, 9, 1e-7);
+    assert_ok(rt_solid_add_ring(&set, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0), 3, 1, &at, error));
+    assert_near(rt_solid_ball(&set, at).radius, 4, 1e-8);
+    assert_near(rt_solid_support(&set, at, rt_vec3d(0, 1, 0)), 1, 1e-12);
+    assert_near(rt_solid_support(&set, at, aslant), 20, 1e-12);
+    assert_ok(rt_solid_add_box(&set, rt_vec3(-1, -2, -2), rt_vec3(1, 2, 2), &at, error));
+    assert_near(rt_solid_ball(&set, at).radius, 3, 1e-8);
+    assert_near(rt_solid_support(&set, at, aslant), 11, 1e-8);
+    rt_solid_set_clear(&set);
+}
+
+static void what_has_no_end_has_extents_without_end(void **state) {
+    (void)state;
+    RtSolidSet set = {0};
+    uint32_t half, oblique, slab, wedge;
+    RtTransform here = rt_transform_identity();
+    RtPlane slab_planes[2] = {{{{0, 1, 0}}, 3}, {{{0, -1, 0}}, -2}},
+            wedge_planes_too[2] = {{{{1, 0, 0}}, 3}, {{{0, 1, 0}}, 5}};
+    assert_ok(rt_solid_add_half_space(&set, rt_vec3(0, 0, 7), rt_vec3(0, 0, 1), &half, error));
+    assert_ok(rt_solid_add_half_space(&set, rt_vec3(0, 0, 7), rt_vec3(1, 1, 1), &oblique, error));
+    assert_ok(rt_solid_add_polyhedron(&set, slab_planes, 2, &here, &slab, error));
+    assert_ok(rt_solid_add_polyhedron(&set, wedge_planes_too, 2, &here, &wedge, error));
+    const float none = INFINITY;
+    const RtBox boxes[4] = {{{{-none, -none, -none}}, {{none, none, 7}}},
+                            {{{-none, -none, -none}}, {{none, none, none}}},
+                            {{{-none, 2, -none}}, {{none, 3, none}}},
+                            {{{-none, -none, -none}}, {{3, 5, none}}}};
+    for (uint32_t i = 0; i < 4; i++) {
+        assert_memory_equal(&set.solids[i].box, &boxes[i], sizeof(RtBox));
+        assert_true(isinf(rt_solid_ball(&set, i).radius));
+    }
+    assert_near(rt_solid_support(&set, oblique, rt_vec3d(2, 2, 2)), 14, 1e-9);
+    assert_true(isinf(rt_solid_support(&set, oblique, rt_vec3d(-1, -1, -1))));
+    assert_near(rt_solid_support(&set, wedge, rt_vec3d(1, 2, 0)), 13, 1e-9);
+    assert_true(isinf(rt_solid_support(&set, wedge, rt_vec3d(1, 2, 0.1))));
+    rt_solid_set_clear(&set);
+}
+
+/* ---- normals ---- */
+
+/* Along the way on which membership grows fastest. */
+static void normals_point_out(void **state) {
+    (void)state;
+    RtRandom random = rt_random(7, 0);
+    RtTransform place = rt_transform_identity();
+    assert_ok(rt_transform_scale(&place, rt_vec3(1, 2, 3), error));
+    assert_ok(rt_transform_rotate(&place, rt_vec3(1, 2, 3), 50, error));
+    assert_ok(rt_transform_translate(&place, rt_vec3(5, 6, 7), error));
+    RtSolidSet set = {0};
+    Model models[MODELS];
+    add_models(&set, &place, models);
+    for (int i = 0; i < MODELS; i++) {
+        if (models[i].ratio == 1e-4) continue; /* as thin as the steps below are long */
+        uint32_t wrong = 0, asked = 0;
+        for (int k = 0; k < 500; k++) {
+            RtRay ray = random_ray(&models[i], &random, random_target(&models[i], &random), 3);
+            List list = cross(&set, models[i].index, &ray);
+            for (uint32_t c = 0; c < list.count; c++) {
+                if (isinf(list.at[c].t)) continue;
+                RtVec3d p = rt_ray_point(&ray, list.at[c].t), gradient;
+                RtVec3d n = rt_solid_normal(&set, models[i].index, list.at[c].face, p);
+                assert_near(rt_lengthd(n), 1, 1e-12);
+                for (int a = 0; a < 3; a++) {
+                    RtRay probe = make_ray(rt_narrow(p), rt_vec3(a == 0, a == 1, a == 2));
+                    gradient.at[a] =
+                        (double)(value_at(&models[i], &probe, 1e-3L) - value_at(&models[i], &probe, -1e-3L));
+                }
+                asked++;
+                wrong += rt_dotd(rt_normalized(gradient), n) < 0.999; /* so it is at an edge */
+            }
+        }
+        if (wrong * 50 > asked || asked == 0) fail_msg("%s: %u of %u normals", models[i].name, wrong, asked);
+    }
+    rt_solid_set_clear(&set);
+}
+
+/* ---- refusals ---- */
+
+static void expect(RtStatus status, const RtError *error, const char *words) {
+    assert_int_equal(status, RT_BAD_INPUT);
+    if (!strstr(error->message, words)) fail_msg("'%s' does not say '%s'", error->message, words);
+}
+
+static void bad_solids_are_refused_and_leave_nothing(void **state) {
+    (void)state;
+    RtSolidSet set = {0};
+    RtError e;
+    uint32_t at;
+    RtTransform here = rt_transform_identity(), flat = here, endless = here, far = here;
+    flat.m[2][2] = 0;
+    endless.m[0][3] = INFINITY;
+    far.m[0][3] = 1e18;
+    RtPlane planes[3] = {{{{1, 0, 0}}, 0}, {{{-1, 0, 0}}, -1}, {{{0, 0, 0}}, 1}};
+    RtVec3 zero = {{0, 0, 0}}, one = {{1, 1, 1}},
+           corners[5] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{1, 1, 0}}, {{3, 1, 0}}};
+    RtTriangle triangles[12];
+    uint32_t count = cube_mesh(triangles);
+
+    expect(rt_solid_add_sphere(&set, &flat, &at, &e), &e, "flat");
+    expect(rt_solid_add_sphere(&set, &endless, &at, &e), &e, "finite");
+    expect(rt_solid_add_sphere(&set, &far, &at, &e), &e, "scale it down");
+    expect(rt_solid_add_cone(&set, 1.5, &here, &at, &e), &e, "from 0 to 1");
+    expect(rt_solid_add_torus(&set, 1, &here, &at, &e), &e, "below 1");
+    expect(rt_solid_add_torus(&set, (double)NAN, &here, &at, &e), &e, "below 1");
+    expect(rt_solid_add_polyhedron(&set, planes, 0, &here, &at, &e), &e, "from 1 to");
+    expect(rt_solid_add_polyhedron(&set, planes, 2, &here, &at, &e), &e, "no inside");
+    expect(rt_solid_add_polyhedron(&set, planes, 3, &here, &at, &e), &e, "plane 2");
+    planes[1].offset = 0;
+    expect(rt_solid_add_polyhedron(&set, planes, 2, &here, &at, &e), &e, "no inside");
+    expect(rt_solid_add_box(&set, one, zero, &at, &e), &e, "lo < hi");
+    expect(rt_solid_add_half_space(&set, one, zero, &at, &e), &e, "normal not 0");
+    expect(rt_solid_add_ellipsoid(&set, one, zero, &at, &e), &e, "above 0");
+    expect(rt_solid_add_frustum(&set, zero, 0, one, 0, &at, &e), &e, "above 0");
+    expect(rt_solid_add_frustum(&set, one, 1, one, 1, &at, &e), &e, "same point");
+    expect(rt_solid_add_ring(&set, zero, one, 1, 1, &at, &e), &e, "minor < major");
+    expect(rt_solid_add_ring(&set, zero, zero, 2, 1, &at, &e), &e, "length 0");
+    expect(rt_solid_add_hull(&set, corners, 3, &at, &e), &e, "from 4 to");
+    expect(rt_solid_add_hull(&set, corners, 5, &at, &e), &e, "one plane");
+    expect(rt_solid_add_mesh(&set, triangles, 3, &here, &at, &e), &e, "4 triangles");
+    expect(rt_solid_add_mesh(&set, triangles, count - 1, &here, &at, &e), &e, "not closed");
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3 kept = triangles[i].v[1];
+        triangles[i].v[1] = triangles[i].v[2], triangles[i].v[2] = kept;
+        if (i == 0) expect(rt_solid_add_mesh(&set, triangles, count, &here, &at, &e), &e, "not closed");
+    }
+    expect(rt_solid_add_mesh(&set, triangles, count, &here, &at, &e), &e, "inside out");
+    triangles[3].v[0].y = NAN;
+    expect(rt_solid_add_mesh(&set, triangles, count, &here, &at, &e), &e, "triangle 3");
+    assert_int_equal(set.solid_count + set.plane_count + set.triangle_count, 0);
+    rt_solid_set_clear(&set);
+}
+
+static RtStatus add_one_of_each(RtSolidSet *set, uint32_t i, uint32_t *at, RtError *error) {
+    RtTransform here = rt_transform_identity();
+    RtTriangle triangles[12];
+    static const RtVec3 corners[4] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}};
+    switch (i) {
+    case 0: return rt_solid_add_sphere(set, &here, at, error);
+    case 1: return rt_solid_add_cone(set, 0.5, &here, at, error);
+    case 2: return rt_solid_add_torus(set, 0.5, &here, at, error);
+    case 3: return rt_solid_add_hull(set, corners, 4, at, error);
+    case 4: return rt_solid_add_mesh(set, triangles, cube_mesh(triangles), &here, at, error);
+    default: return rt_solid_add_moved(set, set, i - 5, &here, at, error);
+    }
+}
+
+static void without_memory_nothing_is_added(void **state) {
+    (void)state;
+    int64_t before = rt_alloc_live();
+    RtSolidSet set = {0};
+    RtError e;
+    for (uint32_t i = 0; i < 10; i++) {
+        for (uint64_t n = 1;; n++) {
+            RtSolidSet kept = set;
+            uint32_t at;
+            rt_alloc_fail_at(n);
+            RtStatus status = add_one_of_each(&set, i, &at, &e);
+            rt_alloc_fail_at(0);
+            if (status == RT_OK) break;
+            assert_int_equal(status, RT_NO_MEMORY);
+            assert_int_equal(set.solid_count, kept.solid_count);
+            assert_int_equal(set.plane_count, kept.plane_count);
+            assert_int_equal(set.triangle_count, kept.triangle_count);
+        }
+        assert_int_equal(set.solid_count, i + 1);
+    }
+    assert_true(rt_solid_set_bytes(&set) > 10 * sizeof(RtSolid));
+    rt_solid_set_clear(&set);
+    assert_int_equal(rt_alloc_live(), before);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_lines_are_inside_where_their_points_are),
         cmocka_unit_test(so_they_are_where_solids_are_turned_stretched_and_moved),
+        cmocka_unit_test(a_box_has_no_skin),
+        cmocka_unit_test(a_half_space_has_no_end),
+        cmocka_unit_test(a_sphere_that_is_touched_is_not_crossed),
+        cmocka_unit_test(a_full_cone_ends_in_its_apex),
+        cmocka_unit_test(a_cylinder_is_entered_by_cap_or_side),
+        cmocka_unit_test(a_torus_has_a_hole),
+        cmocka_unit_test(a_cube_of_triangles_is_a_box_even_at_edges_and_corners),
+        cmocka_unit_test(faces_in_one_plane_are_met_at_the_same_bits),
+        cmocka_unit_test(the_hull_of_the_corners_of_a_box_is_the_box),
+        cmocka_unit_test(hulls_of_random_points_hold_what_is_between_them),
+        cmocka_unit_test(extents_hold_every_crossing),
+        cmocka_unit_test(extents_are_tight_where_they_can_be_known),
+        cmocka_unit_test(what_has_no_end_has_extents_without_end),
+        cmocka_unit_test(normals_point_out),
+        cmocka_unit_test(bad_solids_are_refused_and_leave_nothing),
+        cmocka_unit_test(without_memory_nothing_is_added),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

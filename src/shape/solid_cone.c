@@ -4,8 +4,9 @@
  * With p(s) = near + s dir, x^2 + y^2 - r^2 is the quadratic a s^2 + 2 b s + c, whose inside is that of both
  * nappes of the double cone. A line that is steeper than the side (a < 0) goes into one and out of the other;
  * of its two half-lines the one is inside on which r is above 0. A line that is less steep (a > 0) is inside
- * between the roots, if that is on the nappe with r > 0; it is the same nappe at both. So the apex needs no
- * care, and the second nappe is never met. */
+ * between the roots, if that is on the nappe with r > 0; it is the same nappe at both. A line as steep as the
+ * side (a = 0) has one root, and goes into one nappe for good. So the apex needs no care, and the second
+ * nappe is never met. */
 #include "base/memory.h"
 #include "shape/quadratic.h"
 #include "shape/solid_parts.h"
@@ -21,15 +22,15 @@ static bool within_side(double ratio, const RtStandardLine *line, RtSpan *span) 
     double c = p.x * p.x + p.y * p.y - r * r;
     *span = (RtSpan){-INFINITY, INFINITY, SIDE, SIDE};
     if (a == 0 && half_b == 0) return c < 0 && r > 0;
+    if (a == 0 && (half_b < 0) != (dr > 0)) return false;
 
     double roots[2], discriminant = half_b * half_b - a * c;
-    if (a < 0) discriminant = fmax(discriminant, 0);
-    if (!(discriminant > 0 || a <= 0)) return false;
-    int count = rt_quadratic_roots(a, half_b, c, discriminant, roots);
     if (a > 0) {
+        if (!(discriminant > 0) || rt_quadratic_roots(a, half_b, c, discriminant, roots) < 2) return false;
         span->open = roots[0], span->close = roots[1];
         return r + dr * (roots[0] / 2 + roots[1] / 2) > 0;
     }
+    int count = rt_quadratic_roots(a, half_b, c, fmax(discriminant, 0), roots);
     if (dr > 0) {
         span->open = roots[count - 1];
     } else {

@@ -2,9 +2,10 @@
  * plane after the other.
  *
  * All else is asked of the edges: the line of each two planes, cut by all others. A polyhedron in three
- * dimensions has a point if and only if it has an edge, or all its planes are parallel; and it reaches as far
- * as its edges do. To be on the safe side of rounding the planes are moved: outward for extents, inward to
- * see that the inside is not flat. About count^2 / 2 lines are tried, most of which a few planes cut away. */
+ * dimensions has a point if and only if it has an edge, or all its planes are parallel; and if it has a
+ * corner it reaches as far as its edges do. To be on the safe side of rounding the planes are moved: outward
+ * for extents, inward to see that the inside is not flat. About count^2 / 2 lines are tried, most of which a
+ * few planes cut away. */
 #include "base/memory.h"
 #include "shape/solid_parts.h"
 
@@ -113,30 +114,44 @@ static Faces grown_faces(const RtSolidSet *set, const RtSolid *solid) {
     return (Faces){planes, solid->count, least_width(planes, solid->count)};
 }
 
-/* Largest dot product of `direction` with a point of the slab. */
-static double slab_support(const Faces *faces, double lo, double hi, RtVec3d direction) {
-    RtVec3d normal = faces->planes[0].normal, across = rt_crossd(normal, direction);
-    double along = rt_dotd(normal, direction);
-    if (rt_lengthd(across) > NOISE * fabs(along)) return INFINITY;
-    return along == 0 ? 0 : along > 0 ? along * hi : along * lo;
+/* The same as below of a polyhedron without a corner, whose normals lie in a plane: with direction =
+ * l a.normal + m b.normal, l and m at least 0, the planes a and b alone bound it (duality of linear
+ * programs); b may be a. */
+static double flat_support(const Faces *faces, RtVec3d direction) {
+    double least = INFINITY, length = rt_lengthd(direction);
+    for (uint32_t i = 0; i < faces->count * faces->count; i++) {
+        const RtPlane *a = &faces->planes[i / faces->count], *b = &faces->planes[i % faces->count];
+        RtVec3d along = rt_crossd(a->normal, b->normal);
+        double squared = rt_dotd(along, along), l = rt_dotd(a->normal, direction), m = 0;
+        if (squared > NOISE * NOISE) {
+            l = rt_dotd(rt_crossd(direction, b->normal), along) / squared;
+            m = rt_dotd(rt_crossd(a->normal, direction), along) / squared;
+        }
+        RtVec3d rest = rt_add_scaledd(rt_add_scaledd(direction, a->normal, -l), b->normal, -m);
+        if (!(l >= 0 && m >= 0 && rt_lengthd(rest) <= NOISE * length)) continue;
+        least = fmin(least, l * (a->offset + faces->grow) + m * (b->offset + faces->grow));
+    }
+    return least;
 }
 
-/* The same of an edge. What is along it but for noise counts as along it, where it has no end. */
+/* Largest dot product of `direction` with a point of the edge. What is along it but for noise counts as along
+ * it, where it has no end. */
 static double edge_support(const Edge *edge, RtVec3d direction) {
     double base = rt_dotd(edge->from, direction), rate = rt_dotd(edge->dir, direction);
     double end = rate > 0 ? edge->hi : edge->lo, start = rate > 0 ? edge->lo : edge->hi;
-    if (isinf(end) && fabs(rate) <= NOISE * rt_lengthd(direction)) end = isinf(start) ? 0 : start;
+    if (isinf(end) && fabs(rate) <= NOISE * rt_lengthd(direction)) end = start;
     return base + rate * end;
 }
 
 double rt_solid_polyhedron_support(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction) {
     Faces faces = grown_faces(set, solid);
-    double most = -INFINITY, lo, hi;
-    if (is_slab(&faces, &lo, &hi)) return slab_support(&faces, lo, hi, direction);
+    double most = -INFINITY;
     Edge edge;
-    for (uint32_t i = 0, j = 0; next_edge(&faces, &i, &j, &edge);)
+    for (uint32_t i = 0, j = 0; next_edge(&faces, &i, &j, &edge);) {
+        if (isinf(edge.lo) && isinf(edge.hi)) return flat_support(&faces, direction);
         most = fmax(most, edge_support(&edge, direction));
-    return most;
+    }
+    return most == -INFINITY ? flat_support(&faces, direction) : most;
 }
 
 /* About the middle of the box. */
