@@ -322,7 +322,8 @@ RtStatus rt_extent_check(const RtExtentSet *set, uint32_t index, const RtGroup *
                          RtError *error) {
     Check check = {set, index, group, owner, error};
     if (set->kind == RT_EXTENT_SLABS) return check_slabs(&check);
-    if (set->kind == RT_EXTENT_OBB) RT_TRY(check_axes(&check));
+    /* Along other directions less may be known of an object than the extent's own faces say together. */
+    if (set->kind == RT_EXTENT_OBB) return check_axes(&check);
     for (uint32_t i = 0; i < (set->kind == RT_EXTENT_BOX ? 3 : RT_MAX_SLABS); i++) {
         RT_TRY(check_along(&check, rt_slab_normals[i]));
     }

@@ -22,7 +22,7 @@ RT_KERNEL bool rt_test_object(const RtGeometry *geometry, uint32_t id, const RtP
                               RtHit *best, RtTally *tally) {
     float t;
     RT_COUNT(tally, object_tests, 1);
-    if (!rt_object_hit(geometry, id, ray, &t)) return false;
+    if (!rt_object_hit(geometry, id, ray, &t, tally)) return false;
     RT_COUNT(tally, object_hits, 1);
     if (rt_hit_before(t, id, *best)) *best = (RtHit){t, id};
     return any;

@@ -42,10 +42,12 @@ static RtStatus run(Job *job, RtWork work, RtError *error) {
     job->desks = rt_alloc((size_t)job->threads, sizeof(Desk));
     if (!job->desks) return rt_fail_memory(error, "answers", (size_t)job->threads * sizeof(Desk));
     RtStatus status = RT_OK;
+    uint64_t shortages = rt_csg_shortages();
     for (int i = 0; i < job->threads && status == RT_OK; i++) {
         status = rt_query_init(&job->desks[i].query, job->accel, error);
     }
     if (status == RT_OK) status = rt_parallel_for(job->chunks, job->threads, work, job, error);
+    if (status == RT_OK) status = rt_csg_check(shortages, error);
     for (int i = 0; i < job->threads; i++) rt_query_clear(&job->desks[i].query);
     rt_free(job->desks);
     return status;

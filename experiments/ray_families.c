@@ -69,6 +69,27 @@ static RtVec3d point_of_sphere(Maker *m, const RtSphere *sphere, Where where) {
     return rt_add_scaledd(rt_widen(sphere->center), out, (double)sphere->radius);
 }
 
+/* Of a tree: a corner of the box of one of its solids, a point of an edge of such a box, or where a random
+ * line meets the tree. */
+static RtVec3d point_of_csg(Maker *m, uint32_t id, Where where) {
+    const RtGeometry *g = m->geometry;
+    const RtCsg *tree = &g->csgs[rt_ref_index(g->objects[id])];
+    if (where == ON_SURFACE) {
+        RtRay ray = rt_random_chord(&tree->box, &m->random);
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &tree->box);
+        float t;
+        if (rt_object_hit(g, id, &prepared, &t, NULL)) return rt_ray_point(&ray, t);
+    }
+    const RtBox *box = &g->forest.set.solids[tree->first_solid + below(m, tree->solid_count)].box;
+    if (!rt_finite(box->lo) || !rt_finite(box->hi)) box = &tree->box;
+    RtVec3d p = point_in_box(m, box);
+    uint32_t along = where == AT_VERTEX ? 3 : below(m, 3);
+    for (uint32_t a = 0; a < 3; a++) {
+        if (a != along) p.at[a] = (double)(below(m, 2) ? box->hi : box->lo).at[a];
+    }
+    return p;
+}
+
 /* A point of object `id`, and the id itself; in an empty scene any point and RT_NO_OBJECT. */
 static RtVec3d point_of_object(Maker *m, Where where, uint32_t *id) {
     const RtGeometry *g = m->geometry;
@@ -84,6 +105,7 @@ static RtVec3d point_of_object(Maker *m, Where where, uint32_t *id) {
         return point_of_vertices(m, g->polygon_vertices + polygon->first, polygon->count, where);
     }
     case RT_SHAPE_CONE: return point_of_cone(m, &g->cones[index], where != ON_SURFACE);
+    case RT_SHAPE_CSG: return point_of_csg(m, *id, where);
     case RT_SHAPE_COUNT: break;
     }
     return point_in_scene(m);
@@ -174,7 +196,8 @@ static RtRay tangent(Maker *m) {
     RtVec3d p = point_of_object(m, below(m, 2) ? ON_SURFACE : AT_VERTEX, &id);
     RtVec3d dir = rt_random_direction(&m->random);
     if (id != RT_NO_OBJECT) {
-        RtVec3d normal = rt_object_normals(m->geometry, id, p).geometric;
+        RtRay at = ray_along(p, dir);
+        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0).geometric;
         dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
     }
     return ray_along(rt_add_scaledd(p, dir, -m->size), dir);

@@ -99,12 +99,13 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     RtRaySet *set = &recorder->sets[RT_RAY_DIFFUSE];
     RT_TRY(set_init(set, RT_RAY_DIFFUSE, primary->count, error));
     set->count = 0;
+    uint64_t shortages = rt_csg_shortages();
     for (uint64_t i = 0; i < primary->count; i++) {
         if (recorder->frame->object[primary->rays[i].source] == RT_NO_OBJECT) continue;
         RtRay ray = bounce(recorder, &primary->rays[i]);
         if (rt_ray_is_valid(&ray)) set->rays[set->count++] = ray;
     }
-    return RT_OK;
+    return rt_csg_check(shortages, error);
 }
 
 /* ---- random rays ---- */

@@ -1,6 +1,7 @@
 /* The families of scenes. One recipe a row: how many objects of which shapes, where, how large, and how the
  * whole is scaled and moved. */
 #include "experiments/families.h"
+#include "experiments/random_tree.h"
 
 #include <stdio.h>
 
@@ -11,7 +12,7 @@ typedef struct Place {
 } Place;
 typedef Place Placement(RtRandom *random, uint32_t i, uint32_t count);
 
-typedef enum Make { SPHERES, TRIANGLES, ROUND_AND_FLAT, AXIS_ALIGNED, MESH, MAKE_COUNT } Make;
+typedef enum Make { SPHERES, TRIANGLES, ROUND_AND_FLAT, AXIS_ALIGNED, TREES, MESH, MAKE_COUNT } Make;
 
 typedef struct Recipe {
     const char *name;
@@ -156,6 +157,23 @@ static RtStatus add_round_or_flat(Builder *b, Place at, uint32_t i, RtError *err
     }
 }
 
+/* A random CSG tree of up to 24 solids; the first of every eight is a lone one. With and without tests of
+ * inner nodes by turns. */
+static RtStatus add_tree(Builder *b, Place at, uint32_t i, RtError *error) {
+    RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_bits(&b->random) % 23, i % 2};
+    double o = b->recipe->offset, scale = b->recipe->scale, size = scale * at.size / 4;
+    RtTransform move = {{{size, 0, 0, o + scale * at.center.x},
+                         {0, size, 0, o + scale * at.center.y},
+                         {0, 0, size, o + scale * at.center.z}}};
+    RtCsgBuilder trees = {0};
+    RtCsgTerm root;
+    RtStatus status = rt_random_tree(&trees, &b->random, &recipe, 1, &root, error);
+    if (status == RT_OK) status = rt_csg_move(&trees, root, &move, &root, error);
+    if (status == RT_OK) status = rt_scene_add_csg(b->scene, &trees, root, i / 2 % 2 == 0, error);
+    rt_csg_builder_clear(&trees);
+    return status;
+}
+
 /* A closed mesh: an octahedron, each face cut into n x n triangles, its vertices pushed out to the sphere.
  * Neighbours share their vertices bit for bit. */
 static RtStatus add_mesh(Builder *b, uint32_t n, RtError *error) {
@@ -186,6 +204,7 @@ static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
     case TRIANGLES: return add_triangle(b, at, error);
     case ROUND_AND_FLAT: return add_round_or_flat(b, at, i, error);
     case AXIS_ALIGNED: return add_axis_aligned(b, at, i, error);
+    case TREES: return add_tree(b, at, i, error);
     case MESH:
     case MAKE_COUNT: break;
     }
@@ -209,6 +228,10 @@ static const Recipe recipes[] = {
     {"soup", 200, TRIANGLES, uniform, 1, 0},
     {"duplicates", 120, SPHERES, duplicated, 1, 0},
     {"axis-aligned", 100, AXIS_ALIGNED, on_a_lattice, 1, 0},
+    {"csg", 48, TREES, uniform, 1, 0},
+    {"csg-coincident", 12, TREES, coincident, 1, 0},
+    {"csg-tiny", 24, TREES, uniform, 0x1p-30, 0},
+    {"csg-far", 24, TREES, uniform, 1, 1e5},
     {"mesh", 5, MESH, NULL, 1, 0},
     {"mesh-far", 5, MESH, NULL, 1, 1e5},
     {"mixed-tiny", 100, ROUND_AND_FLAT, uniform, 0x1p-30, 0},

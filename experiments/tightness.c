@@ -142,6 +142,7 @@ RtStatus rt_tightness_count(const RtPopulation *population, const RtExtentChoice
     survey.rooms = rt_alloc(count, sizeof(Room));
     survey.sets = rt_alloc(count, sizeof(RtExtentSet));
     RtStatus status = RT_OK;
+    uint64_t shortages = rt_csg_shortages();
     if (survey.spheres && survey.rooms && survey.sets) {
         double whole = deal_lines(&survey, lines);
         RtBall scene = rt_bounding_sphere(&population->geometry->box);
@@ -150,6 +151,7 @@ RtStatus rt_tightness_count(const RtPopulation *population, const RtExtentChoice
             estimate(&out[c]);
             out[c].met = whole > 0 ? (double)out[c].extent_hits / lines_of_scene : 0;
         }
+        status = rt_csg_check(shortages, error);
     } else {
         status = rt_fail_memory(error, "the tightness of extents", population->count * sizeof(RtBall));
     }

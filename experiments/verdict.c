@@ -82,9 +82,8 @@ static bool in_reach(const RtGeometry *g, uint32_t id, const Probes *p) {
 
 /* Does the ray meet the object's front, seen along its normal, or its back? */
 static int side_met(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, float t) {
-    RtVec3d dir = rt_widen(ray->dir);
-    RtVec3d point = rt_add_scaledd(rt_widen(ray->org), dir, (double)t);
-    return rt_dotd(rt_object_normals(g, id, point).geometric, dir) > 0;
+    RtRay again = {.org = ray->org, .tmin = ray->tmin, .dir = ray->dir, .tmax = ray->tmax};
+    return rt_dotd(rt_object_normals(g, id, &again, t).geometric, rt_widen(ray->dir)) > 0;
 }
 
 /* Shapes that only our hit functions know: what the probes say. */
@@ -95,7 +94,7 @@ static Margin probed_margin(const RtGeometry *g, uint32_t id, const Probes *p) {
         const RtPreparedRay *rays[2] = {&p->wide[i], &p->narrow[i]};
         for (int k = 0; k < 2; k++) {
             float t;
-            if (!rt_object_hit(g, id, rays[k], &t)) {
+            if (!rt_object_hit(g, id, rays[k], &t, NULL)) {
                 m.certain = false;
                 continue;
             }
@@ -212,7 +211,7 @@ static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer) {
 static bool is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, double tolerance) {
     float t;
     RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
-    return rt_object_hit(g, answer.object, &prepared, &t) &&
+    return rt_object_hit(g, answer.object, &prepared, &t, NULL) &&
            within((double)t, (double)expected.t, tolerance) &&
            within((double)answer.t, (double)expected.t, tolerance);
 }

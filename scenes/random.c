@@ -165,6 +165,9 @@ static RtStatus add_cone(Maker *m, RtError *error) {
                              rt_narrow(rt_addd(m->center, half)), apex_radius, error);
 }
 
+/* Not all shapes there are: what this scene is must not change when there are more. */
+static const RtShape mixed[] = {RT_SHAPE_SPHERE, RT_SHAPE_POLYGON, RT_SHAPE_TRIANGLE, RT_SHAPE_CONE};
+
 static RtStatus add_object(RtScene *scene, uint64_t i, double mean_radius, const RtValue *values,
                            RtError *error) {
     uint32_t distribution = values[DISTRIBUTION].choice;
@@ -176,7 +179,7 @@ static RtStatus add_object(RtScene *scene, uint64_t i, double mean_radius, const
     double deviation = 2 * (double)rt_random_unit(&m.random) - 1;
     m.radius = mean_radius * (1 + values[SPREAD].f * deviation);
     if (distribution == STADIUM) m.radius *= stadium_scale[is_huge(i)];
-    RtShape shape = values[SHAPE].choice == MIXED       ? (RtShape)(i % RT_SHAPE_COUNT)
+    RtShape shape = values[SHAPE].choice == MIXED       ? mixed[i % (sizeof mixed / sizeof mixed[0])]
                     : values[SHAPE].choice == TRIANGLES ? RT_SHAPE_TRIANGLE
                                                         : RT_SHAPE_SPHERE;
     switch (shape) {
@@ -184,6 +187,7 @@ static RtStatus add_object(RtScene *scene, uint64_t i, double mean_radius, const
     case RT_SHAPE_TRIANGLE: return add_triangle(&m, error);
     case RT_SHAPE_CONE: return add_cone(&m, error);
     case RT_SHAPE_SPHERE:
+    case RT_SHAPE_CSG:
     case RT_SHAPE_COUNT: break;
     }
     return rt_scene_add_sphere(scene, m.material, rt_narrow(m.center), (float)m.radius, error);

@@ -18,7 +18,13 @@ typedef struct Case {
 
 static bool hit(const RtGeometry *g, uint32_t id, const RtRay *ray, float *t) {
     RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
-    return rt_object_hit(g, id, &prepared, t);
+    return rt_object_hit(g, id, &prepared, t, NULL);
+}
+
+/* What a ray that starts at `point` meets there. */
+static RtNormals normals_at(const RtGeometry *g, uint32_t id, RtVec3d point) {
+    RtRay ray = {.org = rt_narrow(point), .dir = {0, 0, 1}, .tmax = INFINITY};
+    return rt_object_normals(g, id, &ray, 0);
 }
 
 static RtRay make_ray(RtVec3 org, RtVec3 dir) {
@@ -200,14 +206,14 @@ static void normals_point_outward_or_by_the_right_hand_rule(void **state) {
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 5, rt_vec3(0, 0, 4), 2, error));
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 2, rt_vec3(0, 0, 4), 5, error));
     assert_ok(rt_geometry_finish(&g, error));
-    assert_vector(rt_object_normals(&g, 0, rt_vec3d(-1, 0, 0)).geometric, -1, 0, 0);
-    assert_vector(rt_object_normals(&g, 1, rt_vec3d(1, 1, 5)).geometric, 0, 0, -1);
-    assert_vector(rt_object_normals(&g, 2, rt_vec3d(0, 0, 0)).geometric, 1, 0, 0);
-    assert_vector(rt_object_normals(&g, 3, rt_vec3d(0, 1, 2)).geometric, 0, 1, 0);
+    assert_vector(normals_at(&g, 0, rt_vec3d(-1, 0, 0)).geometric, -1, 0, 0);
+    assert_vector(normals_at(&g, 1, rt_vec3d(1, 1, 5)).geometric, 0, 0, -1);
+    assert_vector(normals_at(&g, 2, rt_vec3d(0, 0, 0)).geometric, 1, 0, 0);
+    assert_vector(normals_at(&g, 3, rt_vec3d(0, 1, 2)).geometric, 0, 1, 0);
     /* A frustum that narrows by 3 over a height of 4 leans outward and up, one that widens outward and down.
      */
-    assert_vector(rt_object_normals(&g, 4, rt_vec3d(3.5, 0, 2)).geometric, 0.8, 0, 0.6);
-    assert_vector(rt_object_normals(&g, 5, rt_vec3d(0, -3.5, 2)).geometric, 0, -0.8, -0.6);
+    assert_vector(normals_at(&g, 4, rt_vec3d(3.5, 0, 2)).geometric, 0.8, 0, 0.6);
+    assert_vector(normals_at(&g, 5, rt_vec3d(0, -3.5, 2)).geometric, 0, -0.8, -0.6);
     rt_geometry_clear(&g);
 }
 
@@ -219,11 +225,11 @@ static void vertex_normals_are_interpolated_for_shading_only(void **state) {
     assert_ok(rt_geometry_add_triangle(&g, vertices, NULL, error));
     assert_ok(rt_geometry_add_triangle(&g, vertices, normals, error));
     assert_ok(rt_geometry_finish(&g, error));
-    assert_vector(rt_object_normals(&g, 0, rt_vec3d(0.5, 0.5, 0)).shading, 0, 0, 1);
-    assert_vector(rt_object_normals(&g, 1, rt_vec3d(0, 0, 0)).shading, 0, 0, 1);
-    assert_vector(rt_object_normals(&g, 1, rt_vec3d(1, 0, 0)).shading, 1, 0, 0);
-    assert_vector(rt_object_normals(&g, 1, rt_vec3d(0.5, 0.5, 0)).shading, sqrt(0.5), sqrt(0.5), 0);
-    assert_vector(rt_object_normals(&g, 1, rt_vec3d(0.5, 0.5, 0)).geometric, 0, 0, 1);
+    assert_vector(normals_at(&g, 0, rt_vec3d(0.5, 0.5, 0)).shading, 0, 0, 1);
+    assert_vector(normals_at(&g, 1, rt_vec3d(0, 0, 0)).shading, 0, 0, 1);
+    assert_vector(normals_at(&g, 1, rt_vec3d(1, 0, 0)).shading, 1, 0, 0);
+    assert_vector(normals_at(&g, 1, rt_vec3d(0.5, 0.5, 0)).shading, sqrt(0.5), sqrt(0.5), 0);
+    assert_vector(normals_at(&g, 1, rt_vec3d(0.5, 0.5, 0)).geometric, 0, 0, 1);
     rt_geometry_clear(&g);
 }
 

@@ -60,7 +60,7 @@ static uint32_t count_hits(const Mesh *mesh, const RtRay *ray) {
     uint32_t hits = 0;
     for (uint32_t id = 0; id < mesh->count; id++) {
         float t;
-        hits += rt_object_hit(&mesh->geometry, id, &prepared, &t);
+        hits += rt_object_hit(&mesh->geometry, id, &prepared, &t, NULL);
     }
     return hits;
 }
@@ -140,7 +140,7 @@ static void symmetric_rays_do_not_leak_from_a_cube_of_polygons(void **state) {
         int hits = 0, faces = abs(code % 3 - 1) + abs(code / 3 % 3 - 1) + abs(code / 9 - 1);
         for (uint32_t id = 0; id < 6; id++) {
             float t;
-            bool met = rt_object_hit(&g, id, &prepared, &t);
+            bool met = rt_object_hit(&g, id, &prepared, &t, NULL);
             hits += met;
             if (met) assert_true(t == 1.0f);
         }

@@ -77,7 +77,7 @@ static bool lane_hit(const RtGeometry *geometry, uint32_t id, RtEmbreeWord *rays
         ray.dir.at[a] = rt_embree_word(rays, lanes, RT_EMBREE_DIR + a, i)->f;
     }
     RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
-    return rt_object_hit(geometry, id, &prepared, t);
+    return rt_object_hit(geometry, id, &prepared, t, NULL);
 }
 
 void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments) {

@@ -129,7 +129,8 @@ bool rt_light_touches(const RtLightBuffer *buffer, uint32_t light, int face, uin
     const RtVec3 *vertices;
     switch (rt_ref_shape(g->objects[id])) {
     case RT_SHAPE_SPHERE:
-    case RT_SHAPE_CONE: {
+    case RT_SHAPE_CONE:
+    case RT_SHAPE_CSG: {
         RtBall ball = rt_object_ball(g, id);
         return ball_touches(buffer, offsetd(buffer, light, face, ball.center), ball.radius + 2 * grow, axis);
     }

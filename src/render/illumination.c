@@ -15,13 +15,15 @@ static double offset_of(const RtGeometry *g, uint32_t object, RtVec3d point, dou
 RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit) {
     const RtGeometry *g = &scene->geometry;
     RtVec3d point = rt_ray_point(ray, hit.t);
-    RtNormals normals = rt_object_normals(g, hit.object, point);
+    RtNormals normals = rt_object_normals(g, hit.object, ray, hit.t);
+    uint32_t material = normals.solid == RT_NO_SOLID ? scene->material_of[hit.object]
+                                                     : g->forest.set.solids[normals.solid].material;
     RtVec3d dir = rt_widen(ray->dir);
     bool entering = rt_dotd(dir, normals.geometric) < 0;
     RtVec3d side = entering ? normals.geometric : rt_scaled(normals.geometric, -1);
     bool turn = rt_dotd(normals.shading, side) < 0;
     return (RtSurface){
-        .material = &scene->materials[scene->material_of[hit.object]],
+        .material = &scene->materials[material],
         .point = point,
         .arriving = rt_normalized(dir),
         .side = side,

@@ -28,7 +28,7 @@
 
 #include "scene/scene.h"
 
-/* A hit, made ready for shading. Borrows the scene's material. */
+/* A hit, made ready for shading. Borrows the scene's material, that of the solid for a CSG tree. */
 typedef struct RtSurface {
     const RtMaterial *material;
     RtVec3d point;

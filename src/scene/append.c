@@ -64,6 +64,7 @@ static RtStatus append_object(const Append *a, uint32_t id) {
     case RT_SHAPE_POLYGON: return append_polygon(a, material, &g->polygons[index]);
     case RT_SHAPE_TRIANGLE: return append_triangle(a, material, index);
     case RT_SHAPE_CONE: return append_cone(a, material, &g->cones[index]);
+    case RT_SHAPE_CSG: return rt_scene_copy_csg(a->to, a->from, index, a->materials, a->transform, a->error);
     case RT_SHAPE_COUNT: break;
     }
     return RT_OK;

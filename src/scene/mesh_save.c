@@ -127,8 +127,9 @@ static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError
         if (shape == RT_SHAPE_TRIANGLE || counts[shape] == 0) continue;
         return rt_fail(error, RT_BAD_INPUT,
                        ".%s holds triangles only, but in this scene there are also objects that are no "
-                       "triangles (%s: %u): write .yaml or .nff",
-                       extension, rt_shape_name((RtShape)shape), counts[shape]);
+                       "triangles (%s: %u)%s",
+                       extension, rt_shape_name((RtShape)shape), counts[shape],
+                       g->csg_count == 0 ? ": write .yaml or .nff" : "");
     }
     return RT_OK;
 }

@@ -89,12 +89,17 @@ static void save_object(const RtGeometry *g, RtRef ref, FILE *file) {
         break;
     case RT_SHAPE_POLYGON: save_polygon(g, index, file); break;
     case RT_SHAPE_TRIANGLE: save_triangle(g, index, file); break;
+    case RT_SHAPE_CSG: /* refused before */
     case RT_SHAPE_COUNT: break;
     }
     fprintf(file, "\n");
 }
 
 RtStatus rt_nff_save(const RtScene *scene, FILE *file, RtError *error) {
+    if (scene->geometry.csg_count > 0) {
+        return rt_fail(error, RT_BAD_INPUT, "NFF has no CSG trees, and in this scene there are %u",
+                       scene->geometry.csg_count);
+    }
     save_header(scene, file);
     for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
         if (id == 0 || scene->material_of[id] != scene->material_of[id - 1]) {

@@ -106,6 +106,35 @@ RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float
     return rt_geometry_add_cone(&scene->geometry, base, base_radius, apex, apex_radius, error);
 }
 
+/* The tree just added as a whole has the material of its first solid. */
+static void set_csg_material(RtScene *scene) {
+    const RtGeometry *g = &scene->geometry;
+    const RtSolid *solids = g->forest.set.solids + g->csgs[g->csg_count - 1].first_solid;
+    scene->material_of[g->object_count - 1] = solids[0].material;
+}
+
+RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
+                          RtError *error) {
+    RT_TRY(reserve_material_of(scene, 0, error));
+    RT_TRY(rt_geometry_add_csg(&scene->geometry, builder, root, extents, error));
+    set_csg_material(scene);
+    return RT_OK;
+}
+
+RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, const uint32_t *materials,
+                           const RtTransform *move, RtError *error) {
+    RT_TRY(reserve_material_of(scene, 0, error));
+    RT_TRY(rt_geometry_copy_csg(&scene->geometry, &from->geometry, index, move, error));
+    RtGeometry *g = &scene->geometry;
+    const RtCsg *tree = &g->csgs[g->csg_count - 1];
+    for (uint32_t i = 0; i < tree->solid_count; i++) {
+        RtSolid *solid = &g->forest.set.solids[tree->first_solid + i];
+        solid->material = materials[solid->material];
+    }
+    set_csg_material(scene);
+    return RT_OK;
+}
+
 static bool same_point(RtVec3 a, RtVec3 b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
@@ -157,12 +186,36 @@ _Static_assert(sizeof(RtMaterial) == RT_MAX_NAME + 10 * sizeof(float), "a materi
 _Static_assert(sizeof(RtLight) == 6 * sizeof(float), "a light has no padding");
 _Static_assert(sizeof(RtCamera) == 11 * sizeof(float) + 2 * sizeof(uint32_t), "a camera has no padding");
 
+_Static_assert(sizeof(RtPlane) == 4 * sizeof(double), "a plane has no padding");
+_Static_assert(sizeof(RtTransform) == 12 * sizeof(double), "a transform has no padding");
+
+#define ADD(array, count) XXH3_64bits_update(state, array, (size_t)(count) * sizeof *(array))
+
+/* Solids and operations; boxes follow from them, and their tests change no answer. */
+static void add_forest(XXH3_state_t *state, const RtCsgForest *forest) {
+    const RtSolidSet *set = &forest->set;
+    for (uint32_t i = 0; i < set->solid_count; i++) {
+        const RtSolid *s = &set->solids[i];
+        const uint32_t numbers[4] = {(uint32_t)s->kind, s->material, s->subtracted, s->count};
+        ADD(numbers, 4);
+        ADD(&s->ratio, 1);
+        ADD(&s->place, 1);
+    }
+    ADD(set->planes, set->plane_count);
+    ADD(set->triangles, set->triangle_count);
+    for (uint32_t i = 0; i < forest->instruction_count; i++) {
+        RtCsgInstruction instruction = forest->instructions[i];
+        if (instruction.code != RT_CSG_PUSH && instruction.code != RT_CSG_APPLY) continue;
+        const uint32_t numbers[3] = {instruction.code, instruction.reversed, instruction.operand};
+        ADD(numbers, 3);
+    }
+}
+
 uint64_t rt_scene_fingerprint(const RtScene *scene) {
     const RtGeometry *g = &scene->geometry;
     XXH3_state_t *state = XXH3_createState();
     if (!state) return 0;
     XXH3_64bits_reset(state);
-#define ADD(array, count) XXH3_64bits_update(state, array, (size_t)(count) * sizeof *(array))
     ADD(g->objects, g->object_count);
     ADD(scene->material_of, g->object_count);
     ADD(g->spheres, g->sphere_count);
@@ -170,6 +223,7 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
     ADD(g->polygon_vertices, g->polygon_vertex_count);
     for (uint32_t i = 0; i < g->polygon_count; i++) ADD(&g->polygons[i].count, 1);
     ADD(g->cones, g->cone_count);
+    if (g->csg_count) add_forest(state, &g->forest);
     ADD(g->vertex_normals, g->vertex_normal_count);
     /* Which triangles they belong to; where all have some, that is known. */
     bool some = g->vertex_normal_count > 0 && g->vertex_normal_count < g->triangle_count;
@@ -182,11 +236,11 @@ uint64_t rt_scene_fingerprint(const RtScene *scene) {
     ADD(&scene->ambient, 1);
     ADD(&scene->background, 1);
     ADD(&scene->camera, 1);
-#undef ADD
     uint64_t hash = XXH3_64bits_digest(state);
     XXH3_freeState(state);
     return hash;
 }
+#undef ADD
 
 uint64_t rt_scene_bytes(const RtScene *scene) {
     return rt_geometry_bytes(&scene->geometry) + (uint64_t)scene->material_of_capacity * sizeof(uint32_t) +

@@ -36,7 +36,7 @@ typedef struct RtScene {
     char name[RT_MAX_SCENE_NAME];
     RtGeometry geometry;
     uint32_t material_of_capacity;
-    uint32_t *material_of; /* [geometry.object_count] index into materials */
+    uint32_t *material_of; /* [geometry.object_count] index into materials; a tree's solids have their own */
     uint32_t material_count, material_capacity;
     RtMaterial *materials;
     uint32_t light_count, light_capacity;
@@ -69,6 +69,15 @@ RtStatus rt_scene_add_triangle(RtScene *scene, uint32_t material, const RtVec3 v
                                const RtVec3 *normals, RtError *error);
 RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float base_radius, RtVec3 apex,
                            float apex_radius, RtError *error);
+
+/* The tree below `root`; the materials of its solids are those of this scene. As a whole it has the material
+ * of its first solid. */
+RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
+                          RtError *error);
+/* Tree `index` of another scene's geometry, moved by `move`, which may be NULL; material i of that scene is
+ * materials[i] of this one. */
+RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, const uint32_t *materials,
+                           const RtTransform *move, RtError *error);
 
 /* Computes the boxes. Where no camera was given (from = at), places one that sees the whole scene, and where
  * there is no light, one beside that camera. The sampling becomes one sample at each pixel's centre. */

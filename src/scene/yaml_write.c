@@ -176,6 +176,7 @@ static void write_shape(Writer *w, RtShape shape, uint32_t index) {
         point_key(w, "apex", g->cones[index].apex);
         number_key(w, "apex_radius", g->cones[index].apex_radius);
         break;
+    case RT_SHAPE_CSG: /* refused before */
     case RT_SHAPE_COUNT: break;
     }
 }
@@ -271,6 +272,12 @@ static RtStatus save(Writer *w, FILE *out, RtError *error) {
 }
 
 RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error) {
+    if (scene->geometry.csg_count > 0) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "CSG trees cannot be written as YAML, and in this scene there are %u: keep the file "
+                       "that they came from",
+                       scene->geometry.csg_count);
+    }
     Writer w = {.scene = scene, .names = rt_alloc(scene->material_count, sizeof *w.names)};
     if (!w.names) {
         return rt_fail_memory(error, "the names of materials", scene->material_count * sizeof *w.names);

@@ -100,6 +100,7 @@ typedef struct RtCsg {
     uint32_t most_crossings; /* room that a ray may need, in crossings, over all lists on the stack */
     bool extents;            /* made with tests of inner nodes */
     RtBox box;               /* of the result; a point where the result is certainly empty */
+    RtBall ball;             /* about the result: rt_csg_ball */
     RtBox reach;             /* about the boxes of all solids, infinite sides left out: sets the thickness */
 } RtCsg;
 
@@ -151,6 +152,6 @@ RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPr
 /* Extents, as tight as the operations allow: an intersection reaches as far as the lesser of its operands, a
  * difference as its left side. */
 double rt_csg_support(const RtCsgForest *forest, const RtCsg *tree, RtVec3d direction);
-RtBall rt_csg_ball(const RtCsgForest *forest, const RtCsg *tree);
+RtBall rt_csg_ball(const RtCsgForest *forest, const RtCsg *tree); /* found anew; tree->ball is at hand */
 
 #endif

@@ -281,6 +281,7 @@ static RtStatus plant(Planting *p, RtCsgTerm root, bool extents, RtCsg *out) {
     RT_TRY(check_end(tree.box, p->error));
     RT_TRY(write_program(p, extents));
     tree.count = f->instruction_count - tree.first;
+    tree.ball = rt_csg_ball(f, &tree);
     *out = tree;
     return RT_OK;
 }

@@ -44,13 +44,17 @@ static RtStatus reserve_object(RtGeometry *g, RtError *error) {
     return rt_reserve(&g->objects, &g->object_capacity, (uint64_t)g->object_count + 1, sizeof(RtRef), error);
 }
 
-/* One function per shape that appends a checked object; all room is made before anything changes. */
+/* Two functions per shape: one makes all room that an object needs, before anything changes; the other does
+ * so and appends a checked object. */
 #define DEFINE_APPEND(CONSTANT, name, Type)                                                                  \
-    static RtStatus append_##name(RtGeometry *g, const Type *object, RtError *error) {                       \
+    static RtStatus reserve_##name(RtGeometry *g, RtError *error) {                                          \
         uint64_t needed = (uint64_t)g->name##_count + 1;                                                     \
         RT_TRY(reserve_object(g, error));                                                                    \
         RT_TRY(rt_reserve(&g->name##s, &g->name##_capacity, needed, sizeof(Type), error));                   \
-        RT_TRY(rt_reserve(&g->name##_ids, &g->name##_id_capacity, needed, sizeof(uint32_t), error));         \
+        return rt_reserve(&g->name##_ids, &g->name##_id_capacity, needed, sizeof(uint32_t), error);          \
+    }                                                                                                        \
+    static RtStatus append_##name(RtGeometry *g, const Type *object, RtError *error) {                       \
+        RT_TRY(reserve_##name(g, error));                                                                    \
         g->objects[g->object_count] = rt_ref(RT_SHAPE_##CONSTANT, g->name##_count);                          \
         g->name##_ids[g->name##_count] = g->object_count++;                                                  \
         g->name##s[g->name##_count++] = *object;                                                             \
@@ -92,6 +96,22 @@ RtStatus rt_geometry_add_cone(RtGeometry *geometry, RtVec3 base, float base_radi
     RtCone cone;
     RT_TRY(rt_cone_init(&cone, base, base_radius, apex, apex_radius, error));
     return append_cone(geometry, &cone, error);
+}
+
+RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
+                             RtError *error) {
+    RtCsg tree;
+    RT_TRY(reserve_csg(geometry, error));
+    RT_TRY(rt_csg_plant(&geometry->forest, builder, root, extents, &tree, error));
+    return append_csg(geometry, &tree, error);
+}
+
+RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint32_t index,
+                              const RtTransform *move, RtError *error) {
+    RtCsg tree;
+    RT_TRY(reserve_csg(geometry, error));
+    RT_TRY(rt_csg_transplant(&geometry->forest, &from->forest, &from->csgs[index], move, &tree, error));
+    return append_csg(geometry, &tree, error);
 }
 
 /* Makes triangle_normals as long as there is room for triangles; new entries say "none". */
@@ -146,6 +166,7 @@ static RtBox object_box(const RtGeometry *g, RtRef ref) {
         return rt_polygon_box(&g->polygons[index], g->polygon_vertices + g->polygons[index].first);
     case RT_SHAPE_TRIANGLE: return rt_triangle_box(&g->triangles[index]);
     case RT_SHAPE_CONE: return rt_cone_box(&g->cones[index]);
+    case RT_SHAPE_CSG: return g->csgs[index].box;
     case RT_SHAPE_COUNT: break;
     }
     assert(false && "no such shape");
@@ -177,6 +198,7 @@ uint64_t rt_geometry_bytes(const RtGeometry *geometry) {
     bytes += (uint64_t)g->polygon_vertex_capacity * sizeof *g->polygon_vertices;
     bytes += (uint64_t)g->triangle_normal_capacity * sizeof *g->triangle_normals;
     bytes += (uint64_t)g->vertex_normal_capacity * sizeof *g->vertex_normals;
+    bytes += rt_csg_forest_bytes(&g->forest);
     return bytes + (g->boxes ? (uint64_t)g->object_count * sizeof *g->boxes : 0);
 }
 
@@ -190,6 +212,7 @@ void rt_geometry_clear(RtGeometry *geometry) {
     rt_free(geometry->polygon_vertices);
     rt_free(geometry->triangle_normals);
     rt_free(geometry->vertex_normals);
+    rt_csg_forest_clear(&geometry->forest);
     rt_free(geometry->boxes);
     *geometry = (RtGeometry){0};
 }
@@ -207,19 +230,26 @@ static RtVec3d interpolated_normal(const RtGeometry *g, uint32_t index, RtVec3d 
     return rt_lengthd(sum) > 0 ? rt_normalized(sum) : geometric;
 }
 
-RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, RtVec3d point) {
+static RtNormals csg_normals(const RtGeometry *g, uint32_t index, const RtRay *ray, float t) {
+    RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
+    RtCsgFacet facet = rt_csg_facet(&g->forest, &g->csgs[index], &prepared, t);
+    return (RtNormals){facet.normal, facet.normal, facet.solid};
+}
+
+RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t) {
     uint32_t index = rt_ref_index(geometry->objects[id]);
-    RtVec3d normal = {0, 0, 0};
+    RtVec3d point = rt_ray_point(ray, t), normal = {0, 0, 0};
     switch (rt_ref_shape(geometry->objects[id])) {
     case RT_SHAPE_SPHERE: normal = rt_sphere_normal(&geometry->spheres[index], point); break;
     case RT_SHAPE_POLYGON: normal = geometry->polygons[index].normal; break;
     case RT_SHAPE_CONE: normal = rt_cone_normal(&geometry->cones[index], point); break;
     case RT_SHAPE_TRIANGLE:
         normal = rt_triangle_normal(&geometry->triangles[index]);
-        return (RtNormals){normal, interpolated_normal(geometry, index, point, normal)};
+        return (RtNormals){normal, interpolated_normal(geometry, index, point, normal), RT_NO_SOLID};
+    case RT_SHAPE_CSG: return csg_normals(geometry, index, ray, t);
     case RT_SHAPE_COUNT: break;
     }
-    return (RtNormals){normal, normal};
+    return (RtNormals){normal, normal, RT_NO_SOLID};
 }
 
 RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id) {
@@ -232,6 +262,7 @@ RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id) {
     }
     case RT_SHAPE_TRIANGLE: return rt_triangle_ball(&geometry->triangles[index]);
     case RT_SHAPE_CONE: return rt_cone_ball(&geometry->cones[index]);
+    case RT_SHAPE_CSG: return geometry->csgs[index].ball;
     case RT_SHAPE_COUNT: break;
     }
     assert(false && "no such shape");
@@ -248,6 +279,7 @@ double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direct
     }
     case RT_SHAPE_TRIANGLE: return rt_triangle_support(&geometry->triangles[index], direction);
     case RT_SHAPE_CONE: return rt_cone_support(&geometry->cones[index], direction);
+    case RT_SHAPE_CSG: return rt_csg_support(&geometry->forest, &geometry->csgs[index], direction);
     case RT_SHAPE_COUNT: break;
     }
     assert(false && "no such shape");
@@ -262,6 +294,24 @@ static RtVec3d longest_edge(const RtVec3 *vertices, uint32_t count) {
         if (rt_dotd(edge, edge) > rt_dotd(best, best)) best = edge;
     }
     return best;
+}
+
+/* The longest of the three axes of a tree's largest solid, and another one. */
+static void csg_axes(const RtGeometry *g, const RtCsg *tree, RtVec3d *main, RtVec3d *normal) {
+    double largest = -1;
+    for (uint32_t i = 0; i < tree->solid_count; i++) {
+        const RtSolid *solid = &g->forest.set.solids[tree->first_solid + i];
+        double area = rt_box_half_area(solid->box);
+        if (solid->subtracted || !isfinite(area) || area <= largest) continue;
+        largest = area;
+        *main = *normal = rt_vec3d(0, 0, 0);
+        for (int a = 0; a < 3; a++) {
+            RtVec3d axis = {solid->place.m[0][a], solid->place.m[1][a], solid->place.m[2][a]};
+            bool longer = rt_dotd(axis, axis) > rt_dotd(*main, *main);
+            *normal = rt_normalized(longer ? *main : axis);
+            if (longer) *main = axis;
+        }
+    }
 }
 
 void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]) {
@@ -279,6 +329,7 @@ void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]) {
         break;
     }
     case RT_SHAPE_CONE: main = geometry->cones[index].axis; break;
+    case RT_SHAPE_CSG: csg_axes(geometry, &geometry->csgs[index], &main, &normal); break;
     case RT_SHAPE_SPHERE:
     case RT_SHAPE_COUNT: break;
     }

@@ -10,6 +10,7 @@
 #include "base/ray.h"
 #include "base/status.h"
 #include "shape/cone.h"
+#include "shape/csg.h"
 #include "shape/polygon.h"
 #include "shape/sphere.h"
 #include "shape/triangle.h"
@@ -19,7 +20,8 @@
     X(SPHERE, sphere, RtSphere)                                                                              \
     X(POLYGON, polygon, RtPolygon)                                                                           \
     X(TRIANGLE, triangle, RtTriangle)                                                                        \
-    X(CONE, cone, RtCone)
+    X(CONE, cone, RtCone)                                                                                    \
+    X(CSG, csg, RtCsg)
 
 typedef enum RtShape {
 #define RT_SHAPE_ENUM(CONSTANT, name, Type) RT_SHAPE_##CONSTANT,
@@ -75,6 +77,8 @@ typedef struct RtGeometry {
     uint32_t *triangle_normals; /* [triangle_count] or NULL */
     RtVertexNormals *vertex_normals;
 
+    RtCsgForest forest; /* what the CSG trees are made of */
+
     /* Made by rt_geometry_finish. */
     RtBox *boxes; /* [object_count] own box of each object */
     RtBox box;    /* union of all; empty for an empty geometry */
@@ -94,6 +98,13 @@ RtStatus rt_geometry_add_cone(RtGeometry *geometry, RtVec3 base, float base_radi
 RtStatus rt_geometry_add_triangle(RtGeometry *geometry, const RtVec3 vertices[3], const RtVec3 *normals,
                                   RtError *error);
 
+/* The tree below `root` as one object, with or without tests of inner nodes. Nothing of `builder` is kept. */
+RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
+                             RtError *error);
+/* Tree `index` of another geometry, moved by `move`, which may be NULL. */
+RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint32_t index,
+                              const RtTransform *move, RtError *error);
+
 /* Computes the boxes. To be called once, after the last object. */
 RtStatus rt_geometry_finish(RtGeometry *geometry, RtError *error);
 
@@ -103,12 +114,17 @@ uint64_t rt_geometry_bytes(const RtGeometry *geometry);
 /* Frees everything and leaves the empty geometry. */
 void rt_geometry_clear(RtGeometry *geometry);
 
-/* Normals at `point` on object `id`: both unit, the geometric one by the shape's own orientation, the shading
- * one interpolated where a triangle has vertex normals and equal to the geometric one elsewhere. */
+#define RT_NO_SOLID UINT32_MAX
+
+/* What `ray` meets at `t`, one of its hits on object `id`: normals, both unit, the geometric one by the
+ * shape's own orientation, the shading one interpolated where a triangle has vertex normals and equal to the
+ * geometric one elsewhere; and for a CSG tree the solid that was met (of geometry->forest), else RT_NO_SOLID.
+ */
 typedef struct RtNormals {
     RtVec3d geometric, shading;
+    uint32_t solid;
 } RtNormals;
-RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, RtVec3d point);
+RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t);
 
 /* Extents of object `id` besides geometry->boxes[id]: a ball, and the largest dot product with `direction`
  * (the support function: what slabs and oriented boxes are made from). */
@@ -116,13 +132,14 @@ RtBall rt_object_ball(const RtGeometry *geometry, uint32_t id);
 double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direction);
 
 /* Three orthonormal axes that suit an oriented box of object `id`: along its longest edge or axis and its
- * normal. */
+ * normal; those of its largest solid for a CSG tree. */
 void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]);
 
 /* The hit function of every object: true if the ray meets object `id` at some t in [tmin, tmax], the first of
- * which goes to *t. The same bits of t for the same ray and object, whatever was found before. */
-static inline bool rt_object_hit(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray,
-                                 float *t) {
+ * which goes to *t. The same bits of t for the same ray and object, whatever was found before. `tally` may be
+ * NULL; it counts what is tested inside of CSG trees. */
+static inline bool rt_object_hit(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, float *t,
+                                 RtTally *tally) {
     RtRef ref = geometry->objects[id];
     uint32_t index = rt_ref_index(ref);
     const RtBox *own = &geometry->boxes[id];
@@ -134,6 +151,7 @@ static inline bool rt_object_hit(const RtGeometry *geometry, uint32_t id, const 
         return rt_polygon_hit(polygon, geometry->polygon_vertices + polygon->first, own, ray, t);
     }
     case RT_SHAPE_CONE: return rt_cone_hit(&geometry->cones[index], own, ray, t);
+    case RT_SHAPE_CSG: return rt_csg_hit(&geometry->forest, &geometry->csgs[index], ray, t, tally);
     case RT_SHAPE_COUNT: break;
     }
     return false;
