@@ -85,16 +85,33 @@ static RtStatus add_polyhedron(Maker *m, uint32_t *solid) {
     return rt_solid_add_polyhedron(&m->builder->set, planes, count, &place, solid, m->error);
 }
 
+/* An octahedron, half of its edges bent inward where it is dented. */
+static RtStatus add_mesh(Maker *m, const RtTransform *place, uint32_t *solid) {
+    RtTriangle triangles[8];
+    float dent = choose(m, 2) ? 0.125f : 1;
+    for (uint32_t i = 0; i < 8; i++) {
+        float x = i & 1 ? -1 : 1, y = i & 2 ? -1 : 1, z = i & 4 ? -dent : 1;
+        bool turned = (x < 0) != ((y < 0) != (z < 0));
+        RtVec3 a = {x, 0, 0}, b = {0, y, 0}, c = {0, 0, z};
+        triangles[i] = (RtTriangle){{a, turned ? c : b, turned ? b : c}};
+    }
+    return rt_solid_add_mesh(&m->builder->set, triangles, 8, place, solid, m->error);
+}
+
 static RtStatus add_solid(Maker *m, RtCsgTerm *out) {
     RtSolidSet *set = &m->builder->set;
-    uint32_t solid, kind = choose(m, 4);
-    if (kind <= 1 && (m->coarse || kind == 0)) return add_box(m, out);
-    if (kind == 2) {
-        RT_TRY(add_polyhedron(m, &solid));
-    } else {
-        RtTransform place;
-        RT_TRY(random_place(m, &place));
-        RT_TRY(rt_solid_add_sphere(set, &place, &solid, m->error));
+    uint32_t solid, kind = choose(m, m->coarse ? 9 : 6);
+    RtTransform place;
+    RT_TRY(random_place(m, &place));
+    switch (kind) {
+    case 0: RT_TRY(rt_solid_add_sphere(set, &place, &solid, m->error)); break;
+    case 1: RT_TRY(add_polyhedron(m, &solid)); break;
+    case 2: RT_TRY(rt_solid_add_cone(set, choose(m, 5) / 4.0, &place, &solid, m->error)); break;
+    case 3:
+        RT_TRY(rt_solid_add_torus(set, 0.25 + (double)number(m, 0, 0.5f), &place, &solid, m->error));
+        break;
+    case 4: RT_TRY(add_mesh(m, &place, &solid)); break;
+    default: return add_box(m, out);
     }
     return rt_csg_solid(m->builder, solid, material(m), out, m->error);
 }

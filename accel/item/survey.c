@@ -22,9 +22,9 @@ static RtStatus check_other(const RtItemBuffer *buffer, uint32_t column, uint32_
     RtItemSample sample = buffer->samples[ray.source];
     RtPreparedRay prepared = rt_ray_prepare(&ray, &g->box);
     float own = INFINITY, t;
-    if (sample.id < g->object_count && !rt_object_hit(g, sample.id, &prepared, &own)) own = INFINITY;
+    if (sample.id < g->object_count && !rt_object_hit(g, sample.id, &prepared, &own, NULL)) own = INFINITY;
     for (uint32_t id = 0; id < g->object_count; id++) {
-        if (id == sample.id || !rt_object_hit(g, id, &prepared, &t)) continue;
+        if (id == sample.id || !rt_object_hit(g, id, &prepared, &t, NULL)) continue;
         if (t >= sample.other || (t == own && id > sample.id)) continue;
         return rt_fail(
             error, RT_MISMATCH,
