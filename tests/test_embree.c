@@ -16,7 +16,7 @@ int main(void) {
 
 #include "accel/accel.h"
 #include "base/memory.h"
-#include "base/random.h"
+#include "experiments/random_tree.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -40,6 +40,19 @@ static void add_polygon(RtScene *scene, RtRandom *random, float size, float edge
     assert_ok(rt_scene_add_polygon(scene, 0, v, 4, error));
 }
 
+static void add_csg(RtScene *scene, RtRandom *random, RtVec3 center, float radius) {
+    RtTransform move = rt_transform_identity();
+    RtTreeRecipe recipe = {1 + rt_random_bits(random) % 8, false};
+    RtCsgBuilder trees = {0};
+    RtCsgTerm root;
+    assert_ok(rt_transform_scale(&move, rt_vec3(radius, radius, radius), error));
+    assert_ok(rt_transform_translate(&move, center, error));
+    assert_ok(rt_random_tree(&trees, random, &recipe, 1, &root, error));
+    assert_ok(rt_csg_move(&trees, root, &move, &root, error));
+    assert_ok(rt_scene_add_csg(scene, &trees, root, true, error));
+    rt_csg_builder_clear(&trees);
+}
+
 /* `copies` times the same soup of all shapes: every hit of a second copy is a tie. */
 static void make_soup(RtScene *scene, uint32_t count, uint32_t copies, float size) {
     uint32_t material;
@@ -51,7 +64,7 @@ static void make_soup(RtScene *scene, uint32_t count, uint32_t copies, float siz
         for (uint32_t i = 0; i < count; i++) {
             float edge = size * 0.2f, radius = size * rt_random_between(&random, 0.01f, 0.1f);
             RtVec3 center = rt_random_point(&random, size);
-            switch (i % 4) {
+            switch (i % 5) {
             case 0: assert_ok(rt_scene_add_sphere(scene, 0, center, radius, error)); break;
             case 1: add_polygon(scene, &random, size, edge, i % 8 == 1); break;
             case 2: add_triangle(scene, &random, size, edge); break;
@@ -60,6 +73,7 @@ static void make_soup(RtScene *scene, uint32_t count, uint32_t copies, float siz
                 assert_ok(rt_scene_add_cone(scene, 0, center, radius, apex, radius * 0.5f, error));
                 break;
             }
+            default: add_csg(scene, &random, center, radius);
             }
         }
     }

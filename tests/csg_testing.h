@@ -1,0 +1,137 @@
+/* What the tests of CSG trees share: terms in short, the hits along a ray, random rays. */
+#ifndef RT_TESTS_CSG_TESTING_H
+#define RT_TESTS_CSG_TESTING_H
+
+#include "testing.h"
+
+#include "experiments/random_tree.h"
+#include "experiments/rayset.h"
+
+#include <string.h>
+
+#define MAX_HITS 512
+
+static const RtVec3 along_x = {1, 0, 0};
+
+/* Where the line of a ray goes in and out of a tree, for t >= tmin. */
+typedef struct Hits {
+    uint32_t count;
+    float t[MAX_HITS];
+} Hits;
+
+static inline Hits hits_of(const RtCsgForest *forest, const RtCsg *tree, const RtRay *ray) {
+    Hits hits = {.count = 0};
+    RtRay rest = *ray;
+    RtPreparedRay prepared = rt_ray_prepare(&rest, &tree->box);
+    while (hits.count < MAX_HITS && rt_csg_hit(forest, tree, &prepared, &hits.t[hits.count], NULL)) {
+        rest.tmin = nextafterf(hits.t[hits.count++], INFINITY);
+        prepared = rt_ray_prepare(&rest, &tree->box);
+    }
+    return hits;
+}
+
+static inline bool same_hits(const Hits *a, const Hits *b) {
+    return a->count == b->count && memcmp(a->t, b->t, a->count * sizeof(float)) == 0;
+}
+
+static inline RtCsg plant(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root) {
+    RtCsg tree;
+    assert_ok(rt_csg_plant(forest, builder, root, true, &tree, error));
+    return tree;
+}
+
+static inline RtCsgTerm combine(RtCsgBuilder *builder, RtCsgOp op, RtCsgTerm left, RtCsgTerm right) {
+    RtCsgTerm term;
+    assert_ok(rt_csg_combine(builder, op, left, right, &term, error));
+    return term;
+}
+
+static inline RtCsgTerm join(RtCsgBuilder *b, RtCsgTerm left, RtCsgTerm right) {
+    return combine(b, RT_CSG_UNION, left, right);
+}
+
+static inline RtCsgTerm meet(RtCsgBuilder *b, RtCsgTerm left, RtCsgTerm right) {
+    return combine(b, RT_CSG_INTERSECTION, left, right);
+}
+
+static inline RtCsgTerm cut(RtCsgBuilder *b, RtCsgTerm left, RtCsgTerm right) {
+    return combine(b, RT_CSG_DIFFERENCE, left, right);
+}
+
+static inline RtCsgTerm box(RtCsgBuilder *builder, RtVec3 lo, RtVec3 hi, uint32_t material) {
+    RtCsgTerm term;
+    assert_ok(rt_add_box(builder, (RtBox){lo, hi}, material, &term, error));
+    return term;
+}
+
+static inline RtCsgTerm ball(RtCsgBuilder *builder, RtVec3 center, float radius, uint32_t material) {
+    RtTransform place = rt_transform_identity();
+    uint32_t solid;
+    RtCsgTerm term;
+    assert_ok(rt_transform_scale(&place, rt_vec3(radius, radius, radius), error));
+    assert_ok(rt_transform_translate(&place, center, error));
+    assert_ok(rt_solid_add_sphere(&builder->set, &place, &solid, error));
+    assert_ok(rt_csg_solid(builder, solid, material, &term, error));
+    return term;
+}
+
+static inline RtCsgTerm random_term(RtCsgBuilder *builder, RtRandom *random, uint32_t most, bool coarse) {
+    RtTreeRecipe recipe = {1 + rt_random_bits(random) % most, coarse};
+    RtCsgTerm term;
+    assert_ok(rt_random_tree(builder, random, &recipe, 4, &term, error));
+    return term;
+}
+
+/* Boxes at halves, under random operations: all arithmetic on them is exact. */
+static inline RtCsgTerm random_boxes(RtCsgBuilder *builder, RtRandom *random, uint32_t count) {
+    RtCsgTerm term = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3 lo, hi;
+        for (int a = 0; a < 3; a++) {
+            lo.at[a] = 0.5f * (float)(rt_random_bits(random) % 8) - 3;
+            hi.at[a] = lo.at[a] + 0.5f * (float)(1 + rt_random_bits(random) % 8);
+        }
+        RtCsgTerm next = box(builder, lo, hi, i);
+        term = i == 0 ? next : combine(builder, (RtCsgOp)(rt_random_bits(random) % 3), term, next);
+    }
+    return term;
+}
+
+/* Random chords; every other one from a point and towards a point of a grid of halves, so that it meets edges
+ * and corners, runs along faces, and starts on them or inside. */
+static inline RtRay random_ray(RtRandom *random, uint32_t i) {
+    const RtBall around = {{0, 0, 0}, 9};
+    if (i % 2) return rt_sphere_chord(&around, random);
+    RtRay ray = {.tmax = INFINITY};
+    for (int a = 0; a < 3; a++) {
+        ray.org.at[a] = 0.5f * (float)(rt_random_bits(random) % 25) - 6;
+        ray.dir.at[a] = 0.5f * (float)(rt_random_bits(random) % 9) - 2;
+    }
+    if (ray.dir.x == 0 && ray.dir.y == 0 && ray.dir.z == 0) ray.dir.x = 1;
+    return ray;
+}
+
+static inline RtRay ray_along(RtVec3 org, RtVec3 dir) {
+    return (RtRay){.org = org, .dir = dir, .tmax = INFINITY};
+}
+
+static inline void assert_hits(const RtCsgForest *forest, const RtCsg *tree, RtRay ray, uint32_t count,
+                               const float *t) {
+    Hits hits = hits_of(forest, tree, &ray);
+    assert_int_equal(hits.count, count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (hits.t[i] != t[i]) fail_msg("hit %u: %.9g, not %.9g", i, (double)hits.t[i], (double)t[i]);
+    }
+}
+
+static inline RtCsgFacet facet_at(const RtCsgForest *forest, const RtCsg *tree, const RtRay *ray, float t) {
+    RtPreparedRay prepared = rt_ray_prepare(ray, &tree->box);
+    return rt_csg_facet(forest, tree, &prepared, t);
+}
+
+static inline void clear(RtCsgForest *forest, RtCsgBuilder *builder) {
+    rt_csg_forest_clear(forest);
+    rt_csg_builder_clear(builder);
+}
+
+#endif
