@@ -187,28 +187,86 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     rt_scene_clear(&scene);
 }
 
+/* Sees a build within `limit` bytes refused, and reads how many it would take and which depth would fit. */
+static double refuse(const RtScene *scene, const char *parameters, uint64_t limit, RtValue *values,
+                     long *depth) {
+    RtAccel *accel = NULL;
+    RtError refusal = {RT_OK, ""};
+    double gib;
+    assert_ok(rt_params_parse(rt_octree_params, RT_OCTREE_PARAM_COUNT, parameters, "octree", values, error));
+    int64_t live = rt_alloc_live();
+    assert_int_equal(rt_octree_build_within(limit, scene, values, &accel, &refusal), RT_BAD_INPUT);
+    assert_int_equal(rt_alloc_live(), live);
+    const char *about = strstr(refusal.message, "about "), *remedy = strstr(refusal.message, ": max_depth=");
+    assert_true(about && remedy);
+    assert_int_equal(sscanf(about, "about %lf GiB", &gib), 1);
+    assert_int_equal(sscanf(remedy, ": max_depth=%ld", depth), 1);
+    return gib * 0x1p30;
+}
+
+static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t limit) {
+    RtAccel *accel = NULL;
+    RtError refusal;
+    values[RT_OCTREE_MAX_DEPTH].i = depth;
+    bool built = rt_octree_build_within(limit, scene, values, &accel, &refusal) == RT_OK;
+    if (built) rt_octree_destroy(accel);
+    return built;
+}
+
 static void an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
     (void)state;
     RtScene scene;
     make_lattice(&scene, 2, 2, 2);
-    RtAccel *accel = NULL;
     RtValue values[RT_OCTREE_PARAM_COUNT];
-    RtError refusal = {RT_OK, ""};
+    long depth;
     const uint64_t limit = 1 << 16;
-    assert_ok(rt_params_parse(rt_octree_params, RT_OCTREE_PARAM_COUNT, "max_depth=20,margin=0.01", "octree",
-                              values, error));
-    int64_t live = rt_alloc_live();
-    assert_int_equal(rt_octree_build_within(limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
-    const char *remedy = strstr(refusal.message, ": max_depth=");
-    assert_non_null(remedy);
-    assert_int_equal(rt_alloc_live(), live);
+    assert_true(refuse(&scene, "max_depth=20,margin=0.01", limit, values, &depth) > (double)limit);
 
-    /* It does, and one more does not. */
-    assert_int_equal(sscanf(remedy, ": max_depth=%ld", &values[RT_OCTREE_MAX_DEPTH].i), 1);
-    assert_ok(rt_octree_build_within(limit, &scene, values, &accel, error));
-    rt_octree_destroy(accel);
-    values[RT_OCTREE_MAX_DEPTH].i++;
-    assert_int_equal(rt_octree_build_within(limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+    assert_true(fits(&scene, values, depth, limit));
+    assert_false(fits(&scene, values, depth + 1, limit));
+    rt_scene_clear(&scene);
+}
+
+/* Who counts the bytes while they are taken stops at the first too many, and cannot know of so many more. */
+static void far_too_deep_an_octree_is_refused_by_an_estimate(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"balls", "tetra", "random:n=20000,radius=1",
+                                         "random:n=5000,distribution=stadium"};
+    static const char *const specs[] = {"max_depth=20", "max_depth=20,split=cost",
+                                        "max_depth=20,max_objects=3,margin=0.01"};
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
+        RtScene scene;
+        assert_ok(rt_scene_open(scenes[i], &scene, error));
+        for (size_t k = 0; k < sizeof specs / sizeof specs[0]; k++) {
+            const uint64_t limit = UINT64_C(1) << 23;
+            RtValue values[RT_OCTREE_PARAM_COUNT];
+            long depth;
+            assert_true(refuse(&scene, specs[k], limit, values, &depth) > 1000.0 * (double)limit);
+            assert_true(depth >= 4);
+            assert_true(fits(&scene, values, depth, limit));
+            assert_false(fits(&scene, values, depth + 2, limit));
+        }
+        rt_scene_clear(&scene);
+    }
+}
+
+static void the_estimate_is_near_what_a_build_takes(void **state) {
+    (void)state;
+    static const char *const specs[] = {"max_depth=9", "max_depth=8,split=cost", "max_depth=9,max_objects=3"};
+    RtScene scene;
+    assert_ok(rt_scene_open("balls", &scene, error));
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        RtValue values[RT_OCTREE_PARAM_COUNT];
+        RtAccel *accel;
+        RtDescription description;
+        long depth;
+        double estimate = refuse(&scene, specs[i], 1 << 20, values, &depth);
+        assert_ok(rt_octree_build_within(1 << 28, &scene, values, &accel, error));
+        rt_octree_describe(accel, &description);
+        rt_octree_destroy(accel);
+        double ratio = estimate / (double)description.bytes;
+        if (!(ratio > 0.75 && ratio < 1.33)) fail_msg("%s: %g of what is taken", specs[i], ratio);
+    }
     rt_scene_clear(&scene);
 }
 
@@ -259,6 +317,8 @@ int main(void) {
         cmocka_unit_test(coincident_objects_stay_in_one_leaf),
         cmocka_unit_test(validate_names_each_invariant_that_is_broken),
         cmocka_unit_test(an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit),
+        cmocka_unit_test(far_too_deep_an_octree_is_refused_by_an_estimate),
+        cmocka_unit_test(the_estimate_is_near_what_a_build_takes),
         cmocka_unit_test(every_traversal_answers_like_brute_in_every_structure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

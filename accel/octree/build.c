@@ -60,18 +60,6 @@ const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {
                              .source = "Havran 1999: fewest steps"},
 };
 
-typedef struct Builder {
-    RtOctree *tree;
-    const RtBox *objects; /* their boxes */
-    uint64_t limit;
-    uint32_t depth; /* of the current level */
-    uint32_t node_capacity, box_capacity, id_capacity;
-    /* The lists of the current level and of the next, node after node. */
-    uint32_t *list, *next;
-    uint32_t next_count, next_capacity;
-    float *centers; /* [object_count] scratch for medians */
-} Builder;
-
 /* ---- split planes ---- */
 
 /* A plane strictly inside, or the upper one: see octree.h. */
@@ -106,7 +94,8 @@ static float median(float *values, uint32_t count) {
 
 /* Octree-R: of ten planes from the spatial median to the object median, the one of the least cost
  * (MacDonald & Booth 1990). */
-static float cheapest(const Builder *b, const RtBox *cell, int axis, const uint32_t *ids, uint32_t count) {
+static float cheapest(const RtOctreeBuilder *b, const RtBox *cell, int axis, const uint32_t *ids,
+                      uint32_t count) {
     float lo = cell->lo.at[axis], hi = cell->hi.at[axis], best = centre(lo, hi);
     RtVec3d size = rt_subd(rt_widen(cell->hi), rt_widen(cell->lo));
     double across = size.at[(axis + 1) % 3] + size.at[(axis + 2) % 3];
@@ -133,7 +122,7 @@ static float cheapest(const Builder *b, const RtBox *cell, int axis, const uint3
     return best;
 }
 
-static RtVec3 choose_split(const Builder *b, const RtBox *cell, const uint32_t *ids, uint32_t count) {
+static RtVec3 choose_split(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count) {
     RtVec3 split;
     for (int a = 0; a < 3; a++) {
         split.at[a] = b->tree->split == RT_OCTREE_COST ? cheapest(b, cell, a, ids, count)
@@ -151,24 +140,21 @@ bool rt_octree_divisible(const RtBox *boxes, const RtBox *cell, const uint32_t *
     return false;
 }
 
-/* ---- levels ---- */
-
-static RtStatus refuse(const Builder *b, double bytes, RtError *error) {
-    return rt_fail(error, RT_BAD_INPUT,
-                   "an octree of max_depth=%u, max_objects=%u would take %.3g GiB and more at depth %u, more "
-                   "than %.3g GiB: max_depth=%u would fit",
-                   b->tree->max_depth, b->tree->max_objects, bytes / 0x1p30, b->depth + 1,
-                   (double)b->limit / 0x1p30, b->depth);
+bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count) {
+    return count > b->tree->max_objects && b->depth < b->tree->max_depth &&
+           rt_octree_divisible(b->objects, cell, ids, count);
 }
 
+/* ---- levels ---- */
+
 /* Makes room for `nodes` more nodes, `ids` more entries of leaves and `next` more of the next level. */
-static RtStatus make_room(Builder *b, uint64_t nodes, uint64_t ids, uint64_t next, RtError *error) {
+static RtStatus make_room(RtOctreeBuilder *b, uint64_t nodes, uint64_t ids, uint64_t next, RtError *error) {
     RtOctree *tree = b->tree;
     nodes += tree->node_count;
     ids += tree->id_count;
     next += b->next_count;
-    uint64_t bytes = nodes * (sizeof(RtOctreeNode) + sizeof(RtBox)) + (ids + next) * sizeof(uint32_t);
-    if (bytes > b->limit) return refuse(b, (double)bytes, error);
+    uint64_t bytes = nodes * RT_OCTREE_NODE_BYTES + (ids + next) * sizeof(uint32_t);
+    if (bytes > b->limit) return rt_octree_refuse(b, (double)bytes, b->depth, error);
     RT_TRY(rt_reserve(&tree->nodes, &b->node_capacity, nodes, sizeof(RtOctreeNode), error));
     RT_TRY(rt_reserve(&tree->boxes, &b->box_capacity, nodes, sizeof(RtBox), error));
     RT_TRY(rt_reserve(&tree->ids, &b->id_capacity, ids, sizeof(uint32_t), error));
@@ -182,7 +168,8 @@ static uint32_t usual_depth(uint32_t objects) {
     return depth;
 }
 
-static RtStatus make_leaf(Builder *b, uint32_t index, const uint32_t *ids, uint32_t count, RtError *error) {
+static RtStatus make_leaf(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
+                          RtError *error) {
     RtOctree *tree = b->tree;
     RT_TRY(make_room(b, 0, count, 0, error));
     tree->nodes[index].first = tree->id_count;
@@ -190,8 +177,9 @@ static RtStatus make_leaf(Builder *b, uint32_t index, const uint32_t *ids, uint3
     return RT_OK;
 }
 
-/* Deals the objects ids[0..count) to eight new children: a count pass, room, a fill pass. */
-static RtStatus divide(Builder *b, uint32_t index, const uint32_t *ids, uint32_t count, RtError *error) {
+/* A count pass, room, a fill pass. */
+RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
+                          RtError *error) {
     RtOctree *tree = b->tree;
     RtBox cell = tree->boxes[index];
     RtVec3 split = choose_split(b, &cell, ids, count);
@@ -223,42 +211,59 @@ static RtStatus divide(Builder *b, uint32_t index, const uint32_t *ids, uint32_t
     return RT_OK;
 }
 
-/* Until it is turned into a leaf or divided, a node's list is at `first` of the current level's. */
-static RtStatus build_level(Builder *b, uint32_t from, uint32_t to, RtError *error) {
+static RtStatus build_level(RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error) {
     RtOctree *tree = b->tree;
     for (uint32_t index = from; index < to; index++) {
         uint32_t count = tree->nodes[index].count;
         const uint32_t *ids = b->list + tree->nodes[index].first;
-        bool small = count <= tree->max_objects || b->depth == tree->max_depth;
-        if (small || !rt_octree_divisible(b->objects, &tree->boxes[index], ids, count)) {
-            RT_TRY(make_leaf(b, index, ids, count, error));
+        if (rt_octree_divides(b, &tree->boxes[index], ids, count)) {
+            RT_TRY(rt_octree_divide(b, index, ids, count, error));
         } else {
-            RT_TRY(divide(b, index, ids, count, error));
+            RT_TRY(make_leaf(b, index, ids, count, error));
         }
     }
     return RT_OK;
 }
 
-static RtStatus build_levels(Builder *b, RtBox root, uint32_t object_count, RtError *error) {
+RtStatus rt_octree_plant(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error) {
+    RT_TRY(make_room(b, 1, 0, 0, error));
+    b->tree->nodes[0] = (RtOctreeNode){.first = 0, .count = count};
+    b->tree->boxes[0] = cell;
+    b->tree->node_count = 1;
+    return RT_OK;
+}
+
+void rt_octree_descend(RtOctreeBuilder *b) {
+    rt_free(b->list);
+    b->list = b->next;
+    b->next = NULL;
+    b->next_count = b->next_capacity = 0;
+    b->depth++;
+}
+
+static RtStatus build_levels(RtOctreeBuilder *b, RtBox root, uint32_t object_count, RtError *error) {
     RtOctree *tree = b->tree;
     b->list = rt_alloc(object_count, sizeof(uint32_t));
     b->centers = rt_alloc(tree->split == RT_OCTREE_COST ? object_count : 0, sizeof(float));
     if (!b->list || !b->centers) {
         return rt_fail_memory(error, "building an octree", object_count * sizeof(uint32_t));
     }
-    RT_TRY(make_room(b, 1, 0, 0, error));
     for (uint32_t i = 0; i < object_count; i++) b->list[i] = i;
-    tree->nodes[0] = (RtOctreeNode){.first = 0, .count = object_count};
-    tree->boxes[0] = root;
-    tree->node_count = 1;
-    for (uint32_t from = 0, to = 1; from < to; from = to, to = tree->node_count, b->depth++) {
+    RT_TRY(rt_octree_plant(b, root, object_count, error));
+    for (uint32_t from = 0, to = 1; from < to; from = to, to = tree->node_count) {
+        RT_TRY(rt_octree_foresee(b, from, to, error));
         RT_TRY(build_level(b, from, to, error));
-        rt_free(b->list);
-        b->list = b->next;
-        b->next = NULL;
-        b->next_count = b->next_capacity = 0;
+        rt_octree_descend(b);
     }
     return RT_OK;
+}
+
+void rt_octree_uproot(RtOctreeBuilder *b) {
+    rt_free(b->list);
+    rt_free(b->next);
+    rt_free(b->tree->nodes);
+    rt_free(b->tree->boxes);
+    rt_free(b->tree->ids);
 }
 
 void rt_octree_destroy(RtAccel *accel) {
@@ -283,7 +288,7 @@ RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtVa
         .traversal = values[RT_OCTREE_TRAVERSAL].choice,
         .mailbox = values[RT_OCTREE_MAILBOX].flag,
     };
-    Builder builder = {.tree = tree, .objects = g->boxes, .limit = limit};
+    RtOctreeBuilder builder = {.tree = tree, .objects = g->boxes, .limit = limit};
     RtStatus status = RT_OK;
     if (g->object_count > 0) {
         RtBox root = rt_box_widened(g->box, values[RT_OCTREE_MARGIN].f);

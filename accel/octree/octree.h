@@ -34,6 +34,9 @@ enum { RT_OCTREE_DEPTH_LIMIT = 20 };
 /* RtOctreeNode.count of an inner node. */
 #define RT_OCTREE_INNER UINT32_MAX
 
+/* What a node takes: itself and its cell. */
+#define RT_OCTREE_NODE_BYTES (sizeof(RtOctreeNode) + sizeof(RtBox))
+
 typedef struct RtOctreeNode {
     RtVec3 split;    /* inner: the planes between its children */
     uint32_t first;  /* inner: the first of its children; leaf: the first of its ids */
@@ -58,6 +61,43 @@ RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **
 RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
                                 RtError *error);
 void rt_octree_destroy(RtAccel *accel);
+
+/* A tree that is being built. Until it is turned into a leaf or divided, a node's list is at `first` of the
+ * current level's, and of its children at `first` of the next. */
+typedef struct RtOctreeBuilder {
+    RtOctree *tree;
+    const RtBox *objects; /* their boxes */
+    uint64_t limit;       /* bytes */
+    uint32_t depth;       /* of the current level */
+    uint32_t node_capacity, box_capacity, id_capacity;
+    /* The lists of the current level and of the next, node after node. */
+    uint32_t *list, *next;
+    uint32_t next_count, next_capacity;
+    float *centers; /* [object_count] scratch for medians */
+} RtOctreeBuilder;
+
+/* Makes a tree without nodes, `b->list` being the objects of `cell`, one of a single node. */
+RtStatus rt_octree_plant(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error);
+
+/* Goes to the next level. */
+void rt_octree_descend(RtOctreeBuilder *b);
+
+/* Frees the arrays of a tree and its lists, but neither the tree nor the scratch for medians. */
+void rt_octree_uproot(RtOctreeBuilder *b);
+
+/* Whether a cell of the current level, with the list ids[0..count), is to be divided. */
+bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count);
+
+/* Divides node `index` of the current level: deals the objects ids[0..count) to eight new children. */
+RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
+                          RtError *error);
+
+/* limit.c. Refuses a tree of which the current level, nodes [from, to), is about to be divided, where what it
+ * would take in the end is estimated to be certainly more than the limit; else RT_OK. */
+RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error);
+
+/* The refusal: it would take `bytes`, or more, while it would fit with max_depth = `fits`. */
+RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error);
 
 /* Whether cutting the cell further can separate its objects ids[0..count) at all: some object does not fill
  * it, and float32 has a plane inside it. */
