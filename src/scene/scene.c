@@ -121,6 +121,15 @@ RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm
     return RT_OK;
 }
 
+void rt_scene_paint_csg(RtScene *scene, uint32_t material) {
+    const RtGeometry *g = &scene->geometry;
+    const RtCsg *tree = &g->csgs[g->csg_count - 1];
+    for (uint32_t i = 0; i < tree->solid_count; i++) {
+        g->forest.set.solids[tree->first_solid + i].material = material;
+    }
+    set_csg_material(scene);
+}
+
 RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, const uint32_t *materials,
                            const RtTransform *move, RtError *error) {
     RT_TRY(reserve_material_of(scene, 0, error));

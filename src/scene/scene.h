@@ -74,6 +74,8 @@ RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float
  * of its first solid. */
 RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
                           RtError *error);
+/* Gives the tree that was added last this material in all its solids. */
+void rt_scene_paint_csg(RtScene *scene, uint32_t material);
 /* Tree `index` of another scene's geometry, moved by `move`, which may be NULL; material i of that scene is
  * materials[i] of this one. */
 RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, const uint32_t *materials,

@@ -1,50 +1,50 @@
-/* From a file that fits the schema (base/yaml_file.h, yaml_schema.h) to a scene. What is wrong with the
- * values themselves is found by the functions that add them; here it gets its place: each adder leaves in
- * reader->at the key under which it was when it failed. */
+/* From a file that fits the schema (base/yaml_file.h, yaml_schema.h) to a scene. */
 #include "base/memory.h"
 #include "scene/append.h"
 #include "scene/mesh.h"
 #include "scene/yaml.h"
-#include "scene/yaml_schema.h"
+#include "scene/yaml_reader.h"
 #include "scenes/builtin.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct NamedMaterial {
-    const char *name;
-    uint32_t index;
-} NamedMaterial;
-
-typedef struct Reader {
-    const RtYamlFile *file;
-    const RtYamlScene *yaml;
-    RtScene *scene;
-    NamedMaterial *names; /* [yaml->materials_count], sorted by name */
-    uint32_t standard;    /* index of the default material; UINT32_MAX until an object wants it */
-    char at[64];          /* ".radius", ".transform[2].scale": below the object, for messages */
-    RtError *error;
-} Reader;
-
-static void set_at(Reader *r, const char *key) {
-    snprintf(r->at, sizeof r->at, ".%s", key);
-}
-
-/* Gives a failure the place of entry `i` of `list`, or of what is below it. */
-static RtStatus place(const Reader *r, RtStatus status, const char *list, uint32_t i, const char *below) {
+RtStatus rt_yaml_place(const RtYamlReader *r, RtStatus status, const char *list, uint32_t i,
+                       const char *below) {
     if (status == RT_OK) return RT_OK;
     char where[128];
     snprintf(where, sizeof where, "%s[%u]%s", list, i, below);
     return rt_yaml_file_place(r->file, status, where, r->error);
 }
 
-/* ---- materials ---- */
+/* ---- names ---- */
 
 static int by_name(const void *a, const void *b) {
-    return strcmp(((const NamedMaterial *)a)->name, ((const NamedMaterial *)b)->name);
+    return strcmp(((const RtYamlNamed *)a)->name, ((const RtYamlNamed *)b)->name);
 }
 
-static RtStatus add_materials(Reader *r) {
+RtStatus rt_yaml_sort_names(const RtYamlReader *r, RtYamlNamed *names, uint32_t count, const char *what,
+                            const char *list) {
+    qsort(names, count, sizeof *names, by_name);
+    for (uint32_t i = 1; i < count; i++) {
+        if (strcmp(names[i - 1].name, names[i].name) != 0) continue;
+        uint32_t a = names[i - 1].index, b = names[i].index;
+        RtStatus status =
+            rt_fail(r->error, RT_BAD_INPUT, "there are two %s '%s': rename one", what, names[i].name);
+        return rt_yaml_place(r, status, list, a > b ? a : b, ".name");
+    }
+    return RT_OK;
+}
+
+const RtYamlNamed *rt_yaml_find_name(const RtYamlNamed *names, uint32_t count, const char *name) {
+    RtYamlNamed wanted = {name, 0};
+    return bsearch(&wanted, names, count, sizeof *names, by_name);
+}
+
+/* ---- materials ---- */
+
+/* The scene is empty before: entry i becomes material i. */
+static RtStatus add_materials(RtYamlReader *r) {
     uint32_t count = r->yaml->materials_count;
     for (uint32_t i = 0; i < count; i++) {
         const RtYamlMaterial *given = &r->yaml->materials[i];
@@ -55,27 +55,17 @@ static RtStatus add_materials(Reader *r) {
     if (given->name) material.name = *given->name;
         RT_YAML_COEFFICIENTS(SET)
 #undef SET
-        r->names[i].name = given->name;
-        RtStatus status = rt_scene_add_material(r->scene, &material, &r->names[i].index, r->error);
-        RT_TRY(place(r, status, "materials", i, ""));
+        r->materials[i].name = given->name;
+        RtStatus status = rt_scene_add_material(r->scene, &material, &r->materials[i].index, r->error);
+        RT_TRY(rt_yaml_place(r, status, "materials", i, ""));
     }
-    qsort(r->names, count, sizeof *r->names, by_name);
-    for (uint32_t i = 1; i < count; i++) {
-        if (strcmp(r->names[i - 1].name, r->names[i].name) != 0) continue;
-        uint32_t a = r->names[i - 1].index, b = r->names[i].index;
-        RtStatus status =
-            rt_fail(r->error, RT_BAD_INPUT, "there are two materials '%s': rename one", r->names[i].name);
-        return place(r, status, "materials", a > b ? a : b, ".name");
-    }
-    return RT_OK;
+    return rt_yaml_sort_names(r, r->materials, count, "materials", "materials");
 }
 
-/* The material called `name`; "" is the default one, made when first wanted. */
-static RtStatus find_material(Reader *r, const char *name, uint32_t *index) {
-    set_at(r, "material");
-    NamedMaterial wanted = {name[0] ? name : "default", 0};
-    const NamedMaterial *found =
-        bsearch(&wanted, r->names, r->yaml->materials_count, sizeof *r->names, by_name);
+RtStatus rt_yaml_find_material(RtYamlReader *r, const char *name, uint32_t *index) {
+    rt_yaml_at(r, "material");
+    const RtYamlNamed *found =
+        rt_yaml_find_name(r->materials, r->yaml->materials_count, name[0] ? name : "default");
     if (found) {
         *index = found->index;
         return RT_OK;
@@ -110,7 +100,8 @@ static RtStatus add_step(RtTransform *transform, const RtYamlStep *step, RtError
     return rt_transform_rotate(transform, step->rotate->axis, (double)step->rotate->degrees, error);
 }
 
-static RtStatus make_transform(Reader *r, const RtYamlStep *steps, uint32_t count, RtTransform *transform) {
+RtStatus rt_yaml_make_transform(RtYamlReader *r, const RtYamlStep *steps, uint32_t count,
+                                RtTransform *transform) {
     *transform = rt_transform_identity();
     for (uint32_t i = 0; i < count; i++) {
         snprintf(r->at, sizeof r->at, ".transform[%u]", i);
@@ -121,70 +112,78 @@ static RtStatus make_transform(Reader *r, const RtYamlStep *steps, uint32_t coun
 
 /* ---- objects: one adder a kind, called add_KIND ---- */
 
-static RtStatus add_sphere(Reader *r, const RtYamlSphere *sphere) {
+static RtStatus add_sphere(RtYamlReader *r, const RtYamlSphere *sphere) {
     uint32_t material;
-    RT_TRY(find_material(r, sphere->material, &material));
-    set_at(r, sphere->radius > 0 ? "center" : "radius");
+    RT_TRY(rt_yaml_find_material(r, sphere->material, &material));
+    rt_yaml_at(r, sphere->radius > 0 ? "center" : "radius");
     return rt_scene_add_sphere(r->scene, material, sphere->center, sphere->radius, r->error);
 }
 
-static RtStatus add_polygon(Reader *r, const RtYamlPolygon *polygon) {
+static RtStatus add_polygon(RtYamlReader *r, const RtYamlPolygon *polygon) {
     uint32_t material;
-    RT_TRY(find_material(r, polygon->material, &material));
-    set_at(r, "vertices");
+    RT_TRY(rt_yaml_find_material(r, polygon->material, &material));
+    rt_yaml_at(r, "vertices");
     return rt_scene_add_polygon(r->scene, material, polygon->vertices, polygon->vertices_count, r->error);
 }
 
-static RtStatus add_triangle(Reader *r, const RtYamlTriangle *triangle) {
+static RtStatus add_triangle(RtYamlReader *r, const RtYamlTriangle *triangle) {
     uint32_t material;
-    RT_TRY(find_material(r, triangle->material, &material));
+    RT_TRY(rt_yaml_find_material(r, triangle->material, &material));
     r->at[0] = '\0';
     return rt_scene_add_triangle(r->scene, material, triangle->vertices, triangle->normals, r->error);
 }
 
-static RtStatus add_cone(Reader *r, const RtYamlCone *cone) {
+static RtStatus add_cone(RtYamlReader *r, const RtYamlCone *cone) {
     uint32_t material;
-    RT_TRY(find_material(r, cone->material, &material));
+    RT_TRY(rt_yaml_find_material(r, cone->material, &material));
     r->at[0] = '\0';
     return rt_scene_add_cone(r->scene, material, cone->base, cone->base_radius, cone->apex, cone->apex_radius,
                              r->error);
 }
 
-static RtStatus add_cylinder(Reader *r, const RtYamlCylinder *cylinder) {
+static RtStatus add_cylinder(RtYamlReader *r, const RtYamlCylinder *cylinder) {
     uint32_t material;
-    RT_TRY(find_material(r, cylinder->material, &material));
+    RT_TRY(rt_yaml_find_material(r, cylinder->material, &material));
     r->at[0] = '\0';
     return rt_scene_add_cone(r->scene, material, cylinder->base, cylinder->radius, cylinder->apex,
                              cylinder->radius, r->error);
 }
 
-/* A relative path starts in the folder of the scene file. */
-static RtStatus add_mesh(Reader *r, const RtYamlMesh *mesh) {
+RtStatus rt_yaml_path(const RtYamlReader *r, const char *name, char path[RT_MAX_PATH]) {
+    char folder[RT_MAX_PATH];
+    rt_path_folder(r->file->path, folder);
+    return rt_path_join(folder, name, path, r->error);
+}
+
+static RtStatus add_mesh(RtYamlReader *r, const RtYamlMesh *mesh) {
     uint32_t material;
     RtTransform transform;
-    RT_TRY(find_material(r, mesh->material, &material));
-    RT_TRY(make_transform(r, mesh->transform, mesh->transform_count, &transform));
-    set_at(r, "path");
-    char folder[RT_MAX_PATH], path[RT_MAX_PATH];
-    rt_path_folder(r->file->path, folder);
-    RT_TRY(rt_path_join(folder, mesh->path, path, r->error));
+    RT_TRY(rt_yaml_find_material(r, mesh->material, &material));
+    RT_TRY(rt_yaml_make_transform(r, mesh->transform, mesh->transform_count, &transform));
+    rt_yaml_at(r, "path");
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_yaml_path(r, mesh->path, path));
     return rt_mesh_append(r->scene, path, material, mesh->transform_count ? &transform : NULL, r->error);
 }
 
-static RtStatus add_builtin(Reader *r, const RtYamlBuiltin *builtin) {
+static RtStatus add_csg(RtYamlReader *r, const RtYamlCsg *csg) {
+    return rt_yaml_add_csg(r, csg);
+}
+
+static RtStatus add_builtin(RtYamlReader *r, const RtYamlBuiltin *builtin) {
     RtTransform transform;
-    RT_TRY(make_transform(r, builtin->transform, builtin->transform_count, &transform));
-    set_at(r, "name");
+    RT_TRY(rt_yaml_make_transform(r, builtin->transform, builtin->transform_count, &transform));
+    rt_yaml_at(r, "name");
     RtScene scene;
     RT_TRY(rt_builtin_open(builtin->name, &scene, r->error));
-    set_at(r, "transform");
+    rt_yaml_at(r, "transform");
     RtStatus status =
         rt_scene_append(r->scene, &scene, builtin->transform_count ? &transform : NULL, r->error);
     rt_scene_clear(&scene);
     return status;
 }
 
-static RtStatus add_object(Reader *r, uint32_t i) {
+static RtStatus add_object(RtYamlReader *r, uint32_t i) {
     const RtYamlObject *object = &r->yaml->objects[i];
     const char *kind = NULL;
     int given = 0;
@@ -203,7 +202,7 @@ static RtStatus add_object(Reader *r, uint32_t i) {
                                                                       "one an entry",
                          given);
 #undef LIST
-        return place(r, status, "objects", i, "");
+        return rt_yaml_place(r, status, "objects", i, "");
     }
 #define ADD(name, Type)                                                                                      \
     if (object->name) status = add_##name(r, object->name);
@@ -211,7 +210,7 @@ static RtStatus add_object(Reader *r, uint32_t i) {
 #undef ADD
     char below[sizeof r->at + 16];
     snprintf(below, sizeof below, ".%s%s", kind, r->at);
-    return place(r, status, "objects", i, below);
+    return rt_yaml_place(r, status, "objects", i, below);
 }
 
 /* ---- camera, light ---- */
@@ -241,7 +240,7 @@ static RtStatus check_camera(const RtCamera *camera, bool placed, const char **k
     return rt_view_init(&view, &tried, sampling, error);
 }
 
-static RtStatus set_camera(Reader *r, const RtYamlCamera *given) {
+static RtStatus set_camera(RtYamlReader *r, const RtYamlCamera *given) {
     RtCamera *camera = &r->scene->camera;
     if (!given->from != !given->at) {
         RtStatus status = rt_fail(r->error, RT_BAD_INPUT,
@@ -263,7 +262,7 @@ static RtStatus set_camera(Reader *r, const RtYamlCamera *given) {
     return rt_yaml_file_place(r->file, status, key, r->error);
 }
 
-static RtStatus set_color(Reader *r, const RtVec3 *given, const char *key, RtVec3 *color) {
+static RtStatus set_color(RtYamlReader *r, const RtVec3 *given, const char *key, RtVec3 *color) {
     if (!given) return RT_OK;
     *color = *given;
     if (given->x >= 0 && given->y >= 0 && given->z >= 0) return RT_OK;
@@ -271,24 +270,25 @@ static RtStatus set_color(Reader *r, const RtVec3 *given, const char *key, RtVec
     return rt_yaml_file_place(r->file, status, key, r->error);
 }
 
-static RtStatus add_lights(Reader *r) {
+static RtStatus add_lights(RtYamlReader *r) {
     for (uint32_t i = 0; i < r->yaml->lights_count; i++) {
         const RtYamlLight *light = &r->yaml->lights[i];
         RtVec3 intensity = light->intensity ? *light->intensity : rt_vec3(1, 1, 1);
         RtStatus status = rt_scene_add_light(r->scene, light->position, intensity, r->error);
-        RT_TRY(place(r, status, "lights", i, ""));
+        RT_TRY(rt_yaml_place(r, status, "lights", i, ""));
     }
     return RT_OK;
 }
 
 /* ---- the scene ---- */
 
-static RtStatus build(Reader *r) {
+static RtStatus build(RtYamlReader *r) {
     if (r->yaml->camera) RT_TRY(set_camera(r, r->yaml->camera));
     RT_TRY(set_color(r, r->yaml->background, "background", &r->scene->background));
     RT_TRY(set_color(r, r->yaml->ambient, "ambient", &r->scene->ambient));
     RT_TRY(add_lights(r));
     RT_TRY(add_materials(r));
+    RT_TRY(rt_yaml_add_solids(r));
     for (uint32_t i = 0; i < r->yaml->objects_count; i++) RT_TRY(add_object(r, i));
     return RT_OK;
 }
@@ -296,12 +296,21 @@ static RtStatus build(Reader *r) {
 RtStatus rt_yaml_load(const char *path, RtScene *scene, RtError *error) {
     RtYamlFile file;
     RT_TRY(rt_yaml_file_open(&file, path, &rt_yaml_scene_schema, error));
-    Reader r = {.file = &file, .yaml = file.data, .scene = scene, .standard = UINT32_MAX, .error = error};
-    size_t count = r.yaml->materials_count;
-    r.names = rt_alloc(count, sizeof *r.names);
-    RtStatus status =
-        r.names ? build(&r) : rt_fail_memory(error, "the names of materials", count * sizeof *r.names);
-    rt_free(r.names);
+    RtYamlReader r = {
+        .file = &file, .yaml = file.data, .scene = scene, .standard = UINT32_MAX, .error = error};
+    uint32_t materials = r.yaml->materials_count, solids = r.yaml->solids_count;
+    r.materials = rt_alloc(materials, sizeof *r.materials);
+    r.solids = rt_alloc(solids, sizeof *r.solids);
+    r.terms = rt_alloc(solids, sizeof *r.terms);
+    RtStatus status = r.materials && r.solids && r.terms
+                          ? build(&r)
+                          : rt_fail_memory(error, "the names of materials and solids",
+                                           (size_t)materials * sizeof *r.materials +
+                                               (size_t)solids * (sizeof *r.solids + sizeof *r.terms));
+    rt_csg_builder_clear(&r.builder);
+    rt_free(r.materials);
+    rt_free(r.solids);
+    rt_free(r.terms);
     rt_yaml_file_close(&file);
     return status;
 }

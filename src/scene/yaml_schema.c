@@ -4,6 +4,7 @@
 #define POINTER  CYAML_FLAG_POINTER
 
 static const cyaml_schema_value_t number = {CYAML_VALUE_FLOAT(CYAML_FLAG_DEFAULT, float)};
+static const cyaml_schema_value_t wide_number = {CYAML_VALUE_FLOAT(CYAML_FLAG_DEFAULT, double)};
 static const cyaml_schema_value_t whole = {CYAML_VALUE_UINT(CYAML_FLAG_DEFAULT, uint32_t)};
 
 /* A list of `n` entries, into a member of that size or behind a pointer. (The macro of libcyaml takes the
@@ -42,7 +43,7 @@ static const cyaml_schema_field_t step_fields[] = {
 
 static const cyaml_schema_value_t step = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, RtYamlStep, step_fields)};
 
-/* ---- objects: one table a kind, called KIND_fields ---- */
+/* ---- kinds of objects and solids: one table a kind, called KIND_fields ---- */
 
 static const cyaml_schema_field_t sphere_fields[] = {
     POINT(RtYamlSphere, center), NUMBER(RtYamlSphere, radius), MATERIAL(RtYamlSphere), CYAML_FIELD_END};
@@ -67,6 +68,43 @@ static const cyaml_schema_field_t mesh_fields[] = {TEXT(RtYamlMesh, path), MATER
                                                    LIST_OF(RtYamlMesh, transform, OPTIONAL, step, 0),
                                                    CYAML_FIELD_END};
 
+static const cyaml_schema_field_t ellipsoid_fields[] = {POINT(RtYamlEllipsoid, center),
+                                                        POINT(RtYamlEllipsoid, radii),
+                                                        MATERIAL(RtYamlEllipsoid), CYAML_FIELD_END};
+
+static const cyaml_schema_field_t box_fields[] = {POINT(RtYamlBox, lo), POINT(RtYamlBox, hi),
+                                                  MATERIAL(RtYamlBox), CYAML_FIELD_END};
+
+static const cyaml_schema_field_t torus_fields[] = {
+    POINT(RtYamlTorus, center), OPTIONAL_POINT(RtYamlTorus, axis),
+    NUMBER(RtYamlTorus, major), NUMBER(RtYamlTorus, minor),
+    MATERIAL(RtYamlTorus),      CYAML_FIELD_END};
+
+static const cyaml_schema_field_t half_space_fields[] = {POINT(RtYamlHalfSpace, point),
+                                                         POINT(RtYamlHalfSpace, normal),
+                                                         MATERIAL(RtYamlHalfSpace), CYAML_FIELD_END};
+
+static const cyaml_schema_value_t plane = LIST_VALUE(CYAML_FLAG_DEFAULT, sizeof(double), wide_number, 4);
+
+static const cyaml_schema_field_t polyhedron_fields[] = {
+    LIST_OF(RtYamlPolyhedron, vertices, OPTIONAL, point, 4),
+    LIST_OF(RtYamlPolyhedron, planes, OPTIONAL, plane, 4), MATERIAL(RtYamlPolyhedron), CYAML_FIELD_END};
+
+static const cyaml_schema_value_t facet = LIST_VALUE(CYAML_FLAG_DEFAULT, sizeof(float), number, 9);
+
+static const cyaml_schema_field_t facets_fields[] = {
+    LIST_OF(RtYamlFacets, triangles, CYAML_FLAG_DEFAULT, facet, 4), MATERIAL(RtYamlFacets), CYAML_FIELD_END};
+
+static const cyaml_schema_field_t standard_fields[] = {
+    TEXT(RtYamlStandard, kind), CYAML_FIELD_FLOAT_PTR("ratio", OPTIONAL | POINTER, RtYamlStandard, ratio),
+    LIST(RtYamlStandard, place, CYAML_FLAG_DEFAULT, sizeof(double), wide_number, 12),
+    MATERIAL(RtYamlStandard), CYAML_FIELD_END};
+
+static const cyaml_schema_field_t csg_fields[] = {
+    CYAML_FIELD_STRING_PTR("formula", POINTER, RtYamlCsg, formula, 1, CYAML_UNLIMITED), MATERIAL(RtYamlCsg),
+    CYAML_FIELD_STRING("extents", OPTIONAL, RtYamlCsg, extents, 1),
+    LIST_OF(RtYamlCsg, transform, OPTIONAL, step, 0), CYAML_FIELD_END};
+
 static const cyaml_schema_field_t builtin_fields[] = {
     TEXT(RtYamlBuiltin, name), LIST_OF(RtYamlBuiltin, transform, OPTIONAL, step, 0), CYAML_FIELD_END};
 
@@ -78,6 +116,18 @@ static const cyaml_schema_field_t object_fields[] = {
 
 static const cyaml_schema_value_t object = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, RtYamlObject, object_fields)};
+
+static const cyaml_schema_field_t solid_fields[] = {
+    CYAML_FIELD_STRING("name", CYAML_FLAG_DEFAULT, RtYamlSolid, name, 1),
+    CYAML_FIELD_STRING_PTR("formula", OPTIONAL | POINTER, RtYamlSolid, formula, 1, CYAML_UNLIMITED),
+#define FIELD(name, Type) MAPPING(RtYamlSolid, name, name##_fields),
+    RT_YAML_SOLIDS(FIELD)
+#undef FIELD
+        LIST_OF(RtYamlSolid, transform, OPTIONAL, step, 0),
+    CYAML_FIELD_END};
+
+static const cyaml_schema_value_t solid = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, RtYamlSolid, solid_fields)};
 
 /* ---- the rest of a scene ---- */
 
@@ -112,6 +162,7 @@ static const cyaml_schema_field_t scene_fields[] = {
     OPTIONAL_POINT(RtYamlScene, ambient),
     LIST_OF(RtYamlScene, lights, OPTIONAL, light, 0),
     LIST_OF(RtYamlScene, materials, OPTIONAL, material, 0),
+    LIST_OF(RtYamlScene, solids, OPTIONAL, solid, 0),
     LIST_OF(RtYamlScene, objects, CYAML_FLAG_DEFAULT, object, 1),
     CYAML_FIELD_END};
 

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/yaml_file.h"
+#include "scene/formula.h"
 #include "scene/scene.h"
 
 typedef struct RtYamlRotate {
@@ -57,6 +58,85 @@ typedef struct RtYamlMesh {
     uint32_t transform_count;
 } RtYamlMesh;
 
+/* ---- solids of CSG trees ---- */
+
+typedef struct RtYamlEllipsoid {
+    RtVec3 center, radii;
+    char material[RT_MAX_NAME];
+} RtYamlEllipsoid;
+
+typedef struct RtYamlBox {
+    RtVec3 lo, hi;
+    char material[RT_MAX_NAME];
+} RtYamlBox;
+
+typedef struct RtYamlTorus {
+    RtVec3 center;
+    RtVec3 *axis;
+    float major, minor;
+    char material[RT_MAX_NAME];
+} RtYamlTorus;
+
+typedef struct RtYamlHalfSpace {
+    RtVec3 point, normal;
+    char material[RT_MAX_NAME];
+} RtYamlHalfSpace;
+
+/* Of points, one of the two. */
+typedef struct RtYamlPolyhedron {
+    RtVec3 *vertices;
+    uint32_t vertices_count;
+    double (*planes)[4];
+    uint32_t planes_count;
+    char material[RT_MAX_NAME];
+} RtYamlPolyhedron;
+
+/* As raytally writes solids: a standard one of solid.h, and where it is. */
+typedef struct RtYamlStandard {
+    char kind[16];
+    double *ratio;
+    double place[12]; /* rows of 4 */
+    char material[RT_MAX_NAME];
+} RtYamlStandard;
+
+typedef struct RtYamlFacets {
+    float (*triangles)[9];
+    uint32_t triangles_count;
+    char material[RT_MAX_NAME];
+} RtYamlFacets;
+
+/* X(name, Type): what an entry of `solids` can be, besides a formula. */
+#define RT_YAML_SOLIDS(X)                                                                                    \
+    X(sphere, RtYamlSphere)                                                                                  \
+    X(ellipsoid, RtYamlEllipsoid)                                                                            \
+    X(box, RtYamlBox)                                                                                        \
+    X(cylinder, RtYamlCylinder)                                                                              \
+    X(cone, RtYamlCone)                                                                                      \
+    X(torus, RtYamlTorus)                                                                                    \
+    X(half_space, RtYamlHalfSpace)                                                                           \
+    X(polyhedron, RtYamlPolyhedron)                                                                          \
+    X(mesh, RtYamlMesh)                                                                                      \
+    X(facets, RtYamlFacets)                                                                                  \
+    X(standard, RtYamlStandard)
+
+typedef struct RtYamlSolid {
+    char name[RT_FORMULA_MAX_NAME];
+    char *formula;
+#define RT_YAML_MEMBER(name, Type) Type *name;
+    RT_YAML_SOLIDS(RT_YAML_MEMBER)
+#undef RT_YAML_MEMBER
+    RtYamlStep *transform;
+    uint32_t transform_count;
+} RtYamlSolid;
+
+typedef struct RtYamlCsg {
+    char *formula;
+    char material[RT_MAX_NAME];
+    char extents[4];
+    RtYamlStep *transform;
+    uint32_t transform_count;
+} RtYamlCsg;
+
 typedef struct RtYamlBuiltin {
     char name[RT_MAX_SCENE_NAME];
     RtYamlStep *transform;
@@ -70,6 +150,7 @@ typedef struct RtYamlBuiltin {
     X(triangle, RtYamlTriangle)                                                                              \
     X(cone, RtYamlCone)                                                                                      \
     X(cylinder, RtYamlCylinder)                                                                              \
+    X(csg, RtYamlCsg)                                                                                        \
     X(mesh, RtYamlMesh)                                                                                      \
     X(builtin, RtYamlBuiltin)
 
@@ -109,6 +190,8 @@ typedef struct RtYamlScene {
     uint32_t lights_count;
     RtYamlMaterial *materials;
     uint32_t materials_count;
+    RtYamlSolid *solids;
+    uint32_t solids_count;
     RtYamlObject *objects;
     uint32_t objects_count;
 } RtYamlScene;

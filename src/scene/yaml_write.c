@@ -1,6 +1,7 @@
 /* A scene to YAML by libyaml's emitter, which takes care of quoting. Numbers are written with as many
  * significant digits as give the float32 back bit for bit: 9 always do, 6 often. */
 #include "base/memory.h"
+#include "scene/formula.h"
 #include "scene/yaml.h"
 
 #include <stdlib.h>
@@ -65,6 +66,21 @@ static void number(Writer *w, float value) {
         if (strtof(text, NULL) == value) break;
     }
     scalar(w, text, false);
+}
+
+static void wide_number(Writer *w, double value) {
+    char text[32];
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    scalar(w, text, false);
+}
+
+static void wide_numbers(Writer *w, const double *values, int count) {
+    begin_list(w, YAML_FLOW_SEQUENCE_STYLE);
+    for (int i = 0; i < count; i++) wide_number(w, values[i]);
+    end_list(w);
 }
 
 static void point(Writer *w, RtVec3 p) {
@@ -154,6 +170,83 @@ static void write_materials(Writer *w) {
     end_list(w);
 }
 
+/* ---- solids ---- */
+
+static void write_planes(Writer *w, const RtPlane *planes, uint32_t count) {
+    key(w, "planes");
+    begin_list(w, YAML_FLOW_SEQUENCE_STYLE);
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d n = planes[i].normal;
+        wide_numbers(w, (const double[4]){n.x, n.y, n.z, planes[i].offset}, 4);
+    }
+    end_list(w);
+}
+
+static void write_facets(Writer *w, const RtTriangle *triangles, uint32_t count) {
+    key(w, "triangles");
+    begin_list(w, YAML_FLOW_SEQUENCE_STYLE);
+    for (uint32_t i = 0; i < count; i++) {
+        begin_list(w, YAML_FLOW_SEQUENCE_STYLE);
+        for (int k = 0; k < 9; k++) number(w, triangles[i].v[k / 3].at[k % 3]);
+        end_list(w);
+    }
+    end_list(w);
+}
+
+static void write_solid(Writer *w, const RtSolid *solid) {
+    const RtSolidSet *set = &w->scene->geometry.forest.set;
+    bool flat = solid->kind == RT_SOLID_POLYHEDRON, mesh = solid->kind == RT_SOLID_MESH;
+    key(w, flat ? "polyhedron" : mesh ? "facets" : "standard");
+    begin_mapping(w, YAML_FLOW_MAPPING_STYLE);
+    if (flat) {
+        write_planes(w, set->planes + solid->first, solid->count);
+    } else if (mesh) {
+        write_facets(w, set->triangles + solid->first, solid->count);
+    } else {
+        key(w, "kind");
+        scalar(w, rt_solid_kind_name(solid->kind), false);
+        key(w, "ratio");
+        wide_number(w, solid->ratio);
+        key(w, "place");
+        wide_numbers(w, &solid->place.m[0][0], 12);
+    }
+    material_name(w, "material", solid->material);
+    end_mapping(w);
+}
+
+static void write_solids(Writer *w) {
+    const RtSolidSet *set = &w->scene->geometry.forest.set;
+    if (set->solid_count == 0) return;
+    key(w, "solids");
+    begin_list(w, YAML_BLOCK_SEQUENCE_STYLE);
+    for (uint32_t i = 0; i < set->solid_count && !w->failed; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "s%u", i);
+        begin_mapping(w, YAML_FLOW_MAPPING_STYLE);
+        key(w, "name");
+        scalar(w, name, false);
+        write_solid(w, &set->solids[i]);
+        end_mapping(w);
+    }
+    end_list(w);
+}
+
+static void write_csg(Writer *w, const RtCsg *tree) {
+    RtError error;
+    char *formula;
+    if (rt_formula_write(&w->scene->geometry.forest, tree, &formula, &error) != RT_OK) {
+        w->failed = true; /* for want of memory, like all failures of the emitter */
+        return;
+    }
+    key(w, "formula");
+    scalar(w, formula, true);
+    key(w, "extents");
+    scalar(w, tree->extents ? "on" : "off", true);
+    rt_free(formula);
+}
+
+/* ---- objects ---- */
+
 static void write_shape(Writer *w, RtShape shape, uint32_t index) {
     const RtGeometry *g = &w->scene->geometry;
     switch (shape) {
@@ -176,7 +269,7 @@ static void write_shape(Writer *w, RtShape shape, uint32_t index) {
         point_key(w, "apex", g->cones[index].apex);
         number_key(w, "apex_radius", g->cones[index].apex_radius);
         break;
-    case RT_SHAPE_CSG: /* refused before */
+    case RT_SHAPE_CSG: write_csg(w, &g->csgs[index]); break;
     case RT_SHAPE_COUNT: break;
     }
 }
@@ -191,7 +284,7 @@ static void write_objects(Writer *w) {
         key(w, rt_shape_name(shape));
         begin_mapping(w, YAML_FLOW_MAPPING_STYLE);
         write_shape(w, shape, rt_ref_index(g->objects[id]));
-        material_name(w, "material", w->scene->material_of[id]);
+        if (shape != RT_SHAPE_CSG) material_name(w, "material", w->scene->material_of[id]);
         end_mapping(w);
         end_mapping(w);
     }
@@ -208,6 +301,7 @@ static void write_document(Writer *w) {
     point_key(w, "ambient", w->scene->ambient);
     write_lights(w);
     write_materials(w);
+    write_solids(w);
     write_objects(w);
     end_mapping(w);
     emit(w, &event, yaml_document_end_event_initialize(&event, 1));
@@ -272,12 +366,6 @@ static RtStatus save(Writer *w, FILE *out, RtError *error) {
 }
 
 RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error) {
-    if (scene->geometry.csg_count > 0) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "CSG trees cannot be written as YAML, and in this scene there are %u: keep the file "
-                       "that they came from",
-                       scene->geometry.csg_count);
-    }
     Writer w = {.scene = scene, .names = rt_alloc(scene->material_count, sizeof *w.names)};
     if (!w.names) {
         return rt_fail_memory(error, "the names of materials", scene->material_count * sizeof *w.names);

@@ -9,6 +9,8 @@
 #include "base/memory.h"
 #include "shape/solid_parts.h"
 
+#include <string.h>
+
 /* What is less than this, against 1, is the noise of rounding. */
 #define NOISE 0x1p-40
 
@@ -195,6 +197,15 @@ static RtStatus check_inside(const RtPlane *planes, uint32_t count, RtError *err
         count);
 }
 
+/* A plane whose normal has length 1 already stays as it is, bit for bit, so that solids survive saving and
+ * loading. */
+static RtPlane unit_plane(const RtPlane *plane) {
+    RtVec3d n = plane->normal;
+    double squared = rt_dotd(n, n);
+    if (fabs(squared - 1) <= 0x1p-50) return *plane;
+    return rt_plane_through(rt_scaled(n, plane->offset / squared), n);
+}
+
 RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_t count,
                                  const RtTransform *place, uint32_t *index, RtError *error) {
     if (count == 0 || count > RT_SOLID_MAX_FACES) {
@@ -205,11 +216,12 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
     RT_TRY(rt_reserve(&set->planes, &set->plane_capacity, (uint64_t)set->plane_count + count, sizeof(RtPlane),
                       error));
     RtPlane *own = set->planes + set->plane_count;
+    RtTransform here = rt_transform_identity();
+    bool stays = memcmp(place, &here, sizeof here) == 0;
     for (uint32_t i = 0; i < count; i++) {
         RT_TRY(check_plane(&planes[i], i, error));
-        RtVec3d n = planes[i].normal;
-        RtPlane standing = rt_plane_through(rt_scaled(n, planes[i].offset / rt_dotd(n, n)), n);
-        own[i] = rt_plane_moved(&standing, place);
+        RtPlane standing = unit_plane(&planes[i]);
+        own[i] = stays ? standing : rt_plane_moved(&standing, place);
         if (!(fabs(own[i].offset) <= (double)RT_MAX_COORDINATE)) {
             return rt_fail(error, RT_BAD_INPUT,
                            "plane %u of the polyhedron is %g from the origin: at most %g", i,
