@@ -7,10 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
-extern const RtBuiltin rt_builtin_balls, rt_builtin_tetra, rt_builtin_random;
+extern const RtBuiltin rt_builtin_balls, rt_builtin_tetra, rt_builtin_random, rt_builtin_csg_field;
 
 /* In the order in which they are listed. */
-static const RtBuiltin *const builtins[] = {&rt_builtin_balls, &rt_builtin_tetra, &rt_builtin_random};
+static const RtBuiltin *const builtins[] = {&rt_builtin_balls, &rt_builtin_tetra, &rt_builtin_random,
+                                            &rt_builtin_csg_field};
 
 enum { BUILTIN_COUNT = sizeof builtins / sizeof builtins[0] };
 

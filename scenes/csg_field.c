@@ -1,0 +1,189 @@
+/* csg-field: n random CSG trees of 8 to 64 solids each, on a jittered grid, to measure what a tree costs.
+ *
+ * Tree i is made from the random numbers of stream i alone. Its solids (spheres, boxes, cones, cylinders,
+ * tori, turned any way) lie in a ball, and are joined as a binary tree as even as can be: unions near the
+ * root, so that no single operation empties it, and any operation below. */
+#include "base/random.h"
+#include "scene/nff.h"
+#include "scenes/builtin.h"
+
+enum { N, LEAST, MOST, EXTENTS, SEED };
+enum { MATERIALS = 4 };
+
+static const RtParam params[] = {
+    [N] = {.name = "n",
+           .type = RT_PARAM_INT,
+           .standard = "1000",
+           .lo = 1,
+           .hi = 1e6,
+           .meaning = "trees",
+           .source = "the size that experiments use",
+           .tries = "1|27"},
+    [LEAST] = {.name = "least",
+               .type = RT_PARAM_INT,
+               .standard = "8",
+               .lo = 1,
+               .hi = 4096,
+               .meaning = "fewest solids of a tree",
+               .source = "a simple machine part",
+               .tries = "1|8"},
+    [MOST] = {.name = "most",
+              .type = RT_PARAM_INT,
+              .standard = "64",
+              .lo = 1,
+              .hi = 4096,
+              .meaning = "most solids of a tree; no fewer than the fewest",
+              .source = "a complicated machine part",
+              .tries = "64"},
+    [EXTENTS] = {.name = "extents",
+                 .type = RT_PARAM_FLAG,
+                 .standard = "on",
+                 .meaning = "trees skip inner nodes whose box a ray misses",
+                 .source = "Roth 1982"},
+    [SEED] = {.name = "seed",
+              .type = RT_PARAM_INT,
+              .standard = "1",
+              .lo = 0,
+              .hi = 1e15,
+              .meaning = "of the random numbers",
+              .source = "any",
+              .tries = "1"},
+};
+
+typedef struct Field {
+    RtCsgBuilder builder;
+    RtRandom random; /* of the tree in hand */
+    RtVec3d center;
+    double radius; /* of the ball about its solids */
+    RtError *error;
+} Field;
+
+static double between(Field *f, double lo, double hi) {
+    return lo + (hi - lo) * (double)rt_random_unit(&f->random);
+}
+
+/* ---- solids ---- */
+
+static RtVec3 narrow_offset(RtVec3d center, RtVec3d direction, double length) {
+    return rt_narrow(rt_add_scaledd(center, direction, length));
+}
+
+static RtStatus add_turned_box(Field *f, RtVec3d center, double size, uint32_t *index) {
+    RtVec3 half = {(float)(size * between(f, 0.3, 1)), (float)(size * between(f, 0.3, 1)),
+                   (float)(size * between(f, 0.3, 1))};
+    RtTransform place = rt_transform_identity();
+    RtVec3 axis = rt_narrow(rt_random_direction(&f->random));
+    uint32_t standing;
+    RT_TRY(rt_solid_add_box(&f->builder.set, rt_scale(half, -1), half, &standing, f->error));
+    RT_TRY(rt_transform_rotate(&place, axis, 15 * (double)(rt_random_bits(&f->random) % 24), f->error));
+    RT_TRY(rt_transform_translate(&place, rt_narrow(center), f->error));
+    return rt_solid_add_moved(&f->builder.set, &f->builder.set, standing, &place, index, f->error);
+}
+
+static RtStatus add_solid(Field *f, uint32_t *index) {
+    RtVec3d center =
+        rt_add_scaledd(f->center, rt_random_direction(&f->random), f->radius * between(f, 0, 0.7));
+    RtVec3d axis = rt_random_direction(&f->random);
+    double size = f->radius * between(f, 0.12, 0.3);
+    RtVec3 base = narrow_offset(center, axis, -size), apex = narrow_offset(center, axis, size);
+    RtSolidSet *set = &f->builder.set;
+    switch (rt_random_bits(&f->random) % 5) {
+    case 0: {
+        float radius = (float)size;
+        return rt_solid_add_ellipsoid(set, rt_narrow(center), rt_vec3(radius, radius, radius), index,
+                                      f->error);
+    }
+    case 1: return add_turned_box(f, center, size, index);
+    case 2: {
+        float radius = (float)(size * between(f, 0.3, 0.8));
+        return rt_solid_add_frustum(set, base, radius, apex, radius, index, f->error);
+    }
+    case 3:
+        return rt_solid_add_frustum(set, base, (float)size, apex, (float)(size * between(f, 0, 0.9)), index,
+                                    f->error);
+    default:
+        return rt_solid_add_ring(set, rt_narrow(center), rt_narrow(axis), (float)(size * 0.8),
+                                 (float)(size * between(f, 0.15, 0.35)), index, f->error);
+    }
+}
+
+/* ---- trees ---- */
+
+static RtCsgOp choose_op(Field *f, uint32_t level) {
+    uint32_t die = rt_random_bits(&f->random) % 8;
+    if (level < 2 || die < 4) return RT_CSG_UNION;
+    return die < 7 ? RT_CSG_DIFFERENCE : RT_CSG_INTERSECTION;
+}
+
+static RtStatus add_tree(Field *f, uint32_t solids, uint32_t level, RtCsgTerm *term) {
+    if (solids == 1) {
+        uint32_t index;
+        RT_TRY(add_solid(f, &index));
+        return rt_csg_solid(&f->builder, index, rt_random_bits(&f->random) % MATERIALS, term, f->error);
+    }
+    RtCsgTerm left, right;
+    RtCsgOp op = choose_op(f, level);
+    RT_TRY(add_tree(f, solids - solids / 2, level + 1, &left));
+    RT_TRY(add_tree(f, solids / 2, level + 1, &right));
+    return rt_csg_combine(&f->builder, op, left, right, term, f->error);
+}
+
+static uint64_t trees_along_edge(uint64_t n) {
+    uint64_t edge = 1;
+    while (edge * edge * edge < n) edge++;
+    return edge;
+}
+
+static RtStatus add_object(RtScene *scene, uint64_t i, const RtValue *values, RtError *error) {
+    uint64_t edge = trees_along_edge((uint64_t)values[N].i);
+    double spacing = 2 / (double)edge;
+    Field f = {.random = rt_random((uint64_t)values[SEED].i, i), .radius = 0.55 * spacing, .error = error};
+    uint64_t place[3] = {i % edge, i / edge % edge, i / edge / edge};
+    for (int a = 0; a < 3; a++) f.center.at[a] = ((double)place[a] + between(&f, 0.4, 0.6)) * spacing - 1;
+    uint32_t least = (uint32_t)values[LEAST].i, most = (uint32_t)values[MOST].i;
+    if (most < least) most = least;
+    RtCsgTerm root;
+    RtStatus status = add_tree(&f, least + rt_random_bits(&f.random) % (most - least + 1), 0, &root);
+    if (status == RT_OK) {
+        status = rt_scene_add_csg(scene, &f.builder, root, values[EXTENTS].flag, error);
+    }
+    rt_csg_builder_clear(&f.builder);
+    return status;
+}
+
+static RtStatus add_materials(RtScene *scene, RtError *error) {
+    const RtMaterial materials[MATERIALS] = {
+        rt_nff_material("clay", rt_vec3(0.9f, 0.5f, 0.3f), 0.9f, 0, 1, 0, 1),
+        rt_nff_material("slate", rt_vec3(0.3f, 0.4f, 0.6f), 0.9f, 0, 1, 0, 1),
+        rt_nff_material("moss", rt_vec3(0.4f, 0.6f, 0.3f), 0.9f, 0, 1, 0, 1),
+        rt_nff_material("steel", rt_vec3(0.8f, 0.8f, 0.8f), 0.4f, 0.5f, 50, 0, 1),
+    };
+    for (int i = 0; i < MATERIALS; i++) {
+        uint32_t index;
+        RT_TRY(rt_scene_add_material(scene, &materials[i], &index, error));
+    }
+    return RT_OK;
+}
+
+static uint64_t object_count(const RtValue *values) {
+    return (uint64_t)values[N].i;
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    RT_TRY(add_materials(scene, error));
+    RT_TRY(rt_scene_add_light(scene, rt_vec3(4, 3, 6), rt_vec3(0.6f, 0.6f, 0.6f), error));
+    RT_TRY(rt_scene_add_light(scene, rt_vec3(5, -6, 2), rt_vec3(0.4f, 0.4f, 0.4f), error));
+    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) RT_TRY(add_object(scene, i, values, error));
+    return RT_OK;
+}
+
+extern const RtBuiltin rt_builtin_csg_field;
+const RtBuiltin rt_builtin_csg_field = {
+    .name = "csg-field",
+    .summary = "n CSG trees of 8 to 64 random solids, in four materials",
+    .source = "made to measure CSG",
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};
