@@ -63,7 +63,7 @@ static Side side_of_planes(const RtSolidSet *set, const RtSolid *solid, Point p)
  * 1983).
  */
 static Side side_of_mesh(const RtSolidSet *set, const RtSolid *solid, Point p) {
-    Real sum = 0, nearest = 1;
+    Real sum = 0;
     for (uint32_t i = 0; i < solid->count; i++) {
         Real v[3][3], length[3], dots = 0;
         for (int k = 0; k < 3; k++) {
@@ -78,12 +78,10 @@ static Side side_of_mesh(const RtSolidSet *set, const RtSolid *solid, Point p) {
             const Real *a = v[(k + 1) % 3], *b = v[(k + 2) % 3];
             dots += (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) * length[k];
         }
-        Real volume = determinant(v[0], v[1], v[2]);
-        Real angle = 2 * atan2l(volume, length[0] * length[1] * length[2] + dots);
-        if (fabsl(volume) < 100 * NEAR && fabsl(angle) > 1e-6L) nearest = 0;
-        sum += angle;
+        Real volume = determinant(v[0], v[1], v[2]), rest = length[0] * length[1] * length[2] + dots;
+        if (fabsl(volume) < NEAR && rest < NEAR) return UNSURE; /* in the triangle, or on its edge */
+        sum += 2 * atan2l(volume, rest);
     }
-    if (nearest < NEAR) return UNSURE;
     return sum > 6 ? INSIDE : OUTSIDE;
 }
 
@@ -96,7 +94,7 @@ static Side side_of_solid(const RtSolidSet *set, uint32_t index, Point p) {
     case RT_SOLID_CONE: {
         Real radius = 1 + (ratio - 1) * z;
         Side side = both(side_of_planes(set, solid, p), side_of(across - radius * radius));
-        return both(side, z < 1.5L ? INSIDE : OUTSIDE); /* not the other half of a full cone */
+        return ratio > 0 ? side : both(side, side_of(z - 1)); /* not the other half of a full cone */
     }
     case RT_SOLID_TORUS: {
         Real out = sqrtl(across) - 1;
