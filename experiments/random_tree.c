@@ -49,15 +49,8 @@ static RtStatus random_place(Maker *m, RtTransform *place) {
 }
 
 RtStatus rt_add_box(RtCsgBuilder *builder, RtBox box, uint32_t material, RtCsgTerm *out, RtError *error) {
-    RtPlane planes[6];
-    for (int a = 0; a < 3; a++) {
-        RtVec3d up = {a == 0, a == 1, a == 2};
-        planes[2 * a] = (RtPlane){up, (double)box.hi.at[a]};
-        planes[2 * a + 1] = (RtPlane){rt_scaled(up, -1), -(double)box.lo.at[a]};
-    }
-    RtTransform place = rt_transform_identity();
     uint32_t solid;
-    RT_TRY(rt_solid_add_polyhedron(&builder->set, planes, 6, &place, &solid, error));
+    RT_TRY(rt_solid_add_box(&builder->set, box.lo, box.hi, &solid, error));
     return rt_csg_solid(builder, solid, material, out, error);
 }
 
