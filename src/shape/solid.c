@@ -25,29 +25,20 @@ void rt_solid_set_clear(RtSolidSet *set) {
     rt_free(set->solids);
     rt_free(set->planes);
     rt_free(set->triangles);
+    rt_free(set->boxes);
     *set = (RtSolidSet){0};
 }
 
 uint64_t rt_solid_set_bytes(const RtSolidSet *set) {
     return (uint64_t)set->solid_capacity * sizeof(RtSolid) + (uint64_t)set->plane_capacity * sizeof(RtPlane) +
-           (uint64_t)set->triangle_capacity * sizeof(RtTriangle);
+           (uint64_t)set->triangle_capacity * sizeof(RtTriangle) +
+           (uint64_t)set->box_capacity * sizeof(RtBox);
 }
 
 /* ---- planes ---- */
 
-/* The axis along which the vector lies, or -1. */
-static int axis_of(RtVec3d v) {
-    int axis = -1;
-    for (int a = 0; a < 3; a++) {
-        if (v.at[a] == 0) continue;
-        if (axis >= 0) return -1;
-        axis = a;
-    }
-    return axis;
-}
-
 RtPlane rt_plane_through(RtVec3d point, RtVec3d normal) {
-    int axis = axis_of(normal);
+    int axis = rt_axis_of(normal);
     if (axis >= 0) {
         double sign = normal.at[axis] < 0 ? -1 : 1;
         RtPlane plane = {.offset = sign * (double)(float)point.at[axis]};
@@ -211,12 +202,8 @@ RtBall rt_solid_ball(const RtSolidSet *set, uint32_t index) {
 
 /* By the support function, rounded outward; faces along an axis bound it exactly. */
 static RtBox box_of(const RtSolidSet *set, const RtSolid *solid) {
+    if (solid->kind == RT_SOLID_MESH) return set->boxes[solid->first_box];
     RtBox box = RT_EMPTY_BOX;
-    if (solid->kind == RT_SOLID_MESH) {
-        for (uint32_t i = 0; i < solid->count; i++)
-            box = rt_box_union(box, rt_triangle_box(&set->triangles[solid->first + i]));
-        return box;
-    }
     for (int a = 0; a < 3; a++) {
         RtVec3d up = {{a == 0, a == 1, a == 2}};
         double hi = support(set, solid, up), lo = -support(set, solid, rt_scaled(up, -1));
@@ -226,7 +213,7 @@ static RtBox box_of(const RtSolidSet *set, const RtSolid *solid) {
     }
     for (uint32_t i = 0; i < solid->count; i++) {
         const RtPlane *plane = &set->planes[solid->first + i];
-        int a = axis_of(plane->normal);
+        int a = rt_axis_of(plane->normal);
         if (a < 0) continue;
         if (plane->normal.at[a] > 0) box.hi.at[a] = rt_minf((float)plane->offset, box.hi.at[a]);
         if (plane->normal.at[a] < 0) box.lo.at[a] = rt_maxf((float)-plane->offset, box.lo.at[a]);
@@ -248,15 +235,18 @@ static RtStatus check_box(const RtBox *box, RtError *error) {
 }
 
 RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, uint32_t *index, RtError *error) {
+    bool is_mesh = solid->kind == RT_SOLID_MESH;
     RT_TRY(rt_solid_check_place(&solid->place, error));
     invert(solid);
+    if (is_mesh) RT_TRY(rt_solid_mesh_boxes(set, solid, error));
     solid->box = box_of(set, solid);
     RT_TRY(check_box(&solid->box, error));
     RT_TRY(rt_reserve(&set->solids, &set->solid_capacity, (uint64_t)set->solid_count + 1, sizeof(RtSolid),
                       error));
     *index = set->solid_count;
     set->solids[set->solid_count++] = *solid;
-    *(solid->kind == RT_SOLID_MESH ? &set->triangle_count : &set->plane_count) += solid->count;
+    *(is_mesh ? &set->triangle_count : &set->plane_count) += solid->count;
+    if (is_mesh) set->box_count += 2 * solid->leaves - 1;
     return RT_OK;
 }
 

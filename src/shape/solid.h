@@ -59,10 +59,11 @@ typedef struct RtSolid {
     bool subtracted;       /* from its tree: its faces look inward (csg.h); nothing here reads it */
     uint32_t first, count; /* cone: its caps (base first; no second where ratio is 0), polyhedron: its faces,
                               in `planes`; mesh: in `triangles` */
-    double ratio;          /* cone, torus */
-    RtTransform place;     /* from standard to world coordinates; of polyhedron and mesh the identity */
-    RtVec3d back[3];       /* rows of the inverse of its linear part */
-    RtBox box;             /* outward; infinite sides where the solid has no end */
+    uint32_t first_box, leaves; /* mesh: its tree of 2 leaves - 1 boxes, in `boxes` */
+    double ratio;               /* cone, torus */
+    RtTransform place;          /* from standard to world coordinates; of polyhedron and mesh the identity */
+    RtVec3d back[3];            /* rows of the inverse of its linear part */
+    RtBox box;                  /* outward; infinite sides where the solid has no end */
 } RtSolid;
 
 /* The solids of all trees of a geometry and what they are made of. Owns its arrays; a zeroed struct is empty.
@@ -74,6 +75,8 @@ typedef struct RtSolidSet {
     RtPlane *planes;
     uint32_t triangle_count, triangle_capacity;
     RtTriangle *triangles; /* in world coordinates, counter-clockwise seen from outside */
+    uint32_t box_count, box_capacity;
+    RtBox *boxes; /* of the trees of meshes */
 } RtSolidSet;
 
 void rt_solid_set_clear(RtSolidSet *set);
@@ -93,9 +96,9 @@ RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *pl
 #define RT_SOLID_MAX_FACES 1024
 RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_t count,
                                  const RtTransform *place, uint32_t *index, RtError *error);
-/* triangles[0..count) in standard coordinates. Refuses a mesh that is not closed (each edge must be there as
- * often in one direction as in the other, naming one that is not) and one turned inside out (volume not above
- * 0). */
+/* triangles[0..count) in standard coordinates; the set puts them in an order of its own. Refuses a mesh that
+ * is not closed (each edge must be there as often in one direction as in the other, naming one that is not)
+ * and one turned inside out (volume not above 0). */
 RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
                            const RtTransform *place, uint32_t *index, RtError *error);
 

@@ -9,12 +9,13 @@
  * what all triangles give adds up to 0 exactly, whatever the rounding. A line through an edge or a vertex
  * enters as often as it leaves, and crosses no triangle twice: one outline winds about the line once at most.
  *
- * t is that of the triangle's plane, kept within the triangle's depth: right for slivers and triangles seen
- * edge-on, and for faces along an axis the same bits as any other solid's face there. */
-#include "base/memory.h"
+ * Triangles lie in leaves of a binary tree of boxes (solid_mesh_make.c). A box that the thick ray misses is
+ * farther from the line than rounding reaches, and holds none that winds about it.
+ *
+ * t is that of a point between two edges, which is on the triangle whatever its shape: slivers, those without
+ * area too, and triangles seen edge-on are among those crossed. Faces along an axis are planes as those of
+ * other solids are, and met at the same bits. */
 #include "shape/solid_parts.h"
-
-#include <stdlib.h>
 
 /* ---- crossings ---- */
 
@@ -45,17 +46,31 @@ static int winding(const Seen v[3]) {
     return number;
 }
 
-static RtPlane plane_of(const RtTriangle *triangle) {
-    RtVec3d a = rt_widen(triangle->v[0]), b = rt_widen(triangle->v[1]), c = rt_widen(triangle->v[2]);
-    return rt_plane_through(a, rt_crossd(rt_subd(b, a), rt_subd(c, a)));
+/* Where the edge meets the plane y = 0, as a point of the edge: y may be off by rounding, x and z go with it.
+ */
+static Seen at_level(const Seen *lower, const Seen *upper) {
+    double part = lower->y / (lower->y - upper->y);
+    return (Seen){lower->x + (upper->x - lower->x) * part, 0, lower->z + (upper->z - lower->z) * part};
 }
 
-/* The t of a triangle about whose outline the line winds; v[].z are those of its vertices. */
+/* The t of a triangle about whose outline the line winds: between the two edges that meet y = 0, at x = 0. */
+static double depth_between_edges(const Seen v[3]) {
+    Seen met[2] = {0};
+    for (int i = 0, n = 0; i < 3 && n < 2; i++) {
+        const Seen *from = &v[i], *to = &v[(i + 1) % 3];
+        if ((from->y < 0) == (to->y < 0)) continue;
+        met[n++] = from->y < 0 ? at_level(from, to) : at_level(to, from);
+    }
+    double part = met[0].x / (met[0].x - met[1].x);
+    return met[0].z + (met[1].z - met[0].z) * (part > 0 ? fmin(part, 1) : 0);
+}
+
 static double depth_of(const RtTriangle *triangle, const RtSolidRay *ray, const Seen v[3]) {
-    RtPlane plane = plane_of(triangle);
-    double t = (plane.offset - rt_dotd(plane.normal, ray->org)) / rt_dotd(plane.normal, ray->dir);
-    double lo = fmin(fmin(v[0].z, v[1].z), v[2].z), hi = fmax(fmax(v[0].z, v[1].z), v[2].z);
-    return t > lo ? fmin(t, hi) : lo;
+    RtVec3d a = rt_widen(triangle->v[0]);
+    RtVec3d normal = rt_crossd(rt_subd(rt_widen(triangle->v[1]), a), rt_subd(rt_widen(triangle->v[2]), a));
+    int axis = rt_axis_of(normal);
+    if (axis < 0 || ray->dir.at[axis] == 0) return depth_between_edges(v);
+    return (a.at[axis] - ray->org.at[axis]) / ray->dir.at[axis];
 }
 
 /* Puts a crossing among those before it, by t and then by face. In `solid` stands whether the line enters. */
@@ -69,19 +84,41 @@ static void insert(RtCrossing *list, uint32_t count, RtCrossing crossing) {
     list[i] = crossing;
 }
 
-/* The triangles that the line crosses. */
-static uint32_t collect(const RtTriangle *triangles, uint32_t count, const RtSolidRay *ray, float near,
-                        float far, RtCrossing *out) {
-    uint32_t found = 0;
+/* Puts in order those triangles of a leaf that the line crosses. */
+static uint32_t collect_leaf(const RtTriangle *triangles, uint32_t first, uint32_t end, const RtSolidRay *ray,
+                             float near, float far, RtCrossing *list, uint32_t found) {
     bool backward = ray->thick.negative[ray->thick.kz] != 0;
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = first; i < end; i++) {
         const RtTriangle *triangle = &triangles[i];
         const Seen v[3] = {see(ray, triangle->v[0]), see(ray, triangle->v[1]), see(ray, triangle->v[2])};
         int number = winding(v);
         if (number == 0) continue;
         double t = rt_clampd(depth_of(triangle, ray, v), (double)near, (double)far);
         bool enters = (number < 0) != backward;
-        insert(out, found++, (RtCrossing){(float)t, enters, i});
+        insert(list, found++, (RtCrossing){(float)t, enters, i});
+    }
+    return found;
+}
+
+/* All triangles that the line crosses. The tree is walked without a stack: the children of node n are 2n and
+ * 2n + 1, so that after a node comes the brother of the last even one on the way up. */
+static uint32_t collect(const RtSolidSet *set, const RtSolid *solid, const RtSolidRay *ray, float near,
+                        float far, RtCrossing *list) {
+    uint32_t found = 0, node = 1;
+    while (node != 0) {
+        float enter = -INFINITY, leave = INFINITY;
+        rt_box_cut(&set->boxes[solid->first_box + node - 1], &ray->thick, &enter, &leave);
+        if (enter <= leave && node < solid->leaves) {
+            node *= 2;
+            continue;
+        }
+        if (enter <= leave) {
+            uint32_t first = (node - solid->leaves) * RT_SOLID_LEAF, end = first + RT_SOLID_LEAF;
+            if (end > solid->count) end = solid->count;
+            found = collect_leaf(set->triangles + solid->first, first, end, ray, near, far, list, found);
+        }
+        while (node & 1) node /= 2;
+        if (node != 0) node++;
     }
     return found;
 }
@@ -90,7 +127,7 @@ static uint32_t collect(const RtTriangle *triangles, uint32_t count, const RtSol
 uint32_t rt_solid_mesh_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
                                  float far, RtCrossing *out) {
     const RtSolid *solid = &set->solids[index];
-    uint32_t found = collect(set->triangles + solid->first, solid->count, ray, near, far, out);
+    uint32_t found = collect(set, solid, ray, near, far, out);
     uint32_t count = 0;
     int64_t depth = 0;
     for (uint32_t i = 0, next; i < found; i = next) {
@@ -132,103 +169,4 @@ RtBall rt_solid_mesh_ball(const RtSolidSet *set, const RtSolid *solid) {
         }
     }
     return (RtBall){center, sqrt(most) * (1 + 0x1p-50)};
-}
-
-/* ---- making ---- */
-
-/* An edge with its ends in order; `turned` is 1 where the triangle has it so, -1 where it has the reverse. */
-typedef struct Edge {
-    RtVec3 ends[2];
-    int turned;
-} Edge;
-
-static int compare_points(RtVec3 a, RtVec3 b) {
-    for (int i = 0; i < 3; i++) {
-        if (a.at[i] != b.at[i]) return a.at[i] < b.at[i] ? -1 : 1;
-    }
-    return 0;
-}
-
-static int compare_edges(const void *a, const void *b) {
-    const Edge *e = a, *f = b;
-    int order = compare_points(e->ends[0], f->ends[0]);
-    return order ? order : compare_points(e->ends[1], f->ends[1]);
-}
-
-static Edge edge_of(RtVec3 from, RtVec3 to) {
-    return compare_points(from, to) <= 0 ? (Edge){{from, to}, 1} : (Edge){{to, from}, -1};
-}
-
-/* Sorts the edges, and looks at those that are the same together. An edge from a point to itself is none. */
-static RtStatus check_edges(Edge *edges, size_t count, RtError *error) {
-    qsort(edges, count, sizeof *edges, compare_edges);
-    for (size_t i = 0, next; i < count; i = next) {
-        int64_t sum = 0;
-        for (next = i; next < count && compare_edges(&edges[i], &edges[next]) == 0; next++)
-            sum += edges[next].turned;
-        RtVec3 a = edges[i].ends[0], b = edges[i].ends[1];
-        if (sum == 0 || compare_points(a, b) == 0) continue;
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "the mesh is not closed: at the edge from (%g, %g, %g) to (%g, %g, %g) triangles on one "
-            "side have no neighbour that is turned alike; close the hole there, or turn them round",
-            (double)a.x, (double)a.y, (double)a.z, (double)b.x, (double)b.y, (double)b.z);
-    }
-    return RT_OK;
-}
-
-static RtStatus check_closed(const RtTriangle *triangles, uint32_t count, RtError *error) {
-    size_t edge_count = 3 * (size_t)count;
-    Edge *edges = rt_alloc(edge_count, sizeof *edges);
-    if (!edges) return rt_fail_memory(error, "the edges of a mesh", edge_count * sizeof *edges);
-    for (uint32_t i = 0; i < count; i++) {
-        const RtVec3 *v = triangles[i].v;
-        for (uint32_t k = 0; k < 3; k++) edges[3 * (size_t)i + k] = edge_of(v[k], v[(k + 1) % 3]);
-    }
-    RtStatus status = check_edges(edges, edge_count, error);
-    rt_free(edges);
-    return status;
-}
-
-/* The volume is that of the tetrahedra from one vertex to all triangles. */
-static RtStatus check_volume(const RtTriangle *triangles, uint32_t count, RtError *error) {
-    RtVec3d origin = rt_widen(triangles[0].v[0]);
-    double volume = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        RtVec3d v[3];
-        for (int k = 0; k < 3; k++) v[k] = rt_subd(rt_widen(triangles[i].v[k]), origin);
-        volume += rt_dotd(v[0], rt_crossd(v[1], v[2])) / 6;
-    }
-    if (volume > 0) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "the volume in the mesh is %g: it must be above 0; if it is turned inside out, turn its "
-                   "triangles round (counter-clockwise seen from outside)",
-                   volume);
-}
-
-RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
-                           const RtTransform *place, uint32_t *index, RtError *error) {
-    if (count < 4) {
-        return rt_fail(error, RT_BAD_INPUT, "a closed mesh has 4 triangles at least; this one has %u", count);
-    }
-    RT_TRY(rt_solid_check_place(place, error));
-    RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + count,
-                      sizeof(RtTriangle), error));
-    RtTriangle *own = set->triangles + set->triangle_count;
-    for (uint32_t i = 0; i < count; i++) {
-        for (int v = 0; v < 3; v++) {
-            own[i].v[v] = rt_transform_point(place, triangles[i].v[v]);
-            if (!rt_finite(own[i].v[v])) {
-                return rt_fail(error, RT_BAD_INPUT, "vertex %d of triangle %u of the mesh is not finite", v,
-                               i);
-            }
-        }
-    }
-    RT_TRY(check_closed(own, count, error));
-    RT_TRY(check_volume(own, count, error));
-    RtSolid solid = {.kind = RT_SOLID_MESH,
-                     .first = set->triangle_count,
-                     .count = count,
-                     .place = rt_transform_identity()};
-    return rt_solid_finish(set, &solid, index, error);
 }

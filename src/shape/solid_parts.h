@@ -18,9 +18,15 @@ RT_SOLID_KINDS(RT_SOLID_FUNCTIONS)
 
 /* ---- making solids ---- */
 
-/* Adds `solid`, of which all is filled in but `back` and `box`, and whose `count` planes or triangles, if it
- * has any, stand ready behind those of the set (room for them: rt_reserve). */
+/* Adds `solid`, of which all is filled in but `back`, `box` and a mesh's tree, and whose `count` planes or
+ * triangles, if it has any, stand ready behind those of the set (room for them: rt_reserve). */
 RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, uint32_t *index, RtError *error);
+
+/* Makes the boxes of a mesh, behind those of the set, and fills in first_box and leaves. */
+RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error);
+
+/* Triangles in a leaf of them. */
+#define RT_SOLID_LEAF 4
 
 /* Refuses a transform that is not finite, or flattens. */
 RtStatus rt_solid_check_place(const RtTransform *place, RtError *error);
@@ -28,6 +34,13 @@ RtStatus rt_solid_check_place(const RtTransform *place, RtError *error);
 /* The place whose z axis is `height` along `axis`, and whose x and y axes are `radius` long; all at right
  * angles. Axes along those of the world give such. */
 RtTransform rt_solid_place_about(RtVec3d origin, RtVec3d axis, double radius, double height);
+
+/* The axis along which the vector lies, or -1. */
+static inline int rt_axis_of(RtVec3d v) {
+    if (v.y == 0 && v.z == 0) return v.x == 0 ? -1 : 0;
+    if (v.x == 0 && v.z == 0) return 1;
+    return v.x == 0 && v.y == 0 ? 2 : -1;
+}
 
 /* The plane through `point` across `normal`, of any length but 0. */
 RtPlane rt_plane_through(RtVec3d point, RtVec3d normal);

@@ -238,16 +238,16 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
 
 RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index, RtError *error) {
     RtTransform here = rt_transform_identity();
-    RtPlane planes[6] = {0};
+    RtPlane planes[3][2] = {0};
     for (int a = 0; a < 3; a++) {
         if (!(lo.at[a] < hi.at[a])) {
             return rt_fail(error, RT_BAD_INPUT, "a box needs lo < hi on each axis; on %c they are %g and %g",
                            "xyz"[a], (double)lo.at[a], (double)hi.at[a]);
         }
-        planes[2 * a].normal.at[a] = -1, planes[2 * a].offset = -(double)lo.at[a];
-        planes[2 * a + 1].normal.at[a] = 1, planes[2 * a + 1].offset = (double)hi.at[a];
+        planes[a][0].normal.at[a] = -1, planes[a][0].offset = -(double)lo.at[a];
+        planes[a][1].normal.at[a] = 1, planes[a][1].offset = (double)hi.at[a];
     }
-    return rt_solid_add_polyhedron(set, planes, 6, &here, index, error);
+    return rt_solid_add_polyhedron(set, planes[0], 6, &here, index, error);
 }
 
 RtStatus rt_solid_add_half_space(RtSolidSet *set, RtVec3 point, RtVec3 normal, uint32_t *index,
