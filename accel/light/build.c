@@ -163,29 +163,42 @@ static uint64_t go_over_faces(RtLightBuffer *buffer, RtLightEntry *order, Pass p
     return sum;
 }
 
-/* At least as many list entries as there will be with n cells along an edge: the cells of all footprints. */
-static double bound_references(RtLightBuffer *buffer, uint32_t n) {
+/* Sums over all footprints, from one pass over the objects. */
+typedef struct Extent {
+    double cells, sides, count; /* width * height, width + height, 1; in cells */
+    double near;                /* entries of near lists */
+} Extent;
+
+static Extent measure_footprints(const RtLightBuffer *buffer) {
     const RtScene *scene = buffer->base.scene;
-    uint32_t asked = buffer->n;
-    double sum = 0;
-    buffer->n = n;
+    Extent sum = {0};
     for (uint32_t light = 0; light < scene->light_count; light++) {
         for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
             RtLightFootprint at;
             bool near = rt_light_is_near(buffer, light, id);
-            sum += near;
+            sum.near += near;
             for (int face = 0; !near && face < 6; face++) {
                 if (!rt_light_footprint(buffer, light, face, id, &at)) continue;
-                sum += (at.hi[0] - at.lo[0] + 1.0) * (at.hi[1] - at.lo[1] + 1.0);
+                double width = at.hi[0] - at.lo[0] + 1.0, height = at.hi[1] - at.lo[1] + 1.0;
+                sum.cells += width * height;
+                sum.sides += width + height;
+                sum.count += 1;
             }
         }
     }
-    buffer->n = asked;
     return sum;
 }
 
+/* At least as many list entries as there will be with n cells along an edge, at most as many as asked for:
+ * what is within k cells is within k n / asked of the wider ones, and these may be cut at both ends. */
+static double bound_references(const RtLightBuffer *buffer, const Extent *sum, uint32_t n) {
+    double part = (double)n / buffer->n, cut = n < buffer->n ? 2 : 0;
+    return sum->near + part * part * sum->cells + part * cut * sum->sides + cut * cut * sum->count;
+}
+
 /* Bytes of the arrays, and of one query's memory; infinite if list entries cannot be numbered. */
-static double bound_bytes(const RtLightBuffer *buffer, uint32_t n, double references) {
+static double bound_bytes(const RtLightBuffer *buffer, const Extent *sum, uint32_t n) {
+    double references = bound_references(buffer, sum, n);
     size_t a_cell = sizeof(uint32_t) + (buffer->full_occlusion ? sizeof(RtLightCover) : 0) +
                     (buffer->cache ? sizeof(RtLightMemory) : 0);
     if (!(references < UINT32_MAX)) return INFINITY;
@@ -194,20 +207,21 @@ static double bound_bytes(const RtLightBuffer *buffer, uint32_t n, double refere
 }
 
 /* Before anything is made or gone over: a cell too many costs time as well. */
-static RtStatus refuse_size(RtLightBuffer *buffer, RtError *error) {
-    double references = bound_references(buffer, buffer->n), most = (double)MAX_BYTES;
-    if (bound_bytes(buffer, buffer->n, references) <= most) return RT_OK;
+static RtStatus refuse_size(const RtLightBuffer *buffer, RtError *error) {
+    const double most = (double)MAX_BYTES;
+    Extent sum = measure_footprints(buffer);
+    if (bound_bytes(buffer, &sum, buffer->n) <= most) return RT_OK;
     uint32_t fits = 1, too_many = buffer->n;
     while (too_many - fits > 1) {
         uint32_t n = fits + (too_many - fits) / 2;
-        bool is_fit = bound_bytes(buffer, n, bound_references(buffer, n)) <= most;
-        *(is_fit ? &fits : &too_many) = n;
+        *(bound_bytes(buffer, &sum, n) <= most ? &fits : &too_many) = n;
     }
     return rt_fail(
         error, RT_BAD_INPUT,
         "a light buffer of %u x %u cells a face for %u lights with up to %.3g list entries would take "
         "more than %.0f GiB: cells=%u would fit",
-        buffer->n, buffer->n, buffer->base.scene->light_count, references, most / 0x1p30, fits);
+        buffer->n, buffer->n, buffer->base.scene->light_count, bound_references(buffer, &sum, buffer->n),
+        most / 0x1p30, fits);
 }
 
 static RtStatus make_near_lists(RtLightBuffer *buffer, RtError *error) {
