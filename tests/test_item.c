@@ -214,6 +214,20 @@ static void an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble(void
     }
 }
 
+/* A floor seen so flat that where it is hit is known to a tenth, with a ball in doubt from within on: what is
+ * undecided is no nearer than it says, for the floor, no longer named, is one of the others. */
+static void an_undecided_sample_says_from_where_on_all_objects_are(void **state) {
+    (void)state;
+    const RtVec3 floor[4] = {{{-50, -50, 0}}, {{50, -50, 0}}, {{50, 50, 0}}, {{-50, 50, 0}}};
+    RtScene scene;
+    begin_scene(&scene);
+    look(&scene, rt_vec3(0, 0, 0x1p-10f), rt_vec3(0, 8, 0x1p-10f));
+    scene.camera.fov = 0.1f;
+    assert_ok(rt_scene_add_polygon(&scene, 0, floor, 4, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 10.4f, 0), 2, error));
+    check_scene(&scene, 0.97);
+}
+
 /* 5 x 5 samples of a picture 2 wide at distance 1: one every 0.4, the middle one on the axis. */
 static void an_object_smaller_than_a_sample_is_seen_on_one_and_not_between(void **state) {
     (void)state;
@@ -512,6 +526,7 @@ int main(void) {
         cmocka_unit_test(objects_all_around_the_eye_are_drawn_right),
         cmocka_unit_test(an_eye_inside_a_sphere_sees_its_inside),
         cmocka_unit_test(an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble),
+        cmocka_unit_test(an_undecided_sample_says_from_where_on_all_objects_are),
         cmocka_unit_test(an_object_smaller_than_a_sample_is_seen_on_one_and_not_between),
         cmocka_unit_test(coincident_and_nearly_coplanar_polygons_are_told_apart),
         cmocka_unit_test(touching_and_coincident_spheres_are_told_apart),

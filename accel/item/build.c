@@ -139,13 +139,15 @@ static RtStatus draw_all(const Builder *b, RtError *error) {
     return RT_OK;
 }
 
-/* Where the nearest object is not known for certain, nothing is said. */
+/* Where the nearest object is not known for certain, it becomes one of the others. */
 static void mark_undecided(const Builder *b) {
     for (size_t i = 0; i < rt_item_sample_count(b->buffer); i++) {
         RtItemSample *sample = &b->buffer->samples[i];
         bool nearest =
             sample->id == RT_NO_OBJECT ? sample->other == INFINITY : b->spans[i].hi < sample->other;
-        if (!nearest) sample->id = RT_ITEM_UNDECIDED;
+        if (nearest) continue;
+        if (sample->id != RT_NO_OBJECT) note_other(sample, b->spans[i].lo);
+        sample->id = RT_ITEM_UNDECIDED;
     }
 }
 
