@@ -276,7 +276,7 @@ static void every_traversal_answers_like_brute_in_every_structure(void **state) 
     static const char *const traversals[] = {"points", "neighbours", "parametric"};
     static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_objects=3",
                                            "max_depth=0", "max_depth=6,mailbox=off"};
-    enum { RAYS = 128, MAX_RAYS = 64 * RAYS };
+    enum { RAYS = 32, MAX_RAYS = 64 * RAYS };
     static RtRay rays[MAX_RAYS];
     for (size_t s = 0; s < rt_scene_family_count(); s++) {
         RtScene scene;
