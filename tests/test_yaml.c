@@ -48,6 +48,8 @@ static int make_folder(void **state) {
     mkdir(FOLDER, 0777);
     const char corner[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     write_text(FOLDER "/corner.obj", corner);
+    write_text(FOLDER "/open.obj", /* a pyramid without its base */
+               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
     write_text(FOLDER "/bunny.obj", corner); /* what the documentation calls so */
     return 0;
 }
@@ -152,6 +154,14 @@ static void a_built_in_moved_and_moved_back_is_itself(void **state) {
 /* ---- refusing: line and phrase of what is said ---- */
 
 #define SPHERE "objects:\n- sphere: {center: [0, 0, 0], radius: 1}\n"
+#define SOLIDS                                                                                               \
+    "solids:\n"                                                                                              \
+    "- {name: a, sphere: {center: [0, 0, 0], radius: 1}}\n"                                                  \
+    "- {name: h, half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}\n"                                       \
+    "# line 4\n"
+#define JOIN_4(x)            x "|" x "|" x "|" x
+#define TIMES_64(name, part) "- {name: " name ", formula: " JOIN_4(JOIN_4(JOIN_4(part))) "}\n"
+#define CSG(formula)         "objects:\n- csg: {formula: " formula "}\n"
 
 static const struct {
     const char *text;
@@ -255,6 +265,39 @@ static const struct {
     {SPHERE "- mesh:\n    path: corner.obj\n    transform:\n    - rotate: {axis: [0, 0, 0], degrees: 1}\n", 6,
      "length 0"},
     {SPHERE "- mesh:\n    path: corner.obj\n    transform:\n    - scale: 1e30\n", 4, "corner.obj"},
+    /* CSG */
+    {SOLIDS "- {name: c, formula: c | a}\n" CSG("a"), 5, "cannot contain itself"},
+    {SOLIDS "- {name: c, formula: d}\n- {name: d, formula: c}\n" CSG("a"), 5, "comes after this formula"},
+    {SOLIDS "- {name: a, sphere: {center: [0, 0, 0], radius: 1}}\n" CSG("a"), 5, "two solids 'a'"},
+    {SOLIDS "- {name: a b, sphere: {center: [0, 0, 0], radius: 1}}\n" CSG("a"), 5, "a name is a letter or _"},
+    {SOLIDS "- {name: c}\n" CSG("a"), 5, "0 of them"},
+    {SOLIDS "- {name: c, box: {lo: [0, 0, 0], hi: [1, 1, 0]}}\n" CSG("a"), 5, "lo < hi on each axis"},
+    {SOLIDS "- {name: c, box: {lo: [1, 0, 0], hi: [0, 1, 1]}}\n" CSG("a"), 5, "lo < hi on each axis"},
+    {SOLIDS "- {name: c, torus: {center: [0, 0, 0], major: 1, minor: 2}}\n" CSG("a"), 5, "minor < major"},
+    {SOLIDS "- {name: c, half_space: {point: [0, 0, 0], normal: [0, 0, 0]}}\n" CSG("a"), 5,
+     "the normal not 0"},
+    {SOLIDS "- {name: c, polyhedron: {}}\n" CSG("a"), 5, "give one of the two"},
+    {SOLIDS "- {name: c, polyhedron: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}}\n" CSG("a"), 5,
+     "in one plane"},
+    {SOLIDS "- name: c\n  mesh:\n    path: corner.obj\n" CSG("a"), 7, "at least; this one has 1"},
+    {SOLIDS "- name: c\n  mesh:\n    path: open.obj\n" CSG("a"), 7, "closed"},
+    {SOLIDS CSG("x"), 6, "no solid 'x'"},
+    {SOLIDS CSG("a |"), 6, "at character 4"},
+    {SOLIDS CSG("a h"), 6, "(difference) or ')' should stand here"},
+    {SOLIDS CSG("(a - h"), 6, "a ')' is missing"},
+    {SOLIDS CSG("a - h)"), 6, "has no '(' before it"},
+    {SOLIDS CSG("a - - h"), 6, "a name or '(' should stand here"},
+    {SOLIDS CSG("''"), 6, "0 characters"},
+    {SOLIDS CSG("h"), 6, "no end"},
+    {SOLIDS CSG("a | h"), 6, "no end"},
+    {SOLIDS CSG("h - a"), 6, "no end"},
+    {SOLIDS CSG("a, extents: maybe"), 6, "on or off, not 'maybe'"},
+    {SOLIDS CSG("a, extents: true"), 6, "on or off, not 'true'"},
+    {SOLIDS CSG("a, material: blu"), 6, "no material 'blu'"},
+    {"objects:\n- csg: {extents: on}\n", 2, "'formula' is missing"},
+    {SOLIDS TIMES_64("c", "a") TIMES_64("d", "c") TIMES_64("e", "d") TIMES_64("f", "e") TIMES_64("g", "f")
+         CSG("g"),
+     9, "at most 16777216"},
 };
 
 static void bad_input_is_refused_with_its_line_and_a_remedy(void **state) {

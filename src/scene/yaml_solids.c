@@ -130,6 +130,10 @@ static RtStatus look_up(void *context, const char *name, RtCsgTerm *term, RtErro
         *term = r->terms[found->index];
         return RT_OK;
     }
+    if (found && found->index == r->solids_known) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the solid '%s' cannot contain itself: give the part a name of its own", name);
+    }
     if (found) {
         return rt_fail(error, RT_BAD_INPUT,
                        "the solid '%s' comes after this formula: formulas use what stands before them", name);
@@ -228,7 +232,7 @@ static RtStatus read_extents(RtYamlReader *r, const char *text, bool *extents) {
     rt_yaml_at(r, "extents");
     *extents = strcmp(text, "off") != 0;
     if (!*text || !*extents || strcmp(text, "on") == 0) return RT_OK;
-    return rt_fail(r->error, RT_BAD_INPUT, "'%s' is neither on nor off", text);
+    return rt_fail(r->error, RT_BAD_INPUT, "extents are on or off, not '%s'", text);
 }
 
 RtStatus rt_yaml_add_csg(RtYamlReader *r, const RtYamlCsg *csg) {
