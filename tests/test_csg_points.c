@@ -4,6 +4,10 @@
  * true. RAYTALLY_CSG_RAYS sets the number of rays. */
 #include "csg_testing.h"
 
+#include "base/memory.h"
+#include "scene/formula.h"
+#include "scene/load.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -194,10 +198,22 @@ static void check_ray(const Model *m, const RtRay *ray, Score *score) {
     }
 }
 
+static uint64_t rays_asked(void) {
+    const char *asked = getenv("RAYTALLY_CSG_RAYS");
+    return asked ? strtoull(asked, NULL, 10) : 100000;
+}
+
+static void report(const char *what, const Score *score) {
+    printf("%s: %llu rays, %llu points, %llu unsure, %llu wrong\n", what, (unsigned long long)score->rays,
+           (unsigned long long)score->points, (unsigned long long)score->unsure,
+           (unsigned long long)score->wrong);
+    assert_int_equal(score->wrong, 0);
+    assert_true(score->unsure < score->points / 50);
+}
+
 static void rays_are_right_about_points(void **state) {
     (void)state;
-    const char *asked = getenv("RAYTALLY_CSG_RAYS");
-    uint64_t rays = asked ? strtoull(asked, NULL, 10) : 100000;
+    uint64_t rays = rays_asked();
     RtRandom random = rt_random(21, 0);
     Score score = {0};
     for (uint32_t round = 0; score.rays < rays; round++) {
@@ -210,14 +226,61 @@ static void rays_are_right_about_points(void **state) {
         }
         clear(&m.forest, &m.builder);
     }
-    printf("%llu rays, %llu points, %llu unsure, %llu wrong\n", (unsigned long long)score.rays,
-           (unsigned long long)score.points, (unsigned long long)score.unsure,
-           (unsigned long long)score.wrong);
-    assert_int_equal(score.wrong, 0);
-    assert_true(score.unsure < score.points / 50);
+    report("random trees", &score);
+}
+
+/* ---- the trees of scenes ---- */
+
+typedef struct Copier {
+    RtCsgBuilder *builder;
+    const RtCsgForest *forest;
+} Copier;
+
+static RtStatus copy_solid(void *context, const char *name, RtCsgTerm *term, RtError *error) {
+    Copier *c = context;
+    uint32_t from = (uint32_t)strtoul(name + 1, NULL, 10), index;
+    RT_TRY(rt_solid_add_moved(&c->builder->set, &c->forest->set, from, NULL, &index, error));
+    return rt_csg_solid(c->builder, index, 0, term, error);
+}
+
+/* Rays through the ball about a tree, as its formula is written. */
+static void check_tree(const RtCsgForest *forest, const RtCsg *tree, uint64_t rays, RtRandom *random,
+                       Score *score) {
+    Model m = {.forest = *forest, .tree = *tree};
+    Copier copier = {&m.builder, forest};
+    char *formula;
+    assert_ok(rt_formula_write(forest, tree, &formula, error));
+    assert_ok(rt_formula_read(formula, &m.builder, copy_solid, &copier, &m.root, error));
+    for (uint64_t i = 0; i < rays; i++) {
+        RtRay ray = rt_sphere_chord(&tree->ball, random);
+        check_ray(&m, &ray, score);
+    }
+    rt_free(formula);
+    rt_csg_builder_clear(&m.builder);
+}
+
+static void rays_are_right_about_the_trees_of_scenes(void **state) {
+    (void)state;
+    const char *names[] = {"scenes/csg-lecture.yaml", "scenes/csg-bracket.yaml", "scenes/chess.yaml",
+                           "csg-field:n=27"};
+    RtRandom random = rt_random(22, 0);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        RtScene scene;
+        assert_ok(rt_scene_open(names[i], &scene, error));
+        Score score = {0};
+        const RtGeometry *g = &scene.geometry;
+        for (uint32_t k = 0; k < g->csg_count; k++) {
+            check_tree(&g->forest, &g->csgs[k], rays_asked() / 4 / g->csg_count, &random, &score);
+        }
+        report(names[i], &score);
+        rt_scene_clear(&scene);
+    }
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rays_are_right_about_points)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rays_are_right_about_points),
+        cmocka_unit_test(rays_are_right_about_the_trees_of_scenes),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

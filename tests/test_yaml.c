@@ -292,6 +292,7 @@ static const struct {
     {SOLIDS CSG("a | h"), 6, "no end"},
     {SOLIDS CSG("h - a"), 6, "no end"},
     {SOLIDS CSG("a, extents: maybe"), 6, "on or off, not 'maybe'"},
+    {SOLIDS CSG("a, extents: ''"), 6, "on or off, not ''"},
     {SOLIDS CSG("a, extents: true"), 6, "on or off, not 'true'"},
     {SOLIDS CSG("a, material: blu"), 6, "no material 'blu'"},
     {"objects:\n- csg: {extents: on}\n", 2, "'formula' is missing"},

@@ -102,7 +102,7 @@ static const cyaml_schema_field_t standard_fields[] = {
 
 static const cyaml_schema_field_t csg_fields[] = {
     CYAML_FIELD_STRING_PTR("formula", POINTER, RtYamlCsg, formula, 1, CYAML_UNLIMITED), MATERIAL(RtYamlCsg),
-    CYAML_FIELD_STRING("extents", OPTIONAL, RtYamlCsg, extents, 1),
+    CYAML_FIELD_STRING_PTR("extents", OPTIONAL | POINTER, RtYamlCsg, extents, 0, CYAML_UNLIMITED),
     LIST_OF(RtYamlCsg, transform, OPTIONAL, step, 0), CYAML_FIELD_END};
 
 static const cyaml_schema_field_t builtin_fields[] = {

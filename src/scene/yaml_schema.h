@@ -132,7 +132,7 @@ typedef struct RtYamlSolid {
 typedef struct RtYamlCsg {
     char *formula;
     char material[RT_MAX_NAME];
-    char extents[8];
+    char *extents; /* may be NULL */
     RtYamlStep *transform;
     uint32_t transform_count;
 } RtYamlCsg;

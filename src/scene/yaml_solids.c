@@ -230,9 +230,9 @@ RtStatus rt_yaml_add_solids(RtYamlReader *r) {
 
 static RtStatus read_extents(RtYamlReader *r, const char *text, bool *extents) {
     rt_yaml_at(r, "extents");
-    *extents = strcmp(text, "off") != 0;
-    if (!*text || !*extents || strcmp(text, "on") == 0) return RT_OK;
-    return rt_fail(r->error, RT_BAD_INPUT, "extents are on or off, not '%s'", text);
+    *extents = !text || strcmp(text, "on") == 0;
+    if (*extents || strcmp(text, "off") == 0) return RT_OK;
+    return rt_fail(r->error, RT_BAD_INPUT, "extents are on or off, not '%.60s'", text);
 }
 
 RtStatus rt_yaml_add_csg(RtYamlReader *r, const RtYamlCsg *csg) {

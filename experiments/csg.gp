@@ -1,0 +1,71 @@
+# csg: what extents on the inner nodes of CSG trees spare, a row of panels for the small trees and one for the large.
+
+n_accels = words(accels)
+sizes = "small large"
+caption = "'trees of 8 to 64 solids' 'trees of 512 solids'"
+array title[3] = ["solids tested / ray (csg\\_tests)", "extents tested / ray", "ns / ray"]
+
+# Means over all kinds of rays, each weighed by what its whole set has.
+chosen(size, inner, a) = strcol("scene") eq size."-".inner && strcol("accel") eq word(accels, a)
+per_ray(m) = m == 1 ? column("csg_tests") / column("rays") : m == 2 ? column("extent_tests") / column("rays") : column("ns")
+array value[12 * n_accels]
+place(size, m, inner, a) = (((size - 1) * 3 + m - 1) * 2 + inner - 1) * n_accels + a
+do for [s = 1:2] {
+  do for [m = 1:3] {
+    file = m == 1 ? "counts.csv" : "times.csv" # which has no csg_tests, but Embree
+    do for [i = 1:2] {
+      inner = word("on off", i)
+      do for [a = 1:n_accels] {
+        stats file using (chosen(word(sizes, s), inner, a) ? column("set_rays") : 0) nooutput
+        weight = STATS_sum
+        stats file using (chosen(word(sizes, s), inner, a) ? per_ray(m) * column("set_rays") : 0) nooutput
+        value[place(s, m, i, a)] = weight > 0 ? STATS_sum / weight : NaN
+      }
+    }
+  }
+}
+
+eval svg("1-csg", 1240, 760)
+set multiplot
+set yrange [n_accels + 0.6 : 0.4]
+set border 2 linecolor rgb soft
+set xtics format "" scale 0
+left = 0.105; width = 0.885 / 3
+on_color = "#2f6f9f"; off_color = "#c1543c"
+do for [s = 1:2] {
+  do for [m = 1:3] {
+    highest = 0
+    do for [i = 1:2] { do for [a = 1:n_accels] {
+      v = value[place(s, m, i, a)]
+      if (v == v && v > highest) { highest = v }
+    } }
+    set xrange [0 : highest * 1.2]
+    set lmargin at screen left + (m - 1) * width + 0.012
+    set rmargin at screen left + m * width
+    set tmargin at screen 0.875 - (s - 1) * 0.455
+    set bmargin at screen 0.505 - (s - 1) * 0.455
+    unset label
+    unset ytics
+    if (s == 1 && m == 1) {
+      set label 3 "with inner extents" at screen left + 0.012, screen 0.975 left font ",15" textcolor rgb on_color
+      set label 4 "without" at screen left + 0.16, screen 0.975 left font ",15" textcolor rgb off_color
+      set label 5 "Means over all kinds of rays." at screen 0.985, screen 0.975 right font ",12" textcolor rgb soft
+    }
+    set label 1 word(caption, s).": ".title[m] at graph 0, 1.045 left font ",12" textcolor rgb ink
+    if (m == 1) {
+      do for [a = 1:n_accels] {
+        set label 100 + a word(accels, a) at graph -0.03, first a right textcolor rgb color(a) font ",13"
+      }
+    }
+    do for [i = 1:2] { do for [a = 1:n_accels] {
+      v = value[place(s, m, i, a)]
+      set label 200 + 50 * i + a figure(v) at first (v == v ? v : 0), first a + 0.4 * i - 0.6 left \
+          offset character 0.3, 0 textcolor rgb ink font ",10"
+    } }
+    plot for [i = 1:2] for [a = 1:n_accels] "+" using (0):(a):(0):(value[place(s, m, i, a)]): \
+           (a + 0.4 * i - 0.78):(a + 0.4 * i - 0.42) every ::0::0 \
+         with boxxyerror linewidth 0.5 linecolor rgb (i == 1 ? on_color : off_color)
+  }
+}
+unset multiplot
+unset output
