@@ -116,15 +116,15 @@ static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out
     const RtGeometry *g = &scene->geometry;
     uint32_t count = g->object_count;
     size_t most_nodes = count > 0 ? 2 * (size_t)count - 1 : 0;
-    Bvh *bvh = rt_alloc(1, sizeof(Bvh));
-    if (!bvh) return rt_fail_memory(error, "a bvh", sizeof(Bvh));
-    *bvh = (Bvh){.base = {.ops = &rt_bvh_ops, .scene = scene, .exact = true, .counts = true},
-                 .nodes = rt_alloc(most_nodes, sizeof(Node)),
-                 .ids = rt_alloc(count, sizeof(uint32_t)),
-                 .traversal_cost = values[PARAM_TRAVERSAL].f,
-                 .leaf_limit = (uint32_t)values[PARAM_LEAF].i};
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_bvh_ops, scene, sizeof(Bvh), &accel, error));
+    Bvh *bvh = (Bvh *)accel;
+    bvh->nodes = rt_alloc(most_nodes, sizeof(Node));
+    bvh->ids = rt_alloc(count, sizeof(uint32_t));
+    bvh->traversal_cost = values[PARAM_TRAVERSAL].f;
+    bvh->leaf_limit = (uint32_t)values[PARAM_LEAF].i;
     if (!bvh->nodes || !bvh->ids) {
-        destroy(&bvh->base);
+        destroy(accel);
         return rt_fail_memory(error, "the nodes of a bvh",
                               most_nodes * sizeof(Node) + count * sizeof(uint32_t));
     }
@@ -134,7 +134,7 @@ static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out
         bvh->node_count = 1;
         build_node(&builder, 0, 0, count, 0);
     }
-    *out = &bvh->base;
+    *out = accel;
     return RT_OK;
 }
 

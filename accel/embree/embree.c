@@ -162,17 +162,19 @@ static void destroy(RtAccel *accel) {
 }
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    RtEmbree *self = rt_alloc(1, sizeof(RtEmbree));
-    if (!self) return rt_fail_memory(error, "embree", sizeof(RtEmbree));
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_embree_ops, scene, sizeof(RtEmbree), &accel, error));
+    RtEmbree *self = (RtEmbree *)accel;
     self->user = values[MODE].choice == 1;
     self->query = (RtEmbreeQueryKind)values[QUERY].choice;
-    self->base = (RtAccel){.ops = &rt_embree_ops, .scene = scene, .exact = self->user};
+    accel->exact = self->user;
+    accel->counts = false;
     RtStatus status = build_into(self, values, error);
     if (status != RT_OK) {
-        destroy(&self->base);
+        destroy(accel);
         return status;
     }
-    *out = &self->base;
+    *out = accel;
     return RT_OK;
 }
 

@@ -193,9 +193,9 @@ void rt_grid_destroy(RtAccel *accel) {
 
 RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
                               RtError *error) {
-    RtGrid *grid = rt_alloc(1, sizeof(RtGrid));
-    if (!grid) return rt_fail_memory(error, "a grid", sizeof(RtGrid));
-    grid->base = (RtAccel){.ops = &rt_grid_ops, .scene = scene, .exact = true, .counts = true};
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_grid_ops, scene, sizeof(RtGrid), &accel, error));
+    RtGrid *grid = (RtGrid *)accel;
     grid->box = scene->geometry.box;
     grid->mailbox = values[RT_GRID_MAILBOX].flag;
     grid->surfaces = values[RT_GRID_OVERLAP].choice == OVERLAP_EXACT;
@@ -205,11 +205,11 @@ RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValu
         rt_grid_choose_margin(grid);
         RtStatus status = make_lists(grid, limit, error);
         if (status != RT_OK) {
-            rt_grid_destroy(&grid->base);
+            rt_grid_destroy(accel);
             return status;
         }
     }
-    *out = &grid->base;
+    *out = accel;
     return RT_OK;
 }
 

@@ -278,16 +278,14 @@ RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtVa
                                 RtError *error) {
     const RtGeometry *g = &scene->geometry;
     int64_t depth = values[RT_OCTREE_MAX_DEPTH].i;
-    RtOctree *tree = rt_alloc(1, sizeof(RtOctree));
-    if (!tree) return rt_fail_memory(error, "an octree", sizeof(RtOctree));
-    *tree = (RtOctree){
-        .base = {.ops = &rt_octree_ops, .scene = scene, .exact = true, .counts = true},
-        .max_objects = (uint32_t)values[RT_OCTREE_MAX_OBJECTS].i,
-        .max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth,
-        .split = values[RT_OCTREE_SPLIT].choice,
-        .traversal = values[RT_OCTREE_TRAVERSAL].choice,
-        .mailbox = values[RT_OCTREE_MAILBOX].flag,
-    };
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_octree_ops, scene, sizeof(RtOctree), &accel, error));
+    RtOctree *tree = (RtOctree *)accel;
+    tree->max_objects = (uint32_t)values[RT_OCTREE_MAX_OBJECTS].i;
+    tree->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
+    tree->split = values[RT_OCTREE_SPLIT].choice;
+    tree->traversal = values[RT_OCTREE_TRAVERSAL].choice;
+    tree->mailbox = values[RT_OCTREE_MAILBOX].flag;
     RtOctreeBuilder builder = {.tree = tree, .objects = g->boxes, .limit = limit};
     RtStatus status = RT_OK;
     if (g->object_count > 0) {
@@ -298,10 +296,10 @@ RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtVa
     rt_free(builder.next);
     rt_free(builder.centers);
     if (status != RT_OK) {
-        rt_octree_destroy(&tree->base);
+        rt_octree_destroy(accel);
         return status;
     }
-    *out = &tree->base;
+    *out = accel;
     return RT_OK;
 }
 
