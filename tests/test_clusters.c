@@ -239,7 +239,11 @@ static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(v
     self->nodes[0] = (RtClusterNode){root.box, 0, RT_CLUSTER_LEAF | 3};
     assert_broken(self, "1 of 5 nodes are in the tree");
     self->nodes[0] = root;
-    self->nodes[2] = self->nodes[1];
+    RtClusterNode two = self->nodes[1], one = self->nodes[2];
+    self->nodes[1] = one;
+    self->nodes[2] = two;
+    assert_broken(self, "the ids of leaf 1 begin at 2, not at 0");
+    self->nodes[1] = two;
     assert_broken(self, "has two parents");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&three);

@@ -87,6 +87,13 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     grid->planes[1][3] = 100;
     assert_broken(grid, "lies behind");
     grid->planes[1][3] = plane;
+    float ends[2] = {grid->planes[2][0], grid->planes[2][8]};
+    grid->planes[2][0] += 1e-3f;
+    assert_broken(grid, "planes of axis 2 do not enclose its box");
+    grid->planes[2][0] = ends[0];
+    grid->planes[2][8] -= 1e-3f;
+    assert_broken(grid, "planes of axis 2 do not enclose its box");
+    grid->planes[2][8] = ends[1];
 
     RtBox box = grid->box;
     grid->box.hi.z -= 1;

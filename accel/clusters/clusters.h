@@ -16,7 +16,8 @@ typedef struct RtClusterNode {
     uint32_t count; /* 2..width children, or RT_CLUSTER_LEAF | 1..leaf objects */
 } RtClusterNode;
 
-/* Node 0 is the root; an object's id stands in exactly one leaf, and the ids of a subtree are one run. */
+/* Node 0 is the root; an object's id stands in exactly one leaf. The leaves come in the order of their ids,
+ * children as they stand, so that the ids of a subtree are one run. */
 typedef struct RtClusters {
     RtAccel base;
     RtClusterNode *nodes; /* [node_count] */

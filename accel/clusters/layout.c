@@ -140,9 +140,10 @@ typedef struct Check {
     RtError *error;
     uint32_t *seen;   /* [objects] how often each is in a leaf */
     uint32_t reached; /* nodes */
+    uint32_t ended;   /* where the ids of the leaves so far end */
 } Check;
 
-static RtStatus check_leaf(const Check *check, uint32_t index) {
+static RtStatus check_leaf(Check *check, uint32_t index) {
     const RtClusters *self = check->self;
     const RtClusterNode *node = &self->nodes[index];
     const RtGeometry *geometry = &self->base.scene->geometry;
@@ -154,6 +155,10 @@ static RtStatus check_leaf(const Check *check, uint32_t index) {
         return rt_fail(check->error, RT_MISMATCH, "clusters: leaf %u does not contain its object %u", index,
                        self->ids[i]);
     }
+    if (node->first != check->ended)
+        return rt_fail(check->error, RT_MISMATCH, "clusters: the ids of leaf %u begin at %u, not at %u",
+                       index, node->first, check->ended);
+    check->ended += rt_cluster_fanout(node);
     return RT_OK;
 }
 
@@ -205,7 +210,7 @@ RtStatus rt_clusters_validate(const RtAccel *accel, RtError *error) {
     const RtClusters *self = (const RtClusters *)accel;
     uint32_t count = accel->scene->geometry.object_count;
     if (count == 0) return RT_OK;
-    Check check = {self, error, rt_alloc(count, sizeof(uint32_t)), 0};
+    Check check = {self, error, rt_alloc(count, sizeof(uint32_t)), 0, 0};
     if (!check.seen) return rt_fail_memory(error, "validating clusters", count * sizeof(uint32_t));
     RtStatus status = check_all(&check);
     rt_free(check.seen);

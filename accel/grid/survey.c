@@ -114,6 +114,9 @@ RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
             if (grid->planes[a][i] <= grid->planes[a][i + 1]) continue;
             return rt_fail(error, RT_MISMATCH, "grid: plane %u of axis %d lies behind plane %u", i, a, i + 1);
         }
+        if (grid->planes[a][0] > grid->box.lo.at[a] || grid->planes[a][grid->n[a]] < grid->box.hi.at[a]) {
+            return rt_fail(error, RT_MISMATCH, "grid: the planes of axis %d do not enclose its box", a);
+        }
     }
     if (!rt_box_contains(grid->box, g->box)) {
         return rt_fail(error, RT_MISMATCH, "grid: its box does not contain the scene");
