@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 
+#include <assert.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -61,6 +62,7 @@ static inline bool reserve(Machine *m, uint32_t more) {
 }
 
 static inline void push(Machine *m, uint32_t count) {
+    assert(m->depth < RT_CSG_MAX_LISTS);
     m->starts[m->depth + 1] = m->starts[m->depth] + count;
     m->depth++;
 }
@@ -99,6 +101,7 @@ static uint32_t merge(RtCsgOp op, const RtCrossing *left, const RtCrossing *left
 }
 
 static bool apply(Machine *m, RtCsgOp op, bool reversed) {
+    assert(m->depth > 1);
     uint32_t lower = m->starts[m->depth - 2], top = m->starts[m->depth - 1], end = m->starts[m->depth];
     bool left_empty = reversed ? top == end : lower == top;
     bool right_empty = reversed ? lower == top : top == end;
@@ -154,6 +157,7 @@ INLINE bool run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const 
             if (!push_solid(m, &forest->set, instruction.operand, ray, tally)) return false;
             break;
         case RT_CSG_SKIP_IF_EMPTY:
+            assert(m->depth > 0);
             if (m->starts[m->depth - 1] == m->starts[m->depth]) i = instruction.to - 1;
             break;
         case RT_CSG_APPLY:
