@@ -61,6 +61,25 @@ static void a_tree_lies_within_its_extents(void **state) {
 
 /* ---- transforms ---- */
 
+/* A ball at x = 4 is turned to y = 4 and then moved to x = 8: not the other way round, to y = 12. */
+static void the_inner_move_comes_first(void **state) {
+    (void)state;
+    RtTransform turn = rt_transform_identity(), shift = turn;
+    assert_ok(rt_transform_rotate(&turn, rt_vec3(0, 0, 1), 90, error));
+    assert_ok(rt_transform_translate(&shift, rt_vec3(8, 0, 0), error));
+    for (int joined = 0; joined < 2; joined++) {
+        RtCsgBuilder b = {0};
+        RtCsgForest forest = {0};
+        RtCsgTerm term = ball(&b, rt_vec3(4, 0, 0), 1, 0);
+        assert_ok(rt_csg_move(&b, term, &turn, &term, error));
+        if (joined) term = join(&b, term, ball(&b, rt_vec3(0, -10, 0), 1, 0));
+        assert_ok(rt_csg_move(&b, term, &shift, &term, error));
+        RtCsg tree = plant(&forest, &b, term);
+        assert_hits(&forest, &tree, ray_along(rt_vec3(0, 4, 0), along_x), 2, (float[]){7, 9});
+        clear(&forest, &b);
+    }
+}
+
 static void a_tree_moved_by_powers_of_two_is_met_at_the_same_bits(void **state) {
     (void)state;
     RtRandom random = rt_random(7, 0);
@@ -145,7 +164,8 @@ static void a_transplanted_tree_is_the_same_tree(void **state) {
 
 /* ---- deep trees ---- */
 
-#define DEEP 10000
+#define DEEP         10000
+#define LITTLE_STACK ((size_t)64 * 1024)
 
 typedef enum DeepShape { LEFT_DEEP, RIGHT_DEEP, BALANCED } DeepShape;
 
@@ -176,33 +196,48 @@ static void check_deep(DeepShape shape, RtCsgOp op) {
     RtCsg tree = plant(&forest, &b, deep_tree(&b, shape, op));
     assert_true(rt_csg_forest_bytes(&forest) < (uint64_t)DEEP * 2000);
     assert_int_equal(tree.most_crossings, 4 * DEEP);
-    for (uint32_t i = 0; i < 20; i++) {
-        RtRay across = ray_along(rt_vec3((float)(i * 499), 0, 3), rt_vec3(0, 0, -1));
-        RtRay along = ray_along(rt_vec3(-3, 0, 0.75f), rt_vec3(1, 0, 0));
-        Hits hits = hits_of(&forest, &tree, &across);
-        if (op == RT_CSG_UNION) assert_int_equal(hits.count, 2);
-        hits = hits_of(&forest, &tree, &along);
-        if (op == RT_CSG_UNION) assert_int_equal(hits.count, 2);
+    /* A line that meets the first two balls, then many that meet one ball, and one that meets all. */
+    RtRay ray = ray_along(rt_vec3(0.25f, 0, 3), rt_vec3(0, 0, -1));
+    Hits hits = hits_of(&forest, &tree, &ray);
+    assert_int_equal(hits.count, op == RT_CSG_UNION ? 2 : op == RT_CSG_DIFFERENCE ? 4 : 0);
+    for (uint32_t i = 1; i < 20; i++) {
+        ray.org.x = (float)(i * 499);
+        hits = hits_of(&forest, &tree, &ray);
+        assert_int_equal(hits.count, op == RT_CSG_UNION ? 2 : 0);
     }
+    ray = ray_along(rt_vec3(-3, 0, 0.75f), along_x);
+    hits = hits_of(&forest, &tree, &ray);
+    assert_int_equal(hits.count, op == RT_CSG_INTERSECTION ? 0 : 2);
     clear(&forest, &b);
-}
-
-static void *check_all_deep(void *unused) {
-    for (int shape = 0; shape < 3; shape++) {
-        for (int op = 0; op < 3; op++) check_deep((DeepShape)shape, (RtCsgOp)op);
-    }
-    return unused;
 }
 
 static void a_tree_of_depth_10000_takes_little_memory_and_little_stack(void **state) {
     (void)state;
+    for (int shape = 0; shape < 3; shape++) {
+        for (int op = 0; op < 3; op++) check_deep((DeepShape)shape, (RtCsgOp)op);
+    }
+}
+
+/* Deep trees are tested by a thread with a stack of its own. */
+static void *run_on_little_stack(void *failed) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_tree_of_depth_10000_takes_little_memory_and_little_stack),
+    };
+    *(int *)failed = cmocka_run_group_tests_name("deep", tests, NULL, NULL);
+    return NULL;
+}
+
+static int run_deep(void) {
     pthread_attr_t attributes;
     pthread_t thread;
-    assert_int_equal(pthread_attr_init(&attributes), 0);
-    assert_int_equal(pthread_attr_setstacksize(&attributes, 64 * 1024), 0);
-    assert_int_equal(pthread_create(&thread, &attributes, check_all_deep, NULL), 0);
-    assert_int_equal(pthread_join(thread, NULL), 0);
+    int failed = 1;
+    if (pthread_attr_init(&attributes) != 0) return 1;
+    if (pthread_attr_setstacksize(&attributes, LITTLE_STACK) == 0 &&
+        pthread_create(&thread, &attributes, run_on_little_stack, &failed) == 0) {
+        pthread_join(thread, NULL);
+    }
     pthread_attr_destroy(&attributes);
+    return failed;
 }
 
 /* ---- memory ---- */
@@ -256,12 +291,12 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tests_of_inner_nodes_change_no_bit),
         cmocka_unit_test(a_tree_lies_within_its_extents),
+        cmocka_unit_test(the_inner_move_comes_first),
         cmocka_unit_test(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits),
         cmocka_unit_test(moving_the_tree_and_moving_the_ray_agree),
         cmocka_unit_test(a_transplanted_tree_is_the_same_tree),
-        cmocka_unit_test(a_tree_of_depth_10000_takes_little_memory_and_little_stack),
         cmocka_unit_test(planting_fails_cleanly_at_every_allocation),
         cmocka_unit_test(a_ray_that_lacks_memory_is_counted),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, NULL) + run_deep();
 }

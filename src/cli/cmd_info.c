@@ -87,6 +87,7 @@ static void print_info(const RtScene *scene, const Counts *counts) {
     for (int i = 0; i < RT_SHAPE_COUNT; i++) {
         if (counts->of_shape[i]) printf("  %-13s %u\n", rt_shape_name((RtShape)i), counts->of_shape[i]);
     }
+    if (g->csg_count) printf("  made of solids: %u\n", g->forest.set.solid_count);
     if (g->vertex_normal_count) printf("  with vertex normals: %u triangles\n", g->vertex_normal_count);
     if (counts->zero_area) printf("  without area, never hit: %u triangles\n", counts->zero_area);
     printf("bounds:\n");
@@ -143,14 +144,14 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
         json_array_append_new(lights, json_pack("{s:o, s:o}", "position", vector_json(light->position),
                                                 "intensity", vector_json(light->intensity)));
     }
-    return json_pack("{s:s, s:s, s:I, s:o, s:I, s:I, s:{s:o, s:o}, s:o, s:o, s:o, s:o, s:o, s:I}", "scene",
-                     scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count,
-                     "shapes", shapes, "triangles_with_normals", (json_int_t)g->vertex_normal_count,
-                     "triangles_without_area", (json_int_t)counts->zero_area, "bounds", "lo",
-                     vector_json(g->box.lo), "hi", vector_json(g->box.hi), "materials", materials, "lights",
-                     lights, "ambient", vector_json(scene->ambient), "background",
-                     vector_json(scene->background), "camera", camera_json(&scene->camera), "bytes",
-                     (json_int_t)rt_scene_bytes(scene));
+    return json_pack(
+        "{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:{s:o, s:o}, s:o, s:o, s:o, s:o, s:o, s:I}", "scene",
+        scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count, "shapes",
+        shapes, "solids", (json_int_t)g->forest.set.solid_count, "triangles_with_normals",
+        (json_int_t)g->vertex_normal_count, "triangles_without_area", (json_int_t)counts->zero_area, "bounds",
+        "lo", vector_json(g->box.lo), "hi", vector_json(g->box.hi), "materials", materials, "lights", lights,
+        "ambient", vector_json(scene->ambient), "background", vector_json(scene->background), "camera",
+        camera_json(&scene->camera), "bytes", (json_int_t)rt_scene_bytes(scene));
 }
 
 /* ---- the command ---- */

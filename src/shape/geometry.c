@@ -296,14 +296,20 @@ static RtVec3d longest_edge(const RtVec3 *vertices, uint32_t count) {
     return best;
 }
 
-/* The longest of the three axes of a tree's largest solid, and another one. */
+/* The longest of the three axes of a tree's largest solid, and another one; of a polyhedron, two normals. */
 static void csg_axes(const RtGeometry *g, const RtCsg *tree, RtVec3d *main, RtVec3d *normal) {
+    const RtSolidSet *set = &g->forest.set;
     double largest = -1;
     for (uint32_t i = 0; i < tree->solid_count; i++) {
-        const RtSolid *solid = &g->forest.set.solids[tree->first_solid + i];
+        const RtSolid *solid = &set->solids[tree->first_solid + i];
         double area = rt_box_half_area(solid->box);
         if (solid->subtracted || !isfinite(area) || area <= largest) continue;
         largest = area;
+        if (solid->kind == RT_SOLID_POLYHEDRON) {
+            *main = set->planes[solid->first].normal;
+            *normal = set->planes[solid->first + solid->count - 1].normal;
+            continue;
+        }
         *main = *normal = rt_vec3d(0, 0, 0);
         for (int a = 0; a < 3; a++) {
             RtVec3d axis = {solid->place.m[0][a], solid->place.m[1][a], solid->place.m[2][a]};
