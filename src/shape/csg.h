@@ -45,7 +45,7 @@ typedef uint32_t RtCsgTerm;
 typedef struct RtCsgNode {
     enum { RT_CSG_SOLID, RT_CSG_MOVE, RT_CSG_COMBINE } kind;
     RtCsgOp op;
-    RtCsgTerm left, right; /* RT_CSG_SOLID: left is the index in `solids`; RT_CSG_MOVE: left */
+    RtCsgTerm left, right; /* RT_CSG_SOLID: left is the index in set.solids; RT_CSG_MOVE: left */
     RtTransform move;
     uint32_t size; /* solids in the tree below, uses counted */
 } RtCsgNode;
@@ -99,9 +99,9 @@ typedef struct RtCsg {
     uint32_t first_solid, solid_count; /* in the set: a tree's solids lie together */
     uint32_t most_crossings; /* room that a ray may need, in crossings, over all lists on the stack */
     bool extents;            /* made with tests of inner nodes */
-    RtBox box;               /* of the result; a point where the result is certainly empty */
-    RtBall ball;             /* about the result: rt_csg_ball */
-    RtBox reach;             /* about the boxes of all solids, infinite sides left out: sets the thickness */
+    RtBox box;   /* of the result; a point where the result is certainly empty; then nothing hits it */
+    RtBall ball; /* about the result: rt_csg_ball */
+    RtBox reach; /* about the boxes of all solids, infinite sides left out: sets the thickness */
 } RtCsg;
 
 /* All trees of a geometry. Owns its arrays; a zeroed struct is empty. */
