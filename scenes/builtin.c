@@ -40,8 +40,9 @@ static RtStatus fail_unknown(const char *spec, RtError *error) {
     for (size_t i = 0; i < BUILTIN_COUNT; i++) names[i] = builtins[i]->name;
     rt_join_names(names, BUILTIN_COUNT, list, sizeof list);
     rt_suggest(name, names, BUILTIN_COUNT, suggestion);
-    return rt_fail(error, RT_BAD_INPUT, "there is no built-in scene '%s'%s%s Built-in are: %s", name,
-                   suggestion, *suggestion ? "" : ".", list);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "there is no built-in scene '%s'%s%s Built-in are: %s; a file is named with its extension",
+                   name, suggestion, *suggestion ? "" : ".", list);
 }
 
 static bool fits(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes) {

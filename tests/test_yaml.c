@@ -413,6 +413,22 @@ static void a_scene_saved_and_loaded_keeps_every_bit(void **state) {
     }
 }
 
+/* Half-spaces are saved as polyhedra of one plane, slabs as polyhedra of two. */
+static void solids_without_an_end_survive_saving(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text("solids:\n"
+                        "  - {name: ball, sphere: {center: [1, 2, 3], radius: 1.1}}\n"
+                        "  - {name: below, half_space: {point: [1, 2, 3], normal: [1, 2, 3]}}\n"
+                        "  - {name: slab, polyhedron: {planes: [[0.3, 1, 0, 2.5], [-0.3, -1, 0, -1.7]]}}\n"
+                        "objects:\n"
+                        "  - csg: {formula: ball & below}\n"
+                        "  - csg: {formula: ball & slab, transform: [{scale: 0.3}]}\n",
+                        &scene, error));
+    assert_survives(&scene);
+    rt_scene_clear(&scene);
+}
+
 static void vertex_normals_survive_saving_bit_for_bit(void **state) {
     (void)state;
     RtScene scene;
@@ -552,6 +568,7 @@ int main(void) {
         cmocka_unit_test(every_prefix_of_a_scene_is_read_or_refused),
         cmocka_unit_test(whichever_allocation_fails_nothing_is_left),
         cmocka_unit_test(a_scene_saved_and_loaded_keeps_every_bit),
+        cmocka_unit_test(solids_without_an_end_survive_saving),
         cmocka_unit_test(vertex_normals_survive_saving_bit_for_bit),
         cmocka_unit_test(names_that_cannot_be_written_are_replaced_by_numbers),
         cmocka_unit_test(a_full_disk_is_reported),

@@ -44,7 +44,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 1000000000); return 0;
     case 's': o->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
     case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE at a time");
+        if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
         o->scene = argument;
         return 0;
     case ARGP_KEY_NO_ARGS: argp_error(state, "which SCENE? A file, or a built-in such as balls"); return 0;

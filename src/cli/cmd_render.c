@@ -44,7 +44,9 @@ static const struct argp_option options[] = {
     {"structure", KEY_STRUCTURE, "FILE.png", 0, "The boxes of the accelerator over the image", 0},
     {"stats", KEY_STATS, "FILE.json", 0, "Counts by ray kind, times and sizes", 0},
     {"check", KEY_CHECK, 0, 0,
-     "Compare the answer to every ray, and the frame, with brute's; exit 1 if one differs", 0},
+     "Compare the answer to every ray, and the frame, with brute's; exit 1 if one differs. brute is slow: "
+     "try a small --size first",
+     0},
     {0}};
 
 static bool has_extension(const char *path, const char *extension) {

@@ -123,7 +123,8 @@ RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, R
     while (named < count && strcasecmp(names[named], extension) != 0) named++;
     if (named == count) return fail_extension(path, "written", "", error);
     if (!overwrite && rt_file_exists(path)) {
-        return rt_fail(error, RT_BAD_INPUT, "%s exists already: remove it, or choose another name", path);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s exists already: remove it, choose another name, or convert with --force", path);
     }
     RtOutput output;
     RT_TRY(rt_output_open(&output, path, error));

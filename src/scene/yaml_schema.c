@@ -88,7 +88,7 @@ static const cyaml_schema_value_t plane = LIST_VALUE(CYAML_FLAG_DEFAULT, sizeof(
 
 static const cyaml_schema_field_t polyhedron_fields[] = {
     LIST_OF(RtYamlPolyhedron, vertices, OPTIONAL, point, 4),
-    LIST_OF(RtYamlPolyhedron, planes, OPTIONAL, plane, 4), MATERIAL(RtYamlPolyhedron), CYAML_FIELD_END};
+    LIST_OF(RtYamlPolyhedron, planes, OPTIONAL, plane, 1), MATERIAL(RtYamlPolyhedron), CYAML_FIELD_END};
 
 static const cyaml_schema_value_t facet = LIST_VALUE(CYAML_FLAG_DEFAULT, sizeof(float), number, 9);
 
