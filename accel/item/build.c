@@ -197,9 +197,9 @@ void rt_item_destroy(RtAccel *accel) {
 }
 
 RtStatus rt_item_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    RtItemBuffer *buffer = rt_alloc(1, sizeof(RtItemBuffer));
-    if (!buffer) return rt_fail_memory(error, "an item buffer", sizeof(RtItemBuffer));
-    buffer->base = (RtAccel){.ops = &rt_item_ops, .scene = scene, .exact = true, .counts = true};
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_item_ops, scene, sizeof(RtItemBuffer), &accel, error));
+    RtItemBuffer *buffer = (RtItemBuffer *)accel;
     buffer->settle = values[RT_ITEM_SETTLE].flag;
     RtStatus status = fill(buffer, error);
     if (status != RT_OK) {

@@ -290,9 +290,9 @@ void rt_light_destroy(RtAccel *accel) {
 }
 
 RtStatus rt_light_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    RtLightBuffer *buffer = rt_alloc(1, sizeof(RtLightBuffer));
-    if (!buffer) return rt_fail_memory(error, "a light buffer", sizeof(RtLightBuffer));
-    buffer->base = (RtAccel){.ops = &rt_light_ops, .scene = scene, .exact = true, .counts = true};
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_light_ops, scene, sizeof(RtLightBuffer), &accel, error));
+    RtLightBuffer *buffer = (RtLightBuffer *)accel;
     buffer->n = (uint32_t)values[RT_LIGHT_CELLS].i;
     buffer->full_occlusion = values[RT_LIGHT_FULL_OCCLUSION].flag;
     buffer->extents = values[RT_LIGHT_EXTENTS].flag;

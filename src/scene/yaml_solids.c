@@ -12,6 +12,10 @@
 static RtStatus add_sphere(RtYamlReader *r, const RtYamlSphere *sphere, uint32_t *index) {
     float radius = sphere->radius;
     rt_yaml_at(r, radius > 0 ? "center" : "radius");
+    if (!(radius > 0)) {
+        return rt_fail(r->error, RT_BAD_INPUT, "a sphere needs a radius above 0, this one has %g",
+                       (double)radius);
+    }
     return rt_solid_add_ellipsoid(&r->builder.set, sphere->center, rt_vec3(radius, radius, radius), index,
                                   r->error);
 }
