@@ -4,11 +4,10 @@
  * tori, turned any way) lie in a ball, and are joined as a binary tree as even as can be: unions near the
  * root, so that no single operation empties it, and any operation below. */
 #include "base/random.h"
-#include "scene/nff.h"
 #include "scenes/builtin.h"
+#include "scenes/studio.h"
 
 enum { N, LEAST, MOST, EXTENTS, SEED };
-enum { MATERIALS = 4 };
 
 static const RtParam params[] = {
     [N] = {.name = "n",
@@ -119,7 +118,8 @@ static RtStatus add_tree(Field *f, uint32_t solids, uint32_t level, RtCsgTerm *t
     if (solids == 1) {
         uint32_t index;
         RT_TRY(add_solid(f, &index));
-        return rt_csg_solid(&f->builder, index, rt_random_bits(&f->random) % MATERIALS, term, f->error);
+        return rt_csg_solid(&f->builder, index, rt_random_bits(&f->random) % RT_STUDIO_MATERIALS, term,
+                            f->error);
     }
     RtCsgTerm left, right;
     RtCsgOp op = choose_op(f, level);
@@ -151,28 +151,14 @@ static RtStatus add_object(RtScene *scene, uint64_t i, const RtValue *values, Rt
     return status;
 }
 
-static RtStatus add_materials(RtScene *scene, RtError *error) {
-    const RtMaterial materials[MATERIALS] = {
-        rt_nff_material("clay", rt_vec3(0.9f, 0.5f, 0.3f), 0.9f, 0, 1, 0, 1),
-        rt_nff_material("slate", rt_vec3(0.3f, 0.4f, 0.6f), 0.9f, 0, 1, 0, 1),
-        rt_nff_material("moss", rt_vec3(0.4f, 0.6f, 0.3f), 0.9f, 0, 1, 0, 1),
-        rt_nff_material("steel", rt_vec3(0.8f, 0.8f, 0.8f), 0.4f, 0.5f, 50, 0, 1),
-    };
-    for (int i = 0; i < MATERIALS; i++) {
-        uint32_t index;
-        RT_TRY(rt_scene_add_material(scene, &materials[i], &index, error));
-    }
-    return RT_OK;
-}
-
 static uint64_t object_count(const RtValue *values) {
     return (uint64_t)values[N].i;
 }
 
 static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    RT_TRY(add_materials(scene, error));
-    RT_TRY(rt_scene_add_light(scene, rt_vec3(4, 3, 6), rt_vec3(0.6f, 0.6f, 0.6f), error));
-    RT_TRY(rt_scene_add_light(scene, rt_vec3(5, -6, 2), rt_vec3(0.4f, 0.4f, 0.4f), error));
+    static const RtStudioMaterial materials[RT_STUDIO_MATERIALS] = {RT_STUDIO_CLAY, RT_STUDIO_SLATE,
+                                                                    RT_STUDIO_MOSS, RT_STUDIO_STEEL};
+    RT_TRY(rt_studio(scene, materials, error));
     for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) RT_TRY(add_object(scene, i, values, error));
     return RT_OK;
 }

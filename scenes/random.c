@@ -6,8 +6,8 @@
  * stays the same for any n. In clusters, the distance from a centre along each axis is the sum of four
  * uniform numbers: nearly a normal distribution, without a logarithm. */
 #include "base/random.h"
-#include "scene/nff.h"
 #include "scenes/builtin.h"
+#include "scenes/studio.h"
 
 enum { N, DISTRIBUTION, SHAPE, SEED, RADIUS, SPREAD, CLUSTERS, WIDTH };
 enum { UNIFORM, CLUSTERED, COINCIDENT, LINE, PLANE, STADIUM };
@@ -203,29 +203,14 @@ static double mean_spacing(const RtValue *values) {
     }
 }
 
-/* Two matte, a mirror and a glass, so that every kind of ray is traced. */
-static RtStatus add_materials(RtScene *scene, RtError *error) {
-    const RtMaterial materials[4] = {
-        rt_nff_material("clay", rt_vec3(0.9f, 0.5f, 0.3f), 0.9f, 0, 1, 0, 1),
-        rt_nff_material("slate", rt_vec3(0.3f, 0.4f, 0.6f), 0.9f, 0, 1, 0, 1),
-        rt_nff_material("steel", rt_vec3(0.8f, 0.8f, 0.8f), 0.4f, 0.5f, 50, 0, 1),
-        rt_nff_material("glass", rt_vec3(0.9f, 1, 0.9f), 0.1f, 0.1f, 100, 0.8f, 1.3f),
-    };
-    for (int i = 0; i < 4; i++) {
-        uint32_t index;
-        RT_TRY(rt_scene_add_material(scene, &materials[i], &index, error));
-    }
-    return RT_OK;
-}
-
 static uint64_t object_count(const RtValue *values) {
     return (uint64_t)values[N].i;
 }
 
 static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    RT_TRY(add_materials(scene, error));
-    RT_TRY(rt_scene_add_light(scene, rt_vec3(4, 3, 6), rt_vec3(0.6f, 0.6f, 0.6f), error));
-    RT_TRY(rt_scene_add_light(scene, rt_vec3(5, -6, 2), rt_vec3(0.4f, 0.4f, 0.4f), error));
+    static const RtStudioMaterial materials[RT_STUDIO_MATERIALS] = {RT_STUDIO_CLAY, RT_STUDIO_SLATE,
+                                                                    RT_STUDIO_STEEL, RT_STUDIO_GLASS};
+    RT_TRY(rt_studio(scene, materials, error));
     /* float32 hides the last bits of the cube root, in which libraries differ. */
     double mean_radius = (double)(float)(values[RADIUS].f * mean_spacing(values));
     for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) {
