@@ -1,5 +1,5 @@
 /* accel/bvh.c from the inside: its invariants, broken on purpose, and its depth. */
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/bvh.c"
 
@@ -25,13 +25,6 @@ static Bvh *make_bvh(const RtScene *scene, const char *params_text) {
     return (Bvh *)accel;
 }
 
-/* Asserts that validate refuses `bvh` with a message that holds `phrase`. */
-static void assert_broken(const Bvh *bvh, const char *phrase) {
-    RtError error = {RT_OK, ""};
-    assert_int_equal(validate(&bvh->base, &error), RT_MISMATCH);
-    if (!strstr(error.message, phrase)) fail_msg("validate said: %s", error.message);
-}
-
 static void validate_names_each_invariant_that_is_broken(void **state) {
     (void)state;
     RtScene scene;
@@ -41,18 +34,18 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
 
     Node root = bvh->nodes[0];
     bvh->nodes[0].box.hi.x -= 1;
-    assert_broken(bvh, "does not contain its child");
+    assert_broken(&bvh->base, "does not contain its child");
     bvh->nodes[0].first = 0;
-    assert_broken(bvh, "children that are not there");
+    assert_broken(&bvh->base, "children that are not there");
     bvh->nodes[0].first = bvh->node_count - 1;
-    assert_broken(bvh, "children that are not there");
+    assert_broken(&bvh->base, "children that are not there");
     bvh->nodes[0] = root;
 
     for (uint32_t i = 0; i < bvh->node_count; i++) {
         if (bvh->nodes[i].count == 0) continue;
         Node leaf = bvh->nodes[i];
         bvh->nodes[i].box.lo.y = 0;
-        assert_broken(bvh, "does not contain its object");
+        assert_broken(&bvh->base, "does not contain its object");
         bvh->nodes[i] = leaf;
     }
 
@@ -62,15 +55,15 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     make_row(&scene, 2, 0);
     Bvh *pair = make_bvh(&scene, "leaf=2");
     pair->ids[1] = pair->ids[0];
-    assert_broken(pair, "object 0 is in a leaf twice");
+    assert_broken(&pair->base, "object 0 is in a leaf twice");
     pair->ids[1] = 7;
-    assert_broken(pair, "holds no object");
+    assert_broken(&pair->base, "holds no object");
     pair->ids[1] = 1 - pair->ids[0];
     pair->nodes[0].first = 1;
-    assert_broken(pair, "holds no object");
+    assert_broken(&pair->base, "holds no object");
     pair->nodes[0].first = 0;
     pair->nodes[0].count = 1;
-    assert_broken(pair, "is in no leaf");
+    assert_broken(&pair->base, "is in no leaf");
     destroy(&pair->base);
     rt_scene_clear(&scene);
 }
@@ -86,7 +79,7 @@ static void validate_names_a_node_that_is_too_deep(void **state) {
         bvh->nodes[2 * i] = (Node){.box = box, .first = 2 * i + 1};
         bvh->nodes[2 * i + 1] = (Node){.box = box, .first = i, .count = 1};
     }
-    assert_broken(bvh, "node 127 is too deep");
+    assert_broken(&bvh->base, "node 127 is too deep");
     destroy(&bvh->base);
     rt_scene_clear(&scene);
 }

@@ -1,6 +1,6 @@
 /* accel/clusters: exactness of every kind of extent with every order and method, the shape of its nodes, and
  * each invariant broken on purpose. */
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/clusters/clusters.h"
 #include "base/memory.h"
@@ -170,12 +170,6 @@ static void groups_of_spheres_get_tight_extents(void **state) {
 
 /* ---- broken on purpose ---- */
 
-static void assert_broken(const RtClusters *self, const char *phrase) {
-    RtError error = {RT_OK, ""};
-    assert_int_equal(self->base.ops->validate(&self->base, &error), RT_MISMATCH);
-    if (!strstr(error.message, phrase)) fail_msg("validate said: %s", error.message);
-}
-
 /* The first leaf in the array. */
 static uint32_t some_leaf(const RtClusters *self) {
     uint32_t i = 0;
@@ -190,32 +184,32 @@ static void validate_names_each_invariant_of_the_tree_that_is_broken(void **stat
     RtClusterNode root = self->nodes[0], *leaf = &self->nodes[some_leaf(self)], kept = *leaf;
 
     self->nodes[0].box.hi.x -= 1;
-    assert_broken(self, "node 0 does not contain its child");
+    assert_broken(&self->base, "node 0 does not contain its child");
     self->nodes[0] = root;
     self->nodes[0].count = 5;
-    assert_broken(self, "node 0 has 5 children, not 2 to 4");
+    assert_broken(&self->base, "node 0 has 5 children, not 2 to 4");
     self->nodes[0].count = 1;
-    assert_broken(self, "node 0 has 1 children, not 2 to 4");
+    assert_broken(&self->base, "node 0 has 1 children, not 2 to 4");
     self->nodes[0] = root;
     self->nodes[0].first = 0;
-    assert_broken(self, "node 0 has children that are not there");
+    assert_broken(&self->base, "node 0 has children that are not there");
     self->nodes[0].first = self->node_count - 1;
-    assert_broken(self, "node 0 has children that are not there");
+    assert_broken(&self->base, "node 0 has children that are not there");
     self->nodes[0] = root;
 
     leaf->box.lo.y = 0;
-    assert_broken(self, "does not contain its object");
+    assert_broken(&self->base, "does not contain its object");
     *leaf = kept;
     leaf->count = RT_CLUSTER_LEAF | 2;
-    assert_broken(self, "has 2 objects, not 1 to 1");
+    assert_broken(&self->base, "has 2 objects, not 1 to 1");
     leaf->count = RT_CLUSTER_LEAF;
-    assert_broken(self, "has 0 objects");
+    assert_broken(&self->base, "has 0 objects");
     *leaf = kept;
     leaf->first = 16;
-    assert_broken(self, "holds no object");
+    assert_broken(&self->base, "holds no object");
     *leaf = kept;
     self->ids[leaf->first] = 99;
-    assert_broken(self, "holds no object");
+    assert_broken(&self->base, "holds no object");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
 }
@@ -226,9 +220,9 @@ static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(v
     for (uint32_t i = 0; i < 2; i++) scene.geometry.boxes[i] = scene.geometry.box;
     RtClusters *self = make_clusters(&scene, "clusters");
     self->ids[1] = self->ids[0];
-    assert_broken(self, "in 2 leaves");
+    assert_broken(&self->base, "in 2 leaves");
     self->node_count = 1;
-    assert_broken(self, "children that are not there");
+    assert_broken(&self->base, "children that are not there");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
 
@@ -237,14 +231,14 @@ static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(v
     RtClusterNode root = self->nodes[0];
     assert_int_equal(self->node_count, 5);
     self->nodes[0] = (RtClusterNode){root.box, 0, RT_CLUSTER_LEAF | 3};
-    assert_broken(self, "1 of 5 nodes are in the tree");
+    assert_broken(&self->base, "1 of 5 nodes are in the tree");
     self->nodes[0] = root;
     RtClusterNode two = self->nodes[1], one = self->nodes[2];
     self->nodes[1] = one;
     self->nodes[2] = two;
-    assert_broken(self, "the ids of leaf 1 begin at 2, not at 0");
+    assert_broken(&self->base, "the ids of leaf 1 begin at 2, not at 0");
     self->nodes[1] = two;
-    assert_broken(self, "has two parents");
+    assert_broken(&self->base, "has two parents");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&three);
 
@@ -258,7 +252,7 @@ static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(v
         if (i + 1 < COUNT) self->nodes[2 * i] = (RtClusterNode){row.geometry.box, 2 * i + 1, 2};
         self->nodes[leaf] = (RtClusterNode){row.geometry.boxes[i], i, RT_CLUSTER_LEAF | 1};
     }
-    assert_broken(self, "too deep");
+    assert_broken(&self->base, "too deep");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&row);
 }
@@ -268,15 +262,15 @@ static void validate_names_the_extent_that_does_not_hold_its_objects(void **stat
     RtScene scene = make_row(8);
     RtClusters *self = make_clusters(&scene, "clusters:extent=sphere");
     self->set.balls[0].radius *= 1 - 1e-4;
-    assert_broken(self, "clusters: the sphere 0 does not contain object");
+    assert_broken(&self->base, "clusters: the sphere 0 does not contain object");
     rt_accel_destroy(&self->base);
     self = make_clusters(&scene, "clusters:extent=obb");
     self->set.oriented[1].half[0] *= 0.99;
-    assert_broken(self, "clusters: the oriented box 1 does not contain object");
+    assert_broken(&self->base, "clusters: the oriented box 1 does not contain object");
     rt_accel_destroy(&self->base);
     self = make_clusters(&scene, "clusters:extent=slabs,slabs=13");
     self->set.slabs[2 * 13 + 12].lo += 0.01f;
-    assert_broken(self, "clusters: the set of slabs 2 does not contain object");
+    assert_broken(&self->base, "clusters: the set of slabs 2 does not contain object");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
 }

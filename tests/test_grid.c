@@ -1,28 +1,11 @@
 /* accel/grid/ from the inside: its invariants, broken on purpose, its rules of resolution, its limits. */
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/grid/grid.h"
 #include "base/memory.h"
 
 #include <stdio.h>
 #include <string.h>
-
-/* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
-static void make_lattice(RtScene *scene, int nx, int ny, int nz) {
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &grey, &material, error));
-    for (int x = 0; x < nx; x++) {
-        for (int y = 0; y < ny; y++) {
-            for (int z = 0; z < nz; z++) {
-                RtVec3 center = {(float)x, (float)y, (float)z};
-                assert_ok(rt_scene_add_sphere(scene, material, center, 0.5f, error));
-            }
-        }
-    }
-    assert_ok(rt_scene_finish(scene, error));
-}
 
 static RtGrid *make_grid(const RtScene *scene, const char *spec) {
     RtAccel *accel = NULL;
@@ -70,12 +53,6 @@ static void objects_go_into_every_voxel_they_touch(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void assert_broken(const RtGrid *grid, const char *phrase) {
-    RtError error = {RT_OK, ""};
-    assert_int_equal(rt_grid_validate(&grid->base, &error), RT_MISMATCH);
-    if (!strstr(error.message, phrase)) fail_msg("validate said: %s", error.message);
-}
-
 static void validate_names_each_invariant_that_is_broken(void **state) {
     (void)state;
     RtScene scene;
@@ -85,37 +62,37 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
 
     float plane = grid->planes[1][3];
     grid->planes[1][3] = 100;
-    assert_broken(grid, "lies behind");
+    assert_broken(&grid->base, "lies behind");
     grid->planes[1][3] = plane;
     float ends[2] = {grid->planes[2][0], grid->planes[2][8]};
     grid->planes[2][0] += 1e-3f;
-    assert_broken(grid, "planes of axis 2 do not enclose its box");
+    assert_broken(&grid->base, "planes of axis 2 do not enclose its box");
     grid->planes[2][0] = ends[0];
     grid->planes[2][8] -= 1e-3f;
-    assert_broken(grid, "planes of axis 2 do not enclose its box");
+    assert_broken(&grid->base, "planes of axis 2 do not enclose its box");
     grid->planes[2][8] = ends[1];
 
     RtBox box = grid->box;
     grid->box.hi.z -= 1;
-    assert_broken(grid, "does not contain the scene");
+    assert_broken(&grid->base, "does not contain the scene");
     grid->box = box;
 
     uint32_t first = grid->first[10];
     grid->first[10] = 0;
-    assert_broken(grid, "is broken");
+    assert_broken(&grid->base, "is broken");
     grid->first[10] = first;
 
     uint32_t last = grid->first[11] - 1, id = grid->ids[last];
     grid->ids[last] = 63;
-    assert_broken(grid, "which it does not touch");
+    assert_broken(&grid->base, "which it does not touch");
     grid->ids[last] = 64;
-    assert_broken(grid, "not ascending ids");
+    assert_broken(&grid->base, "not ascending ids");
     grid->ids[last] = id;
 
     /* The first object taken out of the first list. */
     memmove(grid->ids, grid->ids + 1, (grid->first[512] - 1) * sizeof(uint32_t));
     for (uint32_t v = 1; v <= 512; v++) grid->first[v]--;
-    assert_broken(grid, "voxels, but");
+    assert_broken(&grid->base, "voxels, but");
 
     rt_grid_destroy(&grid->base);
     rt_scene_clear(&scene);

@@ -1,6 +1,6 @@
 /* The item buffer: how much it decides, that it is never wrong where geometry is awkward, what it passes on,
  * and its invariants broken. */
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/item/item.h"
 #include "base/memory.h"
@@ -476,12 +476,6 @@ static void too_many_samples_are_refused_with_a_number_that_fits(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void assert_broken(const RtAccel *accel, const char *says) {
-    RtError error = {RT_OK, ""};
-    assert_int_equal(rt_accel_validate(accel, &error), RT_MISMATCH);
-    if (!strstr(error.message, says)) fail_msg("'%s' does not say '%s'", error.message, says);
-}
-
 static void each_broken_invariant_is_named(void **state) {
     (void)state;
     RtScene scene;
@@ -512,11 +506,6 @@ static void each_broken_invariant_is_named(void **state) {
     rt_scene_clear(&scene);
 }
 
-static int tear_down(void **state) {
-    (void)state;
-    return rt_alloc_live() == 0 ? 0 : -1;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nearly_all_primary_rays_of_every_builtin_scene_are_decided),
@@ -540,5 +529,5 @@ int main(void) {
         cmocka_unit_test(too_many_samples_are_refused_with_a_number_that_fits),
         cmocka_unit_test(each_broken_invariant_is_named),
     };
-    return cmocka_run_group_tests(tests, NULL, tear_down);
+    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
 }

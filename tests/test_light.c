@@ -1,6 +1,6 @@
 /* The light buffer: what it counts, what it passes on, lights in awkward places, and its invariants broken.
  */
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/light/light.h"
 #include "base/memory.h"
@@ -27,14 +27,6 @@ static void make_screen(RtScene *scene) {
     assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0, 0, 0), 1, error)); /* in the dark */
     assert_ok(rt_scene_add_light(scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(scene, error));
-}
-
-static RtRay shadow_ray(const RtScene *scene, RtVec3 from, uint32_t light) {
-    return (RtRay){.org = from,
-                   .dir = rt_sub(scene->lights[light].position, from),
-                   .tmax = 1,
-                   .kind = RT_RAY_SHADOW,
-                   .source = light};
 }
 
 /* ---- counted by hand ---- */
@@ -501,12 +493,6 @@ static void too_many_cells_are_refused_with_a_number_that_fits(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void assert_broken(RtAccel *accel, const char *says) {
-    RtError error = {RT_OK, ""};
-    assert_int_equal(rt_accel_validate(accel, &error), RT_MISMATCH);
-    if (!strstr(error.message, says)) fail_msg("%s", error.message);
-}
-
 static void each_broken_invariant_is_named(void **state) {
     (void)state;
     RtScene scene;
@@ -561,11 +547,6 @@ static void each_broken_invariant_is_named(void **state) {
     rt_scene_clear(&scene);
 }
 
-static int tear_down(void **state) {
-    (void)state;
-    return rt_alloc_live() == 0 ? 0 : -1;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_counts_what_was_counted_by_hand),
@@ -580,5 +561,5 @@ int main(void) {
         cmocka_unit_test(too_many_cells_are_refused_with_a_number_that_fits),
         cmocka_unit_test(each_broken_invariant_is_named),
     };
-    return cmocka_run_group_tests(tests, NULL, tear_down);
+    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
 }

@@ -1,5 +1,5 @@
 /* accel/octree/ from the inside: its invariants, broken on purpose, what goes into which cell, its limits. */
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/octree/octree.h"
 #include "base/memory.h"
@@ -9,23 +9,6 @@
 
 #include <stdio.h>
 #include <string.h>
-
-/* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
-static void make_lattice(RtScene *scene, int nx, int ny, int nz) {
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &grey, &material, error));
-    for (int x = 0; x < nx; x++) {
-        for (int y = 0; y < ny; y++) {
-            for (int z = 0; z < nz; z++) {
-                RtVec3 center = {(float)x, (float)y, (float)z};
-                assert_ok(rt_scene_add_sphere(scene, material, center, 0.5f, error));
-            }
-        }
-    }
-    assert_ok(rt_scene_finish(scene, error));
-}
 
 /* Spheres of radius 1/4 along the x axis. */
 static void make_row(RtScene *scene, const float *x, int count) {
@@ -121,12 +104,6 @@ static void coincident_objects_stay_in_one_leaf(void **state) {
     rt_scene_clear(&same);
 }
 
-static void assert_broken(const RtOctree *tree, const char *phrase) {
-    RtError error = {RT_OK, ""};
-    assert_int_equal(rt_octree_validate(&tree->base, &error), RT_MISMATCH);
-    if (!strstr(error.message, phrase)) fail_msg("validate said: %s", error.message);
-}
-
 /* The first leaf, from the root on, with `least` objects or more. */
 static uint32_t find_leaf(const RtOctree *tree, uint32_t least) {
     uint32_t i = 0;
@@ -144,44 +121,44 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     RtBox box = tree->boxes[0];
 
     tree->boxes[0].hi.z = 1;
-    assert_broken(tree, "root does not contain");
+    assert_broken(&tree->base, "root does not contain");
     tree->boxes[0] = box;
 
     root->first = tree->node_count - 7;
-    assert_broken(tree, "not where nodes are");
+    assert_broken(&tree->base, "not where nodes are");
     *root = saved;
     root->split.y = 100;
-    assert_broken(tree, "outside its cell");
+    assert_broken(&tree->base, "outside its cell");
     *root = saved;
 
     tree->nodes[1].parent = 9;
-    assert_broken(tree, "no child of its parent");
+    assert_broken(&tree->base, "no child of its parent");
     tree->nodes[1] = saved_child;
 
     box = tree->boxes[5];
     tree->boxes[5].lo.x -= 1;
-    assert_broken(tree, "not cut from its parent's");
+    assert_broken(&tree->base, "not cut from its parent's");
     tree->boxes[5] = box;
 
     tree->max_depth = 2;
-    assert_broken(tree, "deeper than 2");
+    assert_broken(&tree->base, "deeper than 2");
     tree->max_depth = 20;
-    assert_broken(tree, "could be divided");
+    assert_broken(&tree->base, "could be divided");
     tree->max_depth = 3;
 
     RtOctreeNode *leaf = &tree->nodes[find_leaf(tree, 2)];
     saved = *leaf;
     leaf->first = tree->id_count - leaf->count + 1;
-    assert_broken(tree, "not where lists are");
+    assert_broken(&tree->base, "not where lists are");
     *leaf = saved;
     uint32_t *last = &tree->ids[leaf->first + leaf->count - 1], id = *last;
     *last = 63;
-    assert_broken(tree, "which it does not touch");
+    assert_broken(&tree->base, "which it does not touch");
     *last = 64;
-    assert_broken(tree, "not ascending ids");
+    assert_broken(&tree->base, "not ascending ids");
     *last = id;
     leaf->count--;
-    assert_broken(tree, "leaves, but");
+    assert_broken(&tree->base, "leaves, but");
 
     rt_octree_destroy(&tree->base);
     rt_scene_clear(&scene);

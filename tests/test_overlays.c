@@ -1,5 +1,5 @@
 /* Overlays: specs with '+', the layers they build, what is counted where, and the shadow cache. */
-#include "testing.h"
+#include "accel_testing.h"
 
 #include "accel/accel.h"
 #include "base/memory.h"
@@ -26,14 +26,6 @@ static int set_up(void **state) {
 static int tear_down(void **state) {
     rt_scene_clear(*state);
     return rt_alloc_live() == 0 ? 0 : -1;
-}
-
-static RtRay shadow_ray(const RtScene *scene, RtVec3 from, uint32_t light) {
-    return (RtRay){.org = from,
-                   .dir = rt_sub(scene->lights[light].position, from),
-                   .tmax = 1,
-                   .kind = RT_RAY_SHADOW,
-                   .source = light};
 }
 
 /* ---- specs ---- */
