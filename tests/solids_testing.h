@@ -287,15 +287,6 @@ static inline List check_line(const Model *model, const RtSolidSet *set, const R
     return list;
 }
 
-static inline RtVec3d to_world(const RtTransform *place, RtVec3d p) {
-    RtVec3d moved;
-    for (int a = 0; a < 3; a++) {
-        const double *m = place->m[a];
-        moved.at[a] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
-    }
-    return moved;
-}
-
 /* A point in the standard solid, or not far from it. */
 static inline RtVec3d random_target(const Model *model, RtRandom *random) {
     RtVec3d p = rt_widen(rt_random_point(random, 1.1f));
@@ -311,10 +302,11 @@ static inline RtRay random_ray(const Model *model, RtRandom *random, RtVec3d tar
     RtVec3d from = rt_random_direction(random);
     if (rt_random_unit(random) < 0.25f) from.at[rt_random_bits(random) % 3] = 0;
     if (rt_random_unit(random) < 0.5f) from = rt_subd(target, random_target(model, random));
-    RtVec3d dir = rt_subd(to_world(&model->place, from), to_world(&model->place, rt_vec3d(0, 0, 0)));
+    RtVec3d dir = rt_subd(rt_transform_pointd(&model->place, from),
+                          rt_transform_pointd(&model->place, rt_vec3d(0, 0, 0)));
     RtVec3 along = rt_narrow(rt_scaled(dir, (double)rt_random_between(random, 0.1f, 10)));
     double steps = distance / (rt_lengthd(rt_widen(along)) / rt_lengthd(dir));
-    RtVec3d org = rt_add_scaledd(to_world(&model->place, target), rt_widen(along), -steps);
+    RtVec3d org = rt_add_scaledd(rt_transform_pointd(&model->place, target), rt_widen(along), -steps);
     return make_ray(rt_narrow(org), along);
 }
 

@@ -190,7 +190,7 @@ static void faces_in_one_plane_are_met_at_the_same_bits(void **state) {
         assert_ok(rt_solid_add_half_space(&set, rt_vec3(3, 2, 0.7f), rt_vec3(0, 0, 1), &at[4], error));
         for (int i = 0; i < 5; i++) assert_ok(rt_solid_add_moved(&set, &set, at[i], &move, &at[i], error));
         for (int i = 0; i < 100; i++) {
-            RtVec3d aim = to_world(&move, rt_widen(rt_random_point(&random, 1)));
+            RtVec3d aim = rt_transform_pointd(&move, rt_widen(rt_random_point(&random, 1)));
             RtVec3d dir = rt_random_direction(&random), up = {{move.m[0][2], move.m[1][2], move.m[2][2]}};
             if (fabs(rt_dotd(dir, up)) < 0.5 * rt_lengthd(up)) continue; /* too flat to go through caps */
             RtRay ray = make_ray(rt_narrow(rt_add_scaledd(aim, dir, -2 * (double)size)), rt_narrow(dir));

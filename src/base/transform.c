@@ -86,30 +86,34 @@ RtStatus rt_transform_translate(RtTransform *transform, RtVec3 by, RtError *erro
     return RT_OK;
 }
 
-RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point) {
-    RtVec3d p = rt_widen(point), moved;
+RtVec3d rt_transform_pointd(const RtTransform *transform, RtVec3d point) {
+    RtVec3d moved;
     for (int row = 0; row < 3; row++) {
         const double *m = transform->m[row];
-        moved.at[row] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
+        moved.at[row] = m[0] * point.x + m[1] * point.y + m[2] * point.z + m[3];
     }
-    return rt_narrow(moved);
+    return moved;
 }
 
-static RtVec3d column_of(const RtTransform *transform, int column) {
-    return rt_vec3d(transform->m[0][column], transform->m[1][column], transform->m[2][column]);
+RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point) {
+    return rt_narrow(rt_transform_pointd(transform, rt_widen(point)));
+}
+
+RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal) {
+    RtVec3d x = rt_transform_column(transform, 0), y = rt_transform_column(transform, 1),
+            z = rt_transform_column(transform, 2);
+    RtVec3d sum = rt_scaled(rt_crossd(y, z), normal.x);
+    sum = rt_add_scaledd(sum, rt_crossd(z, x), normal.y);
+    return rt_add_scaledd(sum, rt_crossd(x, y), normal.z);
 }
 
 RtVec3 rt_transform_normal(const RtTransform *transform, RtVec3 normal) {
-    RtVec3d x = column_of(transform, 0), y = column_of(transform, 1), z = column_of(transform, 2);
-    RtVec3d n = rt_widen(normal);
-    RtVec3d sum = rt_scaled(rt_crossd(y, z), n.x);
-    sum = rt_add_scaledd(sum, rt_crossd(z, x), n.y);
-    sum = rt_add_scaledd(sum, rt_crossd(x, y), n.z);
-    return rt_narrow(rt_normalized(sum));
+    return rt_narrow(rt_normalized(rt_transform_normald(transform, rt_widen(normal))));
 }
 
 double rt_transform_uniform_scale(const RtTransform *transform) {
-    RtVec3d x = column_of(transform, 0), y = column_of(transform, 1), z = column_of(transform, 2);
+    RtVec3d x = rt_transform_column(transform, 0), y = rt_transform_column(transform, 1),
+            z = rt_transform_column(transform, 2);
     double scale = rt_lengthd(x);
     double slack = 1e-6 * scale;
     bool same = fabs(rt_lengthd(y) - scale) <= slack && fabs(rt_lengthd(z) - scale) <= slack;

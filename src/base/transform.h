@@ -14,6 +14,11 @@ typedef struct RtTransform {
 
 RtTransform rt_transform_identity(void);
 
+/* Where the axis `column` goes, 0..2, and 3 the origin. */
+static inline RtVec3d rt_transform_column(const RtTransform *transform, int column) {
+    return rt_vec3d(transform->m[0][column], transform->m[1][column], transform->m[2][column]);
+}
+
 /* Does what `first` does, and then what `second` does. */
 RtTransform rt_transform_compose(const RtTransform *first, const RtTransform *second);
 
@@ -30,10 +35,13 @@ RtStatus rt_transform_rotate(RtTransform *transform, RtVec3 axis, double degrees
 
 RtStatus rt_transform_translate(RtTransform *transform, RtVec3 by, RtError *error);
 
-/* Where a point goes, rounded to float32. */
+/* Where a point goes; rt_transform_point rounds to float32. */
+RtVec3d rt_transform_pointd(const RtTransform *transform, RtVec3d point);
 RtVec3 rt_transform_point(const RtTransform *transform, RtVec3 point);
 
-/* Where a normal goes (by the matrix of cofactors), of unit length; a zero vector stays zero. */
+/* Where a normal goes (by the matrix of cofactors): of any length, and of unit length; a zero vector stays
+ * zero. */
+RtVec3d rt_transform_normald(const RtTransform *transform, RtVec3d normal);
 RtVec3 rt_transform_normal(const RtTransform *transform, RtVec3 normal);
 
 /* The factor by which all lengths grow, or 0 if lengths grow differently along different directions: then a

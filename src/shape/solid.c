@@ -50,26 +50,12 @@ RtPlane rt_plane_through(RtVec3d point, RtVec3d normal) {
     return (RtPlane){unit, rt_dotd(unit, point)};
 }
 
-/* Normals go by the matrix of cofactors. */
 RtPlane rt_plane_moved(const RtPlane *plane, const RtTransform *move) {
-    RtVec3d x = rt_transform_column(move, 0), y = rt_transform_column(move, 1),
-            z = rt_transform_column(move, 2);
-    RtVec3d n = plane->normal, normal = rt_scaled(rt_crossd(y, z), n.x);
-    normal = rt_add_scaledd(normal, rt_crossd(z, x), n.y);
-    normal = rt_add_scaledd(normal, rt_crossd(x, y), n.z);
-    return rt_plane_through(rt_transform_exactly(move, rt_scaled(n, plane->offset)), normal);
+    RtVec3d foot = rt_scaled(plane->normal, plane->offset);
+    return rt_plane_through(rt_transform_pointd(move, foot), rt_transform_normald(move, plane->normal));
 }
 
 /* ---- places ---- */
-
-RtVec3d rt_transform_exactly(const RtTransform *transform, RtVec3d point) {
-    RtVec3d moved;
-    for (int row = 0; row < 3; row++) {
-        const double *m = transform->m[row];
-        moved.at[row] = m[0] * point.x + m[1] * point.y + m[2] * point.z + m[3];
-    }
-    return moved;
-}
 
 RtStatus rt_solid_check_place(const RtTransform *place, RtError *error) {
     RtVec3d x = rt_transform_column(place, 0), y = rt_transform_column(place, 1),

@@ -48,13 +48,6 @@ RtPlane rt_plane_through(RtVec3d point, RtVec3d normal);
 /* The plane where `move` takes it. */
 RtPlane rt_plane_moved(const RtPlane *plane, const RtTransform *move);
 
-/* Where a transform takes a point, in double. */
-RtVec3d rt_transform_exactly(const RtTransform *transform, RtVec3d point);
-
-static inline RtVec3d rt_transform_column(const RtTransform *transform, int column) {
-    return rt_vec3d(transform->m[0][column], transform->m[1][column], transform->m[2][column]);
-}
-
 /* The largest factor, or very little more, by which M stretches any vector; its columns are x, y, z. */
 double rt_largest_stretch(RtVec3d x, RtVec3d y, RtVec3d z);
 
