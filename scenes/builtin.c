@@ -7,11 +7,12 @@
 #include <stdio.h>
 #include <string.h>
 
-extern const RtBuiltin rt_builtin_balls, rt_builtin_tetra, rt_builtin_random, rt_builtin_csg_field;
+extern const RtBuiltin rt_builtin_balls, rt_builtin_tetra, rt_builtin_teapot, rt_builtin_random,
+    rt_builtin_csg_field;
 
 /* In the order in which they are listed. */
-static const RtBuiltin *const builtins[] = {&rt_builtin_balls, &rt_builtin_tetra, &rt_builtin_random,
-                                            &rt_builtin_csg_field};
+static const RtBuiltin *const builtins[] = {&rt_builtin_balls, &rt_builtin_tetra, &rt_builtin_teapot,
+                                            &rt_builtin_random, &rt_builtin_csg_field};
 
 enum { BUILTIN_COUNT = sizeof builtins / sizeof builtins[0] };
 

@@ -1,0 +1,68 @@
+/* teapot: Newell's teapot on a checkerboard: many small triangles with vertex normals, a few large quads.
+ *
+ * As in the Standard Procedural Databases (E. Haines 1987): 64 size^2 - 8 size triangles (teapot_mesh.c) and
+ * a board of size x size squares, all of them mirrors. The published tables are of size 12: 9264 objects. */
+#include "scene/nff.h"
+#include "scenes/builtin.h"
+#include "scenes/teapot_mesh.h"
+
+static const RtParam params[] = {
+    {.name = "size",
+     .type = RT_PARAM_INT,
+     .standard = "12",
+     .lo = 1,
+     .hi = RT_TEAPOT_MAX_SIZE,
+     .meaning = "cells along each edge of a patch, and squares along the board: 65 size^2 - 8 size objects",
+     .source = "the published tables: 9264 objects",
+     .tries = "1|6"},
+};
+
+enum { CHINA, LIGHT_SQUARES, DARK_SQUARES };
+
+static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
+    uint32_t size = (uint32_t)values[0].i;
+    forms->material = CHINA;
+    RT_TRY(rt_teapot(forms, size, error));
+    double square = 8.0 / size;
+    forms->polygons = true;
+    for (uint32_t row = 0; row < size; row++) {
+        for (uint32_t column = 0; column < size; column++) {
+            RtVec3d lo = {column * square - 4, row * square - 4, 0};
+            RtVec3d hi = {(column + 1) * square - 4, (row + 1) * square - 4, 0};
+            forms->material = (row + column) % 2 ? DARK_SQUARES : LIGHT_SQUARES;
+            RT_TRY(rt_forms_box(forms, lo, hi, RT_SIDE_TOP, error));
+        }
+    }
+    return RT_OK;
+}
+
+static uint64_t object_count(const RtValue *values) {
+    RtForms counted = rt_forms(NULL);
+    make(&counted, values, NULL);
+    return counted.count;
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    const RtMaterial materials[] = {
+        rt_nff_material("china", rt_vec3(1, 0.5f, 0.1f), 0.75f, 0.25f, 93, 0, 1),
+        rt_nff_material("light squares", rt_vec3(1, 0.9f, 0.8f), 0.5f, 0.5f, 300000, 0, 1),
+        rt_nff_material("dark squares", rt_vec3(0.3f, 0.25f, 0.2f), 0.5f, 0.5f, 300000, 0, 1),
+    };
+    RtForms forms = rt_forms(scene);
+    RT_TRY(rt_forms_materials(&forms, materials, 3, error));
+    RT_TRY(rt_scene_add_light(scene, rt_vec3(-3.1f, 9.8f, 12.1f), rt_nff_light_intensity(2), error));
+    RT_TRY(rt_scene_add_light(scene, rt_vec3(11.3f, 5.1f, 8.8f), rt_nff_light_intensity(2), error));
+    scene->camera.from = rt_vec3(4.86f, 7.2f, 5.4f);
+    return make(&forms, values, error);
+}
+
+extern const RtBuiltin rt_builtin_teapot;
+const RtBuiltin rt_builtin_teapot = {
+    .name = "teapot",
+    .summary = "Newell's teapot on a checkerboard: small triangles with vertex normals, a few large quads",
+    .source = "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)",
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};

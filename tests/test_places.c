@@ -1,0 +1,218 @@
+/* scenes/: the built-in scenes that are places (a teapot on a board, in a stadium, a hall, a forest, a city)
+ * and the forms that they are made of. */
+#include "testing.h"
+
+#include "base/memory.h"
+#include "scene/load.h"
+#include "scenes/builtin.h"
+#include "scenes/forms.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static RtScene open_scene(const char *spec) {
+    RtScene scene;
+    assert_ok(rt_scene_open(spec, &scene, error));
+    return scene;
+}
+
+/* ---- counts ---- */
+
+static void places_have_the_objects_that_they_say(void **state) {
+    (void)state;
+    const struct {
+        const char *spec;
+        uint32_t spheres, polygons, triangles, cones;
+    } cases[] = {
+        {"teapot", 0, 144, 9120, 0},
+        {"teapot:size=6", 0, 36, 2256, 0},
+        {"teapot:size=1", 0, 1, 56, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene = open_scene(cases[i].spec);
+        assert_int_equal(scene.geometry.sphere_count, cases[i].spheres);
+        assert_int_equal(scene.geometry.polygon_count, cases[i].polygons);
+        assert_int_equal(scene.geometry.triangle_count, cases[i].triangles);
+        assert_int_equal(scene.geometry.cone_count, cases[i].cones);
+        rt_scene_clear(&scene);
+    }
+}
+
+static const char *const specs[] = {"teapot", "teapot:size=3"};
+
+enum { SPECS = sizeof specs / sizeof specs[0] };
+
+static void a_count_before_making_is_the_count_made(void **state) {
+    (void)state;
+    for (size_t i = 0; i < SPECS; i++) {
+        const RtBuiltin *builtin = rt_builtin_find(specs[i]);
+        const char *colon = strchr(specs[i], ':');
+        RtValue values[RT_MAX_PARAMS];
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, "it",
+                                  values, error));
+        RtScene scene = open_scene(specs[i]);
+        assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
+        assert_true(rt_scene_bytes(&scene) <=
+                    (uint64_t)scene.geometry.object_count * RT_BUILTIN_OBJECT_BYTES);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    static const char *const small[] = {"teapot:size=1"};
+    for (size_t i = 0; i < sizeof small / sizeof small[0]; i++) {
+        int64_t before = rt_alloc_live();
+        RtStatus status = RT_NO_MEMORY;
+        for (uint64_t n = 1; status != RT_OK; n++) {
+            RtScene scene;
+            RtError problem;
+            rt_alloc_fail_at(n);
+            status = rt_scene_open(small[i], &scene, &problem);
+            rt_alloc_fail_at(0);
+            if (status == RT_OK) rt_scene_clear(&scene);
+            assert_true(status == RT_OK || status == RT_NO_MEMORY);
+            assert_int_equal(rt_alloc_live(), before);
+        }
+    }
+}
+
+/* ---- surfaces ---- */
+
+/* From one point to another, as bits: equal points have equal bits here, -0 made 0. */
+typedef struct Edge {
+    RtVec3 from, to;
+} Edge;
+
+static int compare_edges(const void *a, const void *b) {
+    return memcmp(a, b, sizeof(Edge));
+}
+
+static RtVec3 without_negative_zero(RtVec3 p) {
+    return rt_vec3(p.x + 0.0f, p.y + 0.0f, p.z + 0.0f);
+}
+
+/* How many edges of triangles first..end-1 no other triangle has the other way round. */
+static uint32_t open_edges(const RtGeometry *g, uint32_t first, uint32_t end) {
+    uint32_t count = 3 * (end - first), open = 0;
+    Edge *edges = malloc(count * sizeof *edges);
+    assert_non_null(edges);
+    for (uint32_t i = 0; i < count; i++) {
+        const RtTriangle *t = &g->triangles[first + i / 3];
+        edges[i] = (Edge){without_negative_zero(t->v[i % 3]), without_negative_zero(t->v[(i + 1) % 3])};
+    }
+    qsort(edges, count, sizeof *edges, compare_edges);
+    for (uint32_t i = 0; i < count; i++) {
+        const Edge reverse = {edges[i].to, edges[i].from};
+        open += bsearch(&reverse, edges, count, sizeof *edges, compare_edges) == NULL;
+    }
+    free(edges);
+    return open;
+}
+
+static void normals_point_where_the_triangles_do(const RtGeometry *g) {
+    for (uint32_t i = 0; i < g->triangle_count; i++) {
+        if (g->triangle_normals[i] == RT_NO_NORMALS) continue;
+        const RtVec3 *v = g->triangles[i].v, *n = g->vertex_normals[g->triangle_normals[i]].n;
+        RtVec3d a = rt_widen(v[0]);
+        RtVec3d normal = rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a));
+        assert_true(rt_lengthd(normal) > 0);
+        for (int k = 0; k < 3; k++) assert_true(rt_dotd(normal, rt_widen(n[k])) > 0);
+    }
+}
+
+/* Lid and body end in a circle of 4 n edges, the handle at both ends in 2 n, and so does the spout. */
+static void a_teapot_is_open_at_its_rims_alone(void **state) {
+    (void)state;
+    for (uint32_t n = 2; n <= 12; n += 5) {
+        char spec[32];
+        snprintf(spec, sizeof spec, "teapot:size=%u", n);
+        RtScene scene = open_scene(spec);
+        assert_int_equal(open_edges(&scene.geometry, 0, scene.geometry.triangle_count), 16 * n);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void a_teapot_stands_on_its_board_and_its_normals_point_out(void **state) {
+    (void)state;
+    RtScene scene = open_scene("teapot");
+    RtBox box = scene.geometry.box;
+    assert_true(box.lo.x == -4 && box.lo.y == -4 && box.lo.z == 0);
+    assert_true(box.hi.x == 4 && box.hi.y == 4 && box.hi.z == 3.15f);
+    normals_point_where_the_triangles_do(&scene.geometry);
+    rt_scene_clear(&scene);
+}
+
+/* ---- forms ---- */
+
+static void points_on_the_circle_are_exact_where_they_can_be(void **state) {
+    (void)state;
+    for (uint32_t n = 1; n <= 512; n++) {
+        for (uint32_t i = 0; i <= n; i++) {
+            RtVec3d p = rt_on_circle(i, n);
+            double angle = 6.283185307179586477 * i / n;
+            assert_true(fabs(p.x - cos(angle)) < 2e-15 && fabs(p.y - sin(angle)) < 2e-15);
+        }
+    }
+    for (uint32_t i = 0; i < 4; i++) {
+        RtVec3d p = rt_on_circle(i, 4);
+        assert_true(fabs(p.x) + fabs(p.y) == 1 && p.x == (i == 0) - (i == 2) && p.y == (i == 1) - (i == 3));
+    }
+}
+
+static void a_box_faces_outwards(void **state) {
+    (void)state;
+    RtScene scene;
+    RtMaterial standard = rt_default_material();
+    rt_scene_init(&scene);
+    RtForms forms = rt_forms(&scene);
+    assert_ok(rt_forms_materials(&forms, &standard, 1, error));
+    for (int quarters = 0; quarters < 4; quarters++) {
+        rt_forms_at(&forms, rt_vec3d(10 * quarters, 0, 0), quarters);
+        assert_ok(rt_forms_box(&forms, rt_vec3d(-1, -1, -1), rt_vec3d(1, 1, 1), RT_SIDES_ALL, error));
+    }
+    assert_int_equal(scene.geometry.triangle_count, 48);
+    for (uint32_t i = 0; i < 48; i++) {
+        const RtVec3 *v = scene.geometry.triangles[i].v;
+        RtVec3d a = rt_widen(v[0]), center = rt_vec3d(10 * (i / 12), 0, 0);
+        RtVec3d normal = rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a));
+        assert_true(rt_lengthd(normal) == 4 && rt_dotd(normal, rt_subd(a, center)) == 4);
+    }
+    assert_int_equal(open_edges(&scene.geometry, 0, 12), 0);
+    rt_scene_clear(&scene);
+}
+
+static void a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards(void **state) {
+    (void)state;
+    static const RtVec3d profile[] = {{0, 0, 0}, {1, 0, 0.2}, {0.5, 0, 1}, {0, 0, 1.5}};
+    RtScene scene;
+    RtMaterial standard = rt_default_material();
+    rt_scene_init(&scene);
+    RtForms forms = rt_forms(&scene);
+    assert_ok(rt_forms_materials(&forms, &standard, 1, error));
+    const RtLathe lathe = {
+        .center = {5, 6, 7}, .profile = profile, .count = 4, .steps = 9, .sides = 7, .scale = 2};
+    assert_ok(rt_forms_lathe(&forms, &lathe, error));
+    assert_int_equal(scene.geometry.triangle_count, 7 * (2 * 9 - 2));
+    assert_int_equal(forms.count, scene.geometry.triangle_count);
+    assert_int_equal(open_edges(&scene.geometry, 0, scene.geometry.triangle_count), 0);
+    normals_point_where_the_triangles_do(&scene.geometry);
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_true(scene.geometry.box.lo.z == 7 && scene.geometry.box.hi.z == 10);
+    rt_scene_clear(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(places_have_the_objects_that_they_say),
+        cmocka_unit_test(a_count_before_making_is_the_count_made),
+        cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
+        cmocka_unit_test(a_teapot_is_open_at_its_rims_alone),
+        cmocka_unit_test(a_teapot_stands_on_its_board_and_its_normals_point_out),
+        cmocka_unit_test(points_on_the_circle_are_exact_where_they_can_be),
+        cmocka_unit_test(a_box_faces_outwards),
+        cmocka_unit_test(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
