@@ -6,6 +6,7 @@
  * Databases. All angles have known sines and cosines, so nothing but + - * / sqrt is used. */
 #include "scene/nff.h"
 #include "scenes/builtin.h"
+#include "scenes/spd.h"
 
 static const RtParam params[] = {
     {.name = "size",
@@ -32,29 +33,14 @@ static uint64_t object_count(const RtValue *values) {
     return spheres + 1;
 }
 
-/* `v` turned about the unit vector `axis` (Rodrigues). */
-static RtVec3d rotate(RtVec3d v, RtVec3d axis, double cosine, double sine) {
-    RtVec3d turned = rt_add_scaledd(rt_scaled(v, cosine), rt_crossd(axis, v), sine);
-    return rt_add_scaledd(turned, axis, rt_dotd(axis, v) * (1 - cosine));
-}
-
-/* `v` turned as +Z has to be turned to point along the unit vector `towards`. */
-static RtVec3d rotate_from_z(RtVec3d v, RtVec3d towards) {
-    double cosine = towards.z;
-    if (cosine >= 0.9999) return v;
-    if (cosine <= -0.9999) return rt_vec3d(-v.x, v.y, -v.z);
-    double sine = sqrt(1 - cosine * cosine);
-    return rotate(v, rt_normalized(rt_vec3d(-towards.y, towards.x, 0)), cosine, sine);
-}
-
 static void set_offsets(RtVec3d offsets[CHILDREN]) {
     double d = sqrt(0.5);
     const RtVec3d trio[3] = {{d, d, 0}, {d, 0, -d}, {0, d, -d}};
     const RtVec3d axis = {d, -d, 0}, z = {0, 0, 1};
-    const double turn_cosine[3] = {1, -0.5, -0.5}, turn_sine[3] = {0, sqrt(0.75), -sqrt(0.75)};
+    const RtTurn tilt = {.cosine = sqrt(1.0 / 3), .sine = sqrt(2.0 / 3)};
+    const RtTurn thirds[3] = {{1, 0}, {-0.5, sqrt(0.75)}, {-0.5, -sqrt(0.75)}};
     for (int i = 0; i < CHILDREN; i++) {
-        RtVec3d tilted = rotate(trio[i % 3], axis, sqrt(1.0 / 3), sqrt(2.0 / 3));
-        offsets[i] = rotate(tilted, z, turn_cosine[i / 3], turn_sine[i / 3]);
+        offsets[i] = rt_spd_rotate(rt_spd_rotate(trio[i % 3], axis, tilt), z, thirds[i / 3]);
     }
 }
 
@@ -63,7 +49,7 @@ static RtStatus add_sphere(const Flake *flake, RtVec3d center, double radius, Rt
     RT_TRY(rt_scene_add_sphere(flake->scene, flake->material, rt_narrow(center), (float)radius, error));
     if (levels == 0) return RT_OK;
     for (int i = 0; i < CHILDREN; i++) {
-        RtVec3d towards = rotate_from_z(flake->offsets[i], direction);
+        RtVec3d towards = rt_spd_rotate_from_z(flake->offsets[i], direction);
         RtVec3d child = rt_add_scaledd(center, towards, radius * (1 + 1.0 / 3));
         RT_TRY(add_sphere(flake, child, radius / 3, towards, levels - 1, error));
     }
@@ -80,9 +66,7 @@ static RtStatus add_floor(RtScene *scene, RtError *error) {
 
 static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
     static const RtVec3 lights[3] = {{4, 3, 2}, {1, -4, 4}, {-3, 1, 5}};
-    for (int i = 0; i < 3; i++) {
-        RT_TRY(rt_scene_add_light(scene, lights[i], rt_nff_light_intensity(3), error));
-    }
+    RT_TRY(rt_spd_add_lights(scene, lights, 3, error));
     scene->camera.from = rt_vec3(2.1f, 1.3f, 1.7f);
     scene->camera.hither = 0.01f;
     RT_TRY(add_floor(scene, error));
@@ -98,7 +82,7 @@ extern const RtBuiltin rt_builtin_balls;
 const RtBuiltin rt_builtin_balls = {
     .name = "balls",
     .summary = "a sphereflake over a floor: reflective spheres of very different sizes, touching",
-    .source = "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)",
+    .source = RT_SPD_SOURCE,
     .params = params,
     .param_count = sizeof params / sizeof params[0],
     .object_count = object_count,

@@ -6,6 +6,7 @@
  * coordinates are exact. */
 #include "scene/nff.h"
 #include "scenes/builtin.h"
+#include "scenes/spd.h"
 
 static const RtParam params[] = {
     {.name = "size",
@@ -53,7 +54,8 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     uint32_t material;
     RtMaterial red = rt_nff_material("red", rt_vec3(1, 0.2f, 0.2f), 1, 0, 100000, 0, 1);
     RT_TRY(rt_scene_add_material(scene, &red, &material, error));
-    RT_TRY(rt_scene_add_light(scene, rt_vec3(2, -18, -5), rt_nff_light_intensity(1), error));
+    static const RtVec3 lights[1] = {{2, -18, -5}};
+    RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
     scene->camera.from = rt_vec3(1.022846f, -3.177154f, -2.174512f);
     scene->camera.at = rt_vec3(-0.004103f, -0.004103f, 0.216539f);
     scene->camera.up = rt_vec3(-0.816497f, -0.816497f, 0.816497f);
@@ -65,7 +67,7 @@ extern const RtBuiltin rt_builtin_tetra;
 const RtBuiltin rt_builtin_tetra = {
     .name = "tetra",
     .summary = "a Sierpinski tetrahedron of triangles, mostly empty space",
-    .source = "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)",
+    .source = RT_SPD_SOURCE,
     .params = params,
     .param_count = sizeof params / sizeof params[0],
     .object_count = object_count,

@@ -2,6 +2,7 @@
 #include "testing.h"
 
 #include "base/box.h"
+#include "base/elementary.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/param.h"
@@ -175,6 +176,38 @@ static void files_are_listed_by_name_whatever_their_folder_is_called(void **stat
     assert_int_equal(rt_directory_each(folder, "", note_path, found), 0);
 }
 
+static void logarithms_are_within_a_unit_in_the_last_place(void **state) {
+    (void)state;
+    RtRandom random = rt_random(1, 0);
+    for (int i = 0; i < 200000; i++) {
+        int exponent = i % 2 ? 0 : (int)(rt_random_bits(&random) % 2000) - 1000;
+        double x = ldexp(rt_random_betweend(&random, 0.5, 2), exponent), computed = rt_log(x);
+        double unit = nextafter(fabs(computed), INFINITY) - fabs(computed);
+        assert_true(fabsl((long double)computed - logl((long double)x)) <= (long double)unit);
+    }
+    assert_true(rt_log(1) == 0);
+}
+
+static void sines_and_cosines_are_within_their_bound(void **state) {
+    (void)state;
+    for (int i = -72000; i <= 72000; i++) {
+        double degrees = i * 0.0125; /* a double, so the angle is what it is */
+        long double angle = (long double)degrees * 3.14159265358979323846264L / 180;
+        RtTurn turn = rt_turn(degrees);
+        assert_true(fabsl((long double)turn.sine - sinl(angle)) < 4e-16L);
+        assert_true(fabsl((long double)turn.cosine - cosl(angle)) < 4e-16L);
+    }
+}
+
+static void quarter_turns_are_exact(void **state) {
+    (void)state;
+    static const double cosines[4] = {1, 0, -1, 0};
+    for (int quarter = -9; quarter <= 9; quarter++) {
+        RtTurn turn = rt_turn(90.0 * quarter);
+        assert_true(turn.cosine == cosines[quarter & 3] && turn.sine == cosines[(quarter - 1) & 3]);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rounding_outward_brackets_the_number),
@@ -186,6 +219,9 @@ int main(void) {
         cmocka_unit_test(wrong_parameters_are_refused_with_what_would_be_right),
         cmocka_unit_test(the_nth_allocation_fails_when_told_to),
         cmocka_unit_test(random_numbers_depend_on_seed_stream_and_place_alone),
+        cmocka_unit_test(logarithms_are_within_a_unit_in_the_last_place),
+        cmocka_unit_test(sines_and_cosines_are_within_their_bound),
+        cmocka_unit_test(quarter_turns_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

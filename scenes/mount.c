@@ -1,0 +1,145 @@
+/* mount: a fractal mountain of 2 * 4^size triangles, seen through four spheres of glass.
+ *
+ * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987; midpoint
+ * displacement after A. Fournier, D. Fussell and L. Carpenter, CACM 25(6), 1982. Each level parts a square in
+ * four; a new corner lies at the mean height of those it is between, displaced by a normal random number that
+ * depends on its place in the lattice alone, so that neighbours fit. Above size 7 the database leaves the
+ * random numbers undefined (a shift by a negative amount); here the lattice coordinate is shifted the other
+ * way. */
+#include "scene/nff.h"
+#include "scenes/builtin.h"
+#include "scenes/spd.h"
+
+static const RtParam params[] = {
+    {.name = "size",
+     .type = RT_PARAM_INT,
+     .standard = "6",
+     .lo = 1,
+     .hi = 9,
+     .meaning = "levels: 2 * 4^size triangles",
+     .source = "SPD: 8192 triangles",
+     .tries = "1|3"},
+};
+
+/* A corner of a square: its place in the lattice of 2^size by 2^size squares, and its height. */
+typedef struct Corner {
+    uint32_t x, y;
+    double z;
+} Corner;
+
+typedef struct Mount {
+    RtScene *scene;
+    uint32_t material;
+    uint32_t size;
+} Mount;
+
+static uint64_t object_count(const RtValue *values) {
+    return (UINT64_C(2) << 2 * values[0].i) + 4;
+}
+
+/* A normal random number that `seed` determines: Marsaglia's polar method over a linear congruential
+ * generator. No two numbers of that generator in a row are 0, so `square` is not. */
+static double normal_random(uint32_t seed) {
+    uint32_t number = seed;
+    double v[2], square;
+    do {
+        for (int i = 0; i < 2; i++) {
+            number = (28411 + 8121 * number) % 134456;
+            v[i] = 2 * (double)number / 134456 - 1;
+        }
+        square = v[0] * v[0] + v[1] * v[1];
+    } while (square >= 1);
+    return v[0] * sqrt(-2 * rt_log(square) / square);
+}
+
+static double displacement(const Mount *mount, uint32_t x, uint32_t y) {
+    uint32_t size = mount->size;
+    uint32_t low = size <= 7 ? x << (7 - size) : x >> (size - 7);
+    return normal_random(21 + (((x << (23 - size)) + (y << (15 - size)) + low) & 0xffff));
+}
+
+static RtVec3 place(const Mount *mount, Corner corner) {
+    double step = 2 / (double)(1u << mount->size);
+    return rt_narrow(rt_vec3d(corner.x * step - 1, corner.y * step - 1, corner.z));
+}
+
+static RtStatus add_square(const Mount *mount, const Corner corners[4], RtError *error) {
+    for (int i = 0; i < 4; i += 2) {
+        RtVec3 vertices[3];
+        for (int k = 0; k < 3; k++) vertices[k] = place(mount, corners[(i + k) % 4]);
+        RT_TRY(rt_scene_add_triangle(mount->scene, mount->material, vertices, NULL, error));
+    }
+    return RT_OK;
+}
+
+/* The square between corners in counter-clockwise order, the first being the lower left; `half` its side. */
+static RtStatus add_level(const Mount *mount, const Corner corners[4], double half, uint32_t levels,
+                          RtError *error) {
+    if (levels == 0) return add_square(mount, corners, error);
+    const double root2 = 1.4142136,
+                 roughness = half * sqrt(1.2599210498948731648 - 1); /* the cube root of 2 */
+    Corner middle = {.x = (corners[0].x + corners[2].x) / 2, .y = (corners[0].y + corners[2].y) / 2};
+    middle.z = (corners[0].z + corners[1].z + corners[2].z + corners[3].z) / 4 +
+               roughness * root2 * displacement(mount, middle.x, middle.y);
+    Corner sides[4];
+    for (int i = 0; i < 4; i++) {
+        const Corner *a = &corners[i], *b = &corners[(i + 1) % 4];
+        sides[i] = (Corner){.x = (a->x + b->x) / 2, .y = (a->y + b->y) / 2, .z = (a->z + b->z) / 2};
+        sides[i].z += roughness * displacement(mount, sides[i].x, sides[i].y);
+    }
+    for (int i = 0; i < 4; i++) {
+        /* Each quarter keeps its own corner where the square has it. */
+        Corner quarter[4];
+        quarter[i] = corners[i];
+        quarter[(i + 1) % 4] = sides[i];
+        quarter[(i + 2) % 4] = middle;
+        quarter[(i + 3) % 4] = sides[(i + 3) % 4];
+        RT_TRY(add_level(mount, quarter, half / 2, levels - 1, error));
+    }
+    return RT_OK;
+}
+
+/* One over the mountain, and three below it, on the edges of a regular tetrahedron. */
+static RtStatus add_spheres(RtScene *scene, RtError *error) {
+    uint32_t material;
+    RtMaterial glass = rt_nff_material("glass", rt_vec3(1, 1, 1), 0.1f, 0.1f, 101.148f, 0.9f, 1.5f);
+    RT_TRY(rt_scene_add_material(scene, &glass, &material, error));
+
+    const double radius = 0.17;
+    const RtVec3d center = {-0.8, 0.8, 1}, diagonal = {sqrt(0.5), sqrt(0.5), 0}, z = {0, 0, 1};
+    const RtVec3d up = {0, 0, radius * sqrt(1.5)};
+    const RtTurn tetrahedral = {.cosine = -1.0 / 3, .sine = sqrt(8.0 / 9)};
+    RT_TRY(rt_scene_add_sphere(scene, material, rt_narrow(rt_addd(center, up)), (float)radius, error));
+    for (int i = 0; i < 3; i++) {
+        RtVec3d offset = rt_spd_rotate(rt_spd_rotate(up, diagonal, tetrahedral), z, rt_turn(120.0 * i));
+        RtVec3 below = rt_narrow(rt_addd(center, offset));
+        RT_TRY(rt_scene_add_sphere(scene, material, below, (float)radius, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    static const RtVec3 lights[1] = {{-100, -100, 100}};
+    RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
+    scene->camera.from = rt_vec3(-1.6f, 1.6f, 1.7f);
+    scene->camera.hither = 0.01f;
+    RT_TRY(add_spheres(scene, error));
+
+    Mount mount = {.scene = scene, .size = (uint32_t)values[0].i};
+    RtMaterial rock = rt_nff_material("rock", rt_vec3(0.5f, 0.45f, 0.35f), 1, 0, 100000, 0, 1);
+    RT_TRY(rt_scene_add_material(scene, &rock, &mount.material, error));
+    uint32_t side = 1u << mount.size;
+    const Corner corners[4] = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}};
+    return add_level(&mount, corners, 1, mount.size, error);
+}
+
+extern const RtBuiltin rt_builtin_mount;
+const RtBuiltin rt_builtin_mount = {
+    .name = "mount",
+    .summary = "a fractal mountain of triangles of one size, seen through spheres of glass",
+    .source = RT_SPD_SOURCE,
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};

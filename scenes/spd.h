@@ -1,0 +1,21 @@
+/* What scenes of the Standard Procedural Databases share. Their objects come in the order of the files that
+ * the package writes. They are made in double with + - * / sqrt and base/elementary.h alone and rounded once,
+ * so that every compiler and library makes the same float32. */
+#ifndef RT_SCENES_SPD_H
+#define RT_SCENES_SPD_H
+
+#include "base/elementary.h"
+#include "scene/scene.h"
+
+#define RT_SPD_SOURCE "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)"
+
+/* Adds white lights that share the light as SPD asks (rt_nff_light_intensity). */
+RtStatus rt_spd_add_lights(RtScene *scene, const RtVec3 *positions, uint32_t count, RtError *error);
+
+/* `v` turned about the unit vector `axis`, counter-clockwise for one who looks against it (Rodrigues). */
+RtVec3d rt_spd_rotate(RtVec3d v, RtVec3d axis, RtTurn turn);
+
+/* `v` turned as +Z has to be turned, in the shortest way, to point along the unit vector `towards`. */
+RtVec3d rt_spd_rotate_from_z(RtVec3d v, RtVec3d towards);
+
+#endif

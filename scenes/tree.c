@@ -1,0 +1,106 @@
+/* tree: a binary tree of 2^(size+1) - 1 branches, each a cone with a sphere at its tip, on a field.
+ *
+ * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. The trunk goes from the
+ * origin to (0, 0, 1). A branch has two children: smaller copies of it, turned and moved to its tip, of which
+ * only the radii go by a factor of their own. Objects come depth first, in the order of the Standard
+ * Procedural Databases. */
+#include "scene/nff.h"
+#include "scenes/builtin.h"
+#include "scenes/spd.h"
+
+static const RtParam params[] = {
+    {.name = "size",
+     .type = RT_PARAM_INT,
+     .standard = "11",
+     .lo = 1,
+     .hi = 20,
+     .meaning = "levels above the trunk: 2^(size+1) - 1 cones and as many spheres",
+     .source = "SPD: 4095 cones and spheres",
+     .tries = "1|3"},
+};
+
+#define TRUNK_RADIUS 0.15
+#define TAPER        0.67 /* of radii, from a branch to the next */
+
+/* Turns and scales: where a unit vector along each axis goes. */
+typedef struct Frame {
+    RtVec3d axis[3];
+} Frame;
+
+typedef struct Tree {
+    RtScene *scene;
+    uint32_t material;
+    Frame children[2]; /* within their parent's frame */
+} Tree;
+
+static uint64_t object_count(const RtValue *values) {
+    return (UINT64_C(4) << values[0].i) - 1;
+}
+
+/* A vector of a frame, seen from outside it. */
+static RtVec3d outward(const Frame *frame, RtVec3d v) {
+    RtVec3d sum = rt_scaled(frame->axis[0], v.x);
+    return rt_add_scaledd(rt_add_scaledd(sum, frame->axis[1], v.y), frame->axis[2], v.z);
+}
+
+/* Turned about X by `tilt` degrees, then about Z by `around`, and scaled. */
+static Frame child_frame(double tilt, double around, double scale) {
+    static const RtVec3d axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    Frame frame;
+    for (int a = 0; a < 3; a++) {
+        RtVec3d tilted = rt_spd_rotate(axes[a], axes[0], rt_turn(tilt));
+        frame.axis[a] = rt_scaled(rt_spd_rotate(tilted, axes[2], rt_turn(around)), scale);
+    }
+    return frame;
+}
+
+static RtStatus add_branch(const Tree *tree, RtVec3d base, const Frame *frame, double radius, int64_t levels,
+                           RtError *error) {
+    RtVec3d tip = rt_addd(base, frame->axis[2]);
+    float tip_radius = (float)(radius * TAPER);
+    RT_TRY(rt_scene_add_cone(tree->scene, tree->material, rt_narrow(base), (float)radius, rt_narrow(tip),
+                             tip_radius, error));
+    RT_TRY(rt_scene_add_sphere(tree->scene, tree->material, rt_narrow(tip), tip_radius, error));
+    if (levels == 0) return RT_OK;
+    for (int i = 0; i < 2; i++) {
+        Frame child;
+        for (int a = 0; a < 3; a++) child.axis[a] = outward(frame, tree->children[i].axis[a]);
+        RT_TRY(add_branch(tree, tip, &child, radius * TAPER, levels - 1, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_field(RtScene *scene, RtError *error) {
+    uint32_t material;
+    RtMaterial grass = rt_nff_material("field", rt_vec3(0.2f, 0.7f, 0.2f), 1, 0, 100000, 0, 1);
+    RT_TRY(rt_scene_add_material(scene, &grass, &material, error));
+    const RtVec3 corners[4] = {{50, 50, 0}, {-50, 50, 0}, {-50, -50, 0}, {50, -50, 0}};
+    return rt_scene_add_polygon(scene, material, corners, 4, error);
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    static const RtVec3 lights[7] = {{-5, 5, 50},   {30, -30, 30}, {-40, -30, 20}, {10, 30, 40},
+                                     {-30, 40, 10}, {50, 25, 20},  {-10, -60, 30}};
+    RT_TRY(rt_spd_add_lights(scene, lights, 7, error));
+    scene->camera.from = rt_vec3(4.5f, 0.4f, 2);
+    scene->camera.at = rt_vec3(0, 0, 1.5f);
+    scene->camera.hither = 1;
+    RT_TRY(add_field(scene, error));
+
+    Tree tree = {.scene = scene, .children = {child_frame(40, 90, 0.65), child_frame(25, 230, 0.7)}};
+    RtMaterial bark = rt_nff_material("bark", rt_vec3(0.55f, 0.4f, 0.2f), 1, 0, 100000, 0, 1);
+    RT_TRY(rt_scene_add_material(scene, &bark, &tree.material, error));
+    const Frame upright = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    return add_branch(&tree, rt_vec3d(0, 0, 0), &upright, TRUNK_RADIUS, values[0].i, error);
+}
+
+extern const RtBuiltin rt_builtin_tree;
+const RtBuiltin rt_builtin_tree = {
+    .name = "tree",
+    .summary = "a tree of cones and spheres that get smaller and smaller, alone on a large field",
+    .source = RT_SPD_SOURCE,
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};

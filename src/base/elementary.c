@@ -1,0 +1,46 @@
+#include "base/elementary.h"
+
+#include <assert.h>
+#include <math.h>
+
+/* x = m 2^e with m = 1 + f between sqrt(1/2) and sqrt(2), and s = f / (2 + f). Then log m = 2 artanh s is
+ * 2s + s R with R = 2 (s^2/3 + s^4/5 + ...), and 2s = f - s f: the leading term is f, which is exact, and the
+ * rounding of s only reaches the small rest. s^2 < 0.0295, so that what follows the last term is below 2^-64
+ * of the sum. */
+double rt_log(double x) {
+    assert(isnormal(x) && x > 0);
+    int exponent;
+    double m = frexp(x, &exponent);
+    if (m < 0.70710678118654752) {
+        m *= 2;
+        exponent--;
+    }
+    double f = m - 1, s = f / (2 + f), s2 = s * s, rest = 0;
+    for (int k = 12; k >= 1; k--) rest = s2 * (rest + 2.0 / (2 * k + 1));
+    /* log 2 in two parts, of which the first is a multiple of 2^-32: its multiples here are exact */
+    const double high = 0x1.62e42feep-1, low = 0x1.a39ef35793c76p-33;
+    return exponent * high + (f - (s * (f - rest) - exponent * low));
+}
+
+/* Taylor's series on -45..45 degrees: the first terms left out are below 1e-18. */
+static RtTurn small_turn(double degrees) {
+    double x = degrees * 0.017453292519943295769, x2 = x * x, sine = 1, cosine = 1;
+    for (int k = 16; k >= 2; k -= 2) {
+        sine = 1 - x2 / (k * (k + 1)) * sine;
+        cosine = 1 - x2 / (k * (k - 1)) * cosine;
+    }
+    return (RtTurn){.cosine = cosine, .sine = x * sine};
+}
+
+RtTurn rt_turn(double degrees) {
+    assert(fabs(degrees) <= 1e15);
+    double within = fmod(degrees, 360),
+           quarters = floor((within + 45) / 90); /* both exact in every library */
+    RtTurn t = small_turn(within - 90 * quarters);
+    switch ((int)quarters & 3) {
+    case 0: return t;
+    case 1: return (RtTurn){.cosine = -t.sine, .sine = t.cosine};
+    case 2: return (RtTurn){.cosine = -t.cosine, .sine = -t.sine};
+    default: return (RtTurn){.cosine = t.sine, .sine = -t.cosine};
+    }
+}
