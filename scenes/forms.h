@@ -28,7 +28,7 @@ RtStatus rt_forms_materials(const RtForms *forms, const RtMaterial *materials, u
 
 /* A matte material of `color`: ka .12, kd .8. */
 #define RT_MATTE(what, red, green, blue)                                                                     \
-    { .name = (what), .color = {red, green, blue}, .ambient = 0.12f, .diffuse = 0.8f, .shine = 1, .ior = 1 }
+    { .name = what, .color = {red, green, blue}, .ambient = 0.12f, .diffuse = 0.8f, .shine = 1, .ior = 1 }
 
 /* Places what comes next with the origin at `at`, turned about z by `quarters` of 90 degrees, exactly. */
 void rt_forms_at(RtForms *forms, RtVec3d at, int quarters);

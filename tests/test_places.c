@@ -28,6 +28,8 @@ static void places_have_the_objects_that_they_say(void **state) {
         {"teapot", 0, 144, 9120, 0},
         {"teapot:size=6", 0, 36, 2256, 0},
         {"teapot:size=1", 0, 1, 56, 0},
+        {"stadium", 48, 6621, 9120, 13},
+        {"stadium:size=1,ratio=50", 48, 6621, 56, 13},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene = open_scene(cases[i].spec);
@@ -39,7 +41,7 @@ static void places_have_the_objects_that_they_say(void **state) {
     }
 }
 
-static const char *const specs[] = {"teapot", "teapot:size=3"};
+static const char *const specs[] = {"teapot", "teapot:size=3", "stadium:size=2"};
 
 enum { SPECS = sizeof specs / sizeof specs[0] };
 
@@ -61,7 +63,7 @@ static void a_count_before_making_is_the_count_made(void **state) {
 
 static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
     (void)state;
-    static const char *const small[] = {"teapot:size=1"};
+    static const char *const small[] = {"teapot:size=1", "stadium:size=1"};
     for (size_t i = 0; i < sizeof small / sizeof small[0]; i++) {
         int64_t before = rt_alloc_live();
         RtStatus status = RT_NO_MEMORY;
@@ -144,6 +146,28 @@ static void a_teapot_stands_on_its_board_and_its_normals_point_out(void **state)
     rt_scene_clear(&scene);
 }
 
+static void a_stadium_is_ratio_times_as_long_as_its_teapot(void **state) {
+    (void)state;
+    const double ratios[] = {50, 1000, 1e6};
+    for (size_t i = 0; i < sizeof ratios / sizeof ratios[0]; i++) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "stadium:size=4,ratio=%g", ratios[i]);
+        RtScene scene = open_scene(spec);
+        const RtGeometry *g = &scene.geometry;
+        RtBox teapot = RT_EMPTY_BOX, tiers = RT_EMPTY_BOX;
+        for (uint32_t k = 0; k < g->triangle_count; k++) {
+            teapot = rt_box_union(teapot, g->boxes[g->triangle_ids[k]]);
+        }
+        for (uint32_t k = 1; k < g->polygon_count; k++) { /* polygon 0 is the ground */
+            tiers = rt_box_union(tiers, g->boxes[g->polygon_ids[k]]);
+        }
+        RtVec3 small = rt_box_size(teapot), large = rt_box_size(tiers);
+        double ratio = (double)large.x / (double)rt_maxf(small.x, small.y);
+        assert_true(ratio > 0.9 * ratios[i] && ratio < 1.0 * ratios[i]);
+        rt_scene_clear(&scene);
+    }
+}
+
 /* ---- forms ---- */
 
 static void points_on_the_circle_are_exact_where_they_can_be(void **state) {
@@ -210,6 +234,7 @@ int main(void) {
         cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
         cmocka_unit_test(a_teapot_is_open_at_its_rims_alone),
         cmocka_unit_test(a_teapot_stands_on_its_board_and_its_normals_point_out),
+        cmocka_unit_test(a_stadium_is_ratio_times_as_long_as_its_teapot),
         cmocka_unit_test(points_on_the_circle_are_exact_where_they_can_be),
         cmocka_unit_test(a_box_faces_outwards),
         cmocka_unit_test(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards),
