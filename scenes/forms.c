@@ -1,5 +1,6 @@
 #include "scenes/forms.h"
 
+#include "base/elementary.h"
 #include "base/memory.h"
 
 #include <assert.h>
@@ -25,25 +26,9 @@ void rt_forms_at(RtForms *forms, RtVec3d at, int quarters) {
 
 /* ---- curves ---- */
 
-/* (cos x, sin x) for x in [0, pi / 4], by Taylor's series to the last bit or two. */
-static RtVec3d on_first_octant(double x) {
-    double square = x * x, cosine = 1, sine = 1;
-    for (int k = 18; k > 0; k -= 2) {
-        cosine = 1 - cosine * square / (k * (k - 1));
-        sine = 1 - sine * square / (k * (k + 1));
-    }
-    return rt_vec3d(cosine, sine * x, 0);
-}
-
 RtVec3d rt_on_circle(uint32_t i, uint32_t n) {
-    uint64_t eighths = 8 * (uint64_t)(i % n);
-    uint32_t octant = (uint32_t)(eighths / n);
-    uint64_t rest = eighths - (uint64_t)octant * n;
-    if (octant & 1) rest = n - rest; /* odd octants are those before them, mirrored */
-    const double eighth_turn = 0.78539816339744830962;
-    RtVec3d p = on_first_octant(eighth_turn * (double)rest / n);
-    if ((octant + 1) & 2) p = rt_vec3d(p.y, p.x, 0);
-    return rt_vec3d(octant >= 2 && octant < 6 ? -p.x : p.x, octant >= 4 ? -p.y : p.y, 0);
+    RtTurn turn = rt_turn(360.0 * i / n);
+    return rt_vec3d(turn.cosine, turn.sine, 0);
 }
 
 RtVec3d rt_curve_point(const RtVec3d *points, uint32_t count, uint32_t step, uint32_t steps) {

@@ -4,6 +4,7 @@
  * a board of size x size squares, all of them mirrors. The published tables are of size 12: 9264 objects. */
 #include "scene/nff.h"
 #include "scenes/builtin.h"
+#include "scenes/spd.h"
 #include "scenes/teapot_mesh.h"
 
 static const RtParam params[] = {
@@ -50,8 +51,8 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     };
     RtForms forms = rt_forms(scene);
     RT_TRY(rt_forms_materials(&forms, materials, 3, error));
-    RT_TRY(rt_scene_add_light(scene, rt_vec3(-3.1f, 9.8f, 12.1f), rt_nff_light_intensity(2), error));
-    RT_TRY(rt_scene_add_light(scene, rt_vec3(11.3f, 5.1f, 8.8f), rt_nff_light_intensity(2), error));
+    static const RtVec3 lights[2] = {{-3.1f, 9.8f, 12.1f}, {11.3f, 5.1f, 8.8f}};
+    RT_TRY(rt_spd_add_lights(scene, lights, 2, error));
     scene->camera.from = rt_vec3(4.86f, 7.2f, 5.4f);
     return make(&forms, values, error);
 }
@@ -60,7 +61,7 @@ extern const RtBuiltin rt_builtin_teapot;
 const RtBuiltin rt_builtin_teapot = {
     .name = "teapot",
     .summary = "Newell's teapot on a checkerboard: small triangles with vertex normals, a few large quads",
-    .source = "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)",
+    .source = RT_SPD_SOURCE,
     .params = params,
     .param_count = sizeof params / sizeof params[0],
     .object_count = object_count,
