@@ -38,8 +38,15 @@ typedef struct RtAccel {
     RtTally build_tally; /* tests made while building */
 } RtAccel;
 
-/* What a structure looks like. Zero where a figure does not apply; predicted_cost is NaN where none is known.
- */
+/* Expectations of a random line through the box of a structure, if nothing stopped it and no mailbox knew
+ * an object again, by the ratios of areas (MacDonald & Booth 1990). NaN where none is known. Each of X(name,
+ * meaning). */
+#define RT_PREDICTIONS(X)                                                                                    \
+    X(predicted_cost, "expected cost in object tests, by the structure's own cost of a step (SAH)")          \
+    X(predicted_tests, "expected object tests")                                                              \
+    X(predicted_steps, "expected steps")
+
+/* What a structure looks like. Zero where a figure does not apply. */
 typedef struct RtDescription {
     uint64_t interior;     /* inner nodes */
     uint64_t leaves;       /* leaves, or voxels */
@@ -47,9 +54,13 @@ typedef struct RtDescription {
     uint64_t references;   /* entries in all lists of objects */
     uint64_t depth;        /* of the deepest leaf, the root being 0 */
     uint64_t bytes;        /* of its arrays: without the scene, and without what is one per accelerator */
-    double predicted_cost; /* expected cost of a random line through the box, in object tests (SAH); see the
-                              file */
+#define RT_PREDICTION_FIELD(name, meaning) double name;
+    RT_PREDICTIONS(RT_PREDICTION_FIELD)
+#undef RT_PREDICTION_FIELD
 } RtDescription;
+
+/* Initialises the predictions of an RtDescription as unknown. */
+#define RT_NO_PREDICTION .predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN
 
 /* The four kernels. rays[0..count) are valid (rt_ray_is_valid); `scratch` is the layer's part of the query's;
  * answers go to hits[0..count) and blockers[0..count); tallies[RT_RAY_KIND_COUNT] are added to, by the kind

@@ -29,7 +29,7 @@ RT_DEFINE_KERNELS(Brute, search)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     uint32_t count = accel->scene->geometry.object_count;
-    *out = (RtDescription){.references = count, .predicted_cost = count};
+    *out = (RtDescription){.references = count, .predicted_cost = count, .predicted_tests = count};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

@@ -170,6 +170,7 @@ RT_KERNEL void search(const Bvh *self, void *scratch, const RtPreparedRay *ray, 
                 continue;
             }
         }
+        RT_COUNT(tally, leaf_steps, 1);
         for (uint32_t i = node->first; i < node->first + node->count; i++) {
             if (rt_test_object(g, self->ids[i], ray, any, best, tally)) return;
         }
@@ -196,9 +197,9 @@ static void walk(const Bvh *bvh, uint32_t index, uint32_t depth,
 }
 
 typedef struct Survey {
-    const Bvh *bvh;
     RtDescription *out;
-    double cost; /* expected, times the area of the root */
+    double inner, leaves,
+        tests; /* visits of nodes and tests of objects expected, times the area of the root */
 } Survey;
 
 static void survey_node(void *context, const Node *node, uint32_t depth) {
@@ -209,18 +210,24 @@ static void survey_node(void *context, const Node *node, uint32_t depth) {
     out->leaves += leaf;
     out->references += node->count;
     if (depth > out->depth) out->depth = depth;
-    survey->cost += rt_box_half_area(node->box) * (leaf ? node->count : survey->bvh->traversal_cost);
+    double area = rt_box_half_area(node->box);
+    *(leaf ? &survey->leaves : &survey->inner) += area;
+    survey->tests += area * node->count;
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     const Bvh *bvh = (const Bvh *)accel;
     *out = (RtDescription){.bytes = bvh->node_count * sizeof(Node) +
-                                    accel->scene->geometry.object_count * sizeof(uint32_t)};
+                                    accel->scene->geometry.object_count * sizeof(uint32_t),
+                           RT_NO_PREDICTION};
     if (bvh->node_count == 0) return;
-    Survey survey = {bvh, out, 0};
+    Survey survey = {out, 0, 0, 0};
     walk(bvh, 0, 0, survey_node, &survey);
     double area = rt_box_half_area(bvh->nodes[0].box);
-    out->predicted_cost = area > 0 ? survey.cost / area : (double)NAN;
+    if (!(area > 0)) return;
+    out->predicted_tests = survey.tests / area;
+    out->predicted_steps = (survey.inner + survey.leaves) / area;
+    out->predicted_cost = (survey.tests + bvh->traversal_cost * survey.inner) / area;
 }
 
 typedef struct Check {

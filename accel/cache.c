@@ -67,7 +67,7 @@ RT_DEFINE_SHADOW_KERNELS(Cache, shade)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     (void)accel;
-    *out = (RtDescription){.predicted_cost = (double)NAN};
+    *out = (RtDescription){RT_NO_PREDICTION};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

@@ -60,7 +60,7 @@ RT_DEFINE_KERNELS(Ideal, search)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     const Ideal *self = (const Ideal *)accel;
-    *out = (RtDescription){.bytes = self->count * sizeof(uint32_t), .predicted_cost = (double)NAN};
+    *out = (RtDescription){.bytes = self->count * sizeof(uint32_t), RT_NO_PREDICTION};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

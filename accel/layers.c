@@ -71,7 +71,9 @@ void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
         out->references += own.references;
         out->bytes += own.bytes;
         if (own.depth > out->depth) out->depth = own.depth;
-        out->predicted_cost = own.predicted_cost;
+#define COPY_PREDICTION(name, meaning) out->name = own.name;
+        RT_PREDICTIONS(COPY_PREDICTION)
+#undef COPY_PREDICTION
     }
 }
 

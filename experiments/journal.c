@@ -34,13 +34,12 @@ static json_t *trial_json(const RtTrialResult *trial) {
 }
 
 static json_t *build_json(const RtBuildResult *build) {
-    const RtDescription *d = &build->shape;
-    return json_pack("{s:s, s:b, s:b, s:f, s:I, s:I, s:I, s:I, s:I, s:I, s:o}", "spec", build->spec, "exact",
-                     build->exact, "counts", build->counts, "seconds", build->seconds, "interior",
-                     (json_int_t)d->interior, "leaves", (json_int_t)d->leaves, "empty_leaves",
-                     (json_int_t)d->empty_leaves, "references", (json_int_t)d->references, "depth",
-                     (json_int_t)d->depth, "bytes", (json_int_t)d->bytes, "predicted_cost",
-                     rt_json_number(d->predicted_cost));
+    json_t *object = rt_json_structure(&build->shape);
+    json_t *run =
+        json_pack("{s:s, s:b, s:b, s:f, s:I}", "spec", build->spec, "exact", build->exact, "counts",
+                  build->counts, "seconds", build->seconds, "bytes", (json_int_t)build->shape.bytes);
+    json_object_update_new(object, run);
+    return object;
 }
 
 static json_t *count_json(const RtCell *cell) {
@@ -178,8 +177,10 @@ static void take_build(RtBuildResult *build, const json_t *object) {
                                    .empty_leaves = get_integer(object, "empty_leaves"),
                                    .references = get_integer(object, "references"),
                                    .depth = get_integer(object, "depth"),
-                                   .bytes = get_integer(object, "bytes"),
-                                   .predicted_cost = get_number(object, "predicted_cost")};
+                                   .bytes = get_integer(object, "bytes")};
+#define TAKE_PREDICTION(name, meaning) build->shape.name = get_number(object, #name);
+    RT_PREDICTIONS(TAKE_PREDICTION)
+#undef TAKE_PREDICTION
 }
 
 static void take_count(RtCell *cell, const json_t *object) {

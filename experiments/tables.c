@@ -60,16 +60,22 @@ static void put_counts(FILE *out, const RtResults *results, uint32_t t, uint32_t
     for (size_t i = 1; i < RT_TALLY_COUNTER_COUNT; i++) {
         fprintf(out, ",%" PRIu64, rt_tally_get(&cell->tally, i));
     }
-    fprintf(out, ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",", d->interior,
+    fprintf(out, ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64, d->interior,
             d->leaves, d->empty_leaves, d->references, d->depth, d->bytes);
-    if (isfinite(d->predicted_cost)) fprintf(out, "%.9g", d->predicted_cost);
+#define PUT_PREDICTION(name, meaning) fprintf(out, isfinite(d->name) ? ",%.9g" : ",", d->name);
+    RT_PREDICTIONS(PUT_PREDICTION)
+#undef PUT_PREDICTION
     fputc('\n', out);
 }
 
 void rt_counts_csv(const RtResults *results, FILE *out) {
     fputs(identity, out);
     for (size_t i = 1; i < RT_TALLY_COUNTER_COUNT; i++) fprintf(out, ",%s", rt_tally_name(i));
-    fputs(",interior,leaves,empty_leaves,references,structure_depth,bytes,predicted_cost\n", out);
+    fputs(",interior,leaves,empty_leaves,references,structure_depth,bytes", out);
+#define PUT_NAME(name, meaning) fputs("," #name, out);
+    RT_PREDICTIONS(PUT_NAME)
+#undef PUT_NAME
+    fputc('\n', out);
     each_cell(out, results, put_counts);
 }
 

@@ -219,6 +219,7 @@ RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPrepa
         RT_COUNT(tally, steps, 1);
         uint32_t first = node->first, end = first + rt_cluster_fanout(node);
         if (rt_cluster_is_leaf(node)) {
+            RT_COUNT(tally, leaf_steps, 1);
             for (uint32_t i = first; i < end; i++) {
                 if (rt_test_object(geometry, self->ids[i], ray, any, best, tally)) return;
             }

@@ -103,7 +103,8 @@ RtStatus rt_clusters_layout(RtClusters *self, const RtClusterTree *tree, RtError
 typedef struct Survey {
     const RtClusters *self;
     RtDescription *out;
-    double cost; /* expected, times the area of the root */
+    double inner, leaves,
+        tests; /* visits of nodes and tests of objects expected, times the area of the root */
 } Survey;
 
 static void survey_node(Survey *survey, uint32_t index, uint32_t depth) {
@@ -115,22 +116,28 @@ static void survey_node(Survey *survey, uint32_t index, uint32_t depth) {
     out->leaves += leaf;
     out->references += leaf ? fanout : 0;
     if (depth > out->depth) out->depth = depth;
-    survey->cost += rt_box_half_area(node->box) * (leaf ? fanout : 1);
+    double area = rt_box_half_area(node->box);
+    *(leaf ? &survey->leaves : &survey->inner) += area;
+    survey->tests += leaf ? area * fanout : 0;
     for (uint32_t i = 0; i < fanout && !leaf; i++) survey_node(survey, node->first + i, depth + 1);
 }
 
-/* The predicted cost is that of boxes, whatever the kind of extent: object tests, and visits of inner nodes,
- * one of which counts as much as one object test. */
+/* The predictions are those of boxes, whatever the kind of extent; a visit of an inner node costs as much as
+ * one object test. */
 void rt_clusters_describe(const RtAccel *accel, RtDescription *out) {
     const RtClusters *self = (const RtClusters *)accel;
     *out = (RtDescription){.bytes = self->node_count * sizeof(RtClusterNode) +
                                     accel->scene->geometry.object_count * sizeof(uint32_t) +
-                                    rt_extent_set_bytes(&self->set)};
+                                    rt_extent_set_bytes(&self->set),
+                           RT_NO_PREDICTION};
     if (self->node_count == 0) return;
-    Survey survey = {self, out, 0};
+    Survey survey = {self, out, 0, 0, 0};
     survey_node(&survey, 0, 0);
     double area = rt_box_half_area(self->nodes[0].box);
-    out->predicted_cost = area > 0 ? survey.cost / area : (double)NAN;
+    if (!(area > 0)) return;
+    out->predicted_tests = survey.tests / area;
+    out->predicted_steps = (survey.inner + survey.leaves) / area;
+    out->predicted_cost = (survey.tests + survey.inner) / area;
 }
 
 /* ---- checking ---- */

@@ -186,7 +186,7 @@ static void describe(const RtAccel *accel, RtDescription *out) {
     const RtEmbree *self = (const RtEmbree *)accel;
     *out = (RtDescription){.references = accel->scene->geometry.object_count,
                            .bytes = sizeof(RtEmbree) + (uint64_t)atomic_load(&self->device.bytes),
-                           .predicted_cost = (double)NAN};
+                           RT_NO_PREDICTION};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

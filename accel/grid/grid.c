@@ -86,6 +86,7 @@ RT_KERNEL bool visit_voxel(const RtGrid *self, RtMailbox *mailbox, size_t voxel,
                            bool any, RtHit *best, RtTally *tally) {
     uint32_t from = self->first[voxel], to = self->first[voxel + 1];
     RT_COUNT(tally, steps, 1);
+    RT_COUNT(tally, leaf_steps, 1);
     RT_COUNT(tally, empty_steps, from == to);
     return rt_test_list(&self->base.scene->geometry, mailbox, self->ids + from, to - from, ray, any, best,
                         tally);

@@ -26,7 +26,7 @@ static RtStatus each_voxel(const RtGrid *grid,
 void rt_grid_describe(const RtAccel *accel, RtDescription *out) {
     const RtGrid *grid = (const RtGrid *)accel;
     size_t voxels = rt_grid_voxel_count(grid);
-    *out = (RtDescription){.predicted_cost = (double)NAN};
+    *out = (RtDescription){RT_NO_PREDICTION};
     if (voxels == 0) return;
     out->leaves = voxels;
     out->references = grid->first[voxels];
@@ -38,7 +38,8 @@ void rt_grid_describe(const RtAccel *accel, RtDescription *out) {
     const uint32_t corner[3] = {0, 0, 0};
     RtBox voxel = voxel_box(grid, corner);
     double ratio = rt_box_half_area(voxel) / rt_box_half_area(grid->box);
-    out->predicted_cost = (double)out->references * ratio;
+    out->predicted_steps = (double)voxels * ratio;
+    out->predicted_tests = out->predicted_cost = (double)out->references * ratio;
 }
 
 typedef struct Check {

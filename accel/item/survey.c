@@ -7,8 +7,7 @@
 void rt_item_describe(const RtAccel *accel, RtDescription *out) {
     const RtItemBuffer *buffer = (const RtItemBuffer *)accel;
     size_t samples = rt_item_sample_count(buffer);
-    *out = (RtDescription){
-        .leaves = samples, .bytes = samples * sizeof(RtItemSample), .predicted_cost = (double)NAN};
+    *out = (RtDescription){.leaves = samples, .bytes = samples * sizeof(RtItemSample), RT_NO_PREDICTION};
     for (size_t i = 0; i < samples; i++) {
         out->empty_leaves += buffer->samples[i].id == RT_NO_OBJECT;
         out->references += buffer->samples[i].id < RT_ITEM_UNDECIDED;

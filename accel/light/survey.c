@@ -16,7 +16,7 @@ void rt_light_describe(const RtAccel *accel, RtDescription *out) {
         .bytes = (cells + 1) * sizeof(uint32_t) + buffer->first[cells] * sizeof(RtLightEntry) +
                  (buffer->covers ? cells * sizeof(RtLightCover) : 0) + lights * sizeof(double) +
                  (lights + (size_t)1 + buffer->near_first[lights]) * sizeof(uint32_t),
-        .predicted_cost = (double)NAN,
+        RT_NO_PREDICTION,
     };
 }
 

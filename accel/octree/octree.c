@@ -52,6 +52,7 @@ RT_KERNEL uint32_t near_side(const RtPreparedRay *ray, int axis) {
 
 RT_KERNEL bool visit_leaf(const RtOctree *self, RtMailbox *mailbox, const RtOctreeNode *leaf,
                           const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+    RT_COUNT(tally, leaf_steps, 1);
     RT_COUNT(tally, empty_steps, leaf->count == 0);
     return rt_test_list(&self->base.scene->geometry, mailbox, self->ids + leaf->first, leaf->count, ray, any,
                         best, tally);

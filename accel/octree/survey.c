@@ -10,26 +10,58 @@ static uint32_t depth_of(const RtOctree *tree, uint32_t index) {
     return depth;
 }
 
-/* The predicted cost is the number of object tests that a random line through the root is expected to need,
- * without a mailbox and if nothing stopped it: it meets a leaf with the ratio of their areas. */
+/* Steps that traversal=neighbours is expected to take into a leaf and out of it, times twice the half area of
+ * the root. A line comes in through a face, or goes out, with the ratio of areas: from the node that is cut
+ * there down to the leaf and up again. Through a face of the root it comes from the root, and goes for good.
+ */
+static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
+    const RtVec3 size = rt_box_size(tree->boxes[leaf]);
+    const double face[3] = {(double)size.y * size.z, (double)size.z * size.x, (double)size.x * size.y};
+    bool sought[3][2] = {{false}};
+    double steps = 0, open = 2 * (face[0] + face[1] + face[2]);
+    double climbed = 1;
+    for (uint32_t at = leaf; at > 0; at = tree->nodes[at].parent, climbed++) {
+        for (int a = 0; a < 3; a++) {
+            bool *side = &sought[a][rt_octree_place(at) >> a & 1 ? 0 : 1];
+            if (*side) continue;
+            *side = true;
+            steps += 2 * climbed * face[a];
+            open -= face[a];
+        }
+    }
+    return steps + climbed * open;
+}
+
+/* It meets a node with the ratio of their areas, and then takes the steps that lead there. */
+static double steps_to(const RtOctree *tree, uint32_t index) {
+    double area = rt_box_half_area(tree->boxes[index]);
+    if (tree->traversal == RT_OCTREE_PARAMETRIC) return area;
+    if (tree->nodes[index].count == RT_OCTREE_INNER) return 0;
+    return tree->traversal == RT_OCTREE_POINTS ? area * (depth_of(tree, index) + 1)
+                                               : seeking_steps(tree, index) / 2;
+}
+
 void rt_octree_describe(const RtAccel *accel, RtDescription *out) {
     const RtOctree *tree = (const RtOctree *)accel;
     *out = (RtDescription){.bytes = tree->node_count * (sizeof(RtOctreeNode) + sizeof(RtBox)) +
                                     tree->id_count * sizeof(uint32_t),
                            .references = tree->id_count,
-                           .predicted_cost = (double)NAN};
+                           RT_NO_PREDICTION};
     if (tree->node_count == 0) return;
-    double tests = 0, area = rt_box_half_area(tree->boxes[0]);
+    double tests = 0, steps = 0, area = rt_box_half_area(tree->boxes[0]);
     for (uint32_t i = 0; i < tree->node_count; i++) {
         const RtOctreeNode *node = &tree->nodes[i];
         bool leaf = node->count != RT_OCTREE_INNER;
         out->interior += !leaf;
         out->leaves += leaf;
         out->empty_leaves += node->count == 0;
+        steps += steps_to(tree, i);
         if (leaf) tests += rt_box_half_area(tree->boxes[i]) * node->count;
     }
     out->depth = depth_of(tree, tree->node_count - 1);
-    if (area > 0) out->predicted_cost = tests / area;
+    if (!(area > 0)) return;
+    out->predicted_tests = out->predicted_cost = tests / area;
+    out->predicted_steps = steps / area;
 }
 
 /* ---- validate ---- */

@@ -18,6 +18,7 @@
     X(object_hits, "object tests that found the object within [tmin, tmax]")                                 \
     X(extent_tests, "ray-extent tests; a SIMD lane holding an extent is one")                                \
     X(steps, "nodes, voxels or list entries visited by a traversal")                                         \
+    X(leaf_steps, "steps that were leaves or voxels, the empty ones included")                               \
     X(empty_steps, "steps that met no object: empty leaves and voxels")                                      \
     X(csg_tests, "leaf solids tested inside CSG trees")                                                      \
     X(repeats_avoided, "object tests that a mailbox saved")                                                  \
