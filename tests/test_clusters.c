@@ -109,7 +109,7 @@ static void objects_share_a_leaf_where_that_costs_no_more(void **state) {
     (void)state;
     RtScene apart = make_row(2);
     RtClusters *self = make_clusters(&apart, "clusters:leaf=2");
-    assert_int_equal(self->node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
+    assert_int_equal(self->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
     rt_accel_destroy(&self->base);
     rt_scene_clear(&apart);
     RtScene scene;
@@ -120,7 +120,7 @@ static void objects_share_a_leaf_where_that_costs_no_more(void **state) {
     for (int i = 0; i < 2; i++) assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(1, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     self = make_clusters(&scene, "clusters:leaf=2");
-    assert_int_equal(self->node_count, 1);
+    assert_int_equal(self->hierarchy.node_count, 1);
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
 }
@@ -173,7 +173,7 @@ static void groups_of_spheres_get_tight_extents(void **state) {
 /* The first leaf in the array. */
 static uint32_t some_leaf(const RtClusters *self) {
     uint32_t i = 0;
-    while (!rt_cluster_is_leaf(&self->nodes[i])) i++;
+    while (!rt_node_is_leaf(&self->hierarchy.nodes[i])) i++;
     return i;
 }
 
@@ -181,34 +181,34 @@ static void validate_names_each_invariant_of_the_tree_that_is_broken(void **stat
     (void)state;
     RtScene scene = make_row(16);
     RtClusters *self = make_clusters(&scene, "clusters:width=4");
-    RtClusterNode root = self->nodes[0], *leaf = &self->nodes[some_leaf(self)], kept = *leaf;
+    RtNode root = self->hierarchy.nodes[0], *leaf = &self->hierarchy.nodes[some_leaf(self)], kept = *leaf;
 
-    self->nodes[0].box.hi.x -= 1;
+    self->hierarchy.nodes[0].box.hi.x -= 1;
     assert_broken(&self->base, "node 0 does not contain its child");
-    self->nodes[0] = root;
-    self->nodes[0].count = 5;
+    self->hierarchy.nodes[0] = root;
+    self->hierarchy.nodes[0].count = 5;
     assert_broken(&self->base, "node 0 has 5 children, not 2 to 4");
-    self->nodes[0].count = 1;
+    self->hierarchy.nodes[0].count = 1;
     assert_broken(&self->base, "node 0 has 1 children, not 2 to 4");
-    self->nodes[0] = root;
-    self->nodes[0].first = 0;
+    self->hierarchy.nodes[0] = root;
+    self->hierarchy.nodes[0].first = 0;
     assert_broken(&self->base, "node 0 has children that are not there");
-    self->nodes[0].first = self->node_count - 1;
+    self->hierarchy.nodes[0].first = self->hierarchy.node_count - 1;
     assert_broken(&self->base, "node 0 has children that are not there");
-    self->nodes[0] = root;
+    self->hierarchy.nodes[0] = root;
 
     leaf->box.lo.y = 0;
     assert_broken(&self->base, "does not contain its object");
     *leaf = kept;
-    leaf->count = RT_CLUSTER_LEAF | 2;
+    leaf->count = RT_NODE_LEAF | 2;
     assert_broken(&self->base, "has 2 objects, not 1 to 1");
-    leaf->count = RT_CLUSTER_LEAF;
+    leaf->count = RT_NODE_LEAF;
     assert_broken(&self->base, "has 0 objects");
     *leaf = kept;
     leaf->first = 16;
     assert_broken(&self->base, "holds no object");
     *leaf = kept;
-    self->ids[leaf->first] = 99;
+    self->hierarchy.ids[leaf->first] = 99;
     assert_broken(&self->base, "holds no object");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
@@ -219,25 +219,25 @@ static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(v
     RtScene scene = make_row(2);
     for (uint32_t i = 0; i < 2; i++) scene.geometry.boxes[i] = scene.geometry.box;
     RtClusters *self = make_clusters(&scene, "clusters");
-    self->ids[1] = self->ids[0];
+    self->hierarchy.ids[1] = self->hierarchy.ids[0];
     assert_broken(&self->base, "in 2 leaves");
-    self->node_count = 1;
+    self->hierarchy.node_count = 1;
     assert_broken(&self->base, "children that are not there");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
 
     RtScene three = make_row(3);
     self = make_clusters(&three, "clusters:method=rubin-whitted,leaf=3");
-    RtClusterNode root = self->nodes[0];
-    assert_int_equal(self->node_count, 5);
-    self->nodes[0] = (RtClusterNode){root.box, 0, RT_CLUSTER_LEAF | 3};
+    RtNode root = self->hierarchy.nodes[0];
+    assert_int_equal(self->hierarchy.node_count, 5);
+    self->hierarchy.nodes[0] = (RtNode){root.box, 0, RT_NODE_LEAF | 3};
     assert_broken(&self->base, "1 of 5 nodes are in the tree");
-    self->nodes[0] = root;
-    RtClusterNode two = self->nodes[1], one = self->nodes[2];
-    self->nodes[1] = one;
-    self->nodes[2] = two;
+    self->hierarchy.nodes[0] = root;
+    RtNode two = self->hierarchy.nodes[1], one = self->hierarchy.nodes[2];
+    self->hierarchy.nodes[1] = one;
+    self->hierarchy.nodes[2] = two;
     assert_broken(&self->base, "the ids of leaf 1 begin at 2, not at 0");
-    self->nodes[1] = two;
+    self->hierarchy.nodes[1] = two;
     assert_broken(&self->base, "has two parents");
     rt_accel_destroy(&self->base);
     rt_scene_clear(&three);
@@ -247,10 +247,10 @@ static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(v
     RtScene row = make_row(COUNT);
     self = make_clusters(&row, "clusters");
     for (uint32_t i = 0; i < COUNT; i++) {
-        self->ids[i] = i;
+        self->hierarchy.ids[i] = i;
         uint32_t leaf = i + 1 < COUNT ? 2 * i + 1 : 2 * i;
-        if (i + 1 < COUNT) self->nodes[2 * i] = (RtClusterNode){row.geometry.box, 2 * i + 1, 2};
-        self->nodes[leaf] = (RtClusterNode){row.geometry.boxes[i], i, RT_CLUSTER_LEAF | 1};
+        if (i + 1 < COUNT) self->hierarchy.nodes[2 * i] = (RtNode){row.geometry.box, 2 * i + 1, 2};
+        self->hierarchy.nodes[leaf] = (RtNode){row.geometry.boxes[i], i, RT_NODE_LEAF | 1};
     }
     assert_broken(&self->base, "too deep");
     rt_accel_destroy(&self->base);

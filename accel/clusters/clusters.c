@@ -1,13 +1,13 @@
 /* clusters: a hierarchy of extents of any kind, made by clustering objects.
  *
  * Papers: Rubin & Whitted 1980 (hierarchies of bounding volumes), Goldsmith & Salmon 1987, Walter et al.
- * 2008, Meister & Bittner 2018 (four ways to cluster; tree.h). All cluster boxes by their surface; the
- * extents, of whichever kind, are fitted to the objects of each node afterwards, not to the extents below.
+ * 2008, Meister & Bittner 2018 (four ways to cluster; accel/tree/tree.h). All cluster boxes by their surface;
+ * the extents, of whichever kind, are fitted to the objects of each node afterwards, not to the extents
+ * below.
  *
- * Layout: one array of 32-byte nodes, the children of a node side by side; one array of object ids, of which
- * a leaf owns a run; one extent per node. Exact by accel/extent.h: what misses the extent of a group misses
- * its objects, and a node is dropped only if its box begins beyond the best hit, so ties survive. No leaf is
- * deeper than RT_CLUSTER_MAX_DEPTH, which bounds the stack.
+ * Layout: that of accel/tree/hierarchy.h, and one extent per node. Exact by accel/extent.h: what misses the
+ * extent of a group misses its objects, and a node is dropped only if its box begins beyond the best hit, so
+ * ties survive. No leaf is deeper than RT_TREE_MAX_DEPTH, which bounds the stack.
  *
  * Counting: a step per node visited. With traversal_order=fixed children are taken as they stand and a node's
  * extent is tested when its turn comes (Rubin & Whitted); with nearest all children of a node are tested when
@@ -60,7 +60,7 @@ static const RtParam params[PARAM_COUNT] = {
                      .type = RT_PARAM_INT,
                      .standard = "2",
                      .lo = 2,
-                     .hi = RT_CLUSTER_MAX_WIDTH,
+                     .hi = RT_NODE_MAX_WIDTH,
                      .meaning = "most children of a node: the largest are opened into their parents",
                      .source = "clustering makes binary trees",
                      .tries = "3|4|16"},
@@ -116,47 +116,49 @@ static const RtParam params[PARAM_COUNT] = {
 static void destroy(RtAccel *accel) {
     RtClusters *self = (RtClusters *)accel;
     rt_extent_set_clear(&self->set);
-    rt_free(self->nodes);
-    rt_free(self->ids);
+    rt_hierarchy_clear(&self->hierarchy);
     rt_free(self);
 }
 
-static RtStatus cluster(RtClusterTree *tree, const RtValue *values, RtError *error) {
+static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValue *values, RtError *error) {
+    const RtBox *boxes = geometry->boxes;
+    uint32_t count = geometry->object_count;
     const RtInsertionOrder order = {values[PARAM_ORDER].choice == 1, (uint32_t)values[PARAM_TRIES].i,
                                     (uint64_t)values[PARAM_SEED].i};
     switch ((Method)values[PARAM_METHOD].choice) {
-    case AGGLOMERATIVE: return rt_cluster_agglomerative(tree, error);
-    case PLOC: return rt_cluster_ploc(tree, (uint32_t)values[PARAM_RADIUS].i, error);
-    case GOLDSMITH_SALMON: return rt_cluster_insertion(tree, &order, error);
-    case RUBIN_WHITTED: return rt_cluster_topdown(tree, 0, error);
+    case AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
+    case PLOC: return rt_tree_ploc(tree, boxes, count, (uint32_t)values[PARAM_RADIUS].i, error);
+    case GOLDSMITH_SALMON: return rt_tree_insertion(tree, boxes, count, &order, error);
+    case RUBIN_WHITTED: return rt_tree_topdown(tree, boxes, count, 0, error);
     case SAH: break;
     }
-    return rt_cluster_topdown(tree, 16, error);
+    return rt_tree_topdown(tree, boxes, count, 16, error);
 }
 
-static RtStatus make_nodes(RtClusters *self, const RtValue *values, RtError *error) {
-    const RtGeometry *geometry = &self->base.scene->geometry;
-    RtClusterTree tree;
-    RT_TRY(rt_cluster_tree_init(&tree, geometry->boxes, geometry->object_count, error));
-    RtStatus status = cluster(&tree, values, error);
-    if (status == RT_OK) status = rt_cluster_tree_limit_depth(&tree, error);
-    if (status == RT_OK) status = rt_clusters_layout(self, &tree, error);
-    rt_cluster_tree_clear(&tree);
-    return status;
+/* The objects below node `index`: leaves come in the order of their ids. */
+static RtGroup group_of(const RtClusters *self, uint32_t index) {
+    const RtHierarchy *hierarchy = &self->hierarchy;
+    const RtNode *first = &hierarchy->nodes[index], *last = first;
+    while (!rt_node_is_leaf(first)) first = &hierarchy->nodes[first->first];
+    while (!rt_node_is_leaf(last)) last = &hierarchy->nodes[last->first + rt_node_fanout(last) - 1];
+    return (RtGroup){&self->base.scene->geometry, hierarchy->ids + first->first,
+                     last->first + rt_node_fanout(last) - first->first, hierarchy->nodes[index].box};
 }
 
 static RtStatus fill(RtClusters *self, const RtValue *values, RtError *error) {
-    uint32_t count = self->base.scene->geometry.object_count;
-    size_t most = count > 0 ? 2 * (size_t)count - 1 : 0;
-    self->nodes = rt_alloc(most, sizeof(RtClusterNode));
-    self->ids = rt_alloc(count, sizeof(uint32_t));
-    if (!self->nodes || !self->ids)
-        return rt_fail_memory(error, "clusters", most * sizeof(RtClusterNode) + count * sizeof(uint32_t));
-    if (count > 0) RT_TRY(make_nodes(self, values, error));
+    const RtGeometry *geometry = &self->base.scene->geometry;
+    RtTree tree;
+    if (geometry->object_count > 0) {
+        RT_TRY(make_tree(&tree, geometry, values, error));
+        RtStatus status = rt_hierarchy_lay_out(&self->hierarchy, &tree, error);
+        rt_tree_clear(&tree);
+        if (status != RT_OK) return status;
+    }
+    uint32_t node_count = self->hierarchy.node_count;
     RT_TRY(rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_EXTENT].choice,
-                              (uint32_t)values[PARAM_SLABS].i, self->node_count, error));
-    for (uint32_t index = 0; index < self->node_count; index++) {
-        RtGroup group = rt_cluster_group(self, index);
+                              (uint32_t)values[PARAM_SLABS].i, node_count, error));
+    for (uint32_t index = 0; index < node_count; index++) {
+        RtGroup group = group_of(self, index);
         rt_extent_fit(&self->set, index, &group);
     }
     return RT_OK;
@@ -166,8 +168,9 @@ static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out
     RtAccel *accel;
     RT_TRY(rt_accel_new(&rt_clusters_ops, scene, sizeof(RtClusters), &accel, error));
     RtClusters *self = (RtClusters *)accel;
-    self->width = (uint32_t)values[PARAM_WIDTH].i;
-    self->leaf_limit = (uint32_t)values[PARAM_LEAF].i;
+    self->hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
+                                    .leaf_limit = (uint32_t)values[PARAM_LEAF].i,
+                                    .traversal_cost = 1};
     self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
     RtStatus status = fill(self, values, error);
     if (status == RT_OK)
@@ -185,7 +188,7 @@ typedef struct StackEntry {
 } StackEntry;
 
 /* Every level leaves at most all children but one waiting. */
-enum { STACK_SIZE = RT_CLUSTER_MAX_DEPTH * (RT_CLUSTER_MAX_WIDTH - 1) + 1 };
+enum { STACK_SIZE = RT_TREE_MAX_DEPTH * (RT_NODE_MAX_WIDTH - 1) + 1 };
 
 /* Puts `entry` among stack[bottom..top), of which the topmost is entered first and equal ones keep the order
  * in which they came. */
@@ -198,17 +201,18 @@ static inline void push_by_entry(StackEntry *stack, uint32_t bottom, uint32_t to
 RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPreparedRay *ray, bool any,
                         RtHit *best, RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
+    const RtNode *nodes = self->hierarchy.nodes;
     StackEntry stack[STACK_SIZE];
     uint32_t stacked = 0;
     float enter;
-    if (self->node_count == 0) return;
+    if (self->hierarchy.node_count == 0) return;
     RtLine line = rt_line(&self->set, kind, &geometry->box, ray);
     RT_COUNT(tally, extent_tests, 1);
-    if (!rt_extent_hit(&self->set, kind, 0, &self->nodes[0].box, ray, &line, ray->tmax, &enter)) return;
+    if (!rt_extent_hit(&self->set, kind, 0, &nodes[0].box, ray, &line, ray->tmax, &enter)) return;
     stack[stacked++] = (StackEntry){0, enter};
     while (stacked > 0) {
         StackEntry at = stack[--stacked];
-        const RtClusterNode *node = &self->nodes[at.node];
+        const RtNode *node = &nodes[at.node];
         if (self->nearest_first) {
             if (at.enter > rt_limit(ray, best)) continue;
         } else if (at.node > 0) {
@@ -217,18 +221,18 @@ RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPrepa
             if (!rt_extent_hit(&self->set, kind, at.node, &node->box, ray, &line, limit, &enter)) continue;
         }
         RT_COUNT(tally, steps, 1);
-        uint32_t first = node->first, end = first + rt_cluster_fanout(node);
-        if (rt_cluster_is_leaf(node)) {
+        uint32_t first = node->first, end = first + rt_node_fanout(node);
+        if (rt_node_is_leaf(node)) {
             RT_COUNT(tally, leaf_steps, 1);
             for (uint32_t i = first; i < end; i++) {
-                if (rt_test_object(geometry, self->ids[i], ray, any, best, tally)) return;
+                if (rt_test_object(geometry, self->hierarchy.ids[i], ray, any, best, tally)) return;
             }
         } else if (self->nearest_first) {
             uint32_t bottom = stacked;
             float limit = rt_limit(ray, best);
             RT_COUNT(tally, extent_tests, end - first);
             for (uint32_t i = first; i < end; i++) {
-                const RtBox *box = &self->nodes[i].box;
+                const RtBox *box = &nodes[i].box;
                 if (!rt_extent_hit(&self->set, kind, i, box, ray, &line, limit, &enter)) continue;
                 push_by_entry(stack, bottom, stacked++, (StackEntry){i, enter});
             }
@@ -248,16 +252,24 @@ RT_DEFINE_KERNELS(RtClusters, search)
 
 /* ---- looking at it ---- */
 
-static void show_node(const RtClusters *self, uint32_t index, uint32_t depth, RtBoxViewer viewer) {
-    const RtClusterNode *node = &self->nodes[index];
-    viewer.show(viewer.context, &node->box, depth);
-    if (rt_cluster_is_leaf(node)) return;
-    for (uint32_t i = 0; i < node->count; i++) show_node(self, node->first + i, depth + 1, viewer);
+static void describe(const RtAccel *accel, RtDescription *out) {
+    const RtClusters *self = (const RtClusters *)accel;
+    rt_hierarchy_describe(&self->hierarchy, out);
+    out->bytes += rt_extent_set_bytes(&self->set);
+}
+
+static RtStatus validate(const RtAccel *accel, RtError *error) {
+    const RtClusters *self = (const RtClusters *)accel;
+    RT_TRY(rt_hierarchy_validate(&self->hierarchy, &accel->scene->geometry, "clusters", error));
+    for (uint32_t index = 0; index < self->hierarchy.node_count; index++) {
+        RtGroup group = group_of(self, index);
+        RT_TRY(rt_extent_check(&self->set, index, &group, "clusters", error));
+    }
+    return RT_OK;
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    const RtClusters *self = (const RtClusters *)accel;
-    if (self->node_count > 0) show_node(self, 0, 0, viewer);
+    rt_hierarchy_each_box(&((const RtClusters *)accel)->hierarchy, viewer);
 }
 
 const RtAccelOps rt_clusters_ops = {
@@ -270,7 +282,7 @@ const RtAccelOps rt_clusters_ops = {
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,
-    .describe = rt_clusters_describe,
-    .validate = rt_clusters_validate,
+    .describe = describe,
+    .validate = validate,
     .each_box = each_box,
 };

@@ -5,8 +5,7 @@
  * Equal distances are decided by the exclusive or of the places, which is the same seen from either side and
  * differs among the partners of one cluster: so the least pair of a round always is mutual, every round makes
  * progress, and coincident objects pair up like a balanced tree. */
-#include "accel/clusters/tree.h"
-
+#include "accel/tree/tree.h"
 #include "base/memory.h"
 
 #include <stdlib.h>
@@ -44,16 +43,16 @@ static uint64_t morton_code(RtVec3 center, const RtBox *centers) {
 }
 
 /* Fills row[0..count) with the objects in Morton order. */
-static RtStatus order_objects(const RtClusterTree *tree, uint32_t *row, RtError *error) {
-    uint32_t count = tree->count;
+static RtStatus order_objects(const RtTree *tree, uint32_t *row, RtError *error) {
+    uint32_t count = tree->used;
     Coded *coded = rt_alloc(count, sizeof(Coded));
     if (!coded) return rt_fail_memory(error, "Morton codes", count * sizeof(Coded));
     RtBox centers = RT_EMPTY_BOX;
     for (uint32_t i = 0; i < count; i++) {
-        centers = rt_box_add_point(centers, rt_box_center(tree->clusters[i].box));
+        centers = rt_box_add_point(centers, rt_box_center(tree->nodes[i].box));
     }
     for (uint32_t i = 0; i < count; i++) {
-        coded[i] = (Coded){morton_code(rt_box_center(tree->clusters[i].box), &centers), i};
+        coded[i] = (Coded){morton_code(rt_box_center(tree->nodes[i].box), &centers), i};
     }
     qsort(coded, count, sizeof *coded, by_code);
     for (uint32_t i = 0; i < count; i++) row[i] = coded[i].id;
@@ -62,7 +61,7 @@ static RtStatus order_objects(const RtClusterTree *tree, uint32_t *row, RtError 
 }
 
 /* The place of the nearest of row[i] within `radius`. */
-static uint32_t find_nearest(const RtClusterTree *tree, const uint32_t *row, uint32_t count, uint32_t i,
+static uint32_t find_nearest(const RtTree *tree, const uint32_t *row, uint32_t count, uint32_t i,
                              uint32_t radius) {
     uint32_t first = i > radius ? i - radius : 0;
     uint32_t last = count - 1 - i > radius ? i + radius : count - 1;
@@ -70,7 +69,7 @@ static uint32_t find_nearest(const RtClusterTree *tree, const uint32_t *row, uin
     double least = INFINITY;
     for (uint32_t j = first; j <= last; j++) {
         if (j == i) continue;
-        double d = rt_cluster_distance(tree, row[i], row[j]);
+        double d = rt_tree_distance(tree, row[i], row[j]);
         if (d > least || (d == least && (i ^ j) > (i ^ best))) continue;
         least = d;
         best = j;
@@ -79,26 +78,32 @@ static uint32_t find_nearest(const RtClusterTree *tree, const uint32_t *row, uin
 }
 
 /* One round; gives the length of the row it leaves. */
-static uint32_t unite_pairs(RtClusterTree *tree, uint32_t *row, uint32_t *nearest, uint32_t count,
-                            uint32_t radius) {
+static uint32_t unite_pairs(RtTree *tree, uint32_t *row, uint32_t *nearest, uint32_t count, uint32_t radius) {
     uint32_t left = 0;
     for (uint32_t i = 0; i < count; i++) nearest[i] = find_nearest(tree, row, count, i, radius);
     for (uint32_t i = 0; i < count; i++) {
         bool mutual = nearest[nearest[i]] == i;
         if (mutual && nearest[i] < i) continue;
-        row[left++] = mutual ? rt_cluster_unite(tree, row[i], row[nearest[i]]) : row[i];
+        row[left++] = mutual ? rt_tree_unite(tree, row[i], row[nearest[i]]) : row[i];
     }
     return left;
 }
 
-RtStatus rt_cluster_ploc(RtClusterTree *tree, uint32_t radius, RtError *error) {
-    uint32_t *row = rt_alloc(tree->count, sizeof(uint32_t));
-    uint32_t *nearest = rt_alloc(tree->count, sizeof(uint32_t));
+static RtStatus complete(RtTree *tree, uint32_t radius, RtError *error) {
+    uint32_t count = tree->used;
+    uint32_t *row = rt_alloc(count, sizeof(uint32_t));
+    uint32_t *nearest = rt_alloc(count, sizeof(uint32_t));
     RtStatus status = row && nearest ? order_objects(tree, row, error)
-                                     : rt_fail_memory(error, "clusters", tree->count * sizeof(uint32_t) * 2);
-    uint32_t count = tree->count;
+                                     : rt_fail_memory(error, "clusters", count * sizeof(uint32_t) * 2);
     while (status == RT_OK && count > 1) count = unite_pairs(tree, row, nearest, count, radius);
     rt_free(row);
     rt_free(nearest);
+    return status;
+}
+
+RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t radius, RtError *error) {
+    RT_TRY(rt_tree_init_leaves(tree, boxes, count, error));
+    RtStatus status = complete(tree, radius, error);
+    if (status != RT_OK) rt_tree_clear(tree);
     return status;
 }

@@ -7,7 +7,7 @@
  * found by following chains from a cluster to its nearest, to that one's nearest and so on, along which
  * distances strictly fall; a union leaves the rest of the chain good, so each step is made once. Chains begin
  * at every slot in turn, round and round, which makes coincident objects a balanced tree. */
-#include "accel/clusters/neighbours.h"
+#include "accel/tree/neighbours.h"
 
 #include "base/memory.h"
 
@@ -25,9 +25,9 @@ static uint32_t next_start(const RtNeighbours *neighbours, uint32_t *slot) {
     }
 }
 
-static void unite_all(RtClusterTree *tree, RtNeighbours *neighbours, Link *chain) {
+static void unite_all(RtTree *tree, RtNeighbours *neighbours, Link *chain) {
     uint32_t length = 0, slot = 0;
-    for (uint32_t left = tree->count; left > 1;) {
+    for (uint32_t left = tree->used; left > 1;) {
         if (length == 0) chain[length++] = (Link){next_start(neighbours, &slot), INFINITY};
         double distance;
         const Link *last = &chain[length - 1];
@@ -37,18 +37,26 @@ static void unite_all(RtClusterTree *tree, RtNeighbours *neighbours, Link *chain
             continue;
         }
         uint32_t before = chain[length - 2].cluster;
-        rt_neighbours_unite(neighbours, before, last->cluster, rt_cluster_unite(tree, before, last->cluster));
+        rt_neighbours_unite(neighbours, before, last->cluster, rt_tree_unite(tree, before, last->cluster));
         length -= 2;
         left--;
     }
 }
 
-RtStatus rt_cluster_agglomerative(RtClusterTree *tree, RtError *error) {
+static RtStatus complete(RtTree *tree, RtError *error) {
     RtNeighbours neighbours;
     RT_TRY(rt_neighbours_init(&neighbours, tree, error));
-    Link *chain = rt_alloc((size_t)tree->count + 1, sizeof(Link));
+    size_t links = (size_t)tree->used + 1;
+    Link *chain = rt_alloc(links, sizeof(Link));
     if (chain) unite_all(tree, &neighbours, chain);
     rt_free(chain);
     rt_neighbours_clear(&neighbours);
-    return chain ? RT_OK : rt_fail_memory(error, "a chain of clusters", tree->count * sizeof(Link));
+    return chain ? RT_OK : rt_fail_memory(error, "a chain of clusters", links * sizeof(Link));
+}
+
+RtStatus rt_tree_agglomerative(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error) {
+    RT_TRY(rt_tree_init_leaves(tree, boxes, count, error));
+    RtStatus status = complete(tree, error);
+    if (status != RT_OK) rt_tree_clear(tree);
+    return status;
 }

@@ -1,8 +1,8 @@
-/* The trees of accel/clusters: the methods against their definitions, and bounded depth. */
+/* accel/tree: the methods against their definitions, and bounded depth. */
 #include "testing.h"
 
-#include "accel/clusters/neighbours.h"
-#include "accel/split.h"
+#include "accel/tree/neighbours.h"
+#include "accel/tree/split.h"
 #include "base/memory.h"
 #include "base/random.h"
 
@@ -27,38 +27,37 @@ static RtBox *make_boxes(uint32_t count, uint64_t seed) {
     return boxes;
 }
 
-static RtClusterTree make_tree(const RtBox *boxes, uint32_t count, int method) {
+static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
     const RtInsertionOrder order = {.random = true, .tries = 1, .seed = 1};
-    RtClusterTree tree;
-    assert_ok(rt_cluster_tree_init(&tree, boxes, count, error));
+    RtTree tree;
     switch (method) {
-    case 0: assert_ok(rt_cluster_agglomerative(&tree, error)); break;
-    case 1: assert_ok(rt_cluster_ploc(&tree, 25, error)); break;
-    case 2: assert_ok(rt_cluster_insertion(&tree, &order, error)); break;
-    case 3: assert_ok(rt_cluster_topdown(&tree, 0, error)); break;
-    default: assert_ok(rt_cluster_topdown(&tree, 16, error)); break;
+    case 0: assert_ok(rt_tree_agglomerative(&tree, boxes, count, error)); break;
+    case 1: assert_ok(rt_tree_ploc(&tree, boxes, count, 25, error)); break;
+    case 2: assert_ok(rt_tree_insertion(&tree, boxes, count, &order, error)); break;
+    case 3: assert_ok(rt_tree_topdown(&tree, boxes, count, 0, error)); break;
+    default: assert_ok(rt_tree_topdown(&tree, boxes, count, 16, error)); break;
     }
     return tree;
 }
 
-/* Marks the objects below `at`, checks boxes, and gives the height. */
-static uint32_t height_of(const RtClusterTree *tree, uint32_t at, uint32_t *seen) {
-    const RtCluster *cluster = &tree->clusters[at];
+/* Marks the nodes from `at` down, checks boxes, and gives the height. */
+static uint32_t height_of(const RtTree *tree, uint32_t at, uint32_t *seen) {
+    const RtTreeNode *node = &tree->nodes[at];
     seen[at]++;
-    if (rt_cluster_is_object(tree, at)) return 0;
+    if (rt_tree_is_leaf(tree, at)) return 0;
     uint32_t height = 0;
     for (int s = 0; s < 2; s++) {
-        uint32_t below = height_of(tree, cluster->child[s], seen) + 1;
+        uint32_t below = height_of(tree, node->child[s], seen) + 1;
         height = below > height ? below : height;
-        assert_true(rt_box_contains(cluster->box, tree->clusters[cluster->child[s]].box));
+        assert_true(rt_box_contains(node->box, tree->nodes[node->child[s]].box));
     }
     return height;
 }
 
-/* Every cluster is in the tree once; gives the height. */
-static uint32_t assert_tree(const RtClusterTree *tree) {
+/* Every node is in the tree once, every object a leaf; gives the height. */
+static uint32_t assert_tree(const RtTree *tree) {
     uint32_t *seen = rt_alloc(tree->used, sizeof(uint32_t));
-    assert_int_equal(tree->used, 2 * tree->count - 1);
+    assert_int_equal(tree->used, tree->capacity);
     uint32_t height = height_of(tree, tree->root, seen);
     for (uint32_t i = 0; i < tree->used; i++) assert_int_equal(seen[i], 1);
     rt_free(seen);
@@ -69,10 +68,10 @@ static void the_nearest_neighbour_is_the_one_that_a_scan_finds(void **state) {
     (void)state;
     enum { COUNT = 333 };
     RtBox *boxes = make_boxes(COUNT, 1);
-    RtClusterTree tree;
+    RtTree tree;
     RtNeighbours neighbours;
     bool gone[2 * COUNT] = {false};
-    assert_ok(rt_cluster_tree_init(&tree, boxes, COUNT, error));
+    assert_ok(rt_tree_init_leaves(&tree, boxes, COUNT, error));
     assert_ok(rt_neighbours_init(&neighbours, &tree, error));
     RtRandom random = rt_random(2, 0);
     for (uint32_t left = COUNT; left > 1; left--) {
@@ -83,42 +82,42 @@ static void the_nearest_neighbour_is_the_one_that_a_scan_finds(void **state) {
         uint32_t nearest = rt_neighbours_nearest(&neighbours, from, &distance);
         for (other = 0; other < tree.used; other++) {
             if (gone[other] || other == from) continue;
-            double d = rt_cluster_distance(&tree, from, other);
+            double d = rt_tree_distance(&tree, from, other);
             least = d < least ? d : least;
         }
         assert_true(distance == least);
-        assert_true(distance == rt_cluster_distance(&tree, from, nearest));
+        assert_true(distance == rt_tree_distance(&tree, from, nearest));
         /* A union with any cluster, near or far. */
         do other = rt_random_bits(&random) % tree.used;
         while (gone[other] || other == from);
         gone[from] = gone[other] = true;
-        rt_neighbours_unite(&neighbours, from, other, rt_cluster_unite(&tree, from, other));
+        rt_neighbours_unite(&neighbours, from, other, rt_tree_unite(&tree, from, other));
     }
     double distance;
     assert_int_equal(rt_neighbours_nearest(&neighbours, tree.root, &distance), RT_NO_CLUSTER);
     rt_neighbours_clear(&neighbours);
-    rt_cluster_tree_clear(&tree);
+    rt_tree_clear(&tree);
     rt_free(boxes);
 }
 
 /* The definition: of all pairs of all clusters the nearest, until one is left. */
-static RtClusterTree make_greedy_tree(const RtBox *boxes, uint32_t count) {
-    RtClusterTree tree;
+static RtTree make_greedy_tree(const RtBox *boxes, uint32_t count) {
+    RtTree tree;
     bool gone[1024] = {false};
-    assert_ok(rt_cluster_tree_init(&tree, boxes, count, error));
+    assert_ok(rt_tree_init_leaves(&tree, boxes, count, error));
     while (tree.used < 2 * count - 1) {
         uint32_t a = 0, b = 0;
         double least = INFINITY;
         for (uint32_t i = 0; i < tree.used; i++) {
             for (uint32_t j = i + 1; j < tree.used && !gone[i]; j++) {
-                if (gone[j] || !(rt_cluster_distance(&tree, i, j) < least)) continue;
-                least = rt_cluster_distance(&tree, i, j);
+                if (gone[j] || !(rt_tree_distance(&tree, i, j) < least)) continue;
+                least = rt_tree_distance(&tree, i, j);
                 a = i;
                 b = j;
             }
         }
         gone[a] = gone[b] = true;
-        rt_cluster_unite(&tree, a, b);
+        rt_tree_unite(&tree, a, b);
     }
     return tree;
 }
@@ -128,18 +127,16 @@ static void agglomeration_unites_the_nearest_pair_of_all(void **state) {
     enum { COUNT = 150 };
     for (uint64_t seed = 1; seed <= 5; seed++) {
         RtBox *boxes = make_boxes(COUNT, seed);
-        RtClusterTree greedy = make_greedy_tree(boxes, COUNT), tree = make_tree(boxes, COUNT, 0);
+        RtTree greedy = make_greedy_tree(boxes, COUNT), tree = make_tree(boxes, COUNT, 0);
         assert_tree(&tree);
         /* The same unions, in another order. */
         for (uint32_t i = COUNT; i < greedy.used; i++) {
             uint32_t j = COUNT;
-            while (j < tree.used &&
-                   memcmp(&tree.clusters[j].box, &greedy.clusters[i].box, sizeof(RtBox)) != 0)
-                j++;
+            while (j < tree.used && memcmp(&tree.nodes[j].box, &greedy.nodes[i].box, sizeof(RtBox)) != 0) j++;
             assert_true(j < tree.used);
         }
-        rt_cluster_tree_clear(&greedy);
-        rt_cluster_tree_clear(&tree);
+        rt_tree_clear(&greedy);
+        rt_tree_clear(&tree);
         rt_free(boxes);
     }
 }
@@ -151,10 +148,10 @@ static void clustering_beats_medians_and_more_neighbours_beat_fewer(void **state
         RtBox *boxes = make_boxes(COUNT, seed);
         double cost[METHOD_COUNT];
         for (int m = 0; m < METHOD_COUNT; m++) {
-            RtClusterTree tree = make_tree(boxes, COUNT, m);
+            RtTree tree = make_tree(boxes, COUNT, m);
             assert_tree(&tree);
-            cost[m] = rt_cluster_tree_cost(&tree);
-            rt_cluster_tree_clear(&tree);
+            cost[m] = rt_tree_cost(&tree);
+            rt_tree_clear(&tree);
         }
         assert_true(cost[0] <= cost[1]); /* agglomerative, ploc */
         assert_true(cost[1] <= cost[3]); /* rubin-whitted */
@@ -170,15 +167,14 @@ static void more_orders_of_insertion_never_cost_more(void **state) {
     double before = INFINITY, first = 0;
     for (uint32_t tries = 1; tries <= 8; tries++) {
         const RtInsertionOrder order = {.random = true, .tries = tries, .seed = 7};
-        RtClusterTree tree;
-        assert_ok(rt_cluster_tree_init(&tree, boxes, COUNT, error));
-        assert_ok(rt_cluster_insertion(&tree, &order, error));
+        RtTree tree;
+        assert_ok(rt_tree_insertion(&tree, boxes, COUNT, &order, error));
         assert_tree(&tree);
-        double cost = rt_cluster_tree_cost(&tree);
+        double cost = rt_tree_cost(&tree);
         assert_true(cost <= before);
         if (tries == 1) first = cost;
         before = cost;
-        rt_cluster_tree_clear(&tree);
+        rt_tree_clear(&tree);
     }
     assert_true(before < first);
     rt_free(boxes);
@@ -193,33 +189,30 @@ static void an_object_is_inserted_where_areas_grow_least(void **state) {
                       {{102, 0, 0}, {103, 1, 1}},
                       {{103.5f, 0, 0}, {104, 1, 1}}};
     const RtInsertionOrder order = {.random = false, .tries = 1};
-    RtClusterTree tree;
-    assert_ok(rt_cluster_tree_init(&tree, boxes, 5, error));
-    assert_ok(rt_cluster_insertion(&tree, &order, error));
+    RtTree tree;
+    assert_ok(rt_tree_insertion(&tree, boxes, 5, &order, error));
     assert_int_equal(assert_tree(&tree), 3);
-    const uint32_t *child = tree.clusters[8].child; /* the last union */
+    const uint32_t *child = tree.nodes[8].child; /* the last union */
     assert_int_equal(child[0], 3);
     assert_int_equal(child[1], 4);
-    rt_cluster_tree_clear(&tree);
+    rt_tree_clear(&tree);
 }
 
 static void medians_put_the_lesser_half_in_front(void **state) {
     (void)state;
     RtRandom random = rt_random(9, 0);
     for (uint32_t count = 1; count <= 64; count++) {
-        RtBox boxes[64];
-        uint32_t ids[64];
+        RtTreeRef refs[64];
         for (uint32_t i = 0; i < count; i++) {
             float x = (float)(rt_random_bits(&random) % (count / 2 + 1)); /* many are equal */
-            boxes[i] = (RtBox){{x, 0, 0}, {x + 1, 1, 1}};
-            ids[i] = i;
+            refs[i] = (RtTreeRef){{{x, 0, 0}, {x + 1, 1, 1}}, i};
         }
-        uint32_t half = rt_split_median(boxes, ids, count);
+        uint32_t half = rt_split_median(refs, count);
         assert_int_equal(half, (count + 1) / 2);
         for (uint32_t i = 0; i < half; i++) {
             for (uint32_t j = half; j < count; j++) {
-                float x = boxes[ids[i]].lo.x, y = boxes[ids[j]].lo.x;
-                assert_true(x < y || (x == y && ids[i] < ids[j]));
+                float x = refs[i].box.lo.x, y = refs[j].box.lo.x;
+                assert_true(x < y || (x == y && refs[i].id < refs[j].id));
             }
         }
     }
@@ -233,13 +226,13 @@ static void coincident_objects_stay_within_the_depth_limit(void **state) {
     RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
     for (int i = 0; i < COUNT; i++) boxes[i] = (RtBox){{0, 0, 0}, {1, 1, 1}};
     for (int m = 0; m < METHOD_COUNT; m++) {
-        RtClusterTree tree = make_tree(boxes, COUNT, m);
+        RtTree tree = make_tree(boxes, COUNT, m);
         uint32_t before = assert_tree(&tree);
-        if (m == 2) assert_true(before > RT_CLUSTER_MAX_DEPTH); /* or the test would show less */
+        if (m == 2) assert_true(before > RT_TREE_MAX_DEPTH); /* or the test would show less */
         if (m != 2) assert_in_range(before, 10, 12);
-        assert_ok(rt_cluster_tree_limit_depth(&tree, error));
-        assert_true(assert_tree(&tree) <= RT_CLUSTER_MAX_DEPTH);
-        rt_cluster_tree_clear(&tree);
+        assert_ok(rt_tree_limit_depth(&tree, error));
+        assert_true(assert_tree(&tree) <= RT_TREE_MAX_DEPTH);
+        rt_tree_clear(&tree);
     }
     rt_free(boxes);
 }
@@ -253,24 +246,24 @@ static void a_chain_of_growing_distances_is_cut_by_medians(void **state) {
     float x = 1e-17f;
     for (int i = 0; i < COUNT; i++, x *= 2) boxes[i] = (RtBox){{x, 0, 0}, {x * 1.25f, x / 8, x / 8}};
     for (int m = 0; m < METHOD_COUNT; m++) {
-        RtClusterTree tree = make_tree(boxes, COUNT, m);
+        RtTree tree = make_tree(boxes, COUNT, m);
         uint32_t before = assert_tree(&tree);
-        if (m < 2) assert_true(before > RT_CLUSTER_MAX_DEPTH);
-        assert_ok(rt_cluster_tree_limit_depth(&tree, error));
-        assert_true(assert_tree(&tree) <= RT_CLUSTER_MAX_DEPTH);
-        rt_cluster_tree_clear(&tree);
+        if (m < 2) assert_true(before > RT_TREE_MAX_DEPTH);
+        assert_ok(rt_tree_limit_depth(&tree, error));
+        assert_true(assert_tree(&tree) <= RT_TREE_MAX_DEPTH);
+        rt_tree_clear(&tree);
     }
 }
 
 static void what_is_shallow_enough_is_left_as_it_is(void **state) {
     (void)state;
     RtBox *boxes = make_boxes(500, 1);
-    RtClusterTree tree = make_tree(boxes, 500, 0);
-    RtCluster before[999];
-    memcpy(before, tree.clusters, sizeof before);
-    assert_ok(rt_cluster_tree_limit_depth(&tree, error));
-    assert_memory_equal(before, tree.clusters, sizeof before);
-    rt_cluster_tree_clear(&tree);
+    RtTree tree = make_tree(boxes, 500, 0);
+    RtTreeNode before[999];
+    memcpy(before, tree.nodes, sizeof before);
+    assert_ok(rt_tree_limit_depth(&tree, error));
+    assert_memory_equal(before, tree.nodes, sizeof before);
+    rt_tree_clear(&tree);
     rt_free(boxes);
 }
 

@@ -5,27 +5,27 @@
  * empty from then on. A node of the tree knows, of the clusters below it, the largest lower corner, the
  * smallest upper corner and the smallest size; the box about a cluster and any of them is at least as large
  * as the box about it and those, so what cannot be nearer is skipped. */
-#ifndef RT_ACCEL_CLUSTERS_NEIGHBOURS_H
-#define RT_ACCEL_CLUSTERS_NEIGHBOURS_H
+#ifndef RT_ACCEL_TREE_NEIGHBOURS_H
+#define RT_ACCEL_TREE_NEIGHBOURS_H
 
-#include "accel/clusters/tree.h"
+#include "accel/tree/tree.h"
 
 typedef struct RtNeighbourBound {
     RtVec3 lo, hi, size; /* of an empty node: -inf, +inf, +inf, whatever is asked about is infinitely far */
 } RtNeighbourBound;
 
 typedef struct RtNeighbours {
-    const RtClusterTree *tree; /* borrowed */
-    uint32_t capacity;         /* slots, a power of two */
-    RtNeighbourBound *bounds;  /* [2 * capacity]; a slot's is at capacity + slot */
-    uint32_t *cluster_at;      /* [capacity] by slot, or RT_NO_CLUSTER */
-    uint32_t *slot_of;         /* [2 * tree->count - 1] by cluster */
+    const RtTree *tree;       /* borrowed */
+    uint32_t capacity;        /* slots, a power of two */
+    RtNeighbourBound *bounds; /* [2 * capacity]; a slot's is at capacity + slot */
+    uint32_t *cluster_at;     /* [capacity] by slot, or RT_NO_CLUSTER */
+    uint32_t *slot_of;        /* [tree->capacity] by cluster */
 } RtNeighbours;
 
 #define RT_NO_CLUSTER UINT32_MAX
 
-/* The objects of `tree`, each in a slot. */
-RtStatus rt_neighbours_init(RtNeighbours *self, const RtClusterTree *tree, RtError *error);
+/* The references of `tree`, which has no union yet, each in a slot. */
+RtStatus rt_neighbours_init(RtNeighbours *self, const RtTree *tree, RtError *error);
 void rt_neighbours_clear(RtNeighbours *self);
 
 /* Puts `united`, the union of a and b, in their place. */

@@ -1,6 +1,6 @@
-#include "accel/clusters/neighbours.h"
+#include "accel/tree/neighbours.h"
 
-#include "accel/split.h"
+#include "accel/tree/split.h"
 #include "base/memory.h"
 
 #define NOBODY                                                                                               \
@@ -12,7 +12,7 @@ static void set_slot(RtNeighbours *self, uint32_t slot, uint32_t cluster) {
     self->cluster_at[slot] = cluster;
     *bound = NOBODY;
     if (cluster == RT_NO_CLUSTER) return;
-    const RtBox *box = &self->tree->clusters[cluster].box;
+    const RtBox *box = &self->tree->nodes[cluster].box;
     self->slot_of[cluster] = slot;
     bound->lo = box->lo;
     bound->hi = box->hi;
@@ -28,39 +28,33 @@ static void fit_node(RtNeighbours *self, uint32_t node) {
     self->bounds[node] = bound;
 }
 
-/* Puts ids[0..count) into slots[first..first + room), halves into halves; count <= room. */
-static void fill_slots(RtNeighbours *self, const RtBox *boxes, uint32_t *ids, uint32_t count, uint32_t first,
-                       uint32_t room) {
+/* Puts refs[0..count) into slots[first..first + room), halves into halves; count <= room. */
+static void fill_slots(RtNeighbours *self, RtTreeRef *refs, uint32_t count, uint32_t first, uint32_t room) {
     if (count == 0) return;
     if (count == 1) {
-        set_slot(self, first, ids[0]);
+        set_slot(self, first, refs[0].id);
         return;
     }
-    uint32_t left = rt_split_median(boxes, ids, count);
-    fill_slots(self, boxes, ids, left, first, room / 2);
-    fill_slots(self, boxes, ids + left, count - left, first + room / 2, room / 2);
+    uint32_t left = rt_split_median(refs, count);
+    fill_slots(self, refs, left, first, room / 2);
+    fill_slots(self, refs + left, count - left, first + room / 2, room / 2);
 }
 
-RtStatus rt_neighbours_init(RtNeighbours *self, const RtClusterTree *tree, RtError *error) {
-    uint32_t count = tree->count, capacity = 1;
+RtStatus rt_neighbours_init(RtNeighbours *self, const RtTree *tree, RtError *error) {
+    uint32_t count = tree->used, capacity = 1;
     while (capacity < count) capacity *= 2;
     *self = (RtNeighbours){.tree = tree,
                            .capacity = capacity,
                            .bounds = rt_alloc(2 * (size_t)capacity, sizeof(RtNeighbourBound)),
                            .cluster_at = rt_alloc(capacity, sizeof(uint32_t)),
                            .slot_of = rt_alloc(2 * (size_t)count - 1, sizeof(uint32_t))};
-    RtBox *boxes = rt_alloc(count, sizeof(RtBox));
-    uint32_t *ids = rt_alloc(count, sizeof(uint32_t));
-    bool enough = self->bounds && self->cluster_at && self->slot_of && boxes && ids;
+    RtTreeRef *refs = rt_alloc(count, sizeof(RtTreeRef));
+    bool enough = self->bounds && self->cluster_at && self->slot_of && refs;
     for (uint32_t slot = 0; enough && slot < capacity; slot++) set_slot(self, slot, RT_NO_CLUSTER);
-    for (uint32_t i = 0; enough && i < count; i++) {
-        boxes[i] = tree->clusters[i].box;
-        ids[i] = i;
-    }
-    if (enough) fill_slots(self, boxes, ids, count, 0, capacity);
+    for (uint32_t i = 0; enough && i < count; i++) refs[i] = (RtTreeRef){tree->nodes[i].box, i};
+    if (enough) fill_slots(self, refs, count, 0, capacity);
     for (uint32_t node = capacity - 1; enough && node > 0; node--) fit_node(self, node);
-    rt_free(boxes);
-    rt_free(ids);
+    rt_free(refs);
     if (enough) return RT_OK;
     rt_neighbours_clear(self);
     return rt_fail_memory(error, "the neighbours of clusters",
@@ -113,7 +107,7 @@ static void search_below(const RtNeighbours *self, uint32_t top, const RtBox *bo
         if (!(at.least < *distance)) continue;
         if (at.node >= self->capacity) {
             *best = self->cluster_at[at.node - self->capacity];
-            *distance = rt_box_half_area(rt_box_union(*box, self->tree->clusters[*best].box));
+            *distance = rt_box_half_area(rt_box_union(*box, self->tree->nodes[*best].box));
             continue;
         }
         Candidate left = {2 * at.node, least_distance(self, 2 * at.node, box)};
@@ -125,7 +119,7 @@ static void search_below(const RtNeighbours *self, uint32_t top, const RtBox *bo
 }
 
 uint32_t rt_neighbours_nearest(const RtNeighbours *self, uint32_t cluster, double *distance) {
-    const RtBox *box = &self->tree->clusters[cluster].box;
+    const RtBox *box = &self->tree->nodes[cluster].box;
     uint32_t best = RT_NO_CLUSTER;
     *distance = INFINITY;
     for (uint32_t node = self->capacity + self->slot_of[cluster]; node > 1; node /= 2) {

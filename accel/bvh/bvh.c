@@ -1,0 +1,155 @@
+/* bvh: a binary hierarchy of boxes, built from the top by the surface area heuristic in bins.
+ *
+ * Papers: MacDonald & Booth 1990 (the heuristic), Wald 2007, "On fast Construction of SAH-based Bounding
+ * Volume Hierarchies" (the bins). A tree of references is made first (accel/tree/tree.h) and laid out then,
+ * which decides what shares a leaf (accel/tree/hierarchy.h, where the layout and its invariants are written
+ * down). One traversal for all of them: near child first, the far one on a stack with its entry; the stack is
+ * bounded by RT_TREE_MAX_DEPTH.
+ *
+ * Counting: an extent test per box tested, the root's included; a step per node visited. */
+#include "accel/bvh/bvh.h"
+
+#include "accel/kernel.h"
+#include "accel/tree/split.h"
+#include "base/memory.h"
+
+enum { PARAM_BINS, PARAM_LEAF, PARAM_TRAVERSAL, PARAM_COUNT };
+
+static const RtParam params[PARAM_COUNT] = {
+    [PARAM_BINS] = {.name = "bins",
+                    .type = RT_PARAM_INT,
+                    .standard = "16",
+                    .lo = 2,
+                    .hi = RT_MAX_BINS,
+                    .meaning = "bins along each axis in which split positions are sought",
+                    .source = "Wald 2007",
+                    .tries = "2|5|64"},
+    [PARAM_LEAF] = {.name = "leaf",
+                    .type = RT_PARAM_INT,
+                    .standard = "8",
+                    .lo = 1,
+                    .hi = 1024,
+                    .meaning = "most objects a leaf may hold",
+                    .source = "measured: no better beyond",
+                    .tries = "1|2|64"},
+    [PARAM_TRAVERSAL] = {.name = "traversal",
+                         .type = RT_PARAM_FLOAT,
+                         .standard = "1",
+                         .lo = 0,
+                         .hi = 1000,
+                         .meaning = "cost of visiting an inner node, in object tests",
+                         .source = "MacDonald & Booth 1990",
+                         .tries = "0|0.1|10"},
+};
+
+extern const RtAccelOps rt_bvh_ops;
+
+/* ---- build ---- */
+
+static void destroy(RtAccel *accel) {
+    rt_hierarchy_clear(&((RtBvh *)accel)->hierarchy);
+    rt_free(accel);
+}
+
+static RtStatus fill(RtHierarchy *hierarchy, const RtGeometry *geometry, const RtValue *values,
+                     RtError *error) {
+    RtTree tree;
+    if (geometry->object_count == 0) return RT_OK;
+    RT_TRY(rt_tree_topdown(&tree, geometry->boxes, geometry->object_count, (int)values[PARAM_BINS].i, error));
+    RtStatus status = rt_hierarchy_lay_out(hierarchy, &tree, error);
+    rt_tree_clear(&tree);
+    return status;
+}
+
+static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_bvh_ops, scene, sizeof(RtBvh), &accel, error));
+    RtHierarchy *hierarchy = &((RtBvh *)accel)->hierarchy;
+    *hierarchy = (RtHierarchy){.width = 2,
+                               .leaf_limit = (uint32_t)values[PARAM_LEAF].i,
+                               .traversal_cost = values[PARAM_TRAVERSAL].f};
+    RtStatus status = fill(hierarchy, &scene->geometry, values, error);
+    if (status == RT_OK)
+        *out = accel;
+    else
+        destroy(accel);
+    return status;
+}
+
+/* ---- queries ---- */
+
+typedef struct StackEntry {
+    uint32_t node;
+    float enter;
+} StackEntry;
+
+RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
+    (void)scratch;
+    const RtGeometry *g = &self->base.scene->geometry;
+    const RtNode *nodes = self->hierarchy.nodes;
+    const uint32_t *ids = self->hierarchy.ids;
+    StackEntry stack[RT_TREE_MAX_DEPTH]; /* every level leaves one child waiting */
+    uint32_t stacked = 0, index = 0;
+    float enter[2];
+    if (self->hierarchy.node_count == 0) return;
+    RT_COUNT(tally, extent_tests, 1);
+    if (!rt_box_hit(&nodes[0].box, ray, ray->tmax, &enter[0])) return;
+    for (;;) {
+        const RtNode *node = &nodes[index];
+        RT_COUNT(tally, steps, 1);
+        if (!rt_node_is_leaf(node)) {
+            float limit = rt_limit(ray, best);
+            bool left = rt_box_hit(&nodes[node->first].box, ray, limit, &enter[0]);
+            bool right = rt_box_hit(&nodes[node->first + 1].box, ray, limit, &enter[1]);
+            RT_COUNT(tally, extent_tests, 2);
+            if (left || right) {
+                uint32_t near = left && right ? enter[1] < enter[0] : right;
+                if (left && right) stack[stacked++] = (StackEntry){node->first + 1 - near, enter[1 - near]};
+                index = node->first + near;
+                continue;
+            }
+        } else {
+            RT_COUNT(tally, leaf_steps, 1);
+            for (uint32_t i = node->first; i < node->first + rt_node_fanout(node); i++) {
+                if (rt_test_object(g, ids[i], ray, any, best, tally)) return;
+            }
+        }
+        /* The next node that may still hold a nearer hit, or an equal one of lower id. */
+        do {
+            if (stacked == 0) return;
+            stacked--;
+        } while (stack[stacked].enter > rt_limit(ray, best));
+        index = stack[stacked].node;
+    }
+}
+
+RT_DEFINE_KERNELS(RtBvh, search)
+
+/* ---- looking at it ---- */
+
+static void describe(const RtAccel *accel, RtDescription *out) {
+    rt_hierarchy_describe(&((const RtBvh *)accel)->hierarchy, out);
+}
+
+static RtStatus validate(const RtAccel *accel, RtError *error) {
+    return rt_hierarchy_validate(&((const RtBvh *)accel)->hierarchy, &accel->scene->geometry, "bvh", error);
+}
+
+static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    rt_hierarchy_each_box(&((const RtBvh *)accel)->hierarchy, viewer);
+}
+
+const RtAccelOps rt_bvh_ops = {
+    .name = "bvh",
+    .summary = "binary hierarchy of boxes, split from the top by the surface area heuristic in bins",
+    .paper = "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07",
+    .params = params,
+    .param_count = PARAM_COUNT,
+    .build = build,
+    .destroy = destroy,
+    RT_KERNEL_OPS,
+    .describe = describe,
+    .validate = validate,
+    .each_box = each_box,
+};

@@ -1,0 +1,132 @@
+/* Binary trees of references, and the bound on their depth. */
+#include "accel/tree/tree.h"
+
+#include "accel/tree/split.h"
+#include "base/memory.h"
+
+#include <assert.h>
+
+/* A subtree that hangs at MEDIAN_DEPTH and is rebuilt by medians ends above RT_TREE_MAX_DEPTH with as many as
+ * 2^30 references. */
+enum { MEDIAN_DEPTH = 34 };
+
+RtStatus rt_tree_init(RtTree *tree, uint32_t most, RtError *error) {
+    assert(most > 0 && most <= UINT32_MAX / 2);
+    *tree = (RtTree){.capacity = 2 * most - 1};
+    tree->nodes = rt_alloc(tree->capacity, sizeof(RtTreeNode));
+    if (tree->nodes) return RT_OK;
+    return rt_fail_memory(error, "a tree of references", tree->capacity * sizeof(RtTreeNode));
+}
+
+void rt_tree_clear(RtTree *tree) {
+    rt_free(tree->nodes);
+    *tree = (RtTree){.nodes = NULL};
+}
+
+RtStatus rt_tree_init_leaves(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error) {
+    RT_TRY(rt_tree_init(tree, count, error));
+    tree->used = count;
+    for (uint32_t i = 0; i < count; i++) rt_tree_set_leaf(tree, i, boxes[i], i);
+    return RT_OK;
+}
+
+uint32_t rt_tree_take(RtTree *tree) {
+    assert(tree->used < tree->capacity);
+    return tree->used++;
+}
+
+void rt_tree_set_leaf(RtTree *tree, uint32_t node, RtBox box, uint32_t object) {
+    tree->nodes[node] = (RtTreeNode){box, {RT_TREE_LEAF, object}};
+}
+
+void rt_tree_set_union(RtTree *tree, uint32_t node, uint32_t a, uint32_t b) {
+    RtBox box = rt_box_union(tree->nodes[a].box, tree->nodes[b].box);
+    tree->nodes[node] = (RtTreeNode){box, {a, b}};
+}
+
+uint32_t rt_tree_unite(RtTree *tree, uint32_t a, uint32_t b) {
+    tree->root = rt_tree_take(tree);
+    rt_tree_set_union(tree, tree->root, a, b);
+    return tree->root;
+}
+
+double rt_tree_cost(const RtTree *tree) {
+    double sum = 0;
+    for (uint32_t i = 0; i < tree->used; i++) {
+        if (!rt_tree_is_leaf(tree, i)) sum += rt_box_half_area(tree->nodes[i].box);
+    }
+    return sum;
+}
+
+/* ---- depth ---- */
+
+/* Whether a leaf hangs more than `levels` below `node`. */
+static bool reaches_below(const RtTree *tree, uint32_t node, uint32_t levels) {
+    if (rt_tree_is_leaf(tree, node)) return false;
+    if (levels == 0) return true;
+    const uint32_t *child = tree->nodes[node].child;
+    return reaches_below(tree, child[0], levels - 1) || reaches_below(tree, child[1], levels - 1);
+}
+
+/* A subtree taken apart. */
+typedef struct Parts {
+    RtTree *tree;
+    RtTreeRef *leaves;       /* [references] by the numbers of their nodes */
+    uint32_t *unions, *todo; /* [references] nodes */
+    uint32_t leaf_count, union_count;
+} Parts;
+
+static void take_apart(Parts *parts, uint32_t top) {
+    uint32_t stacked = 0;
+    parts->leaf_count = parts->union_count = 0;
+    parts->todo[stacked++] = top;
+    while (stacked > 0) {
+        uint32_t at = parts->todo[--stacked];
+        const RtTreeNode *node = &parts->tree->nodes[at];
+        if (rt_tree_is_leaf(parts->tree, at)) {
+            parts->leaves[parts->leaf_count++] = (RtTreeRef){node->box, at};
+            continue;
+        }
+        parts->unions[parts->union_count++] = at;
+        for (int s = 0; s < 2; s++) parts->todo[stacked++] = node->child[s];
+    }
+}
+
+/* Puts refs[0..count) together again, halved by number over and over; gives the topmost node. */
+static uint32_t rebuild(Parts *parts, RtTreeRef *refs, uint32_t count) {
+    if (count == 1) return refs[0].id;
+    uint32_t left = rt_split_median(refs, count);
+    uint32_t a = rebuild(parts, refs, left), b = rebuild(parts, refs + left, count - left);
+    uint32_t node = parts->unions[--parts->union_count];
+    rt_tree_set_union(parts->tree, node, a, b);
+    return node;
+}
+
+/* The node that takes the place of `node`, which hangs at `depth`. */
+static uint32_t limited(Parts *parts, uint32_t node, uint32_t depth) {
+    RtTree *tree = parts->tree;
+    if (rt_tree_is_leaf(tree, node)) return node;
+    if (depth < MEDIAN_DEPTH) {
+        uint32_t *child = tree->nodes[node].child;
+        for (int s = 0; s < 2; s++) child[s] = limited(parts, child[s], depth + 1);
+        return node;
+    }
+    if (!reaches_below(tree, node, RT_TREE_MAX_DEPTH - MEDIAN_DEPTH)) return node;
+    take_apart(parts, node);
+    return rebuild(parts, parts->leaves, parts->leaf_count);
+}
+
+RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error) {
+    if (!reaches_below(tree, tree->root, RT_TREE_MAX_DEPTH)) return RT_OK;
+    uint32_t count = rt_tree_leaf_count(tree);
+    Parts parts = {.tree = tree,
+                   .leaves = rt_alloc(count, sizeof(RtTreeRef)),
+                   .unions = rt_alloc(count, sizeof(uint32_t)),
+                   .todo = rt_alloc(count, sizeof(uint32_t))};
+    bool enough = parts.leaves && parts.unions && parts.todo;
+    if (enough) tree->root = limited(&parts, tree->root, 0);
+    rt_free(parts.leaves);
+    rt_free(parts.unions);
+    rt_free(parts.todo);
+    return enough ? RT_OK : rt_fail_memory(error, "limiting the depth of a tree", count * sizeof(RtTreeRef));
+}
