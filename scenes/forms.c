@@ -255,3 +255,24 @@ RtStatus rt_forms_lathe(RtForms *forms, const RtLathe *lathe, RtError *error) {
                                      .of = lathe},
                           error);
 }
+
+static RtVec3d torus_point(const void *of, uint32_t column, uint32_t row) {
+    const RtTorus *torus = of;
+    RtVec3d around = rt_on_circle(column, torus->around), section = rt_on_circle(row, torus->sides), p;
+    double out = torus->radius + torus->tube * section.x;
+    p.at[(torus->axis + 1) % 3] = out * around.x;
+    p.at[(torus->axis + 2) % 3] = out * around.y;
+    p.at[torus->axis] = torus->tube * section.y;
+    return rt_addd(torus->center, p);
+}
+
+RtStatus rt_forms_torus(RtForms *forms, const RtTorus *torus, RtError *error) {
+    return rt_forms_sheet(forms,
+                          &(RtSheet){.columns = torus->around,
+                                     .rows = torus->sides,
+                                     .wrapped = true,
+                                     .smooth = true,
+                                     .point = torus_point,
+                                     .of = torus},
+                          error);
+}

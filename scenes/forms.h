@@ -104,4 +104,14 @@ typedef struct RtLathe {
 
 RtStatus rt_forms_lathe(RtForms *forms, const RtLathe *lathe, RtError *error);
 
+/* A ring about the line through `center` along axis 0, 1 or 2: 2 * around * sides triangles. */
+typedef struct RtTorus {
+    RtVec3d center;
+    int axis;
+    double radius, tube; /* of the ring, and of its own section */
+    uint32_t around, sides;
+} RtTorus;
+
+RtStatus rt_forms_torus(RtForms *forms, const RtTorus *torus, RtError *error);
+
 #endif

@@ -2,6 +2,7 @@
  * and the forms that they are made of. */
 #include "testing.h"
 
+#include "accel/accel.h"
 #include "base/memory.h"
 #include "scene/load.h"
 #include "scenes/builtin.h"
@@ -30,6 +31,8 @@ static void places_have_the_objects_that_they_say(void **state) {
         {"teapot:size=1", 0, 1, 56, 0},
         {"stadium", 48, 6621, 9120, 13},
         {"stadium:size=1,ratio=50", 48, 6621, 56, 13},
+        {"hall", 0, 0, 283194, 0},
+        {"hall:size=1", 0, 0, 69302, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene = open_scene(cases[i].spec);
@@ -41,7 +44,8 @@ static void places_have_the_objects_that_they_say(void **state) {
     }
 }
 
-static const char *const specs[] = {"teapot", "teapot:size=3", "stadium:size=2"};
+static const char *const specs[] = {"teapot", "teapot:size=3", "stadium:size=2", "hall:size=1",
+                                    "hall:size=3"};
 
 enum { SPECS = sizeof specs / sizeof specs[0] };
 
@@ -168,6 +172,46 @@ static void a_stadium_is_ratio_times_as_long_as_its_teapot(void **state) {
     }
 }
 
+/* The corners of a square of `side` pixels: (side + 1)^2 primary rays. */
+static uint64_t count_misses(RtScene *scene, uint32_t side) {
+    RtAccel *accel;
+    RtQuery query;
+    RtView view;
+    assert_ok(rt_scene_sample(scene, side, side, 1, true, error));
+    assert_ok(rt_view_init(&view, &scene->camera, scene->sampling, error));
+    assert_ok(rt_accel_open("bvh", scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    uint64_t misses = 0;
+    for (uint32_t row = 0; row <= side; row++) {
+        for (uint32_t column = 0; column <= side; column++) {
+            RtRay ray = rt_view_ray(&view, column, row);
+            RtHit hit;
+            rt_nearest(&query, &ray, 1, &hit, NULL);
+            misses += hit.object == RT_NO_OBJECT;
+        }
+    }
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    return misses;
+}
+
+/* The room itself is the first of its triangles: 39 columns, 2 * 12 - 2 a column. */
+static void a_hall_is_closed_so_that_every_primary_ray_hits(void **state) {
+    (void)state;
+    RtScene scene = open_scene("hall");
+    assert_int_equal(open_edges(&scene.geometry, 0, 39 * 22), 0);
+    assert_int_equal(count_misses(&scene, 512), 0);
+    RtVec3 eye = scene.camera.from;
+    for (int a = 0; a < 3; a++) {
+        assert_true(eye.at[a] > scene.geometry.box.lo.at[a] && eye.at[a] < scene.geometry.box.hi.at[a]);
+    }
+    assert_int_equal(scene.light_count, 4);
+    rt_scene_clear(&scene);
+    scene = open_scene("hall:size=1");
+    assert_int_equal(count_misses(&scene, 512), 0);
+    rt_scene_clear(&scene);
+}
+
 /* ---- forms ---- */
 
 static void points_on_the_circle_are_exact_where_they_can_be(void **state) {
@@ -235,6 +279,7 @@ int main(void) {
         cmocka_unit_test(a_teapot_is_open_at_its_rims_alone),
         cmocka_unit_test(a_teapot_stands_on_its_board_and_its_normals_point_out),
         cmocka_unit_test(a_stadium_is_ratio_times_as_long_as_its_teapot),
+        cmocka_unit_test(a_hall_is_closed_so_that_every_primary_ray_hits),
         cmocka_unit_test(points_on_the_circle_are_exact_where_they_can_be),
         cmocka_unit_test(a_box_faces_outwards),
         cmocka_unit_test(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards),

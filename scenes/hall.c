@@ -1,0 +1,356 @@
+/* hall: a nave with two aisles, about 280,000 triangles and nothing else: long thin ones (fluted shafts,
+ * mouldings, walls over arches) together with small ones close together (vases, balusters, chains), and
+ * no way out, so that every ray from within hits something.
+ *
+ * Like the atria and sibeniks of the papers, but made by the program. x is across, y along, z up, in metres.
+ * The room itself comes first: one closed sheet, a section swept along y and drawn together to a point at
+ * either end; everything else stands or hangs inside of it or is set into its walls. */
+#include "base/elementary.h"
+#include "scenes/builtin.h"
+#include "scenes/ornaments.h"
+#include "scenes/teapot_mesh.h"
+
+static const RtParam params[] = {
+    {.name = "size",
+     .type = RT_PARAM_INT,
+     .standard = "8",
+     .lo = 1,
+     .hi = 100,
+     .meaning = "how fine round things are: a vase has 6 size x 5 size cells",
+     .source = "about 280,000 triangles, like the halls that papers use",
+     .tries = "1|2"},
+};
+
+enum { PLASTER, LIGHT_MARBLE, DARK_MARBLE, STONE, COFFERS, GOLD, CHINA, TERRACOTTA, GLAZE, SKY, MATERIALS };
+
+#define POLISHED(what, red, green, blue, mirrored)                                                           \
+    {                                                                                                        \
+        .name = what, .color = {red, green, blue}, .ambient = 0.12f, .diffuse = 0.7f, .specular = 0.35f,     \
+        .shine = 40, .reflection = mirrored, .ior = 1                                                        \
+    }
+
+static const RtMaterial materials[MATERIALS] = {
+    [PLASTER] = RT_MATTE("plaster", 0.85f, 0.8f, 0.7f),
+    [LIGHT_MARBLE] = POLISHED("light marble", 0.8f, 0.76f, 0.68f, 0.12f),
+    [DARK_MARBLE] = POLISHED("dark marble", 0.36f, 0.18f, 0.14f, 0.12f),
+    [STONE] = RT_MATTE("stone", 0.8f, 0.74f, 0.62f),
+    [COFFERS] = RT_MATTE("coffers", 0.62f, 0.66f, 0.7f),
+    [GOLD] = POLISHED("gold", 0.85f, 0.6f, 0.2f, 0.1f),
+    [CHINA] = POLISHED("china", 0.9f, 0.9f, 0.92f, 0.1f),
+    [TERRACOTTA] = POLISHED("terracotta", 0.7f, 0.33f, 0.18f, 0),
+    [GLAZE] = POLISHED("glaze", 0.12f, 0.35f, 0.45f, 0.08f),
+    [SKY] =
+        {.name = "sky", .color = {0.65f, 0.8f, 1}, .ambient = 0.9f, .diffuse = 0.1f, .shine = 1, .ior = 1},
+};
+
+enum { BAYS = 8, COFFERS_AROUND = 11, COFFERS_ALONG = 34, CHANDELIERS = 4, CHAIN_LINKS = 66 };
+
+static const double bay = 4, column_x = 5, nave_x = 5.4, aisle_x = 9;
+static const double aisle_top = 7.2, spring = 10, chandelier_z = 7;
+static const double front_y = -1, back_y = 33, arch_z = RT_COLUMN_HEIGHT, arch_radius = 1.55;
+
+/* ---- the room ---- */
+
+enum { ARC_STEPS = 32, SECTION_POINTS = ARC_STEPS + 7, ROOM_ROWS = 12 };
+
+/* Counter-clockwise for one who looks along -y. */
+static RtVec3d section_point(uint32_t i) {
+    const RtVec3d right[4] = {
+        {-aisle_x, 0, 0}, {aisle_x, 0, 0}, {aisle_x, 0, aisle_top}, {nave_x, 0, aisle_top}};
+    if (i < 4) return right[i];
+    if (i > ARC_STEPS + 4)
+        return i == ARC_STEPS + 5 ? rt_vec3d(-nave_x, 0, aisle_top) : rt_vec3d(-aisle_x, 0, aisle_top);
+    RtVec3d turn = rt_on_circle(i - 4, 2 * ARC_STEPS);
+    return rt_vec3d(nave_x * turn.x, 0, spring + nave_x * turn.y);
+}
+
+/* The ends are drawn together to a point from which all of the section can be seen. */
+static RtVec3d room_point(const void *of, uint32_t column, uint32_t row) {
+    (void)of;
+    bool first = row == 0, last = row == ROOM_ROWS;
+    double y = front_y + (back_y - front_y) * (first ? 0 : last ? 1 : (row - 1.0) / (ROOM_ROWS - 2));
+    if (first || last) return rt_vec3d(0, y, 3);
+    RtVec3d p = section_point(column);
+    return rt_vec3d(p.x, y, p.z);
+}
+
+static RtStatus add_room(RtForms *forms, RtError *error) {
+    forms->material = PLASTER;
+    return rt_forms_sheet(forms,
+                          &(RtSheet){.columns = SECTION_POINTS,
+                                     .rows = ROOM_ROWS,
+                                     .wrapped = true,
+                                     .first_pole = true,
+                                     .last_pole = true,
+                                     .point = room_point},
+                          error);
+}
+
+/* ---- floor and vault ---- */
+
+/* A rectangle drawn in step by step, on levels above a ground: a tile or a coffer. */
+typedef struct Panel {
+    double lo[2], hi[2];       /* of the rectangle */
+    uint32_t steps;            /* along each of its edges */
+    const double (*levels)[2]; /* of row i: how much of the rectangle is left, and how high it is there */
+} Panel;
+
+/* Where column and row lie in the rectangle, and how high: x, y, z. */
+static RtVec3d panel_point(const Panel *panel, uint32_t column, uint32_t row) {
+    uint32_t edge = column / panel->steps;
+    double along = 2.0 * (column % panel->steps) / panel->steps - 1, left = panel->levels[row][0];
+    const RtVec3d border[4] = {{along, -1, 0}, {1, along, 0}, {-along, 1, 0}, {-1, -along, 0}};
+    RtVec3d p = border[edge % 4];
+    double center[2] = {(panel->lo[0] + panel->hi[0]) / 2, (panel->lo[1] + panel->hi[1]) / 2};
+    return rt_vec3d(center[0] + left * p.x * (panel->hi[0] - center[0]),
+                    center[1] + left * p.y * (panel->hi[1] - center[1]), panel->levels[row][1]);
+}
+
+static RtVec3d tile_point(const void *of, uint32_t column, uint32_t row) {
+    return panel_point(of, column, row);
+}
+
+static RtStatus add_floor(RtForms *forms, RtError *error) {
+    static const double levels[3][2] = {{0.99, 0}, {0.96, 0.01}, {0, 0.01}};
+    const double tile = 1;
+    for (int i = 0; i < 2 * (int)(aisle_x / tile); i++) {
+        for (int j = 0; j < (int)((back_y - front_y) / tile); j++) {
+            const Panel panel = {.lo = {i * tile - aisle_x, j * tile + front_y},
+                                 .hi = {(i + 1) * tile - aisle_x, (j + 1) * tile + front_y},
+                                 .steps = 1,
+                                 .levels = levels};
+            forms->material = (i + j) % 2 ? DARK_MARBLE : LIGHT_MARBLE;
+            RT_TRY(rt_forms_sheet(forms,
+                                  &(RtSheet){.columns = 4,
+                                             .rows = 2,
+                                             .wrapped = true,
+                                             .last_pole = true,
+                                             .point = tile_point,
+                                             .of = &panel},
+                                  error));
+        }
+    }
+    return RT_OK;
+}
+
+/* The rectangle bent round the vault: x is an angle in degrees from the right, z a depth below the vault. */
+static RtVec3d coffer_point(const void *of, uint32_t column, uint32_t row) {
+    RtVec3d p = panel_point(of, column, row);
+    RtTurn turn = rt_turn(p.x);
+    double radius = nave_x - p.z;
+    return rt_vec3d(radius * turn.cosine, p.y, spring + radius * turn.sine);
+}
+
+static RtStatus add_boss(RtForms *forms, double degrees, double y, RtError *error) {
+    static const double levels[4][2] = {{1, 0.05}, {0.8, 0.15}, {0.4, 0.2}, {0, 0.22}};
+    const Panel panel = {
+        .lo = {degrees - 1.8, y - 0.17}, .hi = {degrees + 1.8, y + 0.17}, .steps = 2, .levels = levels};
+    forms->material = GOLD;
+    return rt_forms_sheet(
+        forms,
+        &(RtSheet){
+            .columns = 8, .rows = 3, .wrapped = true, .last_pole = true, .point = coffer_point, .of = &panel},
+        error);
+}
+
+static RtStatus add_coffers(RtForms *forms, uint32_t size, RtError *error) {
+    static const double levels[7][2] = {{1, 0.3},   {0.84, 0.3}, {0.78, 0.2}, {0.66, 0.2},
+                                        {0.6, 0.1}, {0.5, 0.05}, {0, 0.05}};
+    const double width = 180.0 / COFFERS_AROUND, length = (back_y - front_y) / COFFERS_ALONG;
+    for (int i = 0; i < COFFERS_AROUND; i++) {
+        for (int j = 0; j < COFFERS_ALONG; j++) {
+            const Panel panel = {.lo = {i * width, front_y + j * length},
+                                 .hi = {(i + 1) * width, front_y + (j + 1) * length},
+                                 .steps = (size + 3) / 4,
+                                 .levels = levels};
+            forms->material = COFFERS;
+            RT_TRY(rt_forms_sheet(forms,
+                                  &(RtSheet){.columns = 4 * panel.steps,
+                                             .rows = 6,
+                                             .wrapped = true,
+                                             .last_pole = true,
+                                             .point = coffer_point,
+                                             .of = &panel},
+                                  error));
+            RT_TRY(add_boss(forms, (i + 0.5) * width, front_y + (j + 0.5) * length, error));
+        }
+    }
+    return RT_OK;
+}
+
+/* ---- arcades ---- */
+
+/* The section of a moulded arch: how far in from its radius, and how far along x from the middle. */
+static const double moulding[][2] = {{-0.35, 0.36}, {-0.3, 0.42},  {-0.2, 0.42},   {-0.12, 0.36},
+                                     {0, 0.34},     {0, -0.34},    {-0.12, -0.36}, {-0.2, -0.42},
+                                     {-0.3, -0.42}, {-0.35, -0.36}};
+
+enum { MOULDING_ROWS = sizeof moulding / sizeof moulding[0] - 1 };
+
+static RtVec3d arch_point(const void *of, uint32_t column, uint32_t row) {
+    uint32_t steps = *(const uint32_t *)of;
+    double radius = arch_radius - moulding[row][0];
+    RtVec3d turn = rt_scaled(rt_on_circle(column, 2 * steps), radius);
+    return rt_vec3d(moulding[row][1], turn.x, arch_z + turn.y);
+}
+
+/* One side of the wall over an arch, at x = .35: from the arch (row 0) to the edge above and beside it. */
+static RtVec3d wall_point(const void *of, uint32_t column, uint32_t row) {
+    uint32_t steps = *(const uint32_t *)of;
+    RtVec3d turn = rt_on_circle(column, 2 * steps);
+    if (row == 0) return rt_vec3d(0.35, arch_radius * turn.x, arch_z + arch_radius * turn.y);
+    double height = aisle_top - arch_z, half = bay / 2;
+    double to_side = fabs(turn.x) > 0 ? half / fabs(turn.x) : 1e9;
+    double to_top = turn.y > 0 ? height / turn.y : 1e9;
+    double length = to_side < to_top ? to_side : to_top;
+    return rt_vec3d(0.35, length * turn.x, arch_z + length * turn.y);
+}
+
+static RtStatus add_arch(RtForms *forms, uint32_t size, RtVec3d at, RtError *error) {
+    uint32_t steps = 3 * size;
+    forms->material = STONE;
+    rt_forms_at(forms, at, 0);
+    RT_TRY(rt_forms_sheet(
+        forms,
+        &(RtSheet){
+            .columns = steps, .rows = MOULDING_ROWS, .smooth = true, .point = arch_point, .of = &steps},
+        error));
+    forms->material = PLASTER;
+    for (int side = 0; side < 2; side++) {
+        rt_forms_at(forms, at, 2 * side);
+        RT_TRY(rt_forms_sheet(
+            forms, &(RtSheet){.columns = steps, .rows = 1, .point = wall_point, .of = &steps}, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_rail(RtForms *forms, double side, uint32_t size, RtError *error) {
+    double x = side * 5, end = back_y - front_y;
+    rt_forms_at(forms, rt_vec3d(x, front_y, aisle_top), 0);
+    forms->material = STONE;
+    RT_TRY(rt_forms_box(forms, rt_vec3d(-0.45, 0, -0.3), rt_vec3d(0.45, end, 0), RT_SIDES_ALL, error));
+    RT_TRY(rt_forms_box(forms, rt_vec3d(-0.35, 0, 0.8), rt_vec3d(-0.1, end, 0.92), RT_SIDES_ALL, error));
+    for (double y = 0.25; y < end; y += 0.5) {
+        rt_forms_at(forms, rt_vec3d(x - side * 0.22, front_y + y, aisle_top), 0);
+        RT_TRY(rt_ornament_baluster(forms, size, error));
+    }
+    return RT_OK;
+}
+
+/* ---- what stands and hangs in it ---- */
+
+/* A round window in the wall behind `at`, which faces +x turned by `quarters`; its frame is a ring. */
+static RtStatus add_window(RtForms *forms, RtVec3d at, int quarters, double radius, uint32_t size,
+                           RtError *error) {
+    rt_forms_at(forms, at, quarters);
+    forms->material = STONE;
+    const RtTorus frame = {
+        .axis = 0, .radius = radius, .tube = radius / 6, .around = 4 * size, .sides = size + 2};
+    RT_TRY(rt_forms_torus(forms, &frame, error));
+    const RtVec3d middle = {0.03, 0, 0};
+    RtVec3d before = {0.03, radius, 0};
+    for (uint32_t i = 1; i <= 4 * size; i++) {
+        RtVec3d turn = rt_on_circle(i, 4 * size), after = {0.03, radius * turn.x, radius * turn.y};
+        forms->material = SKY;
+        RT_TRY(rt_forms_triangle(forms, middle, before, after, error));
+        forms->material = STONE;
+        if (i % 4 == 0) RT_TRY(rt_forms_tube(forms, middle, radius / 20, after, radius / 20, 4, error));
+        before = after;
+    }
+    return RT_OK;
+}
+
+static RtStatus add_vase(RtForms *forms, RtVec3d at, uint32_t i, uint32_t size, RtError *error) {
+    static const uint32_t glazes[RT_VASE_KINDS] = {TERRACOTTA, GLAZE, CHINA};
+    rt_forms_at(forms, at, 0);
+    forms->material = DARK_MARBLE;
+    RT_TRY(rt_forms_box(forms, rt_vec3d(-0.4, -0.4, 0), rt_vec3d(0.4, 0.4, 1), RT_SIDES_STANDING, error));
+    at.z += 1;
+    rt_forms_at(forms, at, 0);
+    forms->material = glazes[i % RT_VASE_KINDS];
+    return rt_ornament_vase(forms, size, i, error);
+}
+
+static RtStatus add_side(RtForms *forms, double side, uint32_t size, RtError *error) {
+    for (uint32_t i = 0; i <= BAYS; i++) {
+        rt_forms_at(forms, rt_vec3d(side * column_x, bay * i, 0), 0);
+        forms->material = STONE;
+        RT_TRY(rt_ornament_column(forms, size, error));
+        RtVec3d half = {0.25, 0.4, 0};
+        rt_forms_at(forms, rt_vec3d(side * (aisle_x - half.x), bay * i, 0), 0);
+        RT_TRY(rt_forms_box(forms, rt_scaled(half, -1), rt_vec3d(half.x, half.y, aisle_top), RT_SIDES_ALL,
+                            error));
+    }
+    for (uint32_t i = 0; i < BAYS; i++) {
+        double y = bay * (i + 0.5);
+        RT_TRY(add_arch(forms, size, rt_vec3d(side * column_x, y, 0), error));
+        RT_TRY(add_window(forms, rt_vec3d(side * nave_x, y, 9), side > 0 ? 2 : 0, 0.7, size, error));
+        if (i % 4 != 3) RT_TRY(add_vase(forms, rt_vec3d(side * 7.8, y, 0), i, size, error));
+    }
+    return add_rail(forms, side, size, error);
+}
+
+static RtVec3d chandelier_place(uint32_t i) {
+    return rt_vec3d(0, bay * (BAYS / CHANDELIERS) * (i + 0.5), chandelier_z);
+}
+
+/* A teapot, as large as it deserves. */
+static RtStatus add_monument(RtForms *forms, uint32_t size, RtError *error) {
+    rt_forms_at(forms, rt_vec3d(0, 15, 0), 0);
+    forms->material = DARK_MARBLE;
+    RT_TRY(rt_forms_box(forms, rt_vec3d(-1.3, -1.3, 0), rt_vec3d(1.3, 1.3, 0.4), RT_SIDES_STANDING, error));
+    forms->material = STONE;
+    RT_TRY(rt_forms_box(forms, rt_vec3d(-0.9, -0.9, 0.4), rt_vec3d(0.9, 0.9, 1.5), RT_SIDES_STANDING, error));
+    forms->material = GOLD;
+    forms->place = (RtTransform){{{0.4, 0, 0, 0}, {0, 0.4, 0, 15}, {0, 0, 0.4, 1.5}}};
+    return rt_teapot(forms, size, error);
+}
+
+static RtStatus make(RtScene *scene, const RtValue *values, uint64_t *count, RtError *error) {
+    uint32_t size = (uint32_t)values[0].i;
+    RtForms forms = rt_forms(scene);
+    RT_TRY(rt_forms_materials(&forms, materials, MATERIALS, error));
+    RT_TRY(add_room(&forms, error));
+    RT_TRY(add_floor(&forms, error));
+    RT_TRY(add_coffers(&forms, size, error));
+    RT_TRY(add_side(&forms, -1, size, error));
+    RT_TRY(add_side(&forms, 1, size, error));
+    RT_TRY(add_window(&forms, rt_vec3d(0, back_y, 9.6), 3, 3.4, 3 * size, error));
+    for (uint32_t i = 0; i < CHANDELIERS; i++) {
+        forms.material = GOLD;
+        rt_forms_at(&forms, chandelier_place(i), 0);
+        RT_TRY(rt_ornament_chandelier(&forms, size, CHAIN_LINKS, error));
+    }
+    RT_TRY(add_monument(&forms, size, error));
+    *count = forms.count;
+    return RT_OK;
+}
+
+static uint64_t object_count(const RtValue *values) {
+    uint64_t count = 0;
+    make(NULL, values, &count, NULL);
+    return count;
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    uint64_t count;
+    scene->camera.from = rt_vec3(2.3f, -0.6f, 2.4f);
+    scene->camera.at = rt_vec3(-0.9f, 15, 4.6f);
+    scene->camera.fov = 65;
+    for (uint32_t i = 0; i < CHANDELIERS; i++) {
+        RtVec3 at = rt_narrow(rt_addd(chandelier_place(i), rt_vec3d(0, 0, -0.8)));
+        RT_TRY(rt_scene_add_light(scene, at, rt_vec3(0.29f, 0.26f, 0.22f), error));
+    }
+    return make(scene, values, &count, error);
+}
+
+extern const RtBuiltin rt_builtin_hall;
+const RtBuiltin rt_builtin_hall = {
+    .name = "hall",
+    .summary = "a closed interior: columns, vault, vases; long thin triangles and small ones close together",
+    .source = "made like the interiors that papers on hierarchies use",
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};
