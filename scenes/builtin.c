@@ -7,14 +7,15 @@
 #include <stdio.h>
 #include <string.h>
 
-extern const RtBuiltin rt_builtin_balls, rt_builtin_csg_field, rt_builtin_hall, rt_builtin_lattice,
-    rt_builtin_mount, rt_builtin_random, rt_builtin_stadium, rt_builtin_teapot, rt_builtin_tetra,
-    rt_builtin_tree;
+extern const RtBuiltin rt_builtin_balls, rt_builtin_csg_field, rt_builtin_gears, rt_builtin_hall,
+    rt_builtin_jacks, rt_builtin_lattice, rt_builtin_mount, rt_builtin_random, rt_builtin_rings,
+    rt_builtin_shells, rt_builtin_stadium, rt_builtin_teapot, rt_builtin_tetra, rt_builtin_tree;
 
 /* In the order in which they are listed: the Standard Procedural Databases, and then others. */
 static const RtBuiltin *const builtins[] = {
-    &rt_builtin_balls, &rt_builtin_lattice, &rt_builtin_mount,     &rt_builtin_teapot,  &rt_builtin_tetra,
-    &rt_builtin_tree,  &rt_builtin_random,  &rt_builtin_csg_field, &rt_builtin_stadium, &rt_builtin_hall,
+    &rt_builtin_balls,  &rt_builtin_gears,     &rt_builtin_jacks,   &rt_builtin_lattice, &rt_builtin_mount,
+    &rt_builtin_rings,  &rt_builtin_shells,    &rt_builtin_teapot,  &rt_builtin_tetra,   &rt_builtin_tree,
+    &rt_builtin_random, &rt_builtin_csg_field, &rt_builtin_stadium, &rt_builtin_hall,
 };
 
 enum { BUILTIN_COUNT = sizeof builtins / sizeof builtins[0] };
@@ -49,9 +50,13 @@ static RtStatus fail_unknown(const char *spec, RtError *error) {
                    name, suggestion, *suggestion ? "" : ".", list);
 }
 
+uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values) {
+    uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
+    return builtin->object_count(values) * each;
+}
+
 static bool fits(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes) {
-    uint64_t objects = builtin->object_count(values);
-    return objects <= RT_MAX_OBJECTS && objects <= bytes / RT_BUILTIN_OBJECT_BYTES;
+    return builtin->object_count(values) <= RT_MAX_OBJECTS && rt_builtin_bytes(builtin, values) <= bytes;
 }
 
 RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,
@@ -74,7 +79,7 @@ RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values
                    "scene %s: %s=%lld makes %llu objects, which may take %.1f GB where %.1f GB are to be "
                    "had: %s=%lld would fit",
                    builtin->name, size->name, (long long)values[0].i, (unsigned long long)objects,
-                   (double)objects * RT_BUILTIN_OBJECT_BYTES / 1e9, (double)bytes / 1e9, size->name,
+                   (double)rt_builtin_bytes(builtin, values) / 1e9, (double)bytes / 1e9, size->name,
                    (long long)fitting);
 }
 

@@ -5,12 +5,18 @@
 #include "base/param.h"
 #include "scene/scene.h"
 
+/* What an object may take while a scene is made, arrays that grow by doubling included: a sphere, a cone, a
+ * triangle or a polygon of four corners. */
+#define RT_BUILTIN_OBJECT_BYTES 256
+
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: where the scene comes from */
     const RtParam *params;               /* params[0] is the whole number that sets the size of the scene */
     size_t param_count;
     /* How many objects `generate` would make: checked against memory before anything is made. */
     uint64_t (*object_count)(const RtValue *values);
+    /* What each of them may take while the scene is made; NULL: RT_BUILTIN_OBJECT_BYTES. */
+    uint64_t (*object_bytes)(const RtValue *values);
     /* Fills an initialised scene (rt_scene_init); the caller finishes it, or clears it after a failure. */
     RtStatus (*generate)(RtScene *scene, const RtValue *values, RtError *error);
 } RtBuiltin;
@@ -25,8 +31,8 @@ const RtBuiltin *rt_builtin_find(const char *spec);
  * is empty. A scene for which this machine has not the memory is refused, with the size that would fit. */
 RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error);
 
-/* What an object may take while a scene is made, arrays that grow by doubling included. */
-#define RT_BUILTIN_OBJECT_BYTES 256
+/* What the scene may take while it is made. */
+uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values);
 
 /* Refuses values whose scene may need more than `bytes`, with the value of params[0] that would fit. */
 RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,

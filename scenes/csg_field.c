@@ -155,6 +155,10 @@ static uint64_t object_count(const RtValue *values) {
     return (uint64_t)values[N].i;
 }
 
+static uint64_t object_bytes(const RtValue *values) {
+    return RT_BUILTIN_OBJECT_BYTES + 1024 * (uint64_t)values[MOST].i; /* a solid and its node in the tree */
+}
+
 static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
     static const RtStudioMaterial materials[RT_STUDIO_MATERIALS] = {RT_STUDIO_CLAY, RT_STUDIO_SLATE,
                                                                     RT_STUDIO_MOSS, RT_STUDIO_STEEL};
@@ -171,5 +175,6 @@ const RtBuiltin rt_builtin_csg_field = {
     .params = params,
     .param_count = sizeof params / sizeof params[0],
     .object_count = object_count,
+    .object_bytes = object_bytes,
     .generate = generate,
 };

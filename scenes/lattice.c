@@ -81,7 +81,7 @@ extern const RtBuiltin rt_builtin_lattice;
 const RtBuiltin rt_builtin_lattice = {
     .name = "lattice",
     .summary = "spheres at the points of a cubic lattice, and the cylinders between them",
-    .source = "SPD: E. Haines, Standard Procedural Databases 3",
+    .source = RT_SPD_LATER_SOURCE,
     .params = params,
     .param_count = sizeof params / sizeof params[0],
     .object_count = object_count,

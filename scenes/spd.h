@@ -9,6 +9,8 @@
 
 #define RT_SPD_SOURCE "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)"
 
+#define RT_SPD_LATER_SOURCE "SPD: E. Haines, Standard Procedural Databases 3, later than the paper of 1987"
+
 /* Adds white lights that share the light as SPD asks (rt_nff_light_intensity). */
 RtStatus rt_spd_add_lights(RtScene *scene, const RtVec3 *positions, uint32_t count, RtError *error);
 

@@ -169,7 +169,9 @@ static void too_large_a_scene_is_refused_with_the_size_that_fits(void **state) {
         {"random", 1000000, 1234, "n=1234 would fit"}, {"balls", 7, 7382, "size=4 would fit"},
         {"balls", 7, 7381, "size=3 would fit"},        {"tetra", 9, 65535, "size=7 would fit"},
         {"lattice", 400, 8281, "size=12 would fit"},   {"mount", 9, 8195, "size=5 would fit"},
-        {"tree", 20, 8191, "size=11 would fit"},
+        {"tree", 20, 8191, "size=11 would fit"},       {"gears", 100, 9344, "size=3 would fit"},
+        {"jacks", 8, 657, "size=3 would fit"},         {"rings", 200, 8401, "size=7 would fit"},
+        {"shells", 20, 5760, "size=4 would fit"},      {"csg-field", 1000000, 99, "n=99 would fit"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const RtBuiltin *builtin = rt_builtin_find(cases[i].name);
@@ -177,7 +179,8 @@ static void too_large_a_scene_is_refused_with_the_size_that_fits(void **state) {
         RtError problem;
         assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
         values[0].i = cases[i].value;
-        uint64_t bytes = cases[i].objects * RT_BUILTIN_OBJECT_BYTES;
+        uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
+        uint64_t bytes = cases[i].objects * each;
         assert_int_equal(rt_builtin_check_memory(builtin, values, bytes, &problem), RT_BAD_INPUT);
         if (!strstr(problem.message, cases[i].says)) fail_msg("%s gave: %s", cases[i].name, problem.message);
     }
@@ -185,36 +188,62 @@ static void too_large_a_scene_is_refused_with_the_size_that_fits(void **state) {
 
 static void the_estimate_of_memory_is_no_less_than_what_is_used(void **state) {
     (void)state;
-    static const char *const specs[] = {
-        "balls", "lattice", "mount", "tetra", "tree", "random:n=20000", "random:n=20000,shape=mixed"};
-    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
-        RtScene scene = open_scene(specs[i]);
-        assert_true(rt_scene_bytes(&scene) <=
-                    (uint64_t)scene.geometry.object_count * RT_BUILTIN_OBJECT_BYTES);
+    static const char *const more[] = {"random:n=20000", "random:n=20000,shape=mixed",
+                                       "csg-field:n=65,least=64"};
+    size_t extra = sizeof more / sizeof more[0];
+    for (size_t i = 0; i < rt_builtin_count() + extra; i++) {
+        const char *spec = i < extra ? more[i] : rt_builtin_at(i - extra)->name;
+        const RtBuiltin *builtin = rt_builtin_find(spec);
+        const char *colon = strchr(spec, ':');
+        RtValue values[RT_MAX_PARAMS];
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, "it",
+                                  values, error));
+        RtScene scene = open_scene(spec);
+        if (rt_scene_bytes(&scene) > rt_builtin_bytes(builtin, values)) fail_msg("%s takes more", spec);
         rt_scene_clear(&scene);
+    }
+}
+
+static void the_count_of_objects_is_told_beforehand(void **state) {
+    (void)state;
+    for (size_t i = 0; i < rt_builtin_count(); i++) {
+        const RtBuiltin *builtin = rt_builtin_at(i);
+        RtValue values[RT_MAX_PARAMS];
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
+        RtScene scene = open_scene(builtin->name);
+        assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* Opens a scene again and again, and lets the first allocation fail, the second, ... until none does. */
+static void assert_failed_allocations_are_reported(const char *spec) {
+    int64_t before = rt_alloc_live();
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status != RT_OK; n++) {
+        RtScene scene;
+        RtError problem;
+        rt_alloc_fail_at(n);
+        status = rt_scene_open(spec, &scene, &problem);
+        rt_alloc_fail_at(0);
+        if (status == RT_OK)
+            rt_scene_clear(&scene);
+        else
+            assert_int_equal(status, RT_NO_MEMORY);
+        assert_int_equal(rt_alloc_live(), before);
     }
 }
 
 static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
     (void)state;
-    static const char *const specs[] = {"balls:size=1", "lattice:size=1", "mount:size=1",
-                                        "tetra:size=2", "tree:size=1",    "random:n=100,shape=mixed"};
-    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
-        int64_t before = rt_alloc_live();
-        RtStatus status = RT_NO_MEMORY;
-        for (uint64_t n = 1; status != RT_OK; n++) {
-            RtScene scene;
-            RtError problem;
-            rt_alloc_fail_at(n);
-            status = rt_scene_open(specs[i], &scene, &problem);
-            rt_alloc_fail_at(0);
-            if (status == RT_OK)
-                rt_scene_clear(&scene);
-            else
-                assert_int_equal(status, RT_NO_MEMORY);
-            assert_int_equal(rt_alloc_live(), before);
-        }
+    for (size_t i = 0; i < rt_builtin_count(); i++) { /* the smallest scene of each */
+        const RtBuiltin *builtin = rt_builtin_at(i);
+        char spec[RT_MAX_NAME + 32];
+        snprintf(spec, sizeof spec, "%s:%s=%.0f", builtin->name, builtin->params[0].name,
+                 builtin->params[0].lo);
+        assert_failed_allocations_are_reported(spec);
     }
+    assert_failed_allocations_are_reported("random:n=100,shape=mixed");
 }
 
 int main(void) {
@@ -228,6 +257,7 @@ int main(void) {
         cmocka_unit_test(wrong_names_are_refused_with_what_would_be_right),
         cmocka_unit_test(too_large_a_scene_is_refused_with_the_size_that_fits),
         cmocka_unit_test(the_estimate_of_memory_is_no_less_than_what_is_used),
+        cmocka_unit_test(the_count_of_objects_is_told_beforehand),
         cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

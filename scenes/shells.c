@@ -1,0 +1,69 @@
+/* shells: a sea shell of 180 * 2^size + 1 spheres, nearly all of which overlap their neighbours.
+ *
+ * Standard Procedural Databases of E. Haines, after C. Pickover, "A Short Recipe for Seashell Synthesis",
+ * IEEE CG&A 9(6), 1989; "tends to bring ray tracers to their knees". The spheres lie on a spiral of nine
+ * turns on a cone, each as large as it is far from the axis: at the angle a, from -12 pi to 6 pi, the radius
+ * is r = e^(0.15 a) and the centre (r sin a, r cos a, -2 r). These numbers were inferred from the files of
+ * the database, smallest sphere first. */
+#include "scene/nff.h"
+#include "scenes/builtin.h"
+#include "scenes/spd.h"
+
+static const RtParam params[] = {
+    {.name = "size",
+     .type = RT_PARAM_INT,
+     .standard = "5",
+     .lo = 1,
+     .hi = 20,
+     .meaning = "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns",
+     .source = "SPD: 5761 spheres",
+     .tries = "1|3"},
+};
+
+enum { ARCS = 180 }; /* of 18 degrees, each of 2^size spheres */
+
+static uint64_t object_count(const RtValue *values) {
+    return ((uint64_t)ARCS << values[0].i) + 1;
+}
+
+static RtStatus add_sphere(RtScene *scene, double degrees, double radius, RtError *error) {
+    RtTurn turn = rt_turn(degrees);
+    RtVec3d center = {radius * turn.sine, radius * turn.cosine, -2 * radius};
+    return rt_scene_add_sphere(scene, 0, rt_narrow(center), (float)radius, error);
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    static const RtVec3 lights[1] = {{-100, -100, 100}};
+    RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
+    scene->camera.from = rt_vec3(-6, -60, 35);
+    scene->camera.at = rt_vec3(0, 8, -15);
+    scene->camera.hither = 0.5f;
+    uint32_t material;
+    RtMaterial pearl = rt_nff_material("shell", rt_vec3(1, 0.8f, 0.4f), 0.8f, 0.2f, 45.2776f, 0, 1);
+    RT_TRY(rt_scene_add_material(scene, &pearl, &material, error));
+
+    const double arc_growth = 1.0482518687537468114; /* e^(0.015 pi) */
+    const int64_t spheres = INT64_C(1) << values[0].i;
+    double growth = arc_growth, radius = 0.0035004393966670334; /* e^(-1.8 pi) */
+    for (int64_t halving = 0; halving < values[0].i; halving++) growth = sqrt(growth);
+    for (int arc = 0; arc < ARCS; arc++) {
+        double within = radius; /* multiplied on within an arc only: rounding errors do not add up */
+        for (int64_t i = 0; i < spheres; i++) {
+            RT_TRY(add_sphere(scene, 18 * (arc + (double)i / (double)spheres), within, error));
+            within *= growth;
+        }
+        radius *= arc_growth;
+    }
+    return add_sphere(scene, 0, radius, error);
+}
+
+extern const RtBuiltin rt_builtin_shells;
+const RtBuiltin rt_builtin_shells = {
+    .name = "shells",
+    .summary = "a sea shell of spheres that overlap, many of them tiny",
+    .source = RT_SPD_LATER_SOURCE,
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};
