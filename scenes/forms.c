@@ -129,7 +129,7 @@ RtStatus rt_forms_tube(RtForms *forms, RtVec3d from, double from_radius, RtVec3d
         RtVec3d out = rt_addd(rt_scaled(right, turn.x), rt_scaled(up, turn.y));
         const RtVec3d after[2] = {rt_add_scaledd(from, out, from_radius), rt_add_scaledd(to, out, to_radius)};
         RT_TRY(rt_forms_triangle(forms, before[0], after[0], after[1], error));
-        RT_TRY(rt_forms_triangle(forms, after[1], before[1], before[0], error));
+        if (to_radius > 0) RT_TRY(rt_forms_triangle(forms, after[1], before[1], before[0], error));
         before[0] = after[0], before[1] = after[1];
     }
     return RT_OK;

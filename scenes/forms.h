@@ -72,7 +72,8 @@ enum {
 /* The quads of a box that `sides` names. */
 RtStatus rt_forms_box(RtForms *forms, RtVec3d lo, RtVec3d hi, unsigned sides, RtError *error);
 
-/* An open prism or pyramid stump with `sides` flat sides, 2 * sides triangles whatever `polygons` says. */
+/* An open prism or pyramid stump with `sides` flat sides, 2 * sides triangles whatever `polygons` says; a
+ * pyramid of `sides` triangles where `to_radius` is 0. */
 RtStatus rt_forms_tube(RtForms *forms, RtVec3d from, double from_radius, RtVec3d to, double to_radius,
                        uint32_t sides, RtError *error);
 

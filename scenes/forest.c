@@ -1,0 +1,257 @@
+/* forest: trees on a hilly ground, a million small triangles that lie any way, most of them in crowns where
+ * much overlaps: for measuring how builders scale, from 10^3 to 10^7 triangles.
+ *
+ * Trees stand one in each square of a grid, n of them from the front on, anywhere within it. A broadleaf is a
+ * trunk that forks LEVELS times into FORKS (prisms that taper) with leaves about every twig; a conifer a
+ * trunk with whorls of boughs, and hanging from each a few broad triangles of needles. Tree i is made from
+ * the random numbers of stream i alone. The ground is noise from lattices of random heights (Perlin 1985, in
+ * its simplest form); all lengths are in metres. */
+#include "base/random.h"
+#include "scenes/builtin.h"
+#include "scenes/forms.h"
+
+enum { N, SEED };
+
+static const RtParam params[] = {
+    [N] = {.name = "n",
+           .type = RT_PARAM_INT,
+           .standard = "1000",
+           .lo = 1,
+           .hi = 1e6,
+           .meaning = "trees, of about 1020 triangles each",
+           .source = "a million triangles",
+           .tries = "1|5"},
+    [SEED] = {.name = "seed",
+              .type = RT_PARAM_INT,
+              .standard = "1",
+              .lo = 0,
+              .hi = 1e15,
+              .meaning = "of the random numbers",
+              .source = "any",
+              .tries = "1"},
+};
+
+enum { BARK, BIRCH_BARK, SOIL, NEEDLES, DARK_NEEDLES, LEAVES, MATERIALS = LEAVES + 9 };
+
+/* Leaves come in three shades of each of three colours. */
+static const RtMaterial materials[MATERIALS] = {
+    [BARK] = RT_MATTE("bark", 0.3f, 0.2f, 0.13f),
+    [BIRCH_BARK] = RT_MATTE("birch bark", 0.75f, 0.72f, 0.66f),
+    [SOIL] = RT_MATTE("soil", 0.26f, 0.3f, 0.12f),
+    [NEEDLES] = RT_MATTE("needles", 0.1f, 0.3f, 0.14f),
+    [DARK_NEEDLES] = RT_MATTE("dark needles", 0.06f, 0.22f, 0.13f),
+    [LEAVES] = RT_MATTE("green leaves", 0.2f, 0.42f, 0.08f),
+    [LEAVES + 1] = RT_MATTE("green leaves", 0.26f, 0.5f, 0.1f),
+    [LEAVES + 2] = RT_MATTE("green leaves", 0.14f, 0.34f, 0.08f),
+    [LEAVES + 3] = RT_MATTE("light leaves", 0.45f, 0.52f, 0.1f),
+    [LEAVES + 4] = RT_MATTE("light leaves", 0.52f, 0.56f, 0.14f),
+    [LEAVES + 5] = RT_MATTE("light leaves", 0.38f, 0.46f, 0.1f),
+    [LEAVES + 6] = RT_MATTE("autumn leaves", 0.75f, 0.38f, 0.06f),
+    [LEAVES + 7] = RT_MATTE("autumn leaves", 0.65f, 0.22f, 0.06f),
+    [LEAVES + 8] = RT_MATTE("autumn leaves", 0.8f, 0.55f, 0.12f),
+};
+
+enum { LEVELS = 3, FORKS = 4, TWIG_LEAVES = 8 };
+enum { WHORLS = 14, BOUGHS = 7, BOUGH_TUFTS = 7 };
+
+static const double square = 6; /* edge of a tree's ground */
+
+/* ---- the ground ---- */
+
+/* Streams of lattice points lie beyond those of trees. */
+#define LATTICE_STREAM (UINT64_C(1) << 63)
+
+static double lattice_height(uint64_t seed, uint32_t octave, uint32_t x, uint32_t y) {
+    RtRandom random = rt_random(seed, LATTICE_STREAM | (uint64_t)octave << 60 | (uint64_t)x << 30 | y);
+    return 2 * (double)rt_random_unit(&random) - 1;
+}
+
+/* Smooth and flat at both ends. */
+static double ease(double t) {
+    return t * t * (3 - 2 * t);
+}
+
+static double height_at(uint64_t seed, double x, double y) {
+    static const double wave[3] = {60, 25, 9}, amplitude[3] = {7, 2.2, 0.5};
+    const double beyond = 1000; /* lattice points have no negative numbers */
+    double height = 0;
+    for (uint32_t octave = 0; octave < 3; octave++) {
+        double u = x / wave[octave] + beyond, v = y / wave[octave] + beyond;
+        uint32_t i = (uint32_t)u, j = (uint32_t)v;
+        double s = ease(u - i), t = ease(v - j);
+        double near =
+            (1 - s) * lattice_height(seed, octave, i, j) + s * lattice_height(seed, octave, i + 1, j);
+        double far =
+            (1 - s) * lattice_height(seed, octave, i, j + 1) + s * lattice_height(seed, octave, i + 1, j + 1);
+        height += amplitude[octave] * ((1 - t) * near + t * far);
+    }
+    return height;
+}
+
+typedef struct Ground {
+    uint64_t seed;
+    uint32_t edge; /* squares with trees along an edge */
+} Ground;
+
+enum { MARGIN = 3, CELLS = 2 }; /* squares without trees around, cells along a square */
+
+static RtVec3d ground_point(const void *of, uint32_t column, uint32_t row) {
+    const Ground *ground = of;
+    double x = square * ((double)column / CELLS - MARGIN), y = square * ((double)row / CELLS - MARGIN);
+    return rt_vec3d(x, y, height_at(ground->seed, x, y));
+}
+
+static RtStatus add_ground(RtForms *forms, const Ground *ground, RtError *error) {
+    uint32_t cells = (ground->edge + 2 * MARGIN) * CELLS;
+    forms->material = SOIL;
+    return rt_forms_sheet(
+        forms,
+        &(RtSheet){.columns = cells, .rows = cells, .smooth = true, .point = ground_point, .of = ground},
+        error);
+}
+
+/* ---- trees ---- */
+
+typedef struct Tree {
+    RtForms *forms;
+    RtRandom random;
+    uint32_t bark, leaves; /* materials; of leaves the first of three */
+} Tree;
+
+static double between(Tree *tree, double lo, double hi) {
+    return rt_random_betweend(&tree->random, lo, hi);
+}
+
+static RtStatus add_leaf(Tree *tree, RtVec3d at, RtError *error) {
+    RtVec3d along = rt_random_direction(&tree->random);
+    RtVec3d across = rt_normalized(rt_crossd(along, rt_random_direction(&tree->random)));
+    double length = between(tree, 0.35, 0.65);
+    RtVec3d tip = rt_add_scaledd(at, along, length), middle = rt_add_scaledd(at, along, 0.4 * length);
+    tree->forms->material = tree->leaves + rt_random_bits(&tree->random) % 3;
+    return rt_forms_triangle(tree->forms, at, rt_add_scaledd(middle, across, 0.6 * length), tip, error);
+}
+
+/* A branch from `base`, and what grows on it. */
+static RtStatus add_branch(Tree *tree, RtVec3d base, RtVec3d direction, double length, uint32_t level,
+                           RtError *error) {
+    static const uint32_t sides[LEVELS + 1] = {6, 4, 3, 3};
+    double radius = length * (level == 0 ? 0.045 : 0.03);
+    RtVec3d tip = rt_add_scaledd(base, direction, length);
+    tree->forms->material = tree->bark;
+    RT_TRY(rt_forms_tube(tree->forms, base, radius, tip, 0.5 * radius, sides[level], error));
+    for (uint32_t i = 0; level == LEVELS && i < TWIG_LEAVES; i++) {
+        RT_TRY(add_leaf(tree, rt_add_scaledd(base, direction, length * between(tree, 0.2, 1.1)), error));
+    }
+    for (uint32_t i = 0; level < LEVELS && i < FORKS; i++) {
+        double along = level == 0 ? 0.55 + 0.15 * i : 0.4 + 0.2 * i;
+        RtVec3d out = rt_normalized(rt_crossd(direction, rt_random_direction(&tree->random)));
+        RtVec3d fork =
+            rt_add_scaledd(rt_scaled(direction, i + 1 == FORKS ? 1.2 : 0.6), out, between(tree, 0.7, 1));
+        fork.z += 0.2;
+        RT_TRY(add_branch(tree, rt_add_scaledd(base, direction, length * along), rt_normalized(fork),
+                          length * between(tree, 0.5, 0.62), level + 1, error));
+    }
+    return RT_OK;
+}
+
+/* From the trunk at height `up` (0 to 1) of the tree outwards and down a little. */
+static RtStatus add_bough(Tree *tree, RtVec3d foot, double height, double up, RtError *error) {
+    RtVec3d turn = rt_random_direction(&tree->random);
+    RtVec3d out = rt_normalized(rt_vec3d(turn.x, turn.y, 0)), across = {-out.y, out.x, 0};
+    double length = height * (0.04 + 0.28 * (1 - up)) * between(tree, 0.8, 1.1);
+    RtVec3d base = {foot.x, foot.y, foot.z + height * up};
+    RtVec3d tip = rt_add_scaledd(base, out, length);
+    tip.z -= 0.35 * length;
+    tree->forms->material = tree->bark;
+    RT_TRY(rt_forms_tube(tree->forms, base, 0.02 * length, tip, 0, 3, error));
+    for (uint32_t i = 0; i < BOUGH_TUFTS; i++) {
+        RtVec3d from = rt_add_scaledd(base, rt_subd(tip, base), 0.14 * i);
+        double width = (0.36 - 0.035 * i) * length, hang = -0.12 * length;
+        RtVec3d end = rt_add_scaledd(base, rt_subd(tip, base), 0.14 * i + 0.2);
+        RtVec3d left = rt_add_scaledd(end, across, -width), right = rt_add_scaledd(end, across, width);
+        left.z += hang, right.z += hang * between(tree, 0.6, 1.2);
+        tree->forms->material = rt_random_bits(&tree->random) % 2 ? NEEDLES : DARK_NEEDLES;
+        RT_TRY(rt_forms_triangle(tree->forms, from, right, left, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_conifer(Tree *tree, RtVec3d foot, double height, RtError *error) {
+    RtVec3d top = {foot.x, foot.y, foot.z + height};
+    tree->forms->material = tree->bark;
+    RT_TRY(rt_forms_tube(tree->forms, foot, 0.02 * height, top, 0, 6, error));
+    for (uint32_t i = 0; i < WHORLS * BOUGHS; i++) {
+        RT_TRY(add_bough(tree, foot, height, 0.16 + 0.82 * i / (WHORLS * BOUGHS), error));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_tree(RtForms *forms, const Ground *ground, uint64_t i, RtError *error) {
+    Tree tree = {.forms = forms, .random = rt_random(ground->seed, i), .bark = BARK};
+    uint32_t die = rt_random_bits(&tree.random) % 12;
+    bool conifer = die < 4;
+    tree.leaves = LEAVES + (die < 9 ? 0 : die < 11 ? 3 : 6);
+    if (die == 9 || die == 10) tree.bark = BIRCH_BARK;
+    if (!forms->scene) {
+        /* What follows is as much for every tree of a kind. */
+        const uint64_t broadleaf = 12 + 4 * 8 + 16 * 6 + 64 * (6 + TWIG_LEAVES);
+        forms->count += conifer ? 6 + WHORLS * BOUGHS * (3 + BOUGH_TUFTS) : broadleaf;
+        return RT_OK;
+    }
+    double x = square * ((double)(i % ground->edge) + between(&tree, 0.1, 0.9));
+    double y = square * ((double)(i / ground->edge) + between(&tree, 0.1, 0.9));
+    RtVec3d foot = {x, y, height_at(ground->seed, x, y) - 0.3};
+    if (conifer) return add_conifer(&tree, foot, between(&tree, 6, 12), error);
+    RtVec3d lean = {between(&tree, -0.12, 0.12), between(&tree, -0.12, 0.12), 1};
+    return add_branch(&tree, foot, rt_normalized(lean), between(&tree, 3.2, 5), 0, error);
+}
+
+/* ---- the scene ---- */
+
+static Ground ground_of(const RtValue *values) {
+    Ground ground = {.seed = (uint64_t)values[SEED].i, .edge = 1};
+    while ((uint64_t)ground.edge * ground.edge < (uint64_t)values[N].i) ground.edge++;
+    return ground;
+}
+
+static RtStatus make(RtScene *scene, const RtValue *values, uint64_t *count, RtError *error) {
+    Ground ground = ground_of(values);
+    RtForms forms = rt_forms(scene);
+    RT_TRY(rt_forms_materials(&forms, materials, MATERIALS, error));
+    RT_TRY(add_ground(&forms, &ground, error));
+    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) RT_TRY(add_tree(&forms, &ground, i, error));
+    *count = forms.count;
+    return RT_OK;
+}
+
+static uint64_t object_count(const RtValue *values) {
+    uint64_t count = 0;
+    make(NULL, values, &count, NULL);
+    return count;
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    uint64_t count;
+    Ground ground = ground_of(values);
+    double width = square * ground.edge, eye_y = -14;
+    double eye_z = height_at(ground.seed, width / 2, eye_y) + 9;
+    scene->camera.from = rt_narrow(rt_vec3d(width / 2, eye_y, eye_z));
+    scene->camera.at = rt_narrow(rt_vec3d(width / 2, eye_y + 20, eye_z - 3));
+    scene->background = rt_vec3(0.55f, 0.7f, 0.9f);
+    RtVec3 sun = rt_narrow(rt_vec3d(-2 * width - 40, -3 * width - 40, 4 * width + 60));
+    RtVec3 sky = rt_narrow(rt_vec3d(3 * width + 40, -width, 3 * width + 60));
+    RT_TRY(rt_scene_add_light(scene, sun, rt_vec3(0.85f, 0.8f, 0.7f), error));
+    RT_TRY(rt_scene_add_light(scene, sky, rt_vec3(0.22f, 0.25f, 0.32f), error));
+    return make(scene, values, &count, error);
+}
+
+extern const RtBuiltin rt_builtin_forest;
+const RtBuiltin rt_builtin_forest = {
+    .name = "forest",
+    .summary = "n trees on hilly ground: a million small triangles that lie any way",
+    .source = "made to measure how builders scale",
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};
