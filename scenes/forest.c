@@ -214,24 +214,19 @@ static Ground ground_of(const RtValue *values) {
     return ground;
 }
 
-static RtStatus make(RtScene *scene, const RtValue *values, uint64_t *count, RtError *error) {
+static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
     Ground ground = ground_of(values);
-    RtForms forms = rt_forms(scene);
-    RT_TRY(rt_forms_materials(&forms, materials, MATERIALS, error));
-    RT_TRY(add_ground(&forms, &ground, error));
-    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) RT_TRY(add_tree(&forms, &ground, i, error));
-    *count = forms.count;
+    RT_TRY(rt_forms_materials(forms, materials, MATERIALS, error));
+    RT_TRY(add_ground(forms, &ground, error));
+    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) RT_TRY(add_tree(forms, &ground, i, error));
     return RT_OK;
 }
 
 static uint64_t object_count(const RtValue *values) {
-    uint64_t count = 0;
-    make(NULL, values, &count, NULL);
-    return count;
+    return rt_forms_count(make, values);
 }
 
 static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    uint64_t count;
     Ground ground = ground_of(values);
     double width = square * ground.edge, eye_y = -14;
     double eye_z = height_at(ground.seed, width / 2, eye_y) + 9;
@@ -242,7 +237,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     RtVec3 sky = rt_narrow(rt_vec3d(3 * width + 40, -width, 3 * width + 60));
     RT_TRY(rt_scene_add_light(scene, sun, rt_vec3(0.85f, 0.8f, 0.7f), error));
     RT_TRY(rt_scene_add_light(scene, sky, rt_vec3(0.22f, 0.25f, 0.32f), error));
-    return make(scene, values, &count, error);
+    return rt_forms_make(scene, make, values, error);
 }
 
 extern const RtBuiltin rt_builtin_forest;

@@ -9,6 +9,24 @@ RtForms rt_forms(RtScene *scene) {
     return (RtForms){.scene = scene, .place = rt_transform_identity()};
 }
 
+void rt_forms_clear(RtForms *forms) {
+    rt_free(forms->points);
+    *forms = rt_forms(NULL);
+}
+
+RtStatus rt_forms_make(RtScene *scene, RtFormsMaker *make, const RtValue *values, RtError *error) {
+    RtForms forms = rt_forms(scene);
+    RtStatus status = make(&forms, values, error);
+    rt_forms_clear(&forms);
+    return status;
+}
+
+uint64_t rt_forms_count(RtFormsMaker *make, const RtValue *values) {
+    RtForms forms = rt_forms(NULL);
+    make(&forms, values, NULL); /* cannot fail: nothing is made */
+    return forms.count;
+}
+
 RtStatus rt_forms_materials(const RtForms *forms, const RtMaterial *materials, uint32_t count,
                             RtError *error) {
     for (uint32_t i = 0; forms->scene && i < count; i++) {
@@ -220,8 +238,8 @@ RtStatus rt_forms_sheet(RtForms *forms, const RtSheet *sheet, RtError *error) {
     if (!forms->scene) return RT_OK;
     Mesh mesh = {.width = sheet->columns + !sheet->wrapped};
     uint64_t points = (uint64_t)mesh.width * (sheet->rows + 1);
-    mesh.points = rt_alloc(points, 2 * sizeof(RtVec3));
-    if (!mesh.points) return rt_fail_memory(error, "the points of a sheet", points * 2 * sizeof(RtVec3));
+    RT_TRY(rt_reserve(&forms->points, &forms->room, 2 * points, sizeof(RtVec3), error));
+    mesh.points = forms->points;
     mesh.normals = mesh.points + points;
     for (uint32_t row = 0; row <= sheet->rows; row++) {
         for (uint32_t column = 0; column < mesh.width; column++) {
@@ -231,9 +249,7 @@ RtStatus rt_forms_sheet(RtForms *forms, const RtSheet *sheet, RtError *error) {
         }
     }
     if (sheet->smooth) sum_normals(sheet, &mesh);
-    RtStatus status = add_cells(forms, sheet, &mesh, error);
-    rt_free(mesh.points);
-    return status;
+    return add_cells(forms, sheet, &mesh, error);
 }
 
 static RtVec3d lathe_point(const void *of, uint32_t column, uint32_t row) {

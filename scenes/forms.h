@@ -8,6 +8,7 @@
 #ifndef RT_SCENES_FORMS_H
 #define RT_SCENES_FORMS_H
 
+#include "base/param.h"
 #include "base/transform.h"
 #include "scene/scene.h"
 
@@ -17,10 +18,24 @@ typedef struct RtForms {
     bool polygons;     /* a quad is one polygon; else two triangles */
     RtTransform place; /* of the forms that come next; spheres and cones need one that scales evenly */
     uint64_t count;    /* objects so far */
+    uint32_t room;     /* points there is room for in `points` */
+    RtVec3 *points;    /* owned: what sheets are made in */
 } RtForms;
 
 /* Material 0, triangles, no transform, none made yet. */
 RtForms rt_forms(RtScene *scene);
+
+/* Frees what it holds itself; the scene stays. */
+void rt_forms_clear(RtForms *forms);
+
+/* The part of a generator that makes objects, by forms alone. */
+typedef RtStatus RtFormsMaker(RtForms *forms, const RtValue *values, RtError *error);
+
+/* Has `make` add its objects to the scene. */
+RtStatus rt_forms_make(RtScene *scene, RtFormsMaker *make, const RtValue *values, RtError *error);
+
+/* How many objects `make` would add. */
+uint64_t rt_forms_count(RtFormsMaker *make, const RtValue *values);
 
 /* Gives the scene these materials, which get the indices from 0 in a scene that has none. */
 RtStatus rt_forms_materials(const RtForms *forms, const RtMaterial *materials, uint32_t count,

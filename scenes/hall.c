@@ -306,34 +306,29 @@ static RtStatus add_monument(RtForms *forms, uint32_t size, RtError *error) {
     return rt_teapot(forms, size, error);
 }
 
-static RtStatus make(RtScene *scene, const RtValue *values, uint64_t *count, RtError *error) {
+static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
     uint32_t size = (uint32_t)values[0].i;
-    RtForms forms = rt_forms(scene);
-    RT_TRY(rt_forms_materials(&forms, materials, MATERIALS, error));
-    RT_TRY(add_room(&forms, error));
-    RT_TRY(add_floor(&forms, error));
-    RT_TRY(add_coffers(&forms, size, error));
-    RT_TRY(add_side(&forms, -1, size, error));
-    RT_TRY(add_side(&forms, 1, size, error));
-    RT_TRY(add_window(&forms, rt_vec3d(0, back_y, 9.6), 3, 3.4, 3 * size, error));
+    RT_TRY(rt_forms_materials(forms, materials, MATERIALS, error));
+    RT_TRY(add_room(forms, error));
+    RT_TRY(add_floor(forms, error));
+    RT_TRY(add_coffers(forms, size, error));
+    RT_TRY(add_side(forms, -1, size, error));
+    RT_TRY(add_side(forms, 1, size, error));
+    RT_TRY(add_window(forms, rt_vec3d(0, back_y, 9.6), 3, 3.4, 3 * size, error));
     for (uint32_t i = 0; i < CHANDELIERS; i++) {
-        forms.material = GOLD;
-        rt_forms_at(&forms, chandelier_place(i), 0);
-        RT_TRY(rt_ornament_chandelier(&forms, size, CHAIN_LINKS, error));
+        forms->material = GOLD;
+        rt_forms_at(forms, chandelier_place(i), 0);
+        RT_TRY(rt_ornament_chandelier(forms, size, CHAIN_LINKS, error));
     }
-    RT_TRY(add_monument(&forms, size, error));
-    *count = forms.count;
+    RT_TRY(add_monument(forms, size, error));
     return RT_OK;
 }
 
 static uint64_t object_count(const RtValue *values) {
-    uint64_t count = 0;
-    make(NULL, values, &count, NULL);
-    return count;
+    return rt_forms_count(make, values);
 }
 
 static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    uint64_t count;
     scene->camera.from = rt_vec3(2.3f, -0.6f, 2.4f);
     scene->camera.at = rt_vec3(-0.9f, 15, 4.6f);
     scene->camera.fov = 65;
@@ -341,7 +336,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
         RtVec3 at = rt_narrow(rt_addd(chandelier_place(i), rt_vec3d(0, 0, -0.8)));
         RT_TRY(rt_scene_add_light(scene, at, rt_vec3(0.29f, 0.26f, 0.22f), error));
     }
-    return make(scene, values, &count, error);
+    return rt_forms_make(scene, make, values, error);
 }
 
 extern const RtBuiltin rt_builtin_hall;

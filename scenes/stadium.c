@@ -79,7 +79,7 @@ typedef struct Ledge {
 } Ledge;
 
 typedef struct Stadium {
-    RtForms forms;
+    RtForms *forms;
     double half; /* half the length of the stadium */
 } Stadium;
 
@@ -94,11 +94,11 @@ static RtVec3d on_bowl(const Stadium *s, uint32_t i, Ledge ledge) {
 static RtStatus add_piece(Stadium *s, uint32_t sector, Ledge a, Ledge b, RtError *error) {
     const RtVec3d corners[4] = {on_bowl(s, sector + 1, a), on_bowl(s, sector, a), on_bowl(s, sector, b),
                                 on_bowl(s, sector + 1, b)};
-    return rt_forms_quad(&s->forms, corners, error);
+    return rt_forms_quad(s->forms, corners, error);
 }
 
 static RtStatus add_ring(Stadium *s, Ledge a, Ledge b, uint32_t material, RtError *error) {
-    s->forms.material = material;
+    s->forms->material = material;
     for (uint32_t i = 0; i < SECTORS; i++) RT_TRY(add_piece(s, i, a, b, error));
     return RT_OK;
 }
@@ -112,9 +112,9 @@ static RtStatus add_tiers(Stadium *s, Ledge a, Ledge b, uint32_t tiers, uint32_t
         Ledge back = {a.out + tread * (tier + 1), edge.up};
         for (uint32_t i = 0; i < SECTORS; i++) {
             bool letters = (i / 8) % 2 == 0 && tier > tiers / 3 && tier < tiers - tiers / 3;
-            s->forms.material = i % 8 == 7 ? CONCRETE : letters ? WHITE_SEATS : seats;
+            s->forms->material = i % 8 == 7 ? CONCRETE : letters ? WHITE_SEATS : seats;
             RT_TRY(add_piece(s, i, foot, edge, error));
-            s->forms.material = CONCRETE;
+            s->forms->material = CONCRETE;
             RT_TRY(add_piece(s, i, edge, back, error));
         }
     }
@@ -139,7 +139,7 @@ static RtStatus add_bowl(Stadium *s, RtError *error) {
 /* Level, from (x0, y0) to (x1, y1) at height z, in half lengths of the stadium. */
 static RtStatus add_strip(Stadium *s, double x0, double y0, double x1, double y1, double z, RtError *error) {
     RtVec3d lo = {x0 * s->half, y0 * s->half, z * s->half}, hi = {x1 * s->half, y1 * s->half, z * s->half};
-    return rt_forms_box(&s->forms, lo, hi, RT_SIDE_TOP, error);
+    return rt_forms_box(s->forms, lo, hi, RT_SIDE_TOP, error);
 }
 
 /* Two posts and a bar. */
@@ -147,22 +147,22 @@ static RtStatus add_goal(Stadium *s, double x, RtError *error) {
     double h = s->half, post = 0.0015 * h;
     const RtVec3d feet[2] = {{x * h, -0.03 * h, 0}, {x * h, 0.03 * h, 0}};
     const RtVec3d tops[2] = {{x * h, -0.03 * h, 0.02 * h}, {x * h, 0.03 * h, 0.02 * h}};
-    s->forms.material = LINES;
-    for (int i = 0; i < 2; i++) RT_TRY(rt_forms_cone(&s->forms, feet[i], post, tops[i], post, error));
-    return rt_forms_cone(&s->forms, tops[0], post, tops[1], post, error);
+    s->forms->material = LINES;
+    for (int i = 0; i < 2; i++) RT_TRY(rt_forms_cone(s->forms, feet[i], post, tops[i], post, error));
+    return rt_forms_cone(s->forms, tops[0], post, tops[1], post, error);
 }
 
 /* Stripes of grass and, a little above them, the lines. */
 static RtStatus add_pitch(Stadium *s, RtError *error) {
     const double x = 0.4, y = 0.24, line = 0.002, above = 1e-5;
-    s->forms.material = GRASS;
+    s->forms->material = GRASS;
     RT_TRY(add_strip(s, -1.2, -1.2, 1.2, 1.2, -2 * above, error));
     for (int i = 0; i < STRIPES; i++) {
         double x0 = -x + 2 * x * i / STRIPES, x1 = -x + 2 * x * (i + 1) / STRIPES;
-        s->forms.material = i % 2 ? GRASS : LIGHT_GRASS;
+        s->forms->material = i % 2 ? GRASS : LIGHT_GRASS;
         RT_TRY(add_strip(s, x0, -y, x1, y, -above, error));
     }
-    s->forms.material = LINES;
+    s->forms->material = LINES;
     for (int i = -1; i <= 1; i++) { /* goal lines and half-way line, then touch lines */
         RT_TRY(add_strip(s, i * x - line, -y, i * x + line, y, 0, error));
     }
@@ -187,14 +187,14 @@ static RtVec3d top_of_mast(double half, uint32_t i) {
 static RtStatus add_mast(Stadium *s, uint32_t i, RtError *error) {
     double h = s->half;
     RtVec3d top = top_of_mast(h, i), foot = {top.x, top.y, 0};
-    s->forms.material = STEEL;
-    RT_TRY(rt_forms_cone(&s->forms, foot, 0.016 * h, top, 0.008 * h, error));
+    s->forms->material = STEEL;
+    RT_TRY(rt_forms_cone(s->forms, foot, 0.016 * h, top, 0.008 * h, error));
     RtVec3d across = rt_normalized(rt_vec3d(-top.y, top.x, 0));
     for (int lamp = 0; lamp < LAMPS; lamp++) {
-        s->forms.material = LAMP;
+        s->forms->material = LAMP;
         RtVec3d at = rt_add_scaledd(top, across, (lamp % 4 - 1.5) * 0.026 * h);
         at.z += (lamp / 4 + 0.5) * 0.026 * h;
-        RT_TRY(rt_forms_sphere(&s->forms, at, 0.011 * h, error));
+        RT_TRY(rt_forms_sphere(s->forms, at, 0.011 * h, error));
     }
     return RT_OK;
 }
@@ -221,26 +221,22 @@ static double half_length(const RtValue *values) {
     return values[RATIO].f * teapot_length / 2;
 }
 
-static RtStatus make(RtScene *scene, const RtValue *values, uint64_t *count, RtError *error) {
-    Stadium s = {.forms = rt_forms(scene), .half = half_length(values)};
-    RT_TRY(rt_forms_materials(&s.forms, materials, MATERIALS, error));
-    s.forms.polygons = true;
+static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
+    Stadium s = {.forms = forms, .half = half_length(values)};
+    RT_TRY(rt_forms_materials(forms, materials, MATERIALS, error));
+    forms->polygons = true;
     RT_TRY(add_pitch(&s, error));
     RT_TRY(add_bowl(&s, error));
     for (uint32_t i = 0; i < MASTS; i++) RT_TRY(add_mast(&s, i, error));
-    RT_TRY(add_teapot(&s.forms, (uint32_t)values[SIZE].i, error));
-    *count = s.forms.count;
+    RT_TRY(add_teapot(forms, (uint32_t)values[SIZE].i, error));
     return RT_OK;
 }
 
 static uint64_t object_count(const RtValue *values) {
-    uint64_t count = 0;
-    make(NULL, values, &count, NULL);
-    return count;
+    return rt_forms_count(make, values);
 }
 
 static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    uint64_t count;
     double half = half_length(values);
     scene->camera.from = rt_vec3(-12, -5, 5.6f);
     scene->camera.at = rt_vec3(0, 0, 7);
@@ -252,7 +248,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
         RtVec3 lamps = rt_narrow(rt_addd(top_of_mast(half, i), rt_vec3d(0, 0, -0.01 * half)));
         RT_TRY(rt_scene_add_light(scene, lamps, rt_vec3(0.25f, 0.25f, 0.28f), error));
     }
-    return make(scene, values, &count, error);
+    return rt_forms_make(scene, make, values, error);
 }
 
 extern const RtBuiltin rt_builtin_stadium;

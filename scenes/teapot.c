@@ -38,9 +38,7 @@ static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
 }
 
 static uint64_t object_count(const RtValue *values) {
-    RtForms counted = rt_forms(NULL);
-    make(&counted, values, NULL);
-    return counted.count;
+    return rt_forms_count(make, values);
 }
 
 static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
@@ -49,12 +47,14 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
         rt_nff_material("light squares", rt_vec3(1, 0.9f, 0.8f), 0.5f, 0.5f, 300000, 0, 1),
         rt_nff_material("dark squares", rt_vec3(0.3f, 0.25f, 0.2f), 0.5f, 0.5f, 300000, 0, 1),
     };
-    RtForms forms = rt_forms(scene);
-    RT_TRY(rt_forms_materials(&forms, materials, 3, error));
+    for (int i = 0; i < 3; i++) {
+        uint32_t index;
+        RT_TRY(rt_scene_add_material(scene, &materials[i], &index, error));
+    }
     static const RtVec3 lights[2] = {{-3.1f, 9.8f, 12.1f}, {11.3f, 5.1f, 8.8f}};
     RT_TRY(rt_spd_add_lights(scene, lights, 2, error));
     scene->camera.from = rt_vec3(4.86f, 7.2f, 5.4f);
-    return make(&forms, values, error);
+    return rt_forms_make(scene, make, values, error);
 }
 
 extern const RtBuiltin rt_builtin_teapot;

@@ -44,7 +44,7 @@ static void places_have_the_objects_that_they_say(void **state) {
 }
 
 /* At other values than the defaults, which test_builtin.c goes through. */
-static const char *const specs[] = {"teapot:size=3", "stadium:size=2", "hall:size=1", "hall:size=3"};
+static const char *const specs[] = {"teapot:size=3", "stadium:size=2", "hall:size=3", "forest:n=30,seed=5"};
 
 enum { SPECS = sizeof specs / sizeof specs[0] };
 
@@ -277,6 +277,7 @@ static void a_box_faces_outwards(void **state) {
         assert_true(rt_lengthd(normal) == 4 && rt_dotd(normal, rt_subd(a, center)) == 4);
     }
     assert_int_equal(open_edges(&scene.geometry, 0, 12), 0);
+    rt_forms_clear(&forms);
     rt_scene_clear(&scene);
 }
 
@@ -297,6 +298,7 @@ static void a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards(void **st
     normals_point_where_the_triangles_do(&scene.geometry);
     assert_ok(rt_scene_finish(&scene, error));
     assert_true(scene.geometry.box.lo.z == 7 && scene.geometry.box.hi.z == 10);
+    rt_forms_clear(&forms);
     rt_scene_clear(&scene);
 }
 
