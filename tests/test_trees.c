@@ -2,13 +2,14 @@
 #include "testing.h"
 
 #include "accel/tree/neighbours.h"
+#include "accel/tree/order.h"
 #include "accel/tree/split.h"
 #include "base/memory.h"
 #include "base/random.h"
 
 #include <string.h>
 
-enum { METHOD_COUNT = 5 }; /* of make_tree */
+enum { METHOD_COUNT = 7 }; /* of make_tree */
 
 /* ---- trees of boxes ---- */
 
@@ -32,10 +33,12 @@ static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
     RtTree tree;
     switch (method) {
     case 0: assert_ok(rt_tree_agglomerative(&tree, boxes, count, error)); break;
-    case 1: assert_ok(rt_tree_ploc(&tree, boxes, count, 25, error)); break;
+    case 1: assert_ok(rt_tree_ploc(&tree, boxes, count, 21, 25, error)); break;
     case 2: assert_ok(rt_tree_insertion(&tree, boxes, count, &order, error)); break;
     case 3: assert_ok(rt_tree_topdown(&tree, boxes, count, 0, error)); break;
-    default: assert_ok(rt_tree_topdown(&tree, boxes, count, 16, error)); break;
+    case 4: assert_ok(rt_tree_topdown(&tree, boxes, count, 16, error)); break;
+    case 5: assert_ok(rt_tree_sweep(&tree, boxes, count, error)); break;
+    default: assert_ok(rt_tree_lbvh(&tree, boxes, count, 21, error)); break;
     }
     return tree;
 }
@@ -156,6 +159,8 @@ static void clustering_beats_medians_and_more_neighbours_beat_fewer(void **state
         assert_true(cost[0] <= cost[1]); /* agglomerative, ploc */
         assert_true(cost[1] <= cost[3]); /* rubin-whitted */
         assert_true(cost[2] <= cost[3]); /* goldsmith-salmon */
+        assert_true(cost[5] <= cost[4]); /* sweep, binned */
+        assert_true(cost[4] <= cost[6]); /* lbvh */
         rt_free(boxes);
     }
 }
@@ -218,6 +223,119 @@ static void medians_put_the_lesser_half_in_front(void **state) {
     }
 }
 
+/* ---- orders, and the methods that rest on them ---- */
+
+static void an_axis_is_sorted_by_centres_and_ids(void **state) {
+    (void)state;
+    static const float centers[] = {3, -1, 0, -1e30f, 3, -0.5f, 1e-40f, 1e30f, -1};
+    static const uint32_t expected[] = {3, 1, 8, 5, 2, 6, 0, 4, 7};
+    enum { COUNT = sizeof expected / sizeof expected[0] };
+    RtBox boxes[COUNT];
+    for (int axis = 0; axis < 3; axis++) {
+        for (uint32_t i = 0; i < COUNT; i++) {
+            boxes[i] = (RtBox){{0, 0, 0}, {0, 0, 0}};
+            boxes[i].lo.at[axis] = boxes[i].hi.at[axis] = centers[i];
+        }
+        RtKeyed *order = rt_order_axis(boxes, COUNT, axis);
+        for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(order[i].id, expected[i]);
+        rt_free(order);
+    }
+}
+
+/* Object i of 64 is in cell (i % 4, i / 4 % 4, i / 16) of 4 x 4 x 4. */
+static void make_cells(RtBox *boxes) {
+    for (uint32_t i = 0; i < 64; i++) {
+        RtVec3 corner = {{(float)(i % 4), (float)(i / 4 % 4), (float)(i / 16)}};
+        boxes[i] = (RtBox){corner, rt_add(corner, (RtVec3){{1, 1, 1}})};
+    }
+}
+
+static void morton_codes_interleave_the_cells_of_centres(void **state) {
+    (void)state;
+    RtBox boxes[64];
+    make_cells(boxes);
+    RtKeyed *order = rt_order_morton(boxes, 64, 2);
+    for (uint32_t i = 0; i < 64; i++) {
+        uint32_t id = order[i].id, code = 0;
+        for (uint32_t bit = 0; bit < 6; bit++) code |= (id >> (bit % 3 * 2 + bit / 3) & 1) << bit;
+        assert_int_equal(order[i].key, code);
+        assert_int_equal(code, i);
+    }
+    rt_free(order);
+    order = rt_order_morton(boxes, 64, 1); /* eight a cell, by id */
+    for (uint32_t i = 1; i < 64; i++) {
+        assert_int_equal(order[i].key, i / 8);
+        if (i % 8) assert_true(order[i].id > order[i - 1].id);
+    }
+    rt_free(order);
+}
+
+static void lbvh_halves_space_along_one_axis_after_another(void **state) {
+    (void)state;
+    RtBox boxes[64];
+    make_cells(boxes);
+    RtTree tree;
+    assert_ok(rt_tree_lbvh(&tree, boxes, 64, 21, error));
+    assert_int_equal(assert_tree(&tree), 6);
+    uint32_t node = tree.root;
+    for (int level = 0; level < 6; level++, node = tree.nodes[node].child[0]) { /* z, y, x, z, y, x */
+        int axis = 2 - level % 3;
+        RtVec3 size = rt_box_size(tree.nodes[node].box);
+        const uint32_t *child = tree.nodes[node].child;
+        for (int s = 0; s < 2; s++) {
+            RtVec3 half = rt_box_size(tree.nodes[child[s]].box);
+            for (int a = 0; a < 3; a++) {
+                assert_true(half.at[a] == (a == axis ? size.at[a] / 2 : size.at[a]));
+            }
+        }
+    }
+    rt_tree_clear(&tree);
+}
+
+/* The least cost of a split by a plane between centres along an axis, of which none are equal. */
+static double least_split_cost(const RtBox *boxes, uint32_t count) {
+    double least = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        for (uint32_t i = 0; i < count; i++) {
+            RtBox sides[2] = {RT_EMPTY_BOX, RT_EMPTY_BOX};
+            uint32_t counts[2] = {0, 0};
+            for (uint32_t j = 0; j < count; j++) {
+                int side = rt_box_center(boxes[j]).at[axis] >= rt_box_center(boxes[i]).at[axis];
+                sides[side] = rt_box_union(sides[side], boxes[j]);
+                counts[side]++;
+            }
+            double cost = rt_box_half_area(sides[0]) * counts[0] + rt_box_half_area(sides[1]) * counts[1];
+            if (counts[0] > 0 && cost < least) least = cost;
+        }
+    }
+    return least;
+}
+
+static uint32_t leaves_below(const RtTree *tree, uint32_t node) {
+    if (rt_tree_is_leaf(tree, node)) return 1;
+    const uint32_t *child = tree->nodes[node].child;
+    return leaves_below(tree, child[0]) + leaves_below(tree, child[1]);
+}
+
+static void a_sweep_finds_the_cheapest_of_all_splits_and_bins_none_cheaper(void **state) {
+    (void)state;
+    enum { COUNT = 200 };
+    for (uint64_t seed = 1; seed <= 5; seed++) {
+        RtBox *boxes = make_boxes(COUNT, seed);
+        double least = least_split_cost(boxes, COUNT);
+        for (int m = 4; m <= 5; m++) {
+            RtTree tree = make_tree(boxes, COUNT, m);
+            const uint32_t *child = tree.nodes[tree.root].child;
+            double cost = 0;
+            for (int s = 0; s < 2; s++)
+                cost += rt_box_half_area(tree.nodes[child[s]].box) * leaves_below(&tree, child[s]);
+            assert_true(m == 5 ? cost == least : cost >= least);
+            rt_tree_clear(&tree);
+        }
+        rt_free(boxes);
+    }
+}
+
 /* ---- depth ---- */
 
 static void coincident_objects_stay_within_the_depth_limit(void **state) {
@@ -275,6 +393,10 @@ int main(void) {
         cmocka_unit_test(more_orders_of_insertion_never_cost_more),
         cmocka_unit_test(an_object_is_inserted_where_areas_grow_least),
         cmocka_unit_test(medians_put_the_lesser_half_in_front),
+        cmocka_unit_test(an_axis_is_sorted_by_centres_and_ids),
+        cmocka_unit_test(morton_codes_interleave_the_cells_of_centres),
+        cmocka_unit_test(lbvh_halves_space_along_one_axis_after_another),
+        cmocka_unit_test(a_sweep_finds_the_cheapest_of_all_splits_and_bins_none_cheaper),
         cmocka_unit_test(coincident_objects_stay_within_the_depth_limit),
         cmocka_unit_test(a_chain_of_growing_distances_is_cut_by_medians),
         cmocka_unit_test(what_is_shallow_enough_is_left_as_it_is),

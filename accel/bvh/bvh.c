@@ -1,29 +1,55 @@
-/* bvh: a binary hierarchy of boxes, built from the top by the surface area heuristic in bins.
+/* bvh: a binary hierarchy of boxes, built in one of several ways.
  *
- * Papers: MacDonald & Booth 1990 (the heuristic), Wald 2007, "On fast Construction of SAH-based Bounding
- * Volume Hierarchies" (the bins). A tree of references is made first (accel/tree/tree.h) and laid out then,
- * which decides what shares a leaf (accel/tree/hierarchy.h, where the layout and its invariants are written
- * down). One traversal for all of them: near child first, the far one on a stack with its entry; the stack is
- * bounded by RT_TREE_MAX_DEPTH.
+ * Papers: MacDonald & Booth 1990 (the surface area heuristic), Wald 2007, "On fast Construction of SAH-based
+ * Bounding Volume Hierarchies", and those named in accel/tree/tree.h. A tree of references is made first and
+ * laid out then, which decides what shares a leaf (accel/tree/hierarchy.h, where the layout and its
+ * invariants are written down). One traversal for all of them: near child first, the far one on a stack with
+ * its entry; the stack is bounded by RT_TREE_MAX_DEPTH.
  *
  * Counting: an extent test per box tested, the root's included; a step per node visited. */
 #include "accel/bvh/bvh.h"
 
 #include "accel/kernel.h"
+#include "accel/tree/order.h"
 #include "accel/tree/split.h"
 #include "base/memory.h"
 
-enum { PARAM_BINS, PARAM_LEAF, PARAM_TRAVERSAL, PARAM_COUNT };
+typedef enum Build { BINNED, SWEEP, LBVH, PLOC } Build;
+
+enum { PARAM_BUILD, PARAM_BINS, PARAM_BITS, PARAM_RADIUS, PARAM_LEAF, PARAM_TRAVERSAL, PARAM_COUNT };
 
 static const RtParam params[PARAM_COUNT] = {
+    [PARAM_BUILD] = {.name = "build",
+                     .type = RT_PARAM_CHOICE,
+                     .standard = "binned",
+                     .choices = "binned|sweep|lbvh|ploc",
+                     .meaning = "SAH in bins; SAH at every centre; halves of Morton codes; nearest in Morton "
+                                "order",
+                     .source = "Wald 2007"},
     [PARAM_BINS] = {.name = "bins",
                     .type = RT_PARAM_INT,
                     .standard = "16",
                     .lo = 2,
                     .hi = RT_MAX_BINS,
-                    .meaning = "bins along each axis in which split positions are sought",
+                    .meaning = "build=binned: bins along each axis in which split positions are sought",
                     .source = "Wald 2007",
                     .tries = "2|5|64"},
+    [PARAM_BITS] = {.name = "bits",
+                    .type = RT_PARAM_INT,
+                    .standard = "21",
+                    .lo = 1,
+                    .hi = RT_MAX_MORTON_BITS,
+                    .meaning = "build=lbvh, ploc: bits of a Morton code along each axis",
+                    .source = "the most that 64 bits hold",
+                    .tries = "1|10"},
+    [PARAM_RADIUS] = {.name = "radius",
+                      .type = RT_PARAM_INT,
+                      .standard = "25",
+                      .lo = 1,
+                      .hi = 1024,
+                      .meaning = "build=ploc: neighbours searched on either side",
+                      .source = "Meister & Bittner 2018",
+                      .tries = "1|100"},
     [PARAM_LEAF] = {.name = "leaf",
                     .type = RT_PARAM_INT,
                     .standard = "8",
@@ -51,11 +77,23 @@ static void destroy(RtAccel *accel) {
     rt_free(accel);
 }
 
+static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValue *values, RtError *error) {
+    const RtBox *boxes = geometry->boxes;
+    uint32_t count = geometry->object_count, bits = (uint32_t)values[PARAM_BITS].i;
+    switch ((Build)values[PARAM_BUILD].choice) {
+    case BINNED: break;
+    case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
+    case LBVH: return rt_tree_lbvh(tree, boxes, count, bits, error);
+    case PLOC: return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, error);
+    }
+    return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, error);
+}
+
 static RtStatus fill(RtHierarchy *hierarchy, const RtGeometry *geometry, const RtValue *values,
                      RtError *error) {
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(rt_tree_topdown(&tree, geometry->boxes, geometry->object_count, (int)values[PARAM_BINS].i, error));
+    RT_TRY(make_tree(&tree, geometry, values, error));
     RtStatus status = rt_hierarchy_lay_out(hierarchy, &tree, error);
     rt_tree_clear(&tree);
     return status;
@@ -142,7 +180,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
 
 const RtAccelOps rt_bvh_ops = {
     .name = "bvh",
-    .summary = "binary hierarchy of boxes, split from the top by the surface area heuristic in bins",
+    .summary = "binary hierarchy of boxes, by the surface area heuristic or along the Morton curve",
     .paper = "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07",
     .params = params,
     .param_count = PARAM_COUNT,

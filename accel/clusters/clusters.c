@@ -14,6 +14,7 @@
  * it is visited, and then taken by where the ray enters them. */
 #include "accel/clusters/clusters.h"
 
+#include "accel/tree/order.h"
 #include "base/memory.h"
 
 extern const RtAccelOps rt_clusters_ops;
@@ -127,7 +128,8 @@ static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValu
                                     (uint64_t)values[PARAM_SEED].i};
     switch ((Method)values[PARAM_METHOD].choice) {
     case AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
-    case PLOC: return rt_tree_ploc(tree, boxes, count, (uint32_t)values[PARAM_RADIUS].i, error);
+    case PLOC:
+        return rt_tree_ploc(tree, boxes, count, RT_MAX_MORTON_BITS, (uint32_t)values[PARAM_RADIUS].i, error);
     case GOLDSMITH_SALMON: return rt_tree_insertion(tree, boxes, count, &order, error);
     case RUBIN_WHITTED: return rt_tree_topdown(tree, boxes, count, 0, error);
     case SAH: break;

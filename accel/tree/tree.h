@@ -78,9 +78,13 @@ RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error);
 /* Walter, Bala, Kulkarni & Pingali 2008: the two nearest nodes are united, until one is left. */
 RtStatus rt_tree_agglomerative(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
 
-/* Meister & Bittner 2018: in Morton order of centres, nodes that are each other's nearest among the `radius`
- * before and after are united, in rounds. */
-RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t radius, RtError *error);
+/* Meister & Bittner 2018: in Morton order of centres (by `bits` bits an axis, order.h), nodes that are each
+ * other's nearest among the `radius` before and after are united, in rounds. */
+RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
+                      RtError *error);
+
+/* Lauterbach et al. 2009: along the Morton curve, parted where the highest differing bit of codes changes. */
+RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, RtError *error);
 
 typedef struct RtInsertionOrder {
     bool random;    /* the first try, too, is a random permutation; else it is the order of ids */
@@ -95,5 +99,8 @@ RtStatus rt_tree_insertion(RtTree *tree, const RtBox *boxes, uint32_t count, con
 /* From the top: halves by number along the longest axis of centres (Rubin & Whitted 1980, whose hierarchies
  * were made by hand; bins = 0), or by the surface area heuristic in `bins` bins (Wald 2007). */
 RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, RtError *error);
+
+/* From the top by the surface area heuristic, all places between centres tried (MacDonald & Booth 1990). */
+RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
 
 #endif

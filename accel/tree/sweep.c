@@ -1,0 +1,126 @@
+/* Trees from the top by the surface area heuristic, with every place between two neighbouring centres along
+ * each of the axes tried (MacDonald & Booth 1990; the sweep of Wald, Boulos & Shirley 2007, "Ray Tracing
+ * Deformable Scenes Using Dynamic Bounding Volume Hierarchies"). Time O(n log n) for balanced trees: the
+ * references are sorted once per axis and then parted stably.
+ *
+ * There are three rows of the same references, each sorted along one axis. Those of a node are one run, at
+ * the same place in all three, so that every pass over them reads memory in a row. */
+#include "accel/tree/order.h"
+#include "accel/tree/split.h"
+#include "accel/tree/tree.h"
+#include "base/memory.h"
+
+/* From this depth on groups are halved by number, so that the recursion is bounded. */
+enum { MEDIAN_DEPTH = 34 };
+
+typedef struct Sweep {
+    RtTree *tree;
+    RtTreeRef *rows[3];  /* [count] */
+    RtTreeRef *spare;    /* [count] */
+    double *right_costs; /* [count] of what is right of a place: half area x number */
+    uint64_t *right;     /* a bit per reference, by id: it goes to the right */
+} Sweep;
+
+typedef struct Place {
+    double cost;
+    uint32_t left; /* references before it */
+    int axis;
+} Place;
+
+static bool more_even(uint32_t left, uint32_t than, uint32_t count) {
+    uint32_t a = left < count - left ? left : count - left, b = than < count - than ? than : count - than;
+    return a > b;
+}
+
+/* Improves *best by the places of row[0..count). Of places of equal cost, as between coincident boxes, the
+ * more even one is better. */
+static void try_axis(const Sweep *s, const RtTreeRef *row, uint32_t count, int axis, Place *best) {
+    RtBox box = RT_EMPTY_BOX;
+    for (uint32_t i = count; i-- > 1;) {
+        box = rt_box_union(box, row[i].box);
+        s->right_costs[i] = rt_box_half_area(box) * (count - i);
+    }
+    box = RT_EMPTY_BOX;
+    for (uint32_t i = 1; i < count; i++) {
+        box = rt_box_union(box, row[i - 1].box);
+        double cost = rt_box_half_area(box) * i + s->right_costs[i];
+        if (cost > best->cost || (cost == best->cost && !more_even(i, best->left, count))) continue;
+        *best = (Place){cost, i, axis};
+    }
+}
+
+static Place find_place(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
+    if (depth < MEDIAN_DEPTH) {
+        Place best = {.cost = INFINITY};
+        for (int axis = 0; axis < 3; axis++) try_axis(s, s->rows[axis] + begin, count, axis, &best);
+        return best;
+    }
+    RtBox centers = rt_refs_centers(s->rows[0] + begin, count);
+    return (Place){0, count / 2, rt_major_axis(rt_box_size(centers))};
+}
+
+/* Moves what goes to the left to the front, either side in the order that it has. */
+static void part(const Sweep *s, RtTreeRef *row, uint32_t count) {
+    uint32_t left = 0, right = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        bool goes_right = s->right[row[i].id / 64] >> row[i].id % 64 & 1;
+        *(goes_right ? &s->spare[right++] : &row[left++]) = row[i];
+    }
+    for (uint32_t i = 0; i < right; i++) row[left + i] = s->spare[i];
+}
+
+/* Parts the references of a node in all rows; gives how many go to the left. */
+static uint32_t divide(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
+    Place place = find_place(s, begin, count, depth);
+    const RtTreeRef *row = s->rows[place.axis] + begin;
+    for (uint32_t i = 0; i < count; i++) {
+        uint64_t bit = UINT64_C(1) << row[i].id % 64, *word = &s->right[row[i].id / 64];
+        *word = i < place.left ? *word & ~bit : *word | bit;
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        if (axis != place.axis) part(s, s->rows[axis] + begin, count);
+    }
+    return place.left;
+}
+
+static uint32_t build(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
+    uint32_t node = rt_tree_take(s->tree);
+    if (count == 1) {
+        rt_tree_set_leaf(s->tree, node, s->rows[0][begin].box, s->rows[0][begin].id);
+        return node;
+    }
+    uint32_t left = divide(s, begin, count, depth);
+    uint32_t first = build(s, begin, left, depth + 1);
+    rt_tree_set_union(s->tree, node, first, build(s, begin + left, count - left, depth + 1));
+    return node;
+}
+
+/* The references in order along an axis, or NULL. */
+static RtTreeRef *make_row(const RtBox *boxes, uint32_t count, int axis) {
+    RtKeyed *order = rt_order_axis(boxes, count, axis);
+    RtTreeRef *row = order ? rt_alloc(count, sizeof(RtTreeRef)) : NULL;
+    for (uint32_t i = 0; row && i < count; i++) row[i] = (RtTreeRef){boxes[order[i].id], order[i].id};
+    rt_free(order);
+    return row;
+}
+
+RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error) {
+    RT_TRY(rt_tree_init(tree, count, error));
+    Sweep s = {.tree = tree,
+               .spare = rt_alloc(count, sizeof(RtTreeRef)),
+               .right_costs = rt_alloc(count, sizeof(double)),
+               .right = rt_alloc((size_t)count / 64 + 1, sizeof(uint64_t))};
+    bool enough = s.spare && s.right_costs && s.right;
+    for (int axis = 0; enough && axis < 3; axis++) {
+        s.rows[axis] = make_row(boxes, count, axis);
+        enough = s.rows[axis] != NULL;
+    }
+    if (enough) tree->root = build(&s, 0, count, 0);
+    for (int axis = 0; axis < 3; axis++) rt_free(s.rows[axis]);
+    rt_free(s.spare);
+    rt_free(s.right_costs);
+    rt_free(s.right);
+    if (enough) return RT_OK;
+    rt_tree_clear(tree);
+    return rt_fail_memory(error, "the rows of a sweep", 4 * (size_t)count * sizeof(RtTreeRef));
+}
