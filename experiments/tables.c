@@ -51,6 +51,18 @@ static void each_cell(FILE *out, const RtResults *results, PutRow put) {
     }
 }
 
+#define PREDICTION_NAME(name, meaning) "," #name
+static const char prediction_names[] = RT_PREDICTIONS(PREDICTION_NAME) "\n";
+#undef PREDICTION_NAME
+
+/* The last columns of a row. */
+static void put_predictions(FILE *out, const RtDescription *d) {
+#define PUT_PREDICTION(name, meaning) fprintf(out, isfinite(d->name) ? ",%.9g" : ",", d->name);
+    RT_PREDICTIONS(PUT_PREDICTION)
+#undef PUT_PREDICTION
+    fputc('\n', out);
+}
+
 static void put_counts(FILE *out, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
     const RtCell *cell = rt_cell_at(results, t, c, kind);
     const RtBuildResult *build = rt_build_at(results, t, c);
@@ -62,20 +74,14 @@ static void put_counts(FILE *out, const RtResults *results, uint32_t t, uint32_t
     }
     fprintf(out, ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64, d->interior,
             d->leaves, d->empty_leaves, d->references, d->depth, d->bytes);
-#define PUT_PREDICTION(name, meaning) fprintf(out, isfinite(d->name) ? ",%.9g" : ",", d->name);
-    RT_PREDICTIONS(PUT_PREDICTION)
-#undef PUT_PREDICTION
-    fputc('\n', out);
+    put_predictions(out, d);
 }
 
 void rt_counts_csv(const RtResults *results, FILE *out) {
     fputs(identity, out);
     for (size_t i = 1; i < RT_TALLY_COUNTER_COUNT; i++) fprintf(out, ",%s", rt_tally_name(i));
     fputs(",interior,leaves,empty_leaves,references,structure_depth,bytes", out);
-#define PUT_NAME(name, meaning) fputs("," #name, out);
-    RT_PREDICTIONS(PUT_NAME)
-#undef PUT_NAME
-    fputc('\n', out);
+    fputs(prediction_names, out);
     each_cell(out, results, put_counts);
 }
 
@@ -105,16 +111,16 @@ static void put_times(FILE *out, const RtResults *results, uint32_t t, uint32_t 
     put_known(out, results, t, c, kind, cell->tally.object_tests);
     put_known(out, results, t, c, kind, cell->tally.extent_tests);
     put_known(out, results, t, c, kind, cell->tally.steps);
-    fprintf(out, ",%" PRIu64 "\n", cell->differ);
+    fprintf(out, ",%" PRIu64, cell->differ);
+    put_predictions(out, &build->shape);
 }
 
 void rt_times_csv(const RtResults *results, FILE *out) {
     fputs(identity, out);
     fputs(",threads,rounds,coverage,ns,ns_low,ns_high,ns_least,wall_ns,wall_ns_low,wall_ns_high,mrays_per_s,"
-          "ratio,"
-          "ratio_low,"
-          "ratio_high,build_seconds,bytes,object_tests,extent_tests,steps,differ\n",
+          "ratio,ratio_low,ratio_high,build_seconds,bytes,object_tests,extent_tests,steps,differ",
           out);
+    fputs(prediction_names, out);
     each_cell(out, results, put_times);
 }
 
