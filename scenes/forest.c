@@ -202,7 +202,8 @@ static RtStatus add_tree(RtForms *forms, const Ground *ground, uint64_t i, RtErr
     double y = square * ((double)(i / ground->edge) + between(&tree, 0.1, 0.9));
     RtVec3d foot = {x, y, height_at(ground->seed, x, y) - 0.3};
     if (conifer) return add_conifer(&tree, foot, between(&tree, 6, 12), error);
-    RtVec3d lean = {between(&tree, -0.12, 0.12), between(&tree, -0.12, 0.12), 1};
+    double lean_x = between(&tree, -0.12, 0.12), lean_y = between(&tree, -0.12, 0.12);
+    RtVec3d lean = {lean_x, lean_y, 1};
     return add_branch(&tree, foot, rt_normalized(lean), between(&tree, 3.2, 5), 0, error);
 }
 

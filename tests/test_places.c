@@ -32,6 +32,8 @@ static void places_have_the_objects_that_they_say(void **state) {
         {"stadium:size=1,ratio=50", 48, 6621, 56, 13},
         {"hall", 0, 0, 283194, 0},
         {"hall:size=1", 0, 0, 69302, 0},
+        {"city", 3726, 37812, 0, 8350},
+        {"city:size=1", 39, 686, 0, 112},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene = open_scene(cases[i].spec);
@@ -44,7 +46,8 @@ static void places_have_the_objects_that_they_say(void **state) {
 }
 
 /* At other values than the defaults, which test_builtin.c goes through. */
-static const char *const specs[] = {"teapot:size=3", "stadium:size=2", "hall:size=3", "forest:n=30,seed=5"};
+static const char *const specs[] = {"teapot:size=3", "stadium:size=2", "hall:size=3", "forest:n=30,seed=5",
+                                    "city:size=3,seed=9"};
 
 enum { SPECS = sizeof specs / sizeof specs[0] };
 
@@ -197,10 +200,9 @@ static void places_are_the_same_bit_for_bit_everywhere(void **state) {
         const char *spec;
         uint64_t fingerprint;
     } cases[] = {
-        {"teapot", UINT64_C(0xc1b558451260f684)},
-        {"stadium", UINT64_C(0x7dc374975cc60f30)},
-        {"hall", UINT64_C(0x56abc2c79b8cbfee)},
-        {"forest:n=100", UINT64_C(0xa05cd20f7f937b8b)},
+        {"teapot", UINT64_C(0xc1b558451260f684)}, {"stadium", UINT64_C(0x7dc374975cc60f30)},
+        {"hall", UINT64_C(0x56abc2c79b8cbfee)},   {"forest:n=100", UINT64_C(0xa05cd20f7f937b8b)},
+        {"city", UINT64_C(0xf33a5ba9ddfe6869)},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtScene scene = open_scene(cases[i].spec);
@@ -220,6 +222,8 @@ static void random_places_depend_on_the_seed_alone(void **state) {
     (void)state;
     assert_same("forest:n=20,seed=7", "forest:n=20,seed=7", true);
     assert_same("forest:n=20,seed=7", "forest:n=20,seed=8", false);
+    assert_same("city:size=2,seed=7", "city:size=2,seed=7", true);
+    assert_same("city:size=2,seed=7", "city:size=2,seed=8", false);
 }
 
 /* Trees of two kinds: 1036 triangles, or 986. */
@@ -239,6 +243,40 @@ static void a_forest_grows_from_a_thousand_triangles_to_any_number(void **state)
         }
         rt_scene_clear(&scene);
     }
+}
+
+static int compare_floats(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of the polygons that are flat along `axis`, how many there are, and how many have `others` in their plane.
+ */
+static void count_in_planes(const RtGeometry *g, int axis, uint32_t others, uint32_t *flat, uint32_t *share) {
+    float *planes = malloc(g->polygon_count * sizeof *planes);
+    assert_non_null(planes);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < g->polygon_count; i++) {
+        const RtBox *box = &g->boxes[g->polygon_ids[i]];
+        if (box->lo.at[axis] == box->hi.at[axis]) planes[count++] = box->lo.at[axis];
+    }
+    qsort(planes, count, sizeof *planes, compare_floats);
+    for (uint32_t i = 0, end; i < count; i = end) {
+        for (end = i; end < count && planes[end] == planes[i];) end++;
+        if (end - i > others) *share += end - i;
+    }
+    *flat += count;
+    free(planes);
+}
+
+static void three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_others(void **state) {
+    (void)state;
+    RtScene scene = open_scene("city");
+    uint32_t flat = 0, share = 0;
+    for (int axis = 0; axis < 3; axis++) count_in_planes(&scene.geometry, axis, 10, &flat, &share);
+    assert_true(flat > scene.geometry.polygon_count * 9 / 10);
+    assert_true(share > flat * 3 / 4);
+    rt_scene_clear(&scene);
 }
 
 /* ---- forms ---- */
@@ -313,6 +351,7 @@ int main(void) {
         cmocka_unit_test(places_are_the_same_bit_for_bit_everywhere),
         cmocka_unit_test(random_places_depend_on_the_seed_alone),
         cmocka_unit_test(a_forest_grows_from_a_thousand_triangles_to_any_number),
+        cmocka_unit_test(three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_others),
         cmocka_unit_test(points_on_the_circle_are_exact_where_they_can_be),
         cmocka_unit_test(a_box_faces_outwards),
         cmocka_unit_test(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards),

@@ -1,0 +1,156 @@
+/* city: size x size blocks of houses and towers: faces along the axes, most of which share their planes with
+ * many others (walls of neighbours, floors of windows, pavements), beside cylinders and spheres.
+ *
+ * Hard for structures that cut space by planes: cells become flat, and there is much to gain by cutting at
+ * the right plane. Lengths are in metres. Block (i, j) is made from the random numbers of stream i, j alone;
+ * towers are likely, and tall, towards the middle. This file lays out blocks and streets; what stands in them
+ * is in city_parts.c. */
+#include "scenes/builtin.h"
+#include "scenes/city_parts.h"
+
+enum { SIZE, SEED };
+
+static const RtParam params[] = {
+    [SIZE] = {.name = "size",
+              .type = RT_PARAM_INT,
+              .standard = "9",
+              .lo = 1,
+              .hi = 150,
+              .meaning = "blocks along each edge of the city, of about 600 objects each",
+              .source = "tens of thousands of objects",
+              .tries = "1|3"},
+    [SEED] = {.name = "seed",
+              .type = RT_PARAM_INT,
+              .standard = "1",
+              .lo = 0,
+              .hi = 1e15,
+              .meaning = "of the random numbers",
+              .source = "any",
+              .tries = "1"},
+};
+
+static const double block = 72, street = 18, kerb = 0.2, pavement = 4;
+
+enum { LOTS_ALONG = 3, LAMPS = 3, DASHES = 6, CARS = 3, STRIPES = 6 };
+
+/* Four quarter turns about the middle of the block bring what is along one street to all. */
+static void turn_block(RtForms *forms, RtVec3d corner, int quarters) {
+    static const double x[4] = {0, 1, 1, 0}, y[4] = {0, 0, 1, 1};
+    RtVec3d at = {corner.x + block * x[quarters], corner.y + block * y[quarters], corner.z};
+    rt_forms_at(forms, at, quarters);
+}
+
+/* Along the street in front of the block, at y < 0: marks, a crossing, cars, lamps and trees. */
+static RtStatus add_street(RtForms *forms, RtRandom *random, RtVec3d corner, int quarters, RtError *error) {
+    RtVec3d ground = {corner.x, corner.y, 0};
+    turn_block(forms, ground, quarters);
+    forms->material = RT_CITY_PAINT;
+    for (int i = 0; quarters % 2 == 0 && i < DASHES;
+         i++) { /* in the middle of the street: of one side only */
+        double x = block * (i + 0.3) / DASHES;
+        RT_TRY(rt_forms_box(forms, rt_vec3d(x, -street / 2 - 0.1, 0),
+                            rt_vec3d(x + 5, -street / 2 + 0.1, 0.02), RT_SIDE_TOP, error));
+    }
+    for (int i = 0; i < STRIPES; i++) {
+        double y = -street / 2 + 0.6 + 1.4 * i;
+        RT_TRY(rt_forms_box(forms, rt_vec3d(0.5, y, 0), rt_vec3d(3.5, y + 0.7, 0.02), RT_SIDE_TOP, error));
+    }
+    for (int i = 0; i < CARS; i++) {
+        double x = 8 + block * (i + rt_random_betweend(random, 0, 0.6)) / CARS, y = i == 1 ? -6.6 : -2.4;
+        turn_block(forms, ground, quarters);
+        RtVec3d at = rt_transform_pointd(&forms->place, rt_vec3d(x, y, 0));
+        rt_forms_at(forms, at, quarters);
+        RT_TRY(rt_city_car(forms, random, error));
+    }
+    for (int i = 0; i < LAMPS; i++) {
+        turn_block(forms, corner, quarters);
+        double x = block * (i + 0.25) / LAMPS;
+        RtVec3d lamp = rt_transform_pointd(&forms->place, rt_vec3d(x, 0.6, 0));
+        RtVec3d tree = rt_transform_pointd(&forms->place, rt_vec3d(x + 11, 1.6, 0));
+        rt_forms_at(forms, lamp, quarters);
+        RT_TRY(rt_city_lamp(forms, error));
+        rt_forms_at(forms, tree, quarters);
+        RT_TRY(rt_city_tree(forms, random, error));
+    }
+    return RT_OK;
+}
+
+/* Two rows of lots, back to back. */
+static RtStatus add_lots(RtForms *forms, RtRandom *random, RtVec3d corner, double downtown, RtError *error) {
+    double inner = block - 2 * pavement, width = inner / LOTS_ALONG;
+    for (int row = 0; row < 2; row++) {
+        double step = row ? -width : width, from = row ? block - pavement : pavement;
+        for (int i = 0; i < LOTS_ALONG; i++) {
+            RtCityLot lot = {.forms = forms,
+                             .random = random,
+                             .corner = {corner.x + from + step * i, corner.y + from, corner.z},
+                             .quarters = 2 * row,
+                             .width = width,
+                             .depth = inner / 2,
+                             .downtown = downtown};
+            RT_TRY(rt_city_building(&lot, error));
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus add_block(RtForms *forms, uint64_t seed, int64_t i, int64_t j, int64_t size, RtError *error) {
+    RtRandom random = rt_random(seed, (uint64_t)i << 32 | (uint64_t)j);
+    double middle = (double)(size - 1) / 2, reach = 0.5 * (double)size;
+    double off_x = ((double)i - middle) / reach, off_y = ((double)j - middle) / reach;
+    double away = off_x * off_x + off_y * off_y, downtown = away < 1 ? (1 - away) * (1 - away) : 0;
+    RtVec3d corner = {(block + street) * (double)i, (block + street) * (double)j, kerb};
+
+    rt_forms_at(forms, rt_vec3d(corner.x, corner.y, 0), 0);
+    forms->material = RT_CITY_PAVING;
+    RT_TRY(rt_forms_box(forms, rt_vec3d(0, 0, 0), rt_vec3d(block, block, kerb), RT_SIDES_STANDING, error));
+    for (int quarters = 0; quarters < 4; quarters++) {
+        RT_TRY(add_street(forms, &random, corner, quarters, error));
+    }
+    if (rt_random_bits(&random) % 8 != 0) return add_lots(forms, &random, corner, downtown, error);
+    rt_forms_at(forms, rt_vec3d(corner.x + pavement, corner.y + pavement, corner.z), 0);
+    return rt_city_park(forms, &random, block - 2 * pavement, error);
+}
+
+static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
+    int64_t size = values[SIZE].i;
+    RT_TRY(rt_forms_materials(forms, rt_city_materials, RT_CITY_MATERIALS, error));
+    forms->polygons = true;
+    forms->material = RT_CITY_ASPHALT;
+    double end = (block + street) * (double)size;
+    RT_TRY(rt_forms_box(forms, rt_vec3d(-street, -street, 0), rt_vec3d(end, end, 0), RT_SIDE_TOP, error));
+    for (int64_t j = 0; j < size; j++) {
+        for (int64_t i = 0; i < size; i++) {
+            RT_TRY(add_block(forms, (uint64_t)values[SEED].i, i, j, size, error));
+        }
+    }
+    return RT_OK;
+}
+
+static uint64_t object_count(const RtValue *values) {
+    return rt_forms_count(make, values);
+}
+
+static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+    double end = (block + street) * (double)values[SIZE].i, away = end + 60;
+    scene->camera.from = rt_narrow(rt_vec3d(end / 2 - 0.5 * away, -0.3 * away, 0.3 * away));
+    scene->camera.at = rt_narrow(rt_vec3d(end / 2, 0.45 * end, 0.03 * end));
+    scene->camera.fov = 40;
+    scene->background = rt_vec3(0.5f, 0.68f, 0.9f);
+    RtVec3 sun = rt_narrow(rt_vec3d(-2 * end, -0.6 * end, 2.2 * end));
+    RtVec3 sky = rt_narrow(rt_vec3d(2 * end, -2.5 * end, 3 * end));
+    RT_TRY(rt_scene_add_light(scene, sun, rt_vec3(0.8f, 0.76f, 0.66f), error));
+    RT_TRY(rt_scene_add_light(scene, sky, rt_vec3(0.25f, 0.27f, 0.32f), error));
+    return rt_forms_make(scene, make, values, error);
+}
+
+extern const RtBuiltin rt_builtin_city;
+const RtBuiltin rt_builtin_city = {
+    .name = "city",
+    .summary = "blocks of houses and towers: faces along the axes that share planes; cylinders and spheres",
+    .source = "made to be hard on structures that cut space by planes",
+    .params = params,
+    .param_count = sizeof params / sizeof params[0],
+    .object_count = object_count,
+    .generate = generate,
+};

@@ -1,0 +1,51 @@
+/* What a city is made of: each part stands at the origin of forms->place and its front, if it has one, looks
+ * towards -y. Lengths are in metres; quads are polygons. How many objects a part is depends on the random
+ * numbers alone. */
+#ifndef RT_SCENES_CITY_PARTS_H
+#define RT_SCENES_CITY_PARTS_H
+
+#include "base/random.h"
+#include "scenes/forms.h"
+
+enum {
+    RT_CITY_ASPHALT,
+    RT_CITY_PAVING,
+    RT_CITY_PAINT,
+    RT_CITY_WALLS, /* the first of RT_CITY_WALL_COUNT */
+    RT_CITY_WALL_COUNT = 6,
+    RT_CITY_GLASS = RT_CITY_WALLS + RT_CITY_WALL_COUNT,
+    RT_CITY_TILES,
+    RT_CITY_ROOF,
+    RT_CITY_METAL,
+    RT_CITY_LIGHT,
+    RT_CITY_GRASS,
+    RT_CITY_LEAVES,
+    RT_CITY_BARK,
+    RT_CITY_WATER,
+    RT_CITY_CARS, /* the first of RT_CITY_CAR_COUNT */
+    RT_CITY_CAR_COUNT = 4,
+    RT_CITY_MATERIALS = RT_CITY_CARS + RT_CITY_CAR_COUNT
+};
+extern const RtMaterial rt_city_materials[RT_CITY_MATERIALS];
+
+RtStatus rt_city_car(RtForms *forms, RtRandom *random, RtError *error);
+RtStatus rt_city_lamp(RtForms *forms, RtError *error);
+RtStatus rt_city_tree(RtForms *forms, RtRandom *random, RtError *error);
+
+/* A square `edge` long, with the origin in its lower left corner. */
+RtStatus rt_city_park(RtForms *forms, RtRandom *random, double edge, RtError *error);
+
+/* Ground to build on: width along the street, depth away from it. */
+typedef struct RtCityLot {
+    RtForms *forms;
+    RtRandom *random;
+    RtVec3d corner; /* left in front, in the scene */
+    int quarters;   /* turns, counter-clockwise, that bring its front from -y to where it looks */
+    double width, depth;
+    double downtown; /* 0 at the edge of the city to 1 in the middle */
+} RtCityLot;
+
+/* A house that fills its lot up to the walls of its neighbours, or a tower. */
+RtStatus rt_city_building(const RtCityLot *lot, RtError *error);
+
+#endif
