@@ -1,32 +1,15 @@
 /* accel/tree: the methods against their definitions, and bounded depth. */
-#include "testing.h"
+#include "tree_testing.h"
 
 #include "accel/tree/neighbours.h"
 #include "accel/tree/order.h"
 #include "accel/tree/split.h"
-#include "base/memory.h"
-#include "base/random.h"
 
 #include <string.h>
 
 enum { METHOD_COUNT = 7 }; /* of make_tree */
 
 /* ---- trees of boxes ---- */
-
-/* `count` small boxes about a few centres. */
-static RtBox *make_boxes(uint32_t count, uint64_t seed) {
-    RtBox *boxes = rt_alloc(count, sizeof(RtBox));
-    RtRandom random = rt_random(seed, 0);
-    RtVec3 at = {0, 0, 0};
-    for (uint32_t i = 0; i < count; i++) {
-        for (int a = 0; a < 3; a++) {
-            if (i % 25 == 0) at.at[a] = rt_random_between(&random, -100, 100);
-            boxes[i].lo.at[a] = at.at[a] + rt_random_between(&random, -5, 5);
-            boxes[i].hi.at[a] = boxes[i].lo.at[a] + rt_random_between(&random, 0.1f, 2);
-        }
-    }
-    return boxes;
-}
 
 static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
     const RtInsertionOrder order = {.random = true, .tries = 1, .seed = 1};
@@ -41,30 +24,6 @@ static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
     default: assert_ok(rt_tree_lbvh(&tree, boxes, count, 21, error)); break;
     }
     return tree;
-}
-
-/* Marks the nodes from `at` down, checks boxes, and gives the height. */
-static uint32_t height_of(const RtTree *tree, uint32_t at, uint32_t *seen) {
-    const RtTreeNode *node = &tree->nodes[at];
-    seen[at]++;
-    if (rt_tree_is_leaf(tree, at)) return 0;
-    uint32_t height = 0;
-    for (int s = 0; s < 2; s++) {
-        uint32_t below = height_of(tree, node->child[s], seen) + 1;
-        height = below > height ? below : height;
-        assert_true(rt_box_contains(node->box, tree->nodes[node->child[s]].box));
-    }
-    return height;
-}
-
-/* Every node is in the tree once, every object a leaf; gives the height. */
-static uint32_t assert_tree(const RtTree *tree) {
-    uint32_t *seen = rt_alloc(tree->used, sizeof(uint32_t));
-    assert_int_equal(tree->used, tree->capacity);
-    uint32_t height = height_of(tree, tree->root, seen);
-    for (uint32_t i = 0; i < tree->used; i++) assert_int_equal(seen[i], 1);
-    rt_free(seen);
-    return height;
 }
 
 static void the_nearest_neighbour_is_the_one_that_a_scan_finds(void **state) {

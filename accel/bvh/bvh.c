@@ -16,7 +16,16 @@
 
 typedef enum Build { BINNED, SWEEP, LBVH, PLOC } Build;
 
-enum { PARAM_BUILD, PARAM_BINS, PARAM_BITS, PARAM_RADIUS, PARAM_LEAF, PARAM_TRAVERSAL, PARAM_COUNT };
+enum {
+    PARAM_BUILD,
+    PARAM_BINS,
+    PARAM_BITS,
+    PARAM_RADIUS,
+    PARAM_LEAF,
+    PARAM_TRAVERSAL,
+    PARAM_REINSERTION,
+    PARAM_COUNT
+};
 
 static const RtParam params[PARAM_COUNT] = {
     [PARAM_BUILD] = {.name = "build",
@@ -66,6 +75,14 @@ static const RtParam params[PARAM_COUNT] = {
                          .meaning = "cost of visiting an inner node, in object tests",
                          .source = "MacDonald & Booth 1990",
                          .tries = "0|0.1|10"},
+    [PARAM_REINSERTION] = {.name = "reinsertion",
+                           .type = RT_PARAM_INT,
+                           .standard = "0",
+                           .lo = 0,
+                           .hi = 1000,
+                           .meaning = "rounds in which subtrees move to where they cost less",
+                           .source = "0: the tree as it is built",
+                           .tries = "1|3"},
 };
 
 extern const RtAccelOps rt_bvh_ops;
@@ -94,7 +111,8 @@ static RtStatus fill(RtHierarchy *hierarchy, const RtGeometry *geometry, const R
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
     RT_TRY(make_tree(&tree, geometry, values, error));
-    RtStatus status = rt_hierarchy_lay_out(hierarchy, &tree, error);
+    RtStatus status = rt_tree_reinsert(&tree, (uint32_t)values[PARAM_REINSERTION].i, 0, error);
+    if (status == RT_OK) status = rt_hierarchy_lay_out(hierarchy, &tree, error);
     rt_tree_clear(&tree);
     return status;
 }

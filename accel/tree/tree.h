@@ -103,4 +103,12 @@ RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int b
 /* From the top by the surface area heuristic, all places between centres tried (MacDonald & Booth 1990). */
 RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
 
+/* ---- better trees ---- */
+
+/* Bittner, Hapala & Havran 2013; Meister & Bittner 2018: moves subtrees of a complete tree to where the tree
+ * costs least (rt_tree_cost), in at most so many rounds or until no move gains; the cost never rises, but
+ * where the depth has to be limited first. The same tree on any number of `threads` (0 = all processors). On
+ * failure *tree is still a complete tree of the same references. */
+RtStatus rt_tree_reinsert(RtTree *tree, uint32_t rounds, int threads, RtError *error);
+
 #endif
