@@ -1,5 +1,7 @@
 #include "base/transform.h"
 
+#include "base/elementary.h"
+
 RtTransform rt_transform_identity(void) {
     return (RtTransform){{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 }
@@ -35,23 +37,6 @@ RtStatus rt_transform_scale(RtTransform *transform, RtVec3 factors, RtError *err
     return RT_OK;
 }
 
-/* Cosine and sine: the angle is brought to -45..45 degrees, so that quarter turns are exact. */
-static void turn(double degrees, double *cosine, double *sine) {
-    double whole = fmod(degrees, 360);
-    double quarters = nearbyint(whole / 90);
-    double angle = (whole - 90 * quarters) * (3.14159265358979323846 / 180);
-    double c = (double)(float)cos(angle), s = (double)(float)sin(angle);
-    double length = sqrt(c * c + s * s);
-    c /= length;
-    s /= length;
-    switch (((int)quarters % 4 + 4) % 4) {
-    case 0: *cosine = c, *sine = s; break;
-    case 1: *cosine = -s, *sine = c; break;
-    case 2: *cosine = -c, *sine = -s; break;
-    default: *cosine = s, *sine = -c; break;
-    }
-}
-
 /* Rodrigues' formula. */
 RtStatus rt_transform_rotate(RtTransform *transform, RtVec3 axis, double degrees, RtError *error) {
     RT_TRY(check_finite(axis, "the axis of the rotation", error));
@@ -63,8 +48,8 @@ RtStatus rt_transform_rotate(RtTransform *transform, RtVec3 axis, double degrees
         return rt_fail(error, RT_BAD_INPUT,
                        "the axis of the rotation has length 0: give a direction, as in [0, 0, 1]");
     }
-    double c, s;
-    turn(degrees, &c, &s);
+    RtTurn turn = rt_turn(fmod(degrees, 360));
+    double c = turn.cosine, s = turn.sine;
     RtTransform step = rt_transform_identity();
     for (int row = 0; row < 3; row++) {
         for (int column = 0; column < 3; column++) {

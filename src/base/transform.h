@@ -29,8 +29,7 @@ RtTransform rt_transform_compose(const RtTransform *first, const RtTransform *se
 RtStatus rt_transform_scale(RtTransform *transform, RtVec3 factors, RtError *error);
 
 /* Turns about `axis` through the origin, counter-clockwise for one who looks against the axis; multiples of
- * 90 degrees are exact. Refuses an axis of length 0. The sine and cosine pass through float32, which hides
- * the last bits, in which libraries differ. */
+ * 90 degrees are exact. Refuses an axis of length 0. */
 RtStatus rt_transform_rotate(RtTransform *transform, RtVec3 axis, double degrees, RtError *error);
 
 RtStatus rt_transform_translate(RtTransform *transform, RtVec3 by, RtError *error);
