@@ -10,8 +10,8 @@
 
 typedef struct Builder {
     RtTree *tree;
-    const RtBox *boxes;
     const RtKeyed *row; /* in Morton order */
+    const RtBox *boxes; /* in the same order */
 } Builder;
 
 /* How many of row[0..count) go to the left; count >= 2. */
@@ -31,8 +31,7 @@ static uint32_t divide(const RtKeyed *row, uint32_t count) {
 static uint32_t build(const Builder *b, uint32_t begin, uint32_t count) {
     uint32_t node = rt_tree_take(b->tree);
     if (count == 1) {
-        uint32_t id = b->row[begin].id;
-        rt_tree_set_leaf(b->tree, node, b->boxes[id], id);
+        rt_tree_set_leaf(b->tree, node, b->boxes[begin], b->row[begin].id);
         return node;
     }
     uint32_t left = divide(b->row + begin, count);
@@ -44,12 +43,17 @@ static uint32_t build(const Builder *b, uint32_t begin, uint32_t count) {
 RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, RtError *error) {
     RT_TRY(rt_tree_init(tree, count, error));
     RtKeyed *row = rt_order_morton(boxes, count, bits);
-    if (row) {
-        Builder builder = {tree, boxes, row};
+    RtBox *boxes_in_row = rt_alloc(count, sizeof(RtBox));
+    bool enough = row && boxes_in_row;
+    if (enough) {
+        /* All at once, so that the processor waits for many boxes at a time. */
+        for (uint32_t i = 0; i < count; i++) boxes_in_row[i] = boxes[row[i].id];
+        Builder builder = {tree, row, boxes_in_row};
         tree->root = build(&builder, 0, count);
-        rt_free(row);
-        return RT_OK;
     }
+    rt_free(row);
+    rt_free(boxes_in_row);
+    if (enough) return RT_OK;
     rt_tree_clear(tree);
     return rt_fail_memory(error, "Morton codes", 2 * (size_t)count * sizeof(RtKeyed));
 }

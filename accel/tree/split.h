@@ -22,7 +22,8 @@ RtTreeRef *rt_refs_new(const RtBox *boxes, uint32_t count);
 RtBox rt_refs_centers(const RtTreeRef *refs, uint32_t count);
 
 /* Moves the references of the left side of the best split in 2..RT_MAX_BINS bins to the front, and gives
- * their number; both sides get some. 0 where no plane between bins parts the centres: they coincide. */
+ * their number; both sides get some. No more references than bins have a bin each: every place between
+ * centres is tried. 0 where no plane parts the centres: they coincide. */
 uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins);
 
 /* Moves the half of refs[0..count) with the lesser centres along the longest axis of all centres to the front
