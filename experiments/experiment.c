@@ -29,6 +29,28 @@ RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder
     return rt_path_join(trial->file ? folder : "", spec, trial->path, error);
 }
 
+/* ---- who is where ---- */
+
+bool rt_contender_runs(const RtExperiment *experiment, uint32_t c, uint32_t t) {
+    if (c == experiment->contender_count) return true;
+    return !experiment->contenders[c].missing && !(experiment->contenders[c].left_out >> t & 1);
+}
+
+uint32_t rt_contender_find(const RtExperiment *experiment, const char *label, uint32_t t) {
+    if (strcmp(label, "null") == 0) return experiment->contender_count;
+    for (uint32_t c = 0; c < experiment->contender_count; c++) {
+        const RtContender *contender = &experiment->contenders[c];
+        if (strcmp(contender->label, label) == 0 && !(contender->left_out >> t & 1)) return c;
+    }
+    return experiment->contender_count + 1;
+}
+
+uint32_t rt_trial_find(const RtExperiment *experiment, const char *label) {
+    uint32_t t = 0;
+    while (t < experiment->trial_count && strcmp(experiment->trials[t].label, label) != 0) t++;
+    return t;
+}
+
 /* ---- checks ---- */
 
 static RtStatus check_label(const char *label, RtError *error) {
@@ -45,15 +67,9 @@ static RtStatus check_label(const char *label, RtError *error) {
     return RT_OK;
 }
 
-/* Labels lie `stride` bytes apart. */
-static RtStatus check_unique(const char *label, const char *first, size_t stride, uint32_t before,
-                             RtError *error) {
-    for (uint32_t i = 0; i < before; i++) {
-        if (strcmp(label, first + i * stride) != 0) continue;
-        return rt_fail(error, RT_BAD_INPUT, "the label '%s' is used twice: give one of them another `label`",
-                       label);
-    }
-    return check_label(label, error);
+static RtStatus fail_twice(const char *label, RtError *error) {
+    return rt_fail(error, RT_BAD_INPUT, "the label '%s' is used twice: give one of them another `label`",
+                   label);
 }
 
 static RtStatus check_range(const char *what, uint64_t value, uint64_t lo, uint64_t hi, RtError *error) {
@@ -72,13 +88,20 @@ static RtStatus check_contender(RtExperiment *experiment, uint32_t i, RtError *e
         if (!contender->missing) return rt_fail(error, why.status, "%s", why.message);
     }
     RT_TRY(check_range("every", contender->every, 1, RT_MAX_RAYS_A_KIND, error));
-    return check_unique(contender->label, experiment->contenders[0].label, sizeof(RtContender), i, error);
+    const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->trial_count) - 1);
+    for (uint32_t k = 0; k < i; k++) {
+        const RtContender *other = &experiment->contenders[k];
+        bool meet = ~(contender->left_out | other->left_out) & all;
+        if (meet && strcmp(contender->label, other->label) == 0) return fail_twice(contender->label, error);
+    }
+    return check_label(contender->label, error);
 }
 
 static RtStatus check_trial(const RtExperiment *experiment, uint32_t i, RtError *error) {
     const RtTrial *trial = &experiment->trials[i];
     RT_TRY(check_range("depth", trial->depth, 1, RT_MAX_DEPTH, error));
-    return check_unique(trial->label, experiment->trials[0].label, sizeof(RtTrial), i, error);
+    if (rt_trial_find(experiment, trial->label) < i) return fail_twice(trial->label, error);
+    return check_label(trial->label, error);
 }
 
 static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
@@ -90,11 +113,34 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
         return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",
                        baseline->label);
     }
-    if (baseline->every == 1) return RT_OK;
+    if (baseline->every == 1 && !baseline->left_out) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
-                   "the baseline '%s' has to be measured on every ray: choose another, or "
-                   "leave its `every` out",
+                   "the baseline '%s' has to be measured on every ray of every scene: choose another, or "
+                   "leave its `every` and `scenes` out",
                    baseline->label);
+}
+
+/* The files are copied into the result directory under their names. */
+static RtStatus check_beside(const char *name, RtError *error) {
+    if (*name != '/' && !strstr(name, "..")) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "'%s' must lie beside the experiment, or in a folder there: its name may not begin with / or "
+        "have .. in it",
+        name);
+}
+
+static RtStatus check_published(const RtExperiment *experiment, RtError *error) {
+    const RtPublishedSetup *published = &experiment->published;
+    for (uint32_t i = 0; i < published->table_count; i++) {
+        RT_TRY(check_beside(published->tables[i], error));
+    }
+    for (int c = 0; c < RT_COLUMN_COUNT; c++) {
+        if (published->tolerance[c] >= 0) continue;
+        return rt_fail(error, RT_BAD_INPUT, "tolerance: %g will not do: it must be percents, 0 or more",
+                       published->tolerance[c]);
+    }
+    return check_beside(published->reasons, error);
 }
 
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
@@ -116,6 +162,8 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     }
     strcpy(where, "baseline");
     RT_TRY(check_baseline(experiment, error));
+    strcpy(where, "published");
+    RT_TRY(check_published(experiment, error));
     strcpy(where, "limit");
     RT_TRY(check_range("limit", experiment->limit, 1, RT_MAX_RAYS_A_KIND, error));
     strcpy(where, "together");

@@ -11,6 +11,10 @@
 
 #define MAX_WORD 16
 
+typedef struct Word {
+    char text[RT_MAX_LABEL];
+} Word;
+
 typedef struct TrialEntry {
     char scene[RT_MAX_SCENE_NAME], label[RT_MAX_LABEL], size[MAX_WORD], corners[MAX_WORD], optional[MAX_WORD];
     uint32_t depth;
@@ -19,11 +23,23 @@ typedef struct TrialEntry {
 typedef struct ContenderEntry {
     char accel[RT_MAX_SPEC_CHARS], label[RT_MAX_LABEL];
     uint64_t every;
+    Word scenes[RT_MAX_TRIALS];
+    uint32_t scenes_count;
 } ContenderEntry;
 
-typedef struct Word {
-    char text[RT_MAX_LABEL];
-} Word;
+/* By the names of RtColumn, in its order. */
+typedef struct Tolerances {
+#define MEMBER(name) double name;
+    RT_PUBLISHED_COLUMNS(MEMBER)
+#undef MEMBER
+} Tolerances;
+
+typedef struct PublishedEntry {
+    Word tables[RT_MAX_PUBLISHED], ours[RT_MAX_CONTENDERS];
+    uint32_t tables_count, ours_count;
+    char reasons[RT_MAX_LABEL];
+    Tolerances tolerance;
+} PublishedEntry;
 
 /* Settings that `quick` may override; 0 and "" stand for what is not given. */
 typedef struct Scale {
@@ -40,6 +56,8 @@ typedef struct Document {
     uint32_t scenes_count, accelerators_count, rays_count, plots_count;
     uint64_t limit, together, seed;
     uint32_t rounds, milliseconds;
+    char count_only[MAX_WORD];
+    PublishedEntry published;
     Scale quick;
 } Document;
 
@@ -56,10 +74,28 @@ static const cyaml_schema_field_t trial_fields[] = {
     CYAML_FIELD_END,
 };
 
+static const cyaml_schema_value_t word_schema = {CYAML_VALUE_STRING(REQUIRED, Word, 1, RT_MAX_LABEL - 1)};
+
 static const cyaml_schema_field_t contender_fields[] = {
     CYAML_FIELD_STRING("accel", REQUIRED, ContenderEntry, accel, 1),
     CYAML_FIELD_STRING("label", OPTIONAL, ContenderEntry, label, 1),
     CYAML_FIELD_UINT("every", OPTIONAL, ContenderEntry, every),
+    CYAML_FIELD_SEQUENCE("scenes", OPTIONAL, ContenderEntry, scenes, &word_schema, 1, RT_MAX_TRIALS),
+    CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t tolerance_fields[] = {
+#define FIELD(name) CYAML_FIELD_FLOAT(#name, OPTIONAL, Tolerances, name),
+    RT_PUBLISHED_COLUMNS(FIELD)
+#undef FIELD
+        CYAML_FIELD_END,
+};
+
+static const cyaml_schema_field_t published_fields[] = {
+    CYAML_FIELD_SEQUENCE("tables", REQUIRED, PublishedEntry, tables, &word_schema, 1, RT_MAX_PUBLISHED),
+    CYAML_FIELD_STRING("reasons", OPTIONAL, PublishedEntry, reasons, 1),
+    CYAML_FIELD_MAPPING("tolerance", OPTIONAL, PublishedEntry, tolerance, tolerance_fields),
+    CYAML_FIELD_SEQUENCE("ours", OPTIONAL, PublishedEntry, ours, &word_schema, 1, RT_MAX_CONTENDERS),
     CYAML_FIELD_END,
 };
 
@@ -75,7 +111,6 @@ static const cyaml_schema_field_t scale_fields[] = {
 static const cyaml_schema_value_t trial_schema = {CYAML_VALUE_MAPPING(REQUIRED, TrialEntry, trial_fields)};
 static const cyaml_schema_value_t contender_schema = {
     CYAML_VALUE_MAPPING(REQUIRED, ContenderEntry, contender_fields)};
-static const cyaml_schema_value_t word_schema = {CYAML_VALUE_STRING(REQUIRED, Word, 1, RT_MAX_LABEL - 1)};
 
 static const cyaml_schema_field_t document_fields[] = {
     CYAML_FIELD_STRING("name", REQUIRED, Document, name, 1),
@@ -91,6 +126,8 @@ static const cyaml_schema_field_t document_fields[] = {
     CYAML_FIELD_UINT("rounds", OPTIONAL, Document, rounds),
     CYAML_FIELD_UINT("milliseconds", OPTIONAL, Document, milliseconds),
     CYAML_FIELD_UINT("seed", OPTIONAL, Document, seed),
+    CYAML_FIELD_STRING("count_only", OPTIONAL, Document, count_only, 1),
+    CYAML_FIELD_MAPPING("published", OPTIONAL, Document, published, published_fields),
     CYAML_FIELD_MAPPING("quick", OPTIONAL, Document, quick, scale_fields),
     CYAML_FIELD_SEQUENCE("plots", OPTIONAL, Document, plots, &word_schema, 1, RT_MAX_PLOTS),
     CYAML_FIELD_END,
@@ -150,12 +187,25 @@ static void take_baseline(const Document *d, RtExperiment *experiment) {
     }
 }
 
-static RtStatus take_lists(const RtYamlFile *file, RtExperiment *experiment, RtError *error) {
-    const Document *d = file->data;
-    experiment->trial_count = d->scenes_count;
-    for (uint32_t i = 0; i < d->scenes_count; i++) {
-        RT_TRY(take_trial(file, i, experiment->folder, &experiment->trials[i], error));
+/* Leaves the contender out on all trials that its `scenes` do not name; none named: on none. */
+static RtStatus take_scenes(const RtYamlFile *file, uint32_t i, RtExperiment *experiment, RtError *error) {
+    const ContenderEntry *entry = &((const Document *)file->data)->accelerators[i];
+    uint32_t on = 0;
+    for (uint32_t k = 0; k < entry->scenes_count; k++) {
+        uint32_t trial = rt_trial_find(experiment, entry->scenes[k].text);
+        if (trial == experiment->trial_count) {
+            RtStatus status = rt_fail(error, RT_BAD_INPUT, "'%s' is not the label of one of the scenes",
+                                      entry->scenes[k].text);
+            return place(file, status, "accelerators#.scenes", i, error);
+        }
+        on |= UINT32_C(1) << trial;
     }
+    experiment->contenders[i].left_out = entry->scenes_count ? ~on : 0;
+    return RT_OK;
+}
+
+static RtStatus take_contenders(const RtYamlFile *file, RtExperiment *experiment, RtError *error) {
+    const Document *d = file->data;
     experiment->contender_count = d->accelerators_count;
     for (uint32_t i = 0; i < d->accelerators_count; i++) {
         const ContenderEntry *entry = &d->accelerators[i];
@@ -163,7 +213,41 @@ static RtStatus take_lists(const RtYamlFile *file, RtExperiment *experiment, RtE
         strcpy(contender->spec, entry->accel);
         snprintf(contender->label, RT_MAX_LABEL, "%s", *entry->label ? entry->label : entry->accel);
         contender->every = entry->every ? entry->every : 1;
+        RT_TRY(take_scenes(file, i, experiment, error));
     }
+    return RT_OK;
+}
+
+/* A label may belong to several contenders, each on other scenes: all of them are ours. */
+static RtStatus take_published(const RtYamlFile *file, RtExperiment *experiment, RtError *error) {
+    const PublishedEntry *entry = &((const Document *)file->data)->published;
+    RtPublishedSetup *published = &experiment->published;
+    published->table_count = entry->tables_count;
+    for (uint32_t i = 0; i < entry->tables_count; i++) strcpy(published->tables[i], entry->tables[i].text);
+    strcpy(published->reasons, entry->reasons);
+    memcpy(published->tolerance, &entry->tolerance, sizeof published->tolerance);
+    for (uint32_t i = 0; i < entry->ours_count; i++) {
+        bool found = false;
+        for (uint32_t c = 0; c < experiment->contender_count; c++) {
+            if (strcmp(experiment->contenders[c].label, entry->ours[i].text) != 0) continue;
+            experiment->contenders[c].ours = found = true;
+        }
+        if (found) continue;
+        RtStatus status = rt_fail(error, RT_BAD_INPUT, "'%s' is not the label of one of the accelerators",
+                                  entry->ours[i].text);
+        return place(file, status, "published.ours#", i, error);
+    }
+    return RT_OK;
+}
+
+static RtStatus take_lists(const RtYamlFile *file, RtExperiment *experiment, RtError *error) {
+    const Document *d = file->data;
+    experiment->trial_count = d->scenes_count;
+    for (uint32_t i = 0; i < d->scenes_count; i++) {
+        RT_TRY(take_trial(file, i, experiment->folder, &experiment->trials[i], error));
+    }
+    RT_TRY(take_contenders(file, experiment, error));
+    RT_TRY(take_published(file, experiment, error));
     if (d->rays_count) experiment->kind_count = d->rays_count;
     for (uint32_t i = 0; i < d->rays_count; i++) {
         RT_TRY(
@@ -200,6 +284,7 @@ static RtStatus take_document(const RtYamlFile *file, bool quick, RtExperiment *
     if (d->rounds) experiment->rounds = d->rounds;
     if (d->milliseconds) experiment->milliseconds = d->milliseconds;
     if (d->seed) experiment->seed = d->seed;
+    RT_TRY(place(file, parse_flag(d->count_only, &experiment->count_only, error), "count_only", 0, error));
     RT_TRY(take_lists(file, experiment, error));
     if (quick) RT_TRY(take_quick(file, experiment, error));
     char where[RT_MAX_LABEL];

@@ -208,17 +208,12 @@ static void take_line(RtResults *results, const json_t *line) {
     const char *accel = json_string_value(json_object_get(line, "accel"));
     const char *kind_name = json_string_value(json_object_get(line, "kind"));
     const json_t *object;
-    uint32_t trial = 0, contender = 0;
     RtRayKind kind = RT_RAY_PRIMARY;
-    while (scene && trial < experiment->trial_count && strcmp(experiment->trials[trial].label, scene) != 0)
-        trial++;
-    if (!scene || trial == experiment->trial_count) return;
+    uint32_t trial = scene ? rt_trial_find(experiment, scene) : experiment->trial_count;
+    if (trial == experiment->trial_count) return;
     if ((object = json_object_get(line, "trial"))) take_trial(&results->trials[trial], object);
     if (!accel) return;
-    while (contender <= experiment->contender_count &&
-           strcmp(rt_contender_label(experiment, contender), accel) != 0) {
-        contender++;
-    }
+    uint32_t contender = rt_contender_find(experiment, accel, trial);
     if (contender > experiment->contender_count) return;
     if ((object = json_object_get(line, "built"))) take_build(rt_build_at(results, trial, contender), object);
     if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;

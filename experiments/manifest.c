@@ -33,9 +33,14 @@ static json_t *contenders_json(const RtExperiment *experiment) {
     json_t *list = json_array();
     for (uint32_t c = 0; c < experiment->contender_count; c++) {
         const RtContender *contender = &experiment->contenders[c];
-        json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:b}", "label", contender->label, "accel",
+        json_t *scenes = json_array();
+        for (uint32_t t = 0; t < experiment->trial_count; t++) {
+            if (contender->left_out >> t & 1) continue;
+            json_array_append_new(scenes, json_string(experiment->trials[t].label));
+        }
+        json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:b, s:o}", "label", contender->label, "accel",
                                               contender->spec, "every", (json_int_t)contender->every,
-                                              "missing", contender->missing));
+                                              "missing", contender->missing, "scenes", scenes));
     }
     return list;
 }

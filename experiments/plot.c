@@ -1,7 +1,5 @@
 #include "experiments/plot.h"
 
-#include "base/memory.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <spawn.h>
@@ -9,7 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_SCRIPT_BYTES = 1 << 20, MOST_ARGUMENTS = RT_MAX_PLOTS + 3 };
+enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 3 };
 
 const char *rt_contender_color(uint32_t contender) {
     /* The eight of Okabe & Ito (2008), told apart by colour-blind readers too, led by grey; then four more.
@@ -22,15 +20,11 @@ const char *rt_contender_color(uint32_t contender) {
 /* ---- scripts ---- */
 
 static RtStatus copy_script(const char *folder, const char *name, const char *directory, RtError *error) {
-    char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH], *text;
-    size_t size;
+    char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
     RT_TRY(rt_path_join(folder, name, from, error));
     RT_TRY(rt_path_join(directory, "plots", plots, error));
     RT_TRY(rt_path_join(plots, name, to, error));
-    RT_TRY(rt_file_read(from, MOST_SCRIPT_BYTES, &text, &size, error));
-    RtStatus status = rt_file_write(to, text, size, error);
-    rt_free(text);
-    return status;
+    return rt_file_copy(from, to, error);
 }
 
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error) {
@@ -40,7 +34,12 @@ RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory,
     return RT_OK;
 }
 
-static bool has_times(const RtResults *results, uint32_t contender) {
+/* Whether the CSV files have rows of the contender, and it is the first of its label. */
+static bool has_rows(const RtResults *results, uint32_t contender) {
+    const RtContender *contenders = results->experiment->contenders;
+    for (uint32_t c = 0; c < contender; c++) {
+        if (strcmp(contenders[c].label, contenders[contender].label) == 0) return false;
+    }
     for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
         for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
             const RtCell *cell = rt_cell_at(results, t, contender, (RtRayKind)k);
@@ -74,11 +73,11 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
     }
     fprintf(out, "\"\naccels = \"");
     for (uint32_t c = 0; c < experiment->contender_count; c++) {
-        if (has_times(results, c)) fprintf(out, "%s ", experiment->contenders[c].label);
+        if (has_rows(results, c)) fprintf(out, "%s ", experiment->contenders[c].label);
     }
     fprintf(out, "\"\ncolors = \"");
     for (uint32_t c = 0; c < experiment->contender_count; c++) {
-        if (has_times(results, c)) fprintf(out, "%s ", rt_contender_color(c));
+        if (has_rows(results, c)) fprintf(out, "%s ", rt_contender_color(c));
     }
     fprintf(out, "\"\nkinds = \"");
     for (uint32_t k = 0; k < experiment->kind_count; k++) {

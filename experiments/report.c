@@ -3,6 +3,7 @@
 #include "experiments/report.h"
 
 #include "base/memory.h"
+#include "experiments/html.h"
 #include "experiments/plot.h"
 #include "experiments/tables.h"
 
@@ -30,24 +31,13 @@ static const char style[] =
     "th{color:#666;font-weight:600;border-bottom:2px solid "
     "#ddd}th:first-child,td:first-child{text-align:left}"
     "tbody tr:hover{background:#f4f8ff}.wide{overflow-x:auto}"
+    ".missed{background:#fde8dc}.row{text-align:left}"
     ".dot{display:inline-block;width:.75em;height:.75em;border-radius:2px;margin-right:.5em}"
     "details{margin:.8rem 0}summary{cursor:pointer;color:#0059b3}"
     "dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1rem;font-size:.9rem}dt{color:#666}"
     "dd{margin:0;overflow-wrap:anywhere}";
 
 /* ---- text and files ---- */
-
-static void put_text(FILE *out, const char *text) {
-    for (; text && *text; text++) {
-        switch (*text) {
-        case '<': fputs("&lt;", out); break;
-        case '>': fputs("&gt;", out); break;
-        case '&': fputs("&amp;", out); break;
-        case '"': fputs("&quot;", out); break;
-        default: fputc(*text, out);
-        }
-    }
-}
 
 static void put_base64(FILE *out, const unsigned char *data, size_t size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -64,7 +54,7 @@ static void put_image(FILE *out, const char *path, const char *type, const char 
     size_t size;
     if (rt_file_read(path, MOST_IMAGE_BYTES, &data, &size, NULL) != RT_OK) return;
     fprintf(out, "<img alt=\"");
-    put_text(out, alt);
+    rt_html_put(out, alt);
     fprintf(out, "\" src=\"data:%s;base64,", type);
     put_base64(out, (const unsigned char *)data, size);
     fputs("\">", out);
@@ -81,7 +71,7 @@ static void put_amount(FILE *out, double value) {
     char text[16];
     rt_format_amount(value, text);
     fputs("<td>", out);
-    put_text(out, text);
+    rt_html_put(out, text);
     fputs("</td>", out);
 }
 
@@ -90,7 +80,7 @@ static void put_amount(FILE *out, double value) {
 static void put_card(FILE *out, const char *title, const char *text) {
     if (!*text) return;
     fprintf(out, "<div class=\"card\"><b>%s</b>", title);
-    put_text(out, text);
+    rt_html_put(out, text);
     fputs("</div>\n", out);
 }
 
@@ -105,17 +95,17 @@ static void put_head(FILE *out, const RtResults *results, const json_t *manifest
     fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
           "<meta name=\"viewport\" content=\"width=device-width\"><title>",
           out);
-    put_text(out, experiment->name);
+    rt_html_put(out, experiment->name);
     fprintf(out, "</title><style>%s</style></head>\n<body><main>\n<h1>", style);
-    put_text(out, experiment->name);
+    rt_html_put(out, experiment->name);
     fputs("</h1>\n<div class=\"meta\">", out);
-    put_text(out, text_at(manifest, "date"));
+    rt_html_put(out, text_at(manifest, "date"));
     fputs(" &middot; ", out);
-    put_text(out, text_at(machine, "cpu"));
+    rt_html_put(out, text_at(machine, "cpu"));
     fputs(" &middot; raytally ", out);
-    put_text(out, text_at(machine, "version"));
+    rt_html_put(out, text_at(machine, "version"));
     fputs(" (", out);
-    put_text(out, text_at(machine, "commit"));
+    rt_html_put(out, text_at(machine, "commit"));
     fprintf(out, "%s)%s</div>\n", json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
             experiment->quick ? " &middot; <strong>quick variant</strong>" : "");
     put_card(out, "Question", experiment->question);
@@ -147,7 +137,7 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
         fputs("<figure>", out);
         put_image(out, path, "image/png", setup->label);
         fputs("<figcaption><strong>", out);
-        put_text(out, setup->label);
+        rt_html_put(out, setup->label);
         fprintf(out,
                 "</strong>: %" PRIu32 " objects; rays of a frame of %" PRIu32 " &times; %" PRIu32
                 " pixel %s, depth %" PRIu32 "</figcaption></figure>\n",
@@ -161,7 +151,7 @@ static void put_label(FILE *out, const RtExperiment *experiment, uint32_t c) {
     bool null = c == experiment->contender_count;
     fprintf(out, "<tr><td><span class=\"dot\" style=\"background:%s\"></span>",
             null ? "#ddd" : rt_contender_color(c));
-    put_text(out, rt_contender_label(experiment, c));
+    rt_html_put(out, rt_contender_label(experiment, c));
     if (!null && experiment->contenders[c].every > 1) {
         fprintf(out, " <span class=\"meta\">every %" PRIu64 "th ray</span>", experiment->contenders[c].every);
     }
@@ -173,7 +163,7 @@ static void put_totals(FILE *out, const RtResults *results, uint32_t t) {
     fputs("<div class=\"wide\"><table><thead><tr><th>accelerator</th><th>rays</th><th>object tests / ray</th>"
           "<th>extent tests / ray</th><th>steps / ray</th><th>ns / ray</th><th>throughput / ",
           out);
-    put_text(out, experiment->contenders[experiment->baseline].label);
+    rt_html_put(out, experiment->contenders[experiment->baseline].label);
     fputs("</th><th>build ms</th><th>MB</th></tr></thead><tbody>\n", out);
     for (uint32_t c = 0; c < experiment->contender_count; c++) {
         const RtBuildResult *build = rt_build_at(results, t, c);
@@ -238,7 +228,7 @@ static void put_tables(FILE *out, const RtResults *results) {
     for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
         if (!results->trials[t].known) continue;
         fputs("<h3>", out);
-        put_text(out, results->experiment->trials[t].label);
+        rt_html_put(out, results->experiment->trials[t].label);
         fputs("</h3>\n", out);
         put_totals(out, results, t);
         put_cells(out, results, t);
@@ -253,38 +243,47 @@ static void put_members(FILE *out, const json_t *object) {
         if (json_is_object(value) || json_is_array(value) || json_is_null(value)) continue;
         if (strcmp(key, "question") == 0 || strcmp(key, "prediction") == 0) continue;
         fputs("<dt>", out);
-        put_text(out, key);
+        rt_html_put(out, key);
         fputs("</dt><dd>", out);
-        if (json_is_string(value)) put_text(out, json_string_value(value));
+        if (json_is_string(value)) rt_html_put(out, json_string_value(value));
         if (json_is_integer(value)) fprintf(out, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
         if (json_is_boolean(value)) fputs(json_is_true(value) ? "yes" : "no", out);
         fputs("</dd>\n", out);
     }
 }
 
-static void put_method(FILE *out, const RtResults *results, const json_t *manifest) {
+static void put_timing(FILE *out, const RtResults *results) {
     char sentence[RT_MAX_SENTENCE], interval[RT_MAX_INTERVAL_TITLE];
-    fputs(
-        "<h2>How it was measured</h2>\n<p>Every accelerator got the same recorded rays. Counting and timing "
-        "are "
-        "separate passes. Times are medians over rounds in which all accelerators took turns in random "
-        "order; "
-        "ratios are throughput over the baseline's, paired within a round. Intervals are those of order "
-        "statistics: they hold the median with a probability of at least ",
-        out);
     rt_interval_title(results->experiment, interval);
-    fprintf(out, "%s", interval);
-    fputs(
-        ". Totals weigh each ray kind by the size of its set. Shadow rays stop at any hit. "
-        "<em>ideal</em> knows the answers beforehand: it is the floor. <em>differ</em> counts answers unlike "
-        "the reference; an exact accelerator has none, or the run would have failed.</p>\n<p>",
-        out);
+    fputs("Counting and timing are separate passes. Times are medians over rounds in which all accelerators "
+          "took "
+          "turns in random order; ratios are throughput over the baseline's, paired within a round. "
+          "Intervals are "
+          "those of order statistics: they hold the median with a probability of at least ",
+          out);
+    fprintf(out, "%s. ", interval);
     rt_null_sentence(results, sentence);
-    put_text(out, sentence);
+    rt_html_put(out, sentence);
+}
+
+static void put_method(FILE *out, const RtResults *results, const json_t *manifest) {
+    fputs("<h2>How it was measured</h2>\n<p>Every accelerator got the same recorded rays. Totals weigh each "
+          "ray "
+          "kind by the size of its set. Shadow rays stop at any hit. <em>ideal</em> knows the answers "
+          "beforehand: "
+          "it is the floor. <em>differ</em> counts answers unlike the reference; an exact accelerator has "
+          "none, or "
+          "the run would have failed.</p>\n<p>",
+          out);
+    if (results->experiment->count_only) {
+        fputs("Nothing was timed: this experiment counts.", out);
+    } else {
+        put_timing(out, results);
+    }
     fputs("</p>\n<details><summary>Counters</summary><dl>", out);
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
         fprintf(out, "<dt>%s</dt><dd>", rt_tally_name(i));
-        put_text(out, rt_tally_meaning(i));
+        rt_html_put(out, rt_tally_meaning(i));
         fputs("</dd>\n", out);
     }
     fputs("</dl></details>\n<details open><summary>Manifest</summary><dl>", out);
@@ -293,14 +292,15 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
     fputs("</dl></details>\n", out);
 }
 
-RtStatus rt_report_write(const RtResults *results, const json_t *manifest, const char *directory,
-                         RtError *error) {
+RtStatus rt_report_write(const RtResults *results, const RtPublished *published, const json_t *manifest,
+                         const char *directory, RtError *error) {
     char path[RT_MAX_PATH];
     RtOutput output;
     RT_TRY(rt_path_join(directory, "report.html", path, error));
     RT_TRY(rt_output_open(&output, path, error));
     put_head(output.file, results, manifest);
     put_plots(output.file, directory);
+    rt_html_published(published, output.file);
     put_scenes(output.file, results, directory);
     put_tables(output.file, results);
     put_method(output.file, results, manifest);

@@ -2,12 +2,13 @@
 #ifndef RT_EXPERIMENTS_REPORT_H
 #define RT_EXPERIMENTS_REPORT_H
 
-#include "experiments/results.h"
+#include "experiments/published.h"
 
 #include <jansson.h>
 
-/* Writes `directory`/report.html from the results, the manifest, and the plots and images that are there. */
-RtStatus rt_report_write(const RtResults *results, const json_t *manifest, const char *directory,
-                         RtError *error);
+/* Writes `directory`/report.html from the results, what was compared with published figures (perhaps
+ * nothing), the manifest, and the plots and images that are there. */
+RtStatus rt_report_write(const RtResults *results, const RtPublished *published, const json_t *manifest,
+                         const char *directory, RtError *error);
 
 #endif

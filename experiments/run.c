@@ -1,6 +1,5 @@
 #include "experiments/run.h"
 
-#include "base/memory.h"
 #include "experiments/journal.h"
 #include "experiments/manifest.h"
 #include "experiments/plot.h"
@@ -11,14 +10,40 @@
 
 #include <string.h>
 
-enum { MOST_YAML_BYTES = 1 << 20 };
-
 typedef struct Run {
     RtResults *results;
     const RtExperiment *experiment;
     const RtRunOptions *options;
+    RtPublished published;
     RtJournal journal;
 } Run;
+
+/* ---- what is exact ---- */
+
+static void write_counts(const RtResults *results, const RtPublished *published, FILE *out) {
+    (void)published;
+    rt_counts_csv(results, out);
+}
+
+static void write_published(const RtResults *results, const RtPublished *published, FILE *out) {
+    (void)results;
+    rt_published_csv(published, out);
+}
+
+static void write_least(const RtResults *results, const RtPublished *published, FILE *out) {
+    (void)results;
+    rt_least_csv(published, out);
+}
+
+static void write_markdown(const RtResults *results, const RtPublished *published, FILE *out) {
+    (void)results;
+    rt_published_markdown(published, out);
+}
+
+const RtExactFile rt_exact_files[RT_EXACT_FILES] = {{"counts.csv", false, write_counts},
+                                                    {"published.csv", true, write_published},
+                                                    {"least.csv", true, write_least},
+                                                    {"published.md", true, write_markdown}};
 
 static RtStatus in_directory(const Run *run, const char *name, char *path, RtError *error) {
     return rt_path_join(run->options->directory, name, path, error);
@@ -39,14 +64,25 @@ static RtStatus make_directories(const Run *run, RtError *error) {
     return rt_directory_create(path, error);
 }
 
+/* A table that lies in a folder beside the YAML gets to one of the same name, where the copy of the YAML
+ * finds it. */
+static RtStatus copy_table(const Run *run, const char *name, RtError *error) {
+    char from[RT_MAX_PATH], to[RT_MAX_PATH], folder[RT_MAX_PATH];
+    RT_TRY(rt_path_join(run->experiment->folder, name, from, error));
+    RT_TRY(in_directory(run, name, to, error));
+    rt_path_folder(to, folder);
+    RT_TRY(rt_directory_create(folder, error));
+    return rt_file_copy(from, to, error);
+}
+
 static RtStatus copy_experiment(const Run *run, RtError *error) {
-    char path[RT_MAX_PATH], *text;
-    size_t size;
+    const RtPublishedSetup *published = &run->experiment->published;
+    char path[RT_MAX_PATH];
     RT_TRY(in_directory(run, "experiment.yaml", path, error));
-    RT_TRY(rt_file_read(run->experiment->path, MOST_YAML_BYTES, &text, &size, error));
-    RtStatus status = rt_file_write(path, text, size, error);
-    rt_free(text);
-    return status;
+    RT_TRY(rt_file_copy(run->experiment->path, path, error));
+    for (uint32_t i = 0; i < published->table_count; i++)
+        RT_TRY(copy_table(run, published->tables[i], error));
+    return *published->reasons ? copy_table(run, published->reasons, error) : RT_OK;
 }
 
 static RtStatus open_journal(Run *run, RtError *error) {
@@ -61,6 +97,7 @@ static RtStatus begin(Run *run, RtError *error) {
     for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
         RT_TRY(rt_trial_find_scene(&run->experiment->trials[t], error));
     }
+    RT_TRY(rt_published_load(&run->published, run->experiment, error));
     RT_TRY(make_directories(run, error));
     RT_TRY(open_journal(run, error));
     RT_TRY(copy_experiment(run, error));
@@ -87,14 +124,22 @@ static void on_notice(void *context, const char *message) {
     notice(context, message);
 }
 
-typedef void WriteTable(const RtResults *results, FILE *out);
-
-static RtStatus write_table(const Run *run, const char *name, WriteTable write, RtError *error) {
+static RtStatus write_exact(const Run *run, const RtExactFile *file, RtError *error) {
     char path[RT_MAX_PATH];
     RtOutput output;
-    RT_TRY(in_directory(run, name, path, error));
+    RT_TRY(in_directory(run, file->name, path, error));
     RT_TRY(rt_output_open(&output, path, error));
-    write(run->results, output.file);
+    file->write(run->results, &run->published, output.file);
+    return rt_output_commit(&output, error);
+}
+
+static RtStatus write_times(const Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RtOutput output;
+    if (run->experiment->count_only) return RT_OK;
+    RT_TRY(in_directory(run, "times.csv", path, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    rt_times_csv(run->results, output.file);
     return rt_output_commit(&output, error);
 }
 
@@ -132,8 +177,8 @@ static RtStatus measure(Run *run, RtError *error) {
     options.observer = (RtObserver){run, on_event, on_notice};
     for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
         RT_TRY(rt_trial_run(run->results, t, &options, error));
-        RT_TRY(write_table(run, "counts.csv", rt_counts_csv, error));
-        RT_TRY(write_table(run, "times.csv", rt_times_csv, error));
+        RT_TRY(write_exact(run, &rt_exact_files[0], error));
+        RT_TRY(write_times(run, error));
         RT_TRY(write_image(run, t, error));
     }
     return RT_OK;
@@ -141,17 +186,27 @@ static RtStatus measure(Run *run, RtError *error) {
 
 /* ---- after ---- */
 
-static RtStatus finish(const Run *run, RtError *error) {
+static RtStatus write_compared(Run *run, RtError *error) {
+    if (run->experiment->published.table_count == 0) return RT_OK;
+    rt_published_compare(&run->published, run->results);
+    for (size_t i = 0; i < RT_EXACT_FILES; i++) {
+        if (rt_exact_files[i].published) RT_TRY(write_exact(run, &rt_exact_files[i], error));
+    }
+    return RT_OK;
+}
+
+static RtStatus finish(Run *run, RtError *error) {
     json_t *manifest;
+    RT_TRY(write_compared(run, error));
     RT_TRY(rt_manifest_write(run->results, &run->options->trial, run->options->directory, error));
     /* What was measured is worth a report, drawn or not. */
     RtError drawing;
     RtStatus status = rt_plots_draw(run->results, run->options->directory, &drawing);
     if (status != RT_OK) notice(run, drawing.message);
     RT_TRY(rt_manifest_read(run->options->directory, &manifest, error));
-    status = rt_report_write(run->results, manifest, run->options->directory, error);
+    status = rt_report_write(run->results, &run->published, manifest, run->options->directory, error);
     json_decref(manifest);
-    return status;
+    return status == RT_OK ? rt_published_check(&run->published, error) : status;
 }
 
 RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error) {
@@ -159,7 +214,9 @@ RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error)
     RtStatus status = begin(&run, error);
     if (status == RT_OK) status = measure(&run, error);
     rt_journal_close(&run.journal);
-    return status == RT_OK ? finish(&run, error) : status;
+    if (status == RT_OK) status = finish(&run, error);
+    rt_published_clear(&run.published);
+    return status;
 }
 
 RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults *results, RtError *error) {

@@ -1,5 +1,7 @@
 #include "experiments/tables.h"
 
+#include "experiments/csv.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -10,15 +12,9 @@
 static const char identity[] = "scene,scene_spec,objects,scene_hash,width,height,corners,depth,kind,set_rays,"
                                "set_hash,accel,spec,every,rays";
 
-/* A text field, quoted where commas or quotes ask for it. */
 static void put_text(FILE *out, const char *text) {
-    if (!strpbrk(text, ",\"\n")) {
-        fprintf(out, "%s,", text);
-        return;
-    }
-    fputc('"', out);
-    for (; *text; text++) fprintf(out, *text == '"' ? "\"\"" : "%c", *text);
-    fputs("\",", out);
+    rt_csv_put(out, text);
+    fputc(',', out);
 }
 
 static void put_identity(FILE *out, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {

@@ -1,12 +1,11 @@
 /* A trial in order: the scene is opened, its rays are recorded by the default accelerator, which also gives
  * the answers that all others are held against; every contender is built; then, ray kind by ray kind, each is
  * counted, and all are timed against each other. */
-#include "experiments/trial.h"
+#include "experiments/trial_state.h"
 
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "experiments/measure.h"
 #include "scene/load.h"
 
 #include <string.h>
@@ -15,41 +14,18 @@
 enum { MOST_BUILDS = 3 };
 static const double CHEAP_BUILD = 0.25; /* seconds */
 
-/* The rays that one contender gets of one kind, and the answers to them; views into what the trial owns. */
-typedef struct Share {
-    RtRaySet set;
-    const RtHit *expected;
-} Share;
-
-typedef struct Trial {
-    RtResults *results;
-    const RtExperiment *experiment;
-    const RtTrialOptions *options;
-    uint32_t index, count; /* count: contenders and the null run */
-    RtScene scene;
-    RtAccel *reference;               /* answers */
-    RtAccel **accels;                 /* [count], NULL for one that is missing */
-    RtRaySet sets[RT_RAY_KIND_COUNT]; /* behind the `count` rays of one at hand lie its thinned shares */
-    Share *shares;                    /* [count], of the kind at hand */
-    RtHit *answers;                   /* to the set of the kind at hand and the shares behind it */
-} Trial;
-
 /* ---- what is left to do ---- */
 
-static bool is_missing(const Trial *trial, uint32_t contender) {
-    return contender < trial->experiment->contender_count && trial->experiment->contenders[contender].missing;
-}
-
-static uint32_t spec_of(const Trial *trial, uint32_t contender) {
-    return contender < trial->experiment->contender_count ? contender : trial->experiment->baseline;
+static bool runs(const Trial *trial, uint32_t contender) {
+    return rt_contender_runs(trial->experiment, contender, trial->index);
 }
 
 static bool kind_is_done(const Trial *trial, RtRayKind kind) {
     for (uint32_t c = 0; c < trial->count; c++) {
         const RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
         bool null = c == trial->experiment->contender_count;
-        if (is_missing(trial, c)) continue;
-        if ((!cell->counted && !null) || (!cell->timed && !trial->options->count_only)) return false;
+        if (!runs(trial, c)) continue;
+        if ((!cell->counted && !null) || (!cell->timed && !trial->count_only)) return false;
     }
     return true;
 }
@@ -58,7 +34,7 @@ static bool trial_is_done(const Trial *trial) {
     const RtTrialResult *result = &trial->results->trials[trial->index];
     if (!result->known) return result->skipped;
     for (uint32_t c = 0; c < trial->count; c++) {
-        if (!is_missing(trial, c) && !rt_build_at(trial->results, trial->index, c)->known) return false;
+        if (runs(trial, c) && !rt_build_at(trial->results, trial->index, c)->known) return false;
     }
     for (uint32_t k = 0; k < trial->experiment->kind_count; k++) {
         RtRayKind kind = trial->experiment->kinds[k];
@@ -67,8 +43,8 @@ static bool trial_is_done(const Trial *trial) {
     return true;
 }
 
-static RtStatus tell(const Trial *trial, RtEventKind what, uint32_t contender, RtRayKind kind,
-                     RtError *error) {
+RtStatus rt_trial_tell(const Trial *trial, RtEventKind what, uint32_t contender, RtRayKind kind,
+                       RtError *error) {
     const RtObserver *observer = &trial->options->observer;
     RtEvent event = {what, trial->index, contender, kind};
     return observer->event ? observer->event(observer->context, trial->results, &event, error) : RT_OK;
@@ -149,7 +125,7 @@ static RtStatus describe_trial(Trial *trial, RtError *error) {
     }
     if (result->known) return RT_OK;
     *result = now;
-    return tell(trial, RT_EVENT_TRIAL, 0, RT_RAY_PRIMARY, error);
+    return rt_trial_tell(trial, RT_EVENT_TRIAL, 0, RT_RAY_PRIMARY, error);
 }
 
 static RtStatus prepare(Trial *trial, RtError *error) {
@@ -183,8 +159,8 @@ static RtStatus build_all(Trial *trial, RtError *error) {
         RtSpec spec;
         double seconds;
         RtBuildResult *result = rt_build_at(trial->results, trial->index, c);
-        if (is_missing(trial, c)) continue;
-        RT_TRY(rt_spec_parse(trial->experiment->contenders[spec_of(trial, c)].spec, &spec, error));
+        if (!runs(trial, c)) continue;
+        RT_TRY(rt_spec_parse(trial->experiment->contenders[rt_trial_origin(trial, c)].spec, &spec, error));
         RT_TRY(build_one(trial, &spec, &trial->accels[c], &seconds, error));
         if (result->known) continue;
         const RtAccel *accel = trial->accels[c];
@@ -192,16 +168,12 @@ static RtStatus build_all(Trial *trial, RtError *error) {
         result->seconds = seconds;
         rt_spec_format(&spec, result->spec);
         rt_accel_describe(accel, &result->shape);
-        RT_TRY(tell(trial, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
+        RT_TRY(rt_trial_tell(trial, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
     }
     return RT_OK;
 }
 
 /* ---- the rays of one kind ---- */
-
-static uint64_t every_of(const Trial *trial, uint32_t contender) {
-    return trial->experiment->contenders[spec_of(trial, contender)].every;
-}
 
 /* Rays in a set that is thinned by `every`. */
 static uint64_t thinned_count(const RtRaySet *set, uint64_t every) {
@@ -212,7 +184,8 @@ static uint64_t thinned_count(const RtRaySet *set, uint64_t every) {
 static uint64_t count_with_shares(const Trial *trial, const RtRaySet *set) {
     uint64_t count = set->count;
     for (uint32_t c = 0; c < trial->count; c++) {
-        if (trial->accels[c] && every_of(trial, c) > 1) count += thinned_count(set, every_of(trial, c));
+        if (trial->accels[c] && rt_trial_every(trial, c) > 1)
+            count += thinned_count(set, rt_trial_every(trial, c));
     }
     return count;
 }
@@ -240,7 +213,7 @@ static RtStatus deal_shares(Trial *trial, RtRaySet *set, RtError *error) {
     if (!trial->answers) return rt_fail_memory(error, "answers", all * sizeof(RtHit));
     RT_TRY(rt_measure_answers(trial->reference, set, trial->options->threads, trial->answers, error));
     for (uint32_t c = 0; c < trial->count; c++) {
-        uint64_t every = every_of(trial, c);
+        uint64_t every = rt_trial_every(trial, c);
         if (!trial->accels[c]) continue;
         trial->shares[c] = (Share){.set = *set, .expected = trial->answers};
         if (every == 1) continue;
@@ -289,90 +262,9 @@ static RtStatus count_kind(Trial *trial, RtRayKind kind, RtError *error) {
         cell->counted = true;
         cell->tally = count.tally;
         cell->differ = count.differ;
-        RT_TRY(tell(trial, RT_EVENT_COUNT, c, kind, error));
+        RT_TRY(rt_trial_tell(trial, RT_EVENT_COUNT, c, kind, error));
     }
     return RT_OK;
-}
-
-/* ---- timing ---- */
-
-/* All that is timed against each other: each contender on its share, and the baseline on every share that is
- * thinned, so that a ratio compares times on the same rays. */
-typedef struct Contest {
-    uint32_t count, rounds;
-    RtTimed *timed;  /* [count] */
-    double *seconds; /* [count][2][rounds], where they go */
-    uint32_t *place; /* [trial->count] of a contender among them */
-    uint32_t *rival; /* [trial->count] of the baseline on its rays */
-} Contest;
-
-static uint32_t enter(Contest *contest, const RtAccel *accel, const RtRaySet *set) {
-    double *place = contest->seconds + 2 * (size_t)contest->count * contest->rounds;
-    contest->timed[contest->count] = (RtTimed){accel, set, place, place + contest->rounds};
-    return contest->count++;
-}
-
-/* Clear it also after a failure. */
-static RtStatus contest_init(Contest *contest, const Trial *trial, RtError *error) {
-    const uint32_t baseline = trial->experiment->baseline;
-    size_t most = 2 * (size_t)trial->count, doubles = 2 * most * trial->experiment->rounds;
-    *contest = (Contest){.rounds = trial->experiment->rounds,
-                         .timed = rt_alloc(most, sizeof(RtTimed)),
-                         .seconds = rt_alloc(doubles, sizeof(double)),
-                         .place = rt_alloc(trial->count, sizeof(uint32_t)),
-                         .rival = rt_alloc(trial->count, sizeof(uint32_t))};
-    if (!contest->timed || !contest->seconds || !contest->place || !contest->rival) {
-        return rt_fail_memory(error, "times", doubles * sizeof(double));
-    }
-    for (uint32_t c = 0; c < trial->count; c++) {
-        if (trial->accels[c]) contest->place[c] = enter(contest, trial->accels[c], &trial->shares[c].set);
-    }
-    for (uint32_t c = 0; c < trial->count; c++) {
-        contest->rival[c] = contest->place[baseline];
-        if (!trial->accels[c] || every_of(trial, c) == 1) continue;
-        contest->rival[c] = enter(contest, trial->accels[baseline], &trial->shares[c].set);
-    }
-    return RT_OK;
-}
-
-static void contest_clear(Contest *contest) {
-    rt_free(contest->timed);
-    rt_free(contest->seconds);
-    rt_free(contest->place);
-    rt_free(contest->rival);
-}
-
-/* Takes what was timed into the cells. */
-static RtStatus keep_times(Trial *trial, RtRayKind kind, const Contest *contest, RtError *error) {
-    uint32_t rounds = contest->rounds;
-    for (uint32_t c = 0; c < trial->count; c++) {
-        RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
-        const RtTimed *own = &contest->timed[contest->place[c]], *rival = &contest->timed[contest->rival[c]];
-        if (!trial->accels[c] || cell->timed) continue;
-        cell->timed = true;
-        cell->rounds = rounds;
-        cell->threads = rt_thread_count(trial->options->timing);
-        cell->tally.rays = own->set->count;
-        cell->seconds = rt_estimate(own->seconds, rounds);
-        cell->wall = rt_estimate(own->wall, rounds);
-        cell->ratio = rt_estimate_ratio(rival->seconds, own->seconds, rounds);
-        RT_TRY(tell(trial, RT_EVENT_TIME, c, kind, error));
-    }
-    return RT_OK;
-}
-
-static RtStatus time_kind(Trial *trial, RtRayKind kind, RtError *error) {
-    const RtExperiment *experiment = trial->experiment;
-    RtTiming timing = {.rounds = experiment->rounds,
-                       .least = 1e-3 * experiment->milliseconds,
-                       .threads = trial->options->timing,
-                       .seed = experiment->seed + (uint64_t)kind};
-    Contest contest;
-    RtStatus status = contest_init(&contest, trial, error);
-    if (status == RT_OK) status = rt_measure_time(contest.timed, contest.count, &timing, error);
-    if (status == RT_OK) status = keep_times(trial, kind, &contest, error);
-    contest_clear(&contest);
-    return status;
 }
 
 /* ---- all of it ---- */
@@ -381,7 +273,7 @@ static RtStatus measure_kind(Trial *trial, RtRayKind kind, RtError *error) {
     if (trial->sets[kind].count == 0 || kind_is_done(trial, kind)) return RT_OK;
     RtStatus status = deal_shares(trial, &trial->sets[kind], error);
     if (status == RT_OK) status = count_kind(trial, kind, error);
-    if (status == RT_OK && !trial->options->count_only) status = time_kind(trial, kind, error);
+    if (status == RT_OK && !trial->count_only) status = rt_trial_time(trial, kind, error);
     rt_free(trial->answers);
     trial->answers = NULL;
     return status;
@@ -399,7 +291,8 @@ static RtStatus measure(Trial *trial, RtError *error) {
 
 RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error) {
     Trial trial = {.results = results, .experiment = results->experiment, .options = options, .index = index};
-    trial.count = trial.experiment->contender_count + 1;
+    trial.count_only = options->count_only || trial.experiment->count_only;
+    trial.count = trial.experiment->contender_count + !trial.count_only;
     if (trial_is_done(&trial)) return RT_OK;
     trial.accels = rt_alloc(trial.count, sizeof(RtAccel *));
     trial.shares = rt_alloc(trial.count, sizeof(Share));

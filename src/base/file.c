@@ -52,6 +52,16 @@ RtStatus rt_file_write(const char *path, const void *data, size_t size, RtError 
     return rt_output_commit(&output, error);
 }
 
+RtStatus rt_file_copy(const char *from, const char *to, RtError *error) {
+    enum { MOST_BYTES = 1 << 24 };
+    char *data;
+    size_t size;
+    RT_TRY(rt_file_read(from, MOST_BYTES, &data, &size, error));
+    RtStatus status = rt_file_write(to, data, size, error);
+    rt_free(data);
+    return status;
+}
+
 static RtStatus read_all(FILE *file, const char *path, size_t limit, char **data, size_t *size,
                          RtError *error) {
     struct stat info;

@@ -36,6 +36,9 @@ RtStatus rt_file_open(const char *path, FILE **file, RtError *error);
 /* The whole file, with a 0 after its last byte; refuses more than `limit` bytes. Free with rt_free. */
 RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error);
 
+/* Copies a file, of 16 MiB at most, in this way, too. */
+RtStatus rt_file_copy(const char *from, const char *to, RtError *error);
+
 bool rt_file_exists(const char *path);
 
 /* Creates the directory and its parents where they are missing. */

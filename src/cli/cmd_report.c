@@ -8,10 +8,15 @@
 
 static RtStatus report(const char *directory, const RtExperiment *experiment, RtResults *results,
                        RtError *error) {
-    (void)experiment;
     json_t *manifest;
+    RtPublished published;
     RT_TRY(rt_manifest_read(directory, &manifest, error));
-    RtStatus status = rt_report_write(results, manifest, directory, error);
+    RtStatus status = rt_published_load(&published, experiment, error);
+    if (status == RT_OK) {
+        rt_published_compare(&published, results);
+        status = rt_report_write(results, &published, manifest, directory, error);
+    }
+    rt_published_clear(&published);
     json_decref(manifest);
     if (status == RT_OK) printf("Report: %s/report.html\n", directory);
     return status;

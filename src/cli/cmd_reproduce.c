@@ -1,10 +1,11 @@
-/* raytally reproduce: the counts of a result directory, counted again and compared byte for byte. */
+/* raytally reproduce: the counts of a result directory, counted again and compared byte for byte, with all
+ * that is made of them alone. */
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/progress.h"
 #include "experiments/manifest.h"
-#include "experiments/tables.h"
+#include "experiments/run.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,19 +39,34 @@ static RtStatus compare(const char *path, const char *kept, const char *counted,
                    (int)strcspn(kept, "\n"), kept, (int)strcspn(counted, "\n"), counted);
 }
 
-static RtStatus compare_counts(const char *directory, const RtResults *results, RtError *error) {
+static RtStatus compare_file(const char *directory, const RtExactFile *file, const RtResults *results,
+                             const RtPublished *published, RtError *error) {
     char path[RT_MAX_PATH], *kept = NULL, *counted = NULL;
     size_t size;
-    RT_TRY(rt_path_join(directory, "counts.csv", path, error));
+    RT_TRY(rt_path_join(directory, file->name, path, error));
     FILE *stream = open_memstream(&counted, &size);
     if (!stream) return rt_fail_memory(error, "the counts", 0);
-    rt_counts_csv(results, stream);
+    file->write(results, published, stream);
     RtStatus status = fclose(stream) == 0 ? RT_OK : rt_fail_memory(error, "the counts", 0);
     if (status == RT_OK) status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
     if (status == RT_OK) status = compare(path, kept, counted, error);
     if (status == RT_OK) printf("Reproduced: %s, byte for byte\n", path);
     rt_free(kept);
     free(counted);
+    return status;
+}
+
+static RtStatus compare_all(const char *directory, const RtResults *results, RtError *error) {
+    RtPublished published;
+    RtStatus status = rt_published_load(&published, results->experiment, error);
+    if (status == RT_OK) rt_published_compare(&published, results);
+    for (size_t i = 0; status == RT_OK && i < RT_EXACT_FILES; i++) {
+        const RtExactFile *file = &rt_exact_files[i];
+        if (file->published && results->experiment->published.table_count == 0) continue;
+        status = compare_file(directory, file, results, &published, error);
+    }
+    if (status == RT_OK) status = rt_published_check(&published, error);
+    rt_published_clear(&published);
     return status;
 }
 
@@ -78,7 +94,7 @@ static RtStatus reproduce(const char *directory, const RtExperiment *experiment,
     rt_results_clear(results);
     if (status == RT_OK) status = rt_results_init(results, original, error);
     if (status == RT_OK) status = count_again(results, error);
-    if (status == RT_OK) status = compare_counts(directory, results, error);
+    if (status == RT_OK) status = compare_all(directory, results, error);
     rt_results_clear(results);
     rt_free(original);
     return status;
@@ -88,6 +104,8 @@ int rt_command_reproduce(int argc, char **argv) {
     return rt_cli_directory(
         argc, argv,
         "Count everything in a result directory again and compare with DIR/counts.csv, byte "
-        "for byte. Run it from where the experiment was run.",
+        "for byte; with published figures, too, where the experiment names any. Run it from where the "
+        "experiment was "
+        "run.",
         reproduce);
 }

@@ -50,7 +50,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     RtResults results;
     RT_TRY(rt_experiment_load(experiment, o->path, o->quick, error));
     snprintf(directory, sizeof directory, "results/%s", experiment->name);
-    RtProgress progress = rt_progress_begin(experiment, 2);
+    RtProgress progress = rt_progress_begin(experiment, experiment->count_only ? 1 : 2);
     RtRunOptions how = {
         .directory = o->out ? o->out : directory,
         .resume = o->resume,
@@ -61,7 +61,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     if (status == RT_OK) {
         rt_print_totals(&results, stdout);
         rt_null_sentence(&results, sentence);
-        printf("\n%s\nReport: %s/report.html\n", sentence, how.directory);
+        printf("\n%s%sReport: %s/report.html\n", sentence, *sentence ? "\n" : "", how.directory);
     }
     rt_results_clear(&results);
     return status;

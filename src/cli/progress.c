@@ -6,11 +6,13 @@
 #include <unistd.h>
 
 RtProgress rt_progress_begin(const RtExperiment *experiment, uint32_t parts) {
-    uint32_t contenders = 0;
-    for (uint32_t c = 0; c < experiment->contender_count; c++)
-        contenders += !experiment->contenders[c].missing;
+    uint32_t contenders = 0; /* on each scene */
+    for (uint32_t t = 0; t < experiment->trial_count; t++) {
+        for (uint32_t c = 0; c < experiment->contender_count; c++)
+            contenders += rt_contender_runs(experiment, c, t);
+    }
     return (RtProgress){.terminal = isatty(STDERR_FILENO) == 1,
-                        .all = experiment->trial_count * experiment->kind_count * contenders * parts,
+                        .all = experiment->kind_count * contenders * parts,
                         .start = rt_wall_seconds()};
 }
 
