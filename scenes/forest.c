@@ -198,8 +198,9 @@ static RtStatus add_tree(RtForms *forms, const Ground *ground, uint64_t i, RtErr
         forms->count += conifer ? 6 + WHORLS * BOUGHS * (3 + BOUGH_TUFTS) : broadleaf;
         return RT_OK;
     }
-    double x = square * ((double)(i % ground->edge) + between(&tree, 0.1, 0.9));
-    double y = square * ((double)(i / ground->edge) + between(&tree, 0.1, 0.9));
+    uint64_t column = i % ground->edge, row = i / ground->edge;
+    double x = square * ((double)column + between(&tree, 0.1, 0.9));
+    double y = square * ((double)row + between(&tree, 0.1, 0.9));
     RtVec3d foot = {x, y, height_at(ground->seed, x, y) - 0.3};
     if (conifer) return add_conifer(&tree, foot, between(&tree, 6, 12), error);
     double lean_x = between(&tree, -0.12, 0.12), lean_y = between(&tree, -0.12, 0.12);

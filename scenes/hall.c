@@ -230,8 +230,8 @@ static RtStatus add_rail(RtForms *forms, double side, uint32_t size, RtError *er
     forms->material = STONE;
     RT_TRY(rt_forms_box(forms, rt_vec3d(-0.45, 0, -0.3), rt_vec3d(0.45, end, 0), RT_SIDES_ALL, error));
     RT_TRY(rt_forms_box(forms, rt_vec3d(-0.35, 0, 0.8), rt_vec3d(-0.1, end, 0.92), RT_SIDES_ALL, error));
-    for (double y = 0.25; y < end; y += 0.5) {
-        rt_forms_at(forms, rt_vec3d(x - side * 0.22, front_y + y, aisle_top), 0);
+    for (int i = 0; i < 2 * (int)end; i++) {
+        rt_forms_at(forms, rt_vec3d(x - side * 0.22, front_y + 0.5 * i + 0.25, aisle_top), 0);
         RT_TRY(rt_ornament_baluster(forms, size, error));
     }
     return RT_OK;
@@ -291,7 +291,7 @@ static RtStatus add_side(RtForms *forms, double side, uint32_t size, RtError *er
 }
 
 static RtVec3d chandelier_place(uint32_t i) {
-    return rt_vec3d(0, bay * (BAYS / CHANDELIERS) * (i + 0.5), chandelier_z);
+    return rt_vec3d(0, (i + 0.5) * bay * BAYS / CHANDELIERS, chandelier_z);
 }
 
 /* A teapot, as large as it deserves. */

@@ -192,8 +192,9 @@ static RtStatus add_mast(Stadium *s, uint32_t i, RtError *error) {
     RtVec3d across = rt_normalized(rt_vec3d(-top.y, top.x, 0));
     for (int lamp = 0; lamp < LAMPS; lamp++) {
         s->forms->material = LAMP;
-        RtVec3d at = rt_add_scaledd(top, across, (lamp % 4 - 1.5) * 0.026 * h);
-        at.z += (lamp / 4 + 0.5) * 0.026 * h;
+        int row = lamp / 4, column = lamp % 4;
+        RtVec3d at = rt_add_scaledd(top, across, (column - 1.5) * 0.026 * h);
+        at.z += (row + 0.5) * 0.026 * h;
         RT_TRY(rt_forms_sphere(s->forms, at, 0.011 * h, error));
     }
     return RT_OK;

@@ -69,12 +69,13 @@ static RtStatus add_half(const RtForms *forms, const Corner *a, const Corner *b,
     return rt_scene_add_triangle(forms->scene, forms->material, points, normals, error);
 }
 
-/* corners[0..n], [n + 1 .. 2 n + 1]: room for two rows of corners. */
+/* `corners`: room for two rows of n + 1. */
 static RtStatus add_patch(const RtForms *forms, const unsigned short patch[16], uint32_t n, Corner *corners,
                           RtError *error) {
+    Corner *const rows[2] = {corners, corners + n + 1};
     for (uint32_t i = 0; i <= n; i++) {
-        const Corner *before = corners + (i + 1) % 2 * (n + 1);
-        Corner *row = corners + i % 2 * (n + 1);
+        const Corner *before = rows[(i + 1) % 2];
+        Corner *row = rows[i % 2];
         for (uint32_t j = 0; j <= n; j++) row[j] = corner_of(&forms->place, patch, i, j, n);
         for (uint32_t j = 0; i > 0 && j < n; j++) {
             RT_TRY(add_half(forms, &before[j], &before[j + 1], &row[j + 1], error));
