@@ -15,8 +15,9 @@ static RtGrid *make_grid(const RtScene *scene, const char *spec) {
 
 static void assert_resolution(const RtScene *scene, const char *spec, uint32_t x, uint32_t y, uint32_t z) {
     RtGrid *grid = make_grid(scene, spec);
-    if (grid->n[0] != x || grid->n[1] != y || grid->n[2] != z) {
-        fail_msg("%s gave %ux%ux%u", spec, grid->n[0], grid->n[1], grid->n[2]);
+    const RtGridBlock *block = grid->levels[0].blocks;
+    if (block->n[0] != x || block->n[1] != y || block->n[2] != z) {
+        fail_msg("%s gave %ux%ux%u", spec, block->n[0], block->n[1], block->n[2]);
     }
     assert_ok(rt_grid_validate(&grid->base, error));
     rt_grid_destroy(&grid->base);
@@ -32,6 +33,9 @@ static void the_rules_of_resolution_give_what_their_formulas_say(void **state) {
     assert_resolution(&scene, "grid:rule=woo,density=1", 4, 2, 1); /* 4 = cbrt(64) along the longest side */
     assert_resolution(&scene, "grid:rule=woo,density=1000", 40, 20, 10);
     assert_resolution(&scene, "grid:rule=heterogeneous,density=1", 8, 4, 2);
+    assert_resolution(&scene, "grid:rule=heterogeneous,density=2.2", 10, 5, 3); /* 140.8 / 50 is 2.8 */
+    assert_resolution(&scene, "grid:rule=regular,density=1", 4, 4, 4);
+    assert_resolution(&scene, "grid:rule=regular,density=1.01", 5, 5, 5);
     assert_resolution(&scene, "grid:resolution=3x5x7", 3, 5, 7);
     assert_resolution(&scene, "grid:density=0.000001", 1, 1, 1);
     rt_scene_clear(&scene);
@@ -58,40 +62,42 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     RtScene scene;
     make_lattice(&scene, 4, 4, 4);
     RtGrid *grid = make_grid(&scene, "grid:resolution=8x8x8");
+    RtGridLevel *level = &grid->levels[0];
+    RtGridBlock *block = level->blocks;
     assert_ok(rt_grid_validate(&grid->base, error));
 
-    float plane = grid->planes[1][3];
-    grid->planes[1][3] = 100;
+    float plane = block->planes[1][3];
+    block->planes[1][3] = 100;
     assert_broken(&grid->base, "lies behind");
-    grid->planes[1][3] = plane;
-    float ends[2] = {grid->planes[2][0], grid->planes[2][8]};
-    grid->planes[2][0] += 1e-3f;
+    block->planes[1][3] = plane;
+    float ends[2] = {block->planes[2][0], block->planes[2][8]};
+    block->planes[2][0] += 1e-3f;
     assert_broken(&grid->base, "planes of axis 2 do not enclose its box");
-    grid->planes[2][0] = ends[0];
-    grid->planes[2][8] -= 1e-3f;
+    block->planes[2][0] = ends[0];
+    block->planes[2][8] -= 1e-3f;
     assert_broken(&grid->base, "planes of axis 2 do not enclose its box");
-    grid->planes[2][8] = ends[1];
+    block->planes[2][8] = ends[1];
 
     RtBox box = grid->box;
     grid->box.hi.z -= 1;
     assert_broken(&grid->base, "does not contain the scene");
     grid->box = box;
 
-    uint32_t first = grid->first[10];
-    grid->first[10] = 0;
+    uint32_t first = level->first[10];
+    level->first[10] = 0;
     assert_broken(&grid->base, "is broken");
-    grid->first[10] = first;
+    level->first[10] = first;
 
-    uint32_t last = grid->first[11] - 1, id = grid->ids[last];
-    grid->ids[last] = 63;
+    uint32_t last = level->first[11] - 1, id = level->ids[last];
+    level->ids[last] = 63;
     assert_broken(&grid->base, "which it does not touch");
-    grid->ids[last] = 64;
+    level->ids[last] = 64;
     assert_broken(&grid->base, "not ascending ids");
-    grid->ids[last] = id;
+    level->ids[last] = id;
 
     /* The first object taken out of the first list. */
-    memmove(grid->ids, grid->ids + 1, (grid->first[512] - 1) * sizeof(uint32_t));
-    for (uint32_t v = 1; v <= 512; v++) grid->first[v]--;
+    memmove(level->ids, level->ids + 1, (level->first[512] - 1) * sizeof(uint32_t));
+    for (uint32_t v = 1; v <= 512; v++) level->first[v]--;
     assert_broken(&grid->base, "voxels, but");
 
     rt_grid_destroy(&grid->base);

@@ -1,127 +1,122 @@
-/* Building a grid: the resolution, the planes, and the lists by a count pass and a fill pass. */
+/* Building a grid level by level: the planes of its blocks, and the lists by a count pass and a fill pass.
+ * A level's lists are full until the voxels that hold too many objects have been cut into blocks of the next
+ * level; what went into those is dropped then. */
 #include "accel/grid/grid.h"
 
 #include "base/memory.h"
 
-#include <assert.h>
 #include <string.h>
-
-enum { OVERLAP_BOX, OVERLAP_EXACT };
-enum { RULE_CUBIC, RULE_WOO, RULE_HETEROGENEOUS };
-enum { MAX_RESOLUTION = 4096 };
 
 /* Above this many bytes of voxels and lists a grid is refused. */
 #define MAX_BYTES (UINT64_C(4) << 30)
 
-const RtParam rt_grid_params[RT_GRID_PARAM_COUNT] = {
-    [RT_GRID_RULE] =
-        {.name = "rule",
-         .type = RT_PARAM_CHOICE,
-         .standard = "cubic",
-         .choices = "cubic|woo|heterogeneous",
-         .meaning =
-             "how density becomes a resolution: cubic voxels; Woo's by the longest side; Klimaszewski's",
-         .source = "Cleary & Wyvill 1988; Woo 1992; Klimaszewski & Sederberg 1997"},
-    [RT_GRID_DENSITY] = {.name = "density",
-                         .type = RT_PARAM_FLOAT,
-                         .standard = "4",
-                         .lo = 1e-6,
-                         .hi = 1e6,
-                         .meaning = "voxels per object that the rule aims at",
-                         .source = "between 1 (too coarse) and 20 of Havran & Sixta 1999",
-                         .tries = "0.001|1|20"},
-    [RT_GRID_RESOLUTION] = {.name = "resolution",
-                            .type = RT_PARAM_RESOLUTION,
-                            .standard = "auto",
-                            .lo = 1,
-                            .hi = MAX_RESOLUTION,
-                            .meaning = "voxels along x, y, z; auto follows the rule",
-                            .source = "this program",
-                            .tries = "1x1x1|2x3x5|64x1x64"},
-    [RT_GRID_MARGIN] = {.name = "margin",
-                        .type = RT_PARAM_FLOAT,
-                        .standard = "0",
-                        .lo = 0,
-                        .hi = 1,
-                        .meaning = "how much wider than the scene's box the grid is, as a part of it",
-                        .source = "the published scene boxes are a little wider than tight",
-                        .tries = "0.01|1"},
-    [RT_GRID_MAILBOX] = {.name = "mailbox",
-                         .type = RT_PARAM_FLAG,
-                         .standard = "on",
-                         .meaning = "do not test an object twice for one ray",
-                         .source = "Kirk & Arvo 1991"},
-    [RT_GRID_OVERLAP] = {.name = "overlap",
-                         .type = RT_PARAM_CHOICE,
-                         .standard = "box",
-                         .choices = "box|exact",
-                         .meaning = "an object goes into the voxels that its box, or its surface, meets",
-                         .source = "boxes: Havran & Sixta 1999; exact: Akenine-Möller 2001"},
-};
+typedef struct Builder {
+    RtGrid *grid;
+    const RtValue *values;
+    uint64_t limit; /* bytes */
+    RtError *error;
+} Builder;
 
-/* ---- resolution ---- */
+/* ---- the blocks of a level ---- */
 
-static uint32_t clamp_resolution(double n) {
-    return n < 1 ? 1 : n > MAX_RESOLUTION ? MAX_RESOLUTION : (uint32_t)n;
-}
+/* Cutting the voxels of one level into blocks of the next. */
+typedef struct Cut {
+    const Builder *builder;
+    RtGridLevel *from, *to;
+    double bytes;  /* estimated for the new level */
+    size_t planes; /* of the new level's blocks; then of those that have theirs */
+} Cut;
 
-/* Sizes of the box with no side thinner than 2^-10 of the longest: a flat scene has voxels, too. */
-static RtVec3d solid_size(const RtBox *box) {
-    RtVec3d s = rt_subd(rt_widen(box->hi), rt_widen(box->lo));
-    double longest = fmax(s.x, fmax(s.y, s.z));
-    if (longest == 0) return rt_vec3d(1, 1, 1);
-    for (int a = 0; a < 3; a++) s.at[a] = fmax(s.at[a], longest * 0x1p-10) / longest;
-    return s;
-}
-
-/* By Newton's method, because the library's last bit may differ from machine to machine, and counts must not.
- */
-static double cube_root(double x) {
-    double root = fmax(x, 1), last;
-    do {
-        last = root;
-        root = (2 * root + x / (root * root)) / 3;
-    } while (root < last);
-    return root;
-}
-
-/* Rounds down, but takes what is a whole number up to rounding as that number. */
-static double whole(double x) {
-    return floor(x * (1 + 1e-12));
-}
-
-static void choose_resolution(const RtGrid *grid, uint32_t objects, const RtValue *values, uint32_t n[3]) {
-    const uint32_t *given = values[RT_GRID_RESOLUTION].resolution;
-    if (given[0] > 0) {
-        memcpy(n, given, 3 * sizeof n[0]);
-        return;
+/* Whether cutting a box can separate its objects at all: some object does not fill it, and float32 has a
+ * plane inside it. */
+static bool divisible(const RtGrid *grid, const RtBox *box, const uint32_t *ids, uint32_t count) {
+    bool room = false;
+    for (int a = 0; a < 3; a++) room |= nextafterf(box->lo.at[a], INFINITY) < box->hi.at[a];
+    for (uint32_t i = 0; room && i < count; i++) {
+        if (!rt_box_contains(rt_grid_object_box(grid, ids[i]), *box)) return true;
     }
-    RtVec3d s = solid_size(&grid->box); /* in units of the longest side */
-    double voxels = values[RT_GRID_DENSITY].f * objects;
-    switch (values[RT_GRID_RULE].choice) {
-    case RULE_CUBIC: {
-        double per_side = cube_root(voxels / (s.x * s.y * s.z));
-        for (int a = 0; a < 3; a++) n[a] = clamp_resolution(whole(s.at[a] * per_side + 0.5));
-        break;
-    }
-    case RULE_WOO:
-        for (int a = 0; a < 3; a++) n[a] = clamp_resolution(whole(s.at[a] * cube_root(voxels)));
-        break;
-    case RULE_HETEROGENEOUS:
-        n[0] = clamp_resolution(whole(cube_root(voxels * s.x * s.x / (s.y * s.z)) + 0.5));
-        n[1] = clamp_resolution(whole(sqrt(voxels * s.y / (n[0] * s.z)) + 0.5));
-        n[2] = clamp_resolution(whole(voxels / ((double)n[0] * n[1])));
-        break;
-    default: assert(false && "no such rule");
+    return false;
+}
+
+/* Numbers the voxels that are to be cut, and says what they will take. */
+static RtStatus choose_voxel(void *context, const RtGridVoxel *voxel) {
+    Cut *cut = context;
+    const Builder *builder = cut->builder;
+    const uint32_t *ids = cut->from->ids + cut->from->first[voxel->number];
+    uint32_t count = cut->from->first[voxel->number + 1] - cut->from->first[voxel->number], n[3];
+    cut->from->inner[voxel->number] = RT_GRID_LEAF;
+    if (count <= builder->values[RT_GRID_NEST].i) return RT_OK;
+    if (!divisible(builder->grid, &voxel->box, ids, count)) return RT_OK;
+    rt_grid_choose_resolution(&voxel->box, count, builder->values, n);
+    cut->from->inner[voxel->number] = cut->to->block_count++;
+    cut->bytes += rt_grid_estimate(builder->grid, &voxel->box, n, ids, count);
+    cut->planes += (size_t)n[0] + n[1] + n[2] + 3;
+    return RT_OK;
+}
+
+/* Gives a block its planes, the next ones of the level. */
+static void make_planes(RtGridBlock *block, const RtBox *box, float *plane) {
+    for (int a = 0; a < 3; a++) {
+        uint32_t n = block->n[a];
+        double lo = (double)box->lo.at[a], width = (double)box->hi.at[a] - lo;
+        block->planes[a] = plane;
+        for (uint32_t i = 0; i <= n; i++) plane[i] = (float)(lo + width * i / n);
+        plane[n] = box->hi.at[a];
+        plane += n + 1;
     }
 }
 
-/* ---- build ---- */
+static RtStatus cut_voxel(void *context, const RtGridVoxel *voxel) {
+    Cut *cut = context;
+    if (cut->from->inner[voxel->number] == RT_GRID_LEAF) return RT_OK;
+    RtGridBlock *block = &cut->to->blocks[cut->from->inner[voxel->number]];
+    uint32_t count = cut->from->first[voxel->number + 1] - cut->from->first[voxel->number];
+    rt_grid_choose_resolution(&voxel->box, count, cut->builder->values, block->n);
+    make_planes(block, &voxel->box, cut->to->planes + cut->planes);
+    cut->planes += (size_t)block->n[0] + block->n[1] + block->n[2] + 3;
+    block->voxel = cut->to->voxel_count;
+    cut->to->voxel_count += block->n[0] * block->n[1] * block->n[2];
+    return RT_OK;
+}
+
+static RtStatus allocate_blocks(RtGridLevel *level, size_t planes, RtError *error) {
+    level->blocks = rt_alloc(level->block_count, sizeof(RtGridBlock));
+    level->planes = rt_alloc(planes, sizeof(float));
+    if (level->blocks && level->planes) return RT_OK;
+    return rt_fail_memory(error, "the planes of a grid",
+                          level->block_count * sizeof(RtGridBlock) + planes * sizeof(float));
+}
+
+/* Cuts the voxels of level `depth - 1` that hold too many objects into blocks of level `depth`, without
+ * lists yet. */
+static RtStatus cut_level(const Builder *builder, uint32_t depth) {
+    RtGrid *grid = builder->grid;
+    Cut cut = {builder, &grid->levels[depth - 1], &grid->levels[depth], 0, 0};
+    cut.from->inner = rt_alloc(cut.from->voxel_count, sizeof(uint32_t));
+    if (!cut.from->inner) {
+        return rt_fail_memory(builder->error, "nested grids", cut.from->voxel_count * sizeof(uint32_t));
+    }
+    rt_grid_each_voxel(cut.from, choose_voxel, &cut);
+    double bytes = cut.bytes + (double)(cut.planes * sizeof(float)) +
+                   (double)(cut.to->block_count * sizeof(RtGridBlock));
+    for (uint32_t level = 0; level < depth; level++)
+        bytes += (double)rt_grid_level_bytes(&grid->levels[level]);
+    if (bytes > (double)builder->limit) {
+        return rt_fail(builder->error, RT_BAD_INPUT,
+                       "%u levels of grids would take up to %.3g GiB, more than %.3g GiB: depth=%u would fit",
+                       depth + 1, bytes / 0x1p30, (double)builder->limit / 0x1p30, depth);
+    }
+    RT_TRY(allocate_blocks(cut.to, cut.planes, builder->error));
+    cut.planes = 0;
+    return rt_grid_each_voxel(cut.from, cut_voxel, &cut);
+}
+
+/* ---- the lists of a level ---- */
 
 /* Where the lists grow: adds 1 to slot[v] for every voxel v taken, and stores the object at the slot before
  * where there are `ids`. Used twice: to count the lists, and to fill them. */
 typedef struct Lists {
-    const RtGrid *grid;
+    const RtGridBlock *block;
     uint32_t *slot, *ids;
     uint32_t id;
 } Lists;
@@ -132,7 +127,7 @@ static void take(void *context, const RtGridRange *range) {
     for (at[2] = range->from[2]; at[2] <= range->to[2]; at[2]++) {
         for (at[1] = range->from[1]; at[1] <= range->to[1]; at[1]++) {
             for (at[0] = range->from[0]; at[0] <= range->to[0]; at[0]++) {
-                uint32_t *entry = &lists->slot[rt_grid_voxel_at(lists->grid, at)];
+                uint32_t *entry = &lists->slot[rt_grid_voxel_at(lists->block, at)];
                 if (lists->ids) lists->ids[*entry] = lists->id;
                 ++*entry;
             }
@@ -140,55 +135,132 @@ static void take(void *context, const RtGridRange *range) {
     }
 }
 
-static void scatter(const RtGrid *grid, uint32_t *slot, uint32_t *ids) {
-    Lists lists = {grid, slot, ids, 0};
-    for (; lists.id < grid->base.scene->geometry.object_count; lists.id++) {
-        rt_grid_place(grid, lists.id, take, &lists);
+/* Deals the objects of the voxels of `from` to the blocks of `to` that are nested in them. */
+static void scatter(const RtGrid *grid, const RtGridLevel *from, const RtGridLevel *to, uint32_t *slot,
+                    uint32_t *ids) {
+    for (uint32_t v = 0; v < from->voxel_count; v++) {
+        if (from->inner[v] == RT_GRID_LEAF) continue;
+        Lists lists = {&to->blocks[from->inner[v]], slot, ids, 0};
+        for (uint32_t i = from->first[v]; i < from->first[v + 1]; i++) {
+            lists.id = from->ids[i];
+            rt_grid_place(grid, lists.block, lists.id, take, &lists);
+        }
     }
 }
 
-static RtStatus make_planes(RtGrid *grid, RtError *error) {
-    size_t total = (size_t)grid->n[0] + grid->n[1] + grid->n[2] + 3;
-    float *block = rt_alloc(total, sizeof(float));
-    if (!block) return rt_fail_memory(error, "the planes of a grid", total * sizeof(float));
-    for (int a = 0; a < 3; a++) {
-        double lo = (double)grid->box.lo.at[a], width = (double)grid->box.hi.at[a] - lo;
-        grid->planes[a] = block;
-        for (uint32_t i = 0; i <= grid->n[a]; i++) block[i] = (float)(lo + width * i / grid->n[a]);
-        block[grid->n[a]] = grid->box.hi.at[a];
-        block += grid->n[a] + 1;
+static RtStatus make_lists(const RtGrid *grid, const RtGridLevel *from, RtGridLevel *to, RtError *error) {
+    size_t voxels = to->voxel_count;
+    to->first = rt_alloc(voxels + 1, sizeof(uint32_t));
+    if (!to->first) return rt_fail_memory(error, "the voxels of a grid", (voxels + 1) * sizeof(uint32_t));
+    /* Count pass; ends of lists; fill pass, after which first[v] is the end of list v: shift by one. */
+    scatter(grid, from, to, to->first, NULL);
+    uint32_t sum = 0;
+    for (size_t v = 0; v <= voxels; v++) {
+        uint32_t length = to->first[v];
+        to->first[v] = sum;
+        sum += length;
     }
+    to->ids = rt_alloc(sum, sizeof(uint32_t));
+    if (!to->ids) return rt_fail_memory(error, "the lists of a grid", sum * sizeof(uint32_t));
+    scatter(grid, from, to, to->first, to->ids);
+    memmove(to->first + 1, to->first, voxels * sizeof(uint32_t));
+    to->first[0] = 0;
     return RT_OK;
 }
 
-static RtStatus make_lists(RtGrid *grid, uint64_t limit, RtError *error) {
-    RT_TRY(rt_grid_refuse(grid, limit, error));
-    RT_TRY(make_planes(grid, error));
-    size_t voxels = rt_grid_voxel_count(grid);
-    grid->first = rt_alloc(voxels + 1, sizeof(uint32_t));
-    if (!grid->first) return rt_fail_memory(error, "the voxels of a grid", (voxels + 1) * sizeof(uint32_t));
-    /* Count pass; ends of lists; fill pass, after which first[v] is the end of list v: shift by one. */
-    scatter(grid, grid->first, NULL);
-    uint32_t sum = 0;
-    for (size_t v = 0; v <= voxels; v++) {
-        uint32_t length = grid->first[v];
-        grid->first[v] = sum;
-        sum += length;
+/* Empties the lists of voxels that have been cut. */
+static RtStatus drop_lists(RtGridLevel *level, RtError *error) {
+    uint32_t kept = 0;
+    for (uint32_t v = 0; v < level->voxel_count; v++) {
+        uint32_t from = level->first[v], count = level->first[v + 1] - from;
+        level->first[v] = kept;
+        if (level->inner[v] != RT_GRID_LEAF) continue;
+        memmove(level->ids + kept, level->ids + from, count * sizeof(uint32_t));
+        kept += count;
     }
-    grid->ids = rt_alloc(sum, sizeof(uint32_t));
-    if (!grid->ids) return rt_fail_memory(error, "the lists of a grid", sum * sizeof(uint32_t));
-    scatter(grid, grid->first, grid->ids);
-    memmove(grid->first + 1, grid->first, voxels * sizeof(uint32_t));
-    grid->first[0] = 0;
+    level->first[level->voxel_count] = kept;
+    uint32_t *ids = rt_alloc(kept, sizeof(uint32_t));
+    if (!ids) return rt_fail_memory(error, "the lists of a grid", kept * sizeof(uint32_t));
+    memcpy(ids, level->ids, kept * sizeof(uint32_t));
+    rt_free(level->ids);
+    level->ids = ids;
+    return RT_OK;
+}
+
+/* ---- build ---- */
+
+/* Level 0, from a single voxel that holds everything. */
+static RtStatus make_root(const Builder *builder) {
+    RtGrid *grid = builder->grid;
+    RtGridLevel *level = &grid->levels[0];
+    uint32_t objects = (uint32_t)grid->base.scene->geometry.object_count, root = 0, n[3];
+    uint32_t first[2] = {0, objects};
+    uint32_t *ids = rt_alloc(objects, sizeof(uint32_t));
+    if (!ids) return rt_fail_memory(builder->error, "the objects of a grid", objects * sizeof(uint32_t));
+    for (uint32_t id = 0; id < objects; id++) ids[id] = id;
+    RtGridLevel all = {.first = first, .ids = ids, .inner = &root, .voxel_count = 1};
+
+    const uint32_t *given = builder->values[RT_GRID_RESOLUTION].resolution;
+    rt_grid_choose_resolution(&grid->box, objects, builder->values, n);
+    if (given[0] > 0) memcpy(n, given, sizeof n);
+    RtStatus status = rt_grid_refuse(grid, n, ids, objects, builder->limit, builder->error);
+    level->block_count = 1;
+    if (status == RT_OK) status = allocate_blocks(level, (size_t)n[0] + n[1] + n[2] + 3, builder->error);
+    if (status == RT_OK) {
+        memcpy(level->blocks->n, n, sizeof n);
+        make_planes(level->blocks, &grid->box, level->planes);
+        level->voxel_count = n[0] * n[1] * n[2];
+        status = make_lists(grid, &all, level, builder->error);
+    }
+    rt_free(ids);
+    return status;
+}
+
+static RtStatus make_levels(const Builder *builder) {
+    RtGrid *grid = builder->grid;
+    RT_TRY(make_root(builder));
+    grid->depth = 1;
+    while (grid->depth < builder->values[RT_GRID_DEPTH].i) {
+        RtGridLevel *from = &grid->levels[grid->depth - 1], *to = from + 1;
+        RT_TRY(cut_level(builder, grid->depth));
+        if (to->block_count == 0) {
+            rt_free(from->inner);
+            from->inner = NULL;
+            break;
+        }
+        RT_TRY(make_lists(grid, from, to, builder->error));
+        RT_TRY(drop_lists(from, builder->error));
+        grid->depth++;
+    }
     return RT_OK;
 }
 
 void rt_grid_destroy(RtAccel *accel) {
     RtGrid *grid = (RtGrid *)accel;
-    rt_free(grid->planes[0]);
-    rt_free(grid->first);
-    rt_free(grid->ids);
+    for (uint32_t i = 0; i < RT_GRID_MAX_LEVELS; i++) {
+        RtGridLevel *level = &grid->levels[i];
+        rt_free(level->blocks);
+        rt_free(level->planes);
+        rt_free(level->first);
+        rt_free(level->ids);
+        rt_free(level->inner);
+    }
     rt_free(grid);
+}
+
+/* The scene's box, beyond its flat objects by `flat`, and wider by `margin`. */
+static RtBox choose_box(const RtGeometry *geometry, double flat, double margin) {
+    RtBox box = geometry->box;
+    for (uint32_t id = 0; flat > 0 && id < geometry->object_count; id++) {
+        RtBox own = geometry->boxes[id];
+        for (int a = 0; a < 3; a++) {
+            if (own.lo.at[a] < own.hi.at[a]) continue;
+            own.lo.at[a] = rt_float_below((double)own.lo.at[a] - flat);
+            own.hi.at[a] = rt_float_above((double)own.hi.at[a] + flat);
+        }
+        box = rt_box_union(box, own);
+    }
+    return rt_box_widened(box, margin);
 }
 
 RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
@@ -196,14 +268,15 @@ RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValu
     RtAccel *accel;
     RT_TRY(rt_accel_new(&rt_grid_ops, scene, sizeof(RtGrid), &accel, error));
     RtGrid *grid = (RtGrid *)accel;
+    const Builder builder = {grid, values, limit, error};
     grid->box = scene->geometry.box;
     grid->mailbox = values[RT_GRID_MAILBOX].flag;
-    grid->surfaces = values[RT_GRID_OVERLAP].choice == OVERLAP_EXACT;
+    grid->surfaces = values[RT_GRID_OVERLAP].choice == RT_GRID_EXACT;
+    grid->slack = values[RT_GRID_SLACK].f;
     if (scene->geometry.object_count > 0) {
-        grid->box = rt_box_widened(grid->box, values[RT_GRID_MARGIN].f);
-        choose_resolution(grid, scene->geometry.object_count, values, grid->n);
+        grid->box = choose_box(&scene->geometry, values[RT_GRID_FLAT].f, values[RT_GRID_MARGIN].f);
         rt_grid_choose_margin(grid);
-        RtStatus status = make_lists(grid, limit, error);
+        RtStatus status = make_levels(&builder);
         if (status != RT_OK) {
             rt_grid_destroy(accel);
             return status;

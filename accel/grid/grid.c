@@ -1,8 +1,10 @@
 /* grid: uniform spatial partitioning. The scene's box is cut into equal voxels, each with a list of the
- * objects whose boxes touch it; a ray visits the voxels it passes through, in order.
+ * objects whose boxes touch it; a ray visits the voxels it passes through, in order. With depth > 1 a voxel
+ * with too many objects is a grid in turn.
  *
- * Papers: Fujimoto, Tanaka & Iwata 1986 (ARTS); Amanatides & Woo 1987 (the walk); Woo 1992 and Klimaszewski &
- * Sederberg 1997 (rules of resolution); Kirk & Arvo 1991 (mailboxes).
+ * Papers: Fujimoto, Tanaka & Iwata 1986 (ARTS); Amanatides & Woo 1987 (the walk); Jevans & Wyvill 1989
+ * (nested grids); Woo 1992 and Klimaszewski & Sederberg 1997 (rules of resolution); Kirk & Arvo 1991
+ * (mailboxes).
  *
  * Layout and invariant: grid.h.
  *
@@ -17,9 +19,18 @@
  * plane; rays in a plane of voxels, or so far away that float32 cannot tell voxels apart, have more, and
  * visit more.
  *
+ * Nested. A voxel that is a grid itself is walked through when it is visited, from the same moment on. Its
+ * outermost planes are the voxel's, bit for bit, and the crossings of a plane are the same on every level; so
+ * the ray is in one of its intervals on each axis whenever it is in the voxel. At the t of a hit it is in a
+ * voxel whose intervals cover a part of b; b's part in there is covered by intervals i0..i1 of the nested
+ * grid, near(i0) <= t because plane i0 does not lie beyond b or is the voxel's own, far(i1) >= t likewise,
+ * and the argument goes on from there. A nested walk ends where the voxel does, or beyond the best t; only
+ * the outermost one ends the search.
+ *
  * With overlap=exact a voxel lists fewer objects; place.c proves that they are enough.
  *
- * Counting: an extent test for the box of the grid; a step per voxel visited. */
+ * Counting: an extent test for the box of the grid; a step per voxel visited. With nested grids a step per
+ * grid walked through, too: the voxel that it fills is no leaf, and the outermost grid fills one. */
 #include "accel/grid/grid.h"
 #include "accel/mailbox.h"
 
@@ -52,9 +63,9 @@ RT_KERNEL void update_enter(Axis *axis) {
 }
 
 /* The intervals that the ray is in at `t`. */
-RT_KERNEL Axis start_axis(const RtGrid *grid, const RtPreparedRay *ray, int a, float t) {
-    Axis axis = {.planes = grid->planes[a],
-                 .n = grid->n[a],
+RT_KERNEL Axis start_axis(const RtGridBlock *block, const RtPreparedRay *ray, int a, float t) {
+    Axis axis = {.planes = block->planes[a],
+                 .n = block->n[a],
                  .mirrored = ray->negative[a],
                  .near_org = ray->org_near[a],
                  .far_org = ray->org_far[a],
@@ -82,31 +93,137 @@ RT_KERNEL bool retire(Axis *axis, float t) {
     return true;
 }
 
-RT_KERNEL bool visit_voxel(const RtGrid *self, RtMailbox *mailbox, size_t voxel, const RtPreparedRay *ray,
-                           bool any, RtHit *best, RtTally *tally) {
-    uint32_t from = self->first[voxel], to = self->first[voxel + 1];
+/* Goes to the moment at which the next interval is entered, on axis *entered, at *t. False where there is
+ * none, the ray leaves the block before it, or a nearer hit is known. */
+RT_KERNEL bool advance(Axis axes[3], int *entered, float *t, const RtPreparedRay *ray, const RtHit *best) {
+    int next = axes[0].enter <= axes[1].enter ? (axes[0].enter <= axes[2].enter ? 0 : 2)
+                                              : (axes[1].enter <= axes[2].enter ? 1 : 2);
+    *entered = next;
+    *t = axes[next].enter;
+    /* INFINITY where the ray has no interval left to enter on any axis. */
+    if (*t > rt_limit(ray, best)) return false;
+    for (int a = 0; a < 3; a++) {
+        if (!retire(&axes[a], *t)) return false;
+    }
+    axes[next].hi++;
+    update_enter(&axes[next]);
+    return true;
+}
+
+/* The voxel that lies in the intervals i of the three axes. */
+RT_KERNEL size_t voxel_in(const RtGridBlock *block, const Axis axes[3], const uint32_t i[3]) {
+    uint32_t at[3];
+    for (int a = 0; a < 3; a++) at[a] = axes[a].mirrored ? axes[a].n - 1 - i[a] : i[a];
+    return rt_grid_voxel_at(block, at);
+}
+
+RT_KERNEL bool visit_voxel(const RtGrid *self, const RtGridLevel *level, RtMailbox *mailbox, size_t voxel,
+                           const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+    uint32_t from = level->first[voxel], to = level->first[voxel + 1];
     RT_COUNT(tally, steps, 1);
     RT_COUNT(tally, leaf_steps, 1);
     RT_COUNT(tally, empty_steps, from == to);
-    return rt_test_list(&self->base.scene->geometry, mailbox, self->ids + from, to - from, ray, any, best,
+    return rt_test_list(&self->base.scene->geometry, mailbox, level->ids + from, to - from, ray, any, best,
                         tally);
 }
+
+/* ---- one level ---- */
 
 /* Visits the voxels of all current intervals, but of axis `entered` only the newest. */
 RT_KERNEL bool visit_current(const RtGrid *self, RtMailbox *mailbox, const Axis axes[3], int entered,
                              const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
-    uint32_t from[3], i[3], at[3];
+    const RtGridLevel *level = &self->levels[0];
+    uint32_t from[3], i[3];
     for (int a = 0; a < 3; a++) from[a] = a == entered ? axes[a].hi : axes[a].lo;
     for (i[2] = from[2]; i[2] <= axes[2].hi; i[2]++) {
         for (i[1] = from[1]; i[1] <= axes[1].hi; i[1]++) {
             for (i[0] = from[0]; i[0] <= axes[0].hi; i[0]++) {
-                for (int a = 0; a < 3; a++) at[a] = axes[a].mirrored ? axes[a].n - 1 - i[a] : i[a];
-                if (visit_voxel(self, mailbox, rt_grid_voxel_at(self, at), ray, any, best, tally))
-                    return true;
+                size_t voxel = voxel_in(level->blocks, axes, i);
+                if (visit_voxel(self, level, mailbox, voxel, ray, any, best, tally)) return true;
             }
         }
     }
     return false;
+}
+
+RT_KERNEL void walk_flat(const RtGrid *self, RtMailbox *mailbox, float t, const RtPreparedRay *ray, bool any,
+                         RtHit *best, RtTally *tally) {
+    Axis axes[3];
+    int entered = -1;
+    for (int a = 0; a < 3; a++) axes[a] = start_axis(self->levels[0].blocks, ray, a, t);
+    do {
+        if (visit_current(self, mailbox, axes, entered, ray, any, best, tally)) return;
+    } while (advance(axes, &entered, &t, ray, best));
+}
+
+/* ---- several levels ---- */
+
+/* The walk through one block, that of each level on a stack. Of the voxels to visit at moment t, those in the
+ * intervals from..hi of the axes, the next is in the intervals i; none is left where i[2] is beyond. */
+typedef struct Walk {
+    const RtGridBlock *block;
+    Axis axes[3];
+    uint32_t from[3], i[3];
+    int entered; /* the axis that was crossed last, or -1 */
+    float t;
+} Walk;
+
+RT_KERNEL void begin_moment(Walk *walk) {
+    for (int a = 0; a < 3; a++) {
+        walk->i[a] = walk->from[a] = a == walk->entered ? walk->axes[a].hi : walk->axes[a].lo;
+    }
+}
+
+RT_KERNEL void begin_walk(Walk *walk, const RtGridBlock *block, const RtPreparedRay *ray, float t) {
+    walk->block = block;
+    walk->entered = -1;
+    walk->t = t;
+    for (int a = 0; a < 3; a++) walk->axes[a] = start_axis(block, ray, a, t);
+    begin_moment(walk);
+}
+
+/* The next voxel of this moment; false where there is none. */
+RT_KERNEL bool next_voxel(Walk *walk, size_t *voxel) {
+    uint32_t *i = walk->i;
+    if (i[2] > walk->axes[2].hi) return false;
+    *voxel = voxel_in(walk->block, walk->axes, i);
+    if (++i[0] <= walk->axes[0].hi) return true;
+    i[0] = walk->from[0];
+    if (++i[1] <= walk->axes[1].hi) return true;
+    i[1] = walk->from[1];
+    i[2]++;
+    return true;
+}
+
+RT_KERNEL void walk_nested(const RtGrid *self, RtMailbox *mailbox, float t, const RtPreparedRay *ray,
+                           bool any, RtHit *best, RtTally *tally) {
+    Walk stack[RT_GRID_MAX_LEVELS], *walk = stack;
+    const RtGridLevel *level = self->levels;
+    RT_COUNT(tally, steps, 1);
+    begin_walk(walk, level->blocks, ray, t);
+    for (;;) {
+        size_t voxel;
+        if (!next_voxel(walk, &voxel)) {
+            if (advance(walk->axes, &walk->entered, &walk->t, ray, best)) {
+                begin_moment(walk);
+            } else if (walk == stack) {
+                return;
+            } else {
+                walk--;
+                level--;
+            }
+            continue;
+        }
+        uint32_t inner = rt_grid_inner(level, voxel);
+        if (inner == RT_GRID_LEAF) {
+            if (visit_voxel(self, level, mailbox, voxel, ray, any, best, tally)) return;
+        } else {
+            RT_COUNT(tally, steps, 1);
+            level++;
+            begin_walk(walk + 1, &level->blocks[inner], ray, walk->t);
+            walk++;
+        }
+    }
 }
 
 /* Do voxels that list surfaces serve this ray? */
@@ -123,7 +240,7 @@ RT_KERNEL bool in_domain(const RtGrid *self, const RtPreparedRay *ray) {
 RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     float t;
-    if (self->n[0] == 0) return;
+    if (self->depth == 0) return;
     RT_COUNT(tally, extent_tests, 1);
     if (!rt_box_hit(&self->box, ray, ray->tmax, &t)) return;
     if (self->surfaces && !in_domain(self, ray)) {
@@ -132,21 +249,10 @@ RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ra
     }
     RtMailbox *mailbox = self->mailbox ? scratch : NULL;
     rt_mailbox_next_ray(mailbox, &self->base.scene->geometry);
-    Axis axes[3];
-    for (int a = 0; a < 3; a++) axes[a] = start_axis(self, ray, a, t);
-    int entered = -1;
-    for (;;) {
-        if (visit_current(self, mailbox, axes, entered, ray, any, best, tally)) return;
-        entered = axes[0].enter <= axes[1].enter ? (axes[0].enter <= axes[2].enter ? 0 : 2)
-                                                 : (axes[1].enter <= axes[2].enter ? 1 : 2);
-        t = axes[entered].enter;
-        /* INFINITY where the ray has no interval left to enter on any axis. */
-        if (t > rt_limit(ray, best)) return;
-        for (int a = 0; a < 3; a++) {
-            if (!retire(&axes[a], t)) return;
-        }
-        axes[entered].hi++;
-        update_enter(&axes[entered]);
+    if (self->depth == 1) {
+        walk_flat(self, mailbox, t, ray, any, best, tally);
+    } else {
+        walk_nested(self, mailbox, t, ray, any, best, tally);
     }
 }
 
@@ -156,7 +262,7 @@ const RtAccelOps rt_grid_ops = {
     .name = "grid",
     .summary = "uniform spatial partitioning: equal voxels with lists of objects, walked in order",
     .paper = "Fujimoto, Tanaka & Iwata 1986, ARTS, CG&A 6(4); Amanatides & Woo 1987, A Fast Voxel Traversal "
-             "Algorithm",
+             "Algorithm; Jevans & Wyvill 1989, Adaptive Voxel Subdivision for Ray Tracing, GI'89",
     .params = rt_grid_params,
     .param_count = RT_GRID_PARAM_COUNT,
     .build = rt_grid_build,

@@ -1,10 +1,15 @@
 /* The inside of grid: its data, shared by the files of this folder.
  *
- * Per axis the planes between voxels, planes[axis][0..n[axis]]; all lists in one array, `ids`, voxel after
- * voxel, x fastest; the list of voxel v is ids[first[v]..first[v + 1]). Invariant: an object is in the list
- * of each voxel whose closed intervals of planes meet its box on all three axes, and of no other; a list is
- * ascending. With overlap=exact an object is only in those of them that its surface meets as well, and rays
- * from outside `domain` are tested against every object. */
+ * Levels. Level 0 is one block: the box of the grid, cut into voxels by planes. A voxel may be cut into
+ * voxels again: a block of the next level, nested in it. Per level, all voxels of all blocks are numbered
+ * block after block, within a block x fastest; all lists are in one array, `ids`; the list of voxel v is
+ * ids[first[v]..first[v + 1]), empty where a block is nested in it.
+ *
+ * Invariants. The outermost planes of a nested block are those of its voxel, bit for bit. An object is in the
+ * list of each voxel without a nested block whose closed intervals of planes, grown by `slack`, meet its box
+ * on all three axes, as those of the voxels around it do, and of no other; a list is ascending. With
+ * overlap=exact an object is only in those of them that its surface meets as well, and rays from outside
+ * `domain` are tested against every object. */
 #ifndef RT_ACCEL_GRID_GRID_H
 #define RT_ACCEL_GRID_GRID_H
 
@@ -14,27 +19,58 @@ enum {
     RT_GRID_RULE,
     RT_GRID_DENSITY,
     RT_GRID_RESOLUTION,
+    RT_GRID_DEPTH,
+    RT_GRID_NEST,
     RT_GRID_MARGIN,
+    RT_GRID_FLAT,
+    RT_GRID_SLACK,
     RT_GRID_MAILBOX,
     RT_GRID_OVERLAP,
     RT_GRID_PARAM_COUNT
 };
 extern const RtParam rt_grid_params[RT_GRID_PARAM_COUNT];
 
+/* In the order of the choices of the parameters. */
+enum { RT_GRID_CUBIC, RT_GRID_WOO, RT_GRID_HETEROGENEOUS, RT_GRID_REGULAR };
+enum { RT_GRID_BOX, RT_GRID_EXACT };
+
+enum { RT_GRID_MAX_LEVELS = 8 };
+
+/* A box that is cut into voxels. */
+typedef struct RtGridBlock {
+    uint32_t n[3];    /* voxels along each axis */
+    uint32_t voxel;   /* number of its first voxel in the level */
+    float *planes[3]; /* [n[axis] + 1], ascending, parts of the level's array */
+} RtGridBlock;
+
+/* RtGridLevel.inner of a voxel without a nested block. */
+#define RT_GRID_LEAF UINT32_MAX
+
+typedef struct RtGridLevel {
+    RtGridBlock *blocks; /* [block_count], in the order of the voxels that they are nested in */
+    float *planes;       /* of all blocks */
+    uint32_t *first;     /* [voxel_count + 1] */
+    uint32_t *ids;       /* [first[voxel_count]] */
+    uint32_t *inner;     /* [voxel_count] the block nested in a voxel; NULL on the deepest level */
+    uint32_t block_count, voxel_count;
+} RtGridLevel;
+
 typedef struct RtGrid {
     RtAccel base;
     RtBox box;
-    uint32_t n[3];    /* voxels along each axis; 0 if there is no object */
-    float *planes[3]; /* [n[axis] + 1], ascending, parts of one block */
-    uint32_t *first;  /* [voxels + 1] */
-    uint32_t *ids;    /* [first[voxels]] */
+    RtGridLevel levels[RT_GRID_MAX_LEVELS];
+    uint32_t depth; /* levels there are; 0 if there is no object */
     bool mailbox;
     bool surfaces; /* overlap=exact */
+    double slack;  /* voxels are grown by so much before objects are put into them */
+    double margin; /* ... and by so much more before surfaces are */
     RtBox domain;  /* origins of the rays that voxels with surfaces serve */
-    double margin; /* voxels are grown by so much before surfaces are put into them */
 } RtGrid;
 
 extern const RtAccelOps rt_grid_ops;
+
+/* resolution.c: into how many voxels along each axis to cut a box with so many objects. */
+void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue *values, uint32_t n[3]);
 
 /* place.c: which voxels an object goes into. */
 
@@ -46,17 +82,31 @@ typedef struct RtGridRange {
 /* Chooses margin and domain from the scene's box. */
 void rt_grid_choose_margin(RtGrid *grid);
 
-/* The box of a range, and the range of voxels that a box touches; the box must meet the grid's. */
-RtBox rt_grid_range_box(const RtGrid *grid, const RtGridRange *range);
-RtGridRange rt_grid_touched(const RtGrid *grid, const RtBox *box);
+/* The box of an object, grown by the slack. */
+RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id);
 
-/* Calls `take` for ranges that together hold each voxel that is to list object `id`, once. */
-void rt_grid_place(const RtGrid *grid, uint32_t id, void (*take)(void *context, const RtGridRange *range),
-                   void *context);
+/* The box of a range, and the range of voxels that a box touches; the box must meet the block's. */
+RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range);
+RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box);
 
-/* limit.c: fails if voxels and lists would take more than `limit` bytes, with a resolution that would fit.
- * Cheap and careful: it takes objects by their boxes, whatever the overlap. */
-RtStatus rt_grid_refuse(const RtGrid *grid, uint64_t limit, RtError *error);
+/* With overlap=exact, whether an object belongs into a voxel of this box that its own box touches. */
+bool rt_grid_surface_meets(const RtGrid *grid, uint32_t id, const RtBox *box);
+
+/* Calls `take` for ranges that together hold each voxel of the block that is to list object `id`, once. The
+ * object belongs into the block. */
+void rt_grid_place(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
+                   void (*take)(void *context, const RtGridRange *range), void *context);
+
+/* limit.c: both are cheap and careful, and take objects by their boxes, whatever the overlap. */
+
+/* Bytes of the voxels and lists of a block with n voxels along each axis, no less than it will be. */
+double rt_grid_estimate(const RtGrid *grid, const RtBox *box, const uint32_t n[3], const uint32_t *ids,
+                        uint32_t count);
+
+/* Fails if level 0, with `block` for its only block and all objects ids[0..count), would take more than
+ * `limit` bytes, with a resolution that would fit. */
+RtStatus rt_grid_refuse(const RtGrid *grid, const uint32_t n[3], const uint32_t *ids, uint32_t count,
+                        uint64_t limit, RtError *error);
 
 /* build.c; _within refuses above another limit than the usual one, for tests. */
 RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
@@ -69,12 +119,30 @@ void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);
 
-static inline size_t rt_grid_voxel_count(const RtGrid *grid) {
-    return (size_t)grid->n[0] * grid->n[1] * grid->n[2];
+/* The voxel of `block` at a place, as a number in the level. */
+static inline size_t rt_grid_voxel_at(const RtGridBlock *block, const uint32_t at[3]) {
+    return block->voxel + ((size_t)at[2] * block->n[1] + at[1]) * block->n[0] + at[0];
 }
 
-static inline size_t rt_grid_voxel_at(const RtGrid *grid, const uint32_t at[3]) {
-    return ((size_t)at[2] * grid->n[1] + at[1]) * grid->n[0] + at[0];
+/* The block nested in a voxel, or RT_GRID_LEAF. */
+static inline uint32_t rt_grid_inner(const RtGridLevel *level, size_t voxel) {
+    return level->inner ? level->inner[voxel] : RT_GRID_LEAF;
 }
+
+/* Bytes of the arrays of a level. */
+uint64_t rt_grid_level_bytes(const RtGridLevel *level);
+
+/* A voxel on its way through rt_grid_each_voxel. */
+typedef struct RtGridVoxel {
+    const RtGridLevel *level;
+    uint32_t at[3]; /* in its block */
+    size_t number;
+    RtBox box;
+} RtGridVoxel;
+
+/* Calls visit for every voxel of a level, in the order of their numbers, until it returns something else than
+ * RT_OK. */
+RtStatus rt_grid_each_voxel(const RtGridLevel *level,
+                            RtStatus (*visit)(void *context, const RtGridVoxel *voxel), void *context);
 
 #endif

@@ -21,7 +21,12 @@
  * For an origin in `domain`, the scene's box grown by 8 times its longest side, D is at most 9 such sides:
  * `margin` is 4 times what that asks for, plus 2^-40 of the largest coordinate for the test of overlap. Rays
  * from farther away are tested against every object; so are those with a dir so long or short that float32
- * runs out of exponents. A test that halves a range says no only for what none of its voxels comes near. */
+ * runs out of exponents. A test that halves a range says no only for what none of its voxels comes near.
+ *
+ * In nested blocks the same holds on every level: the nearest point q of a block, itself in the voxel that
+ * the block is nested in, has one of the block's voxels that the walk visits; and a surface that comes near
+ * it comes near the voxel around it. With `slack` both boxes and surfaces may be so much farther away, which
+ * makes lists longer only. */
 #include "accel/grid/grid.h"
 #include "shape/overlap.h"
 
@@ -42,19 +47,32 @@ void rt_grid_choose_margin(RtGrid *grid) {
     grid->margin = 0x1p-18 * (DOMAIN_SIDES + 1) * longest + 0x1p-40 * farthest + 0x1p-80;
 }
 
-RtBox rt_grid_range_box(const RtGrid *grid, const RtGridRange *range) {
-    RtBox box;
+RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id) {
+    RtBox box = grid->base.scene->geometry.boxes[id];
     for (int a = 0; a < 3; a++) {
-        box.lo.at[a] = grid->planes[a][range->from[a]];
-        box.hi.at[a] = grid->planes[a][range->to[a] + 1];
+        box.lo.at[a] = rt_float_below((double)box.lo.at[a] - grid->slack);
+        box.hi.at[a] = rt_float_above((double)box.hi.at[a] + grid->slack);
     }
     return box;
 }
 
-/* The intervals of planes on `axis` that [lo, hi], which meets the grid, touches: first to last. */
-static void touched(const RtGrid *grid, int axis, float lo, float hi, uint32_t *first, uint32_t *last) {
-    const float *plane = grid->planes[axis];
-    uint32_t n = grid->n[axis];
+RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range) {
+    RtBox box;
+    for (int a = 0; a < 3; a++) {
+        box.lo.at[a] = block->planes[a][range->from[a]];
+        box.hi.at[a] = block->planes[a][range->to[a] + 1];
+    }
+    return box;
+}
+
+bool rt_grid_surface_meets(const RtGrid *grid, uint32_t id, const RtBox *box) {
+    return rt_object_meets_box(&grid->base.scene->geometry, id, box, grid->slack + grid->margin);
+}
+
+/* The intervals of planes on `axis` that [lo, hi], which meets the block, touches: first to last. */
+static void touched(const RtGridBlock *block, int axis, float lo, float hi, uint32_t *first, uint32_t *last) {
+    const float *plane = block->planes[axis];
+    uint32_t n = block->n[axis];
     float width = plane[n] - plane[0];
     float guess = width > 0 ? (lo - plane[0]) / width * (float)n : 0;
     uint32_t i = guess > 0 ? (uint32_t)rt_minf(guess, (float)(n - 1)) : 0;
@@ -65,10 +83,10 @@ static void touched(const RtGrid *grid, int axis, float lo, float hi, uint32_t *
     *last = i;
 }
 
-RtGridRange rt_grid_touched(const RtGrid *grid, const RtBox *box) {
+RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box) {
     RtGridRange range;
     for (int a = 0; a < 3; a++) {
-        touched(grid, a, box->lo.at[a], box->hi.at[a], &range.from[a], &range.to[a]);
+        touched(block, a, box->lo.at[a], box->hi.at[a], &range.from[a], &range.to[a]);
     }
     return range;
 }
@@ -90,18 +108,18 @@ static bool halve(RtGridRange *range, RtGridRange *other) {
 /* Each halving leaves one range for later; 3 axes of 4096 voxels are halved 36 times. */
 enum { MAX_RANGES = 40 };
 
-void rt_grid_place(const RtGrid *grid, uint32_t id, void (*take)(void *context, const RtGridRange *range),
-                   void *context) {
-    const RtGeometry *g = &grid->base.scene->geometry;
-    RtGridRange stack[MAX_RANGES], range = rt_grid_touched(grid, &g->boxes[id]);
+void rt_grid_place(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
+                   void (*take)(void *context, const RtGridRange *range), void *context) {
+    RtBox object = rt_grid_object_box(grid, id);
+    RtGridRange stack[MAX_RANGES], range = rt_grid_touched(block, &object);
     uint32_t stacked = 0;
     if (!grid->surfaces) {
         take(context, &range);
         return;
     }
     for (;;) {
-        RtBox box = rt_grid_range_box(grid, &range);
-        if (rt_object_meets_box(g, id, &box, grid->margin)) {
+        RtBox box = rt_grid_range_box(block, &range);
+        if (rt_grid_surface_meets(grid, id, &box)) {
             if (halve(&range, &stack[stacked])) {
                 stacked++;
                 continue;
