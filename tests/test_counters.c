@@ -245,6 +245,46 @@ static const Row rows[] = {
      false,
      {.rays = 1, .object_tests = 6, .extent_tests = 1, .steps = 8, .leaf_steps = 8, .empty_steps = 2}},
 
+    /* Nested grids: a step for each grid, too. The one voxel holds both spheres and so a grid of 5 x 1 x 1,
+     * voxels of width 4/5: sphere 0 in the first two, none in the third, sphere 1 in the last two. THROUGH
+     * reaches the first only. */
+    {"grid:resolution=1x1x1,depth=2,nest=1,density=3",
+     THROUGH,
+     false,
+     {.rays = 1,
+      .hits = 1,
+      .object_tests = 1,
+      .object_hits = 1,
+      .extent_tests = 1,
+      .steps = 3,
+      .leaf_steps = 1}},
+    {"grid:resolution=1x1x1,depth=2,nest=1,density=3",
+     BETWEEN,
+     true,
+     {.rays = 1,
+      .object_tests = 2,
+      .extent_tests = 1,
+      .steps = 7,
+      .leaf_steps = 5,
+      .empty_steps = 1,
+      .repeats_avoided = 2}},
+    {"grid:resolution=1x1x1,depth=2,nest=1,density=3", BESIDE, true, {.rays = 1, .extent_tests = 1}},
+    /* Nothing has more than two objects: no grid is nested, and none counts a step. */
+    {"grid:resolution=1x1x1,depth=2,nest=2",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
+    /* Two voxels that hold grids of 2 x 1 x 1. By the slack sphere 0 reaches up to x = 2.2 and sphere 1 down
+     * to 1.8, so their four voxels list 1, 2, 2 and 1 of them; one mailbox serves all grids. */
+    {"grid:resolution=2x1x1,depth=2,nest=1,density=1,slack=1.2",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 7, .leaf_steps = 4, .repeats_avoided = 4}},
+    {"grid:resolution=2x1x1,depth=2,nest=1,density=1,slack=1.2,mailbox=off",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 6, .extent_tests = 1, .steps = 7, .leaf_steps = 4}},
+
     /* octree: an extent test for the box of the root; a step per node visited. The root is cut at (2, 0.5,
      * 0.5) into eight leaves, four of which hold sphere 0, four sphere 1. THROUGH runs in two of the planes,
      * so beside the root it visits all four of sphere 0; those of sphere 1 begin beyond the hit. */

@@ -45,6 +45,8 @@ static const struct {
     {"clusters:method=rubin-whitted,width=8", false},
     {"grid:mailbox=off", true},
     {"grid:resolution=5x9x13,margin=0.01,mailbox=off", true},
+    {"grid:density=0.3,depth=2,nest=3,mailbox=off", true},
+    {"grid:density=1,depth=3,nest=1,mailbox=off", true},
     {"octree:traversal=parametric,mailbox=off", true},
     {"octree:traversal=points,mailbox=off", true},
     {"octree:traversal=neighbours,mailbox=off", true},

@@ -38,7 +38,7 @@ static bool divisible(const RtGrid *grid, const RtBox *box, const uint32_t *ids,
     return false;
 }
 
-/* Numbers the voxels that are to be cut, and says what they will take. */
+/* Numbers the voxels that are to be cut, and says what they will take. A grid of one voxel is none. */
 static RtStatus choose_voxel(void *context, const RtGridVoxel *voxel) {
     Cut *cut = context;
     const Builder *builder = cut->builder;
@@ -48,6 +48,7 @@ static RtStatus choose_voxel(void *context, const RtGridVoxel *voxel) {
     if (count <= builder->values[RT_GRID_NEST].i) return RT_OK;
     if (!divisible(builder->grid, &voxel->box, ids, count)) return RT_OK;
     rt_grid_choose_resolution(&voxel->box, count, builder->values, n);
+    if ((size_t)n[0] * n[1] * n[2] == 1) return RT_OK;
     cut->from->inner[voxel->number] = cut->to->block_count++;
     cut->bytes += rt_grid_estimate(builder->grid, &voxel->box, n, ids, count);
     cut->planes += (size_t)n[0] + n[1] + n[2] + 3;
