@@ -5,6 +5,7 @@
 #include "base/file.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,31 +46,49 @@ static json_t *stats_of(const char *arguments) {
     return stats;
 }
 
-static void assert_within_1_percent(json_int_t got, double published) {
-    if ((double)got < 0.99 * published || (double)got > 1.01 * published) {
-        fail_msg("%lld is not within 1 %% of %.0f", (long long)got, published);
+static void assert_close(const char *scene, const char *what, json_int_t got, double published,
+                         double percent) {
+    if (fabs((double)got - published) > percent / 100 * published) {
+        fail_msg("%s: %lld %s rays are not within %g %% of %.0f", scene, (long long)got, what, percent,
+                 published);
     }
 }
 
 /* Rays by kind at 512 x 512 pixels' corners and depth 5, as the README of SPD (Haines) gives them. Havran
  * 1999 publishes a little more for balls, 959244 and 179884; ours rise to his when secondary rays start so
  * close to the surface that they hit it again (an offset of 2^-24 of the point), and move by 0.01 %
- * at most for all offsets from 2^-21 to 2^-14. */
-static void balls_and_tetra_have_the_rays_that_spd_publishes(void **state) {
+ * at most for all offsets from 2^-21 to 2^-14. Of gears 3 % fewer rays are transmitted than published: here
+ * total reflection makes one reflected ray and none that is transmitted. */
+static void the_databases_have_the_rays_that_spd_publishes(void **state) {
     (void)state;
-    json_t *stats = stats_of("balls --size 512x512 --corners --depth 5");
-    assert_int_equal(json_integer_value(json_object_get(stats, "objects")), 7382);
-    assert_int_equal(counter(stats, "primary", "rays"), 513 * 513);
-    assert_int_equal(counter(stats, "primary", "hits"), 513 * 513);
-    assert_within_1_percent(counter(stats, "shadow", "rays"), 954368);
-    assert_within_1_percent(counter(stats, "reflection", "rays"), 175095);
-    json_decref(stats);
-    stats = stats_of("tetra --size 512x512 --corners --depth 5");
-    assert_int_equal(json_integer_value(json_object_get(stats, "objects")), 4096);
-    assert_within_1_percent(counter(stats, "primary", "hits"), 49788);
-    assert_within_1_percent(counter(stats, "shadow", "rays"), 46112);
-    assert_int_equal(counter(stats, "reflection", "rays"), 0);
-    json_decref(stats);
+    static const struct {
+        const char *scene;
+        json_int_t objects;
+        double hits, shadow, reflection, transmission;
+        double percent; /* within which transmitted rays are */
+    } cases[] = {
+        {"balls", 7382, 263169, 954368, 175095, 0, 0},
+        {"gears", 9345, 245086, 2246955, 304643, 207564, 4},
+        {"mount", 8196, 173125, 412922, 354769, 354769, 1},
+        {"rings", 8401, 263169, 1085002, 315236, 0, 0},
+        {"teapot", 9264, 161120, 407656, 225248, 0, 0},
+        {"tetra", 4096, 49788, 46112, 0, 0, 0},
+        {"tree", 8191, 169836, 1097419, 0, 0, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const char *scene = cases[i].scene;
+        char arguments[128];
+        snprintf(arguments, sizeof arguments, "%s --size 512x512 --corners --depth 5", scene);
+        json_t *stats = stats_of(arguments);
+        assert_int_equal(json_integer_value(json_object_get(stats, "objects")), cases[i].objects);
+        assert_int_equal(counter(stats, "primary", "rays"), 513 * 513);
+        assert_close(scene, "hit", counter(stats, "primary", "hits"), cases[i].hits, 1);
+        assert_close(scene, "shadow", counter(stats, "shadow", "rays"), cases[i].shadow, 1);
+        assert_close(scene, "reflected", counter(stats, "reflection", "rays"), cases[i].reflection, 1);
+        assert_close(scene, "transmitted", counter(stats, "transmission", "rays"), cases[i].transmission,
+                     cases[i].percent);
+        json_decref(stats);
+    }
 }
 
 static void everything_is_written_at_once_and_the_image_depends_on_no_thread(void **state) {
@@ -136,7 +155,7 @@ static void wrong_usage_exits_with_2_and_says_what_would_be_right(void **state) 
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balls_and_tetra_have_the_rays_that_spd_publishes),
+        cmocka_unit_test(the_databases_have_the_rays_that_spd_publishes),
         cmocka_unit_test(everything_is_written_at_once_and_the_image_depends_on_no_thread),
         cmocka_unit_test(a_check_compares_every_ray_with_brute),
         cmocka_unit_test(wrong_usage_exits_with_2_and_says_what_would_be_right),
