@@ -98,7 +98,7 @@ static void mark_axis(const RtTreeRef *refs, uint32_t count, int axis, Mark *mar
 
 /* Few references: each gets a bin of its own, as it were. */
 static uint32_t split_few(RtTreeRef *refs, uint32_t count) {
-    Mark marks[RT_MAX_BINS];
+    Mark marks[RT_MAX_BINS] = {{0, 0}};
     RtTreeRef kept[RT_MAX_BINS];
     double right_cost[RT_MAX_BINS], least = INFINITY;
     uint32_t left = 0;
