@@ -14,6 +14,7 @@
     X(rt_extents_ops)                                                                                        \
     X(rt_grid_ops)                                                                                           \
     X(rt_octree_ops)                                                                                         \
+    X(rt_kd_ops)                                                                                             \
     X(rt_ideal_ops)                                                                                          \
     X(rt_item_ops)                                                                                           \
     X(rt_cache_ops)                                                                                          \

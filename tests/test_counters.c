@@ -345,6 +345,48 @@ static const Row rows[] = {
      {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 4, .leaf_steps = 2}},
     {"octree", BESIDE, false, {.rays = 1, .extent_tests = 1}},
 
+    /* kd: an extent test for the cell of the root; a step per node visited. The root is cut at x = 1, sphere
+     * 0 being the lower leaf; what is above is cut at x = 3 into an empty leaf and that of sphere 1. */
+    {"kd",
+     THROUGH,
+     false,
+     {.rays = 1,
+      .hits = 1,
+      .object_tests = 1,
+      .object_hits = 1,
+      .extent_tests = 1,
+      .steps = 2,
+      .leaf_steps = 1}},
+    {"kd",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 5, .leaf_steps = 3, .empty_steps = 1}},
+    {"kd:overlap=exact",
+     BETWEEN,
+     true,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 5, .leaf_steps = 3, .empty_steps = 1}},
+    {"kd:max_objects=1",
+     BETWEEN,
+     false,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 2}},
+    /* A visit that costs ten object tests saves nothing here: the root is a leaf of two, or its children are
+     * leaves if one split need not. */
+    {"kd:traversal=10,failures=0",
+     THROUGH,
+     false,
+     {.rays = 1,
+      .hits = 1,
+      .object_tests = 2,
+      .object_hits = 2,
+      .extent_tests = 1,
+      .steps = 1,
+      .leaf_steps = 1}},
+    {"kd:traversal=10,failures=1",
+     BETWEEN,
+     true,
+     {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 2}},
+    {"kd", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+
     /* extents: a step and an extent test per object, until the search is over; sphere 1 begins beyond the hit
      * on sphere 0. BETWEEN is inside the boxes, but 0.64 from the centres of the spheres; of slabs, the three
      * of the axes are the box again, and the diagonals of a cube's faces turn the ray away. */

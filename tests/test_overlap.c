@@ -62,6 +62,71 @@ static void a_slanted_cylinder_leaves_corners_of_its_box_free(void **state) {
     rt_geometry_clear(&g);
 }
 
+/* Asserts what the part of object 0 in a box is, to a few units of float32. */
+static void assert_part(const RtGeometry *g, RtBox box, RtBox expected) {
+    RtBox part;
+    assert_true(rt_object_part(g, 0, &box, margin, &part));
+    for (int a = 0; a < 3; a++) {
+        if (fabsf(part.lo.at[a] - expected.lo.at[a]) < 1e-6f &&
+            fabsf(part.hi.at[a] - expected.hi.at[a]) < 1e-6f) {
+            continue;
+        }
+        fail_msg("axis %d: %g to %g for %g to %g", a, (double)part.lo.at[a], (double)part.hi.at[a],
+                 (double)expected.lo.at[a], (double)expected.hi.at[a]);
+    }
+}
+
+static void parts_of_a_triangle_and_of_a_concave_polygon_are_clipped(void **state) {
+    (void)state;
+    const RtVec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+    const RtVec3 l[6] = {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {1, 1, 0}, {1, 4, 0}, {0, 4, 0}};
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_part(&g, (RtBox){{0.75f, 0, 0}, {1, 1, 1}}, (RtBox){{0.75f, 0, 0}, {1, 0.25f, 0.25f}});
+    assert_part(&g, (RtBox){{0, 0.5f, 0}, {1, 1, 1}}, (RtBox){{0, 0.5f, 0.5f}, {0.5f, 1, 1}});
+    RtBox beyond = cube(0.9f, 0.9f, 0.9f, 0.1f), part;
+    assert_false(rt_object_part(&g, 0, &beyond, margin, &part));
+    rt_geometry_clear(&g);
+    assert_ok(rt_geometry_add_polygon(&g, l, 6, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_part(&g, (RtBox){{0, 2, -1}, {4, 4, 1}}, (RtBox){{0, 2, 0}, {1, 4, 0}});
+    assert_part(&g, (RtBox){{0.5f, 0, -1}, {4, 4, 1}}, (RtBox){{0.5f, 0, 0}, {4, 4, 0}});
+    rt_geometry_clear(&g);
+}
+
+static void parts_of_balls_and_cones_end_where_they_narrow(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    RtBox inside = cube(0, 0, 0, 0.5f), part;
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_part(&g, (RtBox){{0.8f, -1, -1}, {1, 1, 1}}, (RtBox){{0.8f, -0.6f, -0.6f}, {1, 0.6f, 0.6f}});
+    assert_false(rt_object_part(&g, 0, &inside, margin, &part));
+    rt_geometry_clear(&g);
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 0, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_part(&g, (RtBox){{-1, -1, 2}, {1, 1, 3}}, (RtBox){{-0.5f, -0.5f, 2}, {0.5f, 0.5f, 3}});
+    assert_part(&g, (RtBox){{0.75f, -1, 0}, {1, 1, 4}}, (RtBox){{0.75f, -1, 0}, {1, 1, 1}});
+    rt_geometry_clear(&g);
+}
+
+/* The own box of the object is cut into eight by planes through a point of its surface: that is in the part
+ * in each of them. */
+static void assert_parts_hold(const RtScene *scene, uint32_t id, RtVec3 point, double near) {
+    RtBox own = scene->geometry.boxes[id], part;
+    point = rt_vec_min(rt_vec_max(point, own.lo), own.hi);
+    for (uint32_t octant = 0; octant < 8; octant++) {
+        RtBox box = own;
+        for (int a = 0; a < 3; a++) (octant >> a & 1 ? &box.lo : &box.hi)->at[a] = point.at[a];
+        if (rt_object_part(&scene->geometry, id, &box, near, &part) &&
+            rt_box_contains(part, (RtBox){point, point}) && rt_box_contains(box, part)) {
+            continue;
+        }
+        fail_msg("%s: the part of object %u in octant %u does not hold a hit", scene->name, id, octant);
+    }
+}
+
 /* Points that rays hit are points of surfaces: boxes about them are met, whatever the shape. */
 static void boxes_about_hits_are_met(void **state) {
     (void)state;
@@ -87,6 +152,7 @@ static void boxes_about_hits_are_met(void **state) {
             if (!rt_object_meets_box(&scene.geometry, hits[i].object, &point, near)) {
                 fail_msg("%s: ray %zu hits object %u where it is not", scene.name, i, hits[i].object);
             }
+            assert_parts_hold(&scene, hits[i].object, p, near);
         }
         rt_query_clear(&query);
         rt_accel_destroy(brute);
@@ -127,6 +193,8 @@ int main(void) {
         cmocka_unit_test(a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges),
         cmocka_unit_test(a_slanted_polygon_is_met_like_a_triangle),
         cmocka_unit_test(a_slanted_cylinder_leaves_corners_of_its_box_free),
+        cmocka_unit_test(parts_of_a_triangle_and_of_a_concave_polygon_are_clipped),
+        cmocka_unit_test(parts_of_balls_and_cones_end_where_they_narrow),
         cmocka_unit_test(boxes_about_hits_are_met),
         cmocka_unit_test(a_grid_leaves_out_voxels_inside_a_sphere),
     };

@@ -51,6 +51,9 @@ static const struct {
     {"octree:traversal=points,mailbox=off", true},
     {"octree:traversal=neighbours,mailbox=off", true},
     {"octree:split=cost,traversal=neighbours,mailbox=off", true},
+    {"kd:mailbox=off", false},
+    {"kd:mailbox=off,overlap=exact,traversal=3,failures=9", false},
+    {"kd:mailbox=off,max_objects=6", true},
     {"brute", true},
 };
 

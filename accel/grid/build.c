@@ -276,7 +276,7 @@ RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValu
     grid->slack = values[RT_GRID_SLACK].f;
     if (scene->geometry.object_count > 0) {
         grid->box = choose_box(&scene->geometry, values[RT_GRID_FLAT].f, values[RT_GRID_MARGIN].f);
-        rt_grid_choose_margin(grid);
+        grid->served = rt_surface_rays(&scene->geometry.box, &grid->box);
         RtStatus status = make_levels(&builder);
         if (status != RT_OK) {
             rt_grid_destroy(accel);

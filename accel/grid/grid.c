@@ -27,7 +27,7 @@
  * and the argument goes on from there. A nested walk ends where the voxel does, or beyond the best t; only
  * the outermost one ends the search.
  *
- * With overlap=exact a voxel lists fewer objects; place.c proves that they are enough.
+ * With overlap=exact a voxel lists fewer objects; accel/surface.h proves that they are enough.
  *
  * Counting: an extent test for the box of the grid; a step per voxel visited. With nested grids a step per
  * grid walked through, too: the voxel that it fills is no leaf, and the outermost grid fills one. */
@@ -226,24 +226,13 @@ RT_KERNEL void walk_nested(const RtGrid *self, RtMailbox *mailbox, float t, cons
     }
 }
 
-/* Do voxels that list surfaces serve this ray? */
-RT_KERNEL bool in_domain(const RtGrid *self, const RtPreparedRay *ray) {
-    float longest = fabsf(ray->dir.at[ray->kz]);
-    bool inside = longest >= 0x1p-64f && longest <= 0x1p64f;
-    for (int a = 0; a < 3; a++) {
-        float org = ray->org.at[a];
-        inside &= org >= self->domain.lo.at[a] && org <= self->domain.hi.at[a];
-    }
-    return inside;
-}
-
 RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     float t;
     if (self->depth == 0) return;
     RT_COUNT(tally, extent_tests, 1);
     if (!rt_box_hit(&self->box, ray, ray->tmax, &t)) return;
-    if (self->surfaces && !in_domain(self, ray)) {
+    if (self->surfaces && !rt_surface_serves(&self->served, ray)) {
         rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
         return;
     }

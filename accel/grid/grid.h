@@ -8,12 +8,13 @@
  * Invariants. The outermost planes of a nested block are those of its voxel, bit for bit. An object is in the
  * list of each voxel without a nested block whose closed intervals of planes, grown by `slack`, meet its box
  * on all three axes, as those of the voxels around it do, and of no other; a list is ascending. With
- * overlap=exact an object is only in those of them that its surface meets as well, and rays from outside
- * `domain` are tested against every object. */
+ * overlap=exact an object is only in those of them that its surface meets as well, and rays that
+ * these do not serve (accel/surface.h) are tested against every object. */
 #ifndef RT_ACCEL_GRID_GRID_H
 #define RT_ACCEL_GRID_GRID_H
 
 #include "accel/accel.h"
+#include "accel/surface.h"
 
 enum {
     RT_GRID_RULE,
@@ -61,10 +62,9 @@ typedef struct RtGrid {
     RtGridLevel levels[RT_GRID_MAX_LEVELS];
     uint32_t depth; /* levels there are; 0 if there is no object */
     bool mailbox;
-    bool surfaces; /* overlap=exact */
-    double slack;  /* voxels are grown by so much before objects are put into them */
-    double margin; /* ... and by so much more before surfaces are */
-    RtBox domain;  /* origins of the rays that voxels with surfaces serve */
+    bool surfaces;        /* overlap=exact */
+    double slack;         /* voxels are grown by so much before objects are put into them */
+    RtSurfaceRays served; /* ... and by its margin more before surfaces are */
 } RtGrid;
 
 extern const RtAccelOps rt_grid_ops;
@@ -78,9 +78,6 @@ void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue
 typedef struct RtGridRange {
     uint32_t from[3], to[3];
 } RtGridRange;
-
-/* Chooses margin and domain from the scene's box. */
-void rt_grid_choose_margin(RtGrid *grid);
 
 /* The box of an object, grown by the slack. */
 RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id);

@@ -1,51 +1,12 @@
 /* Which voxels an object goes into: all that its box touches, or (overlap=exact) those of them that its
  * surface comes within `margin` of, found by halving the range of voxels that the box touches.
  *
- * Why surfaces are enough. grid.c proves that the walk visits every voxel whose three intervals the thick ray
- * is in at the t of the hit. Let p be the ray's point there, org + t * dir in real numbers, and q the point
- * of the grid nearest to p. The voxel of q is one of those: on each axis the ray reaches the near plane of
- * q's interval at or before t and the far plane at or after it even without thickness, and the thickness, 16
- * half-ulps of the distance, outweighs the 4 roundings of a crossing; where p lies outside the grid, its last
- * plane is not left before t because rt_box_admit saw to that. So it is enough that q's voxel lists the
- * object, which it does if p is within `margin` of the surface along each axis: q is no farther from any
- * point of the scene's box than p is.
- *
- * Let D be the distance, along the axis where it is largest, from the origin to the farthest point of the
- * scene. A triangle is hit as if its vertices, moved to the origin and sheared in float32, lay up to
- * 8 * 2^-24 D elsewhere (shape/triangle.h; what follows is in double). Polygons and spheres are hit in
- * double: off by less than 2^-44 D. So are cones; but near the apex an error of 2^-50 D^2 in the square of
- * the radius is 2^-25 D. (A sphere's error is divided by its radius, that of which the square is subtracted.)
- * Rounding t moves the point by 2^-24 D, and rt_box_admit by at most 4 * 2^-24 D: the hit itself is inside
- * the thick box, and the crossing it is held to has 4 roundings. In all less than 16 * 2^-24 D.
- *
- * For an origin in `domain`, the scene's box grown by 8 times its longest side, D is at most 9 such sides:
- * `margin` is 4 times what that asks for, plus 2^-40 of the largest coordinate for the test of overlap. Rays
- * from farther away are tested against every object; so are those with a dir so long or short that float32
- * runs out of exponents. A test that halves a range says no only for what none of its voxels comes near.
- *
- * In nested blocks the same holds on every level: the nearest point q of a block, itself in the voxel that
- * the block is nested in, has one of the block's voxels that the walk visits; and a surface that comes near
- * it comes near the voxel around it. With `slack` both boxes and surfaces may be so much farther away, which
- * makes lists longer only. */
+ * Why surfaces are enough: grid.c proves that the walk visits every voxel, on every level, whose three
+ * intervals the thick ray is in at the t of a hit, and accel/surface.h that the voxels of its q are among
+ * those and list the object. A test that halves a range says no only for what none of its voxels comes near.
+ * With `slack` both boxes and surfaces may be so much farther away, which makes lists longer only. */
 #include "accel/grid/grid.h"
 #include "shape/overlap.h"
-
-#define DOMAIN_SIDES 8
-
-void rt_grid_choose_margin(RtGrid *grid) {
-    const RtBox *scene = &grid->base.scene->geometry.box;
-    double farthest = 0, longest = 0;
-    for (int a = 0; a < 3; a++) {
-        double lo = (double)scene->lo.at[a], hi = (double)scene->hi.at[a];
-        farthest = fmax(farthest, fmax(fabs((double)grid->box.lo.at[a]), fabs((double)grid->box.hi.at[a])));
-        longest = fmax(longest, hi - lo);
-    }
-    for (int a = 0; a < 3; a++) {
-        grid->domain.lo.at[a] = (float)((double)scene->lo.at[a] - DOMAIN_SIDES * longest);
-        grid->domain.hi.at[a] = (float)((double)scene->hi.at[a] + DOMAIN_SIDES * longest);
-    }
-    grid->margin = 0x1p-18 * (DOMAIN_SIDES + 1) * longest + 0x1p-40 * farthest + 0x1p-80;
-}
 
 RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id) {
     RtBox box = grid->base.scene->geometry.boxes[id];
@@ -66,7 +27,7 @@ RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range) {
 }
 
 bool rt_grid_surface_meets(const RtGrid *grid, uint32_t id, const RtBox *box) {
-    return rt_object_meets_box(&grid->base.scene->geometry, id, box, grid->slack + grid->margin);
+    return rt_object_meets_box(&grid->base.scene->geometry, id, box, grid->slack + grid->served.margin);
 }
 
 /* The intervals of planes on `axis` that [lo, hi], which meets the block, touches: first to last. */

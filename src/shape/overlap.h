@@ -1,5 +1,5 @@
-/* Which boxes does the surface of an object meet? For structures that put an object only into such cells, not
- * into all that its box touches. */
+/* Which boxes does the surface of an object meet, and how much of them? For structures that put an object
+ * only into such cells, not into all that its box touches. */
 #ifndef RT_SHAPE_OVERLAP_H
 #define RT_SHAPE_OVERLAP_H
 
@@ -10,5 +10,11 @@
  * cones and concave polygons (taken as convex), where it may be true nearby. `margin` must be at least 2^-40
  * of the largest coordinate of the scene and the box, to cover rounding. */
 bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin);
+
+/* To *out, a box about all points of `box` that are inside the object's own box and within `margin`, along
+ * each axis, of its surface; false only if there are none. Nearly the least such box for triangles, spheres
+ * and cones, and for polygons of up to 16 vertices; for others all of `box` that is in the own box, where
+ * rt_object_meets_box does not say no. `margin` as there. */
+bool rt_object_part(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin, RtBox *out);
 
 #endif

@@ -1,0 +1,288 @@
+/* Building a kd-tree, depth first: a cell is divided where that is expected to cost less than testing all its
+ * objects.
+ *
+ * Paper: Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N). */
+#include "accel/kd/kd.h"
+
+#include "base/memory.h"
+#include "shape/overlap.h"
+
+#include <float.h>
+#include <string.h>
+
+enum { OVERLAP_BOX, OVERLAP_EXACT };
+
+/* Above this many bytes of nodes and lists a tree is refused. */
+#define MAX_BYTES (UINT64_C(4) << 30)
+
+const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
+    [RT_KD_TRAVERSAL] = {.name = "traversal",
+                         .type = RT_PARAM_FLOAT,
+                         .standard = "0.3",
+                         .lo = 0,
+                         .hi = 1000,
+                         .meaning = "cost of visiting an inner node, in object tests",
+                         .source = "measured",
+                         .tries = "0|1|10"},
+    [RT_KD_EMPTY_BONUS] = {.name = "empty_bonus",
+                           .type = RT_PARAM_FLOAT,
+                           .standard = "0.2",
+                           .lo = 0,
+                           .hi = 1,
+                           .meaning = "part of its cost that a split is forgiven for cutting off empty space",
+                           .source = "Wald & Havran 2006",
+                           .tries = "0|0.5|1"},
+    [RT_KD_MAX_OBJECTS] = {.name = "max_objects",
+                           .type = RT_PARAM_INT,
+                           .standard = "0",
+                           .lo = 0,
+                           .hi = 1e6,
+                           .meaning = "a cell with at most so many objects is not divided",
+                           .source = "Wald & Havran 2006: the cost alone decides",
+                           .tries = "1|2|1000000"},
+    [RT_KD_MAX_DEPTH] = {.name = "max_depth",
+                         .type = RT_PARAM_INT,
+                         .standard = "-1",
+                         .lo = -1,
+                         .hi = RT_KD_DEPTH_LIMIT,
+                         .meaning = "depth at which cells are divided no more, the root's being 0; -1: 8 and "
+                                    "1.3 times the binary logarithm of the objects",
+                         .source = "Pharr & Humphreys 2004, Physically Based Rendering",
+                         .tries = "0|5|60"},
+    [RT_KD_FAILURES] = {.name = "failures",
+                        .type = RT_PARAM_INT,
+                        .standard = "1",
+                        .lo = 0,
+                        .hi = RT_KD_DEPTH_LIMIT,
+                        .meaning = "splits on the way to a leaf that need not be expected to save anything",
+                        .source = "Havran & Bittner 2002; measured: tests for steps",
+                        .tries = "0|4"},
+    [RT_KD_OVERLAP] = {.name = "overlap",
+                       .type = RT_PARAM_CHOICE,
+                       .standard = "box",
+                       .choices = "box|exact",
+                       .meaning =
+                           "an object that is cut is as large, in each half, as its box or its surface",
+                       .source = "exact: Havran & Bittner 2002; Wald & Havran 2006"},
+    [RT_KD_MARGIN] = {.name = "margin",
+                      .type = RT_PARAM_FLOAT,
+                      .standard = "0",
+                      .lo = 0,
+                      .hi = 1,
+                      .meaning = "how much wider than the scene's box the root is, as a part of it",
+                      .source = "the published scene boxes are a little wider than tight",
+                      .tries = "0.01|1"},
+    [RT_KD_MAILBOX] = {.name = "mailbox",
+                       .type = RT_PARAM_FLAG,
+                       .standard = "on",
+                       .meaning = "do not test an object twice for one ray",
+                       .source = "Kirk & Arvo 1991"},
+};
+
+/* ---- what it takes ---- */
+
+/* Of the cells met at a depth: how many, entries in their lists, and shares; and of those that are leaves. */
+typedef struct Level {
+    uint64_t nodes, ids, leaf_ids;
+    double share, leaf_share;
+} Level;
+
+/* Bytes so far of the tree, and of the same tree cut off at any depth. Once it takes more than the limit
+ * nothing is kept, only counted, and max_depth is lowered to where it seems to fit, as often as it has to be.
+ */
+typedef struct RtKdLedger {
+    uint64_t limit, bytes;
+    double estimate; /* bytes that the tree asked for would take; 0 while it fits */
+    Level levels[RT_KD_DEPTH_LIMIT + 1];
+} RtKdLedger;
+
+static uint64_t bytes_of(uint64_t nodes, uint64_t ids) {
+    return nodes * sizeof(RtKdNode) + ids * sizeof(uint32_t);
+}
+
+/* Of a tree that is cut off at `depth`: the bytes so far, and those in the end if what is still to come is
+ * like what there is. */
+static uint64_t bytes_down_to(const RtKdLedger *ledger, uint32_t depth, double *estimate) {
+    const Level *levels = ledger->levels;
+    uint64_t nodes = levels[depth].nodes, ids = levels[depth].ids;
+    double share = levels[depth].share;
+    for (uint32_t d = 0; d < depth; d++) {
+        nodes += levels[d].nodes;
+        ids += levels[d].leaf_ids;
+        share += levels[d].leaf_share;
+    }
+    *estimate = (double)bytes_of(nodes, ids) / fmax(share, DBL_MIN);
+    return bytes_of(nodes, ids);
+}
+
+static void enter_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf) {
+    RtKdLedger *ledger = b->ledger;
+    Level *level = &ledger->levels[cell->depth];
+    level->nodes++;
+    level->ids += cell->ids.count;
+    level->share += cell->share;
+    level->leaf_ids += leaf ? cell->ids.count : 0;
+    level->leaf_share += leaf ? cell->share : 0;
+    ledger->bytes += bytes_of(1, leaf ? cell->ids.count : 0);
+    if (ledger->bytes <= ledger->limit) return;
+    double estimate;
+    bytes_down_to(ledger, b->kd->max_depth, &estimate);
+    if (ledger->estimate == 0) ledger->estimate = estimate;
+    while (b->kd->max_depth > 0 && (ledger->bytes > ledger->limit || estimate > (double)ledger->limit)) {
+        ledger->bytes = bytes_down_to(ledger, --b->kd->max_depth, &estimate);
+    }
+}
+
+/* ---- nodes ---- */
+
+bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out) {
+    const RtGeometry *g = &kd->base.scene->geometry;
+    if (kd->surfaces) return rt_object_part(g, id, cell, kd->served.margin, out);
+    *out = (RtBox){rt_vec_max(g->boxes[id].lo, cell->lo), rt_vec_min(g->boxes[id].hi, cell->hi)};
+    return true;
+}
+
+static RtStatus make_leaf(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
+    RtKd *kd = b->kd;
+    uint64_t room = (uint64_t)kd->id_count + cell->ids.count;
+    enter_cell(b, cell, true);
+    if (b->ledger->estimate > 0) return RT_OK;
+    RT_TRY(rt_reserve(&kd->ids, &b->leaf_id_capacity, room, sizeof(uint32_t), error));
+    kd->nodes[cell->node] = (RtKdNode){.first = kd->id_count, .link = cell->ids.count << 2 | RT_KD_LEAF};
+    memcpy(kd->ids + kd->id_count, b->ids + cell->ids.from, cell->ids.count * sizeof(uint32_t));
+    kd->id_count += cell->ids.count;
+    return RT_OK;
+}
+
+static RtStatus make_inner(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit *split, uint32_t failures,
+                           RtError *error) {
+    RtKd *kd = b->kd;
+    RtKdCell children[2];
+    uint32_t above, child = kd->node_count;
+    enter_cell(b, cell, false);
+    if (b->ledger->estimate == 0) {
+        RT_TRY(rt_reserve(&kd->nodes, &b->node_capacity, (uint64_t)child + 2, sizeof(RtKdNode), error));
+        kd->nodes[cell->node] = (RtKdNode){.split = split->plane, .link = child << 2 | split->axis};
+        kd->node_count += 2;
+    }
+    RT_TRY(rt_kd_deal(b, cell, split, children, &above, error));
+    double sum = fmax((double)children[0].ids.count + children[1].ids.count, 1);
+    for (uint32_t c = 0; c < 2; c++) {
+        children[c].node = child + c;
+        children[c].failures = failures;
+        children[c].share = cell->share * children[c].ids.count / sum;
+    }
+    b->pending[b->pending_count++] = children[1 - above];
+    b->pending[b->pending_count++] = children[above];
+    return RT_OK;
+}
+
+static RtStatus divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
+    const RtKd *kd = b->kd;
+    if (cell->depth > kd->max_depth) return RT_OK; /* for it has been lowered */
+    if (cell->ids.count <= kd->max_objects || cell->depth == kd->max_depth) return make_leaf(b, cell, error);
+    RtKdSplit split = rt_kd_find_split(b, cell);
+    bool saves = split.cost < cell->ids.count * rt_box_half_area(cell->box);
+    if (!saves && (split.cost == INFINITY || cell->failures == kd->failures))
+        return make_leaf(b, cell, error);
+    return make_inner(b, cell, &split, cell->failures + !saves, error);
+}
+
+/* ---- the root ---- */
+
+static uint32_t usual_depth(uint32_t objects) {
+    uint32_t log = 0;
+    while (UINT64_C(1) << log < objects) log++;
+    return 8 + 13 * log / 10;
+}
+
+/* The root's lists, with room to deal them. */
+static RtStatus plant(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
+    RtKdCell root = {.share = 1, .box = b->kd->box, .ids = {0, g->object_count}};
+    uint64_t room = 2 * (uint64_t)g->object_count;
+    RT_TRY(rt_reserve(&b->kd->nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
+    b->kd->node_count = 1;
+    RT_TRY(rt_reserve(&b->ids, &b->id_capacity, room, sizeof(uint32_t), error));
+    for (uint32_t i = 0; i < g->object_count; i++) b->ids[i] = i;
+    RT_TRY(rt_reserve(&b->spare, &b->spare_capacity, room, sizeof(RtKdEvent), error));
+    for (int a = 0; a < 3; a++) {
+        RT_TRY(rt_reserve(&b->events[a], &b->event_capacity[a], 2 * room, sizeof(RtKdEvent), error));
+        root.events[a].count =
+            rt_kd_make_events(b->ids, g->boxes, g->object_count, &root.box, a, b->events[a], b->spare);
+    }
+    b->pending[b->pending_count++] = root;
+    return RT_OK;
+}
+
+static RtStatus build_tree(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
+    if (g->object_count >= RT_KD_OBJECTS) {
+        return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds less than %u objects, not %u", RT_KD_OBJECTS,
+                       g->object_count);
+    }
+    uint32_t asked = b->kd->max_depth;
+    b->sides = rt_alloc(g->object_count, 1);
+    if (!b->sides) return rt_fail_memory(error, "building a kd-tree", g->object_count);
+    RT_TRY(plant(b, g, error));
+    while (b->pending_count > 0) {
+        RtKdCell cell = b->pending[--b->pending_count];
+        RT_TRY(divide(b, &cell, error));
+    }
+    if (b->ledger->estimate == 0) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "a kd-tree of max_depth=%u would take about %.3g GiB, more than %.3g GiB: max_depth=%u "
+                   "would fit",
+                   asked, b->ledger->estimate / 0x1p30, (double)b->ledger->limit / 0x1p30, b->kd->max_depth);
+}
+
+static void clear(RtKdBuilder *b) {
+    for (int a = 0; a < 3; a++) rt_free(b->events[a]);
+    for (int c = 0; c < 2; c++) {
+        rt_free(b->cut_ids[c]);
+        rt_free(b->cut_parts[c]);
+    }
+    rt_free(b->ids);
+    rt_free(b->sides);
+    rt_free(b->fresh);
+    rt_free(b->spare);
+}
+
+void rt_kd_destroy(RtAccel *accel) {
+    RtKd *kd = (RtKd *)accel;
+    rt_free(kd->nodes);
+    rt_free(kd->ids);
+    rt_free(kd);
+}
+
+RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
+                            RtError *error) {
+    const RtGeometry *g = &scene->geometry;
+    int64_t depth = values[RT_KD_MAX_DEPTH].i;
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(&rt_kd_ops, scene, sizeof(RtKd), &accel, error));
+    RtKd *kd = (RtKd *)accel;
+    kd->traversal = values[RT_KD_TRAVERSAL].f;
+    kd->empty_bonus = values[RT_KD_EMPTY_BONUS].f;
+    kd->max_objects = (uint32_t)values[RT_KD_MAX_OBJECTS].i;
+    kd->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
+    kd->failures = (uint32_t)values[RT_KD_FAILURES].i;
+    kd->mailbox = values[RT_KD_MAILBOX].flag;
+    kd->surfaces = values[RT_KD_OVERLAP].choice == OVERLAP_EXACT;
+    if (g->object_count > 0) {
+        RtKdLedger ledger = {.limit = limit};
+        RtKdBuilder builder = {.kd = kd, .ledger = &ledger};
+        kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
+        kd->served = rt_surface_rays(&g->box, &kd->box);
+        RtStatus status = build_tree(&builder, g, error);
+        clear(&builder);
+        if (status != RT_OK) {
+            rt_kd_destroy(accel);
+            return status;
+        }
+    }
+    *out = accel;
+    return RT_OK;
+}
+
+RtStatus rt_kd_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+    return rt_kd_build_within(MAX_BYTES, scene, values, out, error);
+}

@@ -1,0 +1,83 @@
+/* Events: making, sorting and merging them. Sorted once, for the root, by radix; afterwards only the events
+ * of objects that a plane has cut are made anew, sorted and merged. */
+#include "accel/kd/kd.h"
+
+#include <string.h>
+
+/* Up to so many events insertion is quicker than radix. */
+enum { FEW = 64 };
+
+/* Grows with the plane. */
+static uint32_t key(RtKdEvent event) {
+    uint32_t bits;
+    memcpy(&bits, &event.plane, sizeof bits);
+    return bits >> 31 ? ~bits : bits | UINT32_C(0x80000000);
+}
+
+static bool before(RtKdEvent a, RtKdEvent b) {
+    return a.plane < b.plane || (a.plane == b.plane && a.what < b.what);
+}
+
+static void sort_few(RtKdEvent *events, uint32_t count) {
+    for (uint32_t i = 1; i < count; i++) {
+        RtKdEvent event = events[i];
+        uint32_t k = i;
+        for (; k > 0 && before(event, events[k - 1]); k--) events[k] = events[k - 1];
+        events[k] = event;
+    }
+}
+
+/* Stable, from the lowest byte of the keys to the highest; four passes end where they began. */
+static void sort_many(RtKdEvent *events, RtKdEvent *spare, uint32_t count) {
+    for (uint32_t shift = 0; shift < 32; shift += 8) {
+        uint32_t place[256] = {0}, sum = 0;
+        for (uint32_t i = 0; i < count; i++) place[key(events[i]) >> shift & 255]++;
+        for (uint32_t digit = 0; digit < 256; digit++) {
+            uint32_t length = place[digit];
+            place[digit] = sum;
+            sum += length;
+        }
+        for (uint32_t i = 0; i < count; i++) spare[place[key(events[i]) >> shift & 255]++] = events[i];
+        RtKdEvent *swapped = events;
+        events = spare;
+        spare = swapped;
+    }
+}
+
+/* Adding 0 makes -0 a 0, which is the same plane. */
+static RtKdEvent event_at(float plane, uint32_t type, uint32_t id) {
+    return (RtKdEvent){plane + 0.0f, type + id};
+}
+
+/* In the order of `what`, which a stable sort by planes keeps where planes are equal. */
+uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t count, const RtBox *cell,
+                           int axis, RtKdEvent *out, RtKdEvent *spare) {
+    uint32_t n = 0;
+    float first = cell->lo.at[axis], last = cell->hi.at[axis];
+    for (uint32_t i = 0; i < count; i++) {
+        float lo = parts[i].lo.at[axis], hi = parts[i].hi.at[axis];
+        if (lo < hi && hi < last) out[n++] = event_at(hi, RT_KD_END, ids[i]);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        float lo = parts[i].lo.at[axis], hi = parts[i].hi.at[axis];
+        if (lo == hi) out[n++] = event_at(lo, RT_KD_PLANAR, ids[i]);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        float lo = parts[i].lo.at[axis], hi = parts[i].hi.at[axis];
+        if (lo < hi && lo > first) out[n++] = event_at(lo, RT_KD_START, ids[i]);
+    }
+    if (n <= FEW) {
+        sort_few(out, n);
+    } else {
+        sort_many(out, spare, n);
+    }
+    return n;
+}
+
+/* From the back, so that nothing is overwritten before it is moved. */
+void rt_kd_merge_events(RtKdEvent *events, uint32_t count, const RtKdEvent *more, uint32_t n) {
+    for (uint32_t to = count + n; n > 0; to--) {
+        bool old = count > 0 && before(more[n - 1], events[count - 1]);
+        events[to - 1] = old ? events[--count] : more[--n];
+    }
+}

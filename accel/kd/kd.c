@@ -1,0 +1,105 @@
+/* kd: cells cut in two by planes of the least expected cost; a ray visits the leaves it meets, nearest first.
+ *
+ * Papers: MacDonald & Booth 1990 (the surface area heuristic); Havran 2000, Heuristic Ray Shooting Algorithms
+ * (the traversal: the interval of the ray in a cell is cut at its plane, the far part waits on a stack); Wald
+ * & Havran 2006 (building).
+ *
+ * Layout and invariants: kd.h. Exactness: in base/ray.h's terms the thick ray is in a cell at t if it has
+ * crossed its near planes, (plane - org_near) * inv <= t, and not yet its far planes, (plane - org_far) * inv
+ * >= t. Children overlap while the thick ray crosses their plane, so at each t at which it is in a cell it is
+ * in one of its children or in both, and a crossing that is NaN, of a ray exactly in the moved plane, is
+ * passed over: the ray is in both. Now let a hit at t have the own box b, and the ray be in a cell that lists
+ * the object. If that goes into the lower child alone, then b ends at or below the split, or the cell itself
+ * does, and with enter(b) <= t <= leave(b) the ray is in the lower child at t because crossings are monotone;
+ * the same holds above; a part that lies in the plane is in both cells at t. So the ray is, at t, in a leaf
+ * that lists the object. A leaf is left out only where it is entered beyond the best t. No hit is refused for
+ * lying outside the current cell.
+ *
+ * With overlap=exact the same follows from accel/surface.h. Its q, at which the ray is in all closed cells
+ * that hold it, is in the part of the object in each cell, for parts are boxes about all points of the cell
+ * within the margin of the surface and inside the own box; so where q lies below the split the part begins
+ * below it, and where q lies in the split either child that lists the object will do.
+ *
+ * Counting: an extent test for the cell of the root; a step per node visited, a leaf
+ * step per leaf, an empty step per empty one.
+ */
+#include "accel/kd/kd.h"
+#include "accel/mailbox.h"
+
+static size_t scratch_bytes(const RtAccel *accel) {
+    const RtKd *kd = (const RtKd *)accel;
+    return kd->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
+}
+
+/* A node that waits, with the interval of t in which the ray is in its cell. */
+typedef struct Span {
+    uint32_t node;
+    float enter, leave;
+} Span;
+
+/* From the node of *span down to a leaf, nearest first; the others are put on the stack. */
+RT_KERNEL const RtKdNode *descend(const RtKd *self, const RtPreparedRay *ray, Span *span, Span *stack,
+                                  uint32_t *stacked, RtTally *tally) {
+    for (;;) {
+        const RtKdNode *node = &self->nodes[span->node];
+        RT_COUNT(tally, steps, 1);
+        if (rt_kd_is_leaf(node)) return node;
+        uint32_t axis = rt_kd_axis(node), child = rt_kd_child(node);
+        float enter = (node->split - ray->org_near[axis]) * ray->inv[axis]; /* the second child */
+        float leave = (node->split - ray->org_far[axis]) * ray->inv[axis];  /* the first */
+        bool skip_first = leave<span->enter, skip_second = enter> span->leave;
+        span->node = child + (ray->negative[axis] ^ skip_first);
+        if (skip_first || skip_second) continue;
+        stack[(*stacked)++] =
+            (Span){child + (1 - ray->negative[axis]), rt_maxf(enter, span->enter), span->leave};
+        span->leave = rt_minf(leave, span->leave);
+    }
+}
+
+RT_KERNEL void search(const RtKd *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    Span stack[RT_KD_DEPTH_LIMIT], span = {0, ray->tmin, ray->tmax};
+    uint32_t stacked = 0;
+    if (self->node_count == 0) return;
+    RT_COUNT(tally, extent_tests, 1);
+    rt_box_cut(&self->box, ray, &span.enter, &span.leave);
+    if (!(span.enter <= span.leave)) return;
+    if (self->surfaces && !rt_surface_serves(&self->served, ray)) {
+        rt_test_all(g, ray, any, best, tally);
+        return;
+    }
+    RtMailbox *mailbox = self->mailbox ? scratch : NULL;
+    rt_mailbox_next_ray(mailbox, g);
+    for (;;) {
+        const RtKdNode *leaf = descend(self, ray, &span, stack, &stacked, tally);
+        RT_COUNT(tally, leaf_steps, 1);
+        RT_COUNT(tally, empty_steps, rt_kd_length(leaf) == 0);
+        if (rt_test_list(g, mailbox, self->ids + leaf->first, rt_kd_length(leaf), ray, any, best, tally))
+            return;
+        do {
+            if (stacked == 0) return;
+            span = stack[--stacked];
+        } while (span.enter > best->t);
+        span.leave = rt_minf(best->t, span.leave);
+    }
+}
+
+RT_DEFINE_KERNELS(RtKd, search)
+
+const RtAccelOps rt_kd_ops = {
+    .name = "kd",
+    .summary = "cells cut in two where that is expected to cost least, by the surface area heuristic",
+    .paper =
+        "Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N), "
+        "RT'06",
+    .params = rt_kd_params,
+    .param_count = RT_KD_PARAM_COUNT,
+    .build = rt_kd_build,
+    .destroy = rt_kd_destroy,
+    RT_KERNEL_OPS,
+    .scratch_bytes = scratch_bytes,
+    .describe = rt_kd_describe,
+    .validate = rt_kd_validate,
+    .each_box = rt_kd_each_box,
+};

@@ -1,0 +1,181 @@
+/* The inside of kd: its data, shared by the files of this folder.
+ *
+ * Nodes of 8 bytes in one flat array: the root is node 0; the two children of a node lie side by side, after
+ * it, the lower one first. All lists of objects in one array, `ids`.
+ *
+ * Invariants: the cells of children are the cell of their parent cut at its split, so neighbours share the
+ * same bits of a plane. A split lies in the closed cell of its node; on a face of it, it cuts off a cell
+ * without width for objects that lie in that plane. Every object has a part, a box, in each cell that lists
+ * it (rt_kd_part): it goes into the lower child if its part begins below the split, into the upper one if it
+ * ends above, into one of the two if it does neither. Lists are ascending. No leaf is deeper than max_depth,
+ * which bounds the stack of a traversal. */
+#ifndef RT_ACCEL_KD_KD_H
+#define RT_ACCEL_KD_KD_H
+
+#include "accel/accel.h"
+#include "accel/surface.h"
+
+enum {
+    RT_KD_TRAVERSAL,
+    RT_KD_EMPTY_BONUS,
+    RT_KD_MAX_OBJECTS,
+    RT_KD_MAX_DEPTH,
+    RT_KD_FAILURES,
+    RT_KD_OVERLAP,
+    RT_KD_MARGIN,
+    RT_KD_MAILBOX,
+    RT_KD_PARAM_COUNT
+};
+extern const RtParam rt_kd_params[RT_KD_PARAM_COUNT];
+
+enum { RT_KD_DEPTH_LIMIT = 60 };
+
+/* RtKdNode.link & 3 of a leaf; else it is the axis of the split. */
+enum { RT_KD_LEAF = 3 };
+
+typedef struct RtKdNode {
+    union {
+        float split;    /* inner: the plane between its children */
+        uint32_t first; /* leaf: the first of its ids */
+    };
+    uint32_t link; /* inner: 4 * lower child + axis; leaf: 4 * length of its list + RT_KD_LEAF */
+} RtKdNode;
+
+typedef struct RtKd {
+    RtAccel base;
+    RtKdNode *nodes; /* [node_count], 0 if there is no object */
+    uint32_t *ids;   /* [id_count] */
+    uint32_t node_count, id_count;
+    RtBox box; /* the cell of the root */
+    double traversal, empty_bonus;
+    uint32_t max_objects, max_depth, failures;
+    bool mailbox;
+    bool surfaces; /* overlap=exact */
+    RtSurfaceRays served;
+} RtKd;
+
+extern const RtAccelOps rt_kd_ops;
+
+static inline bool rt_kd_is_leaf(const RtKdNode *node) {
+    return (node->link & 3) == RT_KD_LEAF;
+}
+
+/* Of an inner node: the axis of its split and its lower child. Of a leaf: the length of its list. */
+static inline uint32_t rt_kd_axis(const RtKdNode *node) {
+    return node->link & 3;
+}
+
+static inline uint32_t rt_kd_child(const RtKdNode *node) {
+    return node->link >> 2;
+}
+
+static inline uint32_t rt_kd_length(const RtKdNode *node) {
+    return node->link >> 2;
+}
+
+/* The lower (0) or upper (1) of the two cells that a plane makes of one. */
+static inline RtBox rt_kd_half(RtBox cell, uint32_t axis, float split, uint32_t upper) {
+    if (upper) {
+        cell.lo.at[axis] = split;
+    } else {
+        cell.hi.at[axis] = split;
+    }
+    return cell;
+}
+
+/* build.c. `limit`: bytes of nodes and lists above which the tree is refused. */
+RtStatus rt_kd_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
+                            RtError *error);
+void rt_kd_destroy(RtAccel *accel);
+
+/* The part, within `cell`, of an object that has a part on both sides of one of the cell's faces: its box cut
+ * off there or, with overlap=exact, a box about its surface there; false where there is none. */
+bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out);
+
+/* ---- while building ---- */
+
+/* Where the part of an object begins, ends, or lies flat, along an axis. Events are in ascending order of
+ * (plane, what): ends before planars before starts, and then by object. */
+typedef struct RtKdEvent {
+    float plane;   /* never -0 */
+    uint32_t what; /* RT_KD_END, _PLANAR or _START, + the object */
+} RtKdEvent;
+
+#define RT_KD_END     UINT32_C(0)
+#define RT_KD_PLANAR  (UINT32_C(1) << 30)
+#define RT_KD_START   (UINT32_C(2) << 30)
+#define RT_KD_OBJECTS (UINT32_C(1) << 30) /* there must be fewer objects */
+
+static inline uint32_t rt_kd_event_object(RtKdEvent event) {
+    return event.what & (RT_KD_OBJECTS - 1);
+}
+
+static inline uint32_t rt_kd_event_type(RtKdEvent event) {
+    return event.what & ~(RT_KD_OBJECTS - 1);
+}
+
+typedef struct RtKdRun {
+    uint32_t from, count;
+} RtKdRun;
+
+/* A cell that is to be divided or made a leaf. Starts on its lower face and ends on its upper one, or beyond,
+ * are not among its events. */
+typedef struct RtKdCell {
+    uint32_t node, depth;
+    uint32_t failures; /* splits, from the root to here, that were not expected to save anything */
+    double share;      /* of the objects, and so of the work, where the root's is 1 */
+    RtBox box;
+    RtKdRun events[3]; /* of each axis's array */
+    RtKdRun ids;       /* of the array of lists */
+} RtKdCell;
+
+typedef struct RtKdSplit {
+    double cost; /* expected, times half the area of the cell */
+    float plane;
+    uint32_t axis;
+    bool planar_upper; /* parts in the plane go into the upper cell */
+} RtKdSplit;
+
+/* A tree that is being built, depth first. The lists of the cells that are still to be divided lie on stacks,
+ * one of objects and one of events for each axis, in the order in which they will be popped. */
+typedef struct RtKdBuilder {
+    RtKd *kd;
+    struct RtKdLedger *ledger; /* see build.c */
+    RtKdEvent *events[3];
+    uint32_t *ids;
+    uint32_t event_capacity[3], id_capacity, node_capacity, leaf_id_capacity;
+    uint8_t *sides; /* [object_count] of the objects of the current cell: see deal.c */
+    RtKdCell pending[RT_KD_DEPTH_LIMIT + 2];
+    uint32_t pending_count;
+    /* Scratch: the new parts of objects that are cut, and their events. */
+    uint32_t *cut_ids[2];
+    RtBox *cut_parts[2];
+    RtKdEvent *fresh, *spare;
+    uint32_t cut_id_capacity[2], cut_part_capacity[2], fresh_capacity, spare_capacity;
+} RtKdBuilder;
+
+/* events.c. The events of the parts of ids[0..count) in a cell along an axis, sorted, to out[0..2 * count);
+ * gives their number. `spare`: as much room. */
+uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t count, const RtBox *cell,
+                           int axis, RtKdEvent *out, RtKdEvent *spare);
+
+/* Merges more[0..n) into events[0..count), which has room; both sorted. */
+void rt_kd_merge_events(RtKdEvent *events, uint32_t count, const RtKdEvent *more, uint32_t n);
+
+/* sweep.c. The plane of the least cost by the surface area heuristic; its cost is INFINITY if there is none.
+ */
+RtKdSplit rt_kd_find_split(const RtKdBuilder *b, const RtKdCell *cell);
+
+/* deal.c. Deals the lists of `cell`, the topmost, to its two children: children[0], the lower, and
+ * children[1]; but for their nodes, which are set already. Gives, to *above, which of them has its lists on
+ * top of the other's. */
+RtStatus rt_kd_deal(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit *split, RtKdCell children[2],
+                    uint32_t *above, RtError *error);
+
+/* survey.c */
+void rt_kd_describe(const RtAccel *accel, RtDescription *out);
+RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
+void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);
+
+#endif

@@ -1,0 +1,216 @@
+/* Describing, validating and drawing a kd-tree. Cells are not kept, but cut from the root's on the way down.
+ */
+#include "accel/kd/kd.h"
+
+#include "base/memory.h"
+
+/* Calls visit for each node, its cell and its depth, parents first, until it returns something else than
+ * RT_OK. The tree may be broken as long as children come after their parents and none is deeper than
+ * RT_KD_DEPTH_LIMIT, which `visit` is to see to. */
+typedef struct Place {
+    uint32_t node, depth;
+    RtBox cell;
+} Place;
+
+static RtStatus each_node(const RtKd *kd,
+                          RtStatus (*visit)(void *context, const RtKd *kd, const Place *place),
+                          void *context) {
+    Place stack[RT_KD_DEPTH_LIMIT + 2];
+    uint32_t stacked = 0;
+    if (kd->node_count > 0) stack[stacked++] = (Place){0, 0, kd->box};
+    while (stacked > 0) {
+        Place place = stack[--stacked];
+        const RtKdNode *node = &kd->nodes[place.node];
+        RT_TRY(visit(context, kd, &place));
+        if (rt_kd_is_leaf(node)) continue;
+        for (uint32_t c = 2; c-- > 0;) {
+            RtBox half = rt_kd_half(place.cell, rt_kd_axis(node), node->split, c);
+            stack[stacked++] = (Place){rt_kd_child(node) + c, place.depth + 1, half};
+        }
+    }
+    return RT_OK;
+}
+
+/* ---- describe ---- */
+
+typedef struct Sums {
+    RtDescription *out;
+    double inner, leaves, tests; /* sums of halves of areas; of leaves, times lengths of lists, too */
+} Sums;
+
+static RtStatus describe_node(void *context, const RtKd *kd, const Place *place) {
+    Sums *sums = context;
+    const RtKdNode *node = &kd->nodes[place->node];
+    double area = rt_box_half_area(place->cell);
+    if (place->depth > sums->out->depth) sums->out->depth = place->depth;
+    if (rt_kd_is_leaf(node)) {
+        sums->out->leaves++;
+        sums->out->empty_leaves += rt_kd_length(node) == 0;
+        sums->leaves += area;
+        sums->tests += area * rt_kd_length(node);
+    } else {
+        sums->out->interior++;
+        sums->inner += area;
+    }
+    return RT_OK;
+}
+
+/* A random line through the root meets a cell with the ratio of their areas. */
+void rt_kd_describe(const RtAccel *accel, RtDescription *out) {
+    const RtKd *kd = (const RtKd *)accel;
+    Sums sums = {.out = out};
+    *out = (RtDescription){.references = kd->id_count,
+                           .bytes = kd->node_count * sizeof(RtKdNode) + kd->id_count * sizeof(uint32_t),
+                           RT_NO_PREDICTION};
+    each_node(kd, describe_node, &sums);
+    double area = rt_box_half_area(kd->box);
+    if (kd->node_count == 0 || !(area > 0)) return;
+    out->predicted_tests = sums.tests / area;
+    out->predicted_steps = (sums.inner + sums.leaves) / area;
+    out->predicted_cost = (sums.tests + kd->traversal * sums.inner) / area;
+}
+
+/* ---- validate ---- */
+
+typedef struct Check {
+    RtError *error;
+    uint64_t *listed; /* [object_count] leaves that list each object */
+    uint8_t *reached; /* [node_count] whether a parent has led here */
+    uint32_t ids;     /* entries in the lists so far */
+} Check;
+
+static RtStatus check_inner(const Check *check, const RtKd *kd, const Place *place) {
+    const RtKdNode *node = &kd->nodes[place->node];
+    uint32_t child = rt_kd_child(node), axis = rt_kd_axis(node);
+    if (child <= place->node || child >= kd->node_count - 1 || check->reached[child]) {
+        return rt_fail(check->error, RT_MISMATCH, "kd: the children of node %u are not where nodes are",
+                       place->node);
+    }
+    if (place->depth >= kd->max_depth) {
+        return rt_fail(check->error, RT_MISMATCH, "kd: the children of node %u are deeper than %u",
+                       place->node, kd->max_depth);
+    }
+    if (!(node->split >= place->cell.lo.at[axis] && node->split <= place->cell.hi.at[axis])) {
+        return rt_fail(check->error, RT_MISMATCH, "kd: the split of node %u lies outside its cell",
+                       place->node);
+    }
+    check->reached[child] = check->reached[child + 1] = 1;
+    return RT_OK;
+}
+
+static RtStatus check_leaf(Check *check, const RtKd *kd, const Place *place) {
+    const RtGeometry *g = &kd->base.scene->geometry;
+    const RtKdNode *leaf = &kd->nodes[place->node];
+    uint32_t length = rt_kd_length(leaf);
+    if (leaf->first > kd->id_count || length > kd->id_count - leaf->first) {
+        return rt_fail(check->error, RT_MISMATCH, "kd: the list of leaf %u is not where lists are",
+                       place->node);
+    }
+    const uint32_t *ids = kd->ids + leaf->first;
+    for (uint32_t i = 0; i < length; i++) {
+        if (ids[i] >= g->object_count || (i > 0 && ids[i - 1] >= ids[i])) {
+            return rt_fail(check->error, RT_MISMATCH, "kd: the list of leaf %u is not ascending ids",
+                           place->node);
+        }
+        check->listed[ids[i]]++;
+    }
+    check->ids += length;
+    return RT_OK;
+}
+
+static RtStatus check_node(void *context, const RtKd *kd, const Place *place) {
+    Check *check = context;
+    return rt_kd_is_leaf(&kd->nodes[place->node]) ? check_leaf(check, kd, place)
+                                                  : check_inner(check, kd, place);
+}
+
+static bool lists(const RtKd *kd, const RtKdNode *leaf, uint32_t id) {
+    uint32_t from = leaf->first, to = leaf->first + rt_kd_length(leaf);
+    while (from < to) {
+        uint32_t middle = from + (to - from) / 2;
+        if (kd->ids[middle] == id) return true;
+        if (kd->ids[middle] < id) {
+            from = middle + 1;
+        } else {
+            to = middle;
+        }
+    }
+    return false;
+}
+
+/* Adds to *leaves in how many leaves below a node an object with this part of its cell is to be listed; false
+ * if one of them does not list it. */
+static bool listed_below(const RtKd *kd, uint32_t index, RtBox cell, uint32_t id, RtBox part,
+                         uint64_t *leaves) {
+    const RtKdNode *node = &kd->nodes[index];
+    ++*leaves;
+    if (rt_kd_is_leaf(node)) return lists(kd, node, id);
+    --*leaves;
+    uint32_t axis = rt_kd_axis(node);
+    bool goes[2] = {part.lo.at[axis]<node->split, part.hi.at[axis]> node->split}, found[2];
+    bool cut = goes[0] && goes[1], flat = !goes[0] && !goes[1];
+    uint64_t count[2] = {0, 0};
+    for (uint32_t c = 0; c < 2; c++) {
+        RtBox half = rt_kd_half(cell, axis, node->split, c), inside = part;
+        if (cut) goes[c] = rt_kd_part(kd, id, &half, &inside);
+        found[c] = !(goes[c] || flat) || listed_below(kd, rt_kd_child(node) + c, half, id, inside, &count[c]);
+        if (flat && !found[c]) count[c] = 0;
+    }
+    *leaves += flat && count[0] > 0 ? count[0] : count[0] + count[1];
+    return flat ? found[0] || found[1] : found[0] && found[1];
+}
+
+static RtStatus check_all(Check *check, const RtKd *kd) {
+    const RtGeometry *g = &kd->base.scene->geometry;
+    RT_TRY(each_node(kd, check_node, check));
+    for (uint32_t i = 1; i < kd->node_count; i++) {
+        if (check->reached[i]) continue;
+        return rt_fail(check->error, RT_MISMATCH, "kd: node %u has no parent", i);
+    }
+    if (check->ids != kd->id_count) {
+        return rt_fail(check->error, RT_MISMATCH,
+                       "kd: the lists of leaves hold %u ids, which is not where lists end, %u", check->ids,
+                       kd->id_count);
+    }
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        uint64_t leaves = 0;
+        bool found = listed_below(kd, 0, kd->box, id, g->boxes[id], &leaves);
+        if (found && leaves == check->listed[id]) continue;
+        return rt_fail(check->error, RT_MISMATCH,
+                       "kd: %llu leaves list object %u, not just those it has a part in",
+                       (unsigned long long)check->listed[id], id);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_kd_validate(const RtAccel *accel, RtError *error) {
+    const RtKd *kd = (const RtKd *)accel;
+    const RtGeometry *g = &accel->scene->geometry;
+    if (kd->node_count == 0) return RT_OK;
+    if (!rt_box_contains(kd->box, g->box)) {
+        return rt_fail(error, RT_MISMATCH, "kd: its root does not contain the scene");
+    }
+    Check check = {.error = error,
+                   .listed = rt_alloc(g->object_count, sizeof(uint64_t)),
+                   .reached = rt_alloc(kd->node_count, 1)};
+    RtStatus status = check.listed && check.reached
+                          ? check_all(&check, kd)
+                          : rt_fail_memory(error, "validating a kd-tree", g->object_count * sizeof(uint64_t));
+    rt_free(check.listed);
+    rt_free(check.reached);
+    return status;
+}
+
+/* ---- drawing ---- */
+
+static RtStatus show_node(void *context, const RtKd *kd, const Place *place) {
+    const RtBoxViewer *viewer = context;
+    const RtKdNode *node = &kd->nodes[place->node];
+    bool empty = rt_kd_is_leaf(node) && rt_kd_length(node) == 0;
+    if (!empty) viewer->show(viewer->context, &place->cell, place->depth);
+    return RT_OK;
+}
+
+void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    each_node((const RtKd *)accel, show_node, &viewer);
+}

@@ -1,0 +1,68 @@
+/* For structures that list an object only in cells near its surface, not in all that its box meets: how near
+ * that is, and for which rays.
+ *
+ * Let a hit on an object be at t, p the ray's point there, org + t * dir in real numbers, and q the point
+ * nearest to p of the object's own box.
+ *
+ * At t the thick ray is in every closed cell that holds q. On each axis a cell has two planes. Where q is as
+ * far as p, the ray reaches the near plane at or before t and the far plane at or after it even without
+ * thickness, and the thickness, 16 half-ulps of the distance, outweighs the 4 roundings of a crossing. Where
+ * p lies outside the own box, the same holds of the plane that p is beyond q of; and of the other because
+ * rt_box_admit saw to it that t is within the crossings of the own box, between which the plane is not.
+ *
+ * And q is within `margin`, along each axis, of the surface, for p is and points of the surface lie in the
+ * own box, where q is no farther from them than p is. Let D be the distance, along the axis where it is
+ * largest, from the origin to the farthest point of the scene. A triangle is hit as if its vertices, moved to
+ * the origin and sheared in float32, lay up to 8 * 2^-24 D elsewhere (shape/triangle.h; what follows is in
+ * double). Polygons and spheres are hit in double: off by less than 2^-44 D. So are cones; but near the apex
+ * an error of 2^-50 D^2 in the square of the radius is 2^-25 D. (A sphere's error is divided by its radius,
+ * that of which the square is subtracted.) Rounding t moves the point by 2^-24 D, and rt_box_admit by at most
+ * 4 * 2^-24 D: the hit itself is inside the thick box, and the crossing it is held to has 4 roundings. In all
+ * less than 16 * 2^-24 D.
+ *
+ * So a hit is not lost if some cell that holds q lists the object, and all cells that the ray is in at t are
+ * visited. For an origin in `domain`, the scene's box grown by 8 times its longest side, D is at most 9 such
+ * sides: `margin` is 4 times what that asks for, plus 2^-40 of the largest coordinate for the arithmetic of
+ * shape/overlap.h. Rays from farther away are to be tested against every object; so are those with a dir so
+ * long or short that float32 runs out of exponents. */
+#ifndef RT_ACCEL_SURFACE_H
+#define RT_ACCEL_SURFACE_H
+
+#include "accel/kernel.h"
+
+#define RT_SURFACE_SIDES 8
+
+typedef struct RtSurfaceRays {
+    RtBox domain;  /* of the origins of the rays that are served */
+    double margin; /* cells are grown by so much before surfaces are put into them */
+} RtSurfaceRays;
+
+/* For a scene with this box, in a structure with one that contains it. */
+static inline RtSurfaceRays rt_surface_rays(const RtBox *scene, const RtBox *structure) {
+    RtSurfaceRays served;
+    double farthest = 0, longest = 0;
+    for (int a = 0; a < 3; a++) {
+        double lo = (double)structure->lo.at[a], hi = (double)structure->hi.at[a];
+        farthest = fmax(farthest, fmax(fabs(lo), fabs(hi)));
+        longest = fmax(longest, (double)scene->hi.at[a] - (double)scene->lo.at[a]);
+    }
+    for (int a = 0; a < 3; a++) {
+        served.domain.lo.at[a] = (float)((double)scene->lo.at[a] - RT_SURFACE_SIDES * longest);
+        served.domain.hi.at[a] = (float)((double)scene->hi.at[a] + RT_SURFACE_SIDES * longest);
+    }
+    served.margin = 0x1p-18 * (RT_SURFACE_SIDES + 1) * longest + 0x1p-40 * farthest + 0x1p-80;
+    return served;
+}
+
+/* Do cells that list surfaces serve this ray? */
+RT_KERNEL bool rt_surface_serves(const RtSurfaceRays *served, const RtPreparedRay *ray) {
+    float longest = fabsf(ray->dir.at[ray->kz]);
+    bool inside = longest >= 0x1p-64f && longest <= 0x1p64f;
+    for (int a = 0; a < 3; a++) {
+        float org = ray->org.at[a];
+        inside &= org >= served->domain.lo.at[a] && org <= served->domain.hi.at[a];
+    }
+    return inside;
+}
+
+#endif
