@@ -19,11 +19,12 @@ static json_t *scenes_json(const RtResults *results) {
                                           rt_json_hex(trial->ray_fingerprints[kind])));
         }
         json_array_append_new(
-            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:I, s:o}", "label",
+            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o}", "label",
                             experiment->trials[t].label, "scene", experiment->trials[t].spec, "skipped",
                             trial->skipped, "objects", (json_int_t)trial->objects, "hash",
                             rt_json_hex(trial->scene), "width", (json_int_t)trial->width, "height",
-                            (json_int_t)trial->height, "corners", experiment->trials[t].corners, "depth",
+                            (json_int_t)trial->height, "corners", experiment->trials[t].corners,
+                            "outward_light", experiment->trials[t].outward_light, "depth",
                             (json_int_t)experiment->trials[t].depth, "rays", sets));
     }
     return list;

@@ -95,7 +95,8 @@ static RtStatus record_rays(Trial *trial, RtError *error) {
     RtRecording recording = {.depth = setup->depth,
                              .seed = trial->experiment->seed,
                              .random = trial->experiment->limit,
-                             .threads = trial->options->threads};
+                             .threads = trial->options->threads,
+                             .outward_light = setup->outward_light};
     RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
     RT_TRY(rt_accel_open(rt_accel_default(), &trial->scene, &trial->reference, error));
     RtStatus status = rt_rayset_record(recorded, trial->reference, &recording, error);

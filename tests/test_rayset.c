@@ -70,6 +70,32 @@ static void every_ray_is_valid_and_of_its_kind(void **state) {
     assert_int_equal(stage->sets[RT_RAY_RANDOM].count, 10000);
 }
 
+/* Shadow rays that start within the glass ball, of radius 1 about (-1, 0, 1). */
+static uint64_t count_from_within(const RtRaySet *shadows) {
+    uint64_t count = 0;
+    for (uint64_t i = 0; i < shadows->count; i++) {
+        RtVec3d from = rt_subd(rt_widen(shadows->rays[i].org), (RtVec3d){-1, 0, 1});
+        count += rt_lengthd(from) < 1;
+    }
+    return count;
+}
+
+static void outward_light_is_asked_for_outside_of_glass_alone(void **state) {
+    const Stage *stage = *state;
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RtRecording recording = make_recording(1);
+    recording.outward_light = true;
+    assert_ok(rt_rayset_record(sets, stage->accel, &recording, error));
+    assert_true(count_from_within(&stage->sets[RT_RAY_SHADOW]) > 0);
+    assert_int_equal(count_from_within(&sets[RT_RAY_SHADOW]), 0);
+    assert_true(sets[RT_RAY_SHADOW].count != stage->sets[RT_RAY_SHADOW].count);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        bool same = sets[kind].fingerprint == stage->sets[kind].fingerprint;
+        assert_true(same == (kind != RT_RAY_SHADOW));
+        rt_rayset_clear(&sets[kind]);
+    }
+}
+
 static void sets_are_the_same_on_any_number_of_threads_and_any_accelerator(void **state) {
     const Stage *stage = *state;
     for (int threads = 2; threads <= 3; threads++) {
@@ -218,6 +244,7 @@ static void every_allocation_of_a_recording_may_fail(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_ray_is_valid_and_of_its_kind),
+        cmocka_unit_test(outward_light_is_asked_for_outside_of_glass_alone),
         cmocka_unit_test(sets_are_the_same_on_any_number_of_threads_and_any_accelerator),
         cmocka_unit_test(another_seed_changes_diffuse_and_random_rays_alone),
         cmocka_unit_test(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface),

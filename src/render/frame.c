@@ -124,11 +124,13 @@ static RtStatus flush_shadows(Worker *worker, RtError *error) {
 /* Light by light, so that neighbours in the stream go to the same place. */
 static RtStatus trace_shadows(Worker *worker, uint32_t surface_count, RtError *error) {
     const RtScene *scene = worker->job->scene;
+    const bool outward = worker->job->options->outward_light;
     for (uint32_t light = 0; light < scene->light_count; light++) {
         for (uint32_t i = 0; i < surface_count; i++) {
             uint32_t n = worker->shadow_count;
-            if (!rt_shadow_ray(scene, &worker->surfaces[i], light, &worker->shadow_rays[n],
-                               &worker->shadow_lights[n])) {
+            RtSurface surface = worker->surfaces[i];
+            if (outward) surface = rt_surface_outward(&surface);
+            if (!rt_shadow_ray(scene, &surface, light, &worker->shadow_rays[n], &worker->shadow_lights[n])) {
                 continue;
             }
             worker->shadow_paths[n] = worker->surface_paths[i];

@@ -33,6 +33,14 @@ RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit) {
     };
 }
 
+RtSurface rt_surface_outward(const RtSurface *surface) {
+    RtSurface outward = *surface;
+    if (surface->entering) return outward;
+    outward.side = rt_scaled(surface->side, -1);
+    outward.normal = rt_scaled(surface->normal, -1);
+    return outward;
+}
+
 RtVec3 rt_ambient_light(const RtScene *scene, const RtSurface *surface) {
     return rt_scale(rt_mul(surface->material->color, scene->ambient), surface->material->ambient);
 }

@@ -42,6 +42,11 @@ typedef struct RtSurface {
 /* `hit` is a hit of `ray`, not a miss. */
 RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit);
 
+/* The surface as it is from outside: normals on the side of the object's own geometric normal. For programs
+ * that ask for light there whatever side a ray comes from, so that what is seen within glass is lit from
+ * without. */
+RtSurface rt_surface_outward(const RtSurface *surface);
+
 /* ka Ia */
 RtVec3 rt_ambient_light(const RtScene *scene, const RtSurface *surface);
 
