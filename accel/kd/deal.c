@@ -101,7 +101,7 @@ static void deal_axis(const RtKdBuilder *b, const RtKdCell *cell, const RtKdSpli
     RtKdEvent *to[2], *events = b->events[axis] + run.from;
     uint32_t count[2] = {0, 0};
     to[1 - above] = events;
-    to[above] = events + run.count + 2 * cut[1 - above];
+    to[above] = events + run.count + (size_t)2 * cut[1 - above];
     deal_events(b, events, run.count, split, (int)split->axis == axis, to, count);
     for (uint32_t c = 0; c < 2; c++) {
         uint32_t n = rt_kd_make_events(b->cut_ids[c], b->cut_parts[c], cut[c], &children[c].box, axis,
