@@ -47,7 +47,8 @@ RT_KERNEL const RtKdNode *descend(const RtKd *self, const RtPreparedRay *ray, Sp
         uint32_t axis = rt_kd_axis(node), child = rt_kd_child(node);
         float enter = (node->split - ray->org_near[axis]) * ray->inv[axis]; /* the second child */
         float leave = (node->split - ray->org_far[axis]) * ray->inv[axis];  /* the first */
-        bool skip_first = leave<span->enter, skip_second = enter> span->leave;
+        bool skip_first = leave < span->enter;
+        bool skip_second = enter > span->leave;
         span->node = child + (ray->negative[axis] ^ skip_first);
         if (skip_first || skip_second) continue;
         stack[(*stacked)++] =
