@@ -24,7 +24,13 @@
  * visited. For an origin in `domain`, the scene's box grown by 8 times its longest side, D is at most 9 such
  * sides: `margin` is 4 times what that asks for, plus 2^-40 of the largest coordinate for the arithmetic of
  * shape/overlap.h. Rays from farther away are to be tested against every object; so are those with a dir so
- * long or short that float32 runs out of exponents. */
+ * long or short that float32 runs out of exponents.
+ *
+ * Instead of the cells the ray may be made thicker (rt_surface_thicken), from wherever it comes. Let s be the
+ * point of the surface near to p. Then at t the ray is in every box that holds s: enter(box) <= t <=
+ * leave(box). The thickness is 32 * 2^-24 D. Of these 16 bring the line to s, on each axis; the rest
+ * outweighs the 3 roundings of a crossing, (plane - org') * inv, each of 2^-24 |plane - org'|, as that of
+ * org' is made up for by rt_shift. */
 #ifndef RT_ACCEL_SURFACE_H
 #define RT_ACCEL_SURFACE_H
 
@@ -54,10 +60,21 @@ static inline RtSurfaceRays rt_surface_rays(const RtBox *scene, const RtBox *str
     return served;
 }
 
+/* Has float32 the exponents for this ray, so that its hits are near surfaces? */
+RT_KERNEL bool rt_surface_is_near(const RtPreparedRay *ray) {
+    float longest = fabsf(ray->dir.at[ray->kz]);
+    return longest >= 0x1p-64f && longest <= 0x1p64f;
+}
+
+/* Makes a ray so thick that at the t of a hit it is in every box of the scene that holds the point of the
+ * surface near to the hit. */
+RT_KERNEL void rt_surface_thicken(RtPreparedRay *ray, const RtBox *scene) {
+    rt_ray_set_thickness(ray, 2 * rt_thickness(ray->org, scene) + 0x1p-80f);
+}
+
 /* Do cells that list surfaces serve this ray? */
 RT_KERNEL bool rt_surface_serves(const RtSurfaceRays *served, const RtPreparedRay *ray) {
-    float longest = fabsf(ray->dir.at[ray->kz]);
-    bool inside = longest >= 0x1p-64f && longest <= 0x1p64f;
+    bool inside = rt_surface_is_near(ray);
     for (int a = 0; a < 3; a++) {
         float org = ray->org.at[a];
         inside &= org >= served->domain.lo.at[a] && org <= served->domain.hi.at[a];

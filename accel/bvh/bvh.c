@@ -4,23 +4,31 @@
  * Bounding Volume Hierarchies", and those named in accel/tree/tree.h. A tree of references is made first and
  * laid out then, which decides what shares a leaf (accel/tree/hierarchy.h, where the layout and its
  * invariants are written down). One traversal for all of them: near child first, the far one on a stack with
- * its entry; the stack is bounded by RT_TREE_MAX_DEPTH.
+ * its entry; the stack is bounded by RT_TREE_MAX_DEPTH. Where objects were cut an object may be met in
+ * several leaves; a mailbox saves the later tests.
  *
  * Counting: an extent test per box tested, the root's included; a step per node visited. */
 #include "accel/bvh/bvh.h"
 
-#include "accel/kernel.h"
+#include "accel/mailbox.h"
+#include "accel/surface.h"
 #include "accel/tree/order.h"
 #include "accel/tree/split.h"
 #include "base/memory.h"
 
-typedef enum Build { BINNED, SWEEP, LBVH, PLOC } Build;
+/* Spatial splits that may take more are refused. */
+#define MAX_BYTES (UINT64_C(4) << 30)
+
+typedef enum Build { BINNED, SWEEP, LBVH, PLOC, SPATIAL } Build;
 
 enum {
     PARAM_BUILD,
     PARAM_BINS,
     PARAM_BITS,
     PARAM_RADIUS,
+    PARAM_ALPHA,
+    PARAM_BUDGET,
+    PARAM_MAILBOX,
     PARAM_LEAF,
     PARAM_TRAVERSAL,
     PARAM_REINSERTION,
@@ -31,16 +39,17 @@ static const RtParam params[PARAM_COUNT] = {
     [PARAM_BUILD] = {.name = "build",
                      .type = RT_PARAM_CHOICE,
                      .standard = "binned",
-                     .choices = "binned|sweep|lbvh|ploc",
+                     .choices = "binned|sweep|lbvh|ploc|spatial",
                      .meaning = "SAH in bins; SAH at every centre; halves of Morton codes; nearest in Morton "
-                                "order",
+                                "order; SAH in bins with planes that cut objects",
                      .source = "Wald 2007"},
     [PARAM_BINS] = {.name = "bins",
                     .type = RT_PARAM_INT,
                     .standard = "16",
                     .lo = 2,
                     .hi = RT_MAX_BINS,
-                    .meaning = "build=binned: bins along each axis in which split positions are sought",
+                    .meaning =
+                        "build=binned, spatial: bins along each axis in which split positions are sought",
                     .source = "Wald 2007",
                     .tries = "2|5|64"},
     [PARAM_BITS] = {.name = "bits",
@@ -59,6 +68,29 @@ static const RtParam params[PARAM_COUNT] = {
                       .meaning = "build=ploc: neighbours searched on either side",
                       .source = "Meister & Bittner 2018",
                       .tries = "1|100"},
+    [PARAM_ALPHA] = {.name = "alpha",
+                     .type = RT_PARAM_FLOAT,
+                     .standard = "1e-05",
+                     .lo = 0,
+                     .hi = 1,
+                     .meaning =
+                         "build=spatial: objects may be cut where groups overlap by more than this part "
+                         "of the root's area",
+                     .source = "Stich et al. 2009",
+                     .tries = "0|0.01"},
+    [PARAM_BUDGET] = {.name = "budget",
+                      .type = RT_PARAM_FLOAT,
+                      .standard = "2",
+                      .lo = 1,
+                      .hi = 16,
+                      .meaning = "build=spatial: most references per object, on average",
+                      .source = "this program",
+                      .tries = "1|1.1|16"},
+    [PARAM_MAILBOX] = {.name = "mailbox",
+                       .type = RT_PARAM_FLAG,
+                       .standard = "on",
+                       .meaning = "build=spatial: do not test an object twice for one ray",
+                       .source = "Kirk & Arvo 1991"},
     [PARAM_LEAF] = {.name = "leaf",
                     .type = RT_PARAM_INT,
                     .standard = "8",
@@ -97,11 +129,18 @@ static void destroy(RtAccel *accel) {
 static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValue *values, RtError *error) {
     const RtBox *boxes = geometry->boxes;
     uint32_t count = geometry->object_count, bits = (uint32_t)values[PARAM_BITS].i;
+    RtSpatial how = {.bins = (int)values[PARAM_BINS].i,
+                     .alpha = values[PARAM_ALPHA].f,
+                     .budget = values[PARAM_BUDGET].f,
+                     .leaf = (uint32_t)values[PARAM_LEAF].i,
+                     .traversal = values[PARAM_TRAVERSAL].f,
+                     .limit = MAX_BYTES};
     switch ((Build)values[PARAM_BUILD].choice) {
     case BINNED: break;
     case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
     case LBVH: return rt_tree_lbvh(tree, boxes, count, bits, error);
     case PLOC: return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, error);
+    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, error);
     }
     return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, error);
 }
@@ -124,6 +163,7 @@ static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out
     *hierarchy = (RtHierarchy){.width = 2,
                                .leaf_limit = (uint32_t)values[PARAM_LEAF].i,
                                .traversal_cost = values[PARAM_TRAVERSAL].f};
+    ((RtBvh *)accel)->mailbox = values[PARAM_MAILBOX].flag;
     RtStatus status = fill(hierarchy, &scene->geometry, values, error);
     if (status == RT_OK)
         *out = accel;
@@ -139,9 +179,8 @@ typedef struct StackEntry {
     float enter;
 } StackEntry;
 
-RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
-                      RtTally *tally) {
-    (void)scratch;
+RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *ray, bool any, RtHit *best,
+                    RtTally *tally) {
     const RtGeometry *g = &self->base.scene->geometry;
     const RtNode *nodes = self->hierarchy.nodes;
     const uint32_t *ids = self->hierarchy.ids;
@@ -167,9 +206,8 @@ RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray
             }
         } else {
             RT_COUNT(tally, leaf_steps, 1);
-            for (uint32_t i = node->first; i < node->first + rt_node_fanout(node); i++) {
-                if (rt_test_object(g, ids[i], ray, any, best, tally)) return;
-            }
+            if (rt_test_list(g, mailbox, ids + node->first, rt_node_fanout(node), ray, any, best, tally))
+                return;
         }
         /* The next node that may still hold a nearer hit, or an equal one of lower id. */
         do {
@@ -180,7 +218,31 @@ RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray
     }
 }
 
+/* Of divided objects the leaf is sought that holds the surface next to the hit: with a thicker ray, or among
+ * all objects where hits are not near surfaces (accel/surface.h, accel/tree/spatial.c). */
+RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
+    const RtGeometry *g = &self->base.scene->geometry;
+    if (!self->hierarchy.divided) {
+        walk(self, NULL, ray, any, best, tally);
+    } else if (rt_surface_is_near(ray)) {
+        RtMailbox *mailbox = self->mailbox ? scratch : NULL;
+        RtPreparedRay thick = *ray;
+        rt_surface_thicken(&thick, &g->box);
+        rt_mailbox_next_ray(mailbox, g);
+        walk(self, mailbox, &thick, any, best, tally);
+    } else {
+        rt_test_all(g, ray, any, best, tally);
+    }
+}
+
 RT_DEFINE_KERNELS(RtBvh, search)
+
+static size_t scratch_bytes(const RtAccel *accel) {
+    const RtBvh *self = (const RtBvh *)accel;
+    bool mailbox = self->mailbox && self->hierarchy.divided;
+    return mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
+}
 
 /* ---- looking at it ---- */
 
@@ -205,6 +267,7 @@ const RtAccelOps rt_bvh_ops = {
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,
+    .scratch_bytes = scratch_bytes,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

@@ -7,6 +7,7 @@
 typedef struct RtBvh {
     RtAccel base;
     RtHierarchy hierarchy; /* of pairs */
+    bool mailbox;          /* where objects are divided */
 } RtBvh;
 
 #endif

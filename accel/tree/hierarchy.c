@@ -56,13 +56,18 @@ static uint32_t open_children(const Layout *layout, uint32_t index, uint32_t *ch
     return count;
 }
 
-static void append_ids(const Layout *layout, uint32_t index) {
+/* Appends the objects of a subtree to the leaf whose ids begin at `first`; parts of one object are one. */
+static void append_ids(const Layout *layout, uint32_t first, uint32_t index) {
+    RtHierarchy *self = layout->self;
     const uint32_t *child = layout->tree->nodes[index].child;
     if (rt_tree_is_leaf(layout->tree, index)) {
-        layout->self->ids[layout->self->id_count++] = child[1];
+        for (uint32_t i = first; i < self->id_count && self->divided; i++) {
+            if (self->ids[i] == child[1]) return;
+        }
+        self->ids[self->id_count++] = child[1];
         return;
     }
-    for (int s = 0; s < 2; s++) append_ids(layout, child[s]);
+    for (int s = 0; s < 2; s++) append_ids(layout, first, child[s]);
 }
 
 static void place(const Layout *layout, uint32_t node_index, uint32_t index) {
@@ -71,7 +76,7 @@ static void place(const Layout *layout, uint32_t node_index, uint32_t index) {
     node->box = layout->tree->nodes[index].box;
     if (layout->leaf[index]) {
         node->first = self->id_count;
-        append_ids(layout, index);
+        append_ids(layout, node->first, index);
         node->count = RT_NODE_LEAF | (self->id_count - node->first);
         return;
     }
@@ -94,6 +99,7 @@ RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, RtError *error) {
     bool enough = self->nodes && self->ids;
     self->node_count = 1;
     self->id_count = 0;
+    self->divided = tree->divided;
     if (enough) place(&layout, 0, tree->root);
     rt_free(layout.leaf);
     if (enough) return RT_OK;

@@ -2,8 +2,9 @@
  * and one array of object ids, of which a leaf owns a run.
  *
  * Invariants: a node's box contains the boxes of its children and objects; every object is in exactly one
- * leaf; no leaf is deeper than RT_TREE_MAX_DEPTH; the leaves come in the order of their ids, children as they
- * stand, so that the ids of a subtree are one run. Node 0 is the root; of no objects there is no node. */
+ * leaf, or, where they are divided, in leaves whose boxes hold all of its surface, once in each; no leaf is
+ * deeper than RT_TREE_MAX_DEPTH; the leaves come in the order of their ids, children as they stand, so that
+ * the ids of a subtree are one run. Node 0 is the root; of no objects there is no node. */
 #ifndef RT_ACCEL_TREE_HIERARCHY_H
 #define RT_ACCEL_TREE_HIERARCHY_H
 
@@ -28,6 +29,7 @@ typedef struct RtHierarchy {
     uint32_t width;        /* most children of a node, 2..RT_NODE_MAX_WIDTH */
     uint32_t leaf_limit;   /* most objects of a leaf */
     double traversal_cost; /* of visiting an inner node, in object tests */
+    bool divided;          /* objects may be in several leaves; rays need be thick (accel/surface.h) */
 } RtHierarchy;
 
 static inline bool rt_node_is_leaf(const RtNode *node) {
@@ -52,5 +54,9 @@ void rt_hierarchy_each_box(const RtHierarchy *self, RtBoxViewer viewer);
 /* RT_OK, or RT_MISMATCH and the first broken invariant, told of `name`. */
 RtStatus rt_hierarchy_validate(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
                                RtError *error);
+
+/* parts.c, for validate: whether the leaves that list an object hold its surface, for all objects. */
+RtStatus rt_hierarchy_check_parts(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
+                                  RtError *error);
 
 #endif

@@ -70,7 +70,12 @@ static RtStatus check_leaf(Check *check, uint32_t index) {
         if (id >= check->geometry->object_count)
             return rt_fail(check->error, RT_MISMATCH, "%s: leaf %u holds no object", check->name, index);
         check->seen[id]++;
-        if (rt_box_contains(node->box, check->geometry->boxes[id])) continue;
+        for (uint64_t j = node->first; j < i && self->divided; j++) {
+            if (self->ids[j] != id) continue;
+            return rt_fail(check->error, RT_MISMATCH, "%s: object %u is in leaf %u twice", check->name, id,
+                           index);
+        }
+        if (self->divided || rt_box_contains(node->box, check->geometry->boxes[id])) continue;
         return rt_fail(check->error, RT_MISMATCH, "%s: leaf %u does not contain its object %u", check->name,
                        index, id);
     }
@@ -111,7 +116,7 @@ static RtStatus check_all(Check *check) {
     uint32_t node_count = check->self->node_count;
     RT_TRY(check_node(check, 0, 0));
     for (uint32_t id = 0; id < check->geometry->object_count; id++) {
-        if (check->seen[id] == 1) continue;
+        if (check->seen[id] == 1 || (check->self->divided && check->seen[id] > 1)) continue;
         return rt_fail(check->error, RT_MISMATCH, "%s: object %u is in %u leaves, not in one", check->name,
                        id, check->seen[id]);
     }
@@ -128,5 +133,6 @@ RtStatus rt_hierarchy_validate(const RtHierarchy *self, const RtGeometry *geomet
     if (!check.seen) return rt_fail_memory(error, "validating a hierarchy", count * sizeof(uint32_t));
     RtStatus status = check_all(&check);
     rt_free(check.seen);
+    if (status == RT_OK && self->divided) status = rt_hierarchy_check_parts(self, geometry, name, error);
     return status;
 }

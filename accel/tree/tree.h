@@ -8,8 +8,8 @@
 #ifndef RT_ACCEL_TREE_TREE_H
 #define RT_ACCEL_TREE_TREE_H
 
-#include "base/box.h"
 #include "base/status.h"
+#include "shape/geometry.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -28,6 +28,7 @@ typedef struct RtTree {
     RtTreeNode *nodes; /* [capacity] */
     uint32_t capacity, used;
     uint32_t root;
+    bool divided; /* there are objects of several references, or of one that is not about the whole */
 } RtTree;
 
 /* An empty tree with room for `most` references, at least 1. */
@@ -102,6 +103,28 @@ RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int b
 
 /* From the top by the surface area heuristic, all places between centres tried (MacDonald & Booth 1990). */
 RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
+
+/* How rt_tree_spatial cuts. */
+typedef struct RtSpatial {
+    int bins;         /* along each axis, 2..RT_MAX_BINS */
+    double alpha;     /* planes are tried where groups overlap by more than this part of the root's area */
+    double budget;    /* most references, per object; at least 1 */
+    uint32_t leaf;    /* so few that would better be a leaf are not cut */
+    double traversal; /* cost of an inner node, in object tests */
+    uint64_t limit;   /* refused where tree and nodes may take more bytes */
+} RtSpatial;
+
+/* What rt_object_part (shape/overlap.h) needs in a scene with this box. */
+static inline double rt_tree_part_margin(const RtBox *scene) {
+    double farthest = 0;
+    for (int a = 0; a < 3; a++) {
+        farthest = fmax(farthest, fmax(fabs((double)scene->lo.at[a]), fabs((double)scene->hi.at[a])));
+    }
+    return 0x1p-40 * farthest;
+}
+
+/* From the top, where a plane that cuts objects may part them: Stich, Friedrich & Dietrich 2009. */
+RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtSpatial *how, RtError *error);
 
 /* ---- better trees ---- */
 

@@ -120,14 +120,17 @@ static inline float rt_shift(float thickness, float org) {
     return thickness + fabsf(org) * 0x1p-23f;
 }
 
-/* Gives the ray the thickness for boxes inside `around`. */
-static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
-    float thickness = rt_thickness(ray->org, around);
+static inline void rt_ray_set_thickness(RtPreparedRay *ray, float thickness) {
     for (int a = 0; a < 3; a++) {
         float org = ray->org.at[a], shift = rt_shift(thickness, org);
         ray->org_near[a] = ray->negative[a] ? org - shift : org + shift;
         ray->org_far[a] = ray->negative[a] ? org + shift : org - shift;
     }
+}
+
+/* Gives the ray the thickness for boxes inside `around`. */
+static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
+    rt_ray_set_thickness(ray, rt_thickness(ray->org, around));
 }
 
 /* `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness. */
