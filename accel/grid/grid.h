@@ -6,8 +6,9 @@
  * ids[first[v]..first[v + 1]), empty where a block is nested in it.
  *
  * Invariants. The outermost planes of a nested block are those of its voxel, bit for bit. An object is in the
- * list of each voxel without a nested block whose closed intervals of planes, grown by `slack`, meet its box
- * on all three axes, as those of the voxels around it do, and of no other; a list is ascending. With
+ * list of each voxel without a nested block whose intervals of planes meet its box, grown by `slack`, on all
+ * three axes, as those of the voxels around it do, and of no other; an interval holds its lower plane but not
+ * its upper one, unless it is the last of its block. A list is ascending. With
  * overlap=exact an object is only in those of them that its surface meets as well, and rays that
  * these do not serve (accel/surface.h) are tested against every object. */
 #ifndef RT_ACCEL_GRID_GRID_H
@@ -82,7 +83,7 @@ typedef struct RtGridRange {
 /* The box of an object, grown by the slack. */
 RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id);
 
-/* The box of a range, and the range of voxels that a box touches; the box must meet the block's. */
+/* The box of a range, and the range of voxels that hold a box, which must meet the block's. */
 RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range);
 RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box);
 

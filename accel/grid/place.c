@@ -1,5 +1,5 @@
-/* Which voxels an object goes into: all that its box touches, or (overlap=exact) those of them that its
- * surface comes within `margin` of, found by halving the range of voxels that the box touches.
+/* Which voxels an object goes into: all that its box meets, or (overlap=exact) those of them that its
+ * surface comes within `margin` of, found by halving the range of voxels that the box meets.
  *
  * Why surfaces are enough: grid.c proves that the walk visits every voxel, on every level, whose three
  * intervals the thick ray is in at the t of a hit, and accel/surface.h that the voxels of its q are among
@@ -30,15 +30,16 @@ bool rt_grid_surface_meets(const RtGrid *grid, uint32_t id, const RtBox *box) {
     return rt_object_meets_box(&grid->base.scene->geometry, id, box, grid->slack + grid->served.margin);
 }
 
-/* The intervals of planes on `axis` that [lo, hi], which meets the block, touches: first to last. */
+/* The intervals of planes on `axis` that [lo, hi], which meets the block, takes: first to last. An interval
+ * holds its lower plane but not its upper one, unless it is the last. */
 static void touched(const RtGridBlock *block, int axis, float lo, float hi, uint32_t *first, uint32_t *last) {
     const float *plane = block->planes[axis];
     uint32_t n = block->n[axis];
     float width = plane[n] - plane[0];
     float guess = width > 0 ? (lo - plane[0]) / width * (float)n : 0;
     uint32_t i = guess > 0 ? (uint32_t)rt_minf(guess, (float)(n - 1)) : 0;
-    while (i > 0 && plane[i] >= lo) i--;
-    while (i + 1 < n && plane[i + 1] < lo) i++;
+    while (i > 0 && plane[i] > lo) i--;
+    while (i + 1 < n && plane[i + 1] <= lo) i++;
     *first = i;
     while (i + 1 < n && plane[i + 1] <= hi) i++;
     *last = i;

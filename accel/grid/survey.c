@@ -163,7 +163,8 @@ static uint32_t count_touched(const RtGridBlock *block, int axis, const RtBox *b
     const float *plane = block->planes[axis];
     uint32_t count = 0;
     for (uint32_t i = block->n[axis]; i-- > 0;) {
-        if (!(plane[i] <= box->hi.at[axis] && plane[i + 1] >= box->lo.at[axis])) continue;
+        bool last = i + 1 == block->n[axis];
+        if (plane[i] > box->hi.at[axis] || (plane[i + 1] <= box->lo.at[axis] && !last)) continue;
         *first = i;
         count++;
     }

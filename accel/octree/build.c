@@ -10,8 +10,8 @@
 /* Above this many bytes of nodes and lists an octree is refused. */
 #define MAX_BYTES (UINT64_C(4) << 30)
 
-/* Planes tried between the spatial and the object median, both included. */
-enum { CANDIDATES = 10 };
+/* From the centre of a cell to where its objects are; planes are tried at both ends and between. */
+enum { STEPS = 10 };
 
 const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {
     [RT_OCTREE_MAX_OBJECTS] = {.name = "max_objects",
@@ -36,7 +36,8 @@ const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {
                          .type = RT_PARAM_CHOICE,
                          .standard = "centre",
                          .choices = "centre|cost",
-                         .meaning = "where a cell is cut: its centre, or the cheapest of ten planes per axis",
+                         .meaning =
+                             "where a cell is cut: its centre, or the cheapest of eleven planes per axis",
                          .source = "Glassner 1984"},
     [RT_OCTREE_MARGIN] = {.name = "margin",
                           .type = RT_PARAM_FLOAT,
@@ -46,6 +47,29 @@ const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {
                           .meaning = "how much wider than the scene's box the root is, as a part of it",
                           .source = "the published scene boxes are a little wider than tight",
                           .tries = "0.01|1"},
+    [RT_OCTREE_SLACK] =
+        {.name = "slack",
+         .type = RT_PARAM_FLOAT,
+         .standard = "0",
+         .lo = 0,
+         .hi = 1e6,
+         .meaning = "how far from a cell an object may be and still be listed there, in units of the scene",
+         .source = "0 is enough; Havran 1999 lists more (README)",
+         .tries = "0.01|100"},
+    [RT_OCTREE_FLAT] =
+        {.name = "flat",
+         .type = RT_PARAM_FLOAT,
+         .standard = "0",
+         .lo = 0,
+         .hi = 1e6,
+         .meaning = "how far objects that are flat along an axis reach to both sides, in units of the scene",
+         .source = "0 is enough; Havran 1999 thickens them (README)",
+         .tries = "0.01"},
+    [RT_OCTREE_CUT_FILLED] = {.name = "cut_filled",
+                              .type = RT_PARAM_FLAG,
+                              .standard = "off",
+                              .meaning = "divide cells, too, that every one of their objects' boxes fills",
+                              .source = "off: it separates nothing; Havran 1999 does"},
     [RT_OCTREE_MAILBOX] = {.name = "mailbox",
                            .type = RT_PARAM_FLAG,
                            .standard = "on",
@@ -72,46 +96,34 @@ static float centre(float lo, float hi) {
     return inside(0.5 * (double)lo + 0.5 * (double)hi, lo, hi);
 }
 
-/* The element that sorting would put in the middle (Hoare's selection); reorders values[0..count). */
-static float median(float *values, uint32_t count) {
-    int64_t lo = 0, hi = (int64_t)count - 1, middle = count / 2;
-    while (lo < hi) {
-        float pivot = values[middle];
-        int64_t i = lo, j = hi;
-        while (i <= j) {
-            while (values[i] < pivot) i++;
-            while (values[j] > pivot) j--;
-            if (i > j) break;
-            float swapped = values[i];
-            values[i++] = values[j];
-            values[j--] = swapped;
-        }
-        if (j < middle) lo = i;
-        if (i > middle) hi = j;
+/* Where objects are along an axis: the mean of the centres of what the cell holds of their boxes. */
+static double mean_center(const RtOctreeBuilder *b, const RtBox *cell, int axis, const uint32_t *ids,
+                          uint32_t count) {
+    double sum = 0, lo = (double)cell->lo.at[axis], hi = (double)cell->hi.at[axis];
+    for (uint32_t i = 0; i < count; i++) {
+        RtBox object = rt_octree_grown(b->tree, b->objects[ids[i]]);
+        sum += fmax((double)object.lo.at[axis], lo) + fmin((double)object.hi.at[axis], hi);
     }
-    return values[middle];
+    return sum / (2.0 * count);
 }
 
-/* Octree-R: of ten planes from the spatial median to the object median, the one of the least cost
- * (MacDonald & Booth 1990). */
+/* Octree-R: of the planes in ten equal steps from the centre to where the objects are, the one of the least
+ * cost (MacDonald & Booth 1990). */
 static float cheapest(const RtOctreeBuilder *b, const RtBox *cell, int axis, const uint32_t *ids,
                       uint32_t count) {
     float lo = cell->lo.at[axis], hi = cell->hi.at[axis], best = centre(lo, hi);
     RtVec3d size = rt_subd(rt_widen(cell->hi), rt_widen(cell->lo));
     double across = size.at[(axis + 1) % 3] + size.at[(axis + 2) % 3];
     double face = size.at[(axis + 1) % 3] * size.at[(axis + 2) % 3];
-    for (uint32_t i = 0; i < count; i++) {
-        float center = rt_box_center(b->objects[ids[i]]).at[axis];
-        b->centers[i] = rt_minf(rt_maxf(center, lo), hi);
-    }
-    double from = (double)best, to = (double)median(b->centers, count), least = INFINITY;
-    for (int k = 0; k < CANDIDATES; k++) {
-        float split = inside(from + (to - from) * k / (CANDIDATES - 1), lo, hi);
+    double from = (double)best, to = mean_center(b, cell, axis, ids, count), least = INFINITY;
+    for (int k = 0; k <= STEPS; k++) {
+        float split = inside(from + (to - from) * k / STEPS, lo, hi);
         if (split == hi) continue;
-        uint32_t below = 0, above = 0; /* objects that are cut are in both */
+        uint32_t below = 0, above = 0; /* objects that are cut are in both, those that touch are not */
         for (uint32_t i = 0; i < count; i++) {
-            below += b->objects[ids[i]].lo.at[axis] <= split;
-            above += b->objects[ids[i]].hi.at[axis] >= split;
+            RtBox object = rt_octree_grown(b->tree, b->objects[ids[i]]);
+            below += object.lo.at[axis] < split;
+            above += object.hi.at[axis] > split;
         }
         double left = (double)split - (double)lo, right = (double)hi - (double)split;
         double cost = below * (2 * left * across + face) + above * (2 * right * across + face);
@@ -131,18 +143,20 @@ static RtVec3 choose_split(const RtOctreeBuilder *b, const RtBox *cell, const ui
     return split;
 }
 
-bool rt_octree_divisible(const RtBox *boxes, const RtBox *cell, const uint32_t *ids, uint32_t count) {
+bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *cell, const uint32_t *ids,
+                         uint32_t count) {
     bool room = false;
     for (int a = 0; a < 3; a++) room |= centre(cell->lo.at[a], cell->hi.at[a]) < cell->hi.at[a];
+    if (tree->cut_filled) return room;
     for (uint32_t i = 0; room && i < count; i++) {
-        if (!rt_box_contains(boxes[ids[i]], *cell)) return true;
+        if (!rt_box_contains(rt_octree_grown(tree, boxes[ids[i]]), *cell)) return true;
     }
     return false;
 }
 
 bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count) {
     return count > b->tree->max_objects && b->depth < b->tree->max_depth &&
-           rt_octree_divisible(b->objects, cell, ids, count);
+           rt_octree_divisible(b->tree, b->objects, cell, ids, count);
 }
 
 /* ---- levels ---- */
@@ -186,7 +200,8 @@ RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *id
     uint32_t length[8] = {0}, end[8];
     uint64_t total = 0;
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t children = rt_octree_sides(&cell, split, &b->objects[ids[i]]);
+        RtBox object = rt_octree_grown(tree, b->objects[ids[i]]);
+        uint32_t children = rt_octree_sides(&cell, split, &object);
         for (uint32_t c = 0; c < 8; c++) length[c] += children >> c & 1;
     }
     for (uint32_t c = 0; c < 8; c++) total += length[c];
@@ -203,7 +218,8 @@ RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *id
         b->next_count += length[c];
     }
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t children = rt_octree_sides(&cell, split, &b->objects[ids[i]]);
+        RtBox object = rt_octree_grown(tree, b->objects[ids[i]]);
+        uint32_t children = rt_octree_sides(&cell, split, &object);
         for (uint32_t c = 0; c < 8; c++) {
             if (children >> c & 1) b->next[end[c]++] = ids[i];
         }
@@ -244,8 +260,7 @@ void rt_octree_descend(RtOctreeBuilder *b) {
 static RtStatus build_levels(RtOctreeBuilder *b, RtBox root, uint32_t object_count, RtError *error) {
     RtOctree *tree = b->tree;
     b->list = rt_alloc(object_count, sizeof(uint32_t));
-    b->centers = rt_alloc(tree->split == RT_OCTREE_COST ? object_count : 0, sizeof(float));
-    if (!b->list || !b->centers) {
+    if (!b->list) {
         return rt_fail_memory(error, "building an octree", object_count * sizeof(uint32_t));
     }
     for (uint32_t i = 0; i < object_count; i++) b->list[i] = i;
@@ -285,16 +300,22 @@ RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtVa
     tree->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
     tree->split = values[RT_OCTREE_SPLIT].choice;
     tree->traversal = values[RT_OCTREE_TRAVERSAL].choice;
+    tree->slack = values[RT_OCTREE_SLACK].f;
+    tree->flat = values[RT_OCTREE_FLAT].f;
+    tree->cut_filled = values[RT_OCTREE_CUT_FILLED].flag;
     tree->mailbox = values[RT_OCTREE_MAILBOX].flag;
     RtOctreeBuilder builder = {.tree = tree, .objects = g->boxes, .limit = limit};
     RtStatus status = RT_OK;
     if (g->object_count > 0) {
-        RtBox root = rt_box_widened(g->box, values[RT_OCTREE_MARGIN].f);
+        RtBox root = g->box;
+        for (uint32_t i = 0; i < g->object_count; i++) {
+            root = rt_box_union(root, rt_octree_grown(tree, g->boxes[i]));
+        }
+        root = rt_box_widened(root, values[RT_OCTREE_MARGIN].f);
         status = build_levels(&builder, root, g->object_count, error);
     }
     rt_free(builder.list);
     rt_free(builder.next);
-    rt_free(builder.centers);
     if (status != RT_OK) {
         rt_octree_destroy(accel);
         return status;

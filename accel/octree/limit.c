@@ -123,9 +123,13 @@ RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to,
     if (b->depth == max_depth || candidates < PROBES || bytes < CHEAP * limit) return RT_OK;
 
     Estimate estimate = {{0}, {0}};
-    RtOctree tree = {.max_objects = b->tree->max_objects, .max_depth = max_depth, .split = b->tree->split};
-    RtOctreeBuilder probe = {
-        .tree = &tree, .objects = b->objects, .limit = UINT64_MAX, .centers = b->centers};
+    RtOctree tree = {.max_objects = b->tree->max_objects,
+                     .max_depth = max_depth,
+                     .split = b->tree->split,
+                     .slack = b->tree->slack,
+                     .flat = b->tree->flat,
+                     .cut_filled = b->tree->cut_filled};
+    RtOctreeBuilder probe = {.tree = &tree, .objects = b->objects, .limit = UINT64_MAX};
     RtStatus status = probe_level(b, &probe, from, candidates, &estimate, error);
     rt_octree_uproot(&probe);
     RT_TRY(status);

@@ -138,6 +138,9 @@ typedef struct Cell {
     float next[3]; /* when the ray enters what lies beyond its far face; INFINITY: never, or seen to */
 } Cell;
 
+/* Crossing.start of a ray that leaves the root. */
+#define NOWHERE UINT32_MAX
+
 /* Where next to look for leaves. */
 typedef struct Crossing {
     float t, plane;
@@ -151,12 +154,14 @@ RT_KERNEL float far_plane(const RtPreparedRay *ray, const RtBox *box, int axis) 
 
 RT_KERNEL Cell make_cell(const RtOctree *self, const RtPreparedRay *ray, uint32_t index, float t) {
     Cell cell = {.node = index, .leave = INFINITY};
+    bool climbs = self->traversal == RT_OCTREE_NEIGHBOURS; /* it learns at the root that it is leaving */
     for (int a = 0; a < 3; a++) {
         cell.leave = rt_minf(far_crossing(ray, a, far_plane(ray, &self->boxes[index], a)), cell.leave);
     }
     for (int a = 0; a < 3; a++) {
         float plane = far_plane(ray, &self->boxes[index], a), next = near_crossing(ray, a, plane);
-        bool ahead = next >= t && next <= cell.leave && plane != far_plane(ray, &self->boxes[0], a);
+        bool outward = plane == far_plane(ray, &self->boxes[0], a);
+        bool ahead = next >= t && next <= cell.leave && (climbs || !outward);
         cell.next[a] = ahead ? next : INFINITY;
     }
     return cell;
@@ -233,15 +238,17 @@ RT_KERNEL Crossing next_crossing(const RtOctree *self, const RtPreparedRay *ray,
     return soonest;
 }
 
-/* From a leaf up to the least ancestor that goes on beyond the leaf's far face along an axis. */
+/* From a leaf up to the least ancestor that goes on beyond the leaf's far face along an axis; NOWHERE if none
+ * does, which the root only can tell. */
 RT_KERNEL uint32_t climb(const RtOctree *self, const RtPreparedRay *ray, uint32_t index, int axis,
                          RtTally *tally) {
-    for (;;) {
+    while (index != 0) {
         bool first = near_side(ray, axis) >> rt_octree_place(index) & 1;
         index = self->nodes[index].parent;
         if (first) return index;
         RT_COUNT(tally, steps, 1);
     }
+    return NOWHERE;
 }
 
 /* False if the ray is in too many cells at once. */
@@ -251,7 +258,9 @@ RT_KERNEL bool walk(const RtOctree *self, RtMailbox *mailbox, float enter, const
     uint32_t count = 0;
     Crossing at = {.t = enter, .axis = -1, .start = 0};
     for (;;) {
-        if (enter_leaves(self, mailbox, &at, cells, &count, ray, any, best, tally)) return count <= MAX_CELLS;
+        if (at.start != NOWHERE && enter_leaves(self, mailbox, &at, cells, &count, ray, any, best, tally)) {
+            return count <= MAX_CELLS;
+        }
         at = next_crossing(self, ray, cells, count);
         if (at.t > rt_limit(ray, best)) return true;
         for (uint32_t i = count; i-- > 0;) {

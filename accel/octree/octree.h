@@ -7,8 +7,8 @@
  * Invariants: the cells of children are the cell of their parent cut at its split, so neighbours share the
  * same bits of a plane. A split lies strictly between the planes of its cell or, where float32 has nothing in
  * between, on the upper one; then the upper children have no width and never hold an object
- * (rt_octree_sides). An object is in the list of every other leaf whose closed cell meets its box. No leaf is
- * deeper than max_depth, which bounds the stacks of traversals. */
+ * (rt_octree_sides). An object is in the list of every other leaf whose closed cell meets its box, grown
+ * by rt_octree_grown. No leaf is deeper than max_depth, which bounds the stacks of traversals. */
 #ifndef RT_ACCEL_OCTREE_OCTREE_H
 #define RT_ACCEL_OCTREE_OCTREE_H
 
@@ -19,6 +19,9 @@ enum {
     RT_OCTREE_MAX_DEPTH,
     RT_OCTREE_SPLIT,
     RT_OCTREE_MARGIN,
+    RT_OCTREE_SLACK,
+    RT_OCTREE_FLAT,
+    RT_OCTREE_CUT_FILLED,
     RT_OCTREE_MAILBOX,
     RT_OCTREE_TRAVERSAL,
     RT_OCTREE_PARAM_COUNT
@@ -51,7 +54,8 @@ typedef struct RtOctree {
     uint32_t *ids;       /* [id_count] */
     uint32_t node_count, id_count;
     uint32_t max_objects, max_depth, split, traversal;
-    bool mailbox;
+    bool mailbox, cut_filled;
+    double slack, flat; /* how objects' boxes are grown: rt_octree_grown */
 } RtOctree;
 
 extern const RtAccelOps rt_octree_ops;
@@ -73,7 +77,6 @@ typedef struct RtOctreeBuilder {
     /* The lists of the current level and of the next, node after node. */
     uint32_t *list, *next;
     uint32_t next_count, next_capacity;
-    float *centers; /* [object_count] scratch for medians */
 } RtOctreeBuilder;
 
 /* Makes a tree without nodes, `b->list` being the objects of `cell`, one of a single node. */
@@ -82,7 +85,7 @@ RtStatus rt_octree_plant(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError
 /* Goes to the next level. */
 void rt_octree_descend(RtOctreeBuilder *b);
 
-/* Frees the arrays of a tree and its lists, but neither the tree nor the scratch for medians. */
+/* Frees the arrays of a tree and its lists, but not the tree. */
 void rt_octree_uproot(RtOctreeBuilder *b);
 
 /* Whether a cell of the current level, with the list ids[0..count), is to be divided. */
@@ -99,9 +102,10 @@ RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to,
 /* The refusal: it would take `bytes`, or more, while it would fit with max_depth = `fits`. */
 RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error);
 
-/* Whether cutting the cell further can separate its objects ids[0..count) at all: some object does not fill
- * it, and float32 has a plane inside it. */
-bool rt_octree_divisible(const RtBox *boxes, const RtBox *cell, const uint32_t *ids, uint32_t count);
+/* Whether it makes sense to cut the cell further: float32 has a plane inside it and, unless cut_filled says
+ * that this does not matter, some of its objects ids[0..count) does not fill it. */
+bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *cell, const uint32_t *ids,
+                         uint32_t count);
 
 /* survey.c */
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
@@ -121,6 +125,18 @@ static inline uint32_t rt_octree_upper(int axis) {
  */
 static inline uint32_t rt_octree_place(uint32_t index) {
     return (index - 1) & 7;
+}
+
+/* The box by which an object goes into cells, from its own: all sides reach `slack` farther, and what is flat
+ * along an axis `flat` farther there. */
+static inline RtBox rt_octree_grown(const RtOctree *tree, RtBox own) {
+    if (tree->slack == 0 && tree->flat == 0) return own;
+    for (int a = 0; a < 3; a++) {
+        double grow = tree->slack + (own.lo.at[a] == own.hi.at[a] ? tree->flat : 0);
+        own.lo.at[a] = rt_float_below((double)own.lo.at[a] - grow);
+        own.hi.at[a] = rt_float_above((double)own.hi.at[a] + grow);
+    }
+    return own;
 }
 
 /* The children, as bits, that an object with this box belongs to; it meets the cell. */

@@ -12,8 +12,8 @@ static uint32_t depth_of(const RtOctree *tree, uint32_t index) {
 
 /* Steps that traversal=neighbours is expected to take into a leaf and out of it, times twice the half area of
  * the root. A line comes in through a face, or goes out, with the ratio of areas: from the node that is cut
- * there down to the leaf and up again. Through a face of the root it comes from the root, and goes for good.
- */
+ * there down to the leaf and up again. Through a face of the root it comes from the root, or goes for good,
+ * once it has climbed there. */
 static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
     const RtVec3 size = rt_box_size(tree->boxes[leaf]);
     const double face[3] = {(double)size.y * size.z, (double)size.z * size.x, (double)size.x * size.y};
@@ -29,7 +29,7 @@ static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
             open -= face[a];
         }
     }
-    return steps + climbed * open;
+    return steps + (2 * climbed - 1) * open; /* climbed: depth + 1 by now */
 }
 
 /* It meets a node with the ratio of their areas, and then takes the steps that lead there. */
@@ -134,8 +134,9 @@ static RtStatus check_list(const Check *check, uint32_t index) {
             return rt_fail(check->error, RT_MISMATCH, "octree: the list of leaf %u is not ascending ids",
                            index);
         }
-        RtBox common = {rt_vec_max(tree->boxes[index].lo, g->boxes[ids[i]].lo),
-                        rt_vec_min(tree->boxes[index].hi, g->boxes[ids[i]].hi)};
+        RtBox object = rt_octree_grown(tree, g->boxes[ids[i]]);
+        RtBox common = {rt_vec_max(tree->boxes[index].lo, object.lo),
+                        rt_vec_min(tree->boxes[index].hi, object.hi)};
         if (rt_box_is_empty(common)) {
             return rt_fail(check->error, RT_MISMATCH,
                            "octree: leaf %u lists object %u, which it does not touch", index, ids[i]);
@@ -143,7 +144,7 @@ static RtStatus check_list(const Check *check, uint32_t index) {
         check->listed[ids[i]]++;
     }
     if (leaf->count > tree->max_objects && depth_of(tree, index) < tree->max_depth &&
-        rt_octree_divisible(g->boxes, &tree->boxes[index], ids, leaf->count)) {
+        rt_octree_divisible(tree, g->boxes, &tree->boxes[index], ids, leaf->count)) {
         return rt_fail(check->error, RT_MISMATCH, "octree: leaf %u holds %u objects and could be divided",
                        index, leaf->count);
     }
@@ -170,7 +171,8 @@ static RtStatus check_all(const Check *check) {
         RT_TRY(leaf ? check_list(check, i) : check_inner(check, i));
     }
     for (uint32_t id = 0; id < check->geometry->object_count; id++) {
-        uint64_t touched = leaves_touched(tree, 0, &check->geometry->boxes[id]);
+        RtBox object = rt_octree_grown(tree, check->geometry->boxes[id]);
+        uint64_t touched = leaves_touched(tree, 0, &object);
         if (check->listed[id] == touched) continue;
         return rt_fail(check->error, RT_MISMATCH,
                        "octree: object %u belongs to %llu leaves, but %llu list it", id,
