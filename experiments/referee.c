@@ -1,0 +1,182 @@
+#include "experiments/referee.h"
+
+const char *rt_side_name(RtSide side) {
+    static const char *const names[RT_SIDE_COUNT] = {
+#define RT_SIDE_NAME(CONSTANT, name, meaning) #name,
+        RT_SIDES(RT_SIDE_NAME)
+#undef RT_SIDE_NAME
+    };
+    return names[side];
+}
+
+long double rt_float_ulp(long double x) {
+    int exponent;
+    frexpl(x, &exponent);
+    return ldexpl(1, x == 0 || exponent < FLT_MIN_EXP ? FLT_MIN_EXP - FLT_MANT_DIG : exponent - FLT_MANT_DIG);
+}
+
+/* ---- which objects to ask ---- */
+
+/* By how much the slabs below are wider than a box, in parts of the numbers they are computed from: far above
+ * the rounding of a few operations in double, and far below what would let many objects in. */
+#define SLACK 0x1p-40
+
+/* May the line meet what lies in `box`, within [tmin, tmax], and how soon at the earliest? Rounds towards
+ * yes.
+ */
+static bool may_meet(const RtBox *box, const RtLine *line, double *soonest) {
+    double near = line->tmin, far = fmin(line->tmax, (double)FLT_MAX);
+    for (int a = 0; a < 3; a++) {
+        double org = line->org.at[a], dir = line->dir.at[a];
+        double slack = SLACK * (fabs(org) + fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a])));
+        double lo = (double)box->lo.at[a] - org - slack, hi = (double)box->hi.at[a] - org + slack;
+        if (dir == 0) {
+            if (lo > 0 || hi < 0) return false;
+            continue;
+        }
+        double first = (dir > 0 ? lo : hi) / dir, second = (dir > 0 ? hi : lo) / dir;
+        near = fmax(near, first - SLACK * fabs(first));
+        far = fmin(far, second + SLACK * fabs(second));
+    }
+    *soonest = near;
+    return near <= far;
+}
+
+/* ---- the nearest ---- */
+
+typedef struct Search {
+    RtSlate slate;
+    const RtGeometry *geometry;
+    RtLine line;
+    RtExactLine exact;
+    RtSurd best;
+    RtRuling ruling;
+    double open; /* the soonest t at which an undecided object may be met */
+} Search;
+
+static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray) {
+    *s = (Search){.geometry = geometry,
+                  .line = rt_line_of(ray),
+                  .ruling = {.finding = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
+                  .open = HUGE_VAL};
+    s->exact = rt_exact_line(&s->slate, &s->line);
+}
+
+/* Numbers of what is not the nearest are forgotten at once. */
+static void consider(Search *s, uint32_t id, double soonest) {
+    size_t mark = rt_slate_mark(&s->slate);
+    RtSurd t;
+    RtFinding finding = rt_exact_hit(&s->slate, s->geometry, id, &s->exact, &t);
+    if (finding == RT_UNDECIDED) s->open = fmin(s->open, soonest);
+    int order = -1;
+    if (finding == RT_HIT && s->ruling.together > 0) order = rt_surd_compare(&s->slate, &t, &s->best);
+    if (finding != RT_HIT || order >= 0) {
+        if (finding == RT_HIT && order == 0) s->ruling.together++;
+        rt_slate_wipe(&s->slate, mark);
+        return;
+    }
+    s->best = t;
+    s->ruling = (RtRuling){.finding = RT_HIT, .object = id, .together = 1, .t = rt_surd_value(&s->slate, &t)};
+}
+
+static void search(Search *s) {
+    for (uint32_t id = 0; id < s->geometry->object_count; id++) {
+        double soonest;
+        if (!may_meet(&s->geometry->boxes[id], &s->line, &soonest)) continue;
+        if ((long double)soonest * (1 - SLACK) > s->ruling.t) continue;
+        consider(s, id, soonest);
+    }
+    if (s->open < HUGE_VAL && (long double)s->open <= s->ruling.t) s->ruling.finding = RT_UNDECIDED;
+}
+
+RtRuling rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
+    Search s;
+    search_init(&s, geometry, ray);
+    search(&s);
+    rt_slate_clear(&s.slate);
+    return s.ruling;
+}
+
+RtFinding rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
+    Search s;
+    search_init(&s, geometry, ray);
+    for (uint32_t id = 0; id < geometry->object_count && s.ruling.finding != RT_HIT; id++) {
+        double soonest;
+        if (may_meet(&geometry->boxes[id], &s.line, &soonest)) consider(&s, id, soonest);
+    }
+    rt_slate_clear(&s.slate);
+    return s.ruling.finding == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.ruling.finding;
+}
+
+/* ---- judging ---- */
+
+/* RT_HIT: the answer is right. */
+static RtFinding is_right(const RtGeometry *geometry, const RtRay *ray, const RtRuling *ruling, RtHit answer,
+                          double tolerance) {
+    if (answer.object == RT_NO_OBJECT) return ruling->finding == RT_MISSED ? RT_HIT : RT_MISSED;
+    if (ruling->finding == RT_MISSED || answer.object >= geometry->object_count) return RT_MISSED;
+    RtLine line = rt_line_of(ray);
+    long double t;
+    RtFinding own = rt_referee_hit(geometry, answer.object, &line, &t);
+    if (own != RT_HIT) return own;
+    long double most = fmaxl((long double)tolerance, rt_float_ulp(ruling->t));
+    bool right = t - ruling->t <= most && fabsl((long double)answer.t - t) <= most;
+    return right ? RT_HIT : RT_MISSED;
+}
+
+RtRuling rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit got,
+                          double tolerance) {
+    RtRuling ruling = rt_referee_nearest(geometry, ray);
+    ruling.side = RT_SIDE_UNDECIDED;
+    if (ruling.finding == RT_UNDECIDED) return ruling;
+    RtFinding one = is_right(geometry, ray, &ruling, expected, tolerance);
+    RtFinding other = is_right(geometry, ray, &ruling, got, tolerance);
+    if (one == RT_UNDECIDED || other == RT_UNDECIDED) return ruling;
+    ruling.side = one == RT_HIT ? (other == RT_HIT ? RT_SIDE_BOTH : RT_SIDE_EXPECTED)
+                                : (other == RT_HIT ? RT_SIDE_GOT : RT_SIDE_NEITHER);
+    return ruling;
+}
+
+/* ---- one or two objects ---- */
+
+RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtLine *line, long double *t) {
+    RtSlate slate = {0};
+    RtExactLine exact = rt_exact_line(&slate, line);
+    RtSurd at;
+    RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);
+    if (finding == RT_HIT) *t = rt_surd_value(&slate, &at);
+    rt_slate_clear(&slate);
+    return finding;
+}
+
+RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray, int *order,
+                           long double *apart) {
+    RtSlate slate = {0};
+    RtLine line = rt_line_of(ray);
+    RtExactLine exact = rt_exact_line(&slate, &line);
+    RtSurd at[2];
+    RtFinding finding = rt_exact_hit(&slate, geometry, a, &exact, &at[0]);
+    if (finding == RT_HIT) finding = rt_exact_hit(&slate, geometry, b, &exact, &at[1]);
+    if (finding == RT_HIT) {
+        *order = rt_surd_compare(&slate, &at[0], &at[1]);
+        *apart = *order == 0 ? 0 : fabsl(rt_surd_value(&slate, &at[0]) - rt_surd_value(&slate, &at[1]));
+    }
+    rt_slate_clear(&slate);
+    return finding;
+}
+
+RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                           long double *ulps) {
+    RtSlate slate = {0};
+    RtLine line = rt_line_of(ray);
+    RtExactLine exact = rt_exact_line(&slate, &line);
+    RtSurd at;
+    RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);
+    if (finding == RT_HIT) {
+        long double ulp = rt_float_ulp(rt_surd_value(&slate, &at));
+        at.p = rt_exact_sub(&slate, at.p, rt_exact_of(&slate, (double)t));
+        *ulps = -rt_surd_value(&slate, &at) / ulp;
+    }
+    rt_slate_clear(&slate);
+    return finding;
+}
