@@ -126,6 +126,7 @@ static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
     RtHit expected = job->reference->hits[index];
     RtVerdict worst = RT_EQUAL;
     bool occluded_wrong = false;
+    const RtHit *doubtful = NULL;
     for (int counted = 0; counted < KERNELS; counted++) {
         RtHit got = desk->hits[counted][i];
         bool blocked = desk->blocked[counted][i];
@@ -138,6 +139,7 @@ static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
                              .blocked = blocked};
         RtVerdict verdict = judge_nearest(job, ray, expected, got);
         if (verdict == RT_WRONG) keep_witness(part, witness);
+        if (verdict >= RT_MARGINAL) doubtful = &desk->hits[counted][i];
         if (verdict > worst) worst = verdict;
         verdict = judge_occluded(job, ray, expected, blocked);
         if (verdict == RT_WRONG) {
@@ -149,6 +151,9 @@ static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
     }
     part->rays++;
     part->verdicts[worst]++;
+    if (doubtful && !job->accel->exact) {
+        part->sides[rt_verdict_side(&job->reference->scene->geometry, ray, expected, *doubtful)]++;
+    }
     part->occluded_wrong += occluded_wrong;
 }
 
@@ -175,6 +180,7 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
         out->rays += job.parts[i].rays;
         out->occluded_wrong += job.parts[i].occluded_wrong;
         for (int v = 0; v < RT_VERDICT_COUNT; v++) out->verdicts[v] += job.parts[i].verdicts[v];
+        for (int s = 0; s < RT_SIDE_COUNT; s++) out->sides[s] += job.parts[i].sides[s];
         if (job.parts[i].any_wrong) keep_witness(out, job.parts[i].first_wrong);
     }
     rt_free(job.parts);
@@ -217,6 +223,11 @@ json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, cons
         json_object_set_new(row, rt_verdict_name((RtVerdict)v),
                             json_integer((json_int_t)result->verdicts[v]));
     }
+    json_t *sides = json_object();
+    for (int s = 0; s < RT_SIDE_COUNT; s++) {
+        json_object_set_new(sides, rt_side_name((RtSide)s), json_integer((json_int_t)result->sides[s]));
+    }
+    json_object_set_new(row, "exactly_right", sides);
     json_object_set_new(row, "occluded_wrong", json_integer((json_int_t)result->occluded_wrong));
     json_object_set_new(row, "first_wrong",
                         result->any_wrong ? witness_json(&result->first_wrong) : json_null());

@@ -1,10 +1,10 @@
 #include "experiments/exact_hit.h"
 
-RtLine rt_line_of(const RtRay *ray) {
-    return (RtLine){rt_widen(ray->org), rt_widen(ray->dir), (double)ray->tmin, (double)ray->tmax};
+RtWideRay rt_wide_ray(const RtRay *ray) {
+    return (RtWideRay){rt_widen(ray->org), rt_widen(ray->dir), (double)ray->tmin, (double)ray->tmax};
 }
 
-RtExactLine rt_exact_line(RtSlate *slate, const RtLine *line) {
+RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line) {
     return (RtExactLine){.org = rt_exact_vec(slate, line->org),
                          .dir = rt_exact_vec(slate, line->dir),
                          .tmin = rt_exact_of(slate, line->tmin),

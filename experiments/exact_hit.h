@@ -22,12 +22,12 @@
 #include "shape/geometry.h"
 
 /* A ray whose origin need not be float32. */
-typedef struct RtLine {
+typedef struct RtWideRay {
     RtVec3d org, dir;  /* finite */
     double tmin, tmax; /* tmin finite */
-} RtLine;
+} RtWideRay;
 
-RtLine rt_line_of(const RtRay *ray);
+RtWideRay rt_wide_ray(const RtRay *ray);
 
 /* The same on a slate; tmax is at most FLT_MAX, for a hit at infinity is none. */
 typedef struct RtExactLine {
@@ -35,7 +35,7 @@ typedef struct RtExactLine {
     RtRational tmin, tmax;
 } RtExactLine;
 
-RtExactLine rt_exact_line(RtSlate *slate, const RtLine *line);
+RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line);
 
 typedef enum RtFinding { RT_MISSED, RT_HIT, RT_UNDECIDED } RtFinding;
 

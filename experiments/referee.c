@@ -24,7 +24,7 @@ long double rt_float_ulp(long double x) {
 /* May the line meet what lies in `box`, within [tmin, tmax], and how soon at the earliest? Rounds towards
  * yes.
  */
-static bool may_meet(const RtBox *box, const RtLine *line, double *soonest) {
+static bool may_meet(const RtBox *box, const RtWideRay *line, double *soonest) {
     double near = line->tmin, far = fmin(line->tmax, (double)FLT_MAX);
     for (int a = 0; a < 3; a++) {
         double org = line->org.at[a], dir = line->dir.at[a];
@@ -47,7 +47,7 @@ static bool may_meet(const RtBox *box, const RtLine *line, double *soonest) {
 typedef struct Search {
     RtSlate slate;
     const RtGeometry *geometry;
-    RtLine line;
+    RtWideRay line;
     RtExactLine exact;
     RtSurd best;
     RtRuling ruling;
@@ -56,7 +56,7 @@ typedef struct Search {
 
 static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray) {
     *s = (Search){.geometry = geometry,
-                  .line = rt_line_of(ray),
+                  .line = rt_wide_ray(ray),
                   .ruling = {.finding = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
                   .open = HUGE_VAL};
     s->exact = rt_exact_line(&s->slate, &s->line);
@@ -115,7 +115,7 @@ static RtFinding is_right(const RtGeometry *geometry, const RtRay *ray, const Rt
                           double tolerance) {
     if (answer.object == RT_NO_OBJECT) return ruling->finding == RT_MISSED ? RT_HIT : RT_MISSED;
     if (ruling->finding == RT_MISSED || answer.object >= geometry->object_count) return RT_MISSED;
-    RtLine line = rt_line_of(ray);
+    RtWideRay line = rt_wide_ray(ray);
     long double t;
     RtFinding own = rt_referee_hit(geometry, answer.object, &line, &t);
     if (own != RT_HIT) return own;
@@ -139,7 +139,7 @@ RtRuling rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit ex
 
 /* ---- one or two objects ---- */
 
-RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtLine *line, long double *t) {
+RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
     RtSlate slate = {0};
     RtExactLine exact = rt_exact_line(&slate, line);
     RtSurd at;
@@ -152,7 +152,7 @@ RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtLine *
 RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray, int *order,
                            long double *apart) {
     RtSlate slate = {0};
-    RtLine line = rt_line_of(ray);
+    RtWideRay line = rt_wide_ray(ray);
     RtExactLine exact = rt_exact_line(&slate, &line);
     RtSurd at[2];
     RtFinding finding = rt_exact_hit(&slate, geometry, a, &exact, &at[0]);
@@ -168,7 +168,7 @@ RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, c
 RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
                            long double *ulps) {
     RtSlate slate = {0};
-    RtLine line = rt_line_of(ray);
+    RtWideRay line = rt_wide_ray(ray);
     RtExactLine exact = rt_exact_line(&slate, &line);
     RtSurd at;
     RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);

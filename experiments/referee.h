@@ -54,7 +54,7 @@ RtFinding rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray);
 /* ---- one or two objects ---- */
 
 /* Does the line meet object `id`, and where first? *t is not touched unless it does. */
-RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtLine *line, long double *t);
+RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t);
 
 /* Which of two objects that the ray meets does it meet first? *order is -1 (a), 1 (b), 0 for a true tie, and
  * *apart |difference of t|. RT_MISSED if one of them is not met. */

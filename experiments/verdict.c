@@ -208,12 +208,22 @@ static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer) {
     return named && (double)answer.t <= nearest_certain + probes.tolerance;
 }
 
+/* Does the ray meet both objects, exactly, at t's within the tolerance? Our hit function, which is quick, is
+ * asked first. */
 static bool is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, double tolerance) {
     float t;
+    int order;
+    long double apart;
     RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
-    return rt_object_hit(g, answer.object, &prepared, &t, NULL) &&
-           within((double)t, (double)expected.t, tolerance) &&
-           within((double)answer.t, (double)expected.t, tolerance);
+    if (!within((double)answer.t, (double)expected.t, tolerance)) return false;
+    if (!rt_object_hit(g, answer.object, &prepared, &t, NULL)) return false;
+    if (!within((double)t, (double)expected.t, tolerance)) return false;
+    RtFinding finding = rt_referee_order(g, expected.object, answer.object, ray, &order, &apart);
+    return finding == RT_UNDECIDED || (finding == RT_HIT && apart <= (long double)tolerance);
+}
+
+RtSide rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer) {
+    return rt_referee_judge(geometry, ray, expected, answer, tolerance_of(geometry, ray)).side;
 }
 
 RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer) {
@@ -224,13 +234,17 @@ RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit
         if (answer.object >= geometry->object_count) return RT_WRONG;
         bool near = within((double)answer.t, (double)expected.t, tolerance);
         if (answer.object == expected.object && near) return RT_EQUAL;
-        if (is_tie(geometry, ray, expected, answer, tolerance)) return RT_TIE;
+        if (expected.object != RT_NO_OBJECT && is_tie(geometry, ray, expected, answer, tolerance))
+            return RT_TIE;
     }
-    return is_marginal(geometry, ray, answer) ? RT_MARGINAL : RT_WRONG;
+    RtSide side = rt_verdict_side(geometry, ray, expected, answer);
+    bool right = side == RT_SIDE_GOT || side == RT_SIDE_BOTH;
+    return right || is_marginal(geometry, ray, answer) ? RT_MARGINAL : RT_WRONG;
 }
 
 RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer) {
     if (answer == expected) return RT_EQUAL;
+    if (rt_referee_occluded(geometry, ray) == (answer ? RT_HIT : RT_MISSED)) return RT_MARGINAL;
     Probes probes;
     make_probes(&probes, geometry, ray);
     bool possible = false, certain = false;

@@ -1,8 +1,11 @@
 /* Verdicts: how an answer of an accelerator with arithmetic of its own (Embree's native mode) compares with
  * the answer of our hit functions.
  *
- * Both compute in rounded arithmetic, so where a ray grazes an object, or begins or ends on one, both answers
- * can be right. Each object has a margin: where float32 arithmetic may find it hit, the places of its corners
+ * Both compute in rounded arithmetic, so where a ray grazes an object, or begins or ends on one, either
+ * answer can be the wrong one. Where they differ the referee (experiments/referee.h) says in exact arithmetic
+ * who is right. An answer that is exactly right is never wrong, whatever our hit functions say. One that is
+ * not is excused, as marginal, only where the ray is nearer to the border that decides than float32
+ * arithmetic can tell. Each object has such a margin: where it may be found hit, the places of its corners
  * and of the ray being wrong by
  *
  *     error = 2^-20 * the largest coordinate of the scene's box or of the ray's origin     (16 half-ulps)
@@ -17,19 +20,17 @@
  *
  * An object that is hit all over its margin is certain, one that is hit somewhere is possible. An answer that
  * names a possible or certain object, at a t that is possible for it, with no certain object clearly before
- * it, is marginal; so is a miss where nothing is certain.
- *
- * This trusts a bound on errors; a referee in exact arithmetic, which trusts nobody, is to take its place. */
+ * it, is marginal; so is a miss where nothing is certain. */
 #ifndef RT_EXPERIMENTS_VERDICT_H
 #define RT_EXPERIMENTS_VERDICT_H
 
-#include "shape/geometry.h"
+#include "experiments/referee.h"
 
 /* In order of severity. */
 typedef enum RtVerdict {
     RT_EQUAL,    /* the same object, t within the tolerance: 2^-18 * the largest coordinate / |dir| */
-    RT_TIE,      /* another object that our hit function finds within the tolerance of the nearest t */
-    RT_MARGINAL, /* explained by rounding, as above */
+    RT_TIE,      /* another object, exactly met within the tolerance of the exact t of ours */
+    RT_MARGINAL, /* exactly right, or explained by rounding, as above */
     RT_WRONG,    /* anything else */
     RT_VERDICT_COUNT
 } RtVerdict;
@@ -39,6 +40,9 @@ const char *rt_verdict_name(RtVerdict verdict);
 
 /* Judges the nearest hit `answer` of a valid ray; `expected` is brute's. */
 RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer);
+
+/* Whose answer to `nearest` is the exact one, within that tolerance? */
+RtSide rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer);
 
 /* Judges an answer to `occluded`: equal, marginal or wrong. */
 RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer);

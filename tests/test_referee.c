@@ -2,10 +2,7 @@
  * but for rays that pass a border within the rounding of float32. */
 #include "testing.h"
 
-#include "experiments/random_tree.h"
 #include "experiments/referee.h"
-
-#include <string.h>
 
 /* ---- numbers ---- */
 
@@ -86,7 +83,7 @@ static RtRay ray_from(float x, float y, float z, float dx, float dy, float dz) {
 /* t, INFINITY for a miss, NaN if undecided. */
 static long double first_t(const RtGeometry *g, uint32_t id, const RtRay *ray) {
     long double t = HUGE_VALL;
-    RtLine line = rt_line_of(ray);
+    RtWideRay line = rt_wide_ray(ray);
     return rt_referee_hit(g, id, &line, &t) == RT_UNDECIDED ? (long double)NAN : t;
 }
 
