@@ -60,7 +60,8 @@ static double least_move(const RtGeometry *g, uint32_t id, RtWideRay line, doubl
     RtVec3d org = line.org;
     for (int k = RT_BORDER_NEAR; k <= RT_BORDER_FAR; k++) {
         for (int i = 0; i < 27; i++) {
-            RtVec3d move = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+            int x = i % 3, y = i / 3 % 3, z = i / 9;
+            RtVec3d move = {x - 1, y - 1, z - 1};
             line.org = rt_add_scaledd(org, move, ldexp(unit, k));
             if (rt_decision_check(g, id, &line, decision) == RT_HIT) return ldexp(1, k);
         }

@@ -7,7 +7,7 @@ static mpq_ptr fresh(RtSlate *slate) {
         void *(*alloc)(size_t);
         void *(*grow)(void *, size_t, size_t);
         mp_get_memory_functions(&alloc, &grow, NULL);
-        size_t old = slate->block_count * sizeof *slate->blocks, one = sizeof *slate->blocks;
+        size_t old = slate->block_count * sizeof(void *), one = sizeof(void *);
         slate->blocks = old == 0 ? alloc(one) : grow(slate->blocks, old, old + one);
         mpq_t *block = alloc(RT_SLATE_BLOCK * sizeof(mpq_t));
         for (size_t i = 0; i < RT_SLATE_BLOCK; i++) mpq_init(block[i]);
@@ -24,7 +24,7 @@ void rt_slate_clear(RtSlate *slate) {
         for (size_t k = 0; k < RT_SLATE_BLOCK; k++) mpq_clear(slate->blocks[i][k]);
         release(slate->blocks[i], RT_SLATE_BLOCK * sizeof(mpq_t));
     }
-    if (slate->block_count > 0) release(slate->blocks, slate->block_count * sizeof *slate->blocks);
+    if (slate->block_count > 0) release(slate->blocks, slate->block_count * sizeof(void *));
     *slate = (RtSlate){0};
 }
 
