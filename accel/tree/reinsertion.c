@@ -27,6 +27,10 @@
  * branch and bound nothing to go by. What is beyond is not looked at. */
 enum { MAX_VISITS = 1024, MAX_KEPT = 96 };
 
+/* Nodes that a move climbs, at most. Such boxes cost least in a chain as deep as they are many, along which
+ * every move would climb: what stands lower stays where it is. */
+enum { MAX_CLIMB = 512 };
+
 /* Nodes per item of parallel work. */
 enum { CHUNK = 1024 };
 
@@ -115,7 +119,8 @@ static Move find_move(const Optimizer *o, uint32_t node) {
     uint32_t beside = sibling(o, node);
     RtBox rest = o->tree->nodes[beside].box; /* of `at` without the node */
     search_below(&s, beside, gained, false);
-    for (; o->parent[at] != NONE && s.visits < MAX_VISITS; at = o->parent[at]) {
+    for (uint32_t climbed = 0; o->parent[at] != NONE && s.visits < MAX_VISITS && climbed < MAX_CLIMB;
+         at = o->parent[at], climbed++) {
         uint32_t above = o->parent[at];
         beside = sibling(o, at);
         search_below(&s, beside, gained, true);
@@ -142,17 +147,24 @@ static RtStatus find_moves(void *context, size_t item, int thread, RtError *erro
 
 /* ---- the moves ---- */
 
+/* Marks the nodes from `at` to the root with a stamp of their own; false if they are too many. */
+static bool mark_path(Optimizer *o, uint32_t at) {
+    uint32_t stamp = ++o->marked;
+    for (uint32_t climbed = 0; at != NONE && climbed < MAX_CLIMB; at = o->parent[at], climbed++)
+        o->mark[at] = stamp;
+    return at == NONE;
+}
+
 /* Whether the move can be made and gains, in the tree as it is. */
 static bool still_gains(Optimizer *o, const Move *move) {
     uint32_t node = move->node, target = move->target, p = o->parent[node];
-    if (p == NONE || target == p || target == sibling(o, node)) return false;
-    uint32_t stamp = ++o->marked;
-    for (uint32_t at = p; at != NONE; at = o->parent[at]) o->mark[at] = stamp;
+    if (p == NONE || target == p || target == sibling(o, node) || !mark_path(o, p)) return false;
+    uint32_t stamp = o->marked, climbed = 0;
     RtBox box = o->tree->nodes[node].box;
     uint32_t common = target;
     double grown = 0;
     for (; o->mark[common] != stamp; common = o->parent[common]) {
-        if (common == node) return false;
+        if (common == node || ++climbed > MAX_CLIMB) return false;
         double with = rt_box_half_area(box_with(o, common, box));
         grown += common == target ? with : with - area_of(o, common);
     }
