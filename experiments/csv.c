@@ -74,6 +74,11 @@ RtStatus rt_csv_read(RtCsv *csv, const char *path, RtError *error) {
     size_t size;
     *csv = (RtCsv){.path = path};
     RT_TRY(rt_file_read(path, MOST_BYTES, &csv->text, &size, error));
+    /* The text would seem to end there, and the rows behind it would be missing without a word. */
+    if (strlen(csv->text) < size) {
+        return rt_fail_at(error, path, count_of(csv->text, '\n') + 1, 0,
+                          "there is a byte 0, which no text has");
+    }
     return take_text(csv, error);
 }
 

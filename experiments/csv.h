@@ -17,8 +17,8 @@ typedef struct RtCsv {
 } RtCsv;
 
 /* Reads the file at `path`, which has to stay as long as the table. Refuses an empty one, a row with more or
- * fewer fields than the header, and a quote that is not closed. Clear with rt_csv_clear, also after a
- * failure. */
+ * fewer fields than the header, a quote that is not closed, and a byte 0. Clear with rt_csv_clear, also after
+ * a failure. */
 RtStatus rt_csv_read(RtCsv *csv, const char *path, RtError *error);
 void rt_csv_clear(RtCsv *csv);
 

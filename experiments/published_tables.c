@@ -104,8 +104,11 @@ static void put_least_rows(const RtPublished *published, FILE *out) {
             char name[RT_MAX_ROW_NAME];
             if (least->row == RT_NOT_MEASURED || least->contender == RT_NOT_MEASURED) continue;
             rt_published_row_name(&published->rows[least->row], name);
-            fprintf(out, "| %s | %s | %s | %.4g | `", published->experiment->trials[t].label,
-                    rt_measure_name((RtMeasure)m), name, least->published);
+            fputs("| ", out);
+            put_cell(out, published->experiment->trials[t].label);
+            fprintf(out, " | %s | ", rt_measure_name((RtMeasure)m));
+            put_cell(out, name);
+            fprintf(out, " | %.4g | `", least->published);
             put_cell(out, published->experiment->contenders[least->contender].label);
             fprintf(out, "` | %.4g%s | %.4g |\n", least->ours, rt_least_is_ahead(least) ? "" : ", not less",
                     least->extent_tests);

@@ -158,6 +158,19 @@ static void a_csv_field_may_be_quoted_and_is_written_as_it_was_read(void **state
     rt_csv_clear(&csv);
 }
 
+static void a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there(void **state) {
+    Place *place = *state;
+    static const char text[] = "a,b\n1,2\n\0,3,4\n";
+    char path[128];
+    RtCsv csv;
+    snprintf(path, sizeof path, "%s/some.csv", place->folder);
+    assert_ok(rt_file_write(path, text, sizeof text - 1, error));
+    RtError error = {RT_OK, ""};
+    RtStatus status = rt_csv_read(&csv, path, &error);
+    rt_csv_clear(&csv);
+    assert_refused(status, RT_BAD_INPUT, &error, ":3: there is a byte 0");
+}
+
 static void a_csv_file_that_is_none_is_refused_with_its_line(void **state) {
     Place *place = *state;
     const char *const cases[][2] = {
@@ -340,6 +353,9 @@ static void ours_must_need_less_than_every_published_row(void **state) {
     assert_agrees(place, ahead, "");
     assert_in_file(place, "out/least.csv", "balls,object_tests,Tree deep,12,all,11,");
     assert_in_file(place, "out/least.csv", "balls,object_tests+steps,Tree flat,14.5,all,");
+    /* A bar in a name is none of the table's. */
+    assert_agrees(place, "balls,s,Tree|deep,,,ray,,12.0,3.5\n", "");
+    assert_in_file(place, "out/published.md", "| balls | object_tests | Tree\\|deep | 12 | `all` |");
     /* Per hit it is less than 11 a ray. */
     assert_fails(place, "balls,s,Tree,deep,,hit,,11.0,3.5\n", "", false, "on balls none of ours needs less");
 }
@@ -400,6 +416,7 @@ static void a_contender_is_counted_on_its_scenes_alone_and_one_label_serves_on_s
 int main(void) {
     const struct CMUnitTest tests[] = {
         IN_PLACE(a_csv_field_may_be_quoted_and_is_written_as_it_was_read),
+        IN_PLACE(a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there),
         IN_PLACE(a_csv_file_that_is_none_is_refused_with_its_line),
         IN_PLACE(what_a_published_table_or_a_reason_says_wrongly_is_told_with_its_line),
         IN_PLACE(what_the_experiment_says_wrongly_about_published_figures_is_told_with_its_line),
