@@ -265,7 +265,9 @@ static RtRay to_light(Maker *m) {
 static RtRay through_sample(Maker *m) {
     const RtSampling *s = &m->scene->sampling;
     if (m->view.sampling.columns == 0) return chord(m);
-    RtRay ray = rt_view_ray(&m->view, below(m, s->columns), below(m, s->rows));
+    /* Not as arguments: in what order these are evaluated C leaves open. */
+    uint32_t row = below(m, s->rows), column = below(m, s->columns);
+    RtRay ray = rt_view_ray(&m->view, column, row);
     switch (below(m, 16)) {
     case 0: ray.source = below(m, s->columns * s->rows + 2); break;
     case 1: ray.tmax = (float)rt_random_betweend(&m->random, 0, 2 * m->size); break;
