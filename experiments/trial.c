@@ -16,11 +16,11 @@ static const double CHEAP_BUILD = 0.25; /* seconds */
 
 /* ---- what is left to do ---- */
 
-static bool runs(const Trial *trial, uint32_t contender) {
+static bool runs(const RtTrialState *trial, uint32_t contender) {
     return rt_contender_runs(trial->experiment, contender, trial->index);
 }
 
-static bool kind_is_done(const Trial *trial, RtRayKind kind) {
+static bool kind_is_done(const RtTrialState *trial, RtRayKind kind) {
     for (uint32_t c = 0; c < trial->count; c++) {
         const RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
         bool null = c == trial->experiment->contender_count;
@@ -30,7 +30,7 @@ static bool kind_is_done(const Trial *trial, RtRayKind kind) {
     return true;
 }
 
-static bool trial_is_done(const Trial *trial) {
+static bool trial_is_done(const RtTrialState *trial) {
     const RtTrialResult *result = &trial->results->trials[trial->index];
     if (!result->known) return result->skipped;
     for (uint32_t c = 0; c < trial->count; c++) {
@@ -43,14 +43,14 @@ static bool trial_is_done(const Trial *trial) {
     return true;
 }
 
-RtStatus rt_trial_tell(const Trial *trial, RtEventKind what, uint32_t contender, RtRayKind kind,
+RtStatus rt_trial_tell(const RtTrialState *trial, RtEventKind what, uint32_t contender, RtRayKind kind,
                        RtError *error) {
     const RtObserver *observer = &trial->options->observer;
     RtEvent event = {what, trial->index, contender, kind};
     return observer->event ? observer->event(observer->context, trial->results, &event, error) : RT_OK;
 }
 
-static void notice(const Trial *trial, const char *message) {
+static void notice(const RtTrialState *trial, const char *message) {
     const RtObserver *observer = &trial->options->observer;
     if (observer->notice) observer->notice(observer->context, message);
 }
@@ -67,7 +67,7 @@ RtStatus rt_trial_find_scene(const RtTrial *setup, RtError *error) {
                    "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", setup->path);
 }
 
-static RtStatus open_scene(Trial *trial, RtError *error) {
+static RtStatus open_scene(RtTrialState *trial, RtError *error) {
     const RtTrial *setup = &trial->experiment->trials[trial->index];
     RT_TRY(rt_trial_find_scene(setup, error));
     if (is_there(setup)) return rt_scene_open(setup->path, &trial->scene, error);
@@ -81,7 +81,7 @@ static RtStatus open_scene(Trial *trial, RtError *error) {
 }
 
 /* Keeps of the recorded sets what the experiment asks for, at most `limit` of each kind. */
-static RtStatus keep_sets(Trial *trial, const RtRaySet *recorded, RtError *error) {
+static RtStatus keep_sets(RtTrialState *trial, const RtRaySet *recorded, RtError *error) {
     for (uint32_t k = 0; k < trial->experiment->kind_count; k++) {
         RtRayKind kind = trial->experiment->kinds[k];
         RT_TRY(rt_rayset_limit(&recorded[kind], trial->experiment->limit, trial->experiment->together,
@@ -90,7 +90,7 @@ static RtStatus keep_sets(Trial *trial, const RtRaySet *recorded, RtError *error
     return RT_OK;
 }
 
-static RtStatus record_rays(Trial *trial, RtError *error) {
+static RtStatus record_rays(RtTrialState *trial, RtError *error) {
     const RtTrial *setup = &trial->experiment->trials[trial->index];
     RtRecording recording = {.depth = setup->depth,
                              .seed = trial->experiment->seed,
@@ -106,7 +106,7 @@ static RtStatus record_rays(Trial *trial, RtError *error) {
 }
 
 /* Fills the trial's part of the results, or holds it against what an earlier run found. */
-static RtStatus describe_trial(Trial *trial, RtError *error) {
+static RtStatus describe_trial(RtTrialState *trial, RtError *error) {
     RtTrialResult *result = &trial->results->trials[trial->index];
     RtTrialResult now = {.known = true,
                          .objects = trial->scene.geometry.object_count,
@@ -129,7 +129,7 @@ static RtStatus describe_trial(Trial *trial, RtError *error) {
     return rt_trial_tell(trial, RT_EVENT_TRIAL, 0, RT_RAY_PRIMARY, error);
 }
 
-static RtStatus prepare(Trial *trial, RtError *error) {
+static RtStatus prepare(RtTrialState *trial, RtError *error) {
     RT_TRY(open_scene(trial, error));
     if (trial->results->trials[trial->index].skipped) return RT_OK;
     const RtTrial *setup = &trial->experiment->trials[trial->index];
@@ -139,7 +139,8 @@ static RtStatus prepare(Trial *trial, RtError *error) {
 }
 
 /* Builds one contender up to MOST_BUILDS times, keeps the last, and gives the median of the seconds. */
-static RtStatus build_one(Trial *trial, const RtSpec *spec, RtAccel **out, double *median, RtError *error) {
+static RtStatus build_one(RtTrialState *trial, const RtSpec *spec, RtAccel **out, double *median,
+                          RtError *error) {
     double seconds[MOST_BUILDS], sum = 0;
     uint32_t builds = 0;
     *out = NULL;
@@ -155,7 +156,7 @@ static RtStatus build_one(Trial *trial, const RtSpec *spec, RtAccel **out, doubl
     return RT_OK;
 }
 
-static RtStatus build_all(Trial *trial, RtError *error) {
+static RtStatus build_all(RtTrialState *trial, RtError *error) {
     for (uint32_t c = 0; c < trial->count; c++) {
         RtSpec spec;
         double seconds;
@@ -182,7 +183,7 @@ static uint64_t thinned_count(const RtRaySet *set, uint64_t every) {
 }
 
 /* Rays of the set and of all shares that are thinned. */
-static uint64_t count_with_shares(const Trial *trial, const RtRaySet *set) {
+static uint64_t count_with_shares(const RtTrialState *trial, const RtRaySet *set) {
     uint64_t count = set->count;
     for (uint32_t c = 0; c < trial->count; c++) {
         if (trial->accels[c] && rt_trial_every(trial, c) > 1)
@@ -192,8 +193,8 @@ static uint64_t count_with_shares(const Trial *trial, const RtRaySet *set) {
 }
 
 /* Picks the rays and answers of a share, to lie from `first` on. */
-static void thin_share(const Trial *trial, const RtRaySet *set, uint64_t every, uint64_t first,
-                       Share *share) {
+static void thin_share(const RtTrialState *trial, const RtRaySet *set, uint64_t every, uint64_t first,
+                       RtTrialShare *share) {
     share->set.rays = set->rays + first;
     share->set.count = thinned_count(set, every);
     share->expected = trial->answers + first;
@@ -206,7 +207,7 @@ static void thin_share(const Trial *trial, const RtRaySet *set, uint64_t every, 
 /* Gives every contender its share of the set, and the answers to those that learn. Thinned shares are copies
  * behind the set, in the same array: the baseline, which may be one that learns and knows rays by their
  * places, is timed on all of them. */
-static RtStatus deal_shares(Trial *trial, RtRaySet *set, RtError *error) {
+static RtStatus deal_shares(RtTrialState *trial, RtRaySet *set, RtError *error) {
     uint64_t all = count_with_shares(trial, set), used = set->count;
     uint32_t capacity = (uint32_t)set->count;
     RT_TRY(rt_reserve(&set->rays, &capacity, all, sizeof(RtRay), error));
@@ -216,7 +217,7 @@ static RtStatus deal_shares(Trial *trial, RtRaySet *set, RtError *error) {
     for (uint32_t c = 0; c < trial->count; c++) {
         uint64_t every = rt_trial_every(trial, c);
         if (!trial->accels[c]) continue;
-        trial->shares[c] = (Share){.set = *set, .expected = trial->answers};
+        trial->shares[c] = (RtTrialShare){.set = *set, .expected = trial->answers};
         if (every == 1) continue;
         thin_share(trial, set, every, used, &trial->shares[c]);
         used += trial->shares[c].set.count;
@@ -229,9 +230,9 @@ static RtStatus deal_shares(Trial *trial, RtRaySet *set, RtError *error) {
 
 /* The invariants of Havran & Sixta 1999: equal for every correct accelerator are the rays, the rays that hit,
  * and, stronger, each answer. */
-static RtStatus check_answers(const Trial *trial, uint32_t contender, RtRayKind kind, const RtCount *count,
-                              RtError *error) {
-    const Share *share = &trial->shares[contender];
+static RtStatus check_answers(const RtTrialState *trial, uint32_t contender, RtRayKind kind,
+                              const RtCount *count, RtError *error) {
+    const RtTrialShare *share = &trial->shares[contender];
     const char *scene = trial->experiment->trials[trial->index].label;
     const char *accel = rt_contender_label(trial->experiment, contender);
     uint64_t hits = 0;
@@ -251,10 +252,10 @@ static RtStatus check_answers(const Trial *trial, uint32_t contender, RtRayKind 
                    (unsigned long long)hits);
 }
 
-static RtStatus count_kind(Trial *trial, RtRayKind kind, RtError *error) {
+static RtStatus count_kind(RtTrialState *trial, RtRayKind kind, RtError *error) {
     for (uint32_t c = 0; c < trial->experiment->contender_count; c++) {
         RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
-        const Share *share = &trial->shares[c];
+        const RtTrialShare *share = &trial->shares[c];
         RtCount count;
         if (!trial->accels[c] || cell->counted) continue;
         RT_TRY(rt_measure_count(trial->accels[c], &share->set, share->expected, trial->options->threads,
@@ -270,7 +271,7 @@ static RtStatus count_kind(Trial *trial, RtRayKind kind, RtError *error) {
 
 /* ---- all of it ---- */
 
-static RtStatus measure_kind(Trial *trial, RtRayKind kind, RtError *error) {
+static RtStatus measure_kind(RtTrialState *trial, RtRayKind kind, RtError *error) {
     if (trial->sets[kind].count == 0 || kind_is_done(trial, kind)) return RT_OK;
     RtStatus status = deal_shares(trial, &trial->sets[kind], error);
     if (status == RT_OK) status = count_kind(trial, kind, error);
@@ -280,7 +281,7 @@ static RtStatus measure_kind(Trial *trial, RtRayKind kind, RtError *error) {
     return status;
 }
 
-static RtStatus measure(Trial *trial, RtError *error) {
+static RtStatus measure(RtTrialState *trial, RtError *error) {
     RT_TRY(prepare(trial, error));
     if (trial->results->trials[trial->index].skipped) return RT_OK;
     RT_TRY(build_all(trial, error));
@@ -291,15 +292,16 @@ static RtStatus measure(Trial *trial, RtError *error) {
 }
 
 RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error) {
-    Trial trial = {.results = results, .experiment = results->experiment, .options = options, .index = index};
+    RtTrialState trial = {
+        .results = results, .experiment = results->experiment, .options = options, .index = index};
     trial.count_only = options->count_only || trial.experiment->count_only;
     trial.count = trial.experiment->contender_count + !trial.count_only;
     if (trial_is_done(&trial)) return RT_OK;
     trial.accels = rt_alloc(trial.count, sizeof(RtAccel *));
-    trial.shares = rt_alloc(trial.count, sizeof(Share));
+    trial.shares = rt_alloc(trial.count, sizeof(RtTrialShare));
     RtStatus status = RT_OK;
     if (!trial.accels || !trial.shares)
-        status = rt_fail_memory(error, "a trial", trial.count * sizeof(Share));
+        status = rt_fail_memory(error, "a trial", trial.count * sizeof(RtTrialShare));
     if (status == RT_OK) status = measure(&trial, error);
     for (uint32_t c = 0; trial.accels && c < trial.count; c++) rt_accel_destroy(trial.accels[c]);
     rt_accel_destroy(trial.reference);

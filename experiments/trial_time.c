@@ -20,7 +20,7 @@ static uint32_t enter(Contest *contest, const RtAccel *accel, const RtRaySet *se
 }
 
 /* Clear it also after a failure. */
-static RtStatus contest_init(Contest *contest, const Trial *trial, RtError *error) {
+static RtStatus contest_init(Contest *contest, const RtTrialState *trial, RtError *error) {
     const uint32_t baseline = trial->experiment->baseline;
     size_t most = 2 * (size_t)trial->count, doubles = 2 * most * trial->experiment->rounds;
     *contest = (Contest){.rounds = trial->experiment->rounds,
@@ -50,7 +50,7 @@ static void contest_clear(Contest *contest) {
 }
 
 /* Takes what was timed into the cells. */
-static RtStatus keep_times(Trial *trial, RtRayKind kind, const Contest *contest, RtError *error) {
+static RtStatus keep_times(RtTrialState *trial, RtRayKind kind, const Contest *contest, RtError *error) {
     uint32_t rounds = contest->rounds;
     for (uint32_t c = 0; c < trial->count; c++) {
         RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
@@ -68,7 +68,7 @@ static RtStatus keep_times(Trial *trial, RtRayKind kind, const Contest *contest,
     return RT_OK;
 }
 
-RtStatus rt_trial_time(Trial *trial, RtRayKind kind, RtError *error) {
+RtStatus rt_trial_time(RtTrialState *trial, RtRayKind kind, RtError *error) {
     const RtExperiment *experiment = trial->experiment;
     RtTiming timing = {.rounds = experiment->rounds,
                        .least = 1e-3 * experiment->milliseconds,
