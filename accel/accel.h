@@ -62,6 +62,9 @@ typedef struct RtDescription {
 /* Initialises the predictions of an RtDescription as unknown. */
 #define RT_NO_PREDICTION .predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN
 
+/* An accelerator that would take more bytes than this, as far as its own folder counts them, is refused. */
+#define RT_ACCEL_MAX_BYTES (UINT64_C(4) << 30)
+
 /* The four kernels. rays[0..count) are valid (rt_ray_is_valid); `scratch` is the layer's part of the query's;
  * answers go to hits[0..count) and blockers[0..count); tallies[RT_RAY_KIND_COUNT] are added to, by the kind
  * of each ray. A blocker is any object that lies on the ray, RT_NO_OBJECT where none does, or

@@ -46,17 +46,12 @@ typedef struct RtSurfaceRays {
 /* For a scene with this box, in a structure with one that contains it. */
 static inline RtSurfaceRays rt_surface_rays(const RtBox *scene, const RtBox *structure) {
     RtSurfaceRays served;
-    double farthest = 0, longest = 0;
-    for (int a = 0; a < 3; a++) {
-        double lo = (double)structure->lo.at[a], hi = (double)structure->hi.at[a];
-        farthest = fmax(farthest, fmax(fabs(lo), fabs(hi)));
-        longest = fmax(longest, (double)scene->hi.at[a] - (double)scene->lo.at[a]);
-    }
+    double longest = rt_box_longest_side(*scene), largest = rt_box_largest_coordinate(*structure);
     for (int a = 0; a < 3; a++) {
         served.domain.lo.at[a] = (float)((double)scene->lo.at[a] - RT_SURFACE_SIDES * longest);
         served.domain.hi.at[a] = (float)((double)scene->hi.at[a] + RT_SURFACE_SIDES * longest);
     }
-    served.margin = 0x1p-18 * (RT_SURFACE_SIDES + 1) * longest + 0x1p-40 * farthest + 0x1p-80;
+    served.margin = 0x1p-18 * (RT_SURFACE_SIDES + 1) * longest + 0x1p-40 * largest + 0x1p-80;
     return served;
 }
 

@@ -9,6 +9,13 @@
  * triangle or a polygon of four corners. */
 #define RT_BUILTIN_OBJECT_BYTES 256
 
+/* The parameter `seed` of scenes that are made from random numbers. */
+#define RT_BUILTIN_SEED                                                                                      \
+    {                                                                                                        \
+        .name = "seed", .type = RT_PARAM_INT, .standard = "1", .lo = 0, .hi = 1e15,                          \
+        .meaning = "of the random numbers", .source = "any", .tries = "1"                                    \
+    }
+
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: where the scene comes from */
     const RtParam *params;               /* params[0] is the whole number that sets the size of the scene */

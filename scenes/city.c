@@ -19,14 +19,7 @@ static const RtParam params[] = {
               .meaning = "blocks along each edge of the city, of about 600 objects each",
               .source = "tens of thousands of objects",
               .tries = "1|3"},
-    [SEED] = {.name = "seed",
-              .type = RT_PARAM_INT,
-              .standard = "1",
-              .lo = 0,
-              .hi = 1e15,
-              .meaning = "of the random numbers",
-              .source = "any",
-              .tries = "1"},
+    [SEED] = RT_BUILTIN_SEED,
 };
 
 static const double block = 72, street = 18, kerb = 0.2, pavement = 4;

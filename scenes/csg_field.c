@@ -39,14 +39,7 @@ static const RtParam params[] = {
                  .standard = "on",
                  .meaning = "trees skip inner nodes whose box a ray misses",
                  .source = "Roth 1982"},
-    [SEED] = {.name = "seed",
-              .type = RT_PARAM_INT,
-              .standard = "1",
-              .lo = 0,
-              .hi = 1e15,
-              .meaning = "of the random numbers",
-              .source = "any",
-              .tries = "1"},
+    [SEED] = RT_BUILTIN_SEED,
 };
 
 typedef struct Field {

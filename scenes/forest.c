@@ -21,14 +21,7 @@ static const RtParam params[] = {
            .meaning = "trees, of about 1020 triangles each",
            .source = "a million triangles",
            .tries = "1|5"},
-    [SEED] = {.name = "seed",
-              .type = RT_PARAM_INT,
-              .standard = "1",
-              .lo = 0,
-              .hi = 1e15,
-              .meaning = "of the random numbers",
-              .source = "any",
-              .tries = "1"},
+    [SEED] = RT_BUILTIN_SEED,
 };
 
 enum { BARK, BIRCH_BARK, SOIL, NEEDLES, DARK_NEEDLES, LEAVES, MATERIALS = LEAVES + 9 };

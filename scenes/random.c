@@ -6,6 +6,7 @@
  * stays the same for any n. In clusters, the distance from a centre along each axis is the sum of four
  * uniform numbers: nearly a normal distribution, without a logarithm. */
 #include "base/random.h"
+#include "base/elementary.h"
 #include "scenes/builtin.h"
 #include "scenes/studio.h"
 
@@ -36,14 +37,7 @@ static const RtParam params[] = {
                .choices = "sphere|triangle|mixed",
                .meaning = "what they are; mixed: spheres, polygons, triangles and cones in turn",
                .source = "the simplest"},
-    [SEED] = {.name = "seed",
-              .type = RT_PARAM_INT,
-              .standard = "1",
-              .lo = 0,
-              .hi = 1e15,
-              .meaning = "of the random numbers",
-              .source = "any",
-              .tries = "1"},
+    [SEED] = RT_BUILTIN_SEED,
     [RADIUS] = {.name = "radius",
                 .type = RT_PARAM_FLOAT,
                 .standard = "0.25",
@@ -199,7 +193,7 @@ static double mean_spacing(const RtValue *values) {
     switch (values[DISTRIBUTION].choice) {
     case LINE: return 2 / n;
     case PLANE: return 2 / sqrt(n);
-    default: return 2 / cbrt(n);
+    default: return 2 / rt_cube_root(n);
     }
 }
 
@@ -211,7 +205,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     static const RtStudioMaterial materials[RT_STUDIO_MATERIALS] = {RT_STUDIO_CLAY, RT_STUDIO_SLATE,
                                                                     RT_STUDIO_STEEL, RT_STUDIO_GLASS};
     RT_TRY(rt_studio(scene, materials, error));
-    /* float32 hides the last bits of the cube root, in which libraries differ. */
+    /* As a float32, which it was while the cube root was the library's, so that scenes stay what they are. */
     double mean_radius = (double)(float)(values[RADIUS].f * mean_spacing(values));
     for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) {
         RT_TRY(add_object(scene, i, mean_radius, values, error));

@@ -188,6 +188,18 @@ static void logarithms_are_within_a_unit_in_the_last_place(void **state) {
     assert_true(rt_log(1) == 0);
 }
 
+static void cube_roots_are_within_their_bound(void **state) {
+    (void)state;
+    RtRandom random = rt_random(2, 0);
+    for (int i = 0; i < 200000; i++) {
+        int exponent = i % 2 ? 0 : (int)(rt_random_bits(&random) % 2000) - 1000;
+        double x = ldexp(rt_random_betweend(&random, 0.5, 2), exponent);
+        long double root = cbrtl((long double)x);
+        assert_true(fabsl((long double)rt_cube_root(x) - root) <= 4e-16L * root);
+    }
+    assert_true(rt_cube_root(1) == 1);
+}
+
 static void sines_and_cosines_are_within_their_bound(void **state) {
     (void)state;
     for (int i = -72000; i <= 72000; i++) {
@@ -220,6 +232,7 @@ int main(void) {
         cmocka_unit_test(the_nth_allocation_fails_when_told_to),
         cmocka_unit_test(random_numbers_depend_on_seed_stream_and_place_alone),
         cmocka_unit_test(logarithms_are_within_a_unit_in_the_last_place),
+        cmocka_unit_test(cube_roots_are_within_their_bound),
         cmocka_unit_test(sines_and_cosines_are_within_their_bound),
         cmocka_unit_test(quarter_turns_are_exact),
     };

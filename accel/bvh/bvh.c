@@ -16,9 +16,6 @@
 #include "accel/tree/split.h"
 #include "base/memory.h"
 
-/* Spatial splits that may take more are refused. */
-#define MAX_BYTES (UINT64_C(4) << 30)
-
 typedef enum Build { BINNED, SWEEP, LBVH, PLOC, SPATIAL } Build;
 
 enum {
@@ -134,7 +131,7 @@ static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValu
                      .budget = values[PARAM_BUDGET].f,
                      .leaf = (uint32_t)values[PARAM_LEAF].i,
                      .traversal = values[PARAM_TRAVERSAL].f,
-                     .limit = MAX_BYTES};
+                     .limit = RT_ACCEL_MAX_BYTES};
     switch ((Build)values[PARAM_BUILD].choice) {
     case BINNED: break;
     case SWEEP: return rt_tree_sweep(tree, boxes, count, error);

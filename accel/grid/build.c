@@ -7,9 +7,6 @@
 
 #include <string.h>
 
-/* Above this many bytes of voxels and lists a grid is refused. */
-#define MAX_BYTES (UINT64_C(4) << 30)
-
 typedef struct Builder {
     RtGrid *grid;
     const RtValue *values;
@@ -288,5 +285,5 @@ RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValu
 }
 
 RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    return rt_grid_build_within(MAX_BYTES, scene, values, out, error);
+    return rt_grid_build_within(RT_ACCEL_MAX_BYTES, scene, values, out, error);
 }

@@ -8,9 +8,9 @@
  * Invariants. The outermost planes of a nested block are those of its voxel, bit for bit. An object is in the
  * list of each voxel without a nested block whose intervals of planes meet its box, grown by `slack`, on all
  * three axes, as those of the voxels around it do, and of no other; an interval holds its lower plane but not
- * its upper one, unless it is the last of its block. A list is ascending. With
- * overlap=exact an object is only in those of them that its surface meets as well, and rays that
- * these do not serve (accel/surface.h) are tested against every object. */
+ * its upper one, unless it is the last of its block. A list is ascending. With overlap=exact an object is
+ * only in those of them that its surface meets as well, and rays that these do not serve (accel/surface.h)
+ * are tested against every object. */
 #ifndef RT_ACCEL_GRID_GRID_H
 #define RT_ACCEL_GRID_GRID_H
 

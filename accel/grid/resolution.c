@@ -1,6 +1,8 @@
 /* The parameters of a grid, and how they become a resolution. */
 #include "accel/grid/grid.h"
 
+#include "base/elementary.h"
+
 #include <assert.h>
 #include <string.h>
 
@@ -40,14 +42,15 @@ const RtParam rt_grid_params[RT_GRID_PARAM_COUNT] = {
                            "levels of grids; from 2 on a voxel may hold a grid of its own, by the rule",
                        .source = "one grid; nested ones are Jevans & Wyvill 1989",
                        .tries = "2|3"},
-    [RT_GRID_NEST] = {.name = "nest",
-                      .type = RT_PARAM_INT,
-                      .standard = "8",
-                      .lo = 1,
-                      .hi = 1e6,
-                      .meaning = "most objects of a voxel that holds no grid, above the last level",
-                      .source = "the only number that gives the integers of Havran & Sixta 1999",
-                      .tries = "1|30"},
+    [RT_GRID_NEST] =
+        {.name = "nest",
+         .type = RT_PARAM_INT,
+         .standard = "8",
+         .lo = 1,
+         .hi = 1e6,
+         .meaning = "depth=2 and more: most objects of a voxel that holds no grid, above the last level",
+         .source = "the only number that gives the integers of Havran & Sixta 1999",
+         .tries = "1|30"},
     [RT_GRID_MARGIN] = {.name = "margin",
                         .type = RT_PARAM_FLOAT,
                         .standard = "0",
@@ -98,17 +101,6 @@ static RtVec3d solid_size(const RtBox *box) {
     return s;
 }
 
-/* By Newton's method, because the library's last bit may differ from machine to machine, and counts must not.
- */
-static double cube_root(double x) {
-    double root = fmax(x, 1), last;
-    do {
-        last = root;
-        root = (2 * root + x / (root * root)) / 3;
-    } while (root < last);
-    return root;
-}
-
 /* Rounds down, but takes what is a whole number up to rounding as that number. */
 static double whole(double x) {
     return floor(x * (1 + 1e-12));
@@ -119,19 +111,21 @@ void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue
     double voxels = values[RT_GRID_DENSITY].f * objects;
     switch (values[RT_GRID_RULE].choice) {
     case RT_GRID_CUBIC: {
-        double per_side = cube_root(voxels / (s.x * s.y * s.z));
+        double per_side = rt_cube_root(voxels / (s.x * s.y * s.z));
         for (int a = 0; a < 3; a++) n[a] = clamp_resolution(whole(s.at[a] * per_side + 0.5));
         break;
     }
     case RT_GRID_WOO:
-        for (int a = 0; a < 3; a++) n[a] = clamp_resolution(whole(s.at[a] * cube_root(voxels)));
+        for (int a = 0; a < 3; a++) n[a] = clamp_resolution(whole(s.at[a] * rt_cube_root(voxels)));
         break;
     case RT_GRID_HETEROGENEOUS:
-        n[0] = clamp_resolution(whole(cube_root(voxels * s.x * s.x / (s.y * s.z)) + 0.5));
+        n[0] = clamp_resolution(whole(rt_cube_root(voxels * s.x * s.x / (s.y * s.z)) + 0.5));
         n[1] = clamp_resolution(whole(sqrt(voxels * s.y / (n[0] * s.z)) + 0.5));
         n[2] = clamp_resolution(whole(voxels / ((double)n[0] * n[1]) + 0.5));
         break;
-    case RT_GRID_REGULAR: n[0] = n[1] = n[2] = clamp_resolution(ceil(cube_root(voxels) * (1 - 1e-12))); break;
+    case RT_GRID_REGULAR:
+        n[0] = n[1] = n[2] = clamp_resolution(ceil(rt_cube_root(voxels) * (1 - 1e-12)));
+        break;
     default: assert(false && "no such rule");
     }
 }

@@ -125,8 +125,7 @@ static RtStatus check_voxel(void *context, const RtGridVoxel *voxel) {
             return fail_voxel(check, voxel, "has a list that is not ascending ids");
         }
         RtBox object = rt_grid_object_box(grid, id);
-        RtBox common = {rt_vec_max(voxel->box.lo, object.lo), rt_vec_min(voxel->box.hi, object.hi)};
-        bool apart = rt_box_is_empty(common);
+        bool apart = rt_box_is_empty(rt_box_common(voxel->box, object));
         if (grid->surfaces) apart |= !rt_grid_surface_meets(grid, id, &voxel->box);
         if (apart) return fail_voxel(check, voxel, "lists an object which it does not touch");
         check->listed[id]++;

@@ -15,8 +15,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define MAX_BYTES (UINT64_C(4) << 30)
-
 const RtParam rt_item_params[RT_ITEM_PARAM_COUNT] = {
     [RT_ITEM_SETTLE] = {"settle", RT_PARAM_FLAG, "on", 0, 0, NULL,
                         "ask hit functions while building, where the projection leaves a sample undecided",
@@ -153,7 +151,7 @@ static void mark_undecided(const Builder *b) {
 
 static RtStatus refuse_size(const RtItemBuffer *buffer, RtError *error) {
     const RtSampling *s = &buffer->view.sampling;
-    double a_sample = sizeof(RtItemSample) + sizeof(RtItemSpan), most = (double)MAX_BYTES;
+    double a_sample = sizeof(RtItemSample) + sizeof(RtItemSpan), most = (double)RT_ACCEL_MAX_BYTES;
     double rest = (double)buffer->base.scene->geometry.object_count * sizeof(Entry);
     double bytes = (double)s->columns * s->rows * a_sample;
     if (bytes + rest <= most) return RT_OK;

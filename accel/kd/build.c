@@ -12,9 +12,6 @@
 
 enum { OVERLAP_BOX, OVERLAP_EXACT };
 
-/* Above this many bytes of nodes and lists a tree is refused. */
-#define MAX_BYTES (UINT64_C(4) << 30)
-
 const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
     [RT_KD_TRAVERSAL] = {.name = "traversal",
                          .type = RT_PARAM_FLOAT,
@@ -138,7 +135,7 @@ static void enter_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf) {
 bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out) {
     const RtGeometry *g = &kd->base.scene->geometry;
     if (kd->surfaces) return rt_object_part(g, id, cell, kd->served.margin, out);
-    *out = (RtBox){rt_vec_max(g->boxes[id].lo, cell->lo), rt_vec_min(g->boxes[id].hi, cell->hi)};
+    *out = rt_box_common(g->boxes[id], *cell);
     return true;
 }
 
@@ -284,5 +281,5 @@ RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue 
 }
 
 RtStatus rt_kd_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    return rt_kd_build_within(MAX_BYTES, scene, values, out, error);
+    return rt_kd_build_within(RT_ACCEL_MAX_BYTES, scene, values, out, error);
 }

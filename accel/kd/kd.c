@@ -20,9 +20,7 @@
  * within the margin of the surface and inside the own box; so where q lies below the split the part begins
  * below it, and where q lies in the split either child that lists the object will do.
  *
- * Counting: an extent test for the cell of the root; a step per node visited, a leaf
- * step per leaf, an empty step per empty one.
- */
+ * Counting: an extent test for the cell of the root; a step per node visited. */
 #include "accel/kd/kd.h"
 #include "accel/mailbox.h"
 

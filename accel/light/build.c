@@ -20,8 +20,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_BYTES (UINT64_C(4) << 30)
-
 const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT] = {
     [RT_LIGHT_CELLS] = {"cells", RT_PARAM_INT, "64", 1, 4096, NULL,
                         "cells along the edge of a face of the cube", "Haines & Greenberg 1986 use 20 to 200",
@@ -57,24 +55,11 @@ uint32_t rt_light_order(const RtLightBuffer *buffer, uint32_t light, int face, R
 
 /* ---- margins ---- */
 
-static double farthest_coordinate(const RtBox *box) {
-    double most = 0;
-    for (int a = 0; a < 3; a++) {
-        most = fmax(most, fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a])));
-    }
-    return most;
-}
-
-static double longest_side(const RtBox *box) {
-    RtVec3d size = rt_subd(rt_widen(box->hi), rt_widen(box->lo));
-    return fmax(size.x, fmax(size.y, size.z));
-}
-
 /* Secondary rays start a little off the surface, so the domain is wider than the scene. */
 static RtBox choose_domain(const RtScene *scene) {
     RtBox box = scene->geometry.box;
     if (scene->geometry.object_count == 0) return box;
-    float grow = (float)(0x1p-8 * longest_side(&box) + 0x1p-16 * farthest_coordinate(&box));
+    float grow = (float)(0x1p-8 * rt_box_longest_side(box) + 0x1p-16 * rt_box_largest_coordinate(box));
     for (int a = 0; a < 3; a++) {
         box.lo.at[a] -= grow;
         box.hi.at[a] += grow;
@@ -89,7 +74,7 @@ static RtStatus make_margins(RtLightBuffer *buffer, RtError *error) {
     buffer->domain = choose_domain(scene);
     for (uint32_t i = 0; i < scene->light_count; i++) {
         RtBox all = rt_box_add_point(buffer->domain, scene->lights[i].position);
-        buffer->margin[i] = 0x1p-18 * longest_side(&all) + 0x1p-20 * farthest_coordinate(&all);
+        buffer->margin[i] = 0x1p-18 * rt_box_longest_side(all) + 0x1p-20 * rt_box_largest_coordinate(all);
     }
     return RT_OK;
 }
@@ -208,7 +193,7 @@ static double bound_bytes(const RtLightBuffer *buffer, const Extent *sum, uint32
 
 /* Before anything is made or gone over: a cell too many costs time as well. */
 static RtStatus refuse_size(const RtLightBuffer *buffer, RtError *error) {
-    const double most = (double)MAX_BYTES;
+    const double most = (double)RT_ACCEL_MAX_BYTES;
     Extent sum = measure_footprints(buffer);
     if (bound_bytes(buffer, &sum, buffer->n) <= most) return RT_OK;
     uint32_t fits = 1, too_many = buffer->n;

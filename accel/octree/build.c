@@ -7,9 +7,6 @@
 
 #include "base/memory.h"
 
-/* Above this many bytes of nodes and lists an octree is refused. */
-#define MAX_BYTES (UINT64_C(4) << 30)
-
 /* From the centre of a cell to where its objects are; planes are tried at both ends and between. */
 enum { STEPS = 10 };
 
@@ -325,5 +322,5 @@ RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtVa
 }
 
 RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    return rt_octree_build_within(MAX_BYTES, scene, values, out, error);
+    return rt_octree_build_within(RT_ACCEL_MAX_BYTES, scene, values, out, error);
 }

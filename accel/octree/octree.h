@@ -91,6 +91,11 @@ void rt_octree_uproot(RtOctreeBuilder *b);
 /* Whether a cell of the current level, with the list ids[0..count), is to be divided. */
 bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count);
 
+/* Whether it makes sense to cut the cell further: float32 has a plane inside it and, unless cut_filled says
+ * that this does not matter, some of its objects ids[0..count) does not fill it. */
+bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *cell, const uint32_t *ids,
+                         uint32_t count);
+
 /* Divides node `index` of the current level: deals the objects ids[0..count) to eight new children. */
 RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
                           RtError *error);
@@ -101,11 +106,6 @@ RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to,
 
 /* The refusal: it would take `bytes`, or more, while it would fit with max_depth = `fits`. */
 RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error);
-
-/* Whether it makes sense to cut the cell further: float32 has a plane inside it and, unless cut_filled says
- * that this does not matter, some of its objects ids[0..count) does not fill it. */
-bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *cell, const uint32_t *ids,
-                         uint32_t count);
 
 /* survey.c */
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);

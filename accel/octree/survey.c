@@ -43,10 +43,10 @@ static double steps_to(const RtOctree *tree, uint32_t index) {
 
 void rt_octree_describe(const RtAccel *accel, RtDescription *out) {
     const RtOctree *tree = (const RtOctree *)accel;
-    *out = (RtDescription){.bytes = tree->node_count * (sizeof(RtOctreeNode) + sizeof(RtBox)) +
-                                    tree->id_count * sizeof(uint32_t),
-                           .references = tree->id_count,
-                           RT_NO_PREDICTION};
+    *out =
+        (RtDescription){.bytes = tree->node_count * RT_OCTREE_NODE_BYTES + tree->id_count * sizeof(uint32_t),
+                        .references = tree->id_count,
+                        RT_NO_PREDICTION};
     if (tree->node_count == 0) return;
     double tests = 0, steps = 0, area = rt_box_half_area(tree->boxes[0]);
     for (uint32_t i = 0; i < tree->node_count; i++) {
@@ -135,9 +135,7 @@ static RtStatus check_list(const Check *check, uint32_t index) {
                            index);
         }
         RtBox object = rt_octree_grown(tree, g->boxes[ids[i]]);
-        RtBox common = {rt_vec_max(tree->boxes[index].lo, object.lo),
-                        rt_vec_min(tree->boxes[index].hi, object.hi)};
-        if (rt_box_is_empty(common)) {
+        if (rt_box_is_empty(rt_box_common(tree->boxes[index], object))) {
             return rt_fail(check->error, RT_MISMATCH,
                            "octree: leaf %u lists object %u, which it does not touch", index, ids[i]);
         }

@@ -16,10 +16,6 @@ typedef struct Parts {
     double margin;    /* for rt_object_part */
 } Parts;
 
-static bool boxes_meet(const RtBox *a, const RtBox *b) {
-    return !rt_box_is_empty((RtBox){rt_vec_max(a->lo, b->lo), rt_vec_min(a->hi, b->hi)});
-}
-
 /* The side of one of the leaves that runs through `box` nearest to its middle; false if none does. */
 static bool find_side(const Parts *parts, const uint32_t *leaves, uint32_t count, const RtBox *box, int *axis,
                       float *at) {
@@ -53,7 +49,7 @@ static bool is_held(const Parts *parts, uint32_t id, uint32_t *leaves, uint32_t 
             wide.hi.at[a] += slack;
         }
         if (rt_box_contains(wide, rest)) return true;
-        if (!boxes_meet(&leaf, &rest)) continue;
+        if (rt_box_is_empty(rt_box_common(leaf, rest))) continue;
         uint32_t kept = leaves[i];
         leaves[i] = leaves[near];
         leaves[near++] = kept;

@@ -22,9 +22,6 @@
 
 #include <assert.h>
 
-/* From this depth on groups are halved by number, which ends the recursion. */
-enum { HALVE_DEPTH = 34 };
-
 typedef struct Builder {
     RtTree *tree;
     const RtGeometry *geometry;
@@ -55,10 +52,6 @@ static RtBox box_of(const RtTreeRef *refs, uint32_t count) {
     RtBox box = RT_EMPTY_BOX;
     for (uint32_t i = 0; i < count; i++) box = rt_box_union(box, refs[i].box);
     return box;
-}
-
-static RtBox common_box(RtBox a, RtBox b) {
-    return (RtBox){rt_vec_max(a.lo, b.lo), rt_vec_min(a.hi, b.hi)};
 }
 
 /* To *part what of a reference is from `lo` to `hi` along `axis`; false where nothing is. */
@@ -203,7 +196,7 @@ static void cut_at(const Builder *b, const Group *group, const Plane *plane, uin
 static bool divide(const Builder *b, const Group *group, int depth, uint32_t counts[2]) {
     RtTreeRef *refs = b->refs + group->first;
     uint32_t count = group->count, left = 0;
-    if (depth < HALVE_DEPTH) left = rt_split_binned(refs, count, b->how.bins);
+    if (depth < RT_TREE_MEDIAN_DEPTH) left = rt_split_binned(refs, count, b->how.bins);
     bool halved = left == 0;
     if (halved) left = rt_split_median(refs, count);
     counts[0] = left;
@@ -213,7 +206,7 @@ static bool divide(const Builder *b, const Group *group, int depth, uint32_t cou
     sides.cost = cost_of(&sides);
     RtBox box = rt_box_union(sides.box[0], sides.box[1]);
     Plane plane = {.sides.cost = INFINITY};
-    if (rt_box_half_area(common_box(sides.box[0], sides.box[1])) > b->least_overlap)
+    if (rt_box_half_area(rt_box_common(sides.box[0], sides.box[1])) > b->least_overlap)
         plane = find_plane(b, group, &box);
     double area = rt_box_half_area(box), least = fmin(sides.cost, plane.sides.cost);
     if (count <= b->how.leaf && area * count <= area * b->how.traversal + least) return false;

@@ -10,9 +10,6 @@
 #include "accel/tree/tree.h"
 #include "base/memory.h"
 
-/* From this depth on groups are halved by number, so that the recursion is bounded. */
-enum { MEDIAN_DEPTH = 34 };
-
 typedef struct Sweep {
     RtTree *tree;
     RtTreeRef *rows[3];  /* [count] */
@@ -50,7 +47,7 @@ static void try_axis(const Sweep *s, const RtTreeRef *row, uint32_t count, int a
 }
 
 static Place find_place(const Sweep *s, uint32_t begin, uint32_t count, int depth) {
-    if (depth < MEDIAN_DEPTH) {
+    if (depth < RT_TREE_MEDIAN_DEPTH) {
         Place best = {.cost = INFINITY};
         for (int axis = 0; axis < 3; axis++) try_axis(s, s->rows[axis] + begin, count, axis, &best);
         return best;

@@ -3,16 +3,13 @@
 #include "accel/tree/tree.h"
 #include "base/memory.h"
 
-/* From this depth on bins give way to medians, so that the recursion is bounded. */
-enum { MEDIAN_DEPTH = 34 };
-
 typedef struct Builder {
     RtTree *tree;
     int bins; /* 0: medians */
 } Builder;
 
 static uint32_t divide(const Builder *b, RtTreeRef *refs, uint32_t count, int depth) {
-    uint32_t left = b->bins > 0 && depth < MEDIAN_DEPTH ? rt_split_binned(refs, count, b->bins) : 0;
+    uint32_t left = b->bins > 0 && depth < RT_TREE_MEDIAN_DEPTH ? rt_split_binned(refs, count, b->bins) : 0;
     return left > 0 ? left : rt_split_median(refs, count);
 }
 

@@ -6,10 +6,6 @@
 
 #include <assert.h>
 
-/* A subtree that hangs at MEDIAN_DEPTH and is rebuilt by medians ends above RT_TREE_MAX_DEPTH with as many as
- * 2^30 references. */
-enum { MEDIAN_DEPTH = 34 };
-
 RtStatus rt_tree_init(RtTree *tree, uint32_t most, RtError *error) {
     assert(most > 0 && most <= UINT32_MAX / 2);
     *tree = (RtTree){.capacity = 2 * most - 1};
@@ -106,12 +102,12 @@ static uint32_t rebuild(Parts *parts, RtTreeRef *refs, uint32_t count) {
 static uint32_t limited(Parts *parts, uint32_t node, uint32_t depth) {
     RtTree *tree = parts->tree;
     if (rt_tree_is_leaf(tree, node)) return node;
-    if (depth < MEDIAN_DEPTH) {
+    if (depth < RT_TREE_MEDIAN_DEPTH) {
         uint32_t *child = tree->nodes[node].child;
         for (int s = 0; s < 2; s++) child[s] = limited(parts, child[s], depth + 1);
         return node;
     }
-    if (!reaches_below(tree, node, RT_TREE_MAX_DEPTH - MEDIAN_DEPTH)) return node;
+    if (!reaches_below(tree, node, RT_TREE_MAX_DEPTH - RT_TREE_MEDIAN_DEPTH)) return node;
     take_apart(parts, node);
     return rebuild(parts, parts->leaves, parts->leaf_count);
 }

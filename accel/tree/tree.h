@@ -17,6 +17,10 @@
 /* No leaf of a tree of limited depth is deeper than this; the stacks of traversals rest on it. */
 enum { RT_TREE_MAX_DEPTH = 64 };
 
+/* From this depth on methods from the top halve groups by number, which ends above RT_TREE_MAX_DEPTH with as
+ * many as 2^30 references. */
+enum { RT_TREE_MEDIAN_DEPTH = 34 };
+
 #define RT_TREE_LEAF UINT32_MAX
 
 typedef struct RtTreeNode {
@@ -116,11 +120,7 @@ typedef struct RtSpatial {
 
 /* What rt_object_part (shape/overlap.h) needs in a scene with this box. */
 static inline double rt_tree_part_margin(const RtBox *scene) {
-    double farthest = 0;
-    for (int a = 0; a < 3; a++) {
-        farthest = fmax(farthest, fmax(fabs((double)scene->lo.at[a]), fabs((double)scene->hi.at[a])));
-    }
-    return 0x1p-40 * farthest;
+    return 0x1p-40 * rt_box_largest_coordinate(*scene);
 }
 
 /* From the top, where a plane that cuts objects may part them: Stich, Friedrich & Dietrich 2009. */

@@ -50,6 +50,11 @@ static inline RtBox rt_box_add_point(RtBox a, RtVec3 p) {
     return (RtBox){rt_vec_min(a.lo, p), rt_vec_max(a.hi, p)};
 }
 
+/* What two boxes have in common; an empty box, if not always RT_EMPTY_BOX, where that is nothing. */
+static inline RtBox rt_box_common(RtBox a, RtBox b) {
+    return (RtBox){rt_vec_max(a.lo, b.lo), rt_vec_min(a.hi, b.hi)};
+}
+
 static inline bool rt_box_is_empty(RtBox a) {
     return !(a.lo.x <= a.hi.x && a.lo.y <= a.hi.y && a.lo.z <= a.hi.z);
 }
@@ -85,6 +90,20 @@ static inline double rt_box_half_area(RtBox a) {
     if (rt_box_is_empty(a)) return 0;
     RtVec3d s = rt_subd(rt_widen(a.hi), rt_widen(a.lo));
     return s.x * (s.y + s.z) + s.y * s.z;
+}
+
+/* The longest of the three sides, and the largest magnitude of a coordinate; not of the empty box. */
+static inline double rt_box_longest_side(RtBox a) {
+    RtVec3d s = rt_subd(rt_widen(a.hi), rt_widen(a.lo));
+    return fmax(s.x, fmax(s.y, s.z));
+}
+
+static inline double rt_box_largest_coordinate(RtBox a) {
+    double largest = 0;
+    for (int i = 0; i < 3; i++) {
+        largest = fmax(largest, fmax(fabs((double)a.lo.at[i]), fabs((double)a.hi.at[i])));
+    }
+    return largest;
 }
 
 #endif

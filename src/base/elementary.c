@@ -44,3 +44,14 @@ RtTurn rt_turn(double degrees) {
     default: return (RtTurn){.cosine = t.sine, .sine = -t.cosine};
     }
 }
+
+/* Newton's method, from above, where every step but the last comes nearer. */
+double rt_cube_root(double x) {
+    assert(isnormal(x) && x > 0);
+    double root = fmax(x, 1), last;
+    do {
+        last = root;
+        root = (2 * root + x / (root * root)) / 3;
+    } while (root < last);
+    return root;
+}

@@ -106,10 +106,6 @@ static RtStatus write_out(Planting *p, RtCsgTerm root) {
 
 /* ---- measuring ---- */
 
-static RtBox common_box(RtBox a, RtBox b) {
-    return (RtBox){rt_vec_max(a.lo, b.lo), rt_vec_min(a.hi, b.hi)};
-}
-
 static uint32_t saturating_sum(uint32_t a, uint32_t b) {
     return a > UINT32_MAX - b ? UINT32_MAX : a + b;
 }
@@ -136,7 +132,7 @@ static void measure_operation(const Planting *p, Part *part) {
     RtCsgOp op = p->builder->nodes[part->term].op;
     const Part *left = part + 1, *right = &p->parts[part->right];
     part->box = op == RT_CSG_UNION          ? rt_box_union(left->box, right->box)
-                : op == RT_CSG_INTERSECTION ? common_box(left->box, right->box)
+                : op == RT_CSG_INTERSECTION ? rt_box_common(left->box, right->box)
                                             : left->box;
     part->right_first = is_right_first(p, op, left, right);
     const Part *first = part->right_first ? right : left, *second = part->right_first ? left : right;
@@ -202,7 +198,7 @@ static RtStatus advance(Planting *p, bool extents) {
     }
     switch (frame->operands++) {
     case 0:
-        frame->box = common_box(frame->box, part->box);
+        frame->box = rt_box_common(frame->box, part->box);
         if (extents) RT_TRY(emit_test(p, frame));
         return push_frame(p, part->right_first ? part->right : left, frame->box, frame->tested_area);
     case 1:
