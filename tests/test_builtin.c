@@ -1,18 +1,10 @@
 /* scenes/: random scenes, what is refused, and memory; test_spd.c has the databases. */
-#include "testing.h"
+#include "scene_testing.h"
 
-#include "base/memory.h"
-#include "scene/load.h"
 #include "scenes/builtin.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static RtScene open_scene(const char *spec) {
-    RtScene scene;
-    assert_ok(rt_scene_open(spec, &scene, error));
-    return scene;
-}
 
 static void random_scenes_have_as_many_objects_as_asked_for(void **state) {
     (void)state;
@@ -213,24 +205,6 @@ static void the_count_of_objects_is_told_beforehand(void **state) {
         RtScene scene = open_scene(builtin->name);
         assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
         rt_scene_clear(&scene);
-    }
-}
-
-/* Opens a scene again and again, and lets the first allocation fail, the second, ... until none does. */
-static void assert_failed_allocations_are_reported(const char *spec) {
-    int64_t before = rt_alloc_live();
-    RtStatus status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        RtScene scene;
-        RtError problem;
-        rt_alloc_fail_at(n);
-        status = rt_scene_open(spec, &scene, &problem);
-        rt_alloc_fail_at(0);
-        if (status == RT_OK)
-            rt_scene_clear(&scene);
-        else
-            assert_int_equal(status, RT_NO_MEMORY);
-        assert_int_equal(rt_alloc_live(), before);
     }
 }
 

@@ -1,11 +1,10 @@
 /* accel/clusters: exactness of every kind of extent with every order and method, the shape of its nodes, and
  * each invariant broken on purpose. */
 #include "accel_testing.h"
+#include "equivalence_testing.h"
 
 #include "accel/clusters/clusters.h"
 #include "base/memory.h"
-#include "experiments/equivalence.h"
-#include "experiments/families.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -17,41 +16,21 @@ enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
  */
 static void every_combination_answers_like_brute(void **state) {
     (void)state;
-    enum { PER_FAMILY = 64 };
     static const char *const shapes[] = {"width=2", "width=5,leaf=4", "width=16,leaf=32"};
     static const char *const kinds[] = {"box", "sphere", "obb", "slabs"};
     static const char *const families[] = {"mixed", "duplicates", "huge-beside-tiny", "mixed-far"};
     for (size_t f = 0; f < 4; f++) {
-        size_t family = 0, ray_families = rt_ray_family_count();
+        FamilyBench bench;
+        size_t family = 0;
         while (strcmp(rt_scene_family_name(family), families[f]) != 0) family++;
-        RtScene scene;
-        RtAccel *brute;
-        RtQuery query;
-        RtReference reference;
-        assert_ok(rt_scene_family_build(family, 3, &scene, error));
-        assert_ok(rt_accel_open("brute", &scene, &brute, error));
-        assert_ok(rt_query_init(&query, brute, error));
-        RtRay *rays = rt_alloc(ray_families * PER_FAMILY, sizeof(RtRay));
-        for (size_t r = 0; r < ray_families; r++)
-            rt_ray_family_fill(r, &query, 3, 0, PER_FAMILY, rays + r * PER_FAMILY);
-        rt_query_clear(&query);
-        assert_ok(rt_reference_init(&reference, brute, rays, ray_families * PER_FAMILY, 1, error));
+        set_up_family(&bench, family, 3, 64);
         for (size_t i = 0; i < 4 * 2 * 3 * METHOD_COUNT; i++) {
             char spec[RT_MAX_SPEC_CHARS];
             snprintf(spec, sizeof spec, "clusters:extent=%s,traversal_order=%s,%s,method=%s", kinds[i % 4],
                      i / 4 % 2 ? "fixed" : "nearest", shapes[i / 8 % 3], methods[i / 24]);
-            RtAccel *accel;
-            RtEquivalence result = {0};
-            assert_ok(rt_accel_open(spec, &scene, &accel, error));
-            assert_ok(accel->ops->validate(accel, error));
-            assert_ok(rt_equivalence_check(&reference, accel, 1, &result, error));
-            if (result.any_wrong) fail_msg("%s on %s: wrong", spec, families[f]);
-            rt_accel_destroy(accel);
+            assert_answers_like_brute(&bench, spec);
         }
-        rt_reference_clear(&reference);
-        rt_free(rays);
-        rt_accel_destroy(brute);
-        rt_scene_clear(&scene);
+        tear_down_family(&bench);
     }
 }
 

@@ -1,9 +1,8 @@
 /* accel/kd/ from the inside: splits worked out by hand, its invariants, broken on purpose, its limits. */
 #include "accel_testing.h"
+#include "equivalence_testing.h"
 
 #include "accel/kd/kd.h"
-#include "experiments/equivalence.h"
-#include "experiments/families.h"
 #include "scene/load.h"
 
 #include <stdio.h>
@@ -261,33 +260,13 @@ static void every_structure_answers_like_brute(void **state) {
     static const char *const specs[] = {
         "kd:overlap=exact,traversal=0,failures=4", "kd:overlap=exact,max_objects=3,margin=0.3,mailbox=off",
         "kd:traversal=0,failures=9,empty_bonus=1", "kd:overlap=exact,max_depth=4,failures=60"};
-    enum { RAYS = 32, MAX_RAYS = 64 * RAYS };
-    static RtRay rays[MAX_RAYS];
     for (size_t s = 0; s < rt_scene_family_count(); s++) {
-        RtScene scene;
-        RtAccel *brute;
-        RtQuery query;
-        RtReference reference;
-        size_t count = rt_ray_family_count() * RAYS;
-        assert_true(count <= MAX_RAYS);
-        assert_ok(rt_scene_family_build(s, 7, &scene, error));
-        assert_ok(rt_accel_open("brute", &scene, &brute, error));
-        assert_ok(rt_query_init(&query, brute, error));
-        for (size_t f = 0; f < rt_ray_family_count(); f++) {
-            rt_ray_family_fill(f, &query, 7, 0, RAYS, rays + f * RAYS);
-        }
-        rt_query_clear(&query);
-        assert_ok(rt_reference_init(&reference, brute, rays, count, 0, error));
+        FamilyBench bench;
+        set_up_family(&bench, s, 7, 32);
         for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
-            RtEquivalence result = {0};
-            RtKd *kd = make_kd(&scene, specs[i]);
-            assert_ok(rt_equivalence_check(&reference, &kd->base, 0, &result, error));
-            if (result.any_wrong) fail_msg("%s is wrong on %s", specs[i], scene.name);
-            rt_kd_destroy(&kd->base);
+            assert_answers_like_brute(&bench, specs[i]);
         }
-        rt_reference_clear(&reference);
-        rt_accel_destroy(brute);
-        rt_scene_clear(&scene);
+        tear_down_family(&bench);
     }
 }
 

@@ -1,10 +1,8 @@
 /* NFF: what is read, what is written, and what is refused with which line. */
-#include "testing.h"
+#include "scene_testing.h"
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "base/random.h"
-#include "scene/load.h"
 #include "scene/nff.h"
 
 #include <stdio.h>
@@ -254,21 +252,8 @@ static void a_file_with_any_bytes_changed_is_read_or_refused(void **state) {
 
 static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
     (void)state;
-    int64_t before = rt_alloc_live();
     assert_ok(rt_file_write(FILE_NAME, everything, strlen(everything), error));
-    RtStatus status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK; n++) {
-        RtScene scene;
-        RtError problem;
-        rt_alloc_fail_at(n);
-        status = rt_scene_open(FILE_NAME, &scene, &problem);
-        rt_alloc_fail_at(0);
-        if (status == RT_OK)
-            rt_scene_clear(&scene);
-        else
-            assert_int_equal(status, RT_NO_MEMORY);
-        assert_int_equal(rt_alloc_live(), before);
-    }
+    assert_failed_allocations_are_reported(FILE_NAME);
 }
 
 static void the_jewel_is_whole(void **state) {

@@ -1,10 +1,9 @@
 /* accel/octree/ from the inside: its invariants, broken on purpose, what goes into which cell, its limits. */
 #include "accel_testing.h"
+#include "equivalence_testing.h"
 
 #include "accel/octree/octree.h"
 #include "base/memory.h"
-#include "experiments/equivalence.h"
-#include "experiments/families.h"
 #include "scene/load.h"
 
 #include <stdio.h>
@@ -246,36 +245,15 @@ static void every_traversal_answers_like_brute_in_every_structure(void **state) 
     static const char *const traversals[] = {"points", "neighbours", "parametric"};
     static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_objects=3",
                                            "max_depth=0", "max_depth=6,mailbox=off"};
-    enum { RAYS = 32, MAX_RAYS = 64 * RAYS };
-    static RtRay rays[MAX_RAYS];
     for (size_t s = 0; s < rt_scene_family_count(); s++) {
-        RtScene scene;
-        RtAccel *brute, *accel;
-        RtQuery query;
-        RtReference reference;
-        size_t count = rt_ray_family_count() * RAYS;
-        assert_true(count <= MAX_RAYS);
-        assert_ok(rt_scene_family_build(s, 7, &scene, error));
-        assert_ok(rt_accel_open("brute", &scene, &brute, error));
-        assert_ok(rt_query_init(&query, brute, error));
-        for (size_t f = 0; f < rt_ray_family_count(); f++) {
-            rt_ray_family_fill(f, &query, 7, 0, RAYS, rays + f * RAYS);
-        }
-        rt_query_clear(&query);
-        assert_ok(rt_reference_init(&reference, brute, rays, count, 0, error));
+        FamilyBench bench;
+        set_up_family(&bench, s, 7, 32);
         for (size_t i = 0; i < 12; i++) {
-            RtEquivalence result = {0};
             char spec[RT_MAX_SPEC_CHARS];
             snprintf(spec, sizeof spec, "octree:traversal=%s,%s", traversals[i % 3], settings[i / 3]);
-            assert_ok(rt_accel_open(spec, &scene, &accel, error));
-            assert_ok(rt_octree_validate(accel, error));
-            assert_ok(rt_equivalence_check(&reference, accel, 0, &result, error));
-            if (result.any_wrong) fail_msg("%s is wrong on %s", spec, scene.name);
-            rt_accel_destroy(accel);
+            assert_answers_like_brute(&bench, spec);
         }
-        rt_reference_clear(&reference);
-        rt_accel_destroy(brute);
-        rt_scene_clear(&scene);
+        tear_down_family(&bench);
     }
 }
 

@@ -1,9 +1,8 @@
 /* scenes/: the built-in scenes that are places (a teapot on a board, in a stadium, a hall, a forest, a city)
  * and the forms that they are made of. */
-#include "testing.h"
+#include "scene_testing.h"
 
 #include "accel/accel.h"
-#include "scene/load.h"
 #include "scenes/builtin.h"
 #include "scenes/forms.h"
 
@@ -11,20 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static RtScene open_scene(const char *spec) {
-    RtScene scene;
-    assert_ok(rt_scene_open(spec, &scene, error));
-    return scene;
-}
-
 /* ---- counts ---- */
 
 static void places_have_the_objects_that_they_say(void **state) {
     (void)state;
-    const struct {
-        const char *spec;
-        uint32_t spheres, polygons, triangles, cones;
-    } cases[] = {
+    static const ShapeCounts rows[] = {
         {"teapot", 0, 144, 9120, 0},
         {"teapot:size=6", 0, 36, 2256, 0},
         {"teapot:size=1", 0, 1, 56, 0},
@@ -35,14 +25,7 @@ static void places_have_the_objects_that_they_say(void **state) {
         {"city", 3726, 37812, 0, 8350},
         {"city:size=1", 39, 686, 0, 112},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtScene scene = open_scene(cases[i].spec);
-        assert_int_equal(scene.geometry.sphere_count, cases[i].spheres);
-        assert_int_equal(scene.geometry.polygon_count, cases[i].polygons);
-        assert_int_equal(scene.geometry.triangle_count, cases[i].triangles);
-        assert_int_equal(scene.geometry.cone_count, cases[i].cones);
-        rt_scene_clear(&scene);
-    }
+    assert_shape_counts(rows, sizeof rows / sizeof rows[0]);
 }
 
 /* At other values than the defaults, which test_builtin.c goes through. */

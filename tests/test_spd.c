@@ -1,17 +1,9 @@
 /* scenes/: the Standard Procedural Databases against the files that their package writes. */
-#include "testing.h"
-
-#include "scene/load.h"
+#include "scene_testing.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <xxhash.h>
-
-static RtScene open_scene(const char *spec) {
-    RtScene scene;
-    assert_ok(rt_scene_open(spec, &scene, error));
-    return scene;
-}
 
 /* A line of numbers as the databases print them, with 6 digits each. */
 typedef struct Line {
@@ -65,10 +57,7 @@ static void assert_points(const RtVec3 *points, uint32_t count, const char *expe
 
 static void they_have_as_many_objects_of_each_shape_as_published(void **state) {
     (void)state;
-    static const struct {
-        const char *spec;
-        uint32_t spheres, polygons, triangles, cones;
-    } cases[] = {
+    static const ShapeCounts rows[] = {
         {"balls", 7381, 1, 0, 0},
         {"balls:size=1", 10, 1, 0, 0},
         {"balls:size=5", 66430, 1, 0, 0},
@@ -93,14 +82,7 @@ static void they_have_as_many_objects_of_each_shape_as_published(void **state) {
         {"tree:size=1", 3, 1, 0, 3},
         {"tree:size=14", 32767, 1, 0, 32767},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        RtScene scene = open_scene(cases[i].spec);
-        assert_int_equal(scene.geometry.sphere_count, cases[i].spheres);
-        assert_int_equal(scene.geometry.polygon_count, cases[i].polygons);
-        assert_int_equal(scene.geometry.triangle_count, cases[i].triangles);
-        assert_int_equal(scene.geometry.cone_count, cases[i].cones);
-        rt_scene_clear(&scene);
-    }
+    assert_shape_counts(rows, sizeof rows / sizeof rows[0]);
 }
 
 static void their_objects_lie_where_the_databases_have_them(void **state) {
