@@ -17,17 +17,22 @@ static inline void assert_broken(const RtAccel *accel, const char *phrase) {
     if (!strstr(error.message, phrase)) fail_msg("'%s' does not say '%s'", error.message, phrase);
 }
 
-/* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
-static inline void make_lattice(RtScene *scene, int nx, int ny, int nz) {
+/* A scene without objects, and a grey material, which is number 0. */
+static inline void begin_scene(RtScene *scene) {
     uint32_t material;
     RtMaterial grey = rt_default_material();
     rt_scene_init(scene);
     assert_ok(rt_scene_add_material(scene, &grey, &material, error));
+}
+
+/* Unit cubes' worth of spheres of radius 1/2 on an nx x ny x nz lattice of spacing 1. */
+static inline void make_lattice(RtScene *scene, int nx, int ny, int nz) {
+    begin_scene(scene);
     for (int x = 0; x < nx; x++) {
         for (int y = 0; y < ny; y++) {
             for (int z = 0; z < nz; z++) {
                 RtVec3 center = {{(float)x, (float)y, (float)z}};
-                assert_ok(rt_scene_add_sphere(scene, material, center, 0.5f, error));
+                assert_ok(rt_scene_add_sphere(scene, 0, center, 0.5f, error));
             }
         }
     }

@@ -7,12 +7,9 @@
 
 /* `count` unit spheres in a row along x, `apart` from centre to centre. */
 static void make_row(RtScene *scene, uint32_t count, float apart) {
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &grey, &material, error));
+    begin_scene(scene);
     for (uint32_t i = 0; i < count; i++) {
-        assert_ok(rt_scene_add_sphere(scene, material, rt_vec3(apart * (float)i, 0, 0), 1, error));
+        assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(apart * (float)i, 0, 0), 1, error));
     }
     assert_ok(rt_scene_finish(scene, error));
 }
@@ -118,14 +115,11 @@ static void coincident_objects_are_halved_within_the_depth_limit(void **state) {
 static void a_chain_of_growing_distances_stays_within_the_depth_limit(void **state) {
     (void)state;
     RtScene scene;
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
+    begin_scene(&scene);
     float x = 1e-17f;
     for (int i = 0; i < 110; i++, x *= 2) {
         for (int copy = 0; copy < 40; copy++) {
-            assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(x, 0, 0), x / 8, error));
+            assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(x, 0, 0), x / 8, error));
         }
     }
     assert_ok(rt_scene_finish(&scene, error));

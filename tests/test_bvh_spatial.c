@@ -7,15 +7,6 @@
 
 #include <stdlib.h>
 
-static RtScene empty_scene(void) {
-    RtScene scene;
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
-    return scene;
-}
-
 static void add_triangle(RtScene *scene, RtVec3 a, RtVec3 b, RtVec3 c) {
     const RtVec3 v[3] = {a, b, c};
     assert_ok(rt_scene_add_triangle(scene, 0, v, NULL, error));
@@ -32,7 +23,8 @@ static RtBvh *make_bvh(const RtScene *scene, const char *spec) {
  * the two other corners. To cut the sliver at any x costs 5 * 256 by the heuristic; whole, with one of the
  * corners, 5 * 256 + 4. */
 static RtScene make_diagonal(void) {
-    RtScene scene = empty_scene();
+    RtScene scene;
+    begin_scene(&scene);
     add_triangle(&scene, rt_vec3(0, 0, 0), rt_vec3(16, 16, 0), rt_vec3(16, 15.9f, 0));
     for (int i = 0; i < 4; i++) {
         add_triangle(&scene, rt_vec3(0, 15, 0), rt_vec3(1, 15, 0), rt_vec3(0, 16, 0));
@@ -97,7 +89,8 @@ static RtVec3 point_in(RtRandom *random, float scale, float offset) {
 
 /* `count` objects: long slivers in all directions, with spheres, cones and thin polygons among them. */
 static RtScene make_slivers(uint32_t count, uint64_t seed, float scale, float offset) {
-    RtScene scene = empty_scene();
+    RtScene scene;
+    begin_scene(&scene);
     RtRandom random = rt_random(seed, 0);
     for (uint32_t i = 0; i < count; i++) {
         RtVec3 a = point_in(&random, scale, offset), b = point_in(&random, scale, offset), c = b;
@@ -272,7 +265,7 @@ static void degenerate_scenes_are_built(void **state) {
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         RtScene scene;
         if (i == 0) {
-            scene = empty_scene();
+            begin_scene(&scene);
             assert_ok(rt_scene_finish(&scene, error));
         } else {
             assert_ok(rt_scene_open(specs[i], &scene, error));

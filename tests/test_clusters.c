@@ -37,12 +37,9 @@ static void every_combination_answers_like_brute(void **state) {
 /* Unit spheres at x = 0, 4, 8, ...: two a pair, four a group. */
 static RtScene make_row(uint32_t count) {
     RtScene scene;
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
+    begin_scene(&scene);
     for (uint32_t i = 0; i < count; i++) {
-        assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(4 * (float)i, 0, 0), 1, error));
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(4 * (float)i, 0, 0), 1, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
     return scene;
@@ -92,11 +89,8 @@ static void objects_share_a_leaf_where_that_costs_no_more(void **state) {
     rt_accel_destroy(&self->base);
     rt_scene_clear(&apart);
     RtScene scene;
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
-    for (int i = 0; i < 2; i++) assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(1, 0, 0), 1, error));
+    begin_scene(&scene);
+    for (int i = 0; i < 2; i++) assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     self = make_clusters(&scene, "clusters:leaf=2");
     assert_int_equal(self->hierarchy.node_count, 1);
@@ -131,12 +125,9 @@ static void groups_of_spheres_get_tight_extents(void **state) {
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
 
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
+    begin_scene(&scene);
     for (int i = 0; i < 8; i++) {
-        assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(3 * (float)i, 4 * (float)i, 0), 1, error));
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3 * (float)i, 4 * (float)i, 0), 1, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
     self = make_clusters(&scene, "clusters:extent=obb");

@@ -236,12 +236,9 @@ static const Row rows[] = {
 };
 
 static void make_scene(RtScene *scene) {
-    RtMaterial material = rt_default_material();
-    uint32_t m;
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &material, &m, error));
-    assert_ok(rt_scene_add_sphere(scene, m, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
-    assert_ok(rt_scene_add_sphere(scene, m, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
+    begin_scene(scene);
+    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_finish(scene, error));
 }
 

@@ -51,10 +51,7 @@ static void add_cones(RtScene *scene, RtRandom *random, RtVec3 center) {
 static RtScene make_soup(uint64_t seed, float shift) {
     RtScene scene;
     RtRandom random = rt_random(seed, 0);
-    RtMaterial material = rt_default_material();
-    uint32_t index;
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &material, &index, error));
+    begin_scene(&scene);
     for (int i = 0; i < 6; i++) {
         RtVec3 center = rt_add(rt_random_point(&random, 1), rt_vec3(shift, 0, -shift));
         RtRandom again = random;
@@ -217,10 +214,7 @@ static void a_scene_without_objects_is_missed(void **state) {
 /* Unit spheres at x = 0, 10 and 20. */
 static RtScene three_spheres_in_a_row(void) {
     RtScene scene;
-    RtMaterial material = rt_default_material();
-    uint32_t index;
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &material, &index, error));
+    begin_scene(&scene);
     for (int i = 0; i < 3; i++) {
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(10.0f * (float)i, 0, 0), 1, error));
     }

@@ -14,13 +14,10 @@
 
 /* ---- frames of the nearest hits ---- */
 
-static void begin_scene(RtScene *scene) {
-    RtMaterial material = rt_default_material();
-    uint32_t m;
-    rt_scene_init(scene);
+static void begin_view(RtScene *scene) {
+    begin_scene(scene);
     scene->camera.width = 48;
     scene->camera.height = 36;
-    assert_ok(rt_scene_add_material(scene, &material, &m, error));
 }
 
 /* From `from` towards `at`. */
@@ -153,7 +150,7 @@ static void polygons_through_the_plane_of_the_eye_are_drawn_right(void **state) 
     const RtVec3 floor[4] = {{{-50, -50, 0}}, {{50, -50, 0}}, {{50, 50, 0}}, {{-50, 50, 0}}};
     const RtVec3 wall[3] = {{{2, -30, -1}}, {{2, 30, -1}}, {{2, 5, 9}}};
     RtScene scene;
-    begin_scene(&scene);
+    begin_view(&scene);
     look(&scene, rt_vec3(0, 0, 1.5f), rt_vec3(0.2f, 4, 1));
     scene.camera.fov = 100;
     assert_ok(rt_scene_add_polygon(&scene, 0, floor, 4, error));
@@ -168,7 +165,7 @@ static void objects_all_around_the_eye_are_drawn_right(void **state) {
     RtRandom random = rt_random(11, 0);
     for (int k = 0; k < 24; k++) {
         RtScene scene;
-        begin_scene(&scene);
+        begin_view(&scene);
         scene.camera.fov = k % 3 == 0 ? 170 : k % 3 == 1 ? 60 : 179.9999f;
         scene.camera.hither = k % 4 == 0 ? 0.25f : 0;
         scene.camera.up = rt_vec3(0.1f, 0.3f, 1);
@@ -192,7 +189,7 @@ static void objects_all_around_the_eye_are_drawn_right(void **state) {
 static void an_eye_inside_a_sphere_sees_its_inside(void **state) {
     (void)state;
     RtScene scene;
-    begin_scene(&scene);
+    begin_view(&scene);
     look(&scene, rt_vec3(0.5f, 0, 0), rt_vec3(-1, 0.25f, 0.5f));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 2, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(-1, 0, 0), 0.5f, error));
@@ -205,7 +202,7 @@ static void an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble(void
     const RtVec3 eyes[] = {{{0, -4, 0}}, {{0, 0, 0}}, {{-1, -1, 0}}, {{0, -4, 1e-6f}}, {{0, 0, 1e-5f}}};
     for (size_t i = 0; i < sizeof eyes / sizeof eyes[0]; i++) {
         RtScene scene;
-        begin_scene(&scene);
+        begin_view(&scene);
         look(&scene, eyes[i], rt_vec3(0.125f, 0.25f, i == 4 ? -0.5f : 0));
         assert_ok(rt_scene_add_polygon(&scene, 0, square, 4, error));
         assert_ok(rt_scene_add_triangle(&scene, 0, square, NULL, error));
@@ -220,7 +217,7 @@ static void an_undecided_sample_says_from_where_on_all_objects_are(void **state)
     (void)state;
     const RtVec3 floor[4] = {{{-50, -50, 0}}, {{50, -50, 0}}, {{50, 50, 0}}, {{-50, 50, 0}}};
     RtScene scene;
-    begin_scene(&scene);
+    begin_view(&scene);
     look(&scene, rt_vec3(0, 0, 0x1p-10f), rt_vec3(0, 8, 0x1p-10f));
     scene.camera.fov = 0.1f;
     assert_ok(rt_scene_add_polygon(&scene, 0, floor, 4, error));
@@ -235,7 +232,7 @@ static void an_object_smaller_than_a_sample_is_seen_on_one_and_not_between(void 
         RtScene scene;
         float x = on ? 0 : 0.2f;
         const RtVec3 triangle[3] = {{{x - 1e-4f, 1, -1e-4f}}, {{x + 1e-4f, 1, -1e-4f}}, {{x, 1, 1e-4f}}};
-        begin_scene(&scene);
+        begin_view(&scene);
         scene.camera.width = scene.camera.height = 5;
         scene.camera.fov = 90;
         look(&scene, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0));
@@ -257,7 +254,7 @@ static void coincident_and_nearly_coplanar_polygons_are_told_apart(void **state)
     (void)state;
     for (int ulps = 0; ulps <= 4; ulps++) {
         RtScene scene;
-        begin_scene(&scene);
+        begin_view(&scene);
         look(&scene, rt_vec3(0.3f, -7, 0.2f), rt_vec3(0, 0, 0));
         float y = 1;
         for (int i = 0; i < 4; i++) {
@@ -273,7 +270,7 @@ static void coincident_and_nearly_coplanar_polygons_are_told_apart(void **state)
 static void touching_and_coincident_spheres_are_told_apart(void **state) {
     (void)state;
     RtScene scene;
-    begin_scene(&scene);
+    begin_view(&scene);
     look(&scene, rt_vec3(0, -8, 0), rt_vec3(0, 0, 0));
     for (int i = 0; i < 3; i++) {
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1, (float)i, 0), 1, error));
@@ -289,7 +286,7 @@ static void the_hither_plane_hides_what_is_before_it(void **state) {
     const float planes[] = {0.5f, 0x1.fffffep-1f, 1, 0x1.000002p+0f, 4.25f, 5, 100};
     for (size_t i = 0; i < sizeof planes / sizeof planes[0]; i++) {
         RtScene scene;
-        begin_scene(&scene);
+        begin_view(&scene);
         look(&scene, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0));
         scene.camera.hither = planes[i];
         assert_ok(rt_scene_add_polygon(&scene, 0, pane, 4, error));
@@ -309,7 +306,7 @@ static void concave_polygons_are_not_taken_for_convex_ones(void **state) {
     }
     for (int side = -1; side <= 1; side += 2) {
         RtScene scene;
-        begin_scene(&scene);
+        begin_view(&scene);
         look(&scene, rt_vec3(0.5f, 6 * (float)side, 0.25f), rt_vec3(0, 0, 0));
         assert_ok(rt_scene_add_polygon(&scene, 0, notched, 5, error));
         assert_ok(rt_scene_add_polygon(&scene, 0, star, 5, error));
@@ -326,7 +323,7 @@ static void what_is_hit_by_rounding_alone_is_drawn_as_hit(void **state) {
     for (uint32_t row = 0; row < 36; row++) {
         RtScene scene;
         RtView view;
-        begin_scene(&scene);
+        begin_view(&scene);
         look(&scene, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0));
         scene.camera.fov = 150;
         assert_ok(rt_sampling_init(&scene.sampling, 48, 36, 1, false, error));
@@ -349,7 +346,7 @@ static void scenes_far_off_tiny_or_huge_are_drawn_right(void **state) {
     for (int k = 0; k < 4; k++) {
         RtScene scene;
         RtRandom random = rt_random(3, (uint64_t)k);
-        begin_scene(&scene);
+        begin_view(&scene);
         for (int i = 0; i < 80; i++) {
             RtVec3 p[3];
             for (int j = 0; j < 3; j++) {
@@ -370,7 +367,7 @@ static void a_scene_without_objects_is_nothing_everywhere(void **state) {
     RtScene scene;
     RtDescription d;
     RtAccel *accel;
-    begin_scene(&scene);
+    begin_view(&scene);
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
     rt_accel_describe(accel, &d);
@@ -389,7 +386,7 @@ static void rays_that_are_not_of_a_sample_are_passed_on(void **state) {
     RtAccel *accel;
     RtQuery query;
     RtView view;
-    begin_scene(&scene);
+    begin_view(&scene);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_view_init(&view, &scene.camera, scene.sampling, error));
@@ -438,7 +435,7 @@ static void a_frame_of_another_sampling_is_passed_on_whole_and_right(void **stat
     RtAccel *accel;
     RtFrame frame;
     RtFrameOptions options = {.depth = 1, .threads = 1, .counted = true};
-    begin_scene(&scene);
+    begin_view(&scene);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
@@ -464,7 +461,7 @@ static void too_many_samples_are_refused_with_a_number_that_fits(void **state) {
                  {32768, 32768, 64, "an image of"},
                  {2048, 2048, 64, "7 samples a side"}};
     RtScene scene;
-    begin_scene(&scene);
+    begin_view(&scene);
     assert_ok(rt_scene_finish(&scene, error));
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         RtAccel *accel;
@@ -480,7 +477,7 @@ static void each_broken_invariant_is_named(void **state) {
     (void)state;
     RtScene scene;
     RtAccel *accel;
-    begin_scene(&scene);
+    begin_view(&scene);
     look(&scene, rt_vec3(0, -8, 0), rt_vec3(0, 0, 0));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 4, 0), 1, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));

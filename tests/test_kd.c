@@ -34,16 +34,10 @@ static void assert_lists(const RtKd *kd, uint32_t node, uint32_t length, uint32_
     if (length > 0) assert_int_equal(kd->ids[kd->nodes[node].first], first_id);
 }
 
-static void begin(RtScene *scene, uint32_t *material) {
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &grey, material, error));
-}
-
 /* An upright square at height z. */
-static void add_floor(RtScene *scene, uint32_t material, float x, float y, float z, float size) {
+static void add_floor(RtScene *scene, float x, float y, float z, float size) {
     const RtVec3 v[4] = {{x, y, z}, {x + size, y, z}, {x + size, y + size, z}, {x, y + size, z}};
-    assert_ok(rt_scene_add_polygon(scene, material, v, 4, error));
+    assert_ok(rt_scene_add_polygon(scene, 0, v, 4, error));
 }
 
 /* Spheres with the boxes [0,1] and [3,4] x [0,1]^2 in [0,4] x [0,1]^2, of half areas 3, 3 and 9. Cutting at
@@ -53,10 +47,9 @@ static void two_spheres_are_split_as_by_hand(void **state) {
     (void)state;
     RtScene scene;
     RtDescription d;
-    uint32_t material;
-    begin(&scene, &material);
-    assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
-    assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
+    begin_scene(&scene);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_finish(&scene, error));
     RtKd *kd = make_kd(&scene, "kd:failures=0,traversal=0.3,empty_bonus=0.2,max_objects=0");
     assert_split(kd, 0, 0, 1);
@@ -86,10 +79,9 @@ static void two_spheres_are_split_as_by_hand(void **state) {
 static void polygons_in_a_plane_go_to_one_side_of_it(void **state) {
     (void)state;
     RtScene scene;
-    uint32_t material;
-    begin(&scene, &material);
-    add_floor(&scene, material, 0, 0, 0, 10);
-    assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(5, 5, 1.5f), 1, error));
+    begin_scene(&scene);
+    add_floor(&scene, 0, 0, 0, 10);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(5, 5, 1.5f), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
     RtKd *kd = make_kd(&scene, "kd:failures=0,traversal=0.3");
     assert_split(kd, 0, 2, 0);
@@ -98,8 +90,8 @@ static void polygons_in_a_plane_go_to_one_side_of_it(void **state) {
     rt_kd_destroy(&kd->base);
     rt_scene_clear(&scene);
 
-    begin(&scene, &material);
-    for (int z = 0; z < 3; z++) add_floor(&scene, material, 0, 0, (float)z, 10);
+    begin_scene(&scene);
+    for (int z = 0; z < 3; z++) add_floor(&scene, 0, 0, (float)z, 10);
     assert_ok(rt_scene_finish(&scene, error));
     kd = make_kd(&scene, "kd:traversal=0");
     assert_int_equal(kd->id_count, 3);
@@ -111,10 +103,9 @@ static void polygons_in_a_plane_go_to_one_side_of_it(void **state) {
 static void a_flat_scene_is_divided_within_its_plane(void **state) {
     (void)state;
     RtScene scene;
-    uint32_t material;
-    begin(&scene, &material);
+    begin_scene(&scene);
     for (int i = 0; i < 64; i++) {
-        add_floor(&scene, material, 2 * (float)(i % 8), (float)(i - i % 8) / 4, 5, 1);
+        add_floor(&scene, 2 * (float)(i % 8), (float)(i - i % 8) / 4, 5, 1);
     }
     assert_ok(rt_scene_finish(&scene, error));
     RtKd *kd = make_kd(&scene, "kd");
@@ -131,10 +122,9 @@ static void a_flat_scene_is_divided_within_its_plane(void **state) {
 static void coincident_objects_stay_in_one_leaf(void **state) {
     (void)state;
     RtScene scene;
-    uint32_t material;
-    begin(&scene, &material);
+    begin_scene(&scene);
     for (int i = 0; i < 30; i++) {
-        assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(0, 0, 0), 1, error));
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
     assert_int_equal(description_of(&scene, "kd:traversal=0,failures=60,max_depth=60").leaves, 1);
@@ -148,11 +138,10 @@ static void coincident_objects_stay_in_one_leaf(void **state) {
 static void slanted_objects_are_parted_by_their_surfaces(void **state) {
     (void)state;
     RtScene scene;
-    uint32_t material;
-    begin(&scene, &material);
+    begin_scene(&scene);
     for (int i = 0; i < 10; i++) {
         RtVec3 foot = rt_vec3(0, (float)i, 0), head = rt_vec3(10, (float)(i + 10), 0);
-        assert_ok(rt_scene_add_cone(&scene, material, foot, 0.1f, head, 0.1f, error));
+        assert_ok(rt_scene_add_cone(&scene, 0, foot, 0.1f, head, 0.1f, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
     RtDescription box = description_of(&scene, "kd:max_depth=8");

@@ -10,13 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void begin_scene(RtScene *scene) {
-    RtMaterial material = rt_default_material();
-    uint32_t m;
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &material, &m, error));
-}
-
 /* A screen, polygon 0, at z = 5 from -4 to 4, and a sphere of radius 1 above its middle, at z = 8; the light
  * at z = 10. */
 static void make_screen(RtScene *scene) {

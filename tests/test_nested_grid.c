@@ -64,12 +64,9 @@ static void nesting_ends_at_the_depth_given_or_with_the_voxels_that_hold_too_man
 static void nothing_is_nested_where_every_object_fills_the_voxel(void **state) {
     (void)state;
     RtScene scene;
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
+    begin_scene(&scene);
     for (int i = 0; i < 40; i++) {
-        assert_ok(rt_scene_add_sphere(&scene, material, (RtVec3){{1, 2, 3}}, 1, error));
+        assert_ok(rt_scene_add_sphere(&scene, 0, (RtVec3){{1, 2, 3}}, 1, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
     assert_structure(&scene, "grid:resolution=2x2x2,depth=8,nest=1", 0, 8, 0, 320);

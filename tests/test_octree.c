@@ -11,12 +11,9 @@
 
 /* Spheres of radius 1/4 along the x axis. */
 static void make_row(RtScene *scene, const float *x, int count) {
-    uint32_t material;
-    RtMaterial grey = rt_default_material();
-    rt_scene_init(scene);
-    assert_ok(rt_scene_add_material(scene, &grey, &material, error));
+    begin_scene(scene);
     for (int i = 0; i < count; i++) {
-        assert_ok(rt_scene_add_sphere(scene, material, rt_vec3(x[i], 0, 0), 0.25f, error));
+        assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(x[i], 0, 0), 0.25f, error));
     }
     assert_ok(rt_scene_finish(scene, error));
 }

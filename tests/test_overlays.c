@@ -10,12 +10,9 @@
  * one behind both spheres, seen along +x, one above them. */
 static int set_up(void **state) {
     static RtScene scene;
-    RtMaterial material = rt_default_material();
-    uint32_t m;
-    rt_scene_init(&scene);
-    assert_ok(rt_scene_add_material(&scene, &material, &m, error));
-    assert_ok(rt_scene_add_sphere(&scene, m, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
-    assert_ok(rt_scene_add_sphere(&scene, m, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
+    begin_scene(&scene);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(8, 0.5f, 0.5f), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(8, 0.5f, 9), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
