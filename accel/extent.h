@@ -11,9 +11,10 @@
  *    triangle. The other shapes compute in double; the worst, a ray by the tip of a cone, is off by the root
  *    of an ulp, 2^-25 m. The pad is 2^-18 m. What remains of it, 3 * 2^-20 m, is more than all rounding here:
  *    2^-50 m for positions relative to the origin and 2^-50 c for absolute ones, where c is a coordinate of
- *    the scene; c <= |org| + m, so another 2^-48 |org| is added for scenes that are a point. A direction's
- *    rounding moves the point of the hit by 2^-51 m at most, and can be seen as part of that. Extents are
- *    built in double and inflated by 2^-46 c (extent.c), slabs then rounded outward to float32.
+ *    the scene; c <= |org| + m, so another 2^-48 |org| is added for scenes that are a point. Where float32
+ *    runs out of exponents a rounding is no part of m, but up to 2^-150, for which 2^-140 is added. A
+ *    direction's rounding moves the point of the hit by 2^-51 m at most, and can be seen as part of that.
+ *    Extents are built in double and inflated by 2^-46 c (extent.c), slabs then rounded outward to float32.
  * 2. The box of the object or the group, along the ray's largest axis alone, begins beyond the best t or ends
  *    before tmin. A hit's t is brought into its own box, so the theorem holds. Where the line enters the
  *    extent says nothing: the t of a triangle seen edge-on may lie anywhere in its box. */
@@ -113,7 +114,7 @@ static inline double rt_line_pad(RtVec3d org, const RtBox *scene_box) {
         away = hi > away ? hi : away;
         most = at > most ? at : most;
     }
-    return 0x1p-18 * away + 0x1p-48 * most;
+    return 0x1p-18 * away + 0x1p-48 * most + 0x1p-140;
 }
 
 static inline RtLine rt_line(const RtExtentSet *set, RtExtentKind kind, const RtBox *scene_box,

@@ -185,6 +185,33 @@ static void every_kind_answers_like_brute_far_from_the_zero_of_coordinates(void 
     check_soup(6, 1e3f);
 }
 
+/* Multiples of the least number that float32 has: sheared coordinates are rounded by as much as objects are
+ * apart. */
+static RtVec3 least_point(RtRandom *random) {
+    RtVec3 p;
+    for (int a = 0; a < 3; a++) p.at[a] = 0x1p-149f * ((float)(rt_random_bits(random) % 17) - 8);
+    return p;
+}
+
+static void every_kind_answers_like_brute_among_the_least_numbers(void **state) {
+    (void)state;
+    static RtRay rays[RAYS];
+    RtRandom random = rt_random(5, 0);
+    RtScene scene;
+    begin_scene(&scene);
+    for (int i = 0; i < 40; i++) {
+        RtVec3 v[3] = {least_point(&random), least_point(&random), least_point(&random)};
+        assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    for (int i = 0; i < RAYS; i++) {
+        rays[i] = (RtRay){.org = least_point(&random), .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+        rays[i].dir = rt_narrow(rt_random_direction(&random));
+    }
+    compare_with_brute(&scene, rays);
+    rt_scene_clear(&scene);
+}
+
 static void a_scene_without_objects_is_missed(void **state) {
     (void)state;
     RtScene scene;
@@ -378,6 +405,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_answers_like_brute_on_soups_of_all_shapes),
         cmocka_unit_test(every_kind_answers_like_brute_far_from_the_zero_of_coordinates),
+        cmocka_unit_test(every_kind_answers_like_brute_among_the_least_numbers),
         cmocka_unit_test(a_scene_without_objects_is_missed),
         cmocka_unit_test(
             a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_beyond_its_hit),
