@@ -99,17 +99,27 @@ static void ask(Desk *desk, const RtRay *rays, size_t count, size_t chunk) {
     }
 }
 
-static RtVerdict judge_nearest(const Job *job, const RtRay *ray, RtHit expected, RtHit got) {
+RtVerdict rt_answer_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, RtHit got) {
     if (memcmp(&expected, &got, sizeof got) == 0) return RT_EQUAL;
-    if (job->accel->exact) return RT_WRONG;
-    return rt_verdict_nearest(&job->reference->scene->geometry, ray, expected, got);
+    if (accel->exact) return RT_WRONG;
+    return rt_verdict_nearest(&accel->scene->geometry, ray, expected, got);
 }
 
-static RtVerdict judge_occluded(const Job *job, const RtRay *ray, RtHit expected, bool got) {
+RtVerdict rt_blocked_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, bool got) {
     bool blocked = expected.object != RT_NO_OBJECT;
     if (blocked == got) return RT_EQUAL;
-    if (job->accel->exact) return RT_WRONG;
-    return rt_verdict_occluded(&job->reference->scene->geometry, ray, blocked, got);
+    if (accel->exact) return RT_WRONG;
+    return rt_verdict_occluded(&accel->scene->geometry, ray, blocked, got);
+}
+
+void rt_witness_context(const RtReference *reference, const RtWitness *witness, size_t *first,
+                        size_t *count) {
+    size_t place = witness->index % CHUNK;
+    *first = witness->index - place;
+    size_t end = (place / witness->stream + 1) * witness->stream;
+    size_t left = reference->count - *first;
+    if (end > CHUNK) end = CHUNK;
+    *count = end < left ? end : left;
 }
 
 static void keep_witness(RtEquivalence *part, RtWitness witness) {
@@ -137,11 +147,11 @@ static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
                              .expected = expected,
                              .got = got,
                              .blocked = blocked};
-        RtVerdict verdict = judge_nearest(job, ray, expected, got);
+        RtVerdict verdict = rt_answer_verdict(job->accel, ray, expected, got);
         if (verdict == RT_WRONG) keep_witness(part, witness);
         if (verdict >= RT_MARGINAL) doubtful = &desk->hits[counted][i];
         if (verdict > worst) worst = verdict;
-        verdict = judge_occluded(job, ray, expected, blocked);
+        verdict = rt_blocked_verdict(job->accel, ray, expected, blocked);
         if (verdict == RT_WRONG) {
             occluded_wrong = witness.occluded = true;
             keep_witness(part, witness);
@@ -208,8 +218,10 @@ static json_t *hit_json(RtHit hit) {
 static json_t *witness_json(const RtWitness *w) {
     json_t *expected = w->occluded ? json_boolean(w->expected.object != RT_NO_OBJECT) : hit_json(w->expected);
     json_t *got = w->occluded ? json_boolean(w->blocked) : hit_json(w->got);
-    return json_pack("{s:I, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "index", (json_int_t)w->index,
-                     "query", w->occluded ? "occluded" : "nearest", "kernel",
+    char says[512];
+    rt_witness_format(w, says, sizeof says);
+    return json_pack("{s:I, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "index", (json_int_t)w->index,
+                     "says", says, "query", w->occluded ? "occluded" : "nearest", "kernel",
                      w->counted ? "counted" : "timed", "stream", (json_int_t)w->stream, "org",
                      vector_json(w->ray.org), "dir", vector_json(w->ray.dir), "tmin", float_json(w->ray.tmin),
                      "tmax", float_json(w->ray.tmax), "expected", expected, "got", got);

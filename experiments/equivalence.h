@@ -52,6 +52,15 @@ typedef struct RtEquivalence {
 RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
                               RtError *error);
 
+/* The verdict on an answer of `accel` to `nearest`, or to `occluded`, where brute's nearest hit is
+ * `expected`: RT_EQUAL or RT_WRONG if it is exact. */
+RtVerdict rt_answer_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, RtHit got);
+RtVerdict rt_blocked_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, bool got);
+
+/* The rays that were asked together with a witness's, from those that came before it to the end of its
+ * stream: `count` of the reference's, from `first` on. */
+void rt_witness_context(const RtReference *reference, const RtWitness *witness, size_t *first, size_t *count);
+
 /* The row of `verify --json`; a new reference, NULL if memory is short. Floats are strings that read back to
  * the same bits ("inf" included). */
 json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, const char *accel,

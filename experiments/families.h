@@ -17,6 +17,12 @@ const char *rt_scene_family_name(size_t family);
  * thousand pixels; its name is the family's. Owned by the caller: rt_scene_clear. */
 RtStatus rt_scene_family_build(size_t family, uint64_t seed, RtScene *scene, RtError *error);
 
+/* The words by which a scene of a family is opened: "family:NAME,seed=N". */
+#define RT_FAMILY_PREFIX "family:"
+
+/* Opens such a scene, or any that rt_scene_open does. */
+RtStatus rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error);
+
 /* The first family is `chord`: random chords of the scene's bounding sphere. */
 size_t rt_ray_family_count(void);
 const char *rt_ray_family_name(size_t family);

@@ -1,17 +1,11 @@
 #include "experiments/journal.h"
 
-#include "base/memory.h"
 #include "experiments/json.h"
 #include "experiments/machine.h"
 
-#include <errno.h>
 #include <inttypes.h>
-#include <jansson.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
-
-enum { MOST_BYTES = 1 << 28 }; /* of a journal */
 
 /* ---- to JSON ---- */
 
@@ -83,47 +77,15 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
 
 /* ---- writing ---- */
 
-/* One line, on the disk when this returns. Takes the reference. */
-static RtStatus write_line(RtJournal *journal, json_t *line, RtError *error) {
-    if (!line) return rt_fail_memory(error, "a line of the journal", 0);
-    int failed = json_dumpf(line, journal->file, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    json_decref(line);
-    if (!failed && fputc('\n', journal->file) != EOF && fflush(journal->file) == 0 &&
-        fdatasync(fileno(journal->file)) == 0) {
-        return RT_OK;
-    }
-    return rt_fail(error, RT_IO, "%s: writing failed: %s", journal->path, strerror(errno));
-}
-
-/* Cuts off what an interruption left behind the last whole line. */
-static RtStatus trim(const char *path, RtError *error) {
-    char *text;
-    size_t size;
-    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
-    while (size > 0 && text[size - 1] != '\n') size--;
-    rt_free(text);
-    if (truncate(path, (off_t)size) == 0) return RT_OK;
-    return rt_fail(error, RT_IO, "%s: truncating failed: %s", path, strerror(errno));
-}
-
-RtStatus rt_journal_open(RtJournal *journal, const char *path, const RtExperiment *experiment, bool resume,
+RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
                          RtError *error) {
-    journal->file = NULL;
-    snprintf(journal->path, sizeof journal->path, "%s", path);
-    if (resume) RT_TRY(trim(path, error));
-    journal->file = fopen(path, resume ? "ab" : "wb");
-    if (!journal->file) return rt_fail(error, RT_IO, "%s: cannot be written: %s", path, strerror(errno));
-    return resume ? RT_OK : write_line(journal, header_json(experiment), error);
+    RT_TRY(rt_json_lines_open(journal, path, resume, error));
+    return resume ? RT_OK : rt_json_lines_write(journal, header_json(experiment), error);
 }
 
-void rt_journal_close(RtJournal *journal) {
-    if (journal->file) fclose(journal->file);
-    journal->file = NULL;
-}
-
-RtStatus rt_journal_append(RtJournal *journal, const RtResults *results, const RtEvent *event,
+RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
                            RtError *error) {
-    return write_line(journal, event_json(results, event), error);
+    return rt_json_lines_write(journal, event_json(results, event), error);
 }
 
 /* ---- from JSON ---- */
@@ -241,22 +203,12 @@ static RtStatus check_header(const char *path, const json_t *line, const RtExper
 }
 
 RtStatus rt_journal_load(const char *path, RtResults *results, bool same_build, RtError *error) {
-    char *text;
-    size_t size;
-    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
-    RtStatus status = RT_OK;
-    bool first = true;
-    for (char *line = text, *end; status == RT_OK && (end = strchr(line, '\n')); line = end + 1) {
-        json_t *object = json_loadb(line, (size_t)(end - line), 0, NULL);
-        if (first) {
-            status = check_header(path, object, results->experiment, same_build, error);
-        } else if (object) {
-            take_line(results, object);
-        }
-        first = false;
-        json_decref(object);
+    json_t *lines;
+    RT_TRY(rt_json_lines_load(path, &lines, error));
+    RtStatus status = check_header(path, json_array_get(lines, 0), results->experiment, same_build, error);
+    for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
+        take_line(results, json_array_get(lines, i));
     }
-    if (status == RT_OK && first) status = rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty", path);
-    rt_free(text);
+    json_decref(lines);
     return status;
 }

@@ -6,21 +6,16 @@
 #ifndef RT_EXPERIMENTS_JOURNAL_H
 #define RT_EXPERIMENTS_JOURNAL_H
 
+#include "experiments/json_lines.h"
 #include "experiments/trial.h"
 
-typedef struct RtJournal {
-    FILE *file;
-    char path[RT_MAX_PATH];
-} RtJournal;
-
 /* Opens the journal at `path` for appending: a new one, or, with `resume`, the one that is there. Close with
- * rt_journal_close, also after a failure. */
-RtStatus rt_journal_open(RtJournal *journal, const char *path, const RtExperiment *experiment, bool resume,
+ * rt_json_lines_close, also after a failure. */
+RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
                          RtError *error);
-void rt_journal_close(RtJournal *journal);
 
 /* Writes down what the event says is known now. */
-RtStatus rt_journal_append(RtJournal *journal, const RtResults *results, const RtEvent *event,
+RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
                            RtError *error);
 
 /* Fills `results` with all that the journal at `path` knows. Refuses one of another experiment; of another

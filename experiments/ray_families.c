@@ -203,9 +203,10 @@ static RtRay tangent(Maker *m) {
     return ray_along(rt_add_scaledd(p, dir, -m->size), dir);
 }
 
-/* From a thousand or a million sizes away. */
+/* From 10^3 to 10^7 sizes away. */
 static RtRay from_afar(Maker *m) {
-    double distance = m->size * (below(m, 2) ? 1e3 : 1e6);
+    static const double sizes[] = {1e3, 1e4, 1e5, 1e6, 1e7};
+    double distance = m->size * sizes[below(m, 5)];
     RtVec3d from = rt_add_scaledd(m->center, rt_random_direction(&m->random), distance);
     uint32_t id;
     RtVec3d to = below(m, 2) ? point_in_scene(m) : point_of_object(m, ON_SURFACE, &id);
@@ -234,6 +235,100 @@ static RtRay of_any_length(Maker *m) {
     RtRay ray = chord(m);
     RtVec3d dir = rt_normalized(rt_widen(ray.dir));
     ray.dir = rt_narrow(rt_scaled(dir, lengths[below(m, 8)]));
+    return ray;
+}
+
+/* Any direction, or one whose components are 0 or +-1: along axes and diagonals. */
+static RtVec3d free_direction(Maker *m) {
+    if (below(m, 2)) return rt_random_direction(&m->random);
+    RtVec3d dir = {(double)below(m, 3) - 1, (double)below(m, 3) - 1, (double)below(m, 3) - 1};
+    if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[below(m, 3)] = 1;
+    return dir;
+}
+
+/* A plane of the voxels of a grid over the scene, or over a box in it; in float32 or rounded from double. */
+static double voxel_plane(Maker *m, const RtBox *box, int axis, uint32_t voxels) {
+    float lo = box->lo.at[axis], hi = box->hi.at[axis];
+    uint32_t i = below(m, voxels + 1);
+    if (below(m, 2)) return (double)(lo + (hi - lo) / (float)voxels * (float)i);
+    return (double)lo + ((double)hi - (double)lo) * i / voxels;
+}
+
+static uint32_t some_resolution(Maker *m) {
+    return below(m, 2) ? 1U << below(m, 7) : 1 + below(m, 50);
+}
+
+/* From a corner of a voxel, or from a point of an edge of one. */
+static RtRay from_voxel_corner(Maker *m) {
+    const RtBox *box = below(m, 2) ? &m->geometry->box : some_box(m);
+    if (m->geometry->object_count == 0) box = some_box(m);
+    RtVec3d p = point_in_box(m, box);
+    uint32_t voxels = some_resolution(m), along = below(m, 6);
+    for (int a = 0; a < 3; a++) {
+        if (a != (int)along) p.at[a] = voxel_plane(m, box, a, voxels);
+    }
+    return ray_along(p, free_direction(m));
+}
+
+/* Within a plane of voxels or a face of a box, from inside or outside. */
+static RtRay in_plane(Maker *m) {
+    const RtBox *box = some_box(m);
+    int axis = (int)below(m, 3);
+    RtVec3d p = point_in_box(m, box), dir = free_direction(m);
+    p.at[axis] = voxel_plane(m, box, axis, below(m, 2) ? 1 : some_resolution(m));
+    dir.at[axis] = below(m, 2) ? 0.0 : -0.0;
+    if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[(axis + 1) % 3] = -1;
+    if (below(m, 2)) p = rt_add_scaledd(p, dir, -2 * m->size);
+    return ray_along(p, dir);
+}
+
+/* Along an edge: from one vertex to the next, from before it, or from between them. */
+static RtRay along_edge(Maker *m) {
+    const RtGeometry *g = m->geometry;
+    if (g->triangle_count + g->polygon_count == 0) return along_axis(m);
+    uint32_t i = below(m, g->triangle_count + g->polygon_count), count = 3;
+    const RtVec3 *v;
+    if (i < g->triangle_count) {
+        v = g->triangles[i].v;
+    } else {
+        const RtPolygon *polygon = &g->polygons[i - g->triangle_count];
+        v = g->polygon_vertices + polygon->first;
+        count = polygon->count;
+    }
+    uint32_t first = below(m, count);
+    RtVec3 dir = rt_sub(v[(first + 1) % count], v[first]);
+    static const double starts[] = {0, -1, -4, 0.5, 1};
+    RtVec3d from = rt_add_scaledd(rt_widen(v[first]), rt_widen(dir), starts[below(m, 5)]);
+    return ray_along(from, rt_widen(dir));
+}
+
+/* Nearly parallel to a flat object or to the silhouette of a round one, by an angle of 1e-2 to 1e-8. */
+static RtRay grazing(Maker *m) {
+    static const double angles[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+    uint32_t id;
+    RtVec3d p = point_of_object(m, ON_SURFACE, &id), dir = rt_random_direction(&m->random);
+    if (id != RT_NO_OBJECT) {
+        RtRay at = ray_along(p, dir);
+        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0).geometric;
+        dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
+        dir = rt_add_scaledd(rt_normalized(dir), normal, (below(m, 2) ? 1 : -1) * angles[below(m, 7)]);
+    }
+    return ray_along(rt_add_scaledd(p, dir, -m->size * rt_random_betweend(&m->random, 0, 2)), dir);
+}
+
+/* Components that are denormal, the least normal number, 0 or -0, beside one that is not. */
+static RtRay denormal(Maker *m) {
+    static const float tiny[] = {0x1p-149f, -0x1p-149f, 0x1p-140f, -0x1p-130f, 0x1p-127f,
+                                 0x1p-126f, -0x1p-126f, 0.0f,      -0.0f};
+    uint32_t id;
+    RtRay ray =
+        below(m, 2) ? along_axis(m) : ray_along(point_of_object(m, AT_VERTEX, &id), free_direction(m));
+    int whole = (int)below(m, 3);
+    for (int a = 0; a < 3; a++) {
+        if (a != whole) ray.dir.at[a] = tiny[below(m, sizeof tiny / sizeof tiny[0])];
+    }
+    if (ray.dir.at[whole] == 0) ray.dir.at[whole] = 1;
+    if (below(m, 2)) ray.org.at[whole] -= 2 * (float)m->size * ray.dir.at[whole];
     return ray;
 }
 
@@ -296,6 +391,11 @@ static const struct {
     {"of-any-length", of_any_length},
     {"to-light", to_light},
     {"through-sample", through_sample},
+    {"from-voxel-corner", from_voxel_corner},
+    {"in-plane", in_plane},
+    {"along-edge", along_edge},
+    {"grazing", grazing},
+    {"denormal", denormal},
 };
 
 size_t rt_ray_family_count(void) {

@@ -15,7 +15,7 @@ typedef struct Run {
     const RtExperiment *experiment;
     const RtRunOptions *options;
     RtPublished published;
-    RtJournal journal;
+    RtJsonLines journal;
 } Run;
 
 /* ---- what is exact ---- */
@@ -213,7 +213,7 @@ RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error)
     Run run = {.results = results, .experiment = results->experiment, .options = options};
     RtStatus status = begin(&run, error);
     if (status == RT_OK) status = measure(&run, error);
-    rt_journal_close(&run.journal);
+    rt_json_lines_close(&run.journal);
     if (status == RT_OK) status = finish(&run, error);
     rt_published_clear(&run.published);
     return status;

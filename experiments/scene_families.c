@@ -1,9 +1,13 @@
 /* The families of scenes. One recipe a row: how many objects of which shapes, where, how large, and how the
  * whole is scaled and moved. */
+#include "base/words.h"
 #include "experiments/families.h"
 #include "experiments/random_tree.h"
+#include "scene/load.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* Centre and size of object `i` of `count`, in a world of about [-1, 1]^3. */
 typedef struct Place {
@@ -12,14 +16,29 @@ typedef struct Place {
 } Place;
 typedef Place Placement(RtRandom *random, uint32_t i, uint32_t count);
 
-typedef enum Make { SPHERES, TRIANGLES, ROUND_AND_FLAT, AXIS_ALIGNED, TREES, MESH, MAKE_COUNT } Make;
+typedef enum Make {
+    SPHERES,
+    TRIANGLES,
+    SLIVERS,
+    SHARED,
+    ROUND_AND_FLAT,
+    AXIS_ALIGNED,
+    TREES,
+    MESH,
+    MAKE_COUNT
+} Make;
+
+/* How the whole is scaled and moved: scale * p + (offset, offset, offset). Or, where the seed draws it, by
+ * 2^k for a k of -40..40; and then moved by 2^0..2^16 times its scale. */
+typedef enum Scaling { GIVEN, DRAWN_SCALE, DRAWN_SCALE_AND_OFFSET } Scaling;
 
 typedef struct Recipe {
     const char *name;
     uint32_t count;
     Make make;
     Placement *place;
-    double scale, offset; /* applied last: scale * p + (offset, offset, offset) */
+    double scale, offset;
+    Scaling scaling;
 } Recipe;
 
 static RtVec3d in_cube(RtRandom *random) {
@@ -79,6 +98,17 @@ static Place on_a_lattice(RtRandom *random, uint32_t i, uint32_t count) {
     return (Place){p, 0.125};
 }
 
+/* Spheres of a quarter's width on multiples of 1/4: neighbours touch. Some are half as large, and touch one
+ * from within. */
+static Place touching(RtRandom *random, uint32_t i, uint32_t count) {
+    (void)count;
+    RtVec3d p;
+    for (int a = 0; a < 3; a++) p.at[a] = floor(rt_random_betweend(random, -3, 3)) / 4;
+    if (i % 4 > 0) return (Place){p, 0.125};
+    p.at[i / 4 % 3] += 0.0625;
+    return (Place){p, 0.0625};
+}
+
 /* ---- objects ---- */
 
 typedef struct Builder {
@@ -86,21 +116,48 @@ typedef struct Builder {
     RtScene *scene;
     uint32_t material;
     RtRandom random;
+    double scale, offset;
 } Builder;
 
 static RtVec3 placed(const Builder *b, RtVec3d p) {
-    double o = b->recipe->offset;
-    return rt_narrow(rt_add_scaledd(rt_vec3d(o, o, o), p, b->recipe->scale));
+    double o = b->offset;
+    return rt_narrow(rt_add_scaledd(rt_vec3d(o, o, o), p, b->scale));
 }
 
 static RtStatus add_sphere(Builder *b, Place at, RtError *error) {
-    float radius = (float)(at.size * b->recipe->scale);
+    float radius = (float)(at.size * b->scale);
     return rt_scene_add_sphere(b->scene, b->material, placed(b, at.center), radius, error);
 }
 
 static RtStatus add_triangle(Builder *b, Place at, RtError *error) {
     RtVec3 v[3];
     for (int i = 0; i < 3; i++) v[i] = placed(b, rt_add_scaledd(at.center, in_cube(&b->random), at.size));
+    return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
+}
+
+/* Slivers, needles and triangles without area, among whole ones. */
+static RtStatus add_sliver(Builder *b, Place at, uint32_t i, RtError *error) {
+    static const double thin[] = {1e-3, 1e-5, 1e-7, 1e-9};
+    RtVec3d p[3];
+    for (int k = 0; k < 3; k++) p[k] = rt_add_scaledd(at.center, in_cube(&b->random), at.size);
+    RtVec3d along = rt_subd(p[1], p[0]), aside = rt_scaled(in_cube(&b->random), at.size * thin[i / 6 % 4]);
+    switch (i % 6) {
+    case 0: p[2] = rt_addd(rt_add_scaledd(p[0], along, rt_random_betweend(&b->random, 0, 1)), aside); break;
+    case 1: p[2] = rt_addd(p[1], aside); break;
+    case 2: p[2] = rt_add_scaledd(p[0], along, 0.5); break; /* in a line, or nearly so */
+    case 3: p[2] = p[1]; break;
+    case 4: p[1] = p[2] = p[0]; break;
+    default: break;
+    }
+    const RtVec3 v[3] = {placed(b, p[0]), placed(b, p[1]), placed(b, p[2])};
+    return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
+}
+
+/* Triangles around one edge, like the leaves of a book, and around one vertex. */
+static RtStatus add_shared(Builder *b, uint32_t i, RtError *error) {
+    RtVec3d p[3] = {{0.1, -0.7, 0.3}, {-0.2, 0.6, 0.4}, in_cube(&b->random)};
+    if (i % 2) p[1] = in_cube(&b->random);
+    const RtVec3 v[3] = {placed(b, p[i % 3]), placed(b, p[(i + 1) % 3]), placed(b, p[(i + 2) % 3])};
     return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
 }
 
@@ -125,7 +182,7 @@ static RtStatus add_polygon(Builder *b, Place at, RtError *error) {
 
 static RtStatus add_cone(Builder *b, Place at, RtError *error) {
     RtVec3d axis = rt_random_direction(&b->random);
-    double size = at.size * b->recipe->scale;
+    double size = at.size * b->scale;
     float base = (float)(size * rt_random_betweend(&b->random, 0.2, 0.8));
     float apex = rt_random_bits(&b->random) % 2 ? base : 0; /* a cylinder or a full cone */
     return rt_scene_add_cone(b->scene, b->material, placed(b, at.center), base,
@@ -161,7 +218,7 @@ static RtStatus add_round_or_flat(Builder *b, Place at, uint32_t i, RtError *err
  * inner nodes by turns. */
 static RtStatus add_tree(Builder *b, Place at, uint32_t i, RtError *error) {
     RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_bits(&b->random) % 23, i % 2};
-    double o = b->recipe->offset, scale = b->recipe->scale, size = scale * at.size / 4;
+    double o = b->offset, scale = b->scale, size = scale * at.size / 4;
     RtTransform move = {{{size, 0, 0, o + scale * at.center.x},
                          {0, size, 0, o + scale * at.center.y},
                          {0, 0, size, o + scale * at.center.z}}};
@@ -202,6 +259,8 @@ static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
     switch (b->recipe->make) {
     case SPHERES: return add_sphere(b, at, error);
     case TRIANGLES: return add_triangle(b, at, error);
+    case SLIVERS: return add_sliver(b, at, i, error);
+    case SHARED: return add_shared(b, i, error);
     case ROUND_AND_FLAT: return add_round_or_flat(b, at, i, error);
     case AXIS_ALIGNED: return add_axis_aligned(b, at, i, error);
     case TREES: return add_tree(b, at, i, error);
@@ -214,29 +273,35 @@ static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
 /* ---- the families ---- */
 
 static const Recipe recipes[] = {
-    {"empty", 0, SPHERES, uniform, 1, 0},
-    {"one-sphere", 1, SPHERES, uniform, 1, 0},
-    {"one-triangle", 1, TRIANGLES, uniform, 1, 0},
-    {"two", 2, ROUND_AND_FLAT, uniform, 1, 0},
-    {"coincident", 33, SPHERES, coincident, 1, 0},
-    {"line", 64, ROUND_AND_FLAT, on_a_line, 1, 0},
-    {"plane", 96, AXIS_ALIGNED, in_a_plane, 1, 0},
-    {"huge-beside-tiny", 96, ROUND_AND_FLAT, huge_beside_tiny, 1, 0},
-    {"uniform", 150, SPHERES, uniform, 1, 0},
-    {"clustered", 160, ROUND_AND_FLAT, clustered, 1, 0},
-    {"mixed", 160, ROUND_AND_FLAT, uniform, 1, 0},
-    {"soup", 200, TRIANGLES, uniform, 1, 0},
-    {"duplicates", 120, SPHERES, duplicated, 1, 0},
-    {"axis-aligned", 100, AXIS_ALIGNED, on_a_lattice, 1, 0},
-    {"csg", 48, TREES, uniform, 1, 0},
-    {"csg-coincident", 12, TREES, coincident, 1, 0},
-    {"csg-tiny", 24, TREES, uniform, 0x1p-30, 0},
-    {"csg-far", 24, TREES, uniform, 1, 1e5},
-    {"mesh", 5, MESH, NULL, 1, 0},
-    {"mesh-far", 5, MESH, NULL, 1, 1e5},
-    {"mixed-tiny", 100, ROUND_AND_FLAT, uniform, 0x1p-30, 0},
-    {"mixed-huge", 100, ROUND_AND_FLAT, uniform, 0x1p30, 0},
-    {"mixed-far", 100, ROUND_AND_FLAT, uniform, 1, 1e5},
+    {"empty", 0, SPHERES, uniform, 1, 0, GIVEN},
+    {"one-sphere", 1, SPHERES, uniform, 1, 0, GIVEN},
+    {"one-triangle", 1, TRIANGLES, uniform, 1, 0, GIVEN},
+    {"two", 2, ROUND_AND_FLAT, uniform, 1, 0, GIVEN},
+    {"coincident", 33, SPHERES, coincident, 1, 0, GIVEN},
+    {"line", 64, ROUND_AND_FLAT, on_a_line, 1, 0, GIVEN},
+    {"plane", 96, AXIS_ALIGNED, in_a_plane, 1, 0, GIVEN},
+    {"huge-beside-tiny", 96, ROUND_AND_FLAT, huge_beside_tiny, 1, 0, GIVEN},
+    {"uniform", 150, SPHERES, uniform, 1, 0, GIVEN},
+    {"clustered", 160, ROUND_AND_FLAT, clustered, 1, 0, GIVEN},
+    {"mixed", 160, ROUND_AND_FLAT, uniform, 1, 0, GIVEN},
+    {"soup", 200, TRIANGLES, uniform, 1, 0, GIVEN},
+    {"duplicates", 120, SPHERES, duplicated, 1, 0, GIVEN},
+    {"axis-aligned", 100, AXIS_ALIGNED, on_a_lattice, 1, 0, GIVEN},
+    {"csg", 48, TREES, uniform, 1, 0, GIVEN},
+    {"csg-coincident", 12, TREES, coincident, 1, 0, GIVEN},
+    {"csg-tiny", 24, TREES, uniform, 0x1p-30, 0, GIVEN},
+    {"csg-far", 24, TREES, uniform, 1, 1e5, GIVEN},
+    {"mesh", 5, MESH, NULL, 1, 0, GIVEN},
+    {"mesh-far", 5, MESH, NULL, 1, 1e5, GIVEN},
+    {"mixed-tiny", 100, ROUND_AND_FLAT, uniform, 0x1p-30, 0, GIVEN},
+    {"mixed-huge", 100, ROUND_AND_FLAT, uniform, 0x1p30, 0, GIVEN},
+    {"mixed-far", 100, ROUND_AND_FLAT, uniform, 1, 1e5, GIVEN},
+    {"slivers", 150, SLIVERS, uniform, 1, 0, GIVEN},
+    {"shared", 100, SHARED, uniform, 1, 0, GIVEN},
+    {"touching", 150, SPHERES, touching, 1, 0, GIVEN},
+    {"scaled", 100, ROUND_AND_FLAT, uniform, 1, 0, DRAWN_SCALE},
+    {"scaled-far", 100, ROUND_AND_FLAT, uniform, 1, 0, DRAWN_SCALE_AND_OFFSET},
+    {"slivers-scaled", 100, SLIVERS, uniform, 1, 0, DRAWN_SCALE},
 };
 
 size_t rt_scene_family_count(void) {
@@ -258,8 +323,20 @@ static RtStatus fill(Builder *b, RtError *error) {
     return rt_scene_finish(b->scene, error);
 }
 
+static void choose_scale(Builder *b) {
+    const Recipe *recipe = b->recipe;
+    b->scale = recipe->scale;
+    b->offset = recipe->offset;
+    if (recipe->scaling == GIVEN) return;
+    b->scale = ldexp(1, (int)(rt_random_bits(&b->random) % 81) - 40);
+    if (recipe->scaling == DRAWN_SCALE_AND_OFFSET) {
+        b->offset = ldexp(b->scale, (int)(rt_random_bits(&b->random) % 17));
+    }
+}
+
 RtStatus rt_scene_family_build(size_t family, uint64_t seed, RtScene *scene, RtError *error) {
     Builder builder = {.recipe = &recipes[family], .scene = scene, .random = rt_random(seed, family)};
+    choose_scale(&builder);
     rt_scene_init(scene);
     scene->camera.width = 40;
     scene->camera.height = 30;
@@ -267,4 +344,37 @@ RtStatus rt_scene_family_build(size_t family, uint64_t seed, RtScene *scene, RtE
     RtStatus status = fill(&builder, error);
     if (status != RT_OK) rt_scene_clear(scene);
     return status;
+}
+
+static RtStatus find_family(const char *name, size_t *family, RtError *error) {
+    const char *names[sizeof recipes / sizeof recipes[0]];
+    char suggestion[RT_MAX_SUGGESTION];
+    for (*family = 0; *family < rt_scene_family_count(); ++*family) {
+        names[*family] = recipes[*family].name;
+        if (strcmp(names[*family], name) == 0) return RT_OK;
+    }
+    rt_suggest(name, names, *family, suggestion);
+    return rt_fail(error, RT_BAD_INPUT, "there is no family of scenes '%s'%s", name, suggestion);
+}
+
+RtStatus rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error) {
+    size_t prefix = strlen(RT_FAMILY_PREFIX), family;
+    if (strncmp(spec, RT_FAMILY_PREFIX, prefix) != 0) return rt_scene_open(spec, scene, error);
+    *scene = (RtScene){0};
+    char name[RT_MAX_NAME], *end = NULL;
+    size_t length = strcspn(spec + prefix, ",");
+    const char *seed = spec + prefix + length;
+    snprintf(name, sizeof name, "%.*s", length < sizeof name ? (int)length : (int)sizeof name - 1,
+             spec + prefix);
+    RT_TRY(find_family(name, &family, error));
+    uint64_t number = 1;
+    if (*seed) {
+        bool given = strncmp(seed, ",seed=", 6) == 0 && seed[6] >= '0' && seed[6] <= '9';
+        if (given) number = strtoull(seed + 6, &end, 10);
+        if (!given || *end) {
+            return rt_fail(error, RT_BAD_INPUT, "%s: write a scene of a family as %s%s,seed=1", spec,
+                           RT_FAMILY_PREFIX, name);
+        }
+    }
+    return rt_scene_family_build(family, number, scene, error);
 }

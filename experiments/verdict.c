@@ -120,7 +120,8 @@ static bool must_count(const Probes *p, const RtRay *ray, double lo, double hi) 
 }
 
 /* The edge functions, their sum and the height above the plane are triple products of vectors that are wrong
- * by `error` each; a plane seen edge on is hit anywhere along the ray. */
+ * by `error` each, and a side, which is a difference of two and up to twice as long, by 2 `error`; a plane
+ * seen edge on is hit anywhere along the ray. */
 static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, const Probes *p) {
     RtVec3d dir = rt_widen(ray->dir), from[3], side[3];
     double longest = 0, least = HUGE_VAL, most = -HUGE_VAL, sum = 0;
@@ -134,7 +135,7 @@ static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, cons
         sum += edge;
     }
     Margin m = impossible;
-    double error = p->error * longest * rt_lengthd(dir);
+    double error = 4 * p->error * longest * rt_lengthd(dir);
     if (least < -error && most > error) return m;
     if (fabs(sum) <= 3 * error) {
         return (Margin){.possible = true, .lo = {-HUGE_VAL, HUGE_VAL}, .hi = {HUGE_VAL, -HUGE_VAL}};

@@ -61,8 +61,15 @@ static RtStatus fill_data(RtYamlFile *file, RtError *error) {
 
 RtStatus rt_yaml_file_open(RtYamlFile *file, const char *path, const cyaml_schema_value_t *schema,
                            RtError *error) {
-    *file = (RtYamlFile){.path = path, .schema = schema};
-    RT_TRY(rt_file_read(path, RT_YAML_MAX_BYTES, &file->text, &file->length, error));
+    char *text;
+    size_t length;
+    RT_TRY(rt_file_read(path, RT_YAML_MAX_BYTES, &text, &length, error));
+    return rt_yaml_file_take(file, path, text, length, schema, error);
+}
+
+RtStatus rt_yaml_file_take(RtYamlFile *file, const char *path, char *text, size_t length,
+                           const cyaml_schema_value_t *schema, RtError *error) {
+    *file = (RtYamlFile){.path = path, .text = text, .length = length, .schema = schema};
     RtStatus status = rt_yaml_check(file, error);
     if (status == RT_OK) status = fill_data(file, error);
     if (status != RT_OK) rt_yaml_file_close(file);

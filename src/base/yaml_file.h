@@ -34,6 +34,11 @@ typedef struct RtYamlFile {
 RtStatus rt_yaml_file_open(RtYamlFile *file, const char *path, const cyaml_schema_value_t *schema,
                            RtError *error);
 
+/* The same of a text of rt_alloc that was read already, with a 0 behind its last byte; it is owned from here
+ * on, and freed on failure. `path` names it in messages. */
+RtStatus rt_yaml_file_take(RtYamlFile *file, const char *path, char *text, size_t length,
+                           const cyaml_schema_value_t *schema, RtError *error);
+
 /* Puts the place of the value at `where` (a path as above, "" for the whole) before the message of `error`,
  * and gives `status` back. Of a path the file does not have, the longest beginning it has counts. Errors that
  * are not about the input (RT_NO_MEMORY) are left as they are, and RT_OK is. `error` may be NULL. */

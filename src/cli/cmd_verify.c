@@ -1,28 +1,21 @@
-/* raytally verify: does every accelerator answer every ray like brute?
- *
- * Half of the rays come from a small frame of the scene's camera, in equal shares of primary, shadow,
- * reflection, transmission and diffuse rays as far as the scene produces them. The others are random chords
- * or, with --families, rays of every family that is hard on accelerators, in equal shares. */
-#include "base/memory.h"
+/* raytally verify: does every accelerator answer every ray like brute? And --replay: does one still answer
+ * one ray wrong? What is done lies in experiments/verify.h and experiments/replay.h; this is its command
+ * line. */
+#include "base/clock.h"
 #include "cli/cli.h"
-#include "experiments/equivalence.h"
 #include "experiments/families.h"
-#include "experiments/rayset.h"
+#include "experiments/replay.h"
 #include "experiments/spread.h"
-#include "scene/load.h"
+#include "experiments/verify.h"
 
 #include <argp.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-#define MAX_SCENES  64
-#define MAX_SPECS   512
-#define FRAME_DEPTH 4
-
-/* More marginal answers than this part of all rays are too many to be called margins; rays of the families
- * are aimed at the margins, and may have any number. */
-#define MARGINAL_PART 0.01
+#define MAX_SCENES    256
+#define MAX_SPECS     512
+#define FAMILY_OF_ALL "families" /* as a SCENE */
 
 static const char *const default_scenes[] = {"balls:size=2",
                                              "tetra:size=3",
@@ -37,38 +30,74 @@ static const char *const default_scenes[] = {"balls:size=2",
                                              "random:n=100,shape=mixed,distribution=plane",
                                              "random:n=200,shape=mixed,distribution=stadium"};
 
-/* One accelerator to verify. Those that were not asked for by name may be missing on this machine. */
-typedef struct Contender {
-    char spec[RT_MAX_SPEC_CHARS];
-    bool named;
-} Contender;
-
 typedef struct Options {
     const char *scenes[MAX_SCENES];
-    int scene_count;
+    uint32_t scene_count;
     const char *accels[MAX_SPECS]; /* as given */
     int accel_count;
-    bool spread, families, json;
+    bool spread, families, json, resume;
     int threads;
     uint64_t rays, seed;
-    Contender contenders[MAX_SPECS]; /* what they stand for */
-    int contender_count;
+    const char *folder, *replay;
+    RtVerifySpec specs[MAX_SPECS]; /* what the accelerators stand for */
+    uint32_t spec_count;
+    char family_specs[MAX_SCENES][RT_MAX_SPEC_CHARS];
 } Options;
 
-enum { KEY_SPREAD = 256, KEY_FAMILIES };
+enum { KEY_SPREAD = 256, KEY_FAMILIES, KEY_RESUME, KEY_REPLAY };
 
 static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0, "An accelerator, or `all` of them (the default); may be repeated", 0},
     {"spread", KEY_SPREAD, 0, 0, "Also each parameter of each at every value worth testing, one at a time",
      0},
     {"families", KEY_FAMILIES, 0, 0,
-     "Instead of random chords, rays that graze, start and end on surfaces, run along axes, edges and faces",
+     "Instead of random chords, rays that graze, start and end on surfaces, run along axes, edges and faces; "
+     "and, where no SCENE is given, also the families of scenes",
      0},
     {"rays", 'n', "N", 0, "Rays for each scene and accelerator (default 100000)", 0},
-    {"seed", 's', "S", 0, "Of the random rays (default 1)", 0},
+    {"seed", 's', "S", 0, "Of the random rays, and of `families` (default 1)", 0},
     {"threads", 't', "N", 0, "Threads; 0, the default, is all processors", 0},
+    {"out", 'o', "DIR", 0,
+     "Keep the rows in DIR as they are found, a table verify.csv, and what was wrong to be replayed", 0},
+    {"resume", KEY_RESUME, 0, 0, "Go on with the interrupted run in --out DIR", 0},
+    {"replay", KEY_REPLAY, "FILE", 0, "Ask again what was answered wrong: exit code 1 if it still is", 0},
     {"json", 'j', 0, 0, "One JSON document on stdout", 0},
     {0}};
+
+static void add_scene(Options *o, const char *spec, struct argp_state *state) {
+    if (o->scene_count == MAX_SCENES) argp_error(state, "more than %d scenes", MAX_SCENES);
+    o->scenes[o->scene_count++] = spec;
+}
+
+/* Every family of scenes, of the seed that is known once all is parsed. */
+static void add_families(Options *o, struct argp_state *state) {
+    for (size_t i = 0; i < rt_scene_family_count(); i++) {
+        char *spec = o->family_specs[i];
+        snprintf(spec, sizeof o->family_specs[i], RT_FAMILY_PREFIX "%s,seed=%llu", rt_scene_family_name(i),
+                 (unsigned long long)o->seed);
+        add_scene(o, spec, state);
+    }
+}
+
+/* Without a scene the default ones; `families` stands for all of those. */
+static void choose_scenes(Options *o, struct argp_state *state) {
+    const char *given[MAX_SCENES];
+    uint32_t count = o->scene_count;
+    memcpy(given, o->scenes, sizeof given);
+    o->scene_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (strcmp(given[i], FAMILY_OF_ALL) == 0) {
+            add_families(o, state);
+        } else {
+            add_scene(o, given[i], state);
+        }
+    }
+    if (count > 0) return;
+    for (size_t i = 0; i < sizeof default_scenes / sizeof default_scenes[0]; i++) {
+        add_scene(o, default_scenes[i], state);
+    }
+    if (o->families) add_families(o, state);
+}
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     Options *o = state->input;
@@ -79,13 +108,17 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         return 0;
     case KEY_SPREAD: o->spread = true; return 0;
     case KEY_FAMILIES: o->families = true; return 0;
+    case KEY_RESUME: o->resume = true; return 0;
+    case KEY_REPLAY: o->replay = argument; return 0;
+    case 'o': o->folder = argument; return 0;
     case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 20000000); return 0;
     case 's': o->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
     case 't': o->threads = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
     case 'j': o->json = true; return 0;
-    case ARGP_KEY_ARG:
-        if (o->scene_count == MAX_SCENES) argp_error(state, "more than %d scenes", MAX_SCENES);
-        o->scenes[o->scene_count++] = argument;
+    case ARGP_KEY_ARG: add_scene(o, argument, state); return 0;
+    case ARGP_KEY_END:
+        if (o->resume && !o->folder) argp_error(state, "--resume goes on with the run in --out DIR: name it");
+        choose_scenes(o, state);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -93,13 +126,13 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 /* ---- which accelerators ---- */
 
-static RtStatus add_contender(Options *o, const char *spec, bool named, RtError *error) {
-    if (o->contender_count == MAX_SPECS) {
+static RtStatus add_spec(Options *o, const char *spec, bool named, RtError *error) {
+    if (o->spec_count == MAX_SPECS) {
         return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators: verify fewer at a time", MAX_SPECS);
     }
-    Contender *c = &o->contenders[o->contender_count++];
+    RtVerifySpec *c = &o->specs[o->spec_count++];
+    *c = (RtVerifySpec){.named = named};
     snprintf(c->spec, sizeof c->spec, "%s", spec);
-    c->named = named;
     return RT_OK;
 }
 
@@ -107,7 +140,7 @@ static RtStatus add_contender(Options *o, const char *spec, bool named, RtError 
 static RtStatus add_registered(Options *o, const RtAccelOps *ops, size_t first, RtError *error) {
     char spec[RT_MAX_SPEC_CHARS];
     for (size_t n = first; rt_spread_spec(ops, n, spec) && (n == 0 || o->spread); n++) {
-        RT_TRY(add_contender(o, spec, false, error));
+        RT_TRY(add_spec(o, spec, false, error));
     }
     return RT_OK;
 }
@@ -115,11 +148,11 @@ static RtStatus add_registered(Options *o, const RtAccelOps *ops, size_t first, 
 static RtStatus add_named(Options *o, const char *text, RtError *error) {
     RtSpec spec;
     RT_TRY(rt_spec_parse(text, &spec, error));
-    RT_TRY(add_contender(o, text, true, error));
+    RT_TRY(add_spec(o, text, true, error));
     return o->spread ? add_registered(o, spec.layers[0].ops, 1, error) : RT_OK;
 }
 
-static RtStatus choose_contenders(Options *o, RtError *error) {
+static RtStatus choose_specs(Options *o, RtError *error) {
     if (o->accel_count == 0) o->accels[o->accel_count++] = "all";
     for (int i = 0; i < o->accel_count; i++) {
         if (strcmp(o->accels[i], "all") != 0) {
@@ -133,197 +166,157 @@ static RtStatus choose_contenders(Options *o, RtError *error) {
     return RT_OK;
 }
 
-/* ---- which rays ---- */
+/* ---- what is shown ---- */
 
-/* Has the scene sampled by about `samples` samples in the shape of the camera's image. */
-static RtStatus sample_sparsely(RtScene *scene, uint64_t samples, RtError *error) {
-    double aspect = (double)scene->camera.width / (double)scene->camera.height;
-    double width = fmin(fmax(sqrt((double)samples * aspect), 1), RT_MAX_IMAGE_SIDE);
-    double height = fmin(fmax(width / aspect, 1), RT_MAX_IMAGE_SIDE);
-    return rt_scene_sample(scene, (uint32_t)width, (uint32_t)height, 1, false, error);
-}
-
-/* Appends at most `limit` rays of `set`, evenly spread. */
-static RtStatus append(RtRay *rays, uint64_t *count, const RtRaySet *set, uint64_t limit, RtError *error) {
-    RtRaySet thin;
-    if (limit == 0) return RT_OK;
-    RT_TRY(rt_rayset_limit(set, limit, 1, &thin, error));
-    memcpy(rays + *count, thin.rays, thin.count * sizeof(RtRay));
-    *count += thin.count;
-    rt_rayset_clear(&thin);
-    return RT_OK;
-}
-
-/* Appends the share of each kind of ray that the camera's frame produces in half of all. */
-static RtStatus append_camera_rays(const Options *o, const RtAccel *brute, RtRay *rays, uint64_t *count,
-                                   RtError *error) {
-    RtRecording recording = {.depth = FRAME_DEPTH, .seed = o->seed, .threads = o->threads};
-    RtRaySet sets[RT_RAY_KIND_COUNT];
-    RT_TRY(rt_rayset_record(sets, brute, &recording, error));
-    uint64_t kinds = 0;
-    for (int kind = 0; kind < RT_RAY_RANDOM; kind++) kinds += sets[kind].count > 0;
-    RtStatus status = RT_OK;
-    for (int kind = 0; kind < RT_RAY_RANDOM && status == RT_OK; kind++) {
-        if (sets[kind].count > 0) status = append(rays, count, &sets[kind], o->rays / 2 / kinds, error);
-    }
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
-    return status;
-}
-
-/* Fills rays[0..o->rays): what the camera's kinds leave of their half goes to the families, the first of
- * which is the chords. */
-static RtStatus make_rays(const Options *o, const RtAccel *brute, RtRay *rays, RtError *error) {
-    RtQuery query;
-    uint64_t count = 0, families = o->families ? rt_ray_family_count() : 1;
-    RT_TRY(append_camera_rays(o, brute, rays, &count, error));
-    RT_TRY(rt_query_init(&query, brute, error));
-    uint64_t left = o->rays - count;
-    for (uint64_t f = 0; f < families; f++) {
-        uint64_t first = left * f / families, end = left * (f + 1) / families;
-        rt_ray_family_fill((size_t)f, &query, o->seed, 0, (size_t)(end - first), rays + count + first);
-    }
-    rt_query_clear(&query);
-    return RT_OK;
-}
-
-/* ---- verifying ---- */
-
-typedef struct Run {
+typedef struct Show {
     const Options *options;
-    json_t *rows;
-    int scene;                   /* index, for progress */
     int scene_width, spec_width; /* of the columns */
-    bool header_printed, failed, progress;
-} Run;
+    bool header_printed, failed, terminal;
+    double start, drawn; /* wall seconds */
+} Show;
 
-static void show_progress(const Run *run, const char *scene, const char *what) {
-    if (!run->progress) return;
-    fprintf(stderr, "\r\033[Kverify: scene %d of %d, %s: %s", run->scene + 1, run->options->scene_count,
-            scene, what);
+static void clear_progress(const Show *show) {
+    if (show->terminal) fputs("\r\033[K", stderr);
 }
 
-static void clear_progress(const Run *run) {
-    if (run->progress) fputs("\r\033[K", stderr);
+/* Redrawn ten times a second at most. */
+static void on_doing(void *context, const RtVerifyProgress *p) {
+    Show *show = context;
+    const Options *o = show->options;
+    double now = rt_wall_seconds(), passed = now - show->start;
+    if (!show->terminal || now - show->drawn < 0.1) return;
+    show->drawn = now;
+    fprintf(stderr, "\r\033[Kverify: scene %u of %u, %s: %s", p->scene + 1, o->scene_count,
+            o->scenes[p->scene], p->what);
+    if (p->done > 0 && passed > 0) {
+        double rate = (double)p->done / passed, left = (double)(p->all - p->done) / rate;
+        fprintf(stderr, ", %.3g Mrays/s, about %.0f %s left", 1e-6 * rate, left < 120 ? left : left / 60,
+                left < 120 ? "s" : "min");
+    }
+    fflush(stderr);
 }
 
 static void widen(int *width, const char *text) {
     if ((int)strlen(text) > *width) *width = (int)strlen(text);
 }
 
-static void print_header(Run *run) {
-    const Options *o = run->options;
-    if (run->header_printed) return;
-    run->header_printed = true;
-    run->scene_width = (int)strlen("scene");
-    for (int i = 0; i < o->scene_count; i++) widen(&run->scene_width, o->scenes[i]);
-    run->spec_width = (int)strlen("accelerator");
-    for (int i = 0; i < o->contender_count; i++) widen(&run->spec_width, o->contenders[i].spec);
-    printf("%-*s %-*s %10s %10s %8s %8s %8s %8s\n", run->scene_width, "scene", run->spec_width, "accelerator",
-           "rays", "equal", "tie", "marginal", "wrong", "occluded");
+static void print_header(Show *show) {
+    const Options *o = show->options;
+    if (show->header_printed) return;
+    show->header_printed = true;
+    show->scene_width = (int)strlen("scene");
+    for (uint32_t i = 0; i < o->scene_count; i++) widen(&show->scene_width, o->scenes[i]);
+    show->spec_width = (int)strlen("accelerator");
+    for (uint32_t i = 0; i < o->spec_count; i++) widen(&show->spec_width, o->specs[i].spec);
+    printf("%-*s %-*s %10s %10s %8s %8s %8s %8s\n", show->scene_width, "scene", show->spec_width,
+           "accelerator", "rays", "equal", "tie", "marginal", "wrong", "occluded");
 }
 
-static void print_row(const Run *run, const RtEquivalence *r, const char *scene, const char *spec) {
-    printf("%-*s %-*s %10llu %10llu %8llu %8llu %8llu %8llu\n", run->scene_width, scene, run->spec_width,
-           spec, (unsigned long long)r->rays, (unsigned long long)r->verdicts[RT_EQUAL],
-           (unsigned long long)r->verdicts[RT_TIE], (unsigned long long)r->verdicts[RT_MARGINAL],
-           (unsigned long long)r->verdicts[RT_WRONG], (unsigned long long)r->occluded_wrong);
-    if (r->any_wrong) {
-        char text[512];
-        rt_witness_format(&r->first_wrong, text, sizeof text);
-        printf("    WRONG: %s\n", text);
-    }
+static const char *text(const json_t *object, const char *key) {
+    const char *value = json_string_value(json_object_get(object, key));
+    return value ? value : "";
 }
 
-static void report(Run *run, const RtEquivalence *result, const char *scene, const char *spec) {
-    bool too_marginal = !run->options->families &&
-                        (double)result->verdicts[RT_MARGINAL] > MARGINAL_PART * (double)result->rays;
-    clear_progress(run);
-    if (run->options->json) {
-        json_array_append_new(run->rows, rt_equivalence_json(result, scene, spec, "brute"));
-    } else {
-        print_header(run);
-        print_row(run, result, scene, spec);
-        fflush(stdout);
-    }
-    if (too_marginal) {
-        fprintf(stderr, "raytally: %s on %s: more than %g %% of the answers are marginal\n", spec, scene,
-                MARGINAL_PART * 100);
-    }
-    run->failed |= result->any_wrong || too_marginal;
+static long long number(const json_t *row, const char *key) {
+    return (long long)json_integer_value(json_object_get(row, key));
 }
 
-/* A broken structure is reported like a wrong answer; rays are traced through it all the same. */
-static RtStatus verify_built(Run *run, const RtReference *reference, RtAccel *accel, const char *scene,
-                             const char *spec, RtError *error) {
-    RtStatus status = rt_accel_validate(accel, error);
-    if (status == RT_MISMATCH) {
-        clear_progress(run);
-        fprintf(stderr, "raytally: %s on %s: %s\n", spec, scene, error->message);
-        run->failed = true;
-    } else {
-        RT_TRY(status);
+static void print_row(Show *show, const json_t *row) {
+    const json_t *wrong = json_object_get(row, "first_wrong");
+    print_header(show);
+    printf("%-*s %-*s %10lld %10lld %8lld %8lld %8lld %8lld\n", show->scene_width, text(row, "scene"),
+           show->spec_width, text(row, "accel"), number(row, "rays"), number(row, "equal"),
+           number(row, "tie"), number(row, "marginal"), number(row, "wrong"), number(row, "occluded_wrong"));
+    if (!json_is_null(wrong)) {
+        printf("    WRONG: %s\n", text(wrong, "says"));
+        const json_t *left = json_object_get(wrong, "objects_left");
+        if (json_is_integer(left)) {
+            printf("    It takes %lld object%s of the scene. ", number(wrong, "objects_left"),
+                   number(wrong, "objects_left") == 1 ? "" : "s");
+        } else {
+            printf("    Asked again, the answer is right. ");
+        }
+        printf("To repeat: raytally verify --replay '%s'\n", text(wrong, "replay"));
     }
-    RtEquivalence result;
-    RT_TRY(rt_equivalence_check(reference, accel, run->options->threads, &result, error));
-    report(run, &result, scene, spec);
-    return RT_OK;
+    fflush(stdout);
 }
 
-static RtStatus verify_contender(Run *run, const RtReference *reference, const char *scene,
-                                 const Contender *contender, RtError *error) {
-    RtAccel *accel;
-    show_progress(run, scene, contender->spec);
-    RtStatus status = rt_accel_open(contender->spec, reference->scene, &accel, error);
-    if (status == RT_NOT_AVAILABLE && !contender->named) {
-        clear_progress(run);
-        fprintf(stderr, "raytally: %s is skipped: %s\n", contender->spec, error->message);
-        return RT_OK;
+static void on_row(void *context, const json_t *row) {
+    Show *show = context;
+    clear_progress(show);
+    if (!show->options->json) print_row(show, row);
+    if (!json_is_null(json_object_get(row, "problem"))) {
+        fprintf(stderr, "raytally: %s on %s: %s\n", text(row, "accel"), text(row, "scene"),
+                text(row, "problem"));
     }
-    RT_TRY(status);
-    status = verify_built(run, reference, accel, scene, contender->spec, error);
-    rt_accel_destroy(accel);
+    show->failed |= rt_verify_row_fails(row);
+}
+
+static void on_notice(void *context, const char *message) {
+    clear_progress(context);
+    fprintf(stderr, "raytally: %s\n", message);
+}
+
+static RtStatus verify(const Options *o, bool *failed, RtError *error) {
+    Show show = {.options = o, .terminal = isatty(STDERR_FILENO) == 1, .start = rt_wall_seconds()};
+    RtVerifyObserver observer = {on_doing, on_row, on_notice, &show};
+    RtVerify work = {.scenes = o->scenes,
+                     .scene_count = o->scene_count,
+                     .specs = o->specs,
+                     .spec_count = o->spec_count,
+                     .rays = {o->rays, o->seed, o->families, o->threads},
+                     .folder = o->folder,
+                     .resume = o->resume};
+    json_t *rows;
+    RtStatus status = rt_verify_run(&work, &observer, &rows, error);
+    clear_progress(&show);
+    if (status == RT_OK && o->json) {
+        rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o->seed, "rows", rows));
+    }
+    json_decref(rows);
+    *failed = show.failed;
     return status;
 }
 
-static RtStatus verify_with(Run *run, const RtAccel *brute, RtRay *rays, const char *name, RtError *error) {
-    const Options *o = run->options;
-    RtReference reference;
-    show_progress(run, name, "recording rays");
-    RT_TRY(make_rays(o, brute, rays, error));
-    show_progress(run, name, "answering them by brute force");
-    RT_TRY(rt_reference_init(&reference, brute, rays, o->rays, o->threads, error));
+/* ---- replaying ---- */
+
+static void print_reply(const char *where, const RtQuestion *question, const RtReply *reply) {
+    RtWitness witness = {.index = question->asked,
+                         .occluded = question->occluded,
+                         .counted = question->counted,
+                         .stream = question->stream,
+                         .ray = question->rays[question->asked],
+                         .expected = reply->expected,
+                         .got = reply->got,
+                         .blocked = reply->blocked};
+    char says[512];
+    rt_witness_format(&witness, says, sizeof says);
+    printf("%s: %s: %s\n", where, reply->wrong ? "WRONG" : "right", says);
+}
+
+/* The scene as it was, and what was left of it. Where one cannot be asked any more the other will do. */
+static RtStatus replay(const char *path, bool *failed, RtError *error) {
+    RtReplay file;
     RtStatus status = RT_OK;
-    for (int i = 0; i < o->contender_count && status == RT_OK; i++) {
-        status = verify_contender(run, &reference, name, &o->contenders[i], error);
+    RT_TRY(rt_replay_load(&file, path, error));
+    printf("%s on %s\n", file.accel_spec, file.scene_spec);
+    uint32_t asked = 0;
+    for (int shrunk = 0; shrunk < 2 && status == RT_OK; shrunk++) {
+        RtReply reply;
+        status = rt_replay_ask(&file, rt_maker_of_spec(file.accel_spec), shrunk, &reply, error);
+        if (status == RT_OK) {
+            print_reply(shrunk ? "shrunk" : "scene", &file.question, &reply);
+            *failed |= reply.wrong;
+            asked++;
+        } else if ((shrunk ? status == RT_NOT_AVAILABLE && !file.shrunk_yaml : file.shrunk_yaml != NULL) &&
+                   status != RT_NO_MEMORY) {
+            fprintf(stderr, "raytally: %s\n", error->message);
+            status = RT_OK;
+        }
     }
-    rt_reference_clear(&reference);
-    return status;
-}
-
-static RtStatus verify_scene(Run *run, const char *name, RtError *error) {
-    RtScene scene;
-    RtAccel *brute = NULL;
-    RT_TRY(rt_scene_open(name, &scene, error));
-    RtStatus status = sample_sparsely(&scene, run->options->rays / 4, error);
-    if (status == RT_OK) status = rt_accel_open("brute", &scene, &brute, error);
-    if (status == RT_OK) {
-        RtRay *rays = rt_alloc(run->options->rays, sizeof(RtRay));
-        status = rays ? verify_with(run, brute, rays, name, error)
-                      : rt_fail_memory(error, "rays", run->options->rays * sizeof(RtRay));
-        rt_free(rays);
-    }
-    rt_accel_destroy(brute);
-    rt_scene_clear(&scene);
-    return status;
-}
-
-static RtStatus verify_all(Run *run, RtError *error) {
-    const Options *o = run->options;
-    for (run->scene = 0; run->scene < o->scene_count; run->scene++) {
-        RT_TRY(verify_scene(run, o->scenes[run->scene], error));
-    }
-    clear_progress(run);
-    return RT_OK;
+    rt_replay_clear(&file);
+    if (status != RT_OK || asked > 0) return status;
+    return rt_fail(error, RT_BAD_INPUT, "%s: nothing of it can be asked again", path);
 }
 
 int rt_command_verify(int argc, char **argv) {
@@ -332,29 +325,22 @@ int rt_command_verify(int argc, char **argv) {
     const struct argp argp = {
         .options = options,
         .parser = parse_option,
-        .args_doc = "[SCENE...]",
+        .args_doc = "[SCENE...]\n--replay FILE",
         .doc =
             "Verify that accelerators answer every ray of each SCENE (a few small built-in ones if none is "
             "given) like brute: the same object and the same bits of t, timed and counted, singly and in "
-            "streams.\v"
+            "streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
+            "them, "
+            "as in family:slivers,seed=7.\v"
             "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
-            "marginal (explained by rounding) or wrong. Exit code 1 if anything is wrong."};
+            "marginal (explained by rounding) or wrong. The first wrong answer of each row is written to a "
+            "file (in --out DIR, else in verify-failures/), with the scene shrunk to the objects that it "
+            "takes; --replay asks it again. Exit code 1 if anything is wrong."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
-    if (o.scene_count == 0) {
-        o.scene_count = sizeof default_scenes / sizeof default_scenes[0];
-        memcpy(o.scenes, default_scenes, sizeof default_scenes);
-    }
     RtError error;
-    Run run = {.options = &o, .rows = json_array(), .progress = isatty(STDERR_FILENO)};
-    RtStatus status = choose_contenders(&o, &error);
-    if (status == RT_OK) status = verify_all(&run, &error);
-    if (status == RT_OK && o.json) {
-        rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o.seed, "rows", run.rows));
-    }
-    json_decref(run.rows);
-    if (status != RT_OK) {
-        clear_progress(&run);
-        return rt_cli_fail(&error);
-    }
-    return run.failed ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;
+    bool failed = false;
+    RtStatus status = o.replay ? replay(o.replay, &failed, &error) : choose_specs(&o, &error);
+    if (status == RT_OK && !o.replay) status = verify(&o, &failed, &error);
+    if (status != RT_OK) return rt_cli_fail(&error);
+    return failed ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;
 }

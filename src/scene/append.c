@@ -7,6 +7,8 @@
 typedef struct Append {
     RtScene *to;
     const RtScene *from;
+    const uint32_t *ids; /* [count] of the objects, or NULL: all of them */
+    uint32_t count;
     const RtTransform *transform; /* or NULL */
     double scale;                 /* of lengths, 0 if uneven */
     uint32_t *materials;          /* [from->material_count] index in `to` */
@@ -89,13 +91,16 @@ static RtStatus append_all(const Append *a) {
     for (uint32_t i = 0; i < g->polygon_vertex_count; i++) {
         a->vertices[i] = move_point(a, g->polygon_vertices[i]);
     }
-    for (uint32_t id = 0; id < g->object_count; id++) RT_TRY(append_object(a, id));
+    for (uint32_t i = 0; i < a->count; i++) RT_TRY(append_object(a, a->ids ? a->ids[i] : i));
     return RT_OK;
 }
 
-RtStatus rt_scene_append(RtScene *to, const RtScene *from, const RtTransform *transform, RtError *error) {
+static RtStatus append(RtScene *to, const RtScene *from, const uint32_t *ids, uint32_t count,
+                       const RtTransform *transform, RtError *error) {
     Append a = {.to = to,
                 .from = from,
+                .ids = ids,
+                .count = count,
                 .transform = transform,
                 .scale = transform ? rt_transform_uniform_scale(transform) : 1,
                 .materials = rt_alloc(from->material_count, sizeof(uint32_t)),
@@ -107,5 +112,32 @@ RtStatus rt_scene_append(RtScene *to, const RtScene *from, const RtTransform *tr
                                            from->geometry.polygon_vertex_count * sizeof(RtVec3));
     rt_free(a.materials);
     rt_free(a.vertices);
+    return status;
+}
+
+RtStatus rt_scene_append(RtScene *to, const RtScene *from, const RtTransform *transform, RtError *error) {
+    return append(to, from, NULL, from->geometry.object_count, transform, error);
+}
+
+static RtStatus fill_subset(RtScene *to, const RtScene *from, const uint32_t *ids, uint32_t count,
+                            RtError *error) {
+    to->ambient = from->ambient;
+    to->background = from->background;
+    to->camera = from->camera;
+    for (uint32_t i = 0; i < from->light_count; i++) {
+        RT_TRY(rt_scene_add_light(to, from->lights[i].position, from->lights[i].intensity, error));
+    }
+    RT_TRY(append(to, from, ids, count, NULL, error));
+    RT_TRY(rt_scene_finish(to, error));
+    to->sampling = from->sampling;
+    return RT_OK;
+}
+
+RtStatus rt_scene_subset(const RtScene *from, const uint32_t *ids, uint32_t count, RtScene *to,
+                         RtError *error) {
+    rt_scene_init(to);
+    memcpy(to->name, from->name, sizeof to->name);
+    RtStatus status = fill_subset(to, from, ids, count, error);
+    if (status != RT_OK) rt_scene_clear(to);
     return status;
 }

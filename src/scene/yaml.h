@@ -11,6 +11,9 @@
  */
 RtStatus rt_yaml_load(const char *path, RtScene *scene, RtError *error);
 
+/* The same of a text in memory; `name` stands for the path. */
+RtStatus rt_yaml_load_text(const char *name, const char *text, RtScene *scene, RtError *error);
+
 /* Writes a finished scene, one object a line; read again it has the same fingerprint. Meshes and built-ins
  * are written out as the objects they are. Materials keep their names if these are all there and all
  * different, and are called m0, m1 ... otherwise. */

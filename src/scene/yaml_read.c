@@ -293,11 +293,10 @@ static RtStatus build(RtYamlReader *r) {
     return RT_OK;
 }
 
-RtStatus rt_yaml_load(const char *path, RtScene *scene, RtError *error) {
-    RtYamlFile file;
-    RT_TRY(rt_yaml_file_open(&file, path, &rt_yaml_scene_schema, error));
+/* Closes the file. */
+static RtStatus load(RtYamlFile *file, RtScene *scene, RtError *error) {
     RtYamlReader r = {
-        .file = &file, .yaml = file.data, .scene = scene, .standard = UINT32_MAX, .error = error};
+        .file = file, .yaml = file->data, .scene = scene, .standard = UINT32_MAX, .error = error};
     uint32_t materials = r.yaml->materials_count, solids = r.yaml->solids_count;
     r.materials = rt_alloc(materials, sizeof *r.materials);
     r.solids = rt_alloc(solids, sizeof *r.solids);
@@ -311,6 +310,22 @@ RtStatus rt_yaml_load(const char *path, RtScene *scene, RtError *error) {
     rt_free(r.materials);
     rt_free(r.solids);
     rt_free(r.terms);
-    rt_yaml_file_close(&file);
+    rt_yaml_file_close(file);
     return status;
+}
+
+RtStatus rt_yaml_load(const char *path, RtScene *scene, RtError *error) {
+    RtYamlFile file;
+    RT_TRY(rt_yaml_file_open(&file, path, &rt_yaml_scene_schema, error));
+    return load(&file, scene, error);
+}
+
+RtStatus rt_yaml_load_text(const char *name, const char *text, RtScene *scene, RtError *error) {
+    RtYamlFile file;
+    size_t length = strlen(text);
+    char *copy = rt_alloc(length + 1, 1);
+    if (!copy) return rt_fail_memory(error, name, length + 1);
+    memcpy(copy, text, length);
+    RT_TRY(rt_yaml_file_take(&file, name, copy, length, &rt_yaml_scene_schema, error));
+    return load(&file, scene, error);
 }

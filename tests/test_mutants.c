@@ -1,0 +1,123 @@
+/* A test of the test: accelerators with a known pitfall are caught by the rays and scenes that `verify`
+ * takes, within a bounded number of rays, and their first failure shrinks to a few objects; the same code
+ * without the fault is not caught. */
+#include "mutants.h"
+#include "testing.h"
+
+#include "experiments/families.h"
+#include "experiments/shrink.h"
+
+enum { RAYS_PER_FAMILY = 256, MOST_RAYS = 400000, MOST_OBJECTS_LEFT = 3 };
+
+static const char *const names[] = {
+#define MUTANT_NAME(CONSTANT, name, what) name,
+    MUTANTS(MUTANT_NAME)
+#undef MUTANT_NAME
+};
+
+/* A scene of a family with rays of every family and the right answers. */
+typedef struct Bench {
+    RtScene scene;
+    RtAccel *brute;
+    RtRay *rays;
+    RtReference reference;
+} Bench;
+
+static void set_up(Bench *bench, size_t scene_family, size_t rays_per_family) {
+    size_t families = rt_ray_family_count();
+    RtQuery query;
+    assert_ok(rt_scene_family_build(scene_family, 1, &bench->scene, error));
+    assert_ok(rt_accel_open("brute", &bench->scene, &bench->brute, error));
+    assert_non_null(bench->rays = rt_alloc(families * rays_per_family, sizeof(RtRay)));
+    assert_ok(rt_query_init(&query, bench->brute, error));
+    for (size_t f = 0; f < families; f++) {
+        rt_ray_family_fill(f, &query, 1, 0, rays_per_family, bench->rays + f * rays_per_family);
+    }
+    rt_query_clear(&query);
+    assert_ok(rt_reference_init(&bench->reference, bench->brute, bench->rays, families * rays_per_family, 0,
+                                error));
+}
+
+static void tear_down(Bench *bench) {
+    rt_reference_clear(&bench->reference);
+    rt_free(bench->rays);
+    rt_accel_destroy(bench->brute);
+    rt_scene_clear(&bench->scene);
+}
+
+static RtEquivalence check(const Bench *bench, RtMaker maker) {
+    RtEquivalence result;
+    RtAccel *accel;
+    assert_ok(maker.build(maker.context, &bench->scene, &accel, error));
+    assert_ok(rt_equivalence_check(&bench->reference, accel, 0, &result, error));
+    rt_accel_destroy(accel);
+    return result;
+}
+
+/* The failure shrinks to a few objects, of which none can be spared. */
+static void shrink(const Bench *bench, RtMaker maker, const RtWitness *witness, const char *name) {
+    RtQuestion question;
+    RtReply reply;
+    RtShrunk shrunk;
+    char says[512];
+    assert_ok(rt_question_of_witness(&bench->reference, witness, maker, &question, &reply, error));
+    assert_true(reply.wrong);
+    assert_int_equal(question.count, 1);
+    assert_ok(rt_shrink(&bench->scene, &question, &reply, maker, RT_SHRINK_BUDGET, NULL, &shrunk, error));
+    rt_witness_format(witness, says, sizeof says);
+    print_message("%s: scene %s with %u objects, rays %s, %u objects left after %u tries: %s\n", name,
+                  bench->scene.name, bench->scene.geometry.object_count,
+                  rt_ray_family_name(witness->index / RAYS_PER_FAMILY), shrunk.count, shrunk.tries, says);
+    assert_true(shrunk.minimal && shrunk.reply.wrong);
+    assert_in_range(shrunk.count, 1, MOST_OBJECTS_LEFT);
+    rt_free(shrunk.ids);
+}
+
+static void a_mutant_is_caught_and_its_failure_shrinks(void **state) {
+    MutantRecipe recipe = {*(const MutantKind *)*state, true};
+    RtMaker maker = maker_of_mutant(&recipe);
+    uint64_t rays = 0;
+    for (size_t scene = 0; scene < rt_scene_family_count() && rays < MOST_RAYS; scene++) {
+        Bench bench;
+        set_up(&bench, scene, RAYS_PER_FAMILY);
+        RtEquivalence result = check(&bench, maker);
+        /* One that fails where there is little to fail on would be no example. */
+        bool caught = result.any_wrong && bench.scene.geometry.object_count > MOST_OBJECTS_LEFT;
+        if (caught) shrink(&bench, maker, &result.first_wrong, names[recipe.kind]);
+        rays += result.rays;
+        tear_down(&bench);
+        if (caught) return;
+    }
+    fail_msg("'%s' is not caught by %llu rays", names[recipe.kind], (unsigned long long)rays);
+}
+
+static void its_control_is_not_caught(void **state) {
+    MutantRecipe recipe = {*(const MutantKind *)*state, false};
+    for (size_t scene = 0; scene < rt_scene_family_count(); scene++) {
+        Bench bench;
+        set_up(&bench, scene, RAYS_PER_FAMILY);
+        RtEquivalence result = check(&bench, maker_of_mutant(&recipe));
+        tear_down(&bench);
+        if (!result.any_wrong) continue;
+        char says[512];
+        rt_witness_format(&result.first_wrong, says, sizeof says);
+        fail_msg("the control of '%s' fails on %s: %s", names[recipe.kind], rt_scene_family_name(scene),
+                 says);
+    }
+}
+
+int main(void) {
+    static MutantKind kinds[MUTANT_COUNT];
+    static char titles[2 * MUTANT_COUNT][128];
+    struct CMUnitTest tests[2 * MUTANT_COUNT];
+    for (size_t i = 0; i < MUTANT_COUNT; i++) {
+        kinds[i] = (MutantKind)i;
+        snprintf(titles[2 * i], sizeof titles[0], "a_mutant_is_caught_and_its_failure_shrinks: %s", names[i]);
+        snprintf(titles[2 * i + 1], sizeof titles[0], "its_control_is_not_caught: %s", names[i]);
+        tests[2 * i] = (struct CMUnitTest){titles[2 * i], a_mutant_is_caught_and_its_failure_shrinks, NULL,
+                                           NULL, &kinds[i]};
+        tests[2 * i + 1] =
+            (struct CMUnitTest){titles[2 * i + 1], its_control_is_not_caught, NULL, NULL, &kinds[i]};
+    }
+    return _cmocka_run_group_tests("mutants", tests, 2 * MUTANT_COUNT, NULL, NULL);
+}
