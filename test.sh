@@ -37,7 +37,7 @@ case "${1-}" in
     build release -DRT_WERROR=ON
     run_tests release
     build clang -DRT_WERROR=ON
-    run_tests clang -LE tree
+    run_tests clang -LE 'tree|once'
     build debug
     run_tests debug -LE 'tree|slow'
     build tsan

@@ -122,6 +122,12 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
         {"--rays 1e6", "whole number"},
         {"--threads -1", "whole number"},
         {"--wrong", "unrecognized option"},
+        {"--resume", "--out DIR"},
+        {"family:silvers", "did you mean 'slivers'"},
+        {"family:slivers,sed=1", "family:slivers,seed=1"},
+        {"family:slivers,seed=", "family:slivers,seed=1"},
+        {"--replay nothing.json", "nothing.json"},
+        {"--replay " RT_SOURCE_DIR "/README.md", "no JSON"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         if (verify(cases[i].arguments) != 2) fail_msg("'%s' is not refused", cases[i].arguments);
@@ -132,12 +138,71 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
     }
 }
 
+static void scenes_of_families_have_the_seed_of_the_rays(void **state) {
+    (void)state;
+    json_t *json = document("families family:soup,seed=9 --accel grid --rays 40 --seed 3 --families --json");
+    const json_t *rows = json_object_get(json, "rows");
+    size_t count = json_array_size(rows);
+    assert_true(count > 20);
+    const char *first = json_string_value(json_object_get(json_array_get(rows, 0), "scene"));
+    const char *last = json_string_value(json_object_get(json_array_get(rows, count - 1), "scene"));
+    assert_string_equal(first, "family:empty,seed=3");
+    assert_string_equal(last, "family:soup,seed=9");
+    json_decref(json);
+}
+
+/* Prints what a run that was not interrupted prints. */
+static void a_run_is_gone_on_with(void **state) {
+    (void)state;
+    static char whole[65536], table[65536];
+    const char *arguments =
+        "random:n=20,shape=mixed tetra:size=1 --accel bvh --accel grid --rays 500 --out '" OUT ".rows'";
+    char again[2048];
+    snprintf(again, sizeof again, "%s --resume", arguments);
+    assert_int_equal(verify(arguments), 0);
+    strcpy(whole, text_of(OUT ".out"));
+    strcpy(table, text_of(OUT ".rows/verify.csv"));
+    assert_non_null(
+        strstr(table, "scene,accel,against,rays,equal,tie,marginal,wrong,occluded_wrong,problem"));
+    assert_non_null(strstr(table, "tetra:size=1,grid,brute,500,500,0,0,0,0,,\n"));
+    assert_int_equal(verify(again), 0);
+    assert_string_equal(text_of(OUT ".out"), whole);
+    assert_string_equal(text_of(OUT ".rows/verify.csv"), table);
+    snprintf(again, sizeof again, "%s --resume --seed 2", arguments);
+    assert_int_equal(verify(again), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), "another verification"));
+}
+
+/* What was wrong once and is not any more: the answer that the file tells of does not count, the one now
+ * does. */
+static void a_replay_says_whether_the_answer_is_still_wrong(void **state) {
+    (void)state;
+    FILE *file = fopen(OUT ".json", "w");
+    assert_non_null(file);
+    fputs(
+        "{\"scene\": \"random:n=1\", \"fingerprint\": \"0000000000000000\", \"accel\": \"bvh\",\n"
+        " \"sampling\": [4, 4], \"query\": \"nearest\", \"kernel\": \"timed\", \"stream\": 1, \"asked\": 0,\n"
+        " \"rays\": [{\"kind\": \"random\", \"source\": 0, \"org_dir_tmin_tmax\":\n"
+        "  [\"0x0p+0\", \"0x0p+0\", \"0x1p+3\", \"-0x0p+0\", \"0x0p+0\", \"-0x1p+0\", \"0x0p+0\", "
+        "\"inf\"]}],\n"
+        " \"shrunk\": {\"yaml\": \"objects: [{sphere: {center: [0, 0, 0], radius: 1}}]\"}}\n",
+        file);
+    fclose(file);
+    assert_int_equal(verify("--replay '" OUT ".json'"), 0);
+    assert_non_null(strstr(text_of(OUT ".err"), "no longer the scene"));
+    assert_non_null(strstr(text_of(OUT ".out"), "shrunk: right: ray 0, nearest, timed kernel"));
+    assert_non_null(strstr(text_of(OUT ".out"), "expected object 0 at t = 7, got object 0 at t = 7"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_row_says_how_each_ray_was_answered),
         cmocka_unit_test(the_spread_tries_each_value_of_each_parameter),
         cmocka_unit_test(all_is_the_default_and_threads_change_nothing),
         cmocka_unit_test(the_families_are_rays_of_their_own_and_hard_ones),
+        cmocka_unit_test(scenes_of_families_have_the_seed_of_the_rays),
+        cmocka_unit_test(a_run_is_gone_on_with),
+        cmocka_unit_test(a_replay_says_whether_the_answer_is_still_wrong),
         cmocka_unit_test(what_cannot_be_verified_is_refused_before_anything_is_printed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# check_verify.sh [RAYS]: every accelerator answers RAYS hard rays on each family of scenes, and more than five million
+# of them on all, without a wrong answer; what is wrong is left in verify-failures/ to be replayed. Takes some two
+# minutes on two cores: once, by the release build, is enough. Uses $RT_PROGRAM.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=${RT_PROGRAM:-build/release/raytally}
+rays=${1:-200000}
+table=$(mktemp) && trap 'rm -f "$table"' EXIT
+
+"$program" verify families --families --rays "$rays" --json >"$table" || {
+    grep '"says"\|"replay"\|"problem": "' "$table"
+    exit 1
+}
+# The accelerators answer the same rays, a tenth of which are the camera's.
+scenes=$(grep -c '"accel": "brute"' "$table")
+hard=$((scenes * rays / 10 * 9))
+echo "$hard hard rays on $scenes scenes, each answered by $(($(grep -c '"accel"' "$table") / scenes)) accelerators"
+[ "$hard" -ge 5000000 ]
