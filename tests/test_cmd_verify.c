@@ -157,7 +157,7 @@ static void a_run_is_gone_on_with(void **state) {
     static char whole[65536], table[65536];
     const char *arguments =
         "random:n=20,shape=mixed tetra:size=1 --accel bvh --accel grid --rays 500 --out '" OUT ".rows'";
-    char again[2048];
+    char again[1024];
     snprintf(again, sizeof again, "%s --resume", arguments);
     assert_int_equal(verify(arguments), 0);
     strcpy(whole, text_of(OUT ".out"));

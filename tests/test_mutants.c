@@ -106,10 +106,37 @@ static void its_control_is_not_caught(void **state) {
     }
 }
 
+/* Without a budget nothing is left out, and with a little of it no more than that allows. */
+static void shrinking_ends_with_its_budget(void **state) {
+    (void)state;
+    MutantRecipe recipe = {EARLY_EXIT, true};
+    RtMaker maker = maker_of_mutant(&recipe);
+    Bench bench;
+    size_t line = 0;
+    while (strcmp(rt_scene_family_name(line), "line") != 0) line++;
+    set_up(&bench, line, RAYS_PER_FAMILY);
+    RtEquivalence result = check(&bench, maker);
+    RtQuestion question;
+    RtReply reply;
+    assert_ok(rt_question_of_witness(&bench.reference, &result.first_wrong, maker, &question, &reply, error));
+    assert_true(reply.wrong);
+    for (uint64_t budget = 0; budget <= 2000; budget += 400) {
+        RtShrunk shrunk;
+        assert_ok(rt_shrink(&bench.scene, &question, &reply, maker, budget, NULL, &shrunk, error));
+        assert_false(shrunk.minimal);
+        assert_true(shrunk.reply.wrong && shrunk.tries <= budget / 32);
+        if (budget == 0) assert_int_equal(shrunk.count, bench.scene.geometry.object_count);
+        for (uint32_t i = 1; i < shrunk.count; i++) assert_true(shrunk.ids[i - 1] < shrunk.ids[i]);
+        rt_free(shrunk.ids);
+    }
+    tear_down(&bench);
+}
+
 int main(void) {
     static MutantKind kinds[MUTANT_COUNT];
     static char titles[2 * MUTANT_COUNT][128];
-    struct CMUnitTest tests[2 * MUTANT_COUNT];
+    struct CMUnitTest tests[2 * MUTANT_COUNT + 1] = {[2 * MUTANT_COUNT] =
+                                                         cmocka_unit_test(shrinking_ends_with_its_budget)};
     for (size_t i = 0; i < MUTANT_COUNT; i++) {
         kinds[i] = (MutantKind)i;
         snprintf(titles[2 * i], sizeof titles[0], "a_mutant_is_caught_and_its_failure_shrinks: %s", names[i]);
@@ -119,5 +146,5 @@ int main(void) {
         tests[2 * i + 1] =
             (struct CMUnitTest){titles[2 * i + 1], its_control_is_not_caught, NULL, NULL, &kinds[i]};
     }
-    return _cmocka_run_group_tests("mutants", tests, 2 * MUTANT_COUNT, NULL, NULL);
+    return _cmocka_run_group_tests("mutants", tests, 2 * MUTANT_COUNT + 1, NULL, NULL);
 }

@@ -130,6 +130,46 @@ static void another_run_is_not_gone_on_with(void **state) {
     json_decref(rows);
 }
 
+/* Loses the last ray of every stream but the shortest. */
+static void lose_last(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits) {
+    nearest_timed(accel, scratch, rays, count, hits);
+    if (count > 1) hits[count - 1] = RT_MISS;
+}
+
+static RtAccelOps losing_ops;
+
+static RtStatus build_losing(const void *context, const RtScene *scene, RtAccel **out, RtError *error) {
+    losing_ops = mutant_ops;
+    losing_ops.nearest = lose_last;
+    RT_TRY(build_mutant(context, scene, out, error));
+    (*out)->ops = &losing_ops;
+    return RT_OK;
+}
+
+static void a_failure_that_takes_its_neighbours_is_kept_with_them(void **state) {
+    (void)state;
+    const RtVerifySpec spec = {"losing", true, {build_losing, &padded}};
+    RtVerify work = {.scenes = scenes,
+                     .scene_count = 1,
+                     .specs = &spec,
+                     .spec_count = 1,
+                     .rays = {4000, 1, false, 0},
+                     .folder = OUT "/d"};
+    json_t *rows;
+    RtReplay replay;
+    RtReply reply;
+    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 0)), error));
+    assert_true(replay.question.count > 1 && replay.question.stream > 1);
+    assert_int_equal((replay.question.asked + 1) % replay.question.stream, 0);
+    for (int shrunk = 0; shrunk < 2; shrunk++) {
+        assert_ok(rt_replay_ask(&replay, spec.maker, shrunk, &reply, error));
+        assert_true(reply.wrong);
+    }
+    rt_replay_clear(&replay);
+    json_decref(rows);
+}
+
 /* A scene from a file is written into the replay file whole, and read from there to the last bit. */
 static void a_replay_file_needs_no_other_file(void **state) {
     (void)state;
@@ -197,6 +237,7 @@ int main(void) {
         cmocka_unit_test(a_failure_can_be_replayed_until_it_is_mended),
         cmocka_unit_test(threads_and_interruptions_change_no_byte),
         cmocka_unit_test(another_run_is_not_gone_on_with),
+        cmocka_unit_test(a_failure_that_takes_its_neighbours_is_kept_with_them),
         cmocka_unit_test(a_replay_file_needs_no_other_file),
         cmocka_unit_test(what_is_no_replay_file_is_refused),
     };
