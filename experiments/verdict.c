@@ -4,7 +4,7 @@
 #define SHIFT     0x1p-21
 #define TOLERANCE 0x1p-18
 
-enum { PROBES = 27 }; /* unmoved first */
+enum { PROBES = 28 }; /* unmoved first, straightened last */
 
 /* One ray, moved by the error bound, with its interval widened and narrowed. */
 typedef struct Probes {
@@ -48,6 +48,15 @@ static bool within(double a, double b, double tolerance) {
     return fabs(a - b) <= tolerance;
 }
 
+/* The direction without components that move no place by more than its rounding; Embree is given it so. */
+static RtVec3 straightened(RtVec3 dir) {
+    float least = 0x1p-24f * fabsf(dir.at[rt_major_axis(dir)]);
+    for (int a = 0; a < 3; a++) {
+        if (fabsf(dir.at[a]) < least) dir.at[a] = 0;
+    }
+    return dir;
+}
+
 static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray) {
     p->shift = SHIFT * largest_coordinate(g, ray);
     p->error = ERROR * largest_coordinate(g, ray);
@@ -55,10 +64,12 @@ static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray) {
     double tmin = (double)ray->tmin, tmax = (double)ray->tmax;
     for (int i = 0; i < PROBES; i++) {
         /* 13, the middle of the 3 x 3 x 3 places, comes first. */
-        int place = i == 0 ? 13 : i <= 13 ? i - 1 : i;
+        bool last = i == PROBES - 1;
+        int place = i == 0 || last ? 13 : i <= 13 ? i - 1 : i;
         int x = place % 3, y = place / 3 % 3, z = place / 9;
         RtVec3d to = {x - 1, y - 1, z - 1};
         RtRay moved = *ray;
+        if (last) moved.dir = straightened(ray->dir);
         moved.org = rt_narrow(rt_add_scaledd(rt_widen(ray->org), to, p->shift));
         moved.tmin = (float)fmax(tmin - p->tolerance, 0);
         moved.tmax = (float)(tmax + p->tolerance);
@@ -178,7 +189,10 @@ static Margin sphere_margin(const RtSphere *sphere, const RtRay *ray, const Prob
 
 static Margin margin_of(const RtGeometry *g, uint32_t id, const RtRay *ray, const Probes *p) {
     uint32_t index = rt_ref_index(g->objects[id]);
-    switch (rt_ref_shape(g->objects[id])) {
+    RtShape shape = rt_ref_shape(g->objects[id]);
+    /* A needle seen edge on may be found hit beside its box, too. */
+    if (shape != RT_SHAPE_TRIANGLE && !in_reach(g, id, p)) return impossible;
+    switch (shape) {
     case RT_SHAPE_TRIANGLE: return triangle_margin(&g->triangles[index], ray, p);
     case RT_SHAPE_SPHERE: return sphere_margin(&g->spheres[index], ray, p);
     default: return probed_margin(g, id, p);
@@ -200,7 +214,6 @@ static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer) {
     double nearest_certain = HUGE_VAL;
     bool named = answer.object == RT_NO_OBJECT;
     for (uint32_t id = 0; id < g->object_count; id++) {
-        if (!in_reach(g, id, &probes)) continue;
         Margin m = margin_of(g, id, ray, &probes);
         if (m.certain) nearest_certain = fmin(nearest_certain, m.latest);
         if (id == answer.object) named = in_margin(&m, (double)answer.t, probes.tolerance);
@@ -250,7 +263,6 @@ RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool
     make_probes(&probes, geometry, ray);
     bool possible = false, certain = false;
     for (uint32_t id = 0; id < geometry->object_count; id++) {
-        if (!in_reach(geometry, id, &probes)) continue;
         Margin m = margin_of(geometry, id, ray, &probes);
         possible |= m.possible;
         certain |= m.certain;
