@@ -14,7 +14,8 @@ static uint64_t camera_part(const RtVerifyRays *wanted) {
 
 /* Half of the camera's rays are primary ones at most, in the shape of its image. */
 RtStatus rt_verify_sample(const RtVerifyRays *wanted, RtScene *scene, RtError *error) {
-    double samples = (double)(wanted->count / camera_part(wanted) / 2);
+    uint64_t primary = wanted->count / (2 * camera_part(wanted));
+    double samples = (double)primary;
     double aspect = (double)scene->camera.width / (double)scene->camera.height;
     double width = fmin(fmax(sqrt(samples * aspect), 1), RT_MAX_IMAGE_SIDE);
     double height = fmin(fmax(width / aspect, 1), RT_MAX_IMAGE_SIDE);
