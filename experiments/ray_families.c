@@ -241,7 +241,8 @@ static RtRay of_any_length(Maker *m) {
 /* Any direction, or one whose components are 0 or +-1: along axes and diagonals. */
 static RtVec3d free_direction(Maker *m) {
     if (below(m, 2)) return rt_random_direction(&m->random);
-    RtVec3d dir = {(double)below(m, 3) - 1, (double)below(m, 3) - 1, (double)below(m, 3) - 1};
+    RtVec3d dir;
+    for (int a = 0; a < 3; a++) dir.at[a] = (double)below(m, 3) - 1;
     if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[below(m, 3)] = 1;
     return dir;
 }
@@ -311,7 +312,8 @@ static RtRay grazing(Maker *m) {
         RtRay at = ray_along(p, dir);
         RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0).geometric;
         dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
-        dir = rt_add_scaledd(rt_normalized(dir), normal, (below(m, 2) ? 1 : -1) * angles[below(m, 7)]);
+        double angle = angles[below(m, 7)];
+        dir = rt_add_scaledd(rt_normalized(dir), normal, below(m, 2) ? angle : -angle);
     }
     return ray_along(rt_add_scaledd(p, dir, -m->size * rt_random_betweend(&m->random, 0, 2)), dir);
 }
@@ -321,8 +323,11 @@ static RtRay denormal(Maker *m) {
     static const float tiny[] = {0x1p-149f, -0x1p-149f, 0x1p-140f, -0x1p-130f, 0x1p-127f,
                                  0x1p-126f, -0x1p-126f, 0.0f,      -0.0f};
     uint32_t id;
-    RtRay ray =
-        below(m, 2) ? along_axis(m) : ray_along(point_of_object(m, AT_VERTEX, &id), free_direction(m));
+    RtRay ray = along_axis(m);
+    if (below(m, 2)) {
+        RtVec3d from = point_of_object(m, AT_VERTEX, &id);
+        ray = ray_along(from, free_direction(m));
+    }
     int whole = (int)below(m, 3);
     for (int a = 0; a < 3; a++) {
         if (a != whole) ray.dir.at[a] = tiny[below(m, sizeof tiny / sizeof tiny[0])];
