@@ -325,7 +325,7 @@ RtStatus rt_yaml_load_text(const char *name, const char *text, RtScene *scene, R
     size_t length = strlen(text);
     char *copy = rt_alloc(length + 1, 1);
     if (!copy) return rt_fail_memory(error, name, length + 1);
-    memcpy(copy, text, length);
+    memcpy(copy, text, length + 1);
     RT_TRY(rt_yaml_file_take(&file, name, copy, length, &rt_yaml_scene_schema, error));
     return load(&file, scene, error);
 }
