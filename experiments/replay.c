@@ -93,10 +93,7 @@ static json_t *record_json(const RtReplayRecord *r, RtError *error) {
 }
 
 RtStatus rt_replay_save(const char *path, const RtReplayRecord *record, RtError *error) {
-    json_t *document = record_json(record, error);
-    RtStatus status = rt_json_save(path, document, error);
-    json_decref(document);
-    return status;
+    return rt_json_save(path, record_json(record, error), error);
 }
 
 /* ---- from JSON ---- */

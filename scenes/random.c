@@ -193,7 +193,7 @@ static double mean_spacing(const RtValue *values) {
     switch (values[DISTRIBUTION].choice) {
     case LINE: return 2 / n;
     case PLANE: return 2 / sqrt(n);
-    default: return 2 / rt_cube_root(n);
+    default: return 2 / rt_cube_root(fmax(n, 1));
     }
 }
 

@@ -146,7 +146,8 @@ static RtStatus make_leaf(RtKdBuilder *b, const RtKdCell *cell, RtError *error) 
     if (b->ledger->estimate > 0) return RT_OK;
     RT_TRY(rt_reserve(&kd->ids, &b->leaf_id_capacity, room, sizeof(uint32_t), error));
     kd->nodes[cell->node] = (RtKdNode){.first = kd->id_count, .link = cell->ids.count << 2 | RT_KD_LEAF};
-    memcpy(kd->ids + kd->id_count, b->ids + cell->ids.from, cell->ids.count * sizeof(uint32_t));
+    if (cell->ids.count > 0)
+        memcpy(kd->ids + kd->id_count, b->ids + cell->ids.from, cell->ids.count * sizeof(uint32_t));
     kd->id_count += cell->ids.count;
     return RT_OK;
 }
