@@ -189,11 +189,11 @@ static RtStatus add_object(RtScene *scene, uint64_t i, double mean_radius, const
 
 /* On a line of length 2, in a square or in a cube of that edge. */
 static double mean_spacing(const RtValue *values) {
-    double n = (double)values[N].i;
+    double n = fmax((double)values[N].i, 1);
     switch (values[DISTRIBUTION].choice) {
     case LINE: return 2 / n;
     case PLANE: return 2 / sqrt(n);
-    default: return 2 / rt_cube_root(fmax(n, 1));
+    default: return 2 / rt_cube_root(n);
     }
 }
 

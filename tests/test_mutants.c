@@ -1,10 +1,9 @@
 /* A test of the test: accelerators with a known pitfall are caught by the rays and scenes that `verify`
  * takes, within a bounded number of rays, and their first failure shrinks to a few objects; the same code
  * without the fault is not caught. */
+#include "equivalence_testing.h"
 #include "mutants.h"
-#include "testing.h"
 
-#include "experiments/families.h"
 #include "experiments/shrink.h"
 
 enum { RAYS_PER_FAMILY = 256, MOST_RAYS = 400000, MOST_OBJECTS_LEFT = 3 };
@@ -15,37 +14,7 @@ static const char *const names[] = {
 #undef MUTANT_NAME
 };
 
-/* A scene of a family with rays of every family and the right answers. */
-typedef struct Bench {
-    RtScene scene;
-    RtAccel *brute;
-    RtRay *rays;
-    RtReference reference;
-} Bench;
-
-static void set_up(Bench *bench, size_t scene_family, size_t rays_per_family) {
-    size_t families = rt_ray_family_count();
-    RtQuery query;
-    assert_ok(rt_scene_family_build(scene_family, 1, &bench->scene, error));
-    assert_ok(rt_accel_open("brute", &bench->scene, &bench->brute, error));
-    assert_non_null(bench->rays = rt_alloc(families * rays_per_family, sizeof(RtRay)));
-    assert_ok(rt_query_init(&query, bench->brute, error));
-    for (size_t f = 0; f < families; f++) {
-        rt_ray_family_fill(f, &query, 1, 0, rays_per_family, bench->rays + f * rays_per_family);
-    }
-    rt_query_clear(&query);
-    assert_ok(rt_reference_init(&bench->reference, bench->brute, bench->rays, families * rays_per_family, 0,
-                                error));
-}
-
-static void tear_down(Bench *bench) {
-    rt_reference_clear(&bench->reference);
-    rt_free(bench->rays);
-    rt_accel_destroy(bench->brute);
-    rt_scene_clear(&bench->scene);
-}
-
-static RtEquivalence check(const Bench *bench, RtMaker maker) {
+static RtEquivalence check(const FamilyBench *bench, RtMaker maker) {
     RtEquivalence result;
     RtAccel *accel;
     assert_ok(maker.build(maker.context, &bench->scene, &accel, error));
@@ -55,7 +24,7 @@ static RtEquivalence check(const Bench *bench, RtMaker maker) {
 }
 
 /* The failure shrinks to a few objects, of which none can be spared. */
-static void shrink(const Bench *bench, RtMaker maker, const RtWitness *witness, const char *name) {
+static void shrink(const FamilyBench *bench, RtMaker maker, const RtWitness *witness, const char *name) {
     RtQuestion question;
     RtReply reply;
     RtShrunk shrunk;
@@ -78,14 +47,14 @@ static void a_mutant_is_caught_and_its_failure_shrinks(void **state) {
     RtMaker maker = maker_of_mutant(&recipe);
     uint64_t rays = 0;
     for (size_t scene = 0; scene < rt_scene_family_count() && rays < MOST_RAYS; scene++) {
-        Bench bench;
-        set_up(&bench, scene, RAYS_PER_FAMILY);
+        FamilyBench bench;
+        set_up_family(&bench, scene, 1, RAYS_PER_FAMILY);
         RtEquivalence result = check(&bench, maker);
         /* One that fails where there is little to fail on would be no example. */
         bool caught = result.any_wrong && bench.scene.geometry.object_count > MOST_OBJECTS_LEFT;
         if (caught) shrink(&bench, maker, &result.first_wrong, names[recipe.kind]);
         rays += result.rays;
-        tear_down(&bench);
+        tear_down_family(&bench);
         if (caught) return;
     }
     fail_msg("'%s' is not caught by %llu rays", names[recipe.kind], (unsigned long long)rays);
@@ -94,10 +63,10 @@ static void a_mutant_is_caught_and_its_failure_shrinks(void **state) {
 static void its_control_is_not_caught(void **state) {
     MutantRecipe recipe = {*(const MutantKind *)*state, false};
     for (size_t scene = 0; scene < rt_scene_family_count(); scene++) {
-        Bench bench;
-        set_up(&bench, scene, RAYS_PER_FAMILY);
+        FamilyBench bench;
+        set_up_family(&bench, scene, 1, RAYS_PER_FAMILY);
         RtEquivalence result = check(&bench, maker_of_mutant(&recipe));
-        tear_down(&bench);
+        tear_down_family(&bench);
         if (!result.any_wrong) continue;
         char says[512];
         rt_witness_format(&result.first_wrong, says, sizeof says);
@@ -111,10 +80,10 @@ static void shrinking_ends_with_its_budget(void **state) {
     (void)state;
     MutantRecipe recipe = {EARLY_EXIT, true};
     RtMaker maker = maker_of_mutant(&recipe);
-    Bench bench;
+    FamilyBench bench;
     size_t line = 0;
     while (strcmp(rt_scene_family_name(line), "line") != 0) line++;
-    set_up(&bench, line, RAYS_PER_FAMILY);
+    set_up_family(&bench, line, 1, RAYS_PER_FAMILY);
     RtEquivalence result = check(&bench, maker);
     RtQuestion question;
     RtReply reply;
@@ -129,7 +98,7 @@ static void shrinking_ends_with_its_budget(void **state) {
         for (uint32_t i = 1; i < shrunk.count; i++) assert_true(shrunk.ids[i - 1] < shrunk.ids[i]);
         rt_free(shrunk.ids);
     }
-    tear_down(&bench);
+    tear_down_family(&bench);
 }
 
 int main(void) {
