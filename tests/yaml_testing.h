@@ -1,0 +1,79 @@
+/* What tests of the YAML scene format share: a folder with meshes that scenes refer to, a scene of
+ * everything, and loading what stands in a text. */
+#ifndef RT_TESTS_YAML_TESTING_H
+#define RT_TESTS_YAML_TESTING_H
+
+#include "testing.h"
+
+#include "base/memory.h"
+#include "scene/append.h"
+#include "scene/yaml.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static inline void write_bytes(const char *path, const void *bytes, size_t count) {
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    assert_int_equal(fwrite(bytes, 1, count, out), count);
+    assert_int_equal(fclose(out), 0);
+}
+
+static inline void write_text(const char *path, const char *text) {
+    write_bytes(path, text, strlen(text));
+}
+
+/* Loads and finishes; on failure the scene is empty. */
+static inline RtStatus load(const char *path, RtScene *scene, RtError *error) {
+    rt_scene_init(scene);
+    RtStatus status = rt_yaml_load(path, scene, error);
+    if (status == RT_OK) status = rt_scene_finish(scene, error);
+    if (status != RT_OK) rt_scene_clear(scene);
+    return status;
+}
+
+static inline RtStatus load_text(const char *text, RtScene *scene, RtError *error) {
+    write_text(RT_TEST_FOLDER "/scene.yaml", text);
+    return load(RT_TEST_FOLDER "/scene.yaml", scene, error);
+}
+
+static inline int make_folder(void **state) {
+    (void)state;
+    mkdir(RT_TEST_FOLDER, 0777);
+    const char corner[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    write_text(RT_TEST_FOLDER "/corner.obj", corner);
+    write_text(RT_TEST_FOLDER "/open.obj", /* a pyramid without its base */
+               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n");
+    write_text(RT_TEST_FOLDER "/bunny.obj", corner); /* what the documentation calls so */
+    return 0;
+}
+
+/* One of everything. */
+static const char everything[] =
+    "camera: {from: [0, -10, 4], at: [0, 0, 1], up: [0, 0, 1], fov: 30, hither: 0.5, size: [320, 200]}\n"
+    "background: [0.1, 0.2, 0.3]\n"
+    "ambient: [0.5, 0.5, 0.5]\n"
+    "lights:\n"
+    "  - {position: [5, -5, 10]}\n"
+    "  - {position: [-5, -5, 10], intensity: [0.5, 0.4, 0.3]}\n"
+    "materials:\n"
+    "  - {name: red, color: [1, 0, 0], specular: 0.5, shine: 20}\n"
+    "  - name: \"gl\\u00e4s \\\"x\\\"\"\n"
+    "    transmission: 0.9\n"
+    "    ior: 1.5\n"
+    "objects:\n"
+    "  - sphere: {center: [0, 0, 1], radius: 1e-40, material: red}\n"
+    "  - sphere: {center: [0.1, -0.0, 3.3333333], radius: .1}\n"
+    "  - polygon: {vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], material: red}\n"
+    "  - triangle: {vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]}\n"
+    "  - triangle:\n"
+    "      vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\n"
+    "      normals: [[1, 1, 1], [0.3, 0.2, 0.9], [7, 1, 1]]\n"
+    "      material: \"gl\\u00e4s \\\"x\\\"\"\n"
+    "  - cone: {base: [0, 0, 0], base_radius: 1, apex: [0, 0, 2], apex_radius: 0, material: red}\n"
+    "  - cylinder: {base: [0, 0, 0], apex: [0, 0, 2], radius: 0.3}\n"
+    "  - mesh: {path: corner.obj, transform: [{scale: 2}, {stretch: [1, 2, 3]}, {translate: [0, 0, 5]}]}\n"
+    "  - builtin: {name: \"balls:size=1\", transform: [{rotate: {axis: [0, 0, 1], degrees: 90}}]}\n";
+
+#endif
