@@ -1,7 +1,8 @@
 /* CSG trees in exact arithmetic. A solid is made of parts that one equation describes, a quadric or a
- * half-space; on a line the inside of each is an alternation of in and out at up to two places. Solids join
- * parts, and trees join solids, by the same machine: a stack of such lists, the two on top of which are
- * merged. All lists lie one behind another in one array. */
+ * half-space; on a line the inside of each is an alternation of in and out at up to two places. Meshes are
+ * parts with any number of places (exact_mesh.c). Solids join parts, and trees join solids, by the same
+ * machine: a stack of such lists, the two on top of which are merged. All lists lie one behind another in one
+ * array. */
 #include "experiments/exact_hit.h"
 
 #include "base/memory.h"
@@ -26,12 +27,20 @@ typedef struct Machine {
 
 /* ---- lists ---- */
 
+/* Adds a place behind those of the list on top. */
+static RtStatus extend(Machine *m, RtSurd place, RtError *error) {
+    List *top = &m->lists[m->depth - 1];
+    uint32_t end = top->first + top->count;
+    RT_TRY(rt_reserve(&m->places, &m->capacity, (uint64_t)end + 1, sizeof(RtSurd), error));
+    m->places[end] = place;
+    top->count++;
+    return RT_OK;
+}
+
 static RtStatus push(Machine *m, bool before, const RtSurd *places, int count, RtError *error) {
     const List *top = m->depth > 0 ? &m->lists[m->depth - 1] : NULL;
-    uint32_t first = top ? top->first + top->count : 0;
-    RT_TRY(rt_reserve(&m->places, &m->capacity, (uint64_t)first + (uint64_t)count, sizeof(RtSurd), error));
-    for (int i = 0; i < count; i++) m->places[first + (uint32_t)i] = places[i];
-    m->lists[m->depth++] = (List){before, first, (uint32_t)count};
+    m->lists[m->depth++] = (List){before, top ? top->first + top->count : 0, 0};
+    for (int i = 0; i < count; i++) RT_TRY(extend(m, places[i], error));
     return RT_OK;
 }
 
@@ -147,12 +156,24 @@ static RtStatus push_polyhedron(Machine *m, const RtPlane *planes, uint32_t coun
     return RT_OK;
 }
 
+static RtStatus push_mesh(Machine *m, const RtSolidSet *set, uint32_t index, RtError *error) {
+    RtRational *places;
+    uint32_t count;
+    RT_TRY(rt_exact_mesh_places(m->slate, set, index, m->line, &places, &count, error));
+    RtStatus status = push(m, false, NULL, 0, error);
+    for (uint32_t i = 0; i < count && status == RT_OK; i++)
+        status = extend(m, rt_surd_of(m->slate, places[i]), error);
+    rt_free(places);
+    return status;
+}
+
 static RtStatus push_solid(Machine *m, const RtSolidSet *set, uint32_t index, RtError *error) {
     const RtSolid *solid = &set->solids[index];
     switch (solid->kind) {
     case RT_SOLID_SPHERE: return push_sphere(m, solid, error);
     case RT_SOLID_CONE: return push_cone(m, solid, error);
     case RT_SOLID_POLYHEDRON: return push_polyhedron(m, set->planes + solid->first, solid->count, error);
+    case RT_SOLID_MESH: return push_mesh(m, set, index, error);
     default: return rt_fail(error, RT_BAD_INPUT, "a %s is not decided", rt_solid_kind_name(solid->kind));
     }
 }

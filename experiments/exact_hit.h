@@ -10,8 +10,9 @@
  *   cone       its side: the points at a height 0..h along the axis whose distance from it is the radius
  * there, both circles and the tip included. A line along the side has no hits. CSG tree   where the inside of
  * the tree begins or ends, by the one rule of csg.h with places that are numbers, not float32: walls have no
- * least thickness. Solids are what their place, ratio and planes say in double (solid.h). Tori, whose
- * equation is of degree 4, and meshes are undecided.
+ * least thickness. Solids are what their place, ratio and planes say in double, meshes what their triangles
+ * say in float32 (solid.h). A line through an edge of a mesh, or in the plane of a face, passes beside it, on
+ * the side that exact_mesh.c names. Tori, whose equation is of degree 4, are undecided.
  *
  * Edges, vertices, circles and the ends of the interval belong to it: all sets are closed. The own box of an
  * object plays no part. */
@@ -29,8 +30,17 @@ typedef struct RtWideRay {
 
 RtWideRay rt_wide_ray(const RtRay *ray);
 
+/* May the line meet what lies in `box`, within [tmin, tmax], and how soon at the earliest? In double; rounds
+ * towards yes. */
+bool rt_line_may_meet(const RtWideRay *line, const RtBox *box, double *soonest);
+
+/* By how much that is wider than the box, in parts of the numbers it is computed from: far above the rounding
+ * of a few operations in double, and far below what would let many objects in. */
+#define RT_LINE_SLACK 0x1p-40
+
 /* The same on a slate; tmax is at most FLT_MAX, for a hit at infinity is none. */
 typedef struct RtExactLine {
+    RtWideRay wide;
     RtExactVec org, dir;
     RtRational tmin, tmax;
 } RtExactLine;
@@ -40,13 +50,18 @@ RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line);
 typedef enum RtFinding { RT_MISSED, RT_HIT, RT_UNDECIDED } RtFinding;
 
 /* Does the line meet object `id` within [tmin, tmax]? If so *t is the first such place. Undecided: a CSG tree
- * with a torus or a mesh, or one whose crossings memory does not suffice for. */
+ * with a torus, or one whose crossings memory does not suffice for. */
 RtFinding rt_exact_hit(RtSlate *slate, const RtGeometry *geometry, uint32_t id, const RtExactLine *line,
                        RtSurd *t);
 
 /* The part of it that is about trees, in exact_csg.c. */
 RtFinding rt_exact_csg_hit(RtSlate *slate, const RtCsgForest *forest, const RtCsg *tree,
                            const RtExactLine *line, RtSurd *t);
+
+/* And about meshes, in exact_mesh.c: where the whole line goes in and out of mesh solid `index`, by turns and
+ * in ascending order. *places is the caller's, who frees it by rt_free. */
+RtStatus rt_exact_mesh_places(RtSlate *slate, const RtSolidSet *set, uint32_t index, const RtExactLine *line,
+                              RtRational **places, uint32_t *count, RtError *error);
 
 /* Is t within [tmin, tmax]? */
 bool rt_exact_counts(RtSlate *slate, const RtExactLine *line, const RtSurd *t);

@@ -15,33 +15,6 @@ long double rt_float_ulp(long double x) {
     return ldexpl(1, x == 0 || exponent < FLT_MIN_EXP ? FLT_MIN_EXP - FLT_MANT_DIG : exponent - FLT_MANT_DIG);
 }
 
-/* ---- which objects to ask ---- */
-
-/* By how much the slabs below are wider than a box, in parts of the numbers they are computed from: far above
- * the rounding of a few operations in double, and far below what would let many objects in. */
-#define SLACK 0x1p-40
-
-/* May the line meet what lies in `box`, within [tmin, tmax], and how soon at the earliest? Rounds towards
- * yes.
- */
-static bool may_meet(const RtBox *box, const RtWideRay *line, double *soonest) {
-    double near = line->tmin, far = fmin(line->tmax, (double)FLT_MAX);
-    for (int a = 0; a < 3; a++) {
-        double org = line->org.at[a], dir = line->dir.at[a];
-        double slack = SLACK * (fabs(org) + fmax(fabs((double)box->lo.at[a]), fabs((double)box->hi.at[a])));
-        double lo = (double)box->lo.at[a] - org - slack, hi = (double)box->hi.at[a] - org + slack;
-        if (dir == 0) {
-            if (lo > 0 || hi < 0) return false;
-            continue;
-        }
-        double first = (dir > 0 ? lo : hi) / dir, second = (dir > 0 ? hi : lo) / dir;
-        near = fmax(near, first - SLACK * fabs(first));
-        far = fmin(far, second + SLACK * fabs(second));
-    }
-    *soonest = near;
-    return near <= far;
-}
-
 /* ---- the nearest ---- */
 
 typedef struct Search {
@@ -82,8 +55,8 @@ static void consider(Search *s, uint32_t id, double soonest) {
 static void search(Search *s) {
     for (uint32_t id = 0; id < s->geometry->object_count; id++) {
         double soonest;
-        if (!may_meet(&s->geometry->boxes[id], &s->line, &soonest)) continue;
-        if ((long double)soonest * (1 - SLACK) > s->ruling.t) continue;
+        if (!rt_line_may_meet(&s->line, &s->geometry->boxes[id], &soonest)) continue;
+        if ((long double)soonest * (1 - RT_LINE_SLACK) > s->ruling.t) continue;
         consider(s, id, soonest);
     }
     if (s->open < HUGE_VAL && (long double)s->open <= s->ruling.t) s->ruling.finding = RT_UNDECIDED;
@@ -102,7 +75,7 @@ RtFinding rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
     search_init(&s, geometry, ray);
     for (uint32_t id = 0; id < geometry->object_count && s.ruling.finding != RT_HIT; id++) {
         double soonest;
-        if (may_meet(&geometry->boxes[id], &s.line, &soonest)) consider(&s, id, soonest);
+        if (rt_line_may_meet(&s.line, &geometry->boxes[id], &soonest)) consider(&s, id, soonest);
     }
     rt_slate_clear(&s.slate);
     return s.ruling.finding == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.ruling.finding;

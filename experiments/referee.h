@@ -20,7 +20,7 @@
     X(EXPECTED, expected, "the expected answer alone is right")                                              \
     X(GOT, got, "the other answer alone is right")                                                           \
     X(NEITHER, neither, "none is right")                                                                     \
-    X(UNDECIDED, undecided, "a torus or a mesh of a CSG tree may be nearest, which is not decided")
+    X(UNDECIDED, undecided, "a torus of a CSG tree may be nearest, which is not decided")
 
 typedef enum RtSide {
 #define RT_SIDE_ENUM(CONSTANT, name, meaning) RT_SIDE_##CONSTANT,
