@@ -27,6 +27,15 @@ static const Case cases[] = {
     {"lengths", "directions 2^-50 to 2^50 times as long", AIM_BOX, 0, 0, 50},
 };
 
+const char *rt_subject_name(RtSubject subject) {
+    static const char *const names[RT_SUBJECT_COUNT] = {
+#define RT_SUBJECT_NAME(CONSTANT, name) #name,
+        RT_SUBJECTS(RT_SUBJECT_NAME)
+#undef RT_SUBJECT_NAME
+    };
+    return names[subject];
+}
+
 size_t rt_precision_case_count(void) {
     return sizeof cases / sizeof cases[0];
 }
@@ -57,49 +66,86 @@ static RtStatus add_pentagon(RtGeometry *g, RtRandom *random, float scale, RtErr
     return rt_geometry_add_polygon(g, vertices, 5, error);
 }
 
-/* (a ball or a box) without a frustum that is long enough to pass through */
-static RtStatus add_tree(RtGeometry *g, RtRandom *random, float scale, RtError *error) {
-    RtCsgBuilder b = {0};
-    uint32_t solids[3];
-    RtCsgTerm terms[3], body, root;
+/* An octahedron about three axes at right angles; with a dent its lower tip is above the middle. */
+static RtStatus add_octahedron(RtCsgBuilder *b, RtRandom *random, RtVec3 center, float size, uint32_t *solid,
+                               RtError *error) {
+    RtVec3 tips[3][2];
+    RtVec3d axes[3] = {rt_random_direction(random)};
+    axes[1] = rt_normalized(rt_crossd(axes[0], rt_random_direction(random)));
+    axes[2] = rt_crossd(axes[0], axes[1]);
+    double lower = rt_random_bits(random) % 2 ? -1 : 0.25;
+    for (int a = 0; a < 3; a++) {
+        for (int side = 0; side < 2; side++) {
+            double height = (double)size * (side == 0 ? 1 : a == 2 ? lower : -1);
+            tips[a][side] = rt_narrow(rt_add_scaledd(rt_widen(center), axes[a], height));
+        }
+    }
+    RtTriangle triangles[8];
+    for (int i = 0; i < 8; i++) {
+        int x = i & 1, y = i >> 1 & 1, z = i >> 2;
+        bool turned = (x ^ y ^ z) != 0;
+        RtVec3 second = tips[1][y], third = tips[2][z];
+        triangles[i] = (RtTriangle){{tips[0][x], turned ? third : second, turned ? second : third}};
+    }
+    RtTransform still = rt_transform_identity();
+    return rt_solid_add_mesh(&b->set, triangles, 8, &still, solid, error);
+}
+
+/* (a ball or a box), or an octahedron, without a frustum that is long enough to pass through. */
+static RtStatus make_tree(RtCsgBuilder *b, RtSubject subject, RtRandom *random, float scale, RtCsgTerm *root,
+                          RtError *error) {
+    uint32_t solid;
+    RtCsgTerm drill, other;
     RtVec3 center = rt_scale(rt_random_point(random, 1), scale),
            lo = rt_scale(rt_random_point(random, 1), scale);
     float size = rt_random_between(random, 0.5f, 1) * scale,
           thick = rt_random_between(random, 0.1f, 0.4f) * scale;
-    RtVec3 end = rt_scale(rt_random_point(random, 1), scale), other = rt_sub(rt_scale(center, 2), end);
+    RtVec3 end = rt_scale(rt_random_point(random, 1), scale), far = rt_sub(rt_scale(center, 2), end);
     RtVec3 hi = rt_add(lo, rt_vec3(size, size, thick));
-    RtStatus status = rt_solid_add_ellipsoid(&b.set, center, rt_vec3(size, size, size), &solids[0], error);
-    if (status == RT_OK) status = rt_solid_add_box(&b.set, lo, hi, &solids[1], error);
-    if (status == RT_OK) {
-        status = rt_solid_add_frustum(&b.set, end, thick, other, thick / 2, &solids[2], error);
+    RT_TRY(rt_solid_add_frustum(&b->set, end, thick, far, thick / 2, &solid, error));
+    RT_TRY(rt_csg_solid(b, solid, 0, &drill, error));
+    if (subject == RT_SUBJECT_MESH) {
+        RT_TRY(add_octahedron(b, random, center, size, &solid, error));
+        RT_TRY(rt_csg_solid(b, solid, 0, root, error));
+    } else {
+        RT_TRY(rt_solid_add_ellipsoid(&b->set, center, rt_vec3(size, size, size), &solid, error));
+        RT_TRY(rt_csg_solid(b, solid, 0, root, error));
+        RT_TRY(rt_solid_add_box(&b->set, lo, hi, &solid, error));
+        RT_TRY(rt_csg_solid(b, solid, 0, &other, error));
+        RT_TRY(rt_csg_combine(b, RT_CSG_UNION, *root, other, root, error));
     }
-    for (int i = 0; i < 3 && status == RT_OK; i++) status = rt_csg_solid(&b, solids[i], 0, &terms[i], error);
-    if (status == RT_OK) status = rt_csg_combine(&b, RT_CSG_UNION, terms[0], terms[1], &body, error);
-    if (status == RT_OK) status = rt_csg_combine(&b, RT_CSG_DIFFERENCE, body, terms[2], &root, error);
+    return rt_csg_combine(b, RT_CSG_DIFFERENCE, *root, drill, root, error);
+}
+
+static RtStatus add_tree(RtGeometry *g, RtSubject subject, RtRandom *random, float scale, RtError *error) {
+    RtCsgBuilder b = {0};
+    RtCsgTerm root;
+    RtStatus status = make_tree(&b, subject, random, scale, &root, error);
     if (status == RT_OK) status = rt_geometry_add_csg(g, &b, root, true, error);
     rt_csg_builder_clear(&b);
     return status;
 }
 
-static RtStatus add_object(RtGeometry *g, RtShape shape, RtRandom *random, float scale, RtError *error) {
-    if (shape == RT_SHAPE_POLYGON) return add_pentagon(g, random, scale, error);
-    if (shape == RT_SHAPE_CSG) return add_tree(g, random, scale, error);
+static RtStatus add_object(RtGeometry *g, RtSubject subject, RtRandom *random, float scale, RtError *error) {
+    if (subject == RT_SUBJECT_POLYGON) return add_pentagon(g, random, scale, error);
+    if (subject >= RT_SUBJECT_CSG) return add_tree(g, subject, random, scale, error);
     RtVec3 v[3];
     for (int i = 0; i < 3; i++) v[i] = rt_scale(rt_random_point(random, 1), scale);
     float radius = rt_random_between(random, 0.1f, 1) * scale, other = rt_random_unit(random) * scale;
-    if (shape == RT_SHAPE_SPHERE) return rt_geometry_add_sphere(g, v[0], radius, error);
-    if (shape == RT_SHAPE_CONE) return rt_geometry_add_cone(g, v[0], radius, v[1], other, error);
+    if (subject == RT_SUBJECT_SPHERE) return rt_geometry_add_sphere(g, v[0], radius, error);
+    if (subject == RT_SUBJECT_CONE) return rt_geometry_add_cone(g, v[0], radius, v[1], other, error);
     return rt_geometry_add_triangle(g, v, NULL, error);
 }
 
-static RtStatus add_objects(RtGeometry *g, RtShape shape, RtRandom *random, float scale, RtError *error) {
-    for (int i = 0; i < OBJECTS; i++) RT_TRY(add_object(g, shape, random, scale, error));
+static RtStatus add_objects(RtGeometry *g, RtSubject subject, RtRandom *random, float scale, RtError *error) {
+    for (int i = 0; i < OBJECTS; i++) RT_TRY(add_object(g, subject, random, scale, error));
     return rt_geometry_finish(g, error);
 }
 
 /* ---- rays ---- */
 
 typedef struct Range {
+    RtSubject subject;
     const RtGeometry *geometry;
     const Case *how;
     RtRandom random;
@@ -145,6 +191,14 @@ static RtVec3 point_on_edge(RtRandom *random, const RtVec3 *vertices, uint32_t c
     return rt_add(a, rt_scale(rt_sub(b, a), part));
 }
 
+/* A triangle of the tree's mesh. */
+static const RtTriangle *random_facet(Range *r, const RtCsg *tree) {
+    const RtSolidSet *set = &r->geometry->forest.set;
+    const RtSolid *solid = &set->solids[tree->first_solid];
+    while (solid->kind != RT_SOLID_MESH) solid++;
+    return &set->triangles[solid->first + rt_random_bits(&r->random) % solid->count];
+}
+
 static RtRay ray_to_border(Range *r, uint32_t id) {
     const RtGeometry *g = r->geometry;
     uint32_t index = rt_ref_index(g->objects[id]);
@@ -162,6 +216,9 @@ static RtRay ray_to_border(Range *r, uint32_t id) {
         RtVec3d out = rt_normalized(rt_crossd(c->axis, rt_random_direction(&r->random)));
         RtVec3d on = rt_add_scaledd(rt_widen(c->base), out, (double)c->base_radius);
         return ray_towards(r, rt_narrow(on), dir);
+    }
+    if (r->subject == RT_SUBJECT_MESH) {
+        return ray_towards(r, point_on_edge(&r->random, random_facet(r, &g->csgs[index])->v, 3), dir);
     }
     return ray_along_surface(r, id, 0);
 }
@@ -211,16 +268,20 @@ static void measure_ray(const RtGeometry *g, uint32_t id, const RtRay *ray, doub
     out->border = fmax(out->border, rt_border_distance(g, id, ray, ours));
 }
 
-RtStatus rt_precision_measure(RtShape shape, size_t index, uint64_t rays, RtPrecision *out, RtError *error) {
+RtStatus rt_precision_measure(RtSubject subject, size_t index, uint64_t rays, RtPrecision *out,
+                              RtError *error) {
     *out = (RtPrecision){.rays = rays};
     float scale = ldexpf(1, cases[index].scale);
     double *errors = rt_alloc(rays, sizeof(double));
     if (!errors) return rt_fail_memory(error, "errors of t", rays * sizeof(double));
     RtGeometry geometry = {0};
-    Range range = {.geometry = &geometry, .how = &cases[index], .random = rt_random(6, (uint64_t)shape)};
+    Range range = {.subject = subject,
+                   .geometry = &geometry,
+                   .how = &cases[index],
+                   .random = rt_random(6, (uint64_t)subject)};
     range.distance = 3 * (double)scale;
     for (int i = 0; i < cases[index].distance; i++) range.distance *= 10;
-    RtStatus status = add_objects(&geometry, shape, &range.random, scale, error);
+    RtStatus status = add_objects(&geometry, subject, &range.random, scale, error);
     for (uint64_t i = 0; i < rays && status == RT_OK; i++) {
         uint32_t id = (uint32_t)(i % geometry.object_count);
         RtRay ray = next_ray(&range, id);

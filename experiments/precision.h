@@ -1,11 +1,32 @@
 /* Precision: how far off our hit functions are. Rays of several cases are aimed at random objects of one
- * shape, and what rt_object_hit says is held against exact arithmetic (experiments/referee.h): the error of
+ * kind, and what rt_object_hit says is held against exact arithmetic (experiments/referee.h): the error of
  * t, and the decisions that differ. docs/precision.md has the table. */
 #ifndef RT_EXPERIMENTS_PRECISION_H
 #define RT_EXPERIMENTS_PRECISION_H
 
 #include "base/status.h"
 #include "shape/geometry.h"
+
+/* X(CONSTANT, name): the shapes in their order (shape/geometry.h), and trees of one kind of solid. */
+#define RT_SUBJECTS(X)                                                                                       \
+    X(SPHERE, sphere)                                                                                        \
+    X(POLYGON, polygon)                                                                                      \
+    X(TRIANGLE, triangle)                                                                                    \
+    X(CONE, cone)                                                                                            \
+    X(CSG, csg)                                                                                              \
+    X(MESH, mesh)
+
+/* Trees are of spheres, boxes and frusta; that of a mesh is an octahedron, turned, every other one with a
+ * dent, without a frustum. */
+typedef enum RtSubject {
+#define RT_SUBJECT_ENUM(CONSTANT, name) RT_SUBJECT_##CONSTANT,
+    RT_SUBJECTS(RT_SUBJECT_ENUM)
+#undef RT_SUBJECT_ENUM
+        RT_SUBJECT_COUNT
+} RtSubject;
+
+/* "sphere", ... */
+const char *rt_subject_name(RtSubject subject);
 
 size_t rt_precision_case_count(void);
 /* "ordinary", ..., and what it is, in a few words. */
@@ -23,8 +44,8 @@ typedef struct RtPrecision {
     double border;             /* the farthest that any of these was from a border, in units of border.h */
 } RtPrecision;
 
-/* `rays` rays of a case, aimed at objects of `shape`: the same on any machine. Trees are of spheres, boxes
- * and frusta. */
-RtStatus rt_precision_measure(RtShape shape, size_t index, uint64_t rays, RtPrecision *out, RtError *error);
+/* `rays` rays of a case, aimed at such objects: the same on any machine. */
+RtStatus rt_precision_measure(RtSubject subject, size_t index, uint64_t rays, RtPrecision *out,
+                              RtError *error);
 
 #endif
