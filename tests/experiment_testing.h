@@ -1,0 +1,92 @@
+/* What tests of experiments share: a folder for each test, files in it, and what is said of them. */
+#ifndef RT_TESTS_EXPERIMENT_TESTING_H
+#define RT_TESTS_EXPERIMENT_TESTING_H
+
+#include "testing.h"
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "experiments/experiment.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Set-up and tear-down of a test in its own folder, which is its state. */
+typedef struct Place {
+    char folder[64];
+    RtExperiment *experiment; /* for what is loaded there */
+} Place;
+
+static inline int make_place(void **state) {
+    static Place place;
+    strcpy(place.folder, "/tmp/raytally-test-XXXXXX");
+    if (!mkdtemp(place.folder)) return -1;
+    place.experiment = rt_alloc(1, sizeof(RtExperiment));
+    *state = &place;
+    return place.experiment ? 0 : -1;
+}
+
+static inline int remove_place(void **state) {
+    Place *place = *state;
+    char command[128];
+    rt_free(place->experiment);
+    snprintf(command, sizeof command, "rm -rf '%s'", place->folder);
+    return system(command);
+}
+
+typedef struct Path {
+    char text[256];
+} Path;
+
+static inline Path path_in(const Place *place, const char *name) {
+    Path path;
+    snprintf(path.text, sizeof path.text, "%s/%s", place->folder, name);
+    return path;
+}
+
+static inline void write_in(const Place *place, const char *name, const char *text) {
+    assert_ok(rt_file_write(path_in(place, name).text, text, strlen(text), error));
+}
+
+/* The text with `to` in the place of `from`. */
+static inline void write_changed(const Place *place, const char *name, const char *text, const char *from,
+                                 const char *to) {
+    char changed[4096];
+    const char *at = strstr(text, from);
+    assert_non_null(at);
+    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
+    write_in(place, name, changed);
+}
+
+/* For rt_free. */
+static inline char *read_in(const Place *place, const char *name) {
+    char *text = NULL;
+    size_t size;
+    assert_ok(rt_file_read(path_in(place, name).text, 1 << 24, &text, &size, error));
+    return text;
+}
+
+static inline void assert_in_file(const Place *place, const char *name, const char *part) {
+    char *text = read_in(place, name);
+    if (!strstr(text, part)) fail_msg("%s has no '%s':\n%s", name, part, text);
+    rt_free(text);
+}
+
+static inline void assert_refused(RtStatus status, RtStatus expected, const RtError *error,
+                                  const char *says) {
+    if (status != expected || !strstr(error->message, says)) {
+        fail_msg("status %d, expected %d with '%s': %s", status, expected, says, error->message);
+    }
+}
+
+/* Runs `raytally ARGUMENTS` in the folder, with what it says in the files output and message; its exit code.
+ */
+static inline int raytally(const Place *place, const char *arguments) {
+    char command[512];
+    snprintf(command, sizeof command, "cd '%s' && '%s' %s >output 2>message", place->folder, RT_PROGRAM,
+             arguments);
+    return WEXITSTATUS(system(command));
+}
+
+#endif
