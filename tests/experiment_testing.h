@@ -59,6 +59,11 @@ static inline void write_changed(const Place *place, const char *name, const cha
     write_in(place, name, changed);
 }
 
+/* small.yaml, to the place's experiment. */
+static inline RtStatus load_small(const Place *place, bool quick, RtError *error) {
+    return rt_experiment_load(place->experiment, path_in(place, "small.yaml").text, quick, error);
+}
+
 /* For rt_free. */
 static inline char *read_in(const Place *place, const char *name) {
     char *text = NULL;

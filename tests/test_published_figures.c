@@ -11,7 +11,7 @@ static RtStatus run(const Place *place, const char *rows, const char *reasons, b
     const RtRunOptions options = {.directory = out.text, .trial = {.threads = 1, .timing = 1}};
     write_figures(place, rows);
     write_reasons(place, reasons);
-    RT_TRY(rt_experiment_load(place->experiment, path_in(place, "small.yaml").text, quick, error));
+    RT_TRY(load_small(place, quick, error));
     RT_TRY(rt_results_init(&results, place->experiment, error));
     RtStatus status = rt_run(&results, &options, error);
     rt_results_clear(&results);

@@ -8,7 +8,7 @@
 /* Loads the experiment and what it names, and clears what is loaded. */
 static RtStatus load(const Place *place, RtError *error) {
     RtPublished published;
-    RT_TRY(rt_experiment_load(place->experiment, path_in(place, "small.yaml").text, false, error));
+    RT_TRY(load_small(place, false, error));
     RtStatus status = rt_published_load(&published, place->experiment, error);
     rt_published_clear(&published);
     return status;
