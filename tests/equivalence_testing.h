@@ -1,5 +1,5 @@
-/* Holding accelerators against brute on a family of scenes, by rays of every family: for what the spread of
- * the conformance test leaves out, parameters together. */
+/* Holding accelerators against brute, by rays of every family: on a scene of a family, or on any; all answers
+ * by both kernels, in streams of several lengths. */
 #ifndef RT_TESTS_EQUIVALENCE_TESTING_H
 #define RT_TESTS_EQUIVALENCE_TESTING_H
 
@@ -17,11 +17,10 @@ typedef struct FamilyBench {
     RtReference reference;
 } FamilyBench;
 
-/* `rays` of each family of rays. */
-static inline void set_up_family(FamilyBench *bench, size_t scene_family, uint64_t seed, size_t rays) {
+/* `rays` of each family of rays, over the scene that is there. */
+static inline void set_up_rays(FamilyBench *bench, uint64_t seed, size_t rays) {
     RtQuery query;
     size_t families = rt_ray_family_count();
-    assert_ok(rt_scene_family_build(scene_family, seed, &bench->scene, error));
     assert_ok(rt_accel_open("brute", &bench->scene, &bench->brute, error));
     assert_ok(rt_query_init(&query, bench->brute, error));
     bench->rays = rt_alloc(families * rays, sizeof(RtRay));
@@ -33,6 +32,12 @@ static inline void set_up_family(FamilyBench *bench, size_t scene_family, uint64
     assert_ok(rt_reference_init(&bench->reference, bench->brute, bench->rays, families * rays, 0, error));
 }
 
+/* The same over a scene of a family. */
+static inline void set_up_family(FamilyBench *bench, size_t scene_family, uint64_t seed, size_t rays) {
+    assert_ok(rt_scene_family_build(scene_family, seed, &bench->scene, error));
+    set_up_rays(bench, seed, rays);
+}
+
 static inline void tear_down_family(FamilyBench *bench) {
     rt_reference_clear(&bench->reference);
     rt_free(bench->rays);
@@ -40,15 +45,23 @@ static inline void tear_down_family(FamilyBench *bench) {
     rt_scene_clear(&bench->scene);
 }
 
-/* An accelerator of this spec is valid and answers like brute, bit for bit. */
-static inline void assert_answers_like_brute(const FamilyBench *bench, const char *spec) {
+/* An accelerator of this spec is valid and gives the answers of the reference, bit for bit. */
+static inline void assert_gives(const RtReference *reference, const char *spec) {
     RtAccel *accel;
     RtEquivalence result = {0};
-    assert_ok(rt_accel_open(spec, &bench->scene, &accel, error));
+    assert_ok(rt_accel_open(spec, reference->scene, &accel, error));
     assert_ok(rt_accel_validate(accel, error));
-    assert_ok(rt_equivalence_check(&bench->reference, accel, 0, &result, error));
-    if (result.any_wrong) fail_msg("%s is wrong on %s", spec, bench->scene.name);
+    assert_ok(rt_equivalence_check(reference, accel, 0, &result, error));
+    if (result.any_wrong) {
+        char text[512];
+        rt_witness_format(&result.first_wrong, text, sizeof text);
+        fail_msg("%s on %s: %s", spec, reference->scene->name, text);
+    }
     rt_accel_destroy(accel);
+}
+
+static inline void assert_answers_like_brute(const FamilyBench *bench, const char *spec) {
+    assert_gives(&bench->reference, spec);
 }
 
 #endif

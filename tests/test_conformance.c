@@ -5,11 +5,8 @@
  * covered once it is registered.
  *
  * RT_SEED=N in the environment tries other scenes and rays of the same families (the default is 1). */
-#include "testing.h"
+#include "equivalence_testing.h"
 
-#include "base/memory.h"
-#include "experiments/equivalence.h"
-#include "experiments/families.h"
 #include "experiments/spread.h"
 #include "scenes/builtin.h"
 
@@ -22,46 +19,15 @@ enum { RAYS_PER_FAMILY = 256, MAX_SCENES = 64 };
 
 static uint64_t seed = 1;
 
-/* A scene with its rays and the right answers. */
-typedef struct Bench {
-    RtScene scene;
-    RtAccel *brute;
-    RtRay *rays;
-    RtReference reference;
-    bool may_refuse; /* structures that would take too much memory, with a value that fits */
-} Bench;
-
-/* Over a scene that is there. */
-static void set_up_over(Bench *bench, size_t rays_per_family) {
-    size_t families = rt_ray_family_count();
-    assert_ok(rt_accel_open("brute", &bench->scene, &bench->brute, error));
-    bench->rays = rt_alloc(families * rays_per_family, sizeof(RtRay));
-    assert_non_null(bench->rays);
-    RtQuery query;
-    assert_ok(rt_query_init(&query, bench->brute, error));
-    for (size_t f = 0; f < families; f++) {
-        rt_ray_family_fill(f, &query, seed, 0, rays_per_family, bench->rays + f * rays_per_family);
-    }
-    rt_query_clear(&query);
-    assert_ok(rt_reference_init(&bench->reference, bench->brute, bench->rays, families * rays_per_family, 0,
-                                error));
+static size_t mixed_family(void) {
+    size_t mixed = 0;
+    while (strcmp(rt_scene_family_name(mixed), "mixed") != 0) mixed++;
+    return mixed;
 }
 
-static void set_up(Bench *bench, size_t scene_family, size_t rays_per_family) {
-    *bench = (Bench){0};
-    assert_ok(rt_scene_family_build(scene_family, seed, &bench->scene, error));
-    set_up_over(bench, rays_per_family);
-}
-
-static void tear_down(Bench *bench) {
-    rt_reference_clear(&bench->reference);
-    rt_free(bench->rays);
-    rt_accel_destroy(bench->brute);
-    rt_scene_clear(&bench->scene);
-}
-
-/* Checks one spec; tells what is wrong and returns false if anything is. */
-static bool conforms(const Bench *bench, const char *spec) {
+/* Checks one spec; tells what is wrong and returns false if anything is. What would take too much memory may
+ * be refused, with a value that fits, if `may_refuse`. */
+static bool conforms(const FamilyBench *bench, const char *spec, bool may_refuse) {
     RtError error = {RT_OK, ""};
     RtAccel *accel;
     const char *scene = bench->scene.name;
@@ -70,7 +36,7 @@ static bool conforms(const Bench *bench, const char *spec) {
         print_message("%s on %s is skipped: %s\n", spec, scene, error.message);
         return true;
     }
-    if (status == RT_BAD_INPUT && bench->may_refuse && strstr(error.message, "would fit")) return true;
+    if (status == RT_BAD_INPUT && may_refuse && strstr(error.message, "would fit")) return true;
     if (status != RT_OK) {
         print_error("%s on %s cannot be built: %s\n", spec, scene, error.message);
         return false;
@@ -87,11 +53,12 @@ static bool conforms(const Bench *bench, const char *spec) {
     }
     if (result.any_wrong) {
         char text[512];
+        size_t rays_per_family = bench->reference.count / rt_ray_family_count();
         rt_witness_format(&result.first_wrong, text, sizeof text);
         print_error("%s on %s: %llu of %llu wrong, %llu occluded wrong; family %s, %s\n", spec, scene,
                     (unsigned long long)result.verdicts[RT_WRONG], (unsigned long long)result.rays,
                     (unsigned long long)result.occluded_wrong,
-                    rt_ray_family_name(result.first_wrong.index / RAYS_PER_FAMILY), text);
+                    rt_ray_family_name(result.first_wrong.index / rays_per_family), text);
         good = false;
     }
     rt_accel_destroy(accel);
@@ -99,14 +66,16 @@ static bool conforms(const Bench *bench, const char *spec) {
 }
 
 static void every_accelerator_answers_like_brute(void **state) {
-    Bench bench;
-    set_up(&bench, *(const size_t *)*state, RAYS_PER_FAMILY);
+    FamilyBench bench;
+    set_up_family(&bench, *(const size_t *)*state, seed, RAYS_PER_FAMILY);
     size_t failures = 0;
     for (size_t i = 0; i < rt_accel_count(); i++) {
         char spec[RT_MAX_SPEC_CHARS];
-        for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) failures += !conforms(&bench, spec);
+        for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
+            failures += !conforms(&bench, spec, false);
+        }
     }
-    tear_down(&bench);
+    tear_down_family(&bench);
     assert_int_equal(failures, 0);
 }
 
@@ -132,11 +101,11 @@ static bool extreme_value(const RtParam *param, size_t n, char *out) {
 }
 
 /* Parameter `p` at `value`, alone and beside each choice of the others. */
-static size_t failures_at(const Bench *bench, const RtAccelOps *ops, size_t p, const char *value) {
+static size_t failures_at(const FamilyBench *bench, const RtAccelOps *ops, size_t p, const char *value) {
     char spec[RT_MAX_SPEC_CHARS], choice[64], below[RT_MAX_NAME + 1] = "";
     if (ops->kinds) snprintf(below, sizeof below, "+%s", rt_accel_default());
     snprintf(spec, sizeof spec, "%s:%s=%s%s", ops->name, ops->params[p].name, value, below);
-    size_t failures = !conforms(bench, spec);
+    size_t failures = !conforms(bench, spec, true);
     for (size_t c = 0; c < ops->param_count; c++) {
         const RtParam *other = &ops->params[c];
         if (other->type != RT_PARAM_CHOICE && other->type != RT_PARAM_FLAG) continue;
@@ -144,18 +113,18 @@ static size_t failures_at(const Bench *bench, const RtAccelOps *ops, size_t p, c
             if (strcmp(choice, other->standard) == 0) continue;
             snprintf(spec, sizeof spec, "%s:%s=%s,%s=%s%s", ops->name, ops->params[p].name, value,
                      other->name, choice, below);
-            failures += !conforms(bench, spec);
+            failures += !conforms(bench, spec, true);
         }
     }
     return failures;
 }
 
 static void extreme_values_answer_like_brute(void **state) {
-    Bench bench = {.may_refuse = true};
+    FamilyBench bench;
     char value[64];
     size_t failures = 0;
     assert_ok(rt_builtin_open(*state, &bench.scene, error));
-    set_up_over(&bench, RAYS_PER_FAMILY / 16);
+    set_up_rays(&bench, seed, RAYS_PER_FAMILY / 16);
     for (size_t i = 0; i < rt_accel_count(); i++) {
         const RtAccelOps *ops = rt_accel_at(i);
         for (size_t p = 0; p < ops->param_count; p++) {
@@ -164,7 +133,7 @@ static void extreme_values_answer_like_brute(void **state) {
             }
         }
     }
-    tear_down(&bench);
+    tear_down_family(&bench);
     assert_int_equal(failures, 0);
 }
 
@@ -177,10 +146,8 @@ static bool allocates_elsewhere(const RtAccelOps *ops) {
 
 static void every_allocation_of_a_build_may_fail(void **state) {
     (void)state;
-    size_t mixed = 0;
-    while (strcmp(rt_scene_family_name(mixed), "mixed") != 0) mixed++;
-    Bench bench;
-    set_up(&bench, mixed, 8);
+    FamilyBench bench;
+    set_up_family(&bench, mixed_family(), seed, 8);
     for (size_t i = 0; i < rt_accel_count(); i++) {
         char spec[RT_MAX_SPEC_CHARS];
         if (allocates_elsewhere(rt_accel_at(i))) continue;
@@ -205,14 +172,16 @@ static void every_allocation_of_a_build_may_fail(void **state) {
             }
         }
     }
-    tear_down(&bench);
+    tear_down_family(&bench);
 }
+
+/* ---- the rays ---- */
 
 static void every_ray_of_every_family_is_valid_and_repeatable(void **state) {
     (void)state;
     for (size_t s = 0; s < rt_scene_family_count(); s++) {
-        Bench bench;
-        set_up(&bench, s, 64);
+        FamilyBench bench;
+        set_up_family(&bench, s, seed, 64);
         RtQuery query;
         assert_ok(rt_query_init(&query, bench.brute, error));
         for (size_t f = 0; f < rt_ray_family_count(); f++) {
@@ -224,23 +193,18 @@ static void every_ray_of_every_family_is_valid_and_repeatable(void **state) {
             }
         }
         rt_query_clear(&query);
-        tear_down(&bench);
+        tear_down_family(&bench);
     }
 }
 
 /* Of an order of evaluation that C leaves open, or of a function of the library, rays would tell here. */
 static void rays_of_a_family_are_the_same_by_every_compiler(void **state) {
     (void)state;
-    Bench bench;
-    size_t mixed = 0;
-    while (strcmp(rt_scene_family_name(mixed), "mixed") != 0) mixed++;
-    const uint64_t given = seed;
-    seed = 1;
-    set_up(&bench, mixed, 64);
-    seed = given;
+    FamilyBench bench;
+    set_up_family(&bench, mixed_family(), 1, 64);
     assert_int_equal(XXH3_64bits(bench.rays, bench.reference.count * sizeof(RtRay)),
                      UINT64_C(0xea2138f743d23c63));
-    tear_down(&bench);
+    tear_down_family(&bench);
 }
 
 #define extremes_test(scene)                                                                                 \

@@ -1,0 +1,12 @@
+/* What tests of accel/extents share: a spec for each kind of extent. */
+#ifndef RT_TESTS_EXTENTS_TESTING_H
+#define RT_TESTS_EXTENTS_TESTING_H
+
+#include "accel_testing.h"
+
+static const char *const specs[] = {"extents:kind=box",           "extents:kind=sphere",
+                                    "extents:kind=obb",           "extents:kind=slabs,slabs=3",
+                                    "extents:kind=slabs,slabs=7", "extents:kind=slabs,slabs=13"};
+enum { SPEC_COUNT = sizeof specs / sizeof specs[0] };
+
+#endif
