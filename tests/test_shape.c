@@ -1,11 +1,9 @@
-/* shape/: hits, normals and refusals of every shape, against answers known by hand; and what all hit
- * functions have in common: closed intervals of t, and powers of two that scale it exactly. */
-#include "testing.h"
-
-#include "base/random.h"
-#include "shape/geometry.h"
+/* shape/: hits, normals and refusals of every shape, against answers known by hand. */
+#include "shape_testing.h"
 
 #include <string.h>
+
+/* ---- hits ---- */
 
 #define MISS NAN
 
@@ -15,21 +13,6 @@ typedef struct Case {
     RtVec3 org, dir;
     float t;
 } Case;
-
-static bool hit(const RtGeometry *g, uint32_t id, const RtRay *ray, float *t) {
-    RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
-    return rt_object_hit(g, id, &prepared, t, NULL);
-}
-
-/* What a ray that starts at `point` meets there. */
-static RtNormals normals_at(const RtGeometry *g, uint32_t id, RtVec3d point) {
-    RtRay ray = {.org = rt_narrow(point), .dir = {0, 0, 1}, .tmax = INFINITY};
-    return rt_object_normals(g, id, &ray, 0);
-}
-
-static RtRay make_ray(RtVec3 org, RtVec3 dir) {
-    return (RtRay){.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};
-}
 
 /* Finishes `g`, asks every case of its object 0, and clears it. */
 static void check(RtGeometry *g, const Case *cases, size_t count) {
@@ -46,8 +29,6 @@ static void check(RtGeometry *g, const Case *cases, size_t count) {
 }
 
 #define CHECK(g, cases) check(g, cases, sizeof cases / sizeof *(cases))
-
-/* ---- each shape by hand ---- */
 
 static void the_lecture_ray_meets_the_unit_sphere_at_9_and_11(void **state) {
     (void)state;
@@ -190,6 +171,12 @@ static void a_full_cone_is_hit_up_to_its_tip(void **state) {
 
 /* ---- normals ---- */
 
+/* What a ray that starts at `point` meets there. */
+static RtNormals normals_at(const RtGeometry *g, uint32_t id, RtVec3d point) {
+    RtRay ray = {.org = rt_narrow(point), .dir = {0, 0, 1}, .tmax = INFINITY};
+    return rt_object_normals(g, id, &ray, 0);
+}
+
 static void assert_vector(RtVec3d a, double x, double y, double z) {
     if (rt_lengthd(rt_subd(a, rt_vec3d(x, y, z))) < 1e-12) return;
     fail_msg("(%g, %g, %g) is not (%g, %g, %g)", a.x, a.y, a.z, x, y, z);
@@ -231,120 +218,6 @@ static void vertex_normals_are_interpolated_for_shading_only(void **state) {
     assert_vector(normals_at(&g, 1, rt_vec3d(0.5, 0.5, 0)).shading, sqrt(0.5), sqrt(0.5), 0);
     assert_vector(normals_at(&g, 1, rt_vec3d(0.5, 0.5, 0)).geometric, 0, 0, 1);
     rt_geometry_clear(&g);
-}
-
-/* ---- what every hit function promises ---- */
-
-/* One object of each kind, about the origin, 2^exponent in size; 0.75 and the like survive the scaling. */
-static RtGeometry one_of_each(int exponent) {
-    RtGeometry g = {0};
-    float s = ldexpf(1, exponent);
-    const RtVec3 notched[] = {{{-s, -s, 0.25f * s}},
-                              {{s, -s, 0.25f * s}},
-                              {{s, s, -0.25f * s}},
-                              {{0, 0, 0}},
-                              {{-s, s, -0.25f * s}}};
-    const RtVec3 triangle[] = {{{-s, -s, 0}}, {{s, -0.5f * s, 0.5f * s}}, {{0.25f * s, s, -0.25f * s}}};
-    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0.125f * s, 0, 0), 0.75f * s, error));
-    assert_ok(rt_geometry_add_polygon(&g, notched, 5, error));
-    assert_ok(rt_geometry_add_triangle(&g, triangle, NULL, error));
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, -s, 0), s, rt_vec3(0.5f * s, s, 0), 0, error));
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, -s), 0.5f * s, rt_vec3(0, 0, s), 0.5f * s, error));
-    assert_ok(rt_geometry_add_cone(&g, rt_vec3(-s, 0, 0), 0.25f * s, rt_vec3(s, s, s), 0.75f * s, error));
-    assert_ok(rt_geometry_finish(&g, error));
-    return g;
-}
-
-/* Through a point of [-1, 1]^3, from up to 3 before it. */
-static RtRay random_ray(RtRandom *random) {
-    RtVec3 target = rt_random_point(random, 1);
-    RtVec3d dir = rt_random_direction(random);
-    RtVec3d org = rt_add_scaledd(rt_widen(target), dir, -3 * (double)rt_random_unit(random));
-    return make_ray(rt_narrow(org), rt_narrow(dir));
-}
-
-enum { RAYS = 4000 };
-
-static void both_ends_of_the_interval_of_t_belong_to_it(void **state) {
-    (void)state;
-    RtGeometry g = one_of_each(0);
-    RtRandom random = rt_random(1, 0);
-    int hits = 0;
-    for (int i = 0; i < RAYS; i++) {
-        RtRay ray = random_ray(&random);
-        uint32_t id = (uint32_t)i % g.object_count;
-        float t, again;
-        if (!hit(&g, id, &ray, &t) || t == 0) continue;
-        hits++;
-        ray.tmin = ray.tmax = t;
-        assert_true(hit(&g, id, &ray, &again) && again == t);
-        ray.tmin = 0, ray.tmax = nextafterf(t, 0);
-        assert_false(hit(&g, id, &ray, &again));
-        ray.tmin = nextafterf(t, INFINITY), ray.tmax = INFINITY;
-        assert_true(!hit(&g, id, &ray, &again) || again > t);
-    }
-    assert_true(hits > RAYS / 8);
-    rt_geometry_clear(&g);
-}
-
-static void a_direction_twice_as_long_halves_t_to_the_bit(void **state) {
-    (void)state;
-    RtGeometry g = one_of_each(0);
-    RtRandom random = rt_random(2, 0);
-    for (int i = 0; i < RAYS; i++) {
-        RtRay ray = random_ray(&random), longer = ray;
-        uint32_t id = (uint32_t)i % g.object_count;
-        float t = 0, half = 0, third = 0;
-        longer.dir = rt_scale(ray.dir, 2);
-        bool met = hit(&g, id, &ray, &t);
-        assert_int_equal(met, hit(&g, id, &longer, &half));
-        assert_true(half == t / 2);
-        longer.dir = rt_scale(ray.dir, 3);
-        if (met && hit(&g, id, &longer, &third)) assert_true(fabsf(third * 3 - t) <= 1e-4f);
-    }
-    rt_geometry_clear(&g);
-}
-
-static void a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit(void **state) {
-    (void)state;
-    static const int exponents[] = {-40, -17, 1, 23, 40};
-    RtGeometry unit = one_of_each(0);
-    for (int e = 0; e < 5; e++) {
-        RtGeometry g = one_of_each(exponents[e]);
-        RtRandom random = rt_random(3, 0);
-        for (int i = 0; i < RAYS; i++) {
-            RtRay ray = random_ray(&random), scaled = ray;
-            uint32_t id = (uint32_t)i % g.object_count;
-            float t = 0, t_scaled = 0;
-            scaled.org = rt_scale(ray.org, ldexpf(1, exponents[e]));
-            assert_int_equal(hit(&unit, id, &ray, &t), hit(&g, id, &scaled, &t_scaled));
-            assert_true(t_scaled == ldexpf(t, exponents[e]));
-        }
-        rt_geometry_clear(&g);
-    }
-    rt_geometry_clear(&unit);
-}
-
-/* Nearly a disc with a hole, tilted: what is hit must not depend on heights that have lost their digits. */
-static void a_flat_cone_is_hit_between_its_circles_only(void **state) {
-    (void)state;
-    RtRandom random = rt_random(4, 0);
-    int hits = 0;
-    for (int i = 0; i < RAYS; i++) {
-        RtGeometry g = {0};
-        RtVec3 apex = rt_narrow(rt_scaled(rt_random_direction(&random), ldexp(1, -20 - i % 40)));
-        assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 0.75f, apex, 0.25f, error));
-        assert_ok(rt_geometry_finish(&g, error));
-        RtRay ray = random_ray(&random);
-        float t;
-        if (hit(&g, 0, &ray, &t)) {
-            double from_center = rt_lengthd(rt_ray_point(&ray, t));
-            assert_true(from_center > 0.2499 && from_center < 0.7501);
-            hits++;
-        }
-        rt_geometry_clear(&g);
-    }
-    assert_true(hits > RAYS / 20);
 }
 
 /* ---- refusals ---- */
@@ -402,10 +275,6 @@ int main(void) {
         cmocka_unit_test(a_full_cone_is_hit_up_to_its_tip),
         cmocka_unit_test(normals_point_outward_or_by_the_right_hand_rule),
         cmocka_unit_test(vertex_normals_are_interpolated_for_shading_only),
-        cmocka_unit_test(both_ends_of_the_interval_of_t_belong_to_it),
-        cmocka_unit_test(a_direction_twice_as_long_halves_t_to_the_bit),
-        cmocka_unit_test(a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit),
-        cmocka_unit_test(a_flat_cone_is_hit_between_its_circles_only),
         cmocka_unit_test(degenerate_objects_are_refused_with_the_reason),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

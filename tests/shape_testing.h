@@ -1,0 +1,18 @@
+/* What tests of shapes share: rays, and where they meet an object. */
+#ifndef RT_TESTS_SHAPE_TESTING_H
+#define RT_TESTS_SHAPE_TESTING_H
+
+#include "testing.h"
+
+#include "shape/geometry.h"
+
+static inline RtRay make_ray(RtVec3 org, RtVec3 dir) {
+    return (RtRay){.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};
+}
+
+static inline bool hit(const RtGeometry *g, uint32_t id, const RtRay *ray, float *t) {
+    RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
+    return rt_object_hit(g, id, &prepared, t, NULL);
+}
+
+#endif
