@@ -10,6 +10,15 @@
 #include "experiments/equivalence.h"
 #include "experiments/families.h"
 
+#include <string.h>
+
+/* The number of the family of scenes that is called so. */
+static inline size_t scene_family(const char *name) {
+    size_t family = 0;
+    while (strcmp(rt_scene_family_name(family), name) != 0) assert_true(++family < rt_scene_family_count());
+    return family;
+}
+
 typedef struct FamilyBench {
     RtScene scene;
     RtAccel *brute;

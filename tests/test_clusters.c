@@ -21,9 +21,7 @@ static void every_combination_answers_like_brute(void **state) {
     static const char *const families[] = {"mixed", "duplicates", "huge-beside-tiny", "mixed-far"};
     for (size_t f = 0; f < 4; f++) {
         FamilyBench bench;
-        size_t family = 0;
-        while (strcmp(rt_scene_family_name(family), families[f]) != 0) family++;
-        set_up_family(&bench, family, 3, 64);
+        set_up_family(&bench, scene_family(families[f]), 3, 64);
         for (size_t i = 0; i < 4 * 2 * 3 * METHOD_COUNT; i++) {
             char spec[RT_MAX_SPEC_CHARS];
             snprintf(spec, sizeof spec, "clusters:extent=%s,traversal_order=%s,%s,method=%s", kinds[i % 4],

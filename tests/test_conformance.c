@@ -19,12 +19,6 @@ enum { RAYS_PER_FAMILY = 256, MAX_SCENES = 64 };
 
 static uint64_t seed = 1;
 
-static size_t mixed_family(void) {
-    size_t mixed = 0;
-    while (strcmp(rt_scene_family_name(mixed), "mixed") != 0) mixed++;
-    return mixed;
-}
-
 /* Checks one spec; tells what is wrong and returns false if anything is. What would take too much memory may
  * be refused, with a value that fits, if `may_refuse`. */
 static bool conforms(const FamilyBench *bench, const char *spec, bool may_refuse) {
@@ -147,7 +141,7 @@ static bool allocates_elsewhere(const RtAccelOps *ops) {
 static void every_allocation_of_a_build_may_fail(void **state) {
     (void)state;
     FamilyBench bench;
-    set_up_family(&bench, mixed_family(), seed, 8);
+    set_up_family(&bench, scene_family("mixed"), seed, 8);
     for (size_t i = 0; i < rt_accel_count(); i++) {
         char spec[RT_MAX_SPEC_CHARS];
         if (allocates_elsewhere(rt_accel_at(i))) continue;
@@ -201,7 +195,7 @@ static void every_ray_of_every_family_is_valid_and_repeatable(void **state) {
 static void rays_of_a_family_are_the_same_by_every_compiler(void **state) {
     (void)state;
     FamilyBench bench;
-    set_up_family(&bench, mixed_family(), 1, 64);
+    set_up_family(&bench, scene_family("mixed"), 1, 64);
     assert_int_equal(XXH3_64bits(bench.rays, bench.reference.count * sizeof(RtRay)),
                      UINT64_C(0xea2138f743d23c63));
     tear_down_family(&bench);

@@ -1,10 +1,8 @@
 /* Counters are the same numbers on any number of threads and in streams of any length, and plausible beside
  * one another, for every accelerator at every setting of the spread. */
-#include "testing.h"
+#include "equivalence_testing.h"
 
-#include "base/memory.h"
 #include "base/parallel.h"
-#include "experiments/families.h"
 #include "experiments/spread.h"
 
 #include <string.h>
@@ -30,9 +28,7 @@ typedef struct Count {
 
 static int set_up(void **state) {
     static Stage stage;
-    size_t mixed = 0;
-    while (strcmp(rt_scene_family_name(mixed), "mixed") != 0) mixed++;
-    assert_ok(rt_scene_family_build(mixed, 1, &stage.scene, error));
+    assert_ok(rt_scene_family_build(scene_family("mixed"), 1, &stage.scene, error));
     assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
     RtQuery query;
     assert_ok(rt_query_init(&query, stage.brute, error));

@@ -1,10 +1,6 @@
 /* Equivalence and verdicts: lies are found, whichever kernel tells them and in whatever stream; margins and
  * ties are told from errors. */
-#include "testing.h"
-
-#include "base/memory.h"
-#include "experiments/equivalence.h"
-#include "experiments/families.h"
+#include "equivalence_testing.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -71,9 +67,7 @@ typedef struct Stage {
 
 static int set_up(void **state) {
     static Stage stage;
-    size_t uniform = 0;
-    while (strcmp(rt_scene_family_name(uniform), "uniform") != 0) uniform++;
-    assert_ok(rt_scene_family_build(uniform, 3, &stage.scene, error));
+    assert_ok(rt_scene_family_build(scene_family("uniform"), 3, &stage.scene, error));
     assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
     assert_ok(rt_query_init(&stage.liar.truth, stage.brute, error));
     rt_ray_family_fill(0, &stage.liar.truth, 3, 0, RAYS, rays);

@@ -81,9 +81,7 @@ static void shrinking_ends_with_its_budget(void **state) {
     MutantRecipe recipe = {EARLY_EXIT, true};
     RtMaker maker = maker_of_mutant(&recipe);
     FamilyBench bench;
-    size_t line = 0;
-    while (strcmp(rt_scene_family_name(line), "line") != 0) line++;
-    set_up_family(&bench, line, 1, RAYS_PER_FAMILY);
+    set_up_family(&bench, scene_family("line"), 1, RAYS_PER_FAMILY);
     RtEquivalence result = check(&bench, maker);
     RtQuestion question;
     RtReply reply;
