@@ -215,8 +215,8 @@ static RtStatus add_round_or_flat(Builder *b, Place at, uint32_t i, RtError *err
 }
 
 /* A random CSG tree of up to 24 solids; the first of every eight is a lone one. With and without tests of
- * inner nodes by turns. */
-static RtStatus add_tree(Builder *b, Place at, uint32_t i, RtError *error) {
+ * inner nodes by turns. RT_BAD_INPUT if one of its solids is flat where rounding puts it. */
+static RtStatus try_tree(Builder *b, Place at, uint32_t i, RtError *error) {
     RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_bits(&b->random) % 23, i % 2};
     double o = b->offset, scale = b->scale, size = scale * at.size / 4;
     RtTransform move = {{{size, 0, 0, o + scale * at.center.x},
@@ -228,6 +228,13 @@ static RtStatus add_tree(Builder *b, Place at, uint32_t i, RtError *error) {
     if (status == RT_OK) status = rt_csg_move(&trees, root, &move, &root, error);
     if (status == RT_OK) status = rt_scene_add_csg(b->scene, &trees, root, i / 2 % 2 == 0, error);
     rt_csg_builder_clear(&trees);
+    return status;
+}
+
+/* The next tree that is not flat. */
+static RtStatus add_tree(Builder *b, Place at, uint32_t i, RtError *error) {
+    RtStatus status = RT_BAD_INPUT;
+    for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++) status = try_tree(b, at, i, error);
     return status;
 }
 

@@ -231,6 +231,58 @@ static void faces_along_an_axis_are_where_float32_has_them(void **state) {
     rt_solid_set_clear(&set);
 }
 
+/* Ends that float32 moves by as much as the cone is high. What extents are made from has to move, too: a ray
+ * that met the cone between its caps once missed the ball about it. */
+static void a_cone_ends_where_float32_has_its_caps(void **state) {
+    (void)state;
+    const RtTransform place = {
+        {{0.0039, 0, 0, 100000.987}, {0, -0.0039, 0, 99999.1225}, {0, 0, -0.0039, 99999.87427}}};
+    RtVec3d up = {{0, 0, 1}};
+    for (int ratio = 0; ratio < 2; ratio++) {
+        RtSolidSet set = {0};
+        uint32_t standing, moved;
+        RtTransform none = rt_transform_identity();
+        assert_ok(rt_solid_add_cone(&set, 0.75 * ratio, &none, &moved, error));
+        assert_ok(rt_solid_add_moved(&set, &set, moved, &place, &moved, error));
+        assert_ok(rt_solid_add_cone(&set, 0.75 * ratio, &place, &standing, error));
+        const uint32_t both[2] = {standing, moved};
+        for (int i = 0; i < 2; i++) {
+            const RtSolid *solid = &set.solids[both[i]];
+            assert_true(solid->place.m[2][3] == (double)99999.87427f);
+            double apex = ratio ? (double)(float)(99999.87427 - 0.0039) : 99999.87427 - 0.0039;
+            assert_true(solid->place.m[2][3] + solid->place.m[2][2] == apex);
+            assert_true(rt_solid_support(&set, both[i], up) == (double)99999.87427f);
+            assert_true(rt_solid_support(&set, both[i], rt_scaled(up, -1)) == -apex);
+        }
+        rt_solid_set_clear(&set);
+    }
+}
+
+static void what_rounding_makes_flat_is_refused(void **state) {
+    (void)state;
+    RtSolidSet set = {0};
+    uint32_t box, cone, mesh, index;
+    RtTransform far = rt_transform_identity(), none = far;
+    const RtVec3 v[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const RtTriangle faces[4] = {
+        {{v[0], v[2], v[1]}}, {{v[0], v[1], v[3]}}, {{v[0], v[3], v[2]}}, {{v[1], v[2], v[3]}}};
+    assert_ok(rt_transform_translate(&far, rt_vec3(0, 0, 0x1p30f), error));
+    assert_ok(rt_solid_add_box(&set, v[0], rt_vec3(1, 1, 1), &box, error));
+    assert_ok(rt_solid_add_cone(&set, 0.5, &none, &cone, error));
+    assert_ok(rt_solid_add_mesh(&set, faces, 4, &none, &mesh, error));
+    const uint32_t solids[3] = {box, cone, mesh}, planes = set.plane_count, triangles = set.triangle_count;
+    const char *const says[3] = {"no inside", "flat", "volume"};
+    for (int i = 0; i < 3; i++) {
+        RtError error;
+        assert_int_equal(rt_solid_add_moved(&set, &set, solids[i], &far, &index, &error), RT_BAD_INPUT);
+        assert_non_null(strstr(error.message, says[i]));
+    }
+    assert_int_equal(set.solid_count, 3);
+    assert_int_equal(set.plane_count, planes);
+    assert_int_equal(set.triangle_count, triangles);
+    rt_solid_set_clear(&set);
+}
+
 /* ---- hulls ---- */
 
 static void the_hull_of_the_corners_of_a_box_is_the_box(void **state) {
@@ -320,6 +372,8 @@ int main(void) {
         cmocka_unit_test(a_triangle_without_area_does_no_harm),
         cmocka_unit_test(faces_in_one_plane_are_met_at_the_same_bits),
         cmocka_unit_test(faces_along_an_axis_are_where_float32_has_them),
+        cmocka_unit_test(a_cone_ends_where_float32_has_its_caps),
+        cmocka_unit_test(what_rounding_makes_flat_is_refused),
         cmocka_unit_test(the_hull_of_the_corners_of_a_box_is_the_box),
         cmocka_unit_test(hulls_of_random_points_hold_what_is_between_them),
     };

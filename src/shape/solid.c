@@ -259,7 +259,7 @@ static RtStatus move_triangles(RtSolidSet *set, const RtSolidSet *source, RtSoli
         set->triangles[set->triangle_count + i] = triangle;
     }
     solid->first = set->triangle_count;
-    return RT_OK;
+    return move ? rt_solid_check_volume(set->triangles + set->triangle_count, solid->count, error) : RT_OK;
 }
 
 RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t from, const RtTransform *move,
@@ -271,7 +271,11 @@ RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t 
     } else {
         RT_TRY(move_planes(set, source, &solid, move, error));
     }
-    bool curved = solid.kind != RT_SOLID_MESH && solid.kind != RT_SOLID_POLYHEDRON;
-    if (curved && move) solid.place = rt_transform_compose(&solid.place, move);
+    if (move && solid.kind == RT_SOLID_POLYHEDRON) {
+        RT_TRY(rt_solid_check_inside(set->planes + solid.first, solid.count, error));
+    } else if (move && solid.kind != RT_SOLID_MESH) {
+        solid.place = rt_transform_compose(&solid.place, move);
+    }
+    if (solid.kind == RT_SOLID_CONE) rt_solid_cone_to_caps(set, &solid);
     return rt_solid_finish(set, &solid, index, error);
 }

@@ -120,7 +120,8 @@ RtStatus rt_solid_add_ring(RtSolidSet *set, RtVec3 center, RtVec3 axis, float ma
 RtStatus rt_solid_add_hull(RtSolidSet *set, const RtVec3 *vertices, uint32_t count, uint32_t *index,
                            RtError *error);
 
-/* A copy of solid `from` of set `source` (which may be `set` itself), moved by `move`, which may be NULL. */
+/* A copy of solid `from` of set `source` (which may be `set` itself), moved by `move`, which may be NULL.
+ * Refuses what rounding makes flat where it is moved to. */
 RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t from, const RtTransform *move,
                             uint32_t *index, RtError *error);
 

@@ -6,7 +6,10 @@
  * of its two half-lines the one is inside on which r is above 0. A line that is less steep (a > 0) is inside
  * between the roots, if that is on the nappe with r > 0; it is the same nappe at both. A line as steep as the
  * side (a = 0) has one root, and goes into one nappe for good. So the apex needs no care, and the second
- * nappe is never met. */
+ * nappe is never met.
+ *
+ * Caps across an axis of the world are at a float32, like all such faces, and the place is drawn to them:
+ * what is between the caps is what the place says, for extents and for the referee, too. */
 #include "base/memory.h"
 #include "shape/quadratic.h"
 #include "shape/solid_parts.h"
@@ -105,6 +108,16 @@ RtBall rt_solid_cone_ball(const RtSolidSet *set, const RtSolid *solid) {
 
 /* ---- making ---- */
 
+void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid) {
+    const RtPlane *caps = set->planes + solid->first;
+    int a = rt_axis_of(caps[0].normal);
+    if (a < 0) return;
+    double apex = solid->place.m[a][3] + solid->place.m[a][2];
+    if (solid->count > 1) apex = caps[1].normal.at[a] * caps[1].offset;
+    solid->place.m[a][3] = caps[0].normal.at[a] * caps[0].offset;
+    solid->place.m[a][2] = apex - solid->place.m[a][3];
+}
+
 RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *place, uint32_t *index,
                            RtError *error) {
     if (!(ratio >= 0 && ratio <= 1)) {
@@ -124,6 +137,7 @@ RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *pla
     RtPlane *caps = set->planes + set->plane_count;
     caps[0] = rt_plane_through(column(&solid, 3), rt_scaled(up, -1));
     caps[1] = rt_plane_through(apex_of(&solid), up);
+    rt_solid_cone_to_caps(set, &solid);
     return rt_solid_finish(set, &solid, index, error);
 }
 

@@ -65,7 +65,7 @@ static RtStatus check_closed(const RtTriangle *triangles, uint32_t count, RtErro
 }
 
 /* The volume is that of the tetrahedra from one vertex to all triangles. */
-static RtStatus check_volume(const RtTriangle *triangles, uint32_t count, RtError *error) {
+RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtError *error) {
     RtVec3d origin = rt_widen(triangles[0].v[0]);
     double volume = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -147,7 +147,7 @@ RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error) {
 
 static RtStatus check_and_order(RtTriangle *triangles, uint32_t count, RtError *error) {
     RT_TRY(check_closed(triangles, count, error));
-    RT_TRY(check_volume(triangles, count, error));
+    RT_TRY(rt_solid_check_volume(triangles, count, error));
     Placed *scratch = rt_alloc(count, sizeof *scratch);
     if (!scratch) return rt_fail_memory(error, "the order of a mesh", count * sizeof *scratch);
     put_in_order(triangles, count, leaves_for(count), scratch);

@@ -28,6 +28,14 @@ RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error);
 /* Triangles in a leaf of them. */
 #define RT_SOLID_LEAF 4
 
+/* Draws the place of a cone to its caps, which stand in the set: those across an axis of the world are
+ * rounded to float32. The place may become flat, which rt_solid_finish refuses. */
+void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid);
+
+/* Refuse planes that leave no inside, or a flat one, and a closed mesh whose volume is not above 0. */
+RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *error);
+RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtError *error);
+
 /* Refuses a transform that is not finite, or flattens. */
 RtStatus rt_solid_check_place(const RtTransform *place, RtError *error);
 

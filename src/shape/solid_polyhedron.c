@@ -184,7 +184,7 @@ static RtStatus check_plane(const RtPlane *plane, uint32_t i, RtError *error) {
         i, n.x, n.y, n.z, plane->offset);
 }
 
-static RtStatus check_inside(const RtPlane *planes, uint32_t count, RtError *error) {
+RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *error) {
     Faces shrunk = {planes, count, -least_width(planes, count)};
     double lo, hi;
     Edge edge;
@@ -228,7 +228,7 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
                            fabs(own[i].offset), (double)RT_MAX_COORDINATE);
         }
     }
-    RT_TRY(check_inside(own, count, error));
+    RT_TRY(rt_solid_check_inside(own, count, error));
     RtSolid solid = {.kind = RT_SOLID_POLYHEDRON,
                      .first = set->plane_count,
                      .count = count,
