@@ -3,6 +3,7 @@
 #include "base/file.h"
 
 #include <inttypes.h>
+#include <time.h>
 
 json_t *rt_json_number(double value) {
     return isfinite(value) ? json_real(value) : json_null();
@@ -10,6 +11,14 @@ json_t *rt_json_number(double value) {
 
 json_t *rt_json_hex(uint64_t value) {
     return json_sprintf("%016" PRIx64, value);
+}
+
+json_t *rt_json_now(void) {
+    char date[32];
+    time_t now = time(NULL);
+    struct tm utc;
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+    return json_string(date);
 }
 
 json_t *rt_json_tally(const RtTally *tally) {

@@ -15,6 +15,9 @@ json_t *rt_json_number(double value);
 /* A fingerprint: 16 hexadecimal digits. */
 json_t *rt_json_hex(uint64_t value);
 
+/* The time of day: "2001-04-30T12:00:00Z". */
+json_t *rt_json_now(void);
+
 /* Every counter under its name. */
 json_t *rt_json_tally(const RtTally *tally);
 

@@ -4,8 +4,6 @@
 #include "experiments/json.h"
 #include "experiments/machine.h"
 
-#include <time.h>
-
 static json_t *scenes_json(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
     json_t *list = json_array();
@@ -48,18 +46,14 @@ static json_t *contenders_json(const RtExperiment *experiment) {
 
 static json_t *manifest_json(const RtResults *results, const RtTrialOptions *options) {
     const RtExperiment *experiment = results->experiment;
-    char date[32];
-    time_t now = time(NULL);
-    struct tm utc;
-    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     return json_pack(
-        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:s, s:s, s:i, s:i, s:o, s:o, s:o}",
+        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:i, s:i, s:o, s:o, s:o}",
         "experiment", experiment->name, "file", experiment->path, "hash",
         rt_json_hex(experiment->fingerprint), "question", experiment->question, "prediction",
         experiment->prediction, "quick", experiment->quick, "seed", (json_int_t)experiment->seed, "limit",
         (json_int_t)experiment->limit, "together", (json_int_t)experiment->together, "rounds",
         (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
-        experiment->contenders[experiment->baseline].label, "date", date, "threads_counting",
+        experiment->contenders[experiment->baseline].label, "date", rt_json_now(), "threads_counting",
         rt_thread_count(options->threads), "threads_timing", rt_thread_count(options->timing), "scenes",
         scenes_json(results), "accelerators", contenders_json(experiment), "machine", rt_machine_json());
 }

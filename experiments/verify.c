@@ -1,11 +1,12 @@
 #include "experiments/verify.h"
 
 #include "base/memory.h"
-#include "experiments/csv.h"
 #include "experiments/families.h"
+#include "experiments/json.h"
 #include "experiments/json_lines.h"
 #include "experiments/machine.h"
 #include "experiments/replay.h"
+#include "experiments/verify_table.h"
 
 #include <ctype.h>
 #include <string.h>
@@ -20,7 +21,8 @@ typedef struct Run {
     const RtVerify *verify;
     const RtVerifyObserver *observer;
     RtVerifyProgress progress;
-    json_t *known; /* rows of the journal, or NULL */
+    json_t *known; /* the journal, or NULL */
+    size_t next_known;
     json_t *rows;
     RtJsonLines journal;
 } Run;
@@ -33,11 +35,6 @@ typedef struct Stage {
     RtRay *rays;
     RtReference reference;
 } Stage;
-
-bool rt_verify_row_fails(const json_t *row) {
-    return !json_is_null(json_object_get(row, "first_wrong")) ||
-           !json_is_null(json_object_get(row, "problem"));
-}
 
 static RtMaker maker_of(const RtVerifySpec *spec) {
     return spec->maker.build ? spec->maker : rt_maker_of_spec(spec->spec);
@@ -62,8 +59,19 @@ static json_t *header_json(const RtVerify *v) {
                      v->rays.families, "build", rt_build_identity());
 }
 
+/* What was verified, and with what, in the folder's manifest.json. */
+static RtStatus write_manifest(const RtVerify *verify, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(verify->folder, "manifest.json", path, error));
+    json_t *manifest = header_json(verify);
+    json_object_set_new(manifest, "date", rt_json_now());
+    json_object_set_new(manifest, "machine", rt_machine_json());
+    return rt_json_save(path, manifest, error);
+}
+
 static RtStatus load_known(Run *run, const char *path, const json_t *header, RtError *error) {
     RT_TRY(rt_json_lines_load(path, &run->known, error));
+    run->next_known = 1;
     if (json_equal(json_array_get(run->known, 0), header)) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
@@ -93,13 +101,14 @@ static bool is_text(const json_t *row, const char *key, const char *text) {
     return value && strcmp(value, text) == 0;
 }
 
-/* The row of an earlier run, borrowed, or NULL. */
-static json_t *known_row(const Run *run, const char *scene, const char *spec) {
-    for (size_t i = 1; i < json_array_size(run->known); i++) {
-        json_t *row = json_array_get(run->known, i);
-        if (is_text(row, "scene", scene) && is_text(row, "accel", spec)) return row;
-    }
-    return NULL;
+/* The row of an earlier run, borrowed, or NULL. The journal has its rows in the order in which they are asked
+ * for here, so the next one is this one or there is none. */
+static json_t *known_row(Run *run, const char *scene, const char *spec) {
+    json_t *row;
+    while (json_is_null(row = json_array_get(run->known, run->next_known))) run->next_known++;
+    if (!is_text(row, "scene", scene) || !is_text(row, "accel", spec)) return NULL;
+    run->next_known++;
+    return row;
 }
 
 /* Takes the reference. */
@@ -178,6 +187,7 @@ static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVeri
     }
     RT_TRY(rt_equivalence_check(&stage->reference, accel, run->verify->rays.threads, &result, error));
     json_t *row = rt_equivalence_json(&result, stage->name, spec->spec, "brute");
+    json_object_set_new(row, "exact", json_boolean(accel->exact));
     json_object_set_new(row, "problem", problem_json(run, &result, broken));
     status = result.any_wrong ? keep_failure(run, stage, spec, &result.first_wrong, row, error) : RT_OK;
     if (status == RT_OK) return add_row(run, row, error);
@@ -241,35 +251,7 @@ static RtStatus verify_scene(Run *run, const char *name, RtError *error) {
     return status;
 }
 
-/* ---- the table ---- */
-
-static void put_field(FILE *out, const json_t *value) {
-    if (json_is_integer(value)) fprintf(out, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
-    if (json_is_string(value)) rt_csv_put(out, json_string_value(value));
-}
-
-static RtStatus write_table(const Run *run, RtError *error) {
-    static const char *const columns[] = {"scene",    "accel", "against",        "rays",    "equal", "tie",
-                                          "marginal", "wrong", "occluded_wrong", "problem", "replay"};
-    enum { COLUMNS = sizeof columns / sizeof columns[0] };
-    char path[RT_MAX_PATH];
-    RtOutput output;
-    if (!run->verify->folder) return RT_OK;
-    RT_TRY(rt_path_join(run->verify->folder, "verify.csv", path, error));
-    RT_TRY(rt_output_open(&output, path, error));
-    for (int c = 0; c < COLUMNS; c++) fprintf(output.file, c ? ",%s" : "%s", columns[c]);
-    fputc('\n', output.file);
-    for (size_t i = 0; i < json_array_size(run->rows); i++) {
-        const json_t *row = json_array_get(run->rows, i);
-        for (int c = 0; c < COLUMNS; c++) {
-            const json_t *holder = c == COLUMNS - 1 ? json_object_get(row, "first_wrong") : row;
-            if (c) fputc(',', output.file);
-            put_field(output.file, json_object_get(holder, columns[c]));
-        }
-        fputc('\n', output.file);
-    }
-    return rt_output_commit(&output, error);
-}
+/* ---- the whole ---- */
 
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error) {
@@ -280,7 +262,8 @@ RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer,
         run.progress.scene = i;
         status = verify_scene(&run, verify->scenes[i], error);
     }
-    if (status == RT_OK) status = write_table(&run, error);
+    if (status == RT_OK && verify->folder) status = rt_verify_write(run.rows, verify->folder, error);
+    if (status == RT_OK && verify->folder) status = write_manifest(verify, error);
     rt_json_lines_close(&run.journal);
     json_decref(run.known);
     *rows = run.rows;

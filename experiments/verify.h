@@ -48,7 +48,4 @@ typedef struct RtVerifyObserver {
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error);
 
-/* Has a row a wrong answer, or a "problem": a structure that is not valid, or too many marginal answers? */
-bool rt_verify_row_fails(const json_t *row);
-
 #endif

@@ -85,6 +85,7 @@ static void all_is_the_default_and_threads_change_nothing(void **state) {
     strcpy(one, text_of(OUT ".out"));
     assert_non_null(strstr(one, " brute "));
     assert_non_null(strstr(one, " grid "));
+    assert_non_null(strstr(one, " pairs of a ray and an accelerator: 0 wrong\n"));
     assert_int_equal(verify("random:n=30,shape=mixed --rays 5000 --threads 3 --accel all"), 0);
     assert_string_equal(text_of(OUT ".out"), one);
 }
@@ -164,7 +165,7 @@ static void a_run_is_gone_on_with(void **state) {
     strcpy(table, text_of(OUT ".rows/verify.csv"));
     assert_non_null(
         strstr(table, "scene,accel,against,rays,equal,tie,marginal,wrong,occluded_wrong,problem"));
-    assert_non_null(strstr(table, "tetra:size=1,grid,brute,500,500,0,0,0,0,,\n"));
+    assert_non_null(strstr(table, "tetra:size=1,grid,brute,500,500,0,0,0,0,,0,0,0,0,0,\n"));
     assert_int_equal(verify(again), 0);
     assert_string_equal(text_of(OUT ".out"), whole);
     assert_string_equal(text_of(OUT ".rows/verify.csv"), table);

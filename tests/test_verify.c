@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "experiments/replay.h"
 #include "experiments/verify.h"
+#include "experiments/verify_table.h"
 #include "scene/load.h"
 
 #include <stdio.h>
@@ -227,6 +228,52 @@ static void what_is_no_replay_file_is_refused(void **state) {
     assert_non_null(strstr(error.message, "broken.json:2"));
 }
 
+static json_t *row_of(const char *scene, const char *accel, bool exact, int marginal) {
+    return json_pack("{s:s, s:s, s:s, s:b, s:i, s:i, s:i, s:i, s:i, s:i, s:n, s:n, s:{s:i, s:i}}", "scene",
+                     scene, "accel", accel, "against", "brute", "exact", exact, "rays", 100, "equal",
+                     100 - marginal, "tie", 0, "marginal", marginal, "wrong", 0, "occluded_wrong", 0,
+                     "first_wrong", "problem", "exactly_right", "both", marginal - marginal / 2, "got",
+                     marginal / 2);
+}
+
+static void rows_add_up_over_the_parameters_of_an_accelerator(void **state) {
+    (void)state;
+    json_t *rows = json_pack("[o, o, o, o, o]", row_of("balls", "item:facets=on+bvh:leaf=1,bits=6", true, 0),
+                             row_of("balls", "item+bvh", true, 0), row_of("balls", "embree", false, 7),
+                             row_of("tetra", "item+bvh", true, 0), row_of("tetra", "embree", true, 0));
+    json_object_set_new(json_array_get(rows, 1), "problem", json_string("a leaf is not reached"));
+    RtVerifySum *sums;
+    uint32_t count;
+    assert_ok(rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error));
+    assert_int_equal(count, 3);
+    assert_string_equal(sums[0].name, "item+bvh");
+    assert_int_equal(sums[0].rows, 3);
+    assert_int_equal(sums[0].failed, 1);
+    assert_int_equal(sums[0].pairs, 300);
+    assert_true(sums[0].exact && !sums[1].exact && sums[2].exact);
+    assert_int_equal(sums[1].verdicts[RT_EQUAL], 93);
+    assert_int_equal(sums[1].verdicts[RT_MARGINAL], 7);
+    assert_int_equal(sums[1].sides[RT_SIDE_BOTH], 4);
+    assert_int_equal(sums[1].sides[RT_SIDE_GOT], 3);
+    assert_int_equal(rt_verify_total(sums, count).pairs, 500);
+    rt_free(sums);
+    assert_ok(rt_verify_sums(rows, RT_BY_SCENE, &sums, &count, error));
+    assert_int_equal(count, 2);
+    assert_string_equal(sums[1].name, "tetra");
+    assert_int_equal(sums[1].pairs, 200);
+    rt_free(sums);
+    assert_ok(rt_directory_create(OUT "/e", error));
+    assert_ok(rt_verify_write(rows, OUT "/e", error));
+    char *table = text_of(OUT "/e", "verify.md");
+    assert_non_null(strstr(table, "500 pairs of a ray and an accelerator"));
+    assert_non_null(strstr(table, "\n| `item+bvh` | 3 | 300 | 300 | 0 | 0 | 0 | 1 |\n"));
+    assert_non_null(strstr(table, "\n| `embree` * | 1 | 100 | 93 | 0 | 7 | 0 | 0 |\n"));
+    assert_non_null(strstr(table, "\n| `embree` | 4 | 0 | 3 | 0 | 0 |\n"));
+    assert_non_null(strstr(table, "\n| `tetra` | 2 | 200 | 200 | 0 | 0 | 0 | 0 |\n"));
+    rt_free(table);
+    json_decref(rows);
+}
+
 static int nothing_is_kept(void **state) {
     (void)state;
     return rt_alloc_live() == 0 ? 0 : -1;
@@ -240,6 +287,7 @@ int main(void) {
         cmocka_unit_test(a_failure_that_takes_its_neighbours_is_kept_with_them),
         cmocka_unit_test(a_replay_file_needs_no_other_file),
         cmocka_unit_test(what_is_no_replay_file_is_refused),
+        cmocka_unit_test(rows_add_up_over_the_parameters_of_an_accelerator),
     };
     return cmocka_run_group_tests(tests, NULL, nothing_is_kept);
 }

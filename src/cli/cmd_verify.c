@@ -2,13 +2,16 @@
  * one ray wrong? What is done lies in experiments/verify.h and experiments/replay.h; this is its command
  * line. */
 #include "base/clock.h"
+#include "base/memory.h"
 #include "cli/cli.h"
 #include "experiments/families.h"
 #include "experiments/replay.h"
 #include "experiments/spread.h"
 #include "experiments/verify.h"
+#include "experiments/verify_table.h"
 
 #include <argp.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -257,6 +260,30 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "raytally: %s\n", message);
 }
 
+/* Who is right where an accelerator that is not exact differs by more than a tie. */
+static void print_sides(const RtVerifySum *sum) {
+    uint64_t differ = 0;
+    for (int s = 0; s < RT_SIDE_COUNT; s++) differ += sum->sides[s];
+    if (differ == 0) return;
+    printf("%s: %" PRIu64 " of its hits differ by more than a tie; exactly right:", sum->name, differ);
+    for (int s = 0; s < RT_SIDE_COUNT; s++) {
+        printf("%s %s %" PRIu64, s ? "," : "", rt_side_name((RtSide)s), sum->sides[s]);
+    }
+    putchar('\n');
+}
+
+static RtStatus print_totals(const json_t *rows, RtError *error) {
+    RtVerifySum *sums;
+    uint32_t count;
+    RT_TRY(rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error));
+    RtVerifySum total = rt_verify_total(sums, count);
+    printf("%u rows, %" PRIu64 " pairs of a ray and an accelerator: %" PRIu64 " wrong\n", total.rows,
+           total.pairs, total.verdicts[RT_WRONG]);
+    for (uint32_t i = 0; i < count; i++) print_sides(&sums[i]);
+    rt_free(sums);
+    return RT_OK;
+}
+
 static RtStatus verify(const Options *o, bool *failed, RtError *error) {
     Show show = {.options = o, .terminal = isatty(STDERR_FILENO) == 1, .start = rt_wall_seconds()};
     RtVerifyObserver observer = {on_doing, on_row, on_notice, &show};
@@ -273,6 +300,7 @@ static RtStatus verify(const Options *o, bool *failed, RtError *error) {
     if (status == RT_OK && o->json) {
         rt_cli_print_json(json_pack("{s:I, s:O}", "seed", (json_int_t)o->seed, "rows", rows));
     }
+    if (status == RT_OK && !o->json) status = print_totals(rows, error);
     json_decref(rows);
     *failed = show.failed;
     return status;
