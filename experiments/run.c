@@ -228,6 +228,10 @@ RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults 
     RT_TRY(rt_manifest_read(directory, &manifest, error));
     bool quick = json_is_true(json_object_get(manifest, "quick"));
     json_decref(manifest);
+    if (!rt_file_exists(path)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s is no result directory of an experiment: it has no experiment.yaml", directory);
+    }
     RT_TRY(rt_experiment_load(experiment, path, quick, error));
     RT_TRY(rt_results_init(results, experiment, error));
     return rt_journal_load(journal, results, false, error);

@@ -209,6 +209,8 @@ for command in plot report reproduce; do
     refuses 'DIR is missing' $command
     refuses 'nowhere is no finished result directory' $command nowhere
 done
+does verify tetra:size=1 --accel bvh --rays 10 --out verified
+refuses 'verified is no result directory of an experiment' report verified
 
 # ---- and what is right works: the same scenes without their mistake ----
 
