@@ -1,8 +1,10 @@
-/* The documents say what the program says: parameters in accel/README.md, accelerators in README.md. */
+/* The documents say what the program says: parameters in accel/README.md, accelerators in README.md; and the
+ * tests that they name are there. */
 #include "testing.h"
 
 #include "accel/accel.h"
 
+#include <glob.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,6 +51,7 @@ static void write_section(Text *text, const RtAccelOps *ops) {
     }
 }
 
+/* A file of the source tree, for free(). */
 static char *read_document(const char *name) {
     char path[1024];
     snprintf(path, sizeof path, "%s/%s", RT_SOURCE_DIR, name);
@@ -85,10 +88,48 @@ static void the_readme_lists_every_accelerator(void **state) {
     free(readme);
 }
 
+static bool is_name(const char *code) {
+    return code[strspn(code, "abcdefghijklmnopqrstuvwxyz0123456789_.")] == '\0' && strchr(code, '_');
+}
+
+/* A name behind `tests/FILE` is in that file; dots stand for how it begins. How many files are named. */
+static size_t check_line(const char *document, char *line) {
+    size_t files = 0;
+    char *tests = NULL;
+    strsep(&line, "`");
+    for (char *code; (code = strsep(&line, "`")); strsep(&line, "`")) {
+        if (strncmp(code, "tests/", 6) == 0 && !strchr(code, '*')) {
+            free(tests);
+            tests = read_document(code);
+            files++;
+        } else if (tests && is_name(code) && !strstr(tests, code + strspn(code, "."))) {
+            fail_msg("%s names %s, which is not there", document, code);
+        }
+    }
+    free(tests);
+    return files;
+}
+
+static void tests_that_documents_name_are_there(void **state) {
+    (void)state;
+    glob_t found;
+    size_t files = 0;
+    assert_int_equal(glob("*.md", 0, NULL, &found), 0);
+    assert_int_equal(glob("*/*.md", GLOB_APPEND, NULL, &found), 0);
+    for (size_t i = 0; i < found.gl_pathc; i++) {
+        char *text = read_document(found.gl_pathv[i]), *rest = text;
+        while (rest) files += check_line(found.gl_pathv[i], strsep(&rest, "\n"));
+        free(text);
+    }
+    assert_true(files >= 20);
+    globfree(&found);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_accelerator_has_its_section_with_its_parameters_as_they_are),
         cmocka_unit_test(the_readme_lists_every_accelerator),
+        cmocka_unit_test(tests_that_documents_name_are_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
