@@ -2,7 +2,7 @@
 
 /* ---- the slate ---- */
 
-static mpq_ptr fresh(RtSlate *slate) {
+mpq_ptr rt_slate_number(RtSlate *slate) {
     if (slate->used == slate->block_count * RT_SLATE_BLOCK) {
         void *(*alloc)(size_t);
         void *(*grow)(void *, size_t, size_t);
@@ -31,37 +31,37 @@ void rt_slate_clear(RtSlate *slate) {
 /* ---- rationals ---- */
 
 RtRational rt_exact_of(RtSlate *slate, double x) {
-    mpq_ptr out = fresh(slate);
+    mpq_ptr out = rt_slate_number(slate);
     mpq_set_d(out, x);
     return out;
 }
 
 RtRational rt_exact_add(RtSlate *slate, RtRational a, RtRational b) {
-    mpq_ptr out = fresh(slate);
+    mpq_ptr out = rt_slate_number(slate);
     mpq_add(out, a, b);
     return out;
 }
 
 RtRational rt_exact_sub(RtSlate *slate, RtRational a, RtRational b) {
-    mpq_ptr out = fresh(slate);
+    mpq_ptr out = rt_slate_number(slate);
     mpq_sub(out, a, b);
     return out;
 }
 
 RtRational rt_exact_mul(RtSlate *slate, RtRational a, RtRational b) {
-    mpq_ptr out = fresh(slate);
+    mpq_ptr out = rt_slate_number(slate);
     mpq_mul(out, a, b);
     return out;
 }
 
 RtRational rt_exact_div(RtSlate *slate, RtRational a, RtRational b) {
-    mpq_ptr out = fresh(slate);
+    mpq_ptr out = rt_slate_number(slate);
     mpq_div(out, a, b);
     return out;
 }
 
 RtRational rt_exact_neg(RtSlate *slate, RtRational a) {
-    mpq_ptr out = fresh(slate);
+    mpq_ptr out = rt_slate_number(slate);
     mpq_neg(out, a);
     return out;
 }
@@ -175,7 +175,7 @@ int rt_surd_compare(RtSlate *slate, const RtSurd *a, const RtSurd *b) {
 
 /* sqrt(d) rounded down to a multiple of 2^-bits. */
 static RtRational root_below(RtSlate *slate, RtRational d, mp_bitcnt_t bits) {
-    mpq_ptr root = fresh(slate);
+    mpq_ptr root = rt_slate_number(slate);
     mpz_mul_2exp(mpq_numref(root), mpq_numref(d), 2 * bits);
     mpz_tdiv_q(mpq_numref(root), mpq_numref(root), mpq_denref(d));
     mpz_sqrt(mpq_numref(root), mpq_numref(root));
@@ -192,7 +192,7 @@ long double rt_surd_value(RtSlate *slate, const RtSurd *a) {
     for (mp_bitcnt_t bits = 128;; bits *= 2) {
         RtRational root = root_below(slate, a->d, bits);
         RtRational near = rt_exact_add(slate, a->p, rt_exact_mul(slate, a->q, root));
-        mpq_ptr off = fresh(slate), size = fresh(slate);
+        mpq_ptr off = rt_slate_number(slate), size = rt_slate_number(slate);
         mpq_abs(off, a->q);
         mpq_abs(size, near);
         mpq_div_2exp(off, off, bits - 66);

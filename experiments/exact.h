@@ -39,6 +39,9 @@ static inline void rt_slate_wipe(RtSlate *slate, size_t mark) {
     slate->used = mark;
 }
 
+/* A number of the slate that is still to be written, once. */
+mpq_ptr rt_slate_number(RtSlate *slate);
+
 /* ---- rationals ---- */
 
 /* `x`, which is finite. */

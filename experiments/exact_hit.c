@@ -27,15 +27,17 @@ RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line) {
     return (RtExactLine){.wide = *line,
                          .org = rt_exact_vec(slate, line->org),
                          .dir = rt_exact_vec(slate, line->dir),
+                         .zero = rt_exact_of(slate, 0),
                          .tmin = rt_exact_of(slate, line->tmin),
                          .tmax = rt_exact_of(slate, fmin(line->tmax, (double)FLT_MAX))};
 }
 
-bool rt_exact_counts(RtSlate *slate, const RtExactLine *line, const RtSurd *t) {
-    RtSurd after = *t, before = *t;
-    after.p = rt_exact_sub(slate, t->p, line->tmin);
-    before.p = rt_exact_sub(slate, t->p, line->tmax);
-    return rt_surd_sign(slate, &after) >= 0 && rt_surd_sign(slate, &before) <= 0;
+bool rt_exact_counts(RtSlate *slate, const RtExactLine *line, const RtPlace *t) {
+    size_t mark = rt_slate_mark(slate);
+    RtPlace first = rt_place_of(slate, line->tmin), last = rt_place_of(slate, line->tmax);
+    bool counts = rt_place_compare(slate, t, &first) >= 0 && rt_place_compare(slate, t, &last) <= 0;
+    rt_slate_wipe(slate, mark);
+    return counts;
 }
 
 static RtExactVec vertex(RtSlate *slate, RtVec3 v) {
@@ -44,14 +46,14 @@ static RtExactVec vertex(RtSlate *slate, RtVec3 v) {
 
 /* ---- flat shapes ---- */
 
-static bool flat_hit(RtSlate *slate, const RtExactLine *line, RtRational t, RtSurd *out) {
-    *out = rt_surd_of(slate, t);
+static bool flat_hit(RtSlate *slate, const RtExactLine *line, RtRational t, RtPlace *out) {
+    *out = rt_place_of(slate, t);
     return rt_exact_counts(slate, line, out);
 }
 
 /* Edge functions are the volumes between direction and edge as seen from the origin. They sum to the normal's
  * part along the direction. */
-static bool triangle_hit(RtSlate *slate, const RtTriangle *triangle, const RtExactLine *line, RtSurd *t) {
+static bool triangle_hit(RtSlate *slate, const RtTriangle *triangle, const RtExactLine *line, RtPlace *t) {
     RtExactVec from[3], normals[3];
     RtRational edges[3];
     bool left = false, right = false;
@@ -101,7 +103,7 @@ static bool inside_polygon(RtSlate *slate, const RtPolygon *polygon, const RtVec
 
 /* About vertex 0: the sums are exact wherever they are taken. */
 static bool polygon_hit(RtSlate *slate, const RtPolygon *polygon, const RtVec3 *vertices,
-                        const RtExactLine *line, RtSurd *t) {
+                        const RtExactLine *line, RtPlace *t) {
     RtExactVec first = vertex(slate, vertices[0]), normal = rt_exact_vec(slate, (RtVec3d){0});
     RtExactVec sum = normal, last = normal;
     RtRational one = rt_exact_of(slate, 1);
@@ -123,7 +125,7 @@ static bool polygon_hit(RtSlate *slate, const RtPolygon *polygon, const RtVec3 *
 
 /* ---- round shapes ---- */
 
-static bool sphere_hit(RtSlate *slate, const RtSphere *sphere, const RtExactLine *line, RtSurd *t) {
+static bool sphere_hit(RtSlate *slate, const RtSphere *sphere, const RtExactLine *line, RtPlace *t) {
     RtExactVec org = rt_exact_vec_sub(slate, line->org, vertex(slate, sphere->center));
     RtRational radius = rt_exact_of(slate, (double)sphere->radius);
     RtRational c = rt_exact_sub(slate, rt_exact_dot(slate, org, org), rt_exact_mul(slate, radius, radius));
@@ -131,7 +133,7 @@ static bool sphere_hit(RtSlate *slate, const RtSphere *sphere, const RtExactLine
     int count = rt_exact_roots(slate, rt_exact_dot(slate, line->dir, line->dir),
                                rt_exact_dot(slate, org, line->dir), c, roots);
     for (int i = 0; i < count; i++) {
-        *t = roots[i];
+        *t = rt_place_of_surd(&roots[i]);
         if (rt_exact_counts(slate, line, t)) return true;
     }
     return false;
@@ -139,7 +141,7 @@ static bool sphere_hit(RtSlate *slate, const RtSphere *sphere, const RtExactLine
 
 /* With s the height in parts of the axis (0 at the base, 1 at the apex) and H the square of its length, the
  * side is where |p - base|^2 - H s^2 = (r0 + (r1 - r0) s)^2: no root is taken to get there. */
-static bool cone_hit(RtSlate *slate, const RtCone *cone, const RtExactLine *line, RtSurd *t) {
+static bool cone_hit(RtSlate *slate, const RtCone *cone, const RtExactLine *line, RtPlace *t) {
     RtExactVec base = vertex(slate, cone->base), org = rt_exact_vec_sub(slate, line->org, base),
                dir = line->dir;
     RtExactVec axis = rt_exact_vec_sub(slate, vertex(slate, cone->apex), base);
@@ -165,8 +167,9 @@ static bool cone_hit(RtSlate *slate, const RtCone *cone, const RtExactLine *line
     int count = rt_exact_roots(slate, form[2], form[1], form[0], roots);
     RtRational beyond = rt_exact_sub(slate, s, rt_exact_of(slate, 1));
     for (int i = 0; i < count; i++) {
-        *t = roots[i];
-        RtSurd over = rt_surd_line(slate, s, ds, t), under = rt_surd_line(slate, beyond, ds, t);
+        *t = rt_place_of_surd(&roots[i]);
+        RtSurd over = rt_surd_line(slate, s, ds, &roots[i]),
+               under = rt_surd_line(slate, beyond, ds, &roots[i]);
         if (rt_surd_sign(slate, &over) < 0 || rt_surd_sign(slate, &under) > 0) continue;
         if (rt_exact_counts(slate, line, t)) return true;
     }
@@ -174,7 +177,7 @@ static bool cone_hit(RtSlate *slate, const RtCone *cone, const RtExactLine *line
 }
 
 RtFinding rt_exact_hit(RtSlate *slate, const RtGeometry *geometry, uint32_t id, const RtExactLine *line,
-                       RtSurd *t) {
+                       RtPlace *t) {
     uint32_t index = rt_ref_index(geometry->objects[id]);
     bool hit = false;
     switch (rt_ref_shape(geometry->objects[id])) {

@@ -12,14 +12,14 @@
  * the tree begins or ends, by the one rule of csg.h with places that are numbers, not float32: walls have no
  * least thickness. Solids are what their place, ratio and planes say in double, meshes what their triangles
  * say in float32 (solid.h). A line through an edge of a mesh, or in the plane of a face, passes beside it, on
- * the side that exact_mesh.c names. Tori, whose equation is of degree 4, are undecided.
+ * the side that exact_mesh.c names.
  *
  * Edges, vertices, circles and the ends of the interval belong to it: all sets are closed. The own box of an
  * object plays no part. */
 #ifndef RT_EXPERIMENTS_EXACT_HIT_H
 #define RT_EXPERIMENTS_EXACT_HIT_H
 
-#include "experiments/exact.h"
+#include "experiments/place.h"
 #include "shape/geometry.h"
 
 /* A ray whose origin need not be float32. */
@@ -42,7 +42,7 @@ bool rt_line_may_meet(const RtWideRay *line, const RtBox *box, double *soonest);
 typedef struct RtExactLine {
     RtWideRay wide;
     RtExactVec org, dir;
-    RtRational tmin, tmax;
+    RtRational zero, tmin, tmax;
 } RtExactLine;
 
 RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line);
@@ -50,13 +50,13 @@ RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line);
 typedef enum RtFinding { RT_MISSED, RT_HIT, RT_UNDECIDED } RtFinding;
 
 /* Does the line meet object `id` within [tmin, tmax]? If so *t is the first such place. Undecided: a CSG tree
- * with a torus, or one whose crossings memory does not suffice for. */
+ * whose crossings memory does not suffice for, and nothing else. */
 RtFinding rt_exact_hit(RtSlate *slate, const RtGeometry *geometry, uint32_t id, const RtExactLine *line,
-                       RtSurd *t);
+                       RtPlace *t);
 
 /* The part of it that is about trees, in exact_csg.c. */
 RtFinding rt_exact_csg_hit(RtSlate *slate, const RtCsgForest *forest, const RtCsg *tree,
-                           const RtExactLine *line, RtSurd *t);
+                           const RtExactLine *line, RtPlace *t);
 
 /* And about meshes, in exact_mesh.c: where the whole line goes in and out of mesh solid `index`, by turns and
  * in ascending order. *places is the caller's, who frees it by rt_free. */
@@ -64,6 +64,6 @@ RtStatus rt_exact_mesh_places(RtSlate *slate, const RtSolidSet *set, uint32_t in
                               RtRational **places, uint32_t *count, RtError *error);
 
 /* Is t within [tmin, tmax]? */
-bool rt_exact_counts(RtSlate *slate, const RtExactLine *line, const RtSurd *t);
+bool rt_exact_counts(RtSlate *slate, const RtExactLine *line, const RtPlace *t);
 
 #endif

@@ -22,7 +22,7 @@ typedef struct Search {
     const RtGeometry *geometry;
     RtWideRay line;
     RtExactLine exact;
-    RtSurd best;
+    RtPlace best;
     RtRuling ruling;
     double open; /* the soonest t at which an undecided object may be met */
 } Search;
@@ -38,18 +38,19 @@ static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray)
 /* Numbers of what is not the nearest are forgotten at once. */
 static void consider(Search *s, uint32_t id, double soonest) {
     size_t mark = rt_slate_mark(&s->slate);
-    RtSurd t;
+    RtPlace t;
     RtFinding finding = rt_exact_hit(&s->slate, s->geometry, id, &s->exact, &t);
     if (finding == RT_UNDECIDED) s->open = fmin(s->open, soonest);
     int order = -1;
-    if (finding == RT_HIT && s->ruling.together > 0) order = rt_surd_compare(&s->slate, &t, &s->best);
+    if (finding == RT_HIT && s->ruling.together > 0) order = rt_place_compare(&s->slate, &t, &s->best);
     if (finding != RT_HIT || order >= 0) {
         if (finding == RT_HIT && order == 0) s->ruling.together++;
         rt_slate_wipe(&s->slate, mark);
         return;
     }
     s->best = t;
-    s->ruling = (RtRuling){.finding = RT_HIT, .object = id, .together = 1, .t = rt_surd_value(&s->slate, &t)};
+    s->ruling = (RtRuling){
+        .finding = RT_HIT, .object = id, .together = 1, .t = rt_place_value(&s->slate, &t, s->exact.zero)};
 }
 
 static void search(Search *s) {
@@ -115,9 +116,9 @@ RtRuling rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit ex
 RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
     RtSlate slate = {0};
     RtExactLine exact = rt_exact_line(&slate, line);
-    RtSurd at;
+    RtPlace at;
     RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);
-    if (finding == RT_HIT) *t = rt_surd_value(&slate, &at);
+    if (finding == RT_HIT) *t = rt_place_value(&slate, &at, exact.zero);
     rt_slate_clear(&slate);
     return finding;
 }
@@ -127,12 +128,13 @@ RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, c
     RtSlate slate = {0};
     RtWideRay line = rt_wide_ray(ray);
     RtExactLine exact = rt_exact_line(&slate, &line);
-    RtSurd at[2];
+    RtPlace at[2];
     RtFinding finding = rt_exact_hit(&slate, geometry, a, &exact, &at[0]);
     if (finding == RT_HIT) finding = rt_exact_hit(&slate, geometry, b, &exact, &at[1]);
     if (finding == RT_HIT) {
-        *order = rt_surd_compare(&slate, &at[0], &at[1]);
-        *apart = *order == 0 ? 0 : fabsl(rt_surd_value(&slate, &at[0]) - rt_surd_value(&slate, &at[1]));
+        *order = rt_place_compare(&slate, &at[0], &at[1]);
+        long double first = rt_place_value(&slate, &at[0], exact.zero);
+        *apart = *order == 0 ? 0 : fabsl(first - rt_place_value(&slate, &at[1], exact.zero));
     }
     rt_slate_clear(&slate);
     return finding;
@@ -143,12 +145,11 @@ RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay 
     RtSlate slate = {0};
     RtWideRay line = rt_wide_ray(ray);
     RtExactLine exact = rt_exact_line(&slate, &line);
-    RtSurd at;
+    RtPlace at;
     RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);
     if (finding == RT_HIT) {
-        long double ulp = rt_float_ulp(rt_surd_value(&slate, &at));
-        at.p = rt_exact_sub(&slate, at.p, rt_exact_of(&slate, (double)t));
-        *ulps = -rt_surd_value(&slate, &at) / ulp;
+        long double ulp = rt_float_ulp(rt_place_value(&slate, &at, exact.zero));
+        *ulps = -rt_place_value(&slate, &at, rt_exact_of(&slate, (double)t)) / ulp;
     }
     rt_slate_clear(&slate);
     return finding;

@@ -1,6 +1,6 @@
 /* The referee: which of two answers to a ray is right, in exact arithmetic from the float32 input alone
  * (experiments/exact_hit.h). It trusts no margin and no hit function, and takes some 0.1 ms per object that
- * the ray comes near to: it is asked where others disagree.
+ * the ray comes near to, a few ms at a tree of many tori: it is asked where others disagree.
  *
  * What is exact about an answer is its object. Its t is a rounded number, and two objects nearer to one
  * another than rounding are told apart by luck: hence the tolerance. An answer is right if its object is met,
@@ -20,7 +20,7 @@
     X(EXPECTED, expected, "the expected answer alone is right")                                              \
     X(GOT, got, "the other answer alone is right")                                                           \
     X(NEITHER, neither, "none is right")                                                                     \
-    X(UNDECIDED, undecided, "a torus of a CSG tree may be nearest, which is not decided")
+    X(UNDECIDED, undecided, "memory did not suffice to decide on a CSG tree that may be nearest")
 
 typedef enum RtSide {
 #define RT_SIDE_ENUM(CONSTANT, name, meaning) RT_SIDE_##CONSTANT,

@@ -80,11 +80,12 @@ static RtRay ray_from(float x, float y, float z, float dx, float dy, float dz) {
     return (RtRay){.org = {{x, y, z}}, .dir = {{dx, dy, dz}}, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
 }
 
-/* t, INFINITY for a miss, NaN if undecided. */
+/* t, INFINITY for a miss. */
 static long double first_t(const RtGeometry *g, uint32_t id, const RtRay *ray) {
     long double t = HUGE_VALL;
     RtWideRay line = rt_wide_ray(ray);
-    return rt_referee_hit(g, id, &line, &t) == RT_UNDECIDED ? (long double)NAN : t;
+    assert_int_not_equal(rt_referee_hit(g, id, &line, &t), RT_UNDECIDED);
+    return t;
 }
 
 static long double first_t_within(const RtGeometry *g, uint32_t id, RtRay ray, float tmin, float tmax) {
@@ -302,15 +303,12 @@ static void trees_are_met_where_their_inside_begins_and_ends(void **state) {
     uint32_t solid;
     assert_ok(rt_solid_add_frustum(&b.set, rt_vec3(0, 0, 0), 5, rt_vec3(8, 0, 0), 0, &solid, error));
     RtCsgTerm cone = solid_term(&b, solid);
-    assert_ok(rt_solid_add_ring(&b.set, rt_vec3(0, 0, 0), rt_vec3(0, 0, 1), 3, 1, &solid, error));
-    RtCsgTerm ring = solid_term(&b, solid);
     add_tree(&g, &b, RT_CSG_UNION, ball, touching);    /* 0 */
     add_tree(&g, &b, RT_CSG_DIFFERENCE, ball, cube);   /* 1 */
     add_tree(&g, &b, RT_CSG_INTERSECTION, ball, cube); /* 2 */
     add_tree(&g, &b, RT_CSG_DIFFERENCE, ball, ball);   /* 3 */
     add_tree(&g, &b, RT_CSG_INTERSECTION, room, wall); /* 4: an ulp thick */
     add_tree(&g, &b, RT_CSG_UNION, cone, cone);        /* 5 */
-    add_tree(&g, &b, RT_CSG_UNION, ring, cube);        /* 6 */
     assert_ok(rt_geometry_finish(&g, error));
     RtRay x = ray_from(-8, 0, 0, 1, 0, 0), within = x;
     within.tmin = 4;
@@ -327,7 +325,6 @@ static void trees_are_met_where_their_inside_begins_and_ends(void **state) {
     assert_true(first_t_within(&g, 5, x, 9, INFINITY) == 16);
     RtRay down = ray_from(4, 0, 8, 0, 0, -1); /* the cone's radius is 2.5 there */
     assert_true(fabsl(first_t(&g, 5, &down) - 5.5L) <= 0x1p-50L);
-    assert_true(isnan(first_t(&g, 6, &x)));
     rt_csg_builder_clear(&b);
     rt_geometry_clear(&g);
 }
