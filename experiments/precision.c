@@ -91,7 +91,7 @@ static RtStatus add_octahedron(RtCsgBuilder *b, RtRandom *random, RtVec3 center,
     return rt_solid_add_mesh(&b->set, triangles, 8, &still, solid, error);
 }
 
-/* (a ball or a box), or an octahedron, without a frustum that is long enough to pass through. */
+/* (a ball or a box), an octahedron or a ring, without a frustum that is long enough to pass through. */
 static RtStatus make_tree(RtCsgBuilder *b, RtSubject subject, RtRandom *random, float scale, RtCsgTerm *root,
                           RtError *error) {
     uint32_t solid;
@@ -106,6 +106,10 @@ static RtStatus make_tree(RtCsgBuilder *b, RtSubject subject, RtRandom *random, 
     RT_TRY(rt_csg_solid(b, solid, 0, &drill, error));
     if (subject == RT_SUBJECT_MESH) {
         RT_TRY(add_octahedron(b, random, center, size, &solid, error));
+        RT_TRY(rt_csg_solid(b, solid, 0, root, error));
+    } else if (subject == RT_SUBJECT_TORUS) {
+        RtVec3 axis = rt_narrow(rt_random_direction(random));
+        RT_TRY(rt_solid_add_ring(&b->set, center, axis, size, thick, &solid, error));
         RT_TRY(rt_csg_solid(b, solid, 0, root, error));
     } else {
         RT_TRY(rt_solid_add_ellipsoid(&b->set, center, rt_vec3(size, size, size), &solid, error));

@@ -14,10 +14,11 @@
     X(TRIANGLE, triangle)                                                                                    \
     X(CONE, cone)                                                                                            \
     X(CSG, csg)                                                                                              \
-    X(MESH, mesh)
+    X(MESH, mesh)                                                                                            \
+    X(TORUS, torus)
 
-/* Trees are of spheres, boxes and frusta; that of a mesh is an octahedron, turned, every other one with a
- * dent, without a frustum. */
+/* Trees are of spheres, boxes and frusta. Those of a mesh are an octahedron, turned, every other one with a
+ * dent, without a frustum; those of a torus are one without a frustum. */
 typedef enum RtSubject {
 #define RT_SUBJECT_ENUM(CONSTANT, name) RT_SUBJECT_##CONSTANT,
     RT_SUBJECTS(RT_SUBJECT_ENUM)
