@@ -4,6 +4,9 @@
 #define SHIFT     0x1p-21
 #define TOLERANCE 0x1p-18
 
+/* Sums of a few products of this size are more than float32 holds. */
+#define OVERFLOW_SIZE 0x1p124
+
 enum { PROBES = 28 }; /* unmoved first, straightened last */
 
 /* One ray, moved by the error bound, with its interval widened and narrowed. */
@@ -132,7 +135,7 @@ static bool must_count(const Probes *p, const RtRay *ray, double lo, double hi) 
 
 /* The edge functions, their sum and the height above the plane are triple products of vectors that are wrong
  * by `error` each, and a side, which is a difference of two and up to twice as long, by 2 `error`; a plane
- * seen edge on is hit anywhere along the ray. */
+ * seen edge on is hit anywhere along the ray, and so is one where the products overflow. */
 static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, const Probes *p) {
     RtVec3d dir = rt_widen(ray->dir), from[3], side[3];
     double longest = 0, least = HUGE_VAL, most = -HUGE_VAL, sum = 0;
@@ -148,7 +151,9 @@ static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, cons
     Margin m = impossible;
     double error = 4 * p->error * longest * rt_lengthd(dir);
     if (least < -error && most > error) return m;
-    if (fabs(sum) <= 3 * error) {
+    double farthest = fmax(rt_lengthd(from[0]), fmax(rt_lengthd(from[1]), rt_lengthd(from[2])));
+    bool overflows = farthest * longest * fmax(longest, rt_lengthd(dir)) > OVERFLOW_SIZE;
+    if (fabs(sum) <= 3 * error || overflows) {
         return (Margin){.possible = true, .lo = {-HUGE_VAL, HUGE_VAL}, .hi = {HUGE_VAL, -HUGE_VAL}};
     }
     double t = rt_dotd(rt_crossd(side[0], side[1]), from[0]) / sum;

@@ -12,11 +12,12 @@
  *
  * For triangles and spheres, which such an accelerator tests by arithmetic of its own, the margin is computed
  * in double: edge functions within their error of 0, and t with an error that grows as the plane is seen edge
- * on; distance of the line from the centre within the error of the radius, and every t on the chord between
- * the smaller and the larger sphere. Other shapes are tested by our hit functions, and their margin is found
- * by trying: the ray is moved by half the error along the 26 directions of a cube's faces, edges and corners,
- * and once its direction loses all components below 2^-24 of the largest; its interval is once widened and
- * once narrowed by the tolerance; t lies between those found for the front or between those for the back.
+ * on, or anything where products of three lengths overflow float32; distance of the line from the centre
+ * within the error of the radius, and every t on the chord between the smaller and the larger sphere. Other
+ * shapes are tested by our hit functions, and their margin is found by trying: the ray is moved by half the
+ * error along the 26 directions of a cube's faces, edges and corners, and once its direction loses all
+ * components below 2^-24 of the largest; its interval is once widened and once narrowed by the tolerance; t
+ * lies between those found for the front or between those for the back.
  *
  * An object that is hit all over its margin is certain, one that is hit somewhere is possible. An answer that
  * names a possible or certain object, at a t that is possible for it, with no certain object clearly before

@@ -146,6 +146,19 @@ static void a_needle_seen_edge_on_is_a_margin(void **state) {
     assert_false(reply.wrong);
 }
 
+/* A triangle of 2^39, 2^54 away: the dot product of its corner and its normal, 2^134, is beyond float32. */
+static void where_products_overflow_is_a_margin_and_no_hit_at_infinity(void **state) {
+    (void)state;
+    RtReply reply = ask_native("family:slivers-scaled,seed=16", "embree",
+                               (RtRay){.org = {{0x1.d29b58p+53f, -0x1.469a9ap+53f, -0x1.cc3184p+51f}},
+                                       .dir = {{-0x1.9b2646p-1f, 0x1.1fcc8cp-1f, 0x1.95666cp-3f}},
+                                       .tmax = INFINITY,
+                                       .kind = RT_RAY_RANDOM});
+    assert_int_equal(reply.expected.object, 95);
+    assert_int_equal(reply.got.object, RT_NO_OBJECT);
+    assert_false(reply.wrong);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(native_mode_agrees_with_brute_on_triangles),
@@ -153,6 +166,7 @@ int main(void) {
         cmocka_unit_test(native_mode_takes_every_valid_ray),
         cmocka_unit_test(a_component_that_embree_drops_is_a_margin),
         cmocka_unit_test(a_needle_seen_edge_on_is_a_margin),
+        cmocka_unit_test(where_products_overflow_is_a_margin_and_no_hit_at_infinity),
     };
     if (!embree_is_built_in()) return RT_TEST_SKIPPED;
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -162,10 +162,12 @@ RT_KERNEL void trace_chunk(const RtEmbree *self, Batch *batch, RtEmbreeContext *
 
 /* ---- hits out ---- */
 
+/* A hit at infinity, where Embree's products overflow, is none. */
 RT_KERNEL RtHit native_hit(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray) {
     uint32_t slot = word_of(batch, lanes, i, RT_EMBREE_GEOMETRY)->u;
     if (slot == RTC_INVALID_GEOMETRY_ID) return RT_MISS;
     double t = (double)word_of(batch, lanes, i, RT_EMBREE_TFAR)->f * stretch_of(ray->dir);
+    if (!(t <= (double)FLT_MAX)) return RT_MISS;
     return (RtHit){(float)t, self->slots[slot].ids[word_of(batch, lanes, i, RT_EMBREE_PRIMITIVE)->u]};
 }
 
