@@ -59,6 +59,31 @@ static void a_tree_lies_within_its_extents(void **state) {
     }
 }
 
+/* The reach of an intersection is the lesser of two, which may end before the box does where they do not
+ * meet: a gap along the diagonal of boxes that overlap, and one between boxes. */
+static void a_tree_without_inside_reaches_into_its_box(void **state) {
+    (void)state;
+    RtRandom random = rt_random(9, 0);
+    static const float apart[2] = {1.3f, 3};
+    for (uint32_t i = 0; i < 2; i++) {
+        RtCsgBuilder b = {0};
+        RtCsgForest forest = {0};
+        RtCsgTerm other = ball(&b, rt_vec3(apart[i], apart[i], 0), 0.5f, 0);
+        RtCsg tree = plant(&forest, &b, meet(&b, ball(&b, rt_vec3(0, 0, 0), 1, 0), other));
+        for (uint32_t k = 0; k < 100; k++) {
+            RtVec3d direction = rt_random_direction(&random);
+            double least = 0, most = 0, reach = rt_csg_support(&forest, &tree, direction);
+            for (int a = 0; a < 3; a++) {
+                double lo = direction.at[a] * (double)tree.box.lo.at[a];
+                double hi = direction.at[a] * (double)tree.box.hi.at[a];
+                least += fmin(lo, hi), most += fmax(lo, hi);
+            }
+            assert_true(least <= reach && reach <= most);
+        }
+        clear(&forest, &b);
+    }
+}
+
 /* ---- transforms ---- */
 
 /* A ball at x = 4 is turned to y = 4 and then moved to x = 8: not the other way round, to y = 12. */
@@ -291,6 +316,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tests_of_inner_nodes_change_no_bit),
         cmocka_unit_test(a_tree_lies_within_its_extents),
+        cmocka_unit_test(a_tree_without_inside_reaches_into_its_box),
         cmocka_unit_test(the_inner_move_comes_first),
         cmocka_unit_test(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits),
         cmocka_unit_test(moving_the_tree_and_moving_the_ray_agree),

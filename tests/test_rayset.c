@@ -241,6 +241,25 @@ static void every_allocation_of_a_recording_may_fail(void **state) {
     assert_ok(rt_scene_sample(&stage->scene, 50, 37, 1, false, error));
 }
 
+/* There is no room for the usual distance behind it: the camera and the light that every scene gets are put
+ * as far off as rays may begin. */
+static void a_scene_at_the_end_of_coordinates_is_seen_and_lit(void **state) {
+    (void)state;
+    RtScene scene;
+    RtMaterial grey = rt_default_material();
+    uint32_t material;
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &grey, &material, error));
+    assert_ok(rt_scene_add_sphere(&scene, material, rt_vec3(0, 0, 0), 0.9f * RT_MAX_COORDINATE, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_int_equal(scene.light_count, 1);
+    RtRay ray = {.org = scene.camera.from, .dir = {1, 0, 0}};
+    assert_true(rt_ray_is_valid(&ray));
+    ray.org = scene.lights[0].position;
+    assert_true(rt_ray_is_valid(&ray));
+    rt_scene_clear(&scene);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_ray_is_valid_and_of_its_kind),
@@ -252,6 +271,7 @@ int main(void) {
         cmocka_unit_test(thinning_keeps_every_nth_ray_and_a_limit_holds),
         cmocka_unit_test(a_limit_keeps_runs_of_neighbours_together_all_over_the_set),
         cmocka_unit_test(every_allocation_of_a_recording_may_fail),
+        cmocka_unit_test(a_scene_at_the_end_of_coordinates_is_seen_and_lit),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

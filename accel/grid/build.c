@@ -20,7 +20,7 @@ typedef struct Builder {
 typedef struct Cut {
     const Builder *builder;
     RtGridLevel *from, *to;
-    double bytes;  /* estimated for the new level */
+    double bytes;  /* of the levels that stand, and estimated for the new one */
     size_t planes; /* of the new level's blocks; then of those that have theirs */
 } Cut;
 
@@ -35,7 +35,8 @@ static bool divisible(const RtGrid *grid, const RtBox *box, const uint32_t *ids,
     return false;
 }
 
-/* Numbers the voxels that are to be cut, and says what they will take. A grid of one voxel is none. */
+/* Numbers the voxels that are to be cut, and says what they will take, until that is too much. A grid of one
+ * voxel is none. */
 static RtStatus choose_voxel(void *context, const RtGridVoxel *voxel) {
     Cut *cut = context;
     const Builder *builder = cut->builder;
@@ -47,9 +48,11 @@ static RtStatus choose_voxel(void *context, const RtGridVoxel *voxel) {
     rt_grid_choose_resolution(&voxel->box, count, builder->values, n);
     if ((size_t)n[0] * n[1] * n[2] == 1) return RT_OK;
     cut->from->inner[voxel->number] = cut->to->block_count++;
-    cut->bytes += rt_grid_estimate(builder->grid, &voxel->box, n, ids, count);
-    cut->planes += (size_t)n[0] + n[1] + n[2] + 3;
-    return RT_OK;
+    size_t planes = (size_t)n[0] + n[1] + n[2] + 3;
+    cut->planes += planes;
+    cut->bytes += rt_grid_estimate(builder->grid, &voxel->box, n, ids, count) +
+                  (double)(planes * sizeof(float) + sizeof(RtGridBlock));
+    return cut->bytes <= (double)builder->limit ? RT_OK : RT_BAD_INPUT;
 }
 
 /* Gives a block its planes, the next ones of the level. */
@@ -94,15 +97,12 @@ static RtStatus cut_level(const Builder *builder, uint32_t depth) {
     if (!cut.from->inner) {
         return rt_fail_memory(builder->error, "nested grids", cut.from->voxel_count * sizeof(uint32_t));
     }
-    rt_grid_each_voxel(cut.from, choose_voxel, &cut);
-    double bytes = cut.bytes + (double)(cut.planes * sizeof(float)) +
-                   (double)(cut.to->block_count * sizeof(RtGridBlock));
     for (uint32_t level = 0; level < depth; level++)
-        bytes += (double)rt_grid_level_bytes(&grid->levels[level]);
-    if (bytes > (double)builder->limit) {
+        cut.bytes += (double)rt_grid_level_bytes(&grid->levels[level]);
+    if (rt_grid_each_voxel(cut.from, choose_voxel, &cut) != RT_OK) {
         return rt_fail(builder->error, RT_BAD_INPUT,
-                       "%u levels of grids would take up to %.3g GiB, more than %.3g GiB: depth=%u would fit",
-                       depth + 1, bytes / 0x1p30, (double)builder->limit / 0x1p30, depth);
+                       "%u levels of grids may take more than %.3g GiB: depth=%u would fit", depth + 1,
+                       (double)builder->limit / 0x1p30, depth);
     }
     RT_TRY(allocate_blocks(cut.to, cut.planes, builder->error));
     cut.planes = 0;

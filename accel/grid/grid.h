@@ -16,6 +16,7 @@
 
 #include "accel/accel.h"
 #include "accel/surface.h"
+#include "shape/overlap.h"
 
 enum {
     RT_GRID_RULE,
@@ -88,7 +89,7 @@ RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range);
 RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box);
 
 /* With overlap=exact, whether an object belongs into a voxel of this box that its own box touches. */
-bool rt_grid_surface_meets(const RtGrid *grid, uint32_t id, const RtBox *box);
+bool rt_grid_surface_meets(const RtGrid *grid, const RtOutline *outline, const RtBox *box);
 
 /* Calls `take` for ranges that together hold each voxel of the block that is to list object `id`, once. The
  * object belongs into the block. */

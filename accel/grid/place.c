@@ -6,7 +6,6 @@
  * those and list the object. A test that halves a range says no only for what none of its voxels comes near.
  * With `slack` both boxes and surfaces may be so much farther away, which makes lists longer only. */
 #include "accel/grid/grid.h"
-#include "shape/overlap.h"
 
 RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id) {
     RtBox box = grid->base.scene->geometry.boxes[id];
@@ -26,8 +25,8 @@ RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range) {
     return box;
 }
 
-bool rt_grid_surface_meets(const RtGrid *grid, uint32_t id, const RtBox *box) {
-    return rt_object_meets_box(&grid->base.scene->geometry, id, box, grid->slack + grid->served.margin);
+bool rt_grid_surface_meets(const RtGrid *grid, const RtOutline *outline, const RtBox *box) {
+    return rt_outline_meets_box(outline, box, grid->slack + grid->served.margin);
 }
 
 /* The intervals of planes on `axis` that [lo, hi], which meets the block, takes: first to last. An interval
@@ -79,9 +78,10 @@ void rt_grid_place(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
         take(context, &range);
         return;
     }
+    RtOutline outline = rt_object_outline(&grid->base.scene->geometry, id);
     for (;;) {
         RtBox box = rt_grid_range_box(block, &range);
-        if (rt_grid_surface_meets(grid, id, &box)) {
+        if (rt_grid_surface_meets(grid, &outline, &box)) {
             if (halve(&range, &stack[stacked])) {
                 stacked++;
                 continue;

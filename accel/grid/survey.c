@@ -82,8 +82,9 @@ void rt_grid_describe(const RtAccel *accel, RtDescription *out) {
 
 typedef struct Check {
     const RtGrid *grid;
-    uint64_t *listed; /* [object_count] voxels that list each object */
-    uint32_t nested;  /* blocks that the voxels so far hold */
+    uint64_t *listed;    /* [object_count] voxels that list each object */
+    RtOutline *outlines; /* [object_count] */
+    uint32_t nested;     /* blocks that the voxels so far hold */
     RtError *error;
 } Check;
 
@@ -126,7 +127,7 @@ static RtStatus check_voxel(void *context, const RtGridVoxel *voxel) {
         }
         RtBox object = rt_grid_object_box(grid, id);
         bool apart = rt_box_is_empty(rt_box_common(voxel->box, object));
-        if (grid->surfaces) apart |= !rt_grid_surface_meets(grid, id, &voxel->box);
+        if (grid->surfaces) apart |= !rt_grid_surface_meets(grid, &check->outlines[id], &voxel->box);
         if (apart) return fail_voxel(check, voxel, "lists an object which it does not touch");
         check->listed[id]++;
     }
@@ -172,7 +173,8 @@ static uint32_t count_touched(const RtGridBlock *block, int axis, const RtBox *b
 
 /* Voxels of a block, and of those nested in it, that ought to list an object: one by one, where building
  * halves ranges. */
-static uint64_t voxels_touched(const RtGrid *grid, const RtGridLevel *level, uint32_t index, uint32_t id) {
+static uint64_t voxels_touched(const Check *check, const RtGridLevel *level, uint32_t index, uint32_t id) {
+    const RtGrid *grid = check->grid;
     const RtGridBlock *block = &level->blocks[index];
     RtBox object = rt_grid_object_box(grid, id);
     uint32_t first[3], n[3], at[3];
@@ -184,12 +186,29 @@ static uint64_t voxels_touched(const RtGrid *grid, const RtGridLevel *level, uin
                 const RtGridRange range = {{at[0], at[1], at[2]}, {at[0], at[1], at[2]}};
                 RtBox box = rt_grid_range_box(block, &range);
                 uint32_t inner = rt_grid_inner(level, rt_grid_voxel_at(block, at));
-                if (grid->surfaces && !rt_grid_surface_meets(grid, id, &box)) continue;
-                met += inner == RT_GRID_LEAF ? 1 : voxels_touched(grid, level + 1, inner, id);
+                if (grid->surfaces && !rt_grid_surface_meets(grid, &check->outlines[id], &box)) continue;
+                met += inner == RT_GRID_LEAF ? 1 : voxels_touched(check, level + 1, inner, id);
             }
         }
     }
     return met;
+}
+
+/* Each level by itself, and each object against the voxels that ought to list it. */
+static RtStatus check_lists(Check *check) {
+    const RtGrid *grid = check->grid;
+    const RtGeometry *g = &grid->base.scene->geometry;
+    RtStatus status = RT_OK;
+    for (uint32_t id = 0; id < g->object_count; id++) check->outlines[id] = rt_object_outline(g, id);
+    for (uint32_t i = 0; status == RT_OK && i < grid->depth; i++)
+        status = check_level(check, &grid->levels[i]);
+    for (uint32_t id = 0; status == RT_OK && id < g->object_count; id++) {
+        uint64_t touched = voxels_touched(check, &grid->levels[0], 0, id);
+        if (check->listed[id] == touched) continue;
+        status = rt_fail(check->error, RT_MISMATCH, "grid: object %u touches %llu voxels, but %llu list it",
+                         id, (unsigned long long)touched, (unsigned long long)check->listed[id]);
+    }
+    return status;
 }
 
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
@@ -205,18 +224,14 @@ RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
     if (!rt_box_contains(grid->box, g->box)) {
         return rt_fail(error, RT_MISMATCH, "grid: its box does not contain the scene");
     }
-    Check check = {grid, rt_alloc(g->object_count, sizeof(uint64_t)), 0, error};
-    if (!check.listed) return rt_fail_memory(error, "validating a grid", g->object_count * sizeof(uint64_t));
-    RtStatus status = RT_OK;
-    for (uint32_t i = 0; status == RT_OK && i < grid->depth; i++)
-        status = check_level(&check, &grid->levels[i]);
-    for (uint32_t id = 0; status == RT_OK && id < g->object_count; id++) {
-        uint64_t touched = voxels_touched(grid, &grid->levels[0], 0, id);
-        if (check.listed[id] == touched) continue;
-        status = rt_fail(error, RT_MISMATCH, "grid: object %u touches %llu voxels, but %llu list it", id,
-                         (unsigned long long)touched, (unsigned long long)check.listed[id]);
-    }
+    size_t n = g->object_count;
+    Check check = {grid, rt_alloc(n, sizeof(uint64_t)), rt_alloc(n, sizeof(RtOutline)), 0, error};
+    RtStatus status =
+        check.listed && check.outlines
+            ? check_lists(&check)
+            : rt_fail_memory(error, "validating a grid", n * (sizeof(uint64_t) + sizeof(RtOutline)));
     rt_free(check.listed);
+    rt_free(check.outlines);
     return status;
 }
 

@@ -148,6 +148,14 @@ static bool same_point(RtVec3 a, RtVec3 b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
+/* The nearest point that may be an origin of rays. */
+static RtVec3 within_bounds(RtVec3d p) {
+    RtVec3 q;
+    for (int a = 0; a < 3; a++)
+        q.at[a] = rt_maxf(-RT_MAX_COORDINATE, rt_minf((float)p.at[a], RT_MAX_COORDINATE));
+    return q;
+}
+
 /* From the front, a little to the right and above, far enough for the bounding sphere to fill the view. */
 static void place_camera(RtCamera *camera, const RtBox *box) {
     RtVec3d center = {0, 0, 0};
@@ -166,7 +174,7 @@ static void place_camera(RtCamera *camera, const RtBox *box) {
     double half_angle = (double)camera->fov * (3.14159265358979323846 / 360);
     double distance = 1.05 * radius / sin(half_angle);
     camera->at = rt_narrow(center);
-    camera->from = rt_narrow(rt_add_scaledd(center, rt_normalized(towards), distance));
+    camera->from = within_bounds(rt_add_scaledd(center, rt_normalized(towards), distance));
 }
 
 RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
@@ -176,7 +184,7 @@ RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
     if (scene->light_count == 0) {
         RtVec3d above = rt_scaled(rt_widen(camera->up),
                                   0.5 * rt_lengthd(rt_subd(rt_widen(camera->from), rt_widen(camera->at))));
-        RtVec3 position = rt_narrow(rt_addd(rt_widen(camera->from), above));
+        RtVec3 position = within_bounds(rt_addd(rt_widen(camera->from), above));
         RT_TRY(rt_scene_add_light(scene, position, rt_vec3(1, 1, 1), error));
     }
     return rt_scene_sample(scene, 0, 0, 1, false, error);

@@ -150,7 +150,8 @@ typedef struct RtCsgFacet {
 RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float t);
 
 /* Extents, as tight as the operations allow: an intersection reaches as far as the lesser of its operands, a
- * difference as its left side. */
+ * difference as its left side. Never beyond the box, nor short of it where solids that do not meet leave
+ * nothing. */
 double rt_csg_support(const RtCsgForest *forest, const RtCsg *tree, RtVec3d direction);
 RtBall rt_csg_ball(const RtCsgForest *forest, const RtCsg *tree); /* found anew; tree->ball is at hand */
 

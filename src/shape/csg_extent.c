@@ -55,7 +55,9 @@ static Extent combined_support(RtCsgOp op, Extent left, Extent right) {
 
 double rt_csg_support(const RtCsgForest *forest, const RtCsg *tree, RtVec3d direction) {
     const Rules rules = {solid_support, combined_support};
-    return fmin(extent_of(forest, tree, rules, direction).support, box_support(tree->box, direction));
+    double most = box_support(tree->box, direction),
+           least = -box_support(tree->box, rt_scaled(direction, -1));
+    return fmax(fmin(extent_of(forest, tree, rules, direction).support, most), least);
 }
 
 /* ---- balls ---- */

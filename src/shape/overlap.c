@@ -101,25 +101,39 @@ static bool sphere_meets(const RtSphere *sphere, const Block *block) {
     return nearest <= radius * radius && farthest >= radius * radius;
 }
 
-static bool frame_meets(const RtGeometry *geometry, uint32_t id, const Block *block) {
-    RtVec3d axes[3];
-    rt_object_frame(geometry, id, axes);
+static bool frame_meets(const RtOutline *outline, const Block *block) {
     for (int a = 0; a < 3; a++) {
-        double at = rt_dotd(axes[a], block->center);
-        double hi = rt_object_support(geometry, id, axes[a]);
-        double lo = -rt_object_support(geometry, id, rt_scaled(axes[a], -1));
-        if (beyond(block, axes[a], lo - at, hi - at)) return false;
+        double at = rt_dotd(outline->axes[a], block->center);
+        if (beyond(block, outline->axes[a], outline->lo[a] - at, outline->hi[a] - at)) return false;
     }
     return true;
 }
 
-bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin) {
+RtOutline rt_object_outline(const RtGeometry *geometry, uint32_t id) {
+    RtOutline outline = {.geometry = geometry, .id = id};
+    RtShape shape = rt_ref_shape(geometry->objects[id]);
+    if (shape != RT_SHAPE_CONE && shape != RT_SHAPE_CSG) return outline;
+    rt_object_frame(geometry, id, outline.axes);
+    for (int a = 0; a < 3; a++) {
+        outline.lo[a] = -rt_object_support(geometry, id, rt_scaled(outline.axes[a], -1));
+        outline.hi[a] = rt_object_support(geometry, id, outline.axes[a]);
+    }
+    return outline;
+}
+
+bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double margin) {
+    const RtGeometry *geometry = outline->geometry;
+    uint32_t id = outline->id;
     const RtBox *own = &geometry->boxes[id];
     Block block = grown_block(box, margin);
+    bool held = true;
     for (int a = 0; a < 3; a++) {
         double lo = (double)box->lo.at[a], hi = (double)box->hi.at[a];
-        if ((double)own->lo.at[a] - hi > margin || lo - (double)own->hi.at[a] > margin) return false;
+        double own_lo = (double)own->lo.at[a], own_hi = (double)own->hi.at[a];
+        if (own_lo - hi > margin || lo - own_hi > margin) return false;
+        held &= lo - own_lo <= margin && own_hi - hi <= margin;
     }
+    if (held) return true; /* what the grown box holds whole need not be looked at */
     uint32_t index = rt_ref_index(geometry->objects[id]);
     switch (rt_ref_shape(geometry->objects[id])) {
     case RT_SHAPE_TRIANGLE: return triangle_meets(&geometry->triangles[index], &block);
@@ -128,8 +142,13 @@ bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *b
         const RtPolygon *polygon = &geometry->polygons[index];
         return polygon_meets(polygon, geometry->polygon_vertices + polygon->first, &block);
     }
-    default: return frame_meets(geometry, id, &block);
+    default: return frame_meets(outline, &block);
     }
+}
+
+bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin) {
+    RtOutline outline = rt_object_outline(geometry, id);
+    return rt_outline_meets_box(&outline, box, margin);
 }
 
 /* ---- parts ---- */

@@ -5,10 +5,23 @@
 
 #include "shape/geometry.h"
 
-/* False only if every point of the surface of object `id`, as its hit function sees it, is more than `margin`
- * from `box` along some axis; a box inside a sphere is not met. Nearly always false then, for all shapes but
- * cones and concave polygons (taken as convex), where it may be true nearby. `margin` must be at least 2^-40
- * of the largest coordinate of the scene and the box, to cover rounding. */
+/* What is to be known of object `id` before it is asked about boxes, many as a rule. */
+typedef struct RtOutline {
+    const RtGeometry *geometry; /* borrowed */
+    uint32_t id;
+    RtVec3d axes[3];     /* of cones and CSG trees: rt_object_frame; of others not set */
+    double lo[3], hi[3]; /* their shadows on these axes */
+} RtOutline;
+
+RtOutline rt_object_outline(const RtGeometry *geometry, uint32_t id);
+
+/* False only if every point of the object's surface, as its hit function sees it, is more than `margin` from
+ * `box` along some axis; a box inside a sphere is not met. Nearly always false then, for all shapes but cones
+ * and concave polygons (taken as convex), where it may be true nearby. `margin` must be at least 2^-40 of the
+ * largest coordinate of the scene and the box, to cover rounding. */
+bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double margin);
+
+/* The same for one box. */
 bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin);
 
 /* To *out, a box about all points of `box` that are inside the object's own box and within `margin`, along
