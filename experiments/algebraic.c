@@ -85,8 +85,8 @@ static RtRational scaled(RtSlate *slate, RtRational x, long by) {
     return out;
 }
 
-/* Cuts the interval down to lo..hi, or to half as much about the end that is the root itself. False where the
- * root is elsewhere. Of two ends of the old interval neither is the root. */
+/* Cuts the interval down to lo..hi, of which one end at most is one of the old interval's; where the other is
+ * the root itself, to as much with the root in its middle. False where the root is elsewhere. */
 static bool cut_down(RtSlate *slate, RtAlgebraic *a, RtRational lo, RtRational hi) {
     int below = rt_polynomial_sign(slate, &a->of, lo), above = rt_polynomial_sign(slate, &a->of, hi);
     if (below * above > 0) return false;
@@ -135,7 +135,7 @@ static void narrow(RtSlate *slate, RtAlgebraic *a, RtRational width) {
 /* Sturm's; the last is the greatest common divisor of p and p'. */
 typedef struct Chain {
     int count;
-    RtPolynomial at[RT_MOST_DEGREE + 1];
+    RtPolynomial at[RT_MAX_DEGREE + 1];
 } Chain;
 
 static Chain chain_of(RtSlate *slate, const RtPolynomial *p) {
@@ -179,7 +179,7 @@ static RtRational point_between(RtSlate *slate, const RtPolynomial *p, RtRationa
     return lo;
 }
 
-int rt_polynomial_roots(RtSlate *slate, const RtPolynomial *p, RtAlgebraic roots[RT_MOST_DEGREE]) {
+int rt_polynomial_roots(RtSlate *slate, const RtPolynomial *p, RtAlgebraic roots[RT_MAX_DEGREE]) {
     RtPolynomial of = shortened(slate, *p);
     Chain chain = chain_of(slate, &of);
     const RtPolynomial twice = chain.at[chain.count - 1];

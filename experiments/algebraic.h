@@ -16,12 +16,12 @@
 
 #include "experiments/exact.h"
 
-#define RT_MOST_DEGREE 4
+#define RT_MAX_DEGREE 4
 
 /* The sum of at[i] t^i, i = 0..degree; at[degree] is not 0. The polynomial 0 has degree -1. */
 typedef struct RtPolynomial {
     int degree;
-    RtRational at[RT_MOST_DEGREE + 1];
+    RtRational at[RT_MAX_DEGREE + 1];
 } RtPolynomial;
 
 /* -1, 0, 1 */
@@ -39,7 +39,7 @@ typedef struct RtAlgebraic {
 /* The real roots of p, of degree 0 or more, in ascending order; gives their number. A multiple root is given
  * once: it is one that p changes its sign at if p has different signs at lo and hi. Intervals are no wider
  * than 2^-64 of the largest number that a root of p may be. */
-int rt_polynomial_roots(RtSlate *slate, const RtPolynomial *p, RtAlgebraic roots[RT_MOST_DEGREE]);
+int rt_polynomial_roots(RtSlate *slate, const RtPolynomial *p, RtAlgebraic roots[RT_MAX_DEGREE]);
 
 RtAlgebraic rt_algebraic_of_surd(RtSlate *slate, const RtSurd *surd);
 

@@ -40,9 +40,9 @@ typedef struct RtWitness {
 typedef struct RtEquivalence {
     uint64_t rays;
     uint64_t verdicts[RT_VERDICT_COUNT]; /* they sum to rays */
-    uint64_t
-        sides[RT_SIDE_COUNT]; /* rays with a marginal or wrong answer to `nearest`, by who is exactly right */
-    uint64_t occluded_wrong;  /* rays, whatever their verdict */
+    /* Rays with a marginal or wrong answer to `nearest`, by who is exactly right. */
+    uint64_t sides[RT_SIDE_COUNT];
+    uint64_t occluded_wrong; /* rays, whatever their verdict */
     bool any_wrong;
     RtWitness first_wrong; /* if any_wrong: of the ray with the lowest index */
 } RtEquivalence;

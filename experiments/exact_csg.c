@@ -152,8 +152,8 @@ static RtStatus push_cone(Machine *m, const RtSolid *solid, RtError *error) {
     return apply(m, RT_CSG_INTERSECTION, false, error);
 }
 
-/* Of c[0] + c[1] t + c[2] t^2 for the square of the distance of org + t dir from the origin, in the first
- * `axes` coordinates. */
+/* The square of the distance of org + t dir from the origin, in the first `axes` coordinates, is
+ * c[0] + c[1] t + c[2] t^2. */
 static void squared_distance(RtSlate *slate, const Standard *s, int axes, RtRational c[3]) {
     for (int i = 0; i < 3; i++) c[i] = rt_exact_of(slate, 0);
     for (int a = 0; a < axes; a++) {
@@ -186,7 +186,7 @@ static RtPolynomial torus_polynomial(RtSlate *slate, const RtSolid *solid, const
 static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
     Standard s = standard(m->slate, solid, m->line);
     RtPolynomial p = torus_polynomial(m->slate, solid, &s);
-    RtAlgebraic roots[RT_MOST_DEGREE];
+    RtAlgebraic roots[RT_MAX_DEGREE];
     int count = rt_polynomial_roots(m->slate, &p, roots);
     RT_TRY(push(m, false, NULL, 0, error));
     for (int i = 0; i < count; i++) {

@@ -2,17 +2,20 @@
  * of and nothing else. What an object is, exactly:
  *
  *   triangle   all points of its plane within or on its three edges. One without area, and a line in the
- * plane, have no hits. polygon    the points of its plane that, along the axis dropped by the hit function
- * (polygon.h), lie within or on the edges between its vertices, by the even-odd rule. Its plane goes through
- * the mean of the vertices and is perpendicular to Newell's normal, both exact; so it is also defined where
- * the vertices, being rounded, lie in no plane. Where they do the choice of the axis makes no difference.
+ *              plane, have no hits.
+ *   polygon    the points of its plane that, along the axis dropped by the hit function (polygon.h), lie
+ *              within or on the edges between its vertices, by the even-odd rule. Its plane goes through the
+ *              mean of the vertices and is perpendicular to Newell's normal, both exact; so it is also
+ *              defined where the vertices, being rounded, lie in no plane. Where they do the choice of the
+ *              axis makes no difference.
  *   sphere     the points whose distance from the centre is the radius. A tangent touches it.
  *   cone       its side: the points at a height 0..h along the axis whose distance from it is the radius
- * there, both circles and the tip included. A line along the side has no hits. CSG tree   where the inside of
- * the tree begins or ends, by the one rule of csg.h with places that are numbers, not float32: walls have no
- * least thickness. Solids are what their place, ratio and planes say in double, meshes what their triangles
- * say in float32 (solid.h). A line through an edge of a mesh, or in the plane of a face, passes beside it, on
- * the side that exact_mesh.c names.
+ *              there, both circles and the tip included. A line along the side has no hits.
+ *   CSG tree   where the inside of the tree begins or ends, by the one rule of csg.h with places that are
+ *              numbers, not float32: walls have no least thickness. Solids are what their place, ratio and
+ *              planes say in double, meshes what their triangles say in float32 (solid.h). A line through an
+ *              edge of a mesh, or in the plane of a face, passes beside it, on the side that exact_mesh.c
+ *              names.
  *
  * Edges, vertices, circles and the ends of the interval belong to it: all sets are closed. The own box of an
  * object plays no part. */
@@ -24,7 +27,7 @@
 
 /* A ray whose origin need not be float32. */
 typedef struct RtWideRay {
-    RtVec3d org, dir;  /* finite */
+    RtVec3d org, dir;  /* finite; dir, rounded to float32, is not 0 */
     double tmin, tmax; /* tmin finite */
 } RtWideRay;
 
@@ -58,8 +61,9 @@ RtFinding rt_exact_hit(RtSlate *slate, const RtGeometry *geometry, uint32_t id, 
 RtFinding rt_exact_csg_hit(RtSlate *slate, const RtCsgForest *forest, const RtCsg *tree,
                            const RtExactLine *line, RtPlace *t);
 
-/* And about meshes, in exact_mesh.c: where the whole line goes in and out of mesh solid `index`, by turns and
- * in ascending order. *places is the caller's, who frees it by rt_free. */
+/* And about meshes, in exact_mesh.c: where the whole line, whatever its interval, goes in and out of mesh
+ * solid `index`, by turns and in ascending order; places beyond FLT_MAX may be left out. *places is the
+ * caller's, who frees it by rt_free; the numbers are on the slate. */
 RtStatus rt_exact_mesh_places(RtSlate *slate, const RtSolidSet *set, uint32_t index, const RtExactLine *line,
                               RtRational **places, uint32_t *count, RtError *error);
 

@@ -17,8 +17,8 @@
     X(MESH, mesh)                                                                                            \
     X(TORUS, torus)
 
-/* Trees are of spheres, boxes and frusta. Those of a mesh are an octahedron, turned, every other one with a
- * dent, without a frustum; those of a torus are one without a frustum. */
+/* Trees are of spheres, boxes and frusta. Those of a mesh are an octahedron, turned, about half of them with
+ * a dent, without a frustum; those of a torus are one without a frustum. */
 typedef enum RtSubject {
 #define RT_SUBJECT_ENUM(CONSTANT, name) RT_SUBJECT_##CONSTANT,
     RT_SUBJECTS(RT_SUBJECT_ENUM)

@@ -2,8 +2,9 @@
  *
  * A row is a scene and a spec. It says how many answers are equal, ties, marginal and wrong; its first wrong
  * answer is kept in a replay file (experiments/replay.h), shrunk to the few objects that it takes. Rows go to
- * a journal as they are found, from which an interrupted run goes on, and in the end to a table: the same
- * bytes for the same seed, at any number of threads and however often the run was interrupted. */
+ * a journal as they are found, from which an interrupted run goes on, and in the end to the tables of
+ * verify_table.h: the same bytes for the same seed, at any number of threads and however often the run was
+ * interrupted. */
 #ifndef RT_EXPERIMENTS_VERIFY_H
 #define RT_EXPERIMENTS_VERIFY_H
 
@@ -24,8 +25,8 @@ typedef struct RtVerify {
     const RtVerifySpec *specs; /* [spec_count] */
     uint32_t spec_count;
     RtVerifyRays rays; /* for each row */
-    const char
-        *folder; /* for journal, table and replay files; NULL: replay files alone, to verify-failures */
+    /* For journal, tables, manifest and replay files; NULL: replay files alone, to verify-failures. */
+    const char *folder;
     bool resume; /* go on with the journal there */
 } RtVerify;
 
@@ -43,8 +44,8 @@ typedef struct RtVerifyObserver {
 } RtVerifyObserver;
 
 /* Runs it all. *rows is a new array, of rows as `verify --json` prints them, in the order of scenes and
- * specs; each is shown to the observer, those of an earlier run too. What is wrong is a result, not an error.
- */
+ * specs; each is shown to the observer, those of an earlier run too. A wrong answer is a result, not an
+ * error. */
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error);
 

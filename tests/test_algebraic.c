@@ -71,7 +71,7 @@ static void roots_are_found_at_known_places_and_multiple_ones_once(void **state)
         }
         for (int i = 0; i < degree; i++) exact[i] = rt_exact_mul(&s, rt_exact_of(&s, known[i]), third);
         RtPolynomial p = with_roots(&s, round % 2 ? 7 : -0.3, exact, degree);
-        RtAlgebraic roots[RT_MOST_DEGREE];
+        RtAlgebraic roots[RT_MAX_DEGREE];
         int count = rt_polynomial_roots(&s, &p, roots);
         for (int i = 0, next; i < degree; i = next, found++) {
             for (next = i; next < degree && known[next] == known[i];) next++;
@@ -92,7 +92,7 @@ static void roots_are_found_at_known_places_and_multiple_ones_once(void **state)
 static void a_polynomial_without_real_roots_has_none(void **state) {
     (void)state;
     RtSlate s = {0};
-    RtAlgebraic roots[RT_MOST_DEGREE];
+    RtAlgebraic roots[RT_MAX_DEGREE];
     RtPolynomial p = with_squares(&s, -1, -2), square = with_squares(&s, -2, -2), one = constant(p.at[4]);
     assert_int_equal(rt_polynomial_roots(&s, &p, roots), 0);
     assert_int_equal(rt_polynomial_roots(&s, &square, roots), 0);
@@ -104,7 +104,7 @@ static void a_polynomial_without_real_roots_has_none(void **state) {
 static void values_have_all_digits_of_a_long_double(void **state) {
     (void)state;
     RtSlate s = {0};
-    RtAlgebraic roots[RT_MOST_DEGREE];
+    RtAlgebraic roots[RT_MAX_DEGREE];
     RtRational zero = rt_exact_of(&s, 0);
     RtPolynomial p = {4, {rt_exact_of(&s, 1), zero, rt_exact_of(&s, -10), zero, rt_exact_of(&s, 1)}};
     assert_int_equal(rt_polynomial_roots(&s, &p, roots), 4);
@@ -126,7 +126,7 @@ static void values_have_all_digits_of_a_long_double(void **state) {
 static void equal_roots_of_different_polynomials_are_a_tie(void **state) {
     (void)state;
     RtSlate s = {0};
-    RtAlgebraic a[RT_MOST_DEGREE], b[RT_MOST_DEGREE];
+    RtAlgebraic a[RT_MAX_DEGREE], b[RT_MAX_DEGREE];
     RtPolynomial p = with_squares(&s, 2, 3), q = with_squares(&s, 1.5, 2);
     assert_int_equal(rt_polynomial_roots(&s, &p, a), 4);
     assert_int_equal(rt_polynomial_roots(&s, &q, b), 4);
@@ -152,7 +152,7 @@ static void roots_2_to_the_minus_200_apart_are_told_apart(void **state) {
     (void)state;
     RtSlate s = {0};
     for (int n = 50; n <= 400; n += 50) {
-        RtAlgebraic a[RT_MOST_DEGREE], b[RT_MOST_DEGREE];
+        RtAlgebraic a[RT_MAX_DEGREE], b[RT_MAX_DEGREE];
         RtPolynomial p = with_squares(&s, 0, 2), q = p;
         q.at[0] = rt_exact_of(&s, -ldexp(1, -n));
         assert_int_equal(rt_polynomial_roots(&s, &p, a), 3);
@@ -177,7 +177,7 @@ static void near_roots_of_one_polynomial_are_parted(void **state) {
         RtRational known[3] = {third, rt_exact_add(&s, third, rt_exact_of(&s, ldexp(1, -n))),
                                rt_exact_of(&s, 0x1p60)};
         RtPolynomial p = with_roots(&s, 1, known, 3);
-        RtAlgebraic roots[RT_MOST_DEGREE];
+        RtAlgebraic roots[RT_MAX_DEGREE];
         assert_int_equal(rt_polynomial_roots(&s, &p, roots), 3);
         for (int i = 0; i < 3; i++) {
             assert_true(is_at(&s, &roots[i], known[i]));
