@@ -150,15 +150,13 @@ static void write_sides(const RtVerifySum *sums, uint32_t count, FILE *out) {
 static void write_markdown(const RtVerifySum *accels, uint32_t accel_count, const RtVerifySum *scenes,
                            uint32_t scene_count, FILE *out) {
     RtVerifySum total = rt_verify_total(accels, accel_count);
-    fprintf(
-        out,
-        "# Verification\n\n"
-        "%" PRIu64
-        " pairs of a ray and an accelerator, each asked `nearest` and `occluded`, timed and counted:\n"
-        "%" PRIu64
-        " wrong. %u rows, %u of which fail, are in [verify.csv](verify.csv). An accelerator is summed up\n"
-        "over all its parameters; one with a star computes in arithmetic of its own, and gets verdicts.\n",
-        total.pairs, total.verdicts[RT_WRONG], total.rows, total.failed);
+    fprintf(out, "# Verification\n\n%" PRIu64 " pairs of a ray and an accelerator, ", total.pairs);
+    fputs("each asked `nearest` and `occluded`, timed and counted:\n", out);
+    fprintf(out, "%" PRIu64 " wrong. %u rows, %u of which fail, are in [verify.csv](verify.csv). ",
+            total.verdicts[RT_WRONG], total.rows, total.failed);
+    fputs("An accelerator is summed up\n"
+          "over all its parameters; one with a star computes in arithmetic of its own, and gets verdicts.\n",
+          out);
     write_sums(accels, accel_count, "accelerator", out);
     write_sides(accels, accel_count, out);
     fputs("\n## By scene\n", out);

@@ -22,8 +22,8 @@ typedef struct RtVerifySum {
 
 typedef enum RtVerifyGroup { RT_BY_ACCEL, RT_BY_SCENE } RtVerifyGroup;
 
-/* Sums up an array of rows; (*sums)[0..count), in the order of their first rows, is to be freed by rt_free.
- */
+/* Sums up an array of rows: (*sums)[0..count), in the order of their first rows. The caller frees them by
+ * rt_free, after an error too. */
 RtStatus rt_verify_sums(const json_t *rows, RtVerifyGroup group, RtVerifySum **sums, uint32_t *count,
                         RtError *error);
 

@@ -61,7 +61,9 @@ static const struct argp_option options[] = {
     {"seed", 's', "S", 0, "Of the random rays, and of `families` (default 1)", 0},
     {"threads", 't', "N", 0, "Threads; 0, the default, is all processors", 0},
     {"out", 'o', "DIR", 0,
-     "Keep the rows in DIR as they are found, a table verify.csv, and what was wrong to be replayed", 0},
+     "Keep the rows in DIR as they are found, tables of them (verify.csv, verify.md), and what was wrong to "
+     "be replayed",
+     0},
     {"resume", KEY_RESUME, 0, 0, "Go on with the interrupted run in --out DIR", 0},
     {"replay", KEY_REPLAY, "FILE", 0, "Ask again what was answered wrong: exit code 1 if it still is", 0},
     {"json", 'j', 0, 0, "One JSON document on stdout", 0},
@@ -265,7 +267,7 @@ static void print_sides(const RtVerifySum *sum) {
     uint64_t differ = 0;
     for (int s = 0; s < RT_SIDE_COUNT; s++) differ += sum->sides[s];
     if (differ == 0) return;
-    printf("%s: %" PRIu64 " of its hits differ by more than a tie; exactly right:", sum->name, differ);
+    printf("%s: %" PRIu64 " answers to nearest differ by more than a tie; exactly right:", sum->name, differ);
     for (int s = 0; s < RT_SIDE_COUNT; s++) {
         printf("%s %s %" PRIu64, s ? "," : "", rt_side_name((RtSide)s), sum->sides[s]);
     }
@@ -275,13 +277,15 @@ static void print_sides(const RtVerifySum *sum) {
 static RtStatus print_totals(const json_t *rows, RtError *error) {
     RtVerifySum *sums;
     uint32_t count;
-    RT_TRY(rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error));
-    RtVerifySum total = rt_verify_total(sums, count);
-    printf("%u rows, %" PRIu64 " pairs of a ray and an accelerator: %" PRIu64 " wrong\n", total.rows,
-           total.pairs, total.verdicts[RT_WRONG]);
-    for (uint32_t i = 0; i < count; i++) print_sides(&sums[i]);
+    RtStatus status = rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error);
+    if (status == RT_OK) {
+        RtVerifySum total = rt_verify_total(sums, count);
+        printf("%u rows, %" PRIu64 " pairs of a ray and an accelerator: %" PRIu64 " wrong\n", total.rows,
+               total.pairs, total.verdicts[RT_WRONG]);
+        for (uint32_t i = 0; i < count; i++) print_sides(&sums[i]);
+    }
     rt_free(sums);
-    return RT_OK;
+    return status;
 }
 
 static RtStatus verify(const Options *o, bool *failed, RtError *error) {
@@ -358,8 +362,7 @@ int rt_command_verify(int argc, char **argv) {
             "Verify that accelerators answer every ray of each SCENE (a few small built-in ones if none is "
             "given) like brute: the same object and the same bits of t, timed and counted, singly and in "
             "streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
-            "them, "
-            "as in family:slivers,seed=7.\v"
+            "them, as in family:slivers,seed=7.\v"
             "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
             "marginal (explained by rounding) or wrong. The first wrong answer of each row is written to a "
             "file (in --out DIR, else in verify-failures/), with the scene shrunk to the objects that it "
