@@ -7,6 +7,8 @@
 
 #include "base/memory.h"
 
+#include <assert.h>
+
 /* What is inside along the line: `before` all places, and changing at each. */
 typedef struct List {
     bool before;
@@ -96,8 +98,9 @@ static RtStatus push_half(Machine *m, RtRational gap, RtRational rate, RtError *
 
 /* ---- solids ---- */
 
-/* The line in standard coordinates, all times `unit` > 0, which spares divisions: rows of the inverse of the
- * place are cross products of columns over the determinant, and that is the unit. */
+/* The line in standard coordinates, all times `unit`, which spares divisions: rows of the inverse of the
+ * place are cross products of columns over the determinant, and that is the unit. It is above 0, for what is
+ * flat or turned inside out is no solid (rt_solid_finish). */
 typedef struct Standard {
     RtExactVec org, dir;
     RtRational unit;
@@ -114,12 +117,7 @@ static Standard standard(RtSlate *slate, const RtSolid *solid, const RtExactLine
         out.org.at[i] = rt_exact_dot(slate, row, from);
         out.dir.at[i] = rt_exact_dot(slate, row, line->dir);
     }
-    if (rt_exact_sign(out.unit) > 0) return out;
-    out.unit = rt_exact_neg(slate, out.unit);
-    for (int i = 0; i < 3; i++) {
-        out.org.at[i] = rt_exact_neg(slate, out.org.at[i]);
-        out.dir.at[i] = rt_exact_neg(slate, out.dir.at[i]);
-    }
+    assert(rt_exact_sign(out.unit) > 0);
     return out;
 }
 
