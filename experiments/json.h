@@ -1,5 +1,4 @@
-/* JSON that several writers share: figures that may be unknown, tallies, structures, and documents as files.
- */
+/* JSON that several writers share: figures that may be unknown, tallies, structures, documents as files. */
 #ifndef RT_EXPERIMENTS_JSON_H
 #define RT_EXPERIMENTS_JSON_H
 
@@ -15,7 +14,7 @@ json_t *rt_json_number(double value);
 /* A fingerprint: 16 hexadecimal digits. */
 json_t *rt_json_hex(uint64_t value);
 
-/* The time of day: "2001-04-30T12:00:00Z". */
+/* Date and time now, UTC: "2001-04-30T12:00:00Z". */
 json_t *rt_json_now(void);
 
 /* Every counter under its name. */

@@ -4,7 +4,7 @@
 #define SHIFT     0x1p-21
 #define TOLERANCE 0x1p-18
 
-/* Sums of a few products of this size are more than float32 holds. */
+/* Sums of a few products of this size may be more than float32 holds. */
 #define OVERFLOW_SIZE 0x1p124
 
 enum { PROBES = 28 }; /* unmoved first, straightened last */

@@ -8,8 +8,9 @@
  * side (a = 0) has one root, and goes into one nappe for good. So the apex needs no care, and the second
  * nappe is never met.
  *
- * Caps across an axis of the world are at a float32, like all such faces, and the place is drawn to them:
- * what is between the caps is what the place says, for extents and for the referee, too. */
+ * Caps across an axis of the world are at a float32, like all such faces, and the place is drawn to them, as
+ * near as a double comes: what is between the caps is what the place says, for extents and for the referee,
+ * too. */
 #include "base/memory.h"
 #include "shape/quadratic.h"
 #include "shape/solid_parts.h"
