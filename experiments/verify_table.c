@@ -43,6 +43,7 @@ static void add(RtVerifySum *sum, const json_t *row) {
     for (int v = 0; v < RT_VERDICT_COUNT; v++) {
         sum->verdicts[v] += number(row, rt_verdict_name((RtVerdict)v));
     }
+    sum->occluded_wrong += number(row, "occluded_wrong");
     for (int s = 0; s < RT_SIDE_COUNT; s++) sum->sides[s] += number(sides, rt_side_name((RtSide)s));
 }
 
@@ -77,6 +78,7 @@ RtVerifySum rt_verify_total(const RtVerifySum *sums, uint32_t count) {
         total.failed += sums[i].failed;
         total.pairs += sums[i].pairs;
         for (int v = 0; v < RT_VERDICT_COUNT; v++) total.verdicts[v] += sums[i].verdicts[v];
+        total.occluded_wrong += sums[i].occluded_wrong;
         for (int s = 0; s < RT_SIDE_COUNT; s++) total.sides[s] += sums[i].sides[s];
     }
     return total;
@@ -117,13 +119,15 @@ static void write_csv(const json_t *rows, FILE *out) {
 
 /* An accelerator that is not exact is marked by a star. */
 static void write_sums(const RtVerifySum *sums, uint32_t count, const char *of, FILE *out) {
-    fprintf(out, "\n| %s | rows | pairs | equal | tie | marginal | wrong | rows that fail |\n", of);
-    fputs("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n", out);
+    fprintf(out,
+            "\n| %s | rows | pairs | equal | tie | marginal | wrong | occluded wrong | rows that fail |\n",
+            of);
+    fputs("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n", out);
     for (uint32_t i = 0; i < count; i++) {
         fprintf(out, "| `%s`%s | %u | %" PRIu64, sums[i].name, sums[i].exact ? "" : " *", sums[i].rows,
                 sums[i].pairs);
         for (int v = 0; v < RT_VERDICT_COUNT; v++) fprintf(out, " | %" PRIu64, sums[i].verdicts[v]);
-        fprintf(out, " | %u |\n", sums[i].failed);
+        fprintf(out, " | %" PRIu64 " | %u |\n", sums[i].occluded_wrong, sums[i].failed);
     }
 }
 
@@ -152,8 +156,9 @@ static void write_markdown(const RtVerifySum *accels, uint32_t accel_count, cons
     RtVerifySum total = rt_verify_total(accels, accel_count);
     fprintf(out, "# Verification\n\n%" PRIu64 " pairs of a ray and an accelerator, ", total.pairs);
     fputs("each asked `nearest` and `occluded`, timed and counted:\n", out);
-    fprintf(out, "%" PRIu64 " wrong. %u rows, %u of which fail, are in [verify.csv](verify.csv). ",
-            total.verdicts[RT_WRONG], total.rows, total.failed);
+    fprintf(out, "%" PRIu64 " answers to `nearest` are wrong, %" PRIu64 " to `occluded`. ",
+            total.verdicts[RT_WRONG], total.occluded_wrong);
+    fprintf(out, "%u rows, %u of which fail, are in [verify.csv](verify.csv). ", total.rows, total.failed);
     fputs("An accelerator is summed up\n"
           "over all its parameters; one with a star computes in arithmetic of its own, and gets verdicts.\n",
           out);

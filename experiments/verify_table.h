@@ -16,7 +16,8 @@ typedef struct RtVerifySum {
     bool exact;                   /* asked for the bits of brute, not for verdicts: true of scenes */
     uint32_t rows, failed;
     uint64_t pairs;
-    uint64_t verdicts[RT_VERDICT_COUNT]; /* they sum to pairs */
+    uint64_t verdicts[RT_VERDICT_COUNT]; /* of nearest: they sum to pairs */
+    uint64_t occluded_wrong;             /* pairs whose answer to occluded is wrong */
     uint64_t sides[RT_SIDE_COUNT];       /* as in RtEquivalence */
 } RtVerifySum;
 

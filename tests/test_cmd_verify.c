@@ -174,6 +174,23 @@ static void a_run_is_gone_on_with(void **state) {
     assert_non_null(strstr(text_of(OUT ".err"), "another verification"));
 }
 
+/* No accelerator lies, so the journal is made to say so of one, and gone on with. */
+static void the_last_line_tells_of_wrong_answers_to_occluded_too(void **state) {
+    (void)state;
+    const char *arguments = "random:n=20 --accel bvh --accel grid --rays 50 --out '" OUT ".lies'";
+    char again[1024];
+    snprintf(again, sizeof again, "%s --resume", arguments);
+    assert_int_equal(verify(arguments), 0);
+    assert_int_equal(system("sed -i -e '2s/\"occluded_wrong\": *0/\"occluded_wrong\": 3/' "
+                            "-e '2s/\"problem\": *null/\"problem\": \"a lie\"/' '" OUT ".lies/rows.jsonl'"),
+                     0);
+    assert_int_equal(verify(again), 1);
+    assert_non_null(strstr(text_of(OUT ".out"),
+                           "2 rows, 100 pairs of a ray and an accelerator: 0 wrong, 3 occluded wrong; "
+                           "rows that fail: 1\n"));
+    assert_non_null(strstr(text_of(OUT ".err"), "a lie"));
+}
+
 /* What was wrong once and is not any more: the answer that the file tells of does not count, the one now
  * does. */
 static void a_replay_says_whether_the_answer_is_still_wrong(void **state) {
@@ -203,6 +220,7 @@ int main(void) {
         cmocka_unit_test(the_families_are_rays_of_their_own_and_hard_ones),
         cmocka_unit_test(scenes_of_families_have_the_seed_of_the_rays),
         cmocka_unit_test(a_run_is_gone_on_with),
+        cmocka_unit_test(the_last_line_tells_of_wrong_answers_to_occluded_too),
         cmocka_unit_test(a_replay_says_whether_the_answer_is_still_wrong),
         cmocka_unit_test(what_cannot_be_verified_is_refused_before_anything_is_printed),
     };

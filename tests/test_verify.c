@@ -242,6 +242,7 @@ static void rows_add_up_over_the_parameters_of_an_accelerator(void **state) {
                              row_of("balls", "item+bvh", true, 0), row_of("balls", "embree", false, 7),
                              row_of("tetra", "item+bvh", true, 0), row_of("tetra", "embree", true, 0));
     json_object_set_new(json_array_get(rows, 1), "problem", json_string("a leaf is not reached"));
+    json_object_set_new(json_array_get(rows, 3), "occluded_wrong", json_integer(5));
     RtVerifySum *sums;
     uint32_t count;
     assert_ok(rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error));
@@ -255,7 +256,9 @@ static void rows_add_up_over_the_parameters_of_an_accelerator(void **state) {
     assert_int_equal(sums[1].verdicts[RT_MARGINAL], 7);
     assert_int_equal(sums[1].sides[RT_SIDE_BOTH], 4);
     assert_int_equal(sums[1].sides[RT_SIDE_GOT], 3);
+    assert_int_equal(sums[0].occluded_wrong, 5);
     assert_int_equal(rt_verify_total(sums, count).pairs, 500);
+    assert_int_equal(rt_verify_total(sums, count).occluded_wrong, 5);
     rt_free(sums);
     assert_ok(rt_verify_sums(rows, RT_BY_SCENE, &sums, &count, error));
     assert_int_equal(count, 2);
@@ -266,10 +269,11 @@ static void rows_add_up_over_the_parameters_of_an_accelerator(void **state) {
     assert_ok(rt_verify_write(rows, OUT "/e", error));
     char *table = text_of(OUT "/e", "verify.md");
     assert_non_null(strstr(table, "500 pairs of a ray and an accelerator"));
-    assert_non_null(strstr(table, "\n| `item+bvh` | 3 | 300 | 300 | 0 | 0 | 0 | 1 |\n"));
-    assert_non_null(strstr(table, "\n| `embree` * | 1 | 100 | 93 | 0 | 7 | 0 | 0 |\n"));
+    assert_non_null(strstr(table, "0 answers to `nearest` are wrong, 5 to `occluded`"));
+    assert_non_null(strstr(table, "\n| `item+bvh` | 3 | 300 | 300 | 0 | 0 | 0 | 5 | 1 |\n"));
+    assert_non_null(strstr(table, "\n| `embree` * | 1 | 100 | 93 | 0 | 7 | 0 | 0 | 0 |\n"));
     assert_non_null(strstr(table, "\n| `embree` | 4 | 0 | 3 | 0 | 0 |\n"));
-    assert_non_null(strstr(table, "\n| `tetra` | 2 | 200 | 200 | 0 | 0 | 0 | 0 |\n"));
+    assert_non_null(strstr(table, "\n| `tetra` | 2 | 200 | 200 | 0 | 0 | 0 | 5 | 0 |\n"));
     rt_free(table);
     json_decref(rows);
 }
