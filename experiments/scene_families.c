@@ -355,13 +355,15 @@ RtStatus rt_scene_family_build(size_t family, uint64_t seed, RtScene *scene, RtE
 
 static RtStatus find_family(const char *name, size_t *family, RtError *error) {
     const char *names[sizeof recipes / sizeof recipes[0]];
-    char suggestion[RT_MAX_SUGGESTION];
+    char list[768], suggestion[RT_MAX_SUGGESTION];
     for (*family = 0; *family < rt_scene_family_count(); ++*family) {
         names[*family] = recipes[*family].name;
         if (strcmp(names[*family], name) == 0) return RT_OK;
     }
     rt_suggest(name, names, *family, suggestion);
-    return rt_fail(error, RT_BAD_INPUT, "there is no family of scenes '%s'%s", name, suggestion);
+    rt_join_names(names, *family, list, sizeof list);
+    return rt_fail(error, RT_BAD_INPUT, "there is no family of scenes '%s'%s%s The families are: %s", name,
+                   suggestion, *suggestion ? "" : ".", list);
 }
 
 RtStatus rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error) {

@@ -125,9 +125,12 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
         {"--wrong", "unrecognized option"},
         {"--resume", "--out DIR"},
         {"family:silvers", "did you mean 'slivers'"},
+        {"family:", "The families are: empty, "},
         {"family:slivers,sed=1", "family:slivers,seed=1"},
         {"family:slivers,seed=", "family:slivers,seed=1"},
         {"--replay nothing.json", "nothing.json"},
+        {"--replay nothing.json balls", "takes no SCENE"},
+        {"--replay nothing.json --json", "prints text"},
         {"--replay " RT_SOURCE_DIR "/README.md", "no JSON"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

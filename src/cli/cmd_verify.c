@@ -122,6 +122,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'j': o->json = true; return 0;
     case ARGP_KEY_ARG: add_scene(o, argument, state); return 0;
     case ARGP_KEY_END:
+        if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->folder || o->json)) {
+            argp_error(state, "--replay asks what is in FILE, and prints text: it takes no SCENE, --accel, "
+                              "--out or --json");
+        }
         if (o->resume && !o->folder) argp_error(state, "--resume goes on with the run in --out DIR: name it");
         choose_scenes(o, state);
         return 0;
@@ -365,7 +369,7 @@ int rt_command_verify(int argc, char **argv) {
             "Verify that accelerators answer every ray of each SCENE (a few small built-in ones if none is "
             "given) like brute: the same object and the same bits of t, timed and counted, singly and in "
             "streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
-            "them, as in family:slivers,seed=7.\v"
+            "them, as in family:slivers,seed=7 (`family:` alone names them all).\v"
             "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
             "marginal (explained by rounding) or wrong. The first wrong answer of each row is written to a "
             "file (in --out DIR, else in verify-failures/), with the scene shrunk to the objects that it "
