@@ -21,7 +21,8 @@ typedef struct Run {
     const RtVerify *verify;
     const RtVerifyObserver *observer;
     RtVerifyProgress progress;
-    json_t *known; /* the journal, or NULL */
+    json_t *header; /* what a run must have in common with the one that it goes on with */
+    json_t *known;  /* the journal, or NULL */
     size_t next_known;
     json_t *rows;
     RtJsonLines journal;
@@ -47,37 +48,52 @@ static void doing(Run *run, const char *what) {
 
 /* ---- the journal ---- */
 
-/* What a run must have in common with the one that it goes on with. */
-static json_t *header_json(const RtVerify *v) {
+/* Every scene is opened once before any is verified: one that cannot be would stop the run in the night. */
+static RtStatus fingerprint_scenes(const RtVerify *v, json_t *fingerprints, RtError *error) {
+    for (uint32_t i = 0; i < v->scene_count; i++) {
+        RtScene scene;
+        RT_TRY(rt_hard_scene_open(v->scenes[i], &scene, error));
+        json_array_append_new(fingerprints, rt_json_hex(rt_scene_fingerprint(&scene)));
+        rt_scene_clear(&scene);
+    }
+    return RT_OK;
+}
+
+/* Takes the reference of `fingerprints`. */
+static json_t *header_json(const RtVerify *v, json_t *fingerprints) {
     json_t *scenes = json_array(), *specs = json_array();
     for (uint32_t i = 0; i < v->scene_count; i++) json_array_append_new(scenes, json_string(v->scenes[i]));
     for (uint32_t i = 0; i < v->spec_count; i++) {
         json_array_append_new(specs, json_string(v->specs[i].spec));
     }
-    return json_pack("{s:o, s:o, s:I, s:I, s:b, s:s}", "scenes", scenes, "accels", specs, "rays",
-                     (json_int_t)v->rays.count, "seed", (json_int_t)v->rays.seed, "families",
-                     v->rays.families, "build", rt_build_identity());
+    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:I, s:b}", "build", rt_build_identity(), "scenes", scenes,
+                     "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count, "seed",
+                     (json_int_t)v->rays.seed, "families", v->rays.families);
 }
 
 /* What was verified, and with what, in the folder's manifest.json. */
-static RtStatus write_manifest(const RtVerify *verify, RtError *error) {
+static RtStatus write_manifest(const Run *run, RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(rt_path_join(verify->folder, "manifest.json", path, error));
-    json_t *manifest = header_json(verify);
+    RT_TRY(rt_path_join(run->verify->folder, "manifest.json", path, error));
+    json_t *manifest = json_copy(run->header);
     json_object_set_new(manifest, "date", rt_json_now());
     json_object_set_new(manifest, "machine", rt_machine_json());
     return rt_json_save(path, manifest, error);
 }
 
-static RtStatus load_known(Run *run, const char *path, const json_t *header, RtError *error) {
+static RtStatus load_known(Run *run, const char *path, RtError *error) {
+    const char *key;
+    json_t *value;
     RT_TRY(rt_json_lines_load(path, &run->known, error));
     run->next_known = 1;
-    if (json_equal(json_array_get(run->known, 0), header)) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "%s: this is the journal of another verification (other scenes, accelerators, rays or seed, "
-        "or another build): start anew, without --resume, or give another --out",
-        path);
+    json_object_foreach(run->header, key, value) {
+        if (json_equal(json_object_get(json_array_get(run->known, 0), key), value)) continue;
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: this is the journal of another verification, with other %s (see its first line): "
+                       "start anew, without --resume, or give another --out",
+                       path, key);
+    }
+    return RT_OK;
 }
 
 static RtStatus open_journal(Run *run, RtError *error) {
@@ -85,15 +101,10 @@ static RtStatus open_journal(Run *run, RtError *error) {
     if (!run->verify->folder) return RT_OK;
     RT_TRY(rt_directory_create(run->verify->folder, error));
     RT_TRY(rt_path_join(run->verify->folder, "rows.jsonl", path, error));
-    json_t *header = header_json(run->verify);
     bool resume = run->verify->resume && rt_file_exists(path);
-    RtStatus status = resume ? load_known(run, path, header, error) : RT_OK;
-    if (status == RT_OK) status = rt_json_lines_open(&run->journal, path, resume, error);
-    if (status == RT_OK && !resume) {
-        return rt_json_lines_write(&run->journal, header, error);
-    }
-    json_decref(header);
-    return status;
+    if (resume) RT_TRY(load_known(run, path, error));
+    RT_TRY(rt_json_lines_open(&run->journal, path, resume, error));
+    return resume ? RT_OK : rt_json_lines_write(&run->journal, json_incref(run->header), error);
 }
 
 static bool is_text(const json_t *row, const char *key, const char *text) {
@@ -257,15 +268,20 @@ RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer,
                        RtError *error) {
     Run run = {.verify = verify, .observer = observer, .rows = json_array()};
     run.progress.all = (uint64_t)verify->scene_count * verify->spec_count * verify->rays.count;
-    RtStatus status = open_journal(&run, error);
+    json_t *fingerprints = json_array();
+    RtStatus status = fingerprint_scenes(verify, fingerprints, error);
+    run.header = header_json(verify, fingerprints);
+    if (status == RT_OK && !run.header) status = rt_fail_memory(error, "what is verified", 0);
+    if (status == RT_OK) status = open_journal(&run, error);
     for (uint32_t i = 0; i < verify->scene_count && status == RT_OK; i++) {
         run.progress.scene = i;
         status = verify_scene(&run, verify->scenes[i], error);
     }
     if (status == RT_OK && verify->folder) status = rt_verify_write(run.rows, verify->folder, error);
-    if (status == RT_OK && verify->folder) status = write_manifest(verify, error);
+    if (status == RT_OK && verify->folder) status = write_manifest(&run, error);
     rt_json_lines_close(&run.journal);
     json_decref(run.known);
+    json_decref(run.header);
     *rows = run.rows;
     return status;
 }

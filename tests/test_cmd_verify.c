@@ -117,6 +117,7 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
         {"nothing.yaml", "nothing.yaml"},
         {"balls:size=99999", "size=99999"},
         {"ball", "balls"},
+        {"tetra:size=1 nothing.yaml", "nothing.yaml"},
         {"balls --accel gird", "did you mean 'grid'"},
         {"balls --accel bvh:leaf=0", "1..1024"},
         {"--rays 0", "whole number 1.."},
@@ -174,7 +175,26 @@ static void a_run_is_gone_on_with(void **state) {
     assert_string_equal(text_of(OUT ".rows/verify.csv"), table);
     snprintf(again, sizeof again, "%s --resume --seed 2", arguments);
     assert_int_equal(verify(again), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "another verification"));
+    assert_non_null(strstr(text_of(OUT ".err"), "another verification, with other seed"));
+}
+
+static void write_sphere(const char *path, int radius) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "objects: [{sphere: {center: [0, 0, 0], radius: %d}}]\n", radius);
+    fclose(file);
+}
+
+static void a_run_is_not_gone_on_with_where_a_scene_file_was_edited(void **state) {
+    (void)state;
+    const char *arguments = "'" OUT ".yaml' --accel bvh --rays 50 --out '" OUT ".edited'";
+    char again[1024];
+    snprintf(again, sizeof again, "%s --resume", arguments);
+    write_sphere(OUT ".yaml", 1);
+    assert_int_equal(verify(arguments), 0);
+    write_sphere(OUT ".yaml", 2);
+    assert_int_equal(verify(again), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), "with other fingerprints"));
 }
 
 /* No accelerator lies, so the journal is made to say so of one, and gone on with. */
@@ -223,6 +243,7 @@ int main(void) {
         cmocka_unit_test(the_families_are_rays_of_their_own_and_hard_ones),
         cmocka_unit_test(scenes_of_families_have_the_seed_of_the_rays),
         cmocka_unit_test(a_run_is_gone_on_with),
+        cmocka_unit_test(a_run_is_not_gone_on_with_where_a_scene_file_was_edited),
         cmocka_unit_test(the_last_line_tells_of_wrong_answers_to_occluded_too),
         cmocka_unit_test(a_replay_says_whether_the_answer_is_still_wrong),
         cmocka_unit_test(what_cannot_be_verified_is_refused_before_anything_is_printed),
