@@ -158,10 +158,16 @@ static void write_markdown(const RtVerifySum *accels, uint32_t accel_count, cons
     fputs("each asked `nearest` and `occluded`, timed and counted:\n", out);
     fprintf(out, "%" PRIu64 " answers to `nearest` are wrong, %" PRIu64 " to `occluded`. ",
             total.verdicts[RT_WRONG], total.occluded_wrong);
-    fprintf(out, "%u rows, %u of which fail, are in [verify.csv](verify.csv). ", total.rows, total.failed);
-    fputs("An accelerator is summed up\n"
-          "over all its parameters; one with a star computes in arithmetic of its own, and gets verdicts.\n",
-          out);
+    fprintf(out, "%u rows, %u of which fail, are in [verify.csv](verify.csv).\n", total.rows, total.failed);
+    fputs(
+        "What was verified, with which seed and by which build, is in [manifest.json](manifest.json).\n\n"
+        "An answer of an exact accelerator is equal to that of `brute`, the same object and bits of t, or\n"
+        "wrong. One with a star has arithmetic of its own; its answers to `nearest` are equal, the same\n"
+        "object at nearly the same t; a tie, another object that is met there too; marginal, exactly right\n"
+        "or explained by rounding; or wrong. A row is a scene and an accelerator with certain parameters;\n"
+        "it fails where an answer is wrong or verify.csv names a problem. The first table sums up an\n"
+        "accelerator over all its parameters.\n",
+        out);
     write_sums(accels, accel_count, "accelerator", out);
     write_sides(accels, accel_count, out);
     fputs("\n## By scene\n", out);
