@@ -217,7 +217,8 @@ static RtStatus open_scene(const RtReplay *r, bool shrunk, RtScene *scene, RtErr
     RT_TRY(r->yaml ? open_text(r->yaml, scene, error) : rt_hard_scene_open(r->scene_spec, scene, error));
     if (rt_scene_fingerprint(scene) == r->fingerprint) return RT_OK;
     rt_scene_clear(scene);
-    return rt_fail(error, RT_MISMATCH, "%s is no longer the scene that it was", r->scene_spec);
+    return rt_fail(error, RT_BAD_INPUT, "%s is no longer the scene that it was when this was written",
+                   r->scene_spec);
 }
 
 RtStatus rt_replay_ask(const RtReplay *replay, RtMaker maker, bool shrunk, RtReply *reply, RtError *error) {

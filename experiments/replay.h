@@ -39,9 +39,8 @@ RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error);
 void rt_replay_clear(RtReplay *replay);
 
 /* Asks what `maker` builds (as a rule, what the spec says) again over the scene, or with `shrunk` over what
- * was left of it: RT_NOT_AVAILABLE where nothing was shrunk. RT_MISMATCH where the scene is no longer what it
- * was.
- */
+ * was left of it: RT_NOT_AVAILABLE where nothing was shrunk, RT_BAD_INPUT where the scene is no longer what
+ * it was: then nothing is said about the answer. */
 RtStatus rt_replay_ask(const RtReplay *replay, RtMaker maker, bool shrunk, RtReply *reply, RtError *error);
 
 #endif

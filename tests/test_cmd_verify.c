@@ -214,25 +214,39 @@ static void the_last_line_tells_of_wrong_answers_to_occluded_too(void **state) {
     assert_non_null(strstr(text_of(OUT ".err"), "a lie"));
 }
 
-/* What was wrong once and is not any more: the answer that the file tells of does not count, the one now
- * does. */
-static void a_replay_says_whether_the_answer_is_still_wrong(void **state) {
-    (void)state;
-    FILE *file = fopen(OUT ".json", "w");
+/* A replay file of a scene that is not what it was, with what it was shrunk to or "null". */
+static void write_replay(const char *path, const char *shrunk) {
+    FILE *file = fopen(path, "w");
     assert_non_null(file);
-    fputs(
+    fprintf(
+        file,
         "{\"scene\": \"random:n=1\", \"fingerprint\": \"0000000000000000\", \"accel\": \"bvh\",\n"
         " \"sampling\": [4, 4], \"query\": \"nearest\", \"kernel\": \"timed\", \"stream\": 1, \"asked\": 0,\n"
         " \"rays\": [{\"kind\": \"random\", \"source\": 0, \"org_dir_tmin_tmax\":\n"
         "  [\"0x0p+0\", \"0x0p+0\", \"0x1p+3\", \"-0x0p+0\", \"0x0p+0\", \"-0x1p+0\", \"0x0p+0\", "
         "\"inf\"]}],\n"
-        " \"shrunk\": {\"yaml\": \"objects: [{sphere: {center: [0, 0, 0], radius: 1}}]\"}}\n",
-        file);
+        " \"shrunk\": %s}\n",
+        shrunk);
     fclose(file);
+}
+
+/* What was wrong once and is not any more: the answer that the file tells of does not count, the one now
+ * does. */
+static void a_replay_says_whether_the_answer_is_still_wrong(void **state) {
+    (void)state;
+    write_replay(OUT ".json", "{\"yaml\": \"objects: [{sphere: {center: [0, 0, 0], radius: 1}}]\"}");
     assert_int_equal(verify("--replay '" OUT ".json'"), 0);
     assert_non_null(strstr(text_of(OUT ".err"), "no longer the scene"));
     assert_non_null(strstr(text_of(OUT ".out"), "shrunk: right: ray 0, nearest, timed kernel"));
     assert_non_null(strstr(text_of(OUT ".out"), "expected object 0 at t = 7, got object 0 at t = 7"));
+}
+
+/* By exit code 1 a bisection would take it for the fault that it looks for. */
+static void a_replay_that_cannot_be_asked_is_not_called_wrong(void **state) {
+    (void)state;
+    write_replay(OUT ".json", "null");
+    assert_int_equal(verify("--replay '" OUT ".json'"), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), "no longer the scene"));
 }
 
 int main(void) {
@@ -246,6 +260,7 @@ int main(void) {
         cmocka_unit_test(a_run_is_not_gone_on_with_where_a_scene_file_was_edited),
         cmocka_unit_test(the_last_line_tells_of_wrong_answers_to_occluded_too),
         cmocka_unit_test(a_replay_says_whether_the_answer_is_still_wrong),
+        cmocka_unit_test(a_replay_that_cannot_be_asked_is_not_called_wrong),
         cmocka_unit_test(what_cannot_be_verified_is_refused_before_anything_is_printed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

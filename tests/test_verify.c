@@ -201,7 +201,7 @@ static void a_replay_file_needs_no_other_file(void **state) {
     }
     replay.fingerprint ^= 1;
     RtError error;
-    assert_int_equal(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), false, &again, &error), RT_MISMATCH);
+    assert_int_equal(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), false, &again, &error), RT_BAD_INPUT);
     rt_replay_clear(&replay);
     rt_scene_clear(&scene);
 }

@@ -65,7 +65,8 @@ static const struct argp_option options[] = {
      "be replayed",
      0},
     {"resume", KEY_RESUME, 0, 0, "Go on with the interrupted run in --out DIR", 0},
-    {"replay", KEY_REPLAY, "FILE", 0, "Ask again what was answered wrong: exit code 1 if it still is", 0},
+    {"replay", KEY_REPLAY, "FILE", 0,
+     "Ask again what was answered wrong: exit code 1 if it still is, 2 if it cannot be asked", 0},
     {"json", 'j', 0, 0, "One JSON document on stdout", 0},
     {0}};
 
