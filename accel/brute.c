@@ -1,5 +1,5 @@
-/* brute: tests every object for every ray. It has no structure and defines the answer: the least (t, id).
- */
+/* brute: tests every object for every ray. It has no structure and defines the answer: the least (t,
+ * id). */
 #include "accel/kernel.h"
 
 #include "base/memory.h"

@@ -106,8 +106,8 @@ static RtBall ball_about(const RtGroup *group, RtVec3d center, RtVec3d *far) {
     return ball;
 }
 
-/* The centre moves ever smaller steps towards whatever is farthest from it; the smallest ball seen is kept.
- */
+/* The centre moves ever smaller steps towards whatever is farthest from it; the smallest ball seen is
+ * kept. */
 static RtBall fit_ball(const RtGroup *group) {
     RtBall best;
     if (group->count == 1) {

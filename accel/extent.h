@@ -66,8 +66,8 @@ typedef struct RtGroup {
     RtBox box;
 } RtGroup;
 
-/* Unit normals of the plane sets (Kay & Kajiya 1986): the axes, the diagonals of a cube, those of its faces.
- */
+/* Unit normals of the plane sets (Kay & Kajiya 1986): the axes, the diagonals of a cube, those of its
+ * faces. */
 extern const RtVec3d rt_slab_normals[RT_MAX_SLABS];
 
 /* Makes room for `count` extents. On failure the set is empty. Free with rt_extent_set_clear. */

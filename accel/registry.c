@@ -1,5 +1,5 @@
-/* The one list of accelerators. To add one: write its file, add a line here, add the file to CMakeLists.txt.
- */
+/* The one list of accelerators. To add one: write its file, add a line here, add the file to
+ * CMakeLists.txt. */
 #include "accel/accel.h"
 
 #include "base/words.h"

@@ -101,16 +101,16 @@ RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool qui
 /* Whether contender `c`, which may be the null run (contender_count), is measured on trial `t`. */
 bool rt_contender_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
 
-/* The contender of that label on trial `t`; contender_count + 1 where there is none. "null" is the null run.
- */
+/* The contender of that label on trial `t`; contender_count + 1 where there is none. "null" is the null
+ * run. */
 uint32_t rt_contender_find(const RtExperiment *experiment, const char *label, uint32_t t);
 
 /* The trial of that label; trial_count where there is none. */
 uint32_t rt_trial_find(const RtExperiment *experiment, const char *label);
 
 /* Sets spec, path, file and a label made from them: the file's name without folder and extension, or the
- * built-in as it is written. A dot or a slash before the first colon makes `spec` a file, seen from `folder`.
- */
+ * built-in as it is written. A dot or a slash before the first colon makes `spec` a file, seen from
+ * `folder`. */
 RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder, RtError *error);
 
 /* What every experiment must satisfy however it came about; marks contenders that this build lacks. *where

@@ -8,8 +8,8 @@
  * cannot be found out is null. NULL where memory is short; the caller owns the reference. */
 json_t *rt_machine_json(void);
 
-/* Version, commit and dirty flag in one line: only what was measured by one and the same build may be mixed.
- */
+/* Version, commit and dirty flag in one line: only what was measured by one and the same build may be
+ * mixed. */
 const char *rt_build_identity(void);
 
 #endif

@@ -55,8 +55,8 @@ typedef struct RtReason {
     uint32_t line, used; /* of its file; figures that need it */
 } RtReason;
 
-/* What is least: object tests a ray, or object tests and steps a ray. Rows per hit are taken per ray of ours.
- */
+/* What is least: object tests a ray, or object tests and steps a ray. Rows per hit are taken per ray of
+ * ours. */
 typedef enum RtMeasure { RT_LEAST_TESTS, RT_LEAST_TESTS_AND_STEPS, RT_MEASURE_COUNT } RtMeasure;
 
 typedef struct RtLeast {

@@ -26,8 +26,8 @@ typedef struct RtEstimate {
     double least;             /* the smallest measurement */
 } RtEstimate;
 
-/* The middle of values[0..count), 1 <= count <= RT_MAX_ROUNDS; the mean of the middle two if count is even.
- */
+/* The middle of values[0..count), 1 <= count <= RT_MAX_ROUNDS; the mean of the middle two if count is
+ * even. */
 double rt_median(const double *values, uint32_t count);
 
 /* Estimate of values[0..count), 1 <= count <= RT_MAX_ROUNDS. */

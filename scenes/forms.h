@@ -53,8 +53,8 @@ void rt_forms_at(RtForms *forms, RtVec3d at, int quarters);
 RtVec3d rt_on_circle(uint32_t i, uint32_t n);
 
 /* The smooth curve through points[0..count), count >= 2, at `step` of `steps` between the first and the last,
- * evenly in number of points (Catmull & Rom 1974; at either end the neighbour that is missing is mirrored).
- */
+ * evenly in number of points (Catmull & Rom 1974; at either end the neighbour that is missing is
+ * mirrored). */
 RtVec3d rt_curve_point(const RtVec3d *points, uint32_t count, uint32_t step, uint32_t steps);
 
 RtStatus rt_forms_triangle(RtForms *forms, RtVec3d a, RtVec3d b, RtVec3d c, RtError *error);

@@ -2,8 +2,8 @@
  *
  * Standard Procedural Databases of E. Haines, added to the set after its paper of 1987. The cube is that from
  * 0 to 1; the eye is half a spacing below its upper side. Cylinders reach from inside one sphere to inside
- * the next. Objects come in the order of the database: a sphere, and the cylinders to its upper neighbours.
- */
+ * the next. Objects come in the order of the database: a sphere, and the cylinders to its upper
+ * neighbours. */
 #include "scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"

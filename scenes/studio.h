@@ -1,5 +1,5 @@
-/* What scenes of random objects stand in: materials by which every kind of ray can be traced, and two lights.
- */
+/* What scenes of random objects stand in: materials by which every kind of ray can be traced, and two
+ * lights. */
 #ifndef RT_SCENES_STUDIO_H
 #define RT_SCENES_STUDIO_H
 

@@ -85,8 +85,8 @@ static inline void assert_refused(RtStatus status, RtStatus expected, const RtEr
     }
 }
 
-/* Runs `raytally ARGUMENTS` in the folder, with what it says in the files output and message; its exit code.
- */
+/* Runs `raytally ARGUMENTS` in the folder, with what it says in the files output and message; its exit
+ * code. */
 static inline int raytally(const Place *place, const char *arguments) {
     char command[512];
     snprintf(command, sizeof command, "cd '%s' && '%s' %s >output 2>message", place->folder, RT_PROGRAM,

@@ -1,6 +1,6 @@
 /* What tests of solids share: lines and their lists of crossings, models of every kind of solid with
- * membership of points in long double, which shares no code with spans, and the two held against each other.
- */
+ * membership of points in long double, which shares no code with spans, and the two held against each
+ * other. */
 #ifndef RT_TESTS_SOLIDS_TESTING_H
 #define RT_TESTS_SOLIDS_TESTING_H
 

@@ -12,8 +12,8 @@
 static const char *const methods[] = {"agglomerative", "ploc", "goldsmith-salmon", "rubin-whitted", "sah"};
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
-/* Every kind with every order and method, on wide nodes and full leaves: more than one parameter at a time.
- */
+/* Every kind with every order and method, on wide nodes and full leaves: more than one parameter at a
+ * time. */
 static void every_combination_answers_like_brute(void **state) {
     (void)state;
     static const char *const shapes[] = {"width=2", "width=5,leaf=4", "width=16,leaf=32"};

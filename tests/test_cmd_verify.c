@@ -90,8 +90,8 @@ static void all_is_the_default_and_threads_change_nothing(void **state) {
     assert_string_equal(text_of(OUT ".out"), one);
 }
 
-/* The hard rays graze and touch, where Embree's arithmetic differs by margins: they are not held against it.
- */
+/* The hard rays graze and touch, where Embree's arithmetic differs by margins: they are not held against
+ * it. */
 static void the_families_are_rays_of_their_own_and_hard_ones(void **state) {
     (void)state;
     static char chords[65536];

@@ -64,8 +64,7 @@ static Side side_of_planes(const RtSolidSet *set, const RtSolid *solid, Point p)
 }
 
 /* The solid angles of the triangles, seen from the point, add up to 4 pi inside (Van Oosterom & Strackee
- * 1983).
- */
+ * 1983). */
 static Side side_of_mesh(const RtSolidSet *set, const RtSolid *solid, Point p) {
     Real sum = 0;
     for (uint32_t i = 0; i < solid->count; i++) {

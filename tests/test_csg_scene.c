@@ -67,8 +67,8 @@ static void a_surface_has_the_material_of_its_solid(void **state) {
     rt_scene_clear(&scene);
 }
 
-/* Snell's law: out of the glass and into the bubble the ray bends away from the normal of the bubble's wall.
- */
+/* Snell's law: out of the glass and into the bubble the ray bends away from the normal of the bubble's
+ * wall. */
 static void light_is_refracted_out_of_the_tree_where_a_bubble_begins(void **state) {
     (void)state;
     RtScene scene;

@@ -62,8 +62,8 @@ static RtScene make_soup(uint64_t seed, float shift) {
 
 /* ---- rays ---- */
 
-/* A point that an object touches or nearly touches: its extreme in a random direction, a corner of its box.
- */
+/* A point that an object touches or nearly touches: its extreme in a random direction, a corner of its
+ * box. */
 static RtVec3 delicate_point(const RtGeometry *geometry, uint32_t id, RtRandom *random) {
     RtRef ref = geometry->objects[id];
     uint32_t index = rt_ref_index(ref), bits = rt_random_bits(random);

@@ -4,8 +4,8 @@
 static void a_point_is_shaded_by_the_sum_of_all_five_terms(void **state) {
     (void)state;
     /* Looking down on a mirror floor. The light stands at 45 degrees: N.L = sqrt(1/2), and the mirrored light
-     * makes 45 degrees with the viewer too, so (R.V)^2 = 1/2. Reflection and transmission see the background.
-     */
+     * makes 45 degrees with the viewer too, so (R.V)^2 = 1/2. Reflection and transmission see the
+     * background. */
     RtScene scene;
     start_scene(&scene, (RtMaterial){.color = {0.5f, 1, 0},
                                      .ambient = 0.1f,

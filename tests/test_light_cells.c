@@ -23,8 +23,8 @@ static void full_occlusion_ends_lists_at_what_covers_a_cell(void **state) {
     make_screen(&scene);
     const RtLightBuffer *cut = open_buffer("light:cells=16+brute", &scene, &on);
     const RtLightBuffer *whole = open_buffer("light:cells=16,full_occlusion=off+brute", &scene, &off);
-    /* The middle of the face is under the sphere, the cell at u = w = 0.6 beside it, over the screen.
-     */
+    /* The middle of the face is under the sphere, the cell at u = w = 0.6 beside it, over the
+     * screen. */
     size_t middle = cell_at(cut, 8, 8), beside = cell_at(cut, 12, 12);
     assert_null(whole->covers);
     assert_int_equal(whole->first[middle + 1] - whole->first[middle], 3);

@@ -65,8 +65,8 @@ static void a_mesh_goes_where_its_transform_puts_it(void **state) {
     rt_scene_clear(&scene);
 }
 
-/* One triangle in an embedded buffer; two nodes use it, the second with a matrix that mirrors x and moves z.
- */
+/* One triangle in an embedded buffer; two nodes use it, the second with a matrix that mirrors x and moves
+ * z. */
 static const char two_nodes[] =
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],"
     "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"matrix\":[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,7,1]}],"

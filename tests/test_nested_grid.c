@@ -33,8 +33,8 @@ static void assert_structure(const RtScene *scene, const char *spec, uint64_t in
              (unsigned long long)d.references);
 }
 
-/* 2 x 2 x 2 spheres that touch each other: of those that touch a plane only the lower ones are on both sides.
- */
+/* 2 x 2 x 2 spheres that touch each other: of those that touch a plane only the lower ones are on both
+ * sides. */
 static void a_voxel_with_more_objects_than_nest_holds_a_grid(void **state) {
     (void)state;
     RtScene scene;

@@ -233,8 +233,8 @@ static int compare_floats(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Of the polygons that are flat along `axis`, how many there are, and how many have `others` in their plane.
- */
+/* Of the polygons that are flat along `axis`, how many there are, and how many have `others` in their
+ * plane. */
 static void count_in_planes(const RtGeometry *g, int axis, uint32_t others, uint32_t *flat, uint32_t *share) {
     float *planes = malloc(g->polygon_count * sizeof *planes);
     assert_non_null(planes);

@@ -197,8 +197,8 @@ static void normals_point_outward_or_by_the_right_hand_rule(void **state) {
     assert_vector(normals_at(&g, 1, rt_vec3d(1, 1, 5)).geometric, 0, 0, -1);
     assert_vector(normals_at(&g, 2, rt_vec3d(0, 0, 0)).geometric, 1, 0, 0);
     assert_vector(normals_at(&g, 3, rt_vec3d(0, 1, 2)).geometric, 0, 1, 0);
-    /* A frustum that narrows by 3 over a height of 4 leans outward and up, one that widens outward and down.
-     */
+    /* A frustum that narrows by 3 over a height of 4 leans outward and up, one that widens outward and
+     * down. */
     assert_vector(normals_at(&g, 4, rt_vec3d(3.5, 0, 2)).geometric, 0.8, 0, 0.6);
     assert_vector(normals_at(&g, 5, rt_vec3d(0, -3.5, 2)).geometric, 0, -0.8, -0.6);
     rt_geometry_clear(&g);

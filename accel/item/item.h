@@ -32,8 +32,7 @@ typedef struct RtItemBuffer {
     bool settle;
     RtItemSample *samples; /* [rows * columns] */
     /* For projecting: q . across and q . downward, over q . forward, are the position of q in the image,
-     * -1..1.
-     */
+     * -1..1. */
     RtVec3d across, downward;
     double longest; /* |dir| of all rays is below this */
     double blur;    /* by how much directions, rounded to float32, are off, as a part of 1 */

@@ -85,8 +85,8 @@ typedef struct Level {
 } Level;
 
 /* Bytes so far of the tree, and of the same tree cut off at any depth. Once it takes more than the limit
- * nothing is kept, only counted, and max_depth is lowered to where it seems to fit, as often as it has to be.
- */
+ * nothing is kept, only counted, and max_depth is lowered to where it seems to fit, as often as it has to
+ * be. */
 typedef struct RtKdLedger {
     uint64_t limit, bytes;
     double estimate; /* bytes that the tree asked for would take; 0 while it fits */

@@ -163,8 +163,8 @@ uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t cou
 /* Merges more[0..n) into events[0..count), which has room; both sorted. */
 void rt_kd_merge_events(RtKdEvent *events, uint32_t count, const RtKdEvent *more, uint32_t n);
 
-/* sweep.c. The plane of the least cost by the surface area heuristic; its cost is INFINITY if there is none.
- */
+/* sweep.c. The plane of the least cost by the surface area heuristic; its cost is INFINITY if there is
+ * none. */
 RtKdSplit rt_kd_find_split(const RtKdBuilder *b, const RtKdCell *cell);
 
 /* deal.c. Deals the lists of `cell`, the topmost, to its two children: children[0], the lower, and

@@ -1,5 +1,5 @@
-/* Describing, validating and drawing a kd-tree. Cells are not kept, but cut from the root's on the way down.
- */
+/* Describing, validating and drawing a kd-tree. Cells are not kept, but cut from the root's on the way
+ * down. */
 #include "accel/kd/kd.h"
 
 #include "base/memory.h"

@@ -121,8 +121,8 @@ static inline uint32_t rt_octree_upper(int axis) {
     return 0xff ^ rt_octree_lower(axis);
 }
 
-/* The place of a node other than the root among the children of its parent: blocks of eight follow the root.
- */
+/* The place of a node other than the root among the children of its parent: blocks of eight follow the
+ * root. */
 static inline uint32_t rt_octree_place(uint32_t index) {
     return (index - 1) & 7;
 }

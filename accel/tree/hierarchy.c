@@ -33,8 +33,8 @@ static Weight weigh(Layout *layout, uint32_t index) {
     return inner;
 }
 
-/* The children of a wide node: the largest that is no leaf is opened in its place, until there are `width`.
- */
+/* The children of a wide node: the largest that is no leaf is opened in its place, until there are
+ * `width`. */
 static uint32_t open_children(const Layout *layout, uint32_t index, uint32_t *children) {
     const RtTreeNode *nodes = layout->tree->nodes;
     uint32_t count = 2;

@@ -21,8 +21,8 @@ static bool sort_by_digit(const RtKeyed *items, RtKeyed *out, uint32_t count, ui
     return true;
 }
 
-/* Sorts items[0..count), whose keys have `bits` bits; takes the block, gives the one that they are in then.
- */
+/* Sorts items[0..count), whose keys have `bits` bits; takes the block, gives the one that they are in
+ * then. */
 static RtKeyed *sorted(RtKeyed *items, uint32_t count, uint32_t bits) {
     RtKeyed *spare = items ? rt_alloc(count, sizeof(RtKeyed)) : NULL;
     if (!spare) {

@@ -29,8 +29,7 @@ void rt_output_discard(RtOutput *output);
 RtStatus rt_file_write(const char *path, const void *data, size_t size, RtError *error);
 
 /* Opens a regular file for reading; anything else (a folder, a device, a pipe that nobody writes to) is
- * refused.
- */
+ * refused. */
 RtStatus rt_file_open(const char *path, FILE **file, RtError *error);
 
 /* The whole file, with a 0 after its last byte; refuses more than `limit` bytes. Free with rt_free. */

@@ -167,8 +167,8 @@ static inline void rt_box_cut(const RtBox *box, const RtPreparedRay *ray, float 
     }
 }
 
-/* True if the thick ray meets the box for some t in [ray->tmin, tmax]; then *enter is where, at least tmin.
- */
+/* True if the thick ray meets the box for some t in [ray->tmin, tmax]; then *enter is where, at least
+ * tmin. */
 static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float tmax, float *enter) {
     float near = ray->tmin, far = tmax;
     rt_box_cut(box, ray, &near, &far);

@@ -1,5 +1,5 @@
-/* The table of `raytally info --extents`: how tight the extents of a scene are, by shape, and what they cost.
- */
+/* The table of `raytally info --extents`: how tight the extents of a scene are, by shape, and what they
+ * cost. */
 #ifndef RT_CLI_EXTENTS_TABLE_H
 #define RT_CLI_EXTENTS_TABLE_H
 

@@ -52,8 +52,8 @@ RtVec3 rt_ambient_light(const RtScene *scene, const RtSurface *surface);
 
 /* False where light `index` does not shine on the viewer's side: N.L <= 0, or the geometric normal says so
  * (the ray would start behind the surface), or the ray would not be valid. Else the shadow ray, which ends at
- * the light at t = 1, and the light that arrives if nothing is in its way: I_L (kd (N.L) + ks (R.V)^shine).
- */
+ * the light at t = 1, and the light that arrives if nothing is in its way: I_L (kd (N.L) + ks
+ * (R.V)^shine). */
 bool rt_shadow_ray(const RtScene *scene, const RtSurface *surface, uint32_t index, RtRay *ray, RtVec3 *light);
 
 /* The reflection and transmission rays of the surface, with unit directions, and the factor of the light that

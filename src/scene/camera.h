@@ -19,8 +19,8 @@ typedef struct RtCamera {
 
 #define RT_MAX_IMAGE_SIDE 32768
 
-/* "640x480": width and height in pixels, each 1..RT_MAX_IMAGE_SIDE; false, and nothing changes, if it is not.
- */
+/* "640x480": width and height in pixels, each 1..RT_MAX_IMAGE_SIDE; false, and nothing changes, if it is
+ * not. */
 bool rt_image_size_parse(const char *text, uint32_t *width, uint32_t *height);
 
 /* How an image of width x height pixels is sampled. */

@@ -20,8 +20,8 @@ typedef RtStatus RtFormulaLookup(void *context, const char *name, RtCsgTerm *ter
 /* Can `name` stand in a formula? */
 bool rt_formula_is_name(const char *name);
 
-/* Adds what `formula` says to `builder` and gives its term. Complaints say at which character of the formula.
- */
+/* Adds what `formula` says to `builder` and gives its term. Complaints say at which character of the
+ * formula. */
 RtStatus rt_formula_read(const char *formula, RtCsgBuilder *builder, RtFormulaLookup *lookup, void *context,
                          RtCsgTerm *term, RtError *error);
 

@@ -24,8 +24,8 @@ static RtTransform transform_of(const struct aiMatrix4x4 *m) {
                           {(double)m->c1, (double)m->c2, (double)m->c3, (double)m->c4}}};
 }
 
-/* Turns the inside out: then corners are taken in reverse, and normals, which go by cofactors, change sign.
- */
+/* Turns the inside out: then corners are taken in reverse, and normals, which go by cofactors, change
+ * sign. */
 static bool is_mirror(const RtTransform *t) {
     const RtVec3d x = {t->m[0][0], t->m[1][0], t->m[2][0]}, y = {t->m[0][1], t->m[1][1], t->m[2][1]};
     const RtVec3d z = {t->m[0][2], t->m[1][2], t->m[2][2]};

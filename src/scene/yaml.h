@@ -7,8 +7,8 @@
 #include <stdio.h>
 
 /* Adds what the file at `path` describes to `scene`, initialised by rt_scene_init; the caller then finishes
- * it, or clears it after a failure. Meshes are looked for beside the file. The scene's name is not touched.
- */
+ * it, or clears it after a failure. Meshes are looked for beside the file. The scene's name is not
+ * touched. */
 RtStatus rt_yaml_load(const char *path, RtScene *scene, RtError *error);
 
 /* The same of a text in memory; `name` stands for the path. */

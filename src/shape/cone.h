@@ -34,8 +34,8 @@ double rt_cone_support(const RtCone *cone, RtVec3d direction);
 RtVec3d rt_cone_normal(const RtCone *cone, RtVec3d point);
 
 /* Is across + root * d_across, an offset from the axis, as long as a radius of the cone? Where a cone is flat
- * the height of a point says little about that: it is 2^-20 of the radius, say, and has lost all its digits.
- */
+ * the height of a point says little about that: it is 2^-20 of the radius, say, and has lost all its
+ * digits. */
 static inline bool rt_cone_between_radii(const RtCone *cone, RtVec3d across, RtVec3d d_across, double root) {
     RtVec3d offset = rt_add_scaledd(across, d_across, root);
     double lo = (double)rt_minf(cone->base_radius, cone->apex_radius);

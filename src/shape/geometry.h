@@ -118,8 +118,8 @@ void rt_geometry_clear(RtGeometry *geometry);
 
 /* What `ray` meets at `t`, one of its hits on object `id`: normals, both unit, the geometric one by the
  * shape's own orientation, the shading one interpolated where a triangle has vertex normals and equal to the
- * geometric one elsewhere; and for a CSG tree the solid that was met (of geometry->forest), else RT_NO_SOLID.
- */
+ * geometric one elsewhere; and for a CSG tree the solid that was met (of geometry->forest), else
+ * RT_NO_SOLID. */
 typedef struct RtNormals {
     RtVec3d geometric, shading;
     uint32_t solid;

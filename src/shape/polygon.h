@@ -3,8 +3,8 @@
  * Hit by projection (the lecture's way): the ray meets the plane, and the point is tested for being inside in
  * the coordinate plane that the polygon is least perpendicular to, by counting crossings of its edges. Edges
  * and vertices belong to the polygon, so that a symmetric ray through the edge of a cube does not slip
- * through. The plane is Newell's, through the centroid, in double. Vertices lie in one array of the geometry.
- */
+ * through. The plane is Newell's, through the centroid, in double. Vertices lie in one array of the
+ * geometry. */
 #ifndef RT_SHAPE_POLYGON_H
 #define RT_SHAPE_POLYGON_H
 

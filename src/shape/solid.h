@@ -66,8 +66,8 @@ typedef struct RtSolid {
     RtBox box;                  /* outward; infinite sides where the solid has no end */
 } RtSolid;
 
-/* The solids of all trees of a geometry and what they are made of. Owns its arrays; a zeroed struct is empty.
- */
+/* The solids of all trees of a geometry and what they are made of. Owns its arrays; a zeroed struct is
+ * empty. */
 typedef struct RtSolidSet {
     uint32_t solid_count, solid_capacity;
     RtSolid *solids;

@@ -54,8 +54,8 @@ static bool turn_outward(const Cloud *cloud, RtPlane *plane) {
     return true;
 }
 
-/* Of the points in the plane the one that is farthest from `from`, or, with `to`, from the line through both.
- */
+/* Of the points in the plane the one that is farthest from `from`, or, with `to`, from the line through
+ * both. */
 static uint32_t farthest_in(const Cloud *cloud, const RtPlane *plane, RtVec3d from, const RtVec3d *to) {
     uint32_t best = 0;
     double most = -1;

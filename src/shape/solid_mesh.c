@@ -46,8 +46,8 @@ static int winding(const Seen v[3]) {
     return number;
 }
 
-/* Where the edge meets the plane y = 0, as a point of the edge: y may be off by rounding, x and z go with it.
- */
+/* Where the edge meets the plane y = 0, as a point of the edge: y may be off by rounding, x and z go with
+ * it. */
 static Seen at_level(const Seen *lower, const Seen *upper) {
     double part = lower->y / (lower->y - upper->y);
     return (Seen){lower->x + (upper->x - lower->x) * part, 0, lower->z + (upper->z - lower->z) * part};
