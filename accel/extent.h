@@ -31,10 +31,9 @@ typedef enum RtExtentKind {
     RT_EXTENT_KIND_COUNT
 } RtExtentKind;
 
-#define RT_EXTENT_KINDS                                                                                      \
-    "box|sphere|obb|slabs" /* the choices of a parameter, in the order of RtExtentKind                       \
-                            */
-#define RT_MAX_SLABS 13
+/* The choices of a parameter, in the order of RtExtentKind. */
+#define RT_EXTENT_KINDS "box|sphere|obb|slabs"
+#define RT_MAX_SLABS    13
 
 /* The box of the points whose offset from `center` has, along each of three orthonormal axes, a length of at
  * most `half`. */

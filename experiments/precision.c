@@ -73,7 +73,7 @@ static RtStatus add_octahedron(RtCsgBuilder *b, RtRandom *random, RtVec3 center,
     RtVec3d axes[3] = {rt_random_direction(random)};
     axes[1] = rt_normalized(rt_crossd(axes[0], rt_random_direction(random)));
     axes[2] = rt_crossd(axes[0], axes[1]);
-    double lower = rt_random_bits(random) % 2 ? -1 : 0.25;
+    double lower = rt_random_below(random, 2) ? -1 : 0.25;
     for (int a = 0; a < 3; a++) {
         for (int side = 0; side < 2; side++) {
             double height = (double)size * (side == 0 ? 1 : a == 2 ? lower : -1);
@@ -163,7 +163,7 @@ static RtRay ray_towards(Range *r, RtVec3 target, RtVec3d dir) {
     ray.dir = rt_sub(target, ray.org);
     if (r->how->stretch > 0) {
         int span = 2 * r->how->stretch + 1;
-        int by = (int)(rt_random_bits(&r->random) % (uint32_t)span) - r->how->stretch;
+        int by = (int)rt_random_below(&r->random, (uint32_t)span) - r->how->stretch;
         ray.dir = rt_scale(ray.dir, ldexpf(1, by));
     }
     return ray;
@@ -189,9 +189,9 @@ static RtRay ray_along_surface(Range *r, uint32_t id, double angle) {
 
 /* A vertex, or a point between two. */
 static RtVec3 point_on_edge(RtRandom *random, const RtVec3 *vertices, uint32_t count) {
-    uint32_t i = rt_random_bits(random) % count;
+    uint32_t i = rt_random_below(random, count);
     RtVec3 a = vertices[i], b = vertices[(i + 1) % count];
-    float part = rt_random_bits(random) % 2 ? 0 : rt_random_unit(random);
+    float part = rt_random_below(random, 2) ? 0 : rt_random_unit(random);
     return rt_add(a, rt_scale(rt_sub(b, a), part));
 }
 
@@ -200,7 +200,7 @@ static const RtTriangle *random_facet(Range *r, const RtCsg *tree) {
     const RtSolidSet *set = &r->geometry->forest.set;
     const RtSolid *solid = &set->solids[tree->first_solid];
     while (solid->kind != RT_SOLID_MESH) solid++;
-    return &set->triangles[solid->first + rt_random_bits(&r->random) % solid->count];
+    return &set->triangles[solid->first + rt_random_below(&r->random, solid->count)];
 }
 
 static RtRay ray_to_border(Range *r, uint32_t id) {
@@ -215,7 +215,7 @@ static RtRay ray_to_border(Range *r, uint32_t id) {
         const RtPolygon *p = &g->polygons[index];
         return ray_towards(r, point_on_edge(&r->random, g->polygon_vertices + p->first, p->count), dir);
     }
-    if (shape == RT_SHAPE_CONE && rt_random_bits(&r->random) % 2) {
+    if (shape == RT_SHAPE_CONE && rt_random_below(&r->random, 2)) {
         const RtCone *c = &g->cones[index];
         RtVec3d out = rt_normalized(rt_crossd(c->axis, rt_random_direction(&r->random)));
         RtVec3d on = rt_add_scaledd(rt_widen(c->base), out, (double)c->base_radius);
@@ -230,7 +230,7 @@ static RtRay ray_to_border(Range *r, uint32_t id) {
 static RtRay next_ray(Range *r, uint32_t id) {
     if (r->how->aim == AIM_BOX) return ray_to_box(r, id);
     if (r->how->aim == AIM_BORDER) return ray_to_border(r, id);
-    return ray_along_surface(r, id, ldexp(1, -1 - (int)(rt_random_bits(&r->random) % 24)));
+    return ray_along_surface(r, id, ldexp(1, -1 - (int)(rt_random_below(&r->random, 24))));
 }
 
 /* ---- measuring ---- */

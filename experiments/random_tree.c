@@ -12,7 +12,7 @@ typedef struct Maker {
 } Maker;
 
 static uint32_t choose(Maker *m, uint32_t count) {
-    return rt_random_bits(m->random) % count;
+    return rt_random_below(m->random, count);
 }
 
 /* In [lo, hi), both multiples of 1/2. */

@@ -15,7 +15,7 @@ typedef struct Maker {
 } Maker;
 
 static uint32_t below(Maker *m, uint32_t n) {
-    return rt_random_bits(&m->random) % n;
+    return rt_random_below(&m->random, n);
 }
 
 /* ---- points to start at and aim at ---- */

@@ -176,7 +176,7 @@ static RtStatus add_polygon(Builder *b, Place at, RtError *error) {
     /* In a plane that is exactly representable, so that offsets and scales do not warp it. */
     static const RtVec3d u[3] = {{1, 0, 0}, {0, 1, 0}, {1, 0, 0}};
     static const RtVec3d v[3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
-    uint32_t plane = rt_random_bits(&b->random) % 3;
+    uint32_t plane = rt_random_below(&b->random, 3);
     return add_ell(b, at, u[plane], v[plane], error);
 }
 
@@ -184,14 +184,14 @@ static RtStatus add_cone(Builder *b, Place at, RtError *error) {
     RtVec3d axis = rt_random_direction(&b->random);
     double size = at.size * b->scale;
     float base = (float)(size * rt_random_betweend(&b->random, 0.2, 0.8));
-    float apex = rt_random_bits(&b->random) % 2 ? base : 0; /* a cylinder or a full cone */
+    float apex = rt_random_below(&b->random, 2) ? base : 0; /* a cylinder or a full cone */
     return rt_scene_add_cone(b->scene, b->material, placed(b, at.center), base,
                              placed(b, rt_add_scaledd(at.center, axis, at.size)), apex, error);
 }
 
 /* A rectangle in a coordinate plane: as two triangles or as a polygon. */
 static RtStatus add_axis_aligned(Builder *b, Place at, uint32_t i, RtError *error) {
-    int w = (int)(rt_random_bits(&b->random) % 3), u = (w + 1) % 3, v = (w + 2) % 3;
+    int w = (int)(rt_random_below(&b->random, 3)), u = (w + 1) % 3, v = (w + 2) % 3;
     RtVec3 corner[4];
     for (int k = 0; k < 4; k++) {
         RtVec3d p = at.center;
@@ -217,7 +217,7 @@ static RtStatus add_round_or_flat(Builder *b, Place at, uint32_t i, RtError *err
 /* A random CSG tree of up to 24 solids; the first of every eight is a lone one. With and without tests of
  * inner nodes by turns. RT_BAD_INPUT if one of its solids is flat where rounding puts it. */
 static RtStatus try_tree(Builder *b, Place at, uint32_t i, RtError *error) {
-    RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_bits(&b->random) % 23, i % 2};
+    RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_below(&b->random, 23), i % 2};
     double o = b->offset, scale = b->scale, size = scale * at.size / 4;
     RtTransform move = {{{size, 0, 0, o + scale * at.center.x},
                          {0, size, 0, o + scale * at.center.y},
@@ -335,9 +335,9 @@ static void choose_scale(Builder *b) {
     b->scale = recipe->scale;
     b->offset = recipe->offset;
     if (recipe->scaling == GIVEN) return;
-    b->scale = ldexp(1, (int)(rt_random_bits(&b->random) % 81) - 40);
+    b->scale = ldexp(1, (int)(rt_random_below(&b->random, 81)) - 40);
     if (recipe->scaling == DRAWN_SCALE_AND_OFFSET) {
-        b->offset = ldexp(b->scale, (int)(rt_random_bits(&b->random) % 17));
+        b->offset = ldexp(b->scale, (int)(rt_random_below(&b->random, 17)));
     }
 }
 

@@ -150,10 +150,10 @@ static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, cons
     }
     Margin m = impossible;
     double error = 4 * p->error * longest * rt_lengthd(dir);
-    if (least < -error && most > error) return m;
     double farthest = fmax(rt_lengthd(from[0]), fmax(rt_lengthd(from[1]), rt_lengthd(from[2])));
     bool overflows = farthest * longest * fmax(longest, rt_lengthd(dir)) > OVERFLOW_SIZE;
-    if (fabs(sum) <= 3 * error || overflows) {
+    if (!overflows && least < -error && most > error) return m;
+    if (overflows || fabs(sum) <= 3 * error) {
         return (Margin){.possible = true, .lo = {-HUGE_VAL, HUGE_VAL}, .hi = {HUGE_VAL, -HUGE_VAL}};
     }
     double t = rt_dotd(rt_crossd(side[0], side[1]), from[0]) / sum;

@@ -100,7 +100,7 @@ static RtStatus add_block(RtForms *forms, uint64_t seed, int64_t i, int64_t j, i
     for (int quarters = 0; quarters < 4; quarters++) {
         RT_TRY(add_street(forms, &random, corner, quarters, error));
     }
-    if (rt_random_bits(&random) % 8 != 0) return add_lots(forms, &random, corner, downtown, error);
+    if (rt_random_below(&random, 8) != 0) return add_lots(forms, &random, corner, downtown, error);
     rt_forms_at(forms, rt_vec3d(corner.x + pavement, corner.y + pavement, corner.z), 0);
     return rt_city_park(forms, &random, block - 2 * pavement, error);
 }

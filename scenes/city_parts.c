@@ -43,7 +43,7 @@ const RtMaterial rt_city_materials[RT_CITY_MATERIALS] = {
 };
 
 static uint32_t choose(RtRandom *random, uint32_t count) {
-    return rt_random_bits(random) % count;
+    return rt_random_below(random, count);
 }
 
 /* ---- in the street ---- */

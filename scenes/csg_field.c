@@ -67,7 +67,7 @@ static RtStatus add_turned_box(Field *f, RtVec3d center, double size, uint32_t *
     RtVec3 axis = rt_narrow(rt_random_direction(&f->random));
     uint32_t standing;
     RT_TRY(rt_solid_add_box(&f->builder.set, rt_scale(half, -1), half, &standing, f->error));
-    RT_TRY(rt_transform_rotate(&place, axis, 15 * (double)(rt_random_bits(&f->random) % 24), f->error));
+    RT_TRY(rt_transform_rotate(&place, axis, 15 * (double)(rt_random_below(&f->random, 24)), f->error));
     RT_TRY(rt_transform_translate(&place, rt_narrow(center), f->error));
     return rt_solid_add_moved(&f->builder.set, &f->builder.set, standing, &place, index, f->error);
 }
@@ -79,7 +79,7 @@ static RtStatus add_solid(Field *f, uint32_t *index) {
     double size = f->radius * between(f, 0.12, 0.3);
     RtVec3 base = narrow_offset(center, axis, -size), apex = narrow_offset(center, axis, size);
     RtSolidSet *set = &f->builder.set;
-    switch (rt_random_bits(&f->random) % 5) {
+    switch (rt_random_below(&f->random, 5)) {
     case 0: {
         float radius = (float)size;
         return rt_solid_add_ellipsoid(set, rt_narrow(center), rt_vec3(radius, radius, radius), index,
@@ -102,7 +102,7 @@ static RtStatus add_solid(Field *f, uint32_t *index) {
 /* ---- trees ---- */
 
 static RtCsgOp choose_op(Field *f, uint32_t level) {
-    uint32_t die = rt_random_bits(&f->random) % 8;
+    uint32_t die = rt_random_below(&f->random, 8);
     if (level < 2 || die < 4) return RT_CSG_UNION;
     return die < 7 ? RT_CSG_DIFFERENCE : RT_CSG_INTERSECTION;
 }
@@ -111,7 +111,7 @@ static RtStatus add_tree(Field *f, uint32_t solids, uint32_t level, RtCsgTerm *t
     if (solids == 1) {
         uint32_t index;
         RT_TRY(add_solid(f, &index));
-        return rt_csg_solid(&f->builder, index, rt_random_bits(&f->random) % RT_STUDIO_MATERIALS, term,
+        return rt_csg_solid(&f->builder, index, rt_random_below(&f->random, RT_STUDIO_MATERIALS), term,
                             f->error);
     }
     RtCsgTerm left, right;
@@ -136,7 +136,7 @@ static RtStatus add_object(RtScene *scene, uint64_t i, const RtValue *values, Rt
     uint32_t least = (uint32_t)values[LEAST].i, most = (uint32_t)values[MOST].i;
     if (most < least) most = least;
     RtCsgTerm root;
-    RtStatus status = add_tree(&f, least + rt_random_bits(&f.random) % (most - least + 1), 0, &root);
+    RtStatus status = add_tree(&f, least + rt_random_below(&f.random, most - least + 1), 0, &root);
     if (status == RT_OK) {
         status = rt_scene_add_csg(scene, &f.builder, root, values[EXTENTS].flag, error);
     }

@@ -120,7 +120,7 @@ static RtStatus add_leaf(Tree *tree, RtVec3d at, RtError *error) {
     RtVec3d across = rt_normalized(rt_crossd(along, rt_random_direction(&tree->random)));
     double length = between(tree, 0.35, 0.65);
     RtVec3d tip = rt_add_scaledd(at, along, length), middle = rt_add_scaledd(at, along, 0.4 * length);
-    tree->forms->material = tree->leaves + rt_random_bits(&tree->random) % 3;
+    tree->forms->material = tree->leaves + rt_random_below(&tree->random, 3);
     return rt_forms_triangle(tree->forms, at, rt_add_scaledd(middle, across, 0.6 * length), tip, error);
 }
 
@@ -163,7 +163,7 @@ static RtStatus add_bough(Tree *tree, RtVec3d foot, double height, double up, Rt
         RtVec3d end = rt_add_scaledd(base, rt_subd(tip, base), 0.14 * i + 0.2);
         RtVec3d left = rt_add_scaledd(end, across, -width), right = rt_add_scaledd(end, across, width);
         left.z += hang, right.z += hang * between(tree, 0.6, 1.2);
-        tree->forms->material = rt_random_bits(&tree->random) % 2 ? NEEDLES : DARK_NEEDLES;
+        tree->forms->material = rt_random_below(&tree->random, 2) ? NEEDLES : DARK_NEEDLES;
         RT_TRY(rt_forms_triangle(tree->forms, from, right, left, error));
     }
     return RT_OK;
@@ -181,7 +181,7 @@ static RtStatus add_conifer(Tree *tree, RtVec3d foot, double height, RtError *er
 
 static RtStatus add_tree(RtForms *forms, const Ground *ground, uint64_t i, RtError *error) {
     Tree tree = {.forms = forms, .random = rt_random(ground->seed, i), .bark = BARK};
-    uint32_t die = rt_random_bits(&tree.random) % 12;
+    uint32_t die = rt_random_below(&tree.random, 12);
     bool conifer = die < 4;
     tree.leaves = LEAVES + (die < 9 ? 0 : die < 11 ? 3 : 6);
     if (die == 9 || die == 10) tree.bark = BIRCH_BARK;

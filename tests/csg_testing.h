@@ -76,7 +76,7 @@ static inline RtCsgTerm ball(RtCsgBuilder *builder, RtVec3 center, float radius,
 }
 
 static inline RtCsgTerm random_term(RtCsgBuilder *builder, RtRandom *random, uint32_t most, bool coarse) {
-    RtTreeRecipe recipe = {1 + rt_random_bits(random) % most, coarse};
+    RtTreeRecipe recipe = {1 + rt_random_below(random, most), coarse};
     RtCsgTerm term;
     assert_ok(rt_random_tree(builder, random, &recipe, 4, &term, error));
     return term;
@@ -88,11 +88,11 @@ static inline RtCsgTerm random_boxes(RtCsgBuilder *builder, RtRandom *random, ui
     for (uint32_t i = 0; i < count; i++) {
         RtVec3 lo, hi;
         for (int a = 0; a < 3; a++) {
-            lo.at[a] = 0.5f * (float)(rt_random_bits(random) % 8) - 3;
-            hi.at[a] = lo.at[a] + 0.5f * (float)(1 + rt_random_bits(random) % 8);
+            lo.at[a] = 0.5f * (float)(rt_random_below(random, 8)) - 3;
+            hi.at[a] = lo.at[a] + 0.5f * (float)(1 + rt_random_below(random, 8));
         }
         RtCsgTerm next = box(builder, lo, hi, i);
-        term = i == 0 ? next : combine(builder, (RtCsgOp)(rt_random_bits(random) % 3), term, next);
+        term = i == 0 ? next : combine(builder, (RtCsgOp)(rt_random_below(random, 3)), term, next);
     }
     return term;
 }
@@ -104,8 +104,8 @@ static inline RtRay random_ray(RtRandom *random, uint32_t i) {
     if (i % 2) return rt_sphere_chord(&around, random);
     RtRay ray = {.tmax = INFINITY};
     for (int a = 0; a < 3; a++) {
-        ray.org.at[a] = 0.5f * (float)(rt_random_bits(random) % 25) - 6;
-        ray.dir.at[a] = 0.5f * (float)(rt_random_bits(random) % 9) - 2;
+        ray.org.at[a] = 0.5f * (float)(rt_random_below(random, 25)) - 6;
+        ray.dir.at[a] = 0.5f * (float)(rt_random_below(random, 9)) - 2;
     }
     if (ray.dir.x == 0 && ray.dir.y == 0 && ray.dir.z == 0) ray.dir.x = 1;
     return ray;

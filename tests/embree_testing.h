@@ -38,7 +38,7 @@ static inline void add_polygon(RtScene *scene, RtRandom *random, float size, flo
 
 static inline void add_csg(RtScene *scene, RtRandom *random, RtVec3 center, float radius) {
     RtTransform move = rt_transform_identity();
-    RtTreeRecipe recipe = {1 + rt_random_bits(random) % 8, false};
+    RtTreeRecipe recipe = {1 + rt_random_below(random, 8), false};
     RtCsgBuilder trees = {0};
     RtCsgTerm root;
     assert_ok(rt_transform_scale(&move, rt_vec3(radius, radius, radius), error));
@@ -90,7 +90,7 @@ static inline RtVec3 direction(RtRandom *random) {
 /* Towards a point of the box of an object: a corner, or anything within; so that rays graze boxes. */
 static inline RtVec3 target(const RtScene *scene, RtRandom *random) {
     const RtGeometry *g = &scene->geometry;
-    const RtBox *box = &g->boxes[rt_random_bits(random) % g->object_count];
+    const RtBox *box = &g->boxes[rt_random_below(random, g->object_count)];
     uint32_t bits = rt_random_bits(random);
     RtVec3 p;
     for (int a = 0; a < 3; a++) {

@@ -300,7 +300,7 @@ static inline RtVec3d random_target(const Model *model, RtRandom *random) {
 /* A line near `target`, whose origin is `distance` sizes of the solid away. */
 static inline RtRay random_ray(const Model *model, RtRandom *random, RtVec3d target, double distance) {
     RtVec3d from = rt_random_direction(random);
-    if (rt_random_unit(random) < 0.25f) from.at[rt_random_bits(random) % 3] = 0;
+    if (rt_random_unit(random) < 0.25f) from.at[rt_random_below(random, 3)] = 0;
     if (rt_random_unit(random) < 0.5f) from = rt_subd(target, random_target(model, random));
     RtVec3d dir = rt_subd(rt_transform_pointd(&model->place, from),
                           rt_transform_pointd(&model->place, rt_vec3d(0, 0, 0)));

@@ -54,10 +54,10 @@ static void roots_are_found_at_known_places_and_multiple_ones_once(void **state)
     for (int round = 0; round < 2000; round++) {
         double known[4];
         RtRational exact[4], third = rt_exact_div(&s, rt_exact_of(&s, 1), rt_exact_of(&s, 3));
-        int degree = (int)(rt_random_bits(&random) % 5), found = 0;
+        int degree = (int)(rt_random_below(&random, 5)), found = 0;
         for (int i = 0; i < degree; i++) {
-            uint32_t how = rt_random_bits(&random) % 4;
-            int exponent = (int)(rt_random_bits(&random) % 200) - 100;
+            uint32_t how = rt_random_below(&random, 4);
+            int exponent = (int)(rt_random_below(&random, 200)) - 100;
             double number = rt_random_betweend(&random, -9, 9);
             known[i] = how == 0 ? floor(number) : how == 1 ? ldexp(number, exponent) : number;
             if (how == 2 && i > 0) known[i] = known[i - 1];

@@ -31,8 +31,8 @@ static RtVec3d polygon_point(const RtPolygon *polygon, const RtVec3 *vertices, R
     RtVec3d a = rt_widen(vertices[bits % polygon->count]), p = a;
     if (bits & 0x10000) return a;
     do {
-        RtVec3d b = rt_widen(vertices[rt_random_bits(random) % polygon->count]);
-        RtVec3d c = rt_widen(vertices[rt_random_bits(random) % polygon->count]);
+        RtVec3d b = rt_widen(vertices[rt_random_below(random, polygon->count)]);
+        RtVec3d c = rt_widen(vertices[rt_random_below(random, polygon->count)]);
         double s = rt_random_betweend(random, 0, 1), r = rt_random_betweend(random, 0, 1);
         p = rt_add_scaledd(rt_add_scaledd(a, rt_subd(b, a), s), rt_subd(c, b), s * r);
     } while (!rt_polygon_inside(polygon, vertices, p));
@@ -208,8 +208,8 @@ static void check_smallest(const RtGeometry *g, uint32_t id, double slack, RtRan
 /* In a plane of its own: a random number of vertices on a curve between a circle and a square, with dents. */
 static void add_planar_polygon(RtGeometry *g, RtRandom *random) {
     RtVec3 vertices[100];
-    uint32_t count = 3 + rt_random_bits(random) % 98;
-    int axis = (int)(rt_random_bits(random) % 3);
+    uint32_t count = 3 + rt_random_below(random, 98);
+    int axis = (int)(rt_random_below(random, 3));
     for (uint32_t i = 0; i < count; i++) {
         double angle = i * 6.283185307179586 / count, across = rt_random_betweend(random, 0.5, 1);
         vertices[i] = rt_vec3(1, 1, 1);

@@ -186,7 +186,7 @@ static void aim(RtRandom *random, const RtScene *scene, const RtHierarchy *hiera
     const RtGeometry *g = &scene->geometry;
     RtVec3 size = rt_box_size(g->box), from, to;
     float longest = size.at[rt_major_axis(size)], away = 1;
-    uint32_t pick = rt_random_bits(random), id = rt_random_bits(random) % g->object_count;
+    uint32_t pick = rt_random_bits(random), id = rt_random_below(random, g->object_count);
     for (uint32_t i = pick % 8; i > 4; i--) away *= 100; /* 1, 1e2, 1e4, 1e6 scene sizes */
     for (int a = 0; a < 3; a++) {
         const RtBox *own = &g->boxes[id];
@@ -201,8 +201,8 @@ static void aim(RtRandom *random, const RtScene *scene, const RtHierarchy *hiera
     }
     if ((pick & 6144) == 0) from = rt_vec3(0, 0, 0); /* where rounding the origin makes no ray thicker */
     if (pick & 32) {                                 /* in a plane of a node */
-        const RtBox *box = &hierarchy->nodes[rt_random_bits(random) % hierarchy->node_count].box;
-        int a = (int)(rt_random_bits(random) % 3);
+        const RtBox *box = &hierarchy->nodes[rt_random_below(random, hierarchy->node_count)].box;
+        int a = (int)(rt_random_below(random, 3));
         from.at[a] = to.at[a] = (pick & 64 ? box->lo : box->hi).at[a];
         if (pick & 128) from.at[(a + 1) % 3] = to.at[(a + 1) % 3]; /* along an axis */
     }

@@ -37,8 +37,8 @@ static uint32_t add_boxes(RtSolidSet *set, RtRandom *random) {
     for (int i = 1; i < BOXES; i++) {
         RtVec3 lo, hi;
         for (int a = 0; a < 3; a++) {
-            lo.at[a] = 0.5f * (float)(rt_random_bits(random) % 8) - 4;
-            hi.at[a] = lo.at[a] + 0.5f * (float)(1 + rt_random_bits(random) % 6);
+            lo.at[a] = 0.5f * (float)(rt_random_below(random, 8)) - 4;
+            hi.at[a] = lo.at[a] + 0.5f * (float)(1 + rt_random_below(random, 6));
         }
         count += put_box(lo, hi, i % 2, triangles + count);
     }
@@ -50,8 +50,8 @@ static RtRay lattice_ray(RtRandom *random) {
     static const float steps[7] = {-2, -1, -0.5f, 0, 0.5f, 1, 2};
     RtRay ray = {.tmax = INFINITY, .kind = RT_RAY_RANDOM};
     for (int a = 0; a < 3; a++) {
-        ray.org.at[a] = 0.5f * (float)(rt_random_bits(random) % 17) - 4;
-        ray.dir.at[a] = steps[rt_random_bits(random) % 7];
+        ray.org.at[a] = 0.5f * (float)(rt_random_below(random, 17)) - 4;
+        ray.dir.at[a] = steps[rt_random_below(random, 7)];
     }
     if (ray.dir.x == 0 && ray.dir.y == 0 && ray.dir.z == 0) ray.dir.x = 1;
     return ray;
@@ -169,10 +169,10 @@ static void all_lines_through_a_point_agree_whether_it_is_inside(void **state) {
             RtRay ray = {.tmax = INFINITY, .kind = RT_RAY_RANDOM};
             int ayes = 0;
             for (int a = 0; a < 3; a++)
-                ray.org.at[a] = 0.0625f * (float)(2 * (rt_random_bits(&random) % 64) + 1) - 4;
+                ray.org.at[a] = 0.0625f * (float)(2 * (rt_random_below(&random, 64)) + 1) - 4;
             for (int k = 0; k < 5; k++) {
                 for (int a = 0; a < 3; a++) {
-                    float target = 0.5f * (float)(rt_random_bits(&random) % 17) - 4;
+                    float target = 0.5f * (float)(rt_random_below(&random, 17)) - 4;
                     ray.dir.at[a] = target - ray.org.at[a];
                 }
                 ayes += starts_inside(&set, index, &ray);

@@ -87,8 +87,8 @@ static RtVec3 delicate_point(const RtGeometry *geometry, uint32_t id, RtRandom *
 }
 
 static RtRay make_ray(const RtGeometry *geometry, RtRandom *random) {
-    uint32_t id = rt_random_bits(random) % geometry->object_count;
-    uint32_t other = rt_random_bits(random) % geometry->object_count;
+    uint32_t id = rt_random_below(random, geometry->object_count);
+    uint32_t other = rt_random_below(random, geometry->object_count);
     RtVec3 target = delicate_point(geometry, id, random), org = delicate_point(geometry, other, random);
     RtVec3d axes[3];
     rt_object_frame(geometry, id, axes);
@@ -158,7 +158,7 @@ static void every_kind_answers_like_brute_far_from_the_zero_of_coordinates(void 
  * apart. */
 static RtVec3 least_point(RtRandom *random) {
     RtVec3 p;
-    for (int a = 0; a < 3; a++) p.at[a] = 0x1p-149f * ((float)(rt_random_bits(random) % 17) - 8);
+    for (int a = 0; a < 3; a++) p.at[a] = 0x1p-149f * ((float)(rt_random_below(random, 17)) - 8);
     return p;
 }
 

@@ -98,7 +98,7 @@ static void rounding_far_off_is_within_the_margin(void **state) {
         double depth = 500 + 1000 * (double)rt_random_unit(&random), at[2];
         for (int k = 0; k < 2; k++) {
             double off = 0x1p-15 * ((double)rt_random_unit(&random) - 0.5);
-            at[k] = 0.25 * ((double)(rt_random_bits(&random) % 3) - 1) + off;
+            at[k] = 0.25 * ((double)(rt_random_below(&random, 3)) - 1) + off;
         }
         if (i % 2) at[i / 2 % 2] = 0.5 * (double)rt_random_unit(&random) - 0.25; /* along a border */
         RtVec3d from = rt_vec3d(at[0] * depth, at[1] * depth, -depth);

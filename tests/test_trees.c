@@ -38,7 +38,7 @@ static void the_nearest_neighbour_is_the_one_that_a_scan_finds(void **state) {
     for (uint32_t left = COUNT; left > 1; left--) {
         uint32_t from, other;
         double distance, least = INFINITY;
-        do from = rt_random_bits(&random) % tree.used;
+        do from = rt_random_below(&random, tree.used);
         while (gone[from]);
         uint32_t nearest = rt_neighbours_nearest(&neighbours, from, &distance);
         for (other = 0; other < tree.used; other++) {
@@ -49,7 +49,7 @@ static void the_nearest_neighbour_is_the_one_that_a_scan_finds(void **state) {
         assert_true(distance == least);
         assert_true(distance == rt_tree_distance(&tree, from, nearest));
         /* A union with any cluster, near or far. */
-        do other = rt_random_bits(&random) % tree.used;
+        do other = rt_random_below(&random, tree.used);
         while (gone[other] || other == from);
         gone[from] = gone[other] = true;
         rt_neighbours_unite(&neighbours, from, other, rt_tree_unite(&tree, from, other));
@@ -167,7 +167,7 @@ static void medians_put_the_lesser_half_in_front(void **state) {
     for (uint32_t count = 1; count <= 64; count++) {
         RtTreeRef refs[64];
         for (uint32_t i = 0; i < count; i++) {
-            float x = (float)(rt_random_bits(&random) % (count / 2 + 1)); /* many are equal */
+            float x = (float)(rt_random_below(&random, count / 2 + 1)); /* many are equal */
             refs[i] = (RtTreeRef){{{x, 0, 0}, {x + 1, 1, 1}}, i};
         }
         uint32_t half = rt_split_median(refs, count);

@@ -146,7 +146,7 @@ static void set_up(Body *body, size_t index) {
 /* A vertex, or a point of an edge as near as float32 has one. */
 static RtVec3 target_on_mesh(const RtGeometry *g, RtRandom *random) {
     uint32_t bits = rt_random_bits(random);
-    const RtTriangle *triangle = &g->triangles[rt_random_bits(random) % g->triangle_count];
+    const RtTriangle *triangle = &g->triangles[rt_random_below(random, g->triangle_count)];
     RtVec3 a = triangle->v[bits % 3], b = triangle->v[(bits + 1) % 3];
     if (bits & 0x10000) return a;
     float s = bits & 0x20000 ? 0.5f : rt_random_unit(random);

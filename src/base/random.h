@@ -21,6 +21,11 @@ RtRandom rt_random(uint64_t seed, uint64_t stream);
 /* 32 uniform bits. */
 uint32_t rt_random_bits(RtRandom *random);
 
+/* One of 0..count-1, count > 0; uniform but for count / 2^32. */
+static inline uint32_t rt_random_below(RtRandom *random, uint32_t count) {
+    return rt_random_bits(random) % count;
+}
+
 /* Uniform in [0, 1), a multiple of 2^-24. */
 float rt_random_unit(RtRandom *random);
 
