@@ -1,5 +1,6 @@
 /* The families of rays: one function a family, which makes one ray from the random numbers it is given. */
 #include "experiments/families.h"
+#include "experiments/ray_points.h"
 #include "experiments/rayset.h"
 
 #include <assert.h>
@@ -18,106 +19,13 @@ static uint32_t below(Maker *m, uint32_t n) {
     return rt_random_below(&m->random, n);
 }
 
-/* ---- points to start at and aim at ---- */
-
-static RtVec3d point_in_box(Maker *m, const RtBox *box) {
-    RtVec3d p;
-    for (int a = 0; a < 3; a++)
-        p.at[a] = rt_random_betweend(&m->random, (double)box->lo.at[a], (double)box->hi.at[a]);
-    return p;
-}
-
-static RtVec3d point_in_scene(Maker *m) {
-    if (m->geometry->object_count == 0) return rt_random_direction(&m->random);
-    return point_in_box(m, &m->geometry->box);
-}
-
-static const RtBox *some_box(Maker *m) {
-    static const RtBox unit = {{-1, -1, -1}, {1, 1, 1}};
-    if (m->geometry->object_count == 0) return &unit;
-    if (below(m, 4) == 0) return &m->geometry->box;
-    return &m->geometry->boxes[below(m, m->geometry->object_count)];
-}
-
-/* A point of a cone's side, or with `rim` of one of its circles. */
-static RtVec3d point_of_cone(Maker *m, const RtCone *cone, bool rim) {
-    RtVec3d around = rt_normalized(rt_crossd(cone->axis, rt_random_direction(&m->random)));
-    double s = rim ? (double)below(m, 2) : rt_random_betweend(&m->random, 0, 1);
-    double radius = (double)cone->base_radius + cone->slope * cone->height * s;
-    return rt_add_scaledd(rt_add_scaledd(rt_widen(cone->base), cone->axis, cone->height * s), around, radius);
-}
-
-/* Where on a chain of vertices: at one, between two neighbours, or among three. */
-typedef enum Where { AT_VERTEX, ON_EDGE, ON_SURFACE } Where;
-
-static RtVec3d point_of_vertices(Maker *m, const RtVec3 *v, uint32_t count, Where where) {
-    uint32_t i = below(m, count);
-    RtVec3d a = rt_widen(v[i]), b = rt_widen(v[(i + 1) % count]), c = rt_widen(v[(i + 2) % count]);
-    if (where == AT_VERTEX) return a;
-    RtVec3d p = rt_add_scaledd(a, rt_subd(b, a), rt_random_betweend(&m->random, 0, 1));
-    return where == ON_EDGE ? p : rt_add_scaledd(p, rt_subd(c, p), rt_random_betweend(&m->random, 0, 1));
-}
-
-/* One of the six points at which a sphere touches its box, or any other. */
-static RtVec3d point_of_sphere(Maker *m, const RtSphere *sphere, Where where) {
-    RtVec3d out = rt_random_direction(&m->random);
-    if (where == AT_VERTEX) {
-        uint32_t pole = below(m, 6);
-        out = rt_vec3d(0, 0, 0);
-        out.at[pole / 2] = pole % 2 ? 1 : -1;
-    }
-    return rt_add_scaledd(rt_widen(sphere->center), out, (double)sphere->radius);
-}
-
-/* Of a tree: a corner of the box of one of its solids, a point of an edge of such a box, or where a random
- * line meets the tree. */
-static RtVec3d point_of_csg(Maker *m, uint32_t id, Where where) {
-    const RtGeometry *g = m->geometry;
-    const RtCsg *tree = &g->csgs[rt_ref_index(g->objects[id])];
-    if (where == ON_SURFACE) {
-        RtRay ray = rt_random_chord(&tree->box, &m->random);
-        RtPreparedRay prepared = rt_ray_prepare(&ray, &tree->box);
-        float t;
-        if (rt_object_hit(g, id, &prepared, &t, NULL)) return rt_ray_point(&ray, t);
-    }
-    const RtBox *box = &g->forest.set.solids[tree->first_solid + below(m, tree->solid_count)].box;
-    if (!rt_finite(box->lo) || !rt_finite(box->hi)) box = &tree->box;
-    RtVec3d p = point_in_box(m, box);
-    uint32_t along = where == AT_VERTEX ? 3 : below(m, 3);
-    for (uint32_t a = 0; a < 3; a++) {
-        if (a != along) p.at[a] = (double)(below(m, 2) ? box->hi : box->lo).at[a];
-    }
-    return p;
-}
-
-/* A point of object `id`, and the id itself; in an empty scene any point and RT_NO_OBJECT. */
-static RtVec3d point_of_object(Maker *m, Where where, uint32_t *id) {
-    const RtGeometry *g = m->geometry;
-    *id = RT_NO_OBJECT;
-    if (g->object_count == 0) return point_in_scene(m);
-    *id = below(m, g->object_count);
-    uint32_t index = rt_ref_index(g->objects[*id]);
-    switch (rt_ref_shape(g->objects[*id])) {
-    case RT_SHAPE_SPHERE: return point_of_sphere(m, &g->spheres[index], where);
-    case RT_SHAPE_TRIANGLE: return point_of_vertices(m, g->triangles[index].v, 3, where);
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &g->polygons[index];
-        return point_of_vertices(m, g->polygon_vertices + polygon->first, polygon->count, where);
-    }
-    case RT_SHAPE_CONE: return point_of_cone(m, &g->cones[index], where != ON_SURFACE);
-    case RT_SHAPE_CSG: return point_of_csg(m, *id, where);
-    case RT_SHAPE_COUNT: break;
-    }
-    return point_in_scene(m);
-}
-
 static RtRay ray_along(RtVec3d from, RtVec3d dir) {
     return (RtRay){.org = rt_narrow(from), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = RT_RAY_RANDOM};
 }
 
 /* From a random place around or inside the scene through `target`. */
 static RtRay ray_through(Maker *m, RtVec3d target) {
-    RtVec3d from = below(m, 2) ? point_in_scene(m)
+    RtVec3d from = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random)
                                : rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
     return (RtRay){.org = rt_narrow(from),
                    .dir = rt_sub(rt_narrow(target), rt_narrow(from)),
@@ -133,7 +41,7 @@ static RtRay chord(Maker *m) {
 
 /* Parallel to an axis, the other components +0 or -0. */
 static RtRay along_axis(Maker *m) {
-    RtVec3d p = point_in_scene(m), dir;
+    RtVec3d p = rt_point_in_scene(m->geometry, &m->random), dir;
     int axis = (int)below(m, 3);
     for (int a = 0; a < 3; a++) dir.at[a] = below(m, 2) ? 0.0 : -0.0;
     dir.at[axis] = below(m, 2) ? 1 : -1;
@@ -144,7 +52,7 @@ static RtRay along_axis(Maker *m) {
 /* Directions of whole numbers from points at whole fractions of a box: through its corners, edges and
  * halves, and through the corners of a grid's voxels. */
 static RtRay on_fractions(Maker *m) {
-    const RtBox *box = some_box(m);
+    const RtBox *box = rt_some_box(m->geometry, &m->random);
     RtVec3d from, to;
     for (int a = 0; a < 3; a++) {
         double lo = (double)box->lo.at[a], hi = (double)box->hi.at[a];
@@ -159,14 +67,14 @@ static RtRay on_fractions(Maker *m) {
 
 static RtRay from_surface(Maker *m) {
     uint32_t id;
-    RtVec3d p = point_of_object(m, ON_SURFACE, &id);
+    RtVec3d p = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id);
     return ray_along(p, rt_random_direction(&m->random));
 }
 
 /* From a point in a face of a box, in the face or off it. */
 static RtRay from_box_face(Maker *m) {
-    const RtBox *box = some_box(m);
-    RtVec3d p = point_in_box(m, box), dir = rt_random_direction(&m->random);
+    const RtBox *box = rt_some_box(m->geometry, &m->random);
+    RtVec3d p = rt_point_in_box(box, &m->random), dir = rt_random_direction(&m->random);
     int axis = (int)below(m, 3);
     p.at[axis] = (double)(below(m, 2) ? box->hi : box->lo).at[axis];
     if (below(m, 2)) dir.at[axis] = below(m, 2) ? 0.0 : -0.0;
@@ -175,25 +83,25 @@ static RtRay from_box_face(Maker *m) {
 }
 
 static RtRay from_inside(Maker *m) {
-    const RtBox *box = some_box(m);
-    RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : point_in_box(m, box);
+    const RtBox *box = rt_some_box(m->geometry, &m->random);
+    RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : rt_point_in_box(box, &m->random);
     return ray_along(p, rt_random_direction(&m->random));
 }
 
 static RtRay at_vertex(Maker *m) {
     uint32_t id;
-    return ray_through(m, point_of_object(m, AT_VERTEX, &id));
+    return ray_through(m, rt_point_of_object(m->geometry, RT_AT_VERTEX, &m->random, &id));
 }
 
 static RtRay at_edge(Maker *m) {
     uint32_t id;
-    return ray_through(m, point_of_object(m, ON_EDGE, &id));
+    return ray_through(m, rt_point_of_object(m->geometry, RT_ON_EDGE, &m->random, &id));
 }
 
 /* Touches an object: in the plane of a flat one, along the silhouette of a round one. */
 static RtRay tangent(Maker *m) {
     uint32_t id;
-    RtVec3d p = point_of_object(m, below(m, 2) ? ON_SURFACE : AT_VERTEX, &id);
+    RtVec3d p = rt_point_of_object(m->geometry, below(m, 2) ? RT_ON_SURFACE : RT_AT_VERTEX, &m->random, &id);
     RtVec3d dir = rt_random_direction(&m->random);
     if (id != RT_NO_OBJECT) {
         RtRay at = ray_along(p, dir);
@@ -209,7 +117,8 @@ static RtRay from_afar(Maker *m) {
     double distance = m->size * sizes[below(m, 5)];
     RtVec3d from = rt_add_scaledd(m->center, rt_random_direction(&m->random), distance);
     uint32_t id;
-    RtVec3d to = below(m, 2) ? point_in_scene(m) : point_of_object(m, ON_SURFACE, &id);
+    RtVec3d to = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random)
+                             : rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id);
     return ray_along(from, rt_normalized(rt_subd(to, from)));
 }
 
@@ -261,9 +170,9 @@ static uint32_t some_resolution(Maker *m) {
 
 /* From a corner of a voxel, or from a point of an edge of one. */
 static RtRay from_voxel_corner(Maker *m) {
-    const RtBox *box = below(m, 2) ? &m->geometry->box : some_box(m);
-    if (m->geometry->object_count == 0) box = some_box(m);
-    RtVec3d p = point_in_box(m, box);
+    const RtBox *box = below(m, 2) ? &m->geometry->box : rt_some_box(m->geometry, &m->random);
+    if (m->geometry->object_count == 0) box = rt_some_box(m->geometry, &m->random);
+    RtVec3d p = rt_point_in_box(box, &m->random);
     uint32_t voxels = some_resolution(m), along = below(m, 6);
     for (int a = 0; a < 3; a++) {
         if (a != (int)along) p.at[a] = voxel_plane(m, box, a, voxels);
@@ -273,9 +182,9 @@ static RtRay from_voxel_corner(Maker *m) {
 
 /* Within a plane of voxels or a face of a box, from inside or outside. */
 static RtRay in_plane(Maker *m) {
-    const RtBox *box = some_box(m);
+    const RtBox *box = rt_some_box(m->geometry, &m->random);
     int axis = (int)below(m, 3);
-    RtVec3d p = point_in_box(m, box), dir = free_direction(m);
+    RtVec3d p = rt_point_in_box(box, &m->random), dir = free_direction(m);
     p.at[axis] = voxel_plane(m, box, axis, below(m, 2) ? 1 : some_resolution(m));
     dir.at[axis] = below(m, 2) ? 0.0 : -0.0;
     if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[(axis + 1) % 3] = -1;
@@ -307,7 +216,8 @@ static RtRay along_edge(Maker *m) {
 static RtRay grazing(Maker *m) {
     static const double angles[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
     uint32_t id;
-    RtVec3d p = point_of_object(m, ON_SURFACE, &id), dir = rt_random_direction(&m->random);
+    RtVec3d p = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id),
+            dir = rt_random_direction(&m->random);
     if (id != RT_NO_OBJECT) {
         RtRay at = ray_along(p, dir);
         RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0).geometric;
@@ -325,7 +235,7 @@ static RtRay denormal(Maker *m) {
     uint32_t id;
     RtRay ray = along_axis(m);
     if (below(m, 2)) {
-        RtVec3d from = point_of_object(m, AT_VERTEX, &id);
+        RtVec3d from = rt_point_of_object(m->geometry, RT_AT_VERTEX, &m->random, &id);
         ray = ray_along(from, free_direction(m));
     }
     int whole = (int)below(m, 3);
@@ -344,9 +254,9 @@ static RtRay to_light(Maker *m) {
     uint32_t id, light = below(m, m->scene->light_count);
     RtVec3d to = rt_widen(m->scene->lights[light].position), from;
     switch (below(m, 4)) {
-    case 0: from = point_of_object(m, ON_SURFACE, &id); break;
-    case 1: from = point_of_object(m, ON_EDGE, &id); break;
-    case 2: from = point_in_scene(m); break;
+    case 0: from = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id); break;
+    case 1: from = rt_point_of_object(m->geometry, RT_ON_EDGE, &m->random, &id); break;
+    case 2: from = rt_point_in_scene(m->geometry, &m->random); break;
     default: from = rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
     }
     if (below(m, 2)) from = rt_add_scaledd(from, rt_subd(to, from), rt_random_betweend(&m->random, 0, 1e-4));
