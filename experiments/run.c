@@ -1,12 +1,12 @@
 #include "experiments/run.h"
 
+#include "experiments/families.h"
 #include "experiments/journal.h"
 #include "experiments/manifest.h"
 #include "experiments/plot.h"
 #include "experiments/report.h"
 #include "experiments/tables.h"
 #include "render/image.h"
-#include "scene/load.h"
 
 #include <string.h>
 
@@ -166,7 +166,7 @@ static RtStatus write_image(const Run *run, uint32_t t, RtError *error) {
     snprintf(name, sizeof name, "images/%s.png", run->experiment->trials[t].label);
     RT_TRY(in_directory(run, name, path, error));
     if (run->results->trials[t].skipped || (run->options->resume && rt_file_exists(path))) return RT_OK;
-    RT_TRY(rt_scene_open(run->experiment->trials[t].path, &scene, error));
+    RT_TRY(rt_hard_scene_open(run->experiment->trials[t].path, &scene, error));
     RtStatus status = draw_scene(&scene, &run->results->trials[t], path, error);
     rt_scene_clear(&scene);
     return status;

@@ -6,7 +6,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "scene/load.h"
+#include "experiments/families.h"
 
 #include <string.h>
 
@@ -70,7 +70,7 @@ RtStatus rt_trial_find_scene(const RtTrial *setup, RtError *error) {
 static RtStatus open_scene(RtTrialState *trial, RtError *error) {
     const RtTrial *setup = &trial->experiment->trials[trial->index];
     RT_TRY(rt_trial_find_scene(setup, error));
-    if (is_there(setup)) return rt_scene_open(setup->path, &trial->scene, error);
+    if (is_there(setup)) return rt_hard_scene_open(setup->path, &trial->scene, error);
     char message[RT_MAX_PATH + 128];
     snprintf(message, sizeof message,
              "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,

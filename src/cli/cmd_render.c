@@ -6,12 +6,12 @@
 #include "base/words.h"
 #include "cli/cli.h"
 #include "experiments/equivalence.h"
+#include "experiments/families.h"
 #include "experiments/json.h"
 #include "experiments/rayset.h"
 #include "render/heatmap.h"
 #include "render/image.h"
 #include "render/structure.h"
-#include "scene/load.h"
 
 #include <argp.h>
 #include <stdatomic.h>
@@ -176,7 +176,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     RT_TRY(rt_spec_parse(o->accel, &spec, error));
     rt_spec_format(&spec, run->spec);
     if (o->structure) RT_TRY(rt_structure_available(spec.layers[spec.layer_count - 1].ops, error));
-    RT_TRY(rt_scene_open(o->scene, &run->scene, error));
+    RT_TRY(rt_hard_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, &run->accel, error));

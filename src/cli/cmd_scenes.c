@@ -42,7 +42,9 @@ int rt_command_scenes(int argc, char **argv) {
     if (json) {
         rt_cli_print_json(json_pack("{s:O}", "scenes", list));
     } else {
-        puts("A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.");
+        puts("A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.\n"
+             "Scenes that are hard on accelerators are generated from a seed, as in family:slivers,seed=7;\n"
+             "`raytally info family:` names their families.");
     }
     json_decref(list);
     return RT_EXIT_OK;

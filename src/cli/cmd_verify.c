@@ -285,8 +285,8 @@ static RtStatus print_totals(const json_t *rows, RtError *error) {
     RtStatus status = rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error);
     if (status == RT_OK) {
         RtVerifySum total = rt_verify_total(sums, count);
-        printf("%u rows, %" PRIu64 " pairs of a ray and an accelerator: %" PRIu64 " wrong", total.rows,
-               total.pairs, total.verdicts[RT_WRONG]);
+        printf("%u row%s, %" PRIu64 " pairs of a ray and an accelerator: %" PRIu64 " wrong", total.rows,
+               total.rows == 1 ? "" : "s", total.pairs, total.verdicts[RT_WRONG]);
         if (total.occluded_wrong > 0) printf(", %" PRIu64 " occluded wrong", total.occluded_wrong);
         if (total.failed > 0) printf("; rows that fail: %u", total.failed);
         putchar('\n');
