@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# check_verified.sh: results/verify is of a thousand million pairs of a ray and an accelerator without a wrong answer, and
+# one of its scenes, verified again, gives the same rows (but for Embree's, whose own arithmetic differs between
+# processors). Some ten seconds. Uses $RT_PROGRAM.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=${RT_PROGRAM:-build/release/raytally}
+table=results/verify/verify.csv manifest=results/verify/manifest.json
+again=$(mktemp -d) && trap 'rm -rf "$again"' EXIT
+
+# sum COLUMN: quoted fields have commas
+sum() {
+    sed 's/"[^"]*"/quoted/g' "$table" | awk -F, -v name="$1" '
+        NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i; next }
+        { sum += $column }
+        END { printf "%.0f\n", sum }'
+}
+# setting NAME: of the run
+setting() { sed -n "s/^  \"$1\": \([0-9]*\),$/\1/p" "$manifest"; }
+
+echo "$(sum rays) pairs, $(sum wrong) wrong"
+[ "$(sum rays)" -ge 1000000000 ]
+[ "$(sum wrong)" = 0 ]
+grep -q "^$(sum rays) pairs of a ray and an accelerator" results/verify/verify.md
+
+scene="family:csg-far,seed=$(setting seed)"
+"$program" verify "$scene" --families --rays "$(setting rays)" --seed "$(setting seed)" --out "$again" >/dev/null
+rows=$(sed '1d; /",embree/d' "$again/verify.csv")
+[ "$(wc -l <<<"$rows")" -gt 10 ]
+if grep -vxFf "$table" <<<"$rows"; then
+    echo "these rows of $scene are other ones in $table"
+    exit 1
+fi
