@@ -18,6 +18,12 @@ static void assert_survives(const RtScene *scene) {
     rt_scene_clear(&again);
 }
 
+/* What a large built-in has in a file of a hundred megabytes it has in a small one, too. */
+static const char *spec_of(const char *name) {
+    if (strcmp(name, "forest") == 0) return "forest:n=20";
+    return strcmp(name, "hall") == 0 ? "hall:size=1" : name;
+}
+
 static void a_scene_saved_and_loaded_keeps_every_bit(void **state) {
     (void)state;
     RtScene scene;
@@ -25,7 +31,7 @@ static void a_scene_saved_and_loaded_keeps_every_bit(void **state) {
     assert_survives(&scene);
     rt_scene_clear(&scene);
     for (size_t i = 0; i < rt_builtin_count(); i++) {
-        assert_ok(rt_builtin_open(rt_builtin_at(i)->name, &scene, error));
+        assert_ok(rt_builtin_open(spec_of(rt_builtin_at(i)->name), &scene, error));
         assert_survives(&scene);
         rt_scene_clear(&scene);
     }
