@@ -93,8 +93,7 @@ struct RtAccelOps {
     const char *paper;   /* author, year, title, venue */
     const RtParam *params;
     size_t param_count;
-    uint32_t
-        kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, which answers all */
+    uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
 
     /* Builds over `scene`, which is finished and may hold no object at all. values[param_count] are in range.
      * On failure nothing is left behind. *out is owned by the caller: `destroy`, which leaves what lies below

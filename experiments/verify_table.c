@@ -151,9 +151,13 @@ static void write_sides(const RtVerifySum *sums, uint32_t count, FILE *out) {
     }
 }
 
-static void write_markdown(const RtVerifySum *accels, uint32_t accel_count, const RtVerifySum *scenes,
-                           uint32_t scene_count, FILE *out) {
-    RtVerifySum total = rt_verify_total(accels, accel_count);
+typedef struct Sums {
+    RtVerifySum *accels, *scenes;
+    uint32_t accel_count, scene_count;
+} Sums;
+
+static void write_markdown(const Sums *sums, FILE *out) {
+    RtVerifySum total = rt_verify_total(sums->accels, sums->accel_count);
     fprintf(out, "# Verification\n\n%" PRIu64 " pairs of a ray and an accelerator, ", total.pairs);
     fputs("each asked `nearest` and `occluded`, timed and counted:\n", out);
     fprintf(out, "%" PRIu64 " answers to `nearest` are wrong, %" PRIu64 " to `occluded`. ",
@@ -168,33 +172,28 @@ static void write_markdown(const RtVerifySum *accels, uint32_t accel_count, cons
         "it fails where an answer is wrong or verify.csv names a problem. The first table sums up an\n"
         "accelerator over all its parameters.\n",
         out);
-    write_sums(accels, accel_count, "accelerator", out);
-    write_sides(accels, accel_count, out);
+    write_sums(sums->accels, sums->accel_count, "accelerator", out);
+    write_sides(sums->accels, sums->accel_count, out);
     fputs("\n## By scene\n", out);
-    write_sums(scenes, scene_count, "scene", out);
+    write_sums(sums->scenes, sums->scene_count, "scene", out);
 }
 
 /* ---- files ---- */
 
-typedef struct Sums {
-    RtVerifySum *accels, *scenes;
-    uint32_t accel_count, scene_count;
-} Sums;
+static RtStatus open_in(const char *folder, const char *name, RtOutput *output, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(folder, name, path, error));
+    return rt_output_open(output, path, error);
+}
 
 static RtStatus write_files(const json_t *rows, const Sums *sums, const char *folder, RtError *error) {
-    static const char *const names[2] = {"verify.csv", "verify.md"};
-    for (int i = 0; i < 2; i++) {
-        char path[RT_MAX_PATH];
-        RtOutput output;
-        RT_TRY(rt_path_join(folder, names[i], path, error));
-        RT_TRY(rt_output_open(&output, path, error));
-        if (i == 0) write_csv(rows, output.file);
-        if (i == 1) {
-            write_markdown(sums->accels, sums->accel_count, sums->scenes, sums->scene_count, output.file);
-        }
-        RT_TRY(rt_output_commit(&output, error));
-    }
-    return RT_OK;
+    RtOutput output;
+    RT_TRY(open_in(folder, "verify.csv", &output, error));
+    write_csv(rows, output.file);
+    RT_TRY(rt_output_commit(&output, error));
+    RT_TRY(open_in(folder, "verify.md", &output, error));
+    write_markdown(sums, output.file);
+    return rt_output_commit(&output, error);
 }
 
 RtStatus rt_verify_write(const json_t *rows, const char *folder, RtError *error) {

@@ -259,7 +259,18 @@ static RtStatus move_triangles(RtSolidSet *set, const RtSolidSet *source, RtSoli
         set->triangles[set->triangle_count + i] = triangle;
     }
     solid->first = set->triangle_count;
-    return move ? rt_solid_check_volume(set->triangles + set->triangle_count, solid->count, error) : RT_OK;
+    return RT_OK;
+}
+
+/* What moving does to a solid besides, now that its planes or triangles are where they go. */
+static RtStatus settle(const RtSolidSet *set, RtSolid *solid, const RtTransform *move, RtError *error) {
+    switch (solid->kind) {
+    case RT_SOLID_MESH: return rt_solid_check_volume(set->triangles + solid->first, solid->count, error);
+    case RT_SOLID_POLYHEDRON: return rt_solid_check_inside(set->planes + solid->first, solid->count, error);
+    default: solid->place = rt_transform_compose(&solid->place, move);
+    }
+    if (solid->kind == RT_SOLID_CONE) rt_solid_cone_to_caps(set, solid);
+    return RT_OK;
 }
 
 RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t from, const RtTransform *move,
@@ -271,11 +282,6 @@ RtStatus rt_solid_add_moved(RtSolidSet *set, const RtSolidSet *source, uint32_t 
     } else {
         RT_TRY(move_planes(set, source, &solid, move, error));
     }
-    if (move && solid.kind == RT_SOLID_POLYHEDRON) {
-        RT_TRY(rt_solid_check_inside(set->planes + solid.first, solid.count, error));
-    } else if (move && solid.kind != RT_SOLID_MESH) {
-        solid.place = rt_transform_compose(&solid.place, move);
-    }
-    if (solid.kind == RT_SOLID_CONE) rt_solid_cone_to_caps(set, &solid);
+    if (move) RT_TRY(settle(set, &solid, move, error));
     return rt_solid_finish(set, &solid, index, error);
 }
