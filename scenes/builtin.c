@@ -7,17 +7,17 @@
 #include <stdio.h>
 #include <string.h>
 
-extern const RtBuiltin rt_builtin_balls, rt_builtin_city, rt_builtin_csg_field, rt_builtin_forest,
-    rt_builtin_gears, rt_builtin_hall, rt_builtin_jacks, rt_builtin_lattice, rt_builtin_mount,
-    rt_builtin_random, rt_builtin_rings, rt_builtin_shells, rt_builtin_stadium, rt_builtin_teapot,
-    rt_builtin_tetra, rt_builtin_tree;
+extern const RtBuiltin rt_builtin_balls, rt_builtin_city, rt_builtin_csg_field, rt_builtin_family,
+    rt_builtin_forest, rt_builtin_gears, rt_builtin_hall, rt_builtin_jacks, rt_builtin_lattice,
+    rt_builtin_mount, rt_builtin_random, rt_builtin_rings, rt_builtin_shells, rt_builtin_stadium,
+    rt_builtin_teapot, rt_builtin_tetra, rt_builtin_tree;
 
 /* In the order in which they are listed: the Standard Procedural Databases, and then others. */
 static const RtBuiltin *const builtins[] = {
-    &rt_builtin_balls,   &rt_builtin_gears, &rt_builtin_jacks,  &rt_builtin_lattice,
-    &rt_builtin_mount,   &rt_builtin_rings, &rt_builtin_shells, &rt_builtin_teapot,
-    &rt_builtin_tetra,   &rt_builtin_tree,  &rt_builtin_random, &rt_builtin_csg_field,
-    &rt_builtin_stadium, &rt_builtin_hall,  &rt_builtin_forest, &rt_builtin_city,
+    &rt_builtin_balls,  &rt_builtin_gears,     &rt_builtin_jacks,   &rt_builtin_lattice, &rt_builtin_mount,
+    &rt_builtin_rings,  &rt_builtin_shells,    &rt_builtin_teapot,  &rt_builtin_tetra,   &rt_builtin_tree,
+    &rt_builtin_random, &rt_builtin_csg_field, &rt_builtin_stadium, &rt_builtin_hall,    &rt_builtin_forest,
+    &rt_builtin_city,   &rt_builtin_family,
 };
 
 enum { BUILTIN_COUNT = sizeof builtins / sizeof builtins[0] };
@@ -40,7 +40,9 @@ const RtBuiltin *rt_builtin_find(const char *spec) {
     return NULL;
 }
 
-static RtStatus fail_unknown(const char *spec, RtError *error) {
+RtStatus rt_builtin_named(const char *spec, const RtBuiltin **builtin, RtError *error) {
+    *builtin = rt_builtin_find(spec);
+    if (*builtin) return RT_OK;
     const char *names[BUILTIN_COUNT];
     char list[256], name[RT_MAX_NAME], suggestion[RT_MAX_SUGGESTION];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(spec, ":"), spec);
@@ -87,8 +89,8 @@ RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values
 
 RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error) {
     *scene = (RtScene){0};
-    const RtBuiltin *builtin = rt_builtin_find(spec);
-    if (!builtin) return fail_unknown(spec, error);
+    const RtBuiltin *builtin;
+    RT_TRY(rt_builtin_named(spec, &builtin, error));
     RtValue values[RT_MAX_PARAMS];
     const char *colon = strchr(spec, ':');
     char what[RT_MAX_NAME + 16];

@@ -18,7 +18,7 @@
 
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: where the scene comes from */
-    const RtParam *params;               /* params[0] is the whole number that sets the size of the scene */
+    const RtParam *params;               /* params[0]: the whole number that sets the size, where one does */
     size_t param_count;
     /* How many objects `generate` would make: checked against memory before anything is made. */
     uint64_t (*object_count)(const RtValue *values);
@@ -33,6 +33,9 @@ const RtBuiltin *rt_builtin_at(size_t i);
 
 /* By the name that `spec` begins with, up to its end or a colon; NULL if there is none. */
 const RtBuiltin *rt_builtin_find(const char *spec);
+
+/* The same to *builtin; an unknown one is refused with the list of those there are. */
+RtStatus rt_builtin_named(const char *spec, const RtBuiltin **builtin, RtError *error);
 
 /* "name[:key=value,...]" to a finished scene, whose name is the spec with every parameter. On failure *scene
  * is empty. A scene for which this machine has not the memory is refused, with the size that would fit. */

@@ -5,10 +5,10 @@ set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
 # shellcheck disable=SC2016 # the dollars are awk's
-find src accel experiments scenes tests -name '*.[ch]' | sort | xargs awk '
-    BEGIN { # a room may include itself and those of a lower number; scene and scenes/ stand beside one another
-        split("base 1 shape 2 scene 3 scenes 3 accel 4 render 5 experiments 6 cli 7 tests 8", list, " ")
-        for (i = 1; i in list; i += 2) level[list[i]] = list[i + 1]
+find src accel scenes tests -name '*.[ch]' | sort | xargs awk '
+    BEGIN { # a room may include itself and those before it
+        split("base shape scene scenes accel render exact bench verify literature report cli tests", list, " ")
+        for (i = 1; i in list; i++) level[list[i]] = i
     }
     function room_of(path,    part) {
         sub(/^src\//, "", path)

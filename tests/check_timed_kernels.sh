@@ -6,7 +6,7 @@
 set -eu
 
 build=$(dirname "${RT_PROGRAM:?the path of raytally, beside which its library lies}")
-library=$build/libraytally_core.a
+library=$build/libraytally_accel.a
 [ "$(uname -m)" = x86_64 ] || { echo "skipped: not x86-64"; exit 77; }
 command -v objdump >/dev/null || { echo "skipped: there is no objdump"; exit 77; }
 grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Rel' "$build/CMakeCache.txt" || { echo "skipped: not a release build"; exit 77; }

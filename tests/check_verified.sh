@@ -23,7 +23,7 @@ echo "$(sum rays) pairs, $(sum wrong) wrong"
 [ "$(sum wrong)" = 0 ]
 grep -q "^$(sum rays) pairs of a ray and an accelerator" results/verify/verify.md
 
-scene="family:csg-far,seed=$(setting seed)"
+scene="family:kind=csg-far,seed=$(setting seed)"
 "$program" verify "$scene" --families --rays "$(setting rays)" --seed "$(setting seed)" --out "$again" >/dev/null
 rows=$(sed '1d; /",embree/d' "$again/verify.csv")
 [ "$(wc -l <<<"$rows")" -gt 10 ]

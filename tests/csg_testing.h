@@ -4,8 +4,8 @@
 
 #include "testing.h"
 
-#include "experiments/random_tree.h"
-#include "experiments/rayset.h"
+#include "bench/rayset.h"
+#include "scenes/random_tree.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
 
 #include "accel_testing.h"
 
-#include "experiments/random_tree.h"
+#include "scenes/random_tree.h"
 
 #include <stdio.h>
 

@@ -7,16 +7,25 @@
 
 #include "accel/accel.h"
 #include "base/memory.h"
-#include "experiments/equivalence.h"
-#include "experiments/families.h"
+#include "scenes/family.h"
+#include "scenes/open.h"
+#include "verify/equivalence.h"
+#include "verify/ray_families.h"
 
 #include <string.h>
 
 /* The number of the family of scenes that is called so. */
 static inline size_t scene_family(const char *name) {
     size_t family = 0;
-    while (strcmp(rt_scene_family_name(family), name) != 0) assert_true(++family < rt_scene_family_count());
+    while (strcmp(rt_family_name(family), name) != 0) assert_true(++family < rt_family_count());
     return family;
+}
+
+/* Scene number `seed` of a family. */
+static inline void open_family(size_t family, uint64_t seed, RtScene *scene) {
+    char spec[RT_MAX_SPEC_CHARS];
+    rt_family_spec(family, seed, spec);
+    assert_ok(rt_scene_open(spec, scene, error));
 }
 
 typedef struct FamilyBench {
@@ -43,7 +52,7 @@ static inline void set_up_rays(FamilyBench *bench, uint64_t seed, size_t rays) {
 
 /* The same over a scene of a family. */
 static inline void set_up_family(FamilyBench *bench, size_t scene_family, uint64_t seed, size_t rays) {
-    assert_ok(rt_scene_family_build(scene_family, seed, &bench->scene, error));
+    open_family(scene_family, seed, &bench->scene);
     set_up_rays(bench, seed, rays);
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "experiments/experiment.h"
+#include "bench/experiment.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 
 #include "accel/kernel.h"
 #include "base/memory.h"
-#include "experiments/question.h"
+#include "verify/question.h"
 
 #include <stdlib.h>
 #include <string.h>

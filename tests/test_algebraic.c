@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "base/random.h"
-#include "experiments/place.h"
+#include "exact/place.h"
 
 /* ---- polynomials by their roots ---- */
 

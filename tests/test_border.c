@@ -4,8 +4,8 @@
 #include "testing.h"
 
 #include "base/random.h"
-#include "experiments/border.h"
-#include "experiments/verdict.h"
+#include "exact/border.h"
+#include "verify/verdict.h"
 
 /* Ray `i` at a triangle with corners in the unit cube: at a random point beside it or, every second time, at
  * one of its edges. */

@@ -3,7 +3,7 @@
 
 #include "accel/bvh/bvh.h"
 #include "base/random.h"
-#include "scene/load.h"
+#include "scenes/open.h"
 
 #include <stdlib.h>
 

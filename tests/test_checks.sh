@@ -7,10 +7,10 @@ failures=0
 
 fresh_tree() {
     rm -rf "${tree:?}"/*
-    mkdir -p "$tree"/{src/base,src/scene,src/render,accel,experiments,scenes,tests}
+    mkdir -p "$tree"/{src/base,src/scene,src/render,accel,scenes,tests}
     echo '#include "accel/accel.h"' >"$tree/src/render/frame.c"
     echo '#include "scene/scene.h"' >"$tree/scenes/balls.c"
-    echo '#include "scenes/builtin.h"' >"$tree/src/scene/load.c"
+    echo '#include "base/file.h"' >"$tree/src/scene/load.c"
     echo 'const RtAccelOps rt_grid_ops = {' >"$tree/accel/grid.c"
     echo 'X(rt_grid_ops)' >"$tree/accel/registry.c"
     echo '#include "testing.h"' >"$tree/tests/test_grid.c"
@@ -37,6 +37,8 @@ fresh_tree && echo '  # include "scene/scene.h"' >"$tree/src/base/box.h"
 expect fails check_layers.sh "a base header that includes the scene"
 fresh_tree && echo '#include "accel/accel.h"' >>"$tree/scenes/balls.c"
 expect fails check_layers.sh "a generator that includes accelerators"
+fresh_tree && echo '#include "scenes/builtin.h"' >>"$tree/src/scene/load.c"
+expect fails check_layers.sh "a reader that includes generators"
 fresh_tree && echo 'return &rt_grid_ops;' >>"$tree/src/render/frame.c"
 expect fails check_layers.sh "a renderer that names an accelerator"
 fresh_tree && echo 'extern const RtAccelOps rt_grid_ops;' >>"$tree/tests/test_grid.c"

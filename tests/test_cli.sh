@@ -209,10 +209,11 @@ for command in plot report reproduce; do
     refuses 'DIR is missing' $command
     refuses 'nowhere is no finished result directory' $command nowhere
 done
-does info family:slivers,seed=7
-does render family:csg,seed=7 --size 8x8 -o family.png
-does convert family:shared,seed=7 family.yaml
-refuses 'no family of scenes .*slivers' info family:
+does info family:kind=slivers,seed=7
+does render family:kind=csg,seed=7 --size 8x8 -o family.png
+does convert family:kind=shared,seed=7 family.yaml
+refuses "no built-in scene 'famly': did you mean 'family'" scenes famly
+refuses 'empty|one-sphere' info family:kind=
 does verify tetra:size=1 --accel bvh --rays 10 --out verified
 refuses 'verified is no result directory of an experiment' report verified
 

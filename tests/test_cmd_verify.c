@@ -125,10 +125,10 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
         {"--threads -1", "whole number"},
         {"--wrong", "unrecognized option"},
         {"--resume", "--out DIR"},
-        {"family:silvers", "did you mean 'slivers'"},
-        {"family:", "The families are: empty, "},
-        {"family:slivers,sed=1", "family:slivers,seed=1"},
-        {"family:slivers,seed=", "family:slivers,seed=1"},
+        {"family:kind=silvers", "did you mean 'slivers'"},
+        {"family:kind=", "empty|one-sphere|"},
+        {"family:kind=slivers,sed=1", "did you mean 'seed'?"},
+        {"family:kind=slivers,seed=", "seed"},
         {"--replay nothing.json", "nothing.json"},
         {"--replay nothing.json balls", "takes no SCENE"},
         {"--replay nothing.json --json", "prints text"},
@@ -145,14 +145,15 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
 
 static void scenes_of_families_have_the_seed_of_the_rays(void **state) {
     (void)state;
-    json_t *json = document("families family:soup,seed=9 --accel grid --rays 40 --seed 3 --families --json");
+    json_t *json =
+        document("families family:kind=soup,seed=9 --accel grid --rays 40 --seed 3 --families --json");
     const json_t *rows = json_object_get(json, "rows");
     size_t count = json_array_size(rows);
     assert_true(count > 20);
     const char *first = json_string_value(json_object_get(json_array_get(rows, 0), "scene"));
     const char *last = json_string_value(json_object_get(json_array_get(rows, count - 1), "scene"));
-    assert_string_equal(first, "family:empty,seed=3");
-    assert_string_equal(last, "family:soup,seed=9");
+    assert_string_equal(first, "family:kind=empty,seed=3");
+    assert_string_equal(last, "family:kind=soup,seed=9");
     json_decref(json);
 }
 

@@ -7,8 +7,8 @@
  * RT_SEED=N in the environment tries other scenes and rays of the same families (the default is 1). */
 #include "equivalence_testing.h"
 
-#include "experiments/spread.h"
 #include "scenes/builtin.h"
+#include "verify/spread.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -173,7 +173,7 @@ static void every_allocation_of_a_build_may_fail(void **state) {
 
 static void every_ray_of_every_family_is_valid_and_repeatable(void **state) {
     (void)state;
-    for (size_t s = 0; s < rt_scene_family_count(); s++) {
+    for (size_t s = 0; s < rt_family_count(); s++) {
         FamilyBench bench;
         set_up_family(&bench, s, seed, 64);
         RtQuery query;
@@ -223,11 +223,10 @@ int main(void) {
     size_t count = FIXED_TESTS;
     const char *other_seed = getenv("RT_SEED");
     if (other_seed) seed = strtoull(other_seed, NULL, 10);
-    if (rt_scene_family_count() > MAX_SCENES) return EXIT_FAILURE;
-    for (size_t i = 0; i < rt_scene_family_count(); i++) {
+    if (rt_family_count() > MAX_SCENES) return EXIT_FAILURE;
+    for (size_t i = 0; i < rt_family_count(); i++) {
         families[i] = i;
-        snprintf(names[i], sizeof names[i], "every_accelerator_answers_like_brute on %s",
-                 rt_scene_family_name(i));
+        snprintf(names[i], sizeof names[i], "every_accelerator_answers_like_brute on %s", rt_family_name(i));
         tests[count++] =
             (struct CMUnitTest){names[i], every_accelerator_answers_like_brute, NULL, NULL, &families[i]};
     }

@@ -3,7 +3,7 @@
 #include "equivalence_testing.h"
 
 #include "base/parallel.h"
-#include "experiments/spread.h"
+#include "verify/spread.h"
 
 #include <string.h>
 
@@ -28,7 +28,7 @@ typedef struct Count {
 
 static int set_up(void **state) {
     static Stage stage;
-    assert_ok(rt_scene_family_build(scene_family("mixed"), 1, &stage.scene, error));
+    open_family(scene_family("mixed"), 1, &stage.scene);
     assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
     RtQuery query;
     assert_ok(rt_query_init(&query, stage.brute, error));

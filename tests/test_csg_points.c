@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "scene/formula.h"
-#include "scene/load.h"
+#include "scenes/open.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
-/* experiments/csv.h: fields that are quoted, and files that are no tables. */
+/* base/csv.h: fields that are quoted, and files that are no tables. */
 #include "experiment_testing.h"
 
-#include "experiments/csv.h"
+#include "base/csv.h"
 
 static void a_csv_field_may_be_quoted_and_is_written_as_it_was_read(void **state) {
     const Place *place = *state;

@@ -2,8 +2,8 @@
  * without Embree. */
 #include "embree_testing.h"
 
-#include "experiments/families.h"
-#include "experiments/question.h"
+#include "scenes/open.h"
+#include "verify/question.h"
 
 static void make_triangles(RtScene *scene, uint32_t count) {
     RtRandom random = rt_random(7, 2);
@@ -113,7 +113,7 @@ static RtReply ask_native(const char *scene_spec, const char *spec, RtRay ray) {
     RtReply reply;
     RtError error;
     RtQuestion question = {.rays = &ray, .count = 1, .stream = 1};
-    assert_int_equal(rt_hard_scene_open(scene_spec, &scene, &error), RT_OK);
+    assert_int_equal(rt_scene_open(scene_spec, &scene, &error), RT_OK);
     RtStatus status = rt_question_ask(&question, &scene, rt_maker_of_spec(spec), &reply, &error);
     rt_scene_clear(&scene);
     if (status == RT_NOT_AVAILABLE) skip(); /* no such processor */
@@ -125,7 +125,7 @@ static RtReply ask_native(const char *scene_spec, const char *spec, RtRay ray) {
  * margin. */
 static void a_component_that_embree_drops_is_a_margin(void **state) {
     (void)state;
-    RtReply reply = ask_native("family:csg-coincident,seed=1", "embree:mode=native",
+    RtReply reply = ask_native("family:kind=csg-coincident,seed=1", "embree:mode=native",
                                (RtRay){.org = {{-0.125f, -0x1.d991ccp-1f, 0.0625f}},
                                        .dir = {{-0x1p-130f, 1, -0.0f}},
                                        .tmax = INFINITY,
@@ -137,7 +137,7 @@ static void a_component_that_embree_drops_is_a_margin(void **state) {
 /* A needle seen edge on, which Embree without fused operations says is hit where its plane is not. */
 static void a_needle_seen_edge_on_is_a_margin(void **state) {
     (void)state;
-    RtReply reply = ask_native("family:slivers,seed=1", "embree:isa=sse2",
+    RtReply reply = ask_native("family:kind=slivers,seed=1", "embree:isa=sse2",
                                (RtRay){.org = {{-0.709930062f, 0.908542037f, 0.687071741f}},
                                        .dir = {{2.6491189f, -5.61743689f, 3.32413292f}},
                                        .tmax = 1,
@@ -149,7 +149,7 @@ static void a_needle_seen_edge_on_is_a_margin(void **state) {
 /* A triangle of 2^39, 2^54 away: the dot product of its corner and its normal, 2^134, is beyond float32. */
 static void where_products_overflow_is_a_margin_and_no_hit_at_infinity(void **state) {
     (void)state;
-    RtReply reply = ask_native("family:slivers-scaled,seed=16", "embree",
+    RtReply reply = ask_native("family:kind=slivers-scaled,seed=16", "embree",
                                (RtRay){.org = {{0x1.d29b58p+53f, -0x1.469a9ap+53f, -0x1.cc3184p+51f}},
                                        .dir = {{-0x1.9b2646p-1f, 0x1.1fcc8cp-1f, 0x1.95666cp-3f}},
                                        .tmax = INFINITY,

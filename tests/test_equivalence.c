@@ -67,7 +67,7 @@ typedef struct Stage {
 
 static int set_up(void **state) {
     static Stage stage;
-    assert_ok(rt_scene_family_build(scene_family("uniform"), 3, &stage.scene, error));
+    open_family(scene_family("uniform"), 3, &stage.scene);
     assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
     assert_ok(rt_query_init(&stage.liar.truth, stage.brute, error));
     rt_ray_family_fill(0, &stage.liar.truth, 3, 0, RAYS, rays);

@@ -1,10 +1,12 @@
 /* Trees in exact arithmetic: tori, their tangents and ties, and that every ray at the trees of the families
  * is decided, as our hit functions do but for rays that pass a border within rounding. */
+#include "equivalence_testing.h"
 #include "solids_testing.h"
 
-#include "experiments/border.h"
-#include "experiments/families.h"
-#include "experiments/referee.h"
+#include "exact/border.h"
+#include "exact/referee.h"
+#include "scenes/family.h"
+#include "verify/ray_families.h"
 
 /* ---- rings ---- */
 
@@ -170,7 +172,7 @@ static void a_line_is_outside_of_a_torus_up_to_the_first_place_and_inside_behind
 /* ---- all trees ---- */
 
 static bool is_of_trees(size_t family) {
-    return strncmp(rt_scene_family_name(family), "csg", 3) == 0;
+    return strncmp(rt_family_name(family), "csg", 3) == 0;
 }
 
 /* Asks about the object that is exactly the nearest, and about all that our hit function finds. Where
@@ -194,12 +196,12 @@ static void no_ray_at_the_families_of_trees_is_undecided_and_differences_are_at_
     (void)state;
     enum { EACH = 8 };
     int hits = 0, rays = 0;
-    for (size_t family = 0; family < rt_scene_family_count(); family++) {
+    for (size_t family = 0; family < rt_family_count(); family++) {
         for (uint64_t seed = 1; seed <= 3 && is_of_trees(family); seed++) {
             RtScene scene;
             RtAccel *brute;
             RtQuery query;
-            assert_ok(rt_scene_family_build(family, seed, &scene, error));
+            open_family(family, seed, &scene);
             assert_ok(rt_accel_open("brute", &scene, &brute, error));
             assert_ok(rt_query_init(&query, brute, error));
             for (size_t aim = 0; aim < rt_ray_family_count(); aim++, rays += EACH) {

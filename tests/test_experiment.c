@@ -2,8 +2,8 @@
  * interrupted. */
 #include "experiment_testing.h"
 
-#include "experiments/run.h"
-#include "experiments/tables.h"
+#include "report/run.h"
+#include "report/tables.h"
 
 #include <unistd.h>
 

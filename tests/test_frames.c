@@ -4,9 +4,9 @@
 #include "testing.h"
 
 #include "base/memory.h"
-#include "experiments/spread.h"
 #include "render/frame.h"
-#include "scene/load.h"
+#include "scenes/open.h"
+#include "verify/spread.h"
 
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* The item buffer: how much it decides, what it passes on, limits, and its invariants broken. */
 #include "item_testing.h"
 
-#include "scene/load.h"
 #include "scenes/builtin.h"
+#include "scenes/open.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "equivalence_testing.h"
 
 #include "accel/kd/kd.h"
-#include "scene/load.h"
+#include "scenes/open.h"
 
 #include <stdio.h>
 
@@ -249,7 +249,7 @@ static void every_structure_answers_like_brute(void **state) {
     static const char *const specs[] = {
         "kd:overlap=exact,traversal=0,failures=4", "kd:overlap=exact,max_objects=3,margin=0.3,mailbox=off",
         "kd:traversal=0,failures=9,empty_bonus=1", "kd:overlap=exact,max_depth=4,failures=60"};
-    for (size_t s = 0; s < rt_scene_family_count(); s++) {
+    for (size_t s = 0; s < rt_family_count(); s++) {
         FamilyBench bench;
         set_up_family(&bench, s, 7, 32);
         for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {

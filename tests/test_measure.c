@@ -1,11 +1,11 @@
-/* experiments/measure.h and trial.h: what is counted is the sum over threads and is compared with right
+/* bench/measure.h and trial.h: what is counted is the sum over threads and is compared with right
  * answers; thinned contenders are timed against the baseline on their own rays. */
 #include "testing.h"
 
 #include "base/memory.h"
-#include "experiments/measure.h"
-#include "experiments/trial.h"
-#include "scene/load.h"
+#include "bench/measure.h"
+#include "bench/trial.h"
+#include "scenes/open.h"
 
 #include <string.h>
 

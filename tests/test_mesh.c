@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "scene/load.h"
 #include "scene/mesh.h"
+#include "scenes/open.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "equivalence_testing.h"
 #include "mutants.h"
 
-#include "experiments/shrink.h"
+#include "verify/shrink.h"
 
 enum { RAYS_PER_FAMILY = 256, MOST_RAYS = 400000, MOST_OBJECTS_LEFT = 3 };
 
@@ -46,7 +46,7 @@ static void a_mutant_is_caught_and_its_failure_shrinks(void **state) {
     MutantRecipe recipe = {*(const MutantKind *)*state, true};
     RtMaker maker = maker_of_mutant(&recipe);
     uint64_t rays = 0;
-    for (size_t scene = 0; scene < rt_scene_family_count() && rays < MOST_RAYS; scene++) {
+    for (size_t scene = 0; scene < rt_family_count() && rays < MOST_RAYS; scene++) {
         FamilyBench bench;
         set_up_family(&bench, scene, 1, RAYS_PER_FAMILY);
         RtEquivalence result = check(&bench, maker);
@@ -62,7 +62,7 @@ static void a_mutant_is_caught_and_its_failure_shrinks(void **state) {
 
 static void its_control_is_not_caught(void **state) {
     MutantRecipe recipe = {*(const MutantKind *)*state, false};
-    for (size_t scene = 0; scene < rt_scene_family_count(); scene++) {
+    for (size_t scene = 0; scene < rt_family_count(); scene++) {
         FamilyBench bench;
         set_up_family(&bench, scene, 1, RAYS_PER_FAMILY);
         RtEquivalence result = check(&bench, maker_of_mutant(&recipe));
@@ -70,8 +70,7 @@ static void its_control_is_not_caught(void **state) {
         if (!result.any_wrong) continue;
         char says[512];
         rt_witness_format(&result.first_wrong, says, sizeof says);
-        fail_msg("the control of '%s' fails on %s: %s", names[recipe.kind], rt_scene_family_name(scene),
-                 says);
+        fail_msg("the control of '%s' fails on %s: %s", names[recipe.kind], rt_family_name(scene), says);
     }
 }
 

@@ -4,7 +4,7 @@
 
 #include "accel/grid/grid.h"
 #include "render/frame.h"
-#include "scene/load.h"
+#include "scenes/open.h"
 
 #include <stdio.h>
 

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/random.h"
+#include "scene/load.h"
 #include "scene/nff.h"
 
 #include <stdio.h>

@@ -4,7 +4,7 @@
 
 #include "accel/octree/octree.h"
 #include "base/memory.h"
-#include "scene/load.h"
+#include "scenes/open.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -242,7 +242,7 @@ static void every_traversal_answers_like_brute_in_every_structure(void **state) 
     static const char *const traversals[] = {"points", "neighbours", "parametric"};
     static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_objects=3",
                                            "max_depth=0", "max_depth=6,mailbox=off"};
-    for (size_t s = 0; s < rt_scene_family_count(); s++) {
+    for (size_t s = 0; s < rt_family_count(); s++) {
         FamilyBench bench;
         set_up_family(&bench, s, 7, 32);
         for (size_t i = 0; i < 12; i++) {

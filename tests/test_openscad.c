@@ -7,8 +7,8 @@
  * bundle hits. */
 #include "accel/accel.h"
 #include "base/random.h"
-#include "experiments/rayset.h"
-#include "scene/load.h"
+#include "bench/rayset.h"
+#include "scenes/open.h"
 #include "testing.h"
 
 #include <stdio.h>

@@ -1,9 +1,11 @@
 /* shape/overlap.h: which boxes the surface of an object meets, and grids that list objects by it. */
 #include "accel_testing.h"
+#include "equivalence_testing.h"
 
 #include "accel/grid/grid.h"
-#include "experiments/families.h"
+#include "scenes/family.h"
 #include "shape/overlap.h"
+#include "verify/ray_families.h"
 
 static const double margin = 1e-9;
 
@@ -130,14 +132,14 @@ static void assert_parts_hold(const RtScene *scene, uint32_t id, RtVec3 point, d
 /* Points that rays hit are points of surfaces: boxes about them are met, whatever the shape. */
 static void boxes_about_hits_are_met(void **state) {
     (void)state;
-    for (size_t family = 0; family < rt_scene_family_count(); family++) {
+    for (size_t family = 0; family < rt_family_count(); family++) {
         RtScene scene;
         RtAccel *brute;
         RtQuery query;
         enum { RAYS = 500 };
         RtRay rays[RAYS];
         RtHit hits[RAYS];
-        assert_ok(rt_scene_family_build(family, 1, &scene, error));
+        open_family(family, 1, &scene);
         assert_ok(rt_accel_open("brute", &scene, &brute, error));
         assert_ok(rt_query_init(&query, brute, error));
         rt_ray_family_fill(0, &query, 7, 0, RAYS, rays);

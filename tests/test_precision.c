@@ -5,8 +5,8 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/random.h"
-#include "experiments/exact.h"
-#include "experiments/precision.h"
+#include "exact/exact.h"
+#include "exact/precision.h"
 
 #include <stdio.h>
 #include <stdlib.h>

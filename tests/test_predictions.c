@@ -2,8 +2,8 @@
  * line meets one, nothing stops a line, as the predictions assume. */
 #include "testing.h"
 
-#include "experiments/rayset.h"
-#include "scene/load.h"
+#include "bench/rayset.h"
+#include "scenes/open.h"
 
 enum { LINES = 20000 };
 

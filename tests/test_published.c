@@ -6,7 +6,7 @@
 #include "testing.h"
 
 #include "render/frame.h"
-#include "scene/load.h"
+#include "scenes/open.h"
 
 typedef enum Per { PER_RAY, PER_HIT } Per;
 

@@ -1,8 +1,8 @@
-/* experiments/published.h: how figures are judged, against tolerances, reasons and ours. */
+/* literature/published.h: how figures are judged, against tolerances, reasons and ours. */
 #include "published_testing.h"
 
-#include "experiments/csv.h"
-#include "experiments/run.h"
+#include "base/csv.h"
+#include "report/run.h"
 
 /* Runs the experiment with these rows and reasons into DIR/out, and gives what the check says. */
 static RtStatus run(const Place *place, const char *rows, const char *reasons, bool quick, RtError *error) {

@@ -1,7 +1,7 @@
-/* experiments/published.h: tables and reasons that are refused, and what is written to a result directory. */
+/* literature/published.h: tables and reasons that are refused, and what is written to a result directory. */
 #include "published_testing.h"
 
-#include "experiments/published.h"
+#include "literature/published.h"
 
 /* ---- tables ---- */
 

@@ -2,7 +2,7 @@
 #include "testing.h"
 
 #include "base/memory.h"
-#include "experiments/rayset.h"
+#include "bench/rayset.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * but for rays that pass a border within the rounding of float32. */
 #include "testing.h"
 
-#include "experiments/referee.h"
+#include "exact/referee.h"
 
 /* ---- numbers ---- */
 

@@ -1,7 +1,7 @@
 /* experiments/statistics: the median, its interval, and ratios paired within a round. */
 #include "testing.h"
 
-#include "experiments/statistics.h"
+#include "bench/statistics.h"
 
 #include "base/random.h"
 

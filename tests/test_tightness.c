@@ -2,7 +2,7 @@
  * mean projected area of a convex body is a quarter of its surface; of a flat one half its area. */
 #include "testing.h"
 
-#include "experiments/tightness.h"
+#include "bench/tightness.h"
 #include "scene/scene.h"
 
 #define PI 3.14159265358979323846

@@ -4,10 +4,10 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "experiments/replay.h"
-#include "experiments/verify.h"
-#include "experiments/verify_table.h"
-#include "scene/load.h"
+#include "scenes/open.h"
+#include "verify/replay.h"
+#include "verify/verify.h"
+#include "verify/verify_table.h"
 
 #include <stdio.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 #define OUT RT_BINARY_DIR "/test_verify.out"
 
 static const MutantRecipe unpadded = {UNPADDED_BOX, true}, padded = {UNPADDED_BOX, false};
-static const char *const scenes[] = {"family:plane,seed=1", "random:n=30,shape=mixed"};
+static const char *const scenes[] = {"family:kind=plane,seed=1", "random:n=30,shape=mixed"};
 
 static int rows_seen, scenes_worked_on;
 
@@ -115,7 +115,7 @@ static void threads_and_interruptions_change_no_byte(void **state) {
     assert_string_equal(a, b);
     rt_free(a);
     rt_free(b);
-    assert_same_file("0002-family-plane-seed-1-unpadded.json", OUT "/a", OUT "/b");
+    assert_same_file("0002-family-kind-plane-seed-1-unpadded.json", OUT "/a", OUT "/b");
     json_decref(verify(OUT "/b", 0, true));
     assert_int_equal(scenes_worked_on, 0);
 }

@@ -7,8 +7,8 @@
 #include "accel_testing.h"
 
 #include "base/random.h"
-#include "scene/load.h"
 #include "scenes/forms.h"
+#include "scenes/open.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "scene/append.h"
 #include "scene/yaml.h"
+#include "scenes/builtin.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -27,7 +28,7 @@ static inline void write_text(const char *path, const char *text) {
 /* Loads and finishes; on failure the scene is empty. */
 static inline RtStatus load(const char *path, RtScene *scene, RtError *error) {
     rt_scene_init(scene);
-    RtStatus status = rt_yaml_load(path, scene, error);
+    RtStatus status = rt_yaml_load(path, rt_builtin_open, scene, error);
     if (status == RT_OK) status = rt_scene_finish(scene, error);
     if (status != RT_OK) rt_scene_clear(scene);
     return status;

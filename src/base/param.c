@@ -146,6 +146,21 @@ static RtStatus fail_unknown(const RtParam *table, size_t count, const char *key
                    *suggestion ? "" : ";", list);
 }
 
+/* ": did you mean 'CHOICE'?" if one of the choices is near. */
+static void suggest_choice(const RtParam *param, const char *text, char suggestion[RT_MAX_SUGGESTION]) {
+    char choices[RT_MAX_SPEC_CHARS], *rest = choices;
+    const char *names[RT_MAX_CHOICES];
+    size_t count = 0;
+    *suggestion = '\0';
+    if (param->type != RT_PARAM_CHOICE) return;
+    snprintf(choices, sizeof choices, "%s", param->choices);
+    for (char *name; (name = strsep(&rest, "|"));) {
+        assert(count < RT_MAX_CHOICES);
+        names[count++] = name;
+    }
+    rt_suggest(text, names, count, suggestion);
+}
+
 /* One "key=value" of the text. */
 static RtStatus parse_setting(const RtParam *table, size_t count, char *setting, const char *what,
                               bool *given, RtValue *values, RtError *error) {
@@ -160,11 +175,13 @@ static RtStatus parse_setting(const RtParam *table, size_t count, char *setting,
         if (given[i]) return rt_fail(error, RT_BAD_INPUT, "%s: '%s' is given twice", what, key);
         given[i] = true;
         if (parse_value(&table[i], text, &values[i])) return RT_OK;
-        char range[RT_MAX_SPEC_CHARS];
+        char range[RT_MAX_SPEC_CHARS], suggestion[RT_MAX_SUGGESTION];
         rt_param_range(&table[i], range, sizeof range);
-        return rt_fail(error, RT_BAD_INPUT, "%s: %s=%s will not do: it must be %s%s (%s; default %s)", what,
-                       key, text, table[i].type == RT_PARAM_INT ? "a whole number " : "", range,
-                       table[i].meaning, table[i].standard);
+        suggest_choice(&table[i], text, suggestion);
+        return rt_fail(error, RT_BAD_INPUT, "%s: invalid value '%s=%s'%s%s expected %s%s (%s; default %s)",
+                       what, key, text, suggestion, *suggestion ? "" : ":",
+                       table[i].type == RT_PARAM_INT ? "a whole number " : "", range, table[i].meaning,
+                       table[i].standard);
     }
     return fail_unknown(table, count, key, what, error);
 }

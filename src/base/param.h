@@ -13,6 +13,7 @@
 
 #define RT_MAX_PARAMS     16
 #define RT_MAX_SPEC_CHARS 512
+#define RT_MAX_CHOICES    64
 
 typedef enum RtParamType {
     RT_PARAM_INT,       /* lo <= i <= hi */

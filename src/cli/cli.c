@@ -60,3 +60,17 @@ void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, ui
     argp_error(state, "--size: '%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 640x480", text,
                RT_MAX_IMAGE_SIDE);
 }
+
+const struct argp_option rt_list_options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};
+
+int rt_list_parse(int key, char *argument, struct argp_state *state) {
+    RtListOptions *o = state->input;
+    switch (key) {
+    case 'j': o->json = true; return 0;
+    case ARGP_KEY_ARG:
+        if (o->name) argp_error(state, "one NAME at a time");
+        o->name = argument;
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}

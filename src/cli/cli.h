@@ -6,6 +6,7 @@
 #include "base/param.h"
 #include "base/status.h"
 
+#include <argp.h>
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -41,9 +42,18 @@ json_t *rt_cli_params_json(const RtParam *table, size_t count);
 
 /* For parsers of options: the number in `text`, lo..hi, or argp_error's exit with what would be right.
  * `state` is argp's. */
-struct argp_state;
 int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
                        int64_t hi);
+
+/* Of the commands that list what there is: all of it, or one by name. The parser's input is an RtListOptions.
+ */
+typedef struct RtListOptions {
+    const char *name; /* NULL: all */
+    bool json;
+} RtListOptions;
+
+extern const struct argp_option rt_list_options[];
+int rt_list_parse(int key, char *argument, struct argp_state *state);
 
 /* "WxH" */
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);

@@ -5,25 +5,6 @@
 #include <argp.h>
 #include <stdio.h>
 
-typedef struct Options {
-    const char *name;
-    bool json;
-} Options;
-
-static const struct argp_option options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};
-
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    Options *o = state->input;
-    switch (key) {
-    case 'j': o->json = true; return 0;
-    case ARGP_KEY_ARG:
-        if (o->name) argp_error(state, "one NAME at a time");
-        o->name = argument;
-        return 0;
-    default: return ARGP_ERR_UNKNOWN;
-    }
-}
-
 static void print_accelerator(const RtAccelOps *ops) {
     printf("%s: %s\n  %s\n", ops->name, ops->summary, ops->paper);
     if (ops->kinds) {
@@ -49,10 +30,10 @@ static json_t *accelerator_json(const RtAccelOps *ops) {
 }
 
 int rt_command_accels(int argc, char **argv) {
-    Options o = {0};
+    RtListOptions o = {0};
     const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
+        .options = rt_list_options,
+        .parser = rt_list_parse,
         .args_doc = "[NAME]",
         .doc = "List the accelerators, or explain the one called NAME: its parameters with defaults "
                "and ranges, and the paper it follows."};

@@ -1,13 +1,14 @@
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one trial
  * that leaves no directory behind. */
+#include "accel/structure_json.h"
+#include "base/json.h"
 #include "base/memory.h"
+#include "bench/machine.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
-#include "experiments/json.h"
-#include "experiments/machine.h"
-#include "experiments/spread.h"
-#include "experiments/tables.h"
 #include "render/frame.h"
+#include "report/tables.h"
+#include "verify/spread.h"
 
 #include <argp.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* raytally convert: a scene from one format to another. */
 #include "cli/cli.h"
-#include "experiments/families.h"
 #include "scene/load.h"
+#include "scenes/open.h"
 
 #include <argp.h>
 
@@ -40,7 +40,7 @@ int rt_command_convert(int argc, char **argv) {
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
     RtScene scene;
-    if (rt_hard_scene_open(o.in, &scene, &error) != RT_OK) return rt_cli_fail(&error);
+    if (rt_scene_open(o.in, &scene, &error) != RT_OK) return rt_cli_fail(&error);
     RtStatus status = rt_scene_save(&scene, o.out, o.force, &error);
     rt_scene_clear(&scene);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);

@@ -1,7 +1,7 @@
 /* raytally info: what is in a scene. */
 #include "cli/cli.h"
 #include "cli/extents_table.h"
-#include "experiments/families.h"
+#include "scenes/open.h"
 
 #include <argp.h>
 #include <inttypes.h>
@@ -183,7 +183,7 @@ int rt_command_info(int argc, char **argv) {
     RtScene scene;
     RtError error;
     argp_parse(&argp, argc, argv, 0, 0, &o);
-    if (rt_hard_scene_open(o.scene, &scene, &error) != RT_OK) return rt_cli_fail(&error);
+    if (rt_scene_open(o.scene, &scene, &error) != RT_OK) return rt_cli_fail(&error);
     RtStatus status = show(&scene, &o, &error);
     rt_scene_clear(&scene);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);

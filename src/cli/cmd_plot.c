@@ -1,7 +1,7 @@
 /* raytally plot: the plots of a result directory, drawn again. */
 #include "cli/cli.h"
 #include "cli/directory.h"
-#include "experiments/plot.h"
+#include "report/plot.h"
 
 #include <stdio.h>
 

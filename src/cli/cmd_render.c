@@ -1,17 +1,18 @@
 /* raytally render: a picture of a scene, and what it cost. The timed kernels make the picture; where counts
  * are asked for, a second frame is traced by the counted ones. */
+#include "accel/structure_json.h"
 #include "base/clock.h"
+#include "base/json.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/words.h"
+#include "bench/rayset.h"
 #include "cli/cli.h"
-#include "experiments/equivalence.h"
-#include "experiments/families.h"
-#include "experiments/json.h"
-#include "experiments/rayset.h"
 #include "render/heatmap.h"
 #include "render/image.h"
 #include "render/structure.h"
+#include "scenes/open.h"
+#include "verify/equivalence.h"
 
 #include <argp.h>
 #include <stdatomic.h>
@@ -176,7 +177,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     RT_TRY(rt_spec_parse(o->accel, &spec, error));
     rt_spec_format(&spec, run->spec);
     if (o->structure) RT_TRY(rt_structure_available(spec.layers[spec.layer_count - 1].ops, error));
-    RT_TRY(rt_hard_scene_open(o->scene, &run->scene, error));
+    RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, &run->accel, error));

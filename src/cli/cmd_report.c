@@ -1,8 +1,8 @@
 /* raytally report: the report of a result directory, written again. */
+#include "bench/manifest.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
-#include "experiments/manifest.h"
-#include "experiments/report.h"
+#include "report/report.h"
 
 #include <stdio.h>
 

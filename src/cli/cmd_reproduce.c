@@ -1,11 +1,11 @@
 /* raytally reproduce: the counts of a result directory, counted again and compared byte for byte, with all
  * that is made of them alone. */
 #include "base/memory.h"
+#include "bench/manifest.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/progress.h"
-#include "experiments/manifest.h"
-#include "experiments/run.h"
+#include "report/run.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
-#include "experiments/run.h"
-#include "experiments/tables.h"
+#include "report/run.h"
+#include "report/tables.h"
 
 #include <argp.h>
 #include <stdio.h>

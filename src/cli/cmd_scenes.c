@@ -5,16 +5,6 @@
 #include <argp.h>
 #include <stdio.h>
 
-static const struct argp_option options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};
-
-static error_t parse_option(int key, char *argument, struct argp_state *state) {
-    bool *json = state->input;
-    (void)argument;
-    if (key != 'j') return ARGP_ERR_UNKNOWN;
-    *json = true;
-    return 0;
-}
-
 static void print_scene(const RtBuiltin *builtin) {
     printf("%s: %s\n  %s\n", builtin->name, builtin->summary, builtin->source);
     rt_cli_print_params(builtin->params, builtin->param_count);
@@ -27,24 +17,30 @@ static json_t *scene_json(const RtBuiltin *builtin) {
 }
 
 int rt_command_scenes(int argc, char **argv) {
-    const struct argp argp = {
-        .options = options, .parser = parse_option, .doc = "List the built-in scenes and their parameters."};
-    bool json = false;
-    argp_parse(&argp, argc, argv, 0, 0, &json);
+    RtListOptions o = {0};
+    const struct argp argp = {.options = rt_list_options,
+                              .parser = rt_list_parse,
+                              .args_doc = "[NAME]",
+                              .doc =
+                                  "List the built-in scenes, or explain the one called NAME: its parameters "
+                                  "with defaults and ranges, and where it comes from."};
+    argp_parse(&argp, argc, argv, 0, 0, &o);
+    RtError error;
+    const RtBuiltin *only = NULL;
+    if (o.name && rt_builtin_named(o.name, &only, &error) != RT_OK) return rt_cli_fail(&error);
     json_t *list = json_array();
     for (size_t i = 0; i < rt_builtin_count(); i++) {
-        if (json) {
+        if (only && rt_builtin_at(i) != only) continue;
+        if (o.json) {
             json_array_append_new(list, scene_json(rt_builtin_at(i)));
         } else {
             print_scene(rt_builtin_at(i));
         }
     }
-    if (json) {
+    if (o.json) {
         rt_cli_print_json(json_pack("{s:O}", "scenes", list));
-    } else {
-        puts("A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.\n"
-             "Scenes that are hard on accelerators are generated from a seed, as in family:slivers,seed=7;\n"
-             "`raytally info family:` names their families.");
+    } else if (!only) {
+        puts("A built-in scene is written NAME[:KEY=VALUE[,KEY=VALUE]...], as in balls:size=5.");
     }
     json_decref(list);
     return RT_EXIT_OK;

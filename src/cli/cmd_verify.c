@@ -1,14 +1,14 @@
 /* raytally verify: does every accelerator answer every ray like brute? And --replay: does one still answer
- * one ray wrong? What is done lies in experiments/verify.h and experiments/replay.h; this is its command
+ * one ray wrong? What is done lies in verify/verify.h and verify/replay.h; this is its command
  * line. */
 #include "base/clock.h"
 #include "base/memory.h"
 #include "cli/cli.h"
-#include "experiments/families.h"
-#include "experiments/replay.h"
-#include "experiments/spread.h"
-#include "experiments/verify.h"
-#include "experiments/verify_table.h"
+#include "scenes/family.h"
+#include "verify/replay.h"
+#include "verify/spread.h"
+#include "verify/verify.h"
+#include "verify/verify_table.h"
 
 #include <argp.h>
 #include <inttypes.h>
@@ -77,10 +77,9 @@ static void add_scene(Options *o, const char *spec, struct argp_state *state) {
 
 /* Every family of scenes, of the seed that is known once all is parsed. */
 static void add_families(Options *o, struct argp_state *state) {
-    for (size_t i = 0; i < rt_scene_family_count(); i++) {
+    for (size_t i = 0; i < rt_family_count(); i++) {
         char *spec = o->family_specs[i];
-        snprintf(spec, sizeof o->family_specs[i], RT_FAMILY_PREFIX "%s,seed=%llu", rt_scene_family_name(i),
-                 (unsigned long long)o->seed);
+        rt_family_spec(i, o->seed, spec);
         add_scene(o, spec, state);
     }
 }
@@ -370,7 +369,7 @@ int rt_command_verify(int argc, char **argv) {
             "Verify that accelerators answer every ray of each SCENE (a few small built-in ones if none is "
             "given) like brute: the same object and the same bits of t, timed and counted, singly and in "
             "streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
-            "them, as in family:slivers,seed=7 (`family:` alone names them all).\v"
+            "them, as in family:kind=slivers,seed=7 (`raytally scenes family` names them all).\v"
             "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
             "marginal (explained by rounding) or wrong. The first wrong answer of each row is written to a "
             "file (in --out DIR, else in verify-failures/), with the scene shrunk to the objects that it "

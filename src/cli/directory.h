@@ -2,7 +2,7 @@
 #ifndef RT_CLI_DIRECTORY_H
 #define RT_CLI_DIRECTORY_H
 
-#include "experiments/run.h"
+#include "report/run.h"
 
 /* What such a command does with the directory once experiment and results are loaded from it. */
 typedef RtStatus RtDirectoryWork(const char *directory, const RtExperiment *experiment, RtResults *results,

@@ -1,6 +1,6 @@
 #include "cli/extents_table.h"
 
-#include "experiments/json.h"
+#include "base/json.h"
 
 #include <stdio.h>
 

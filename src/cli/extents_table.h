@@ -3,7 +3,7 @@
 #ifndef RT_CLI_EXTENTS_TABLE_H
 #define RT_CLI_EXTENTS_TABLE_H
 
-#include "experiments/extent_cost.h"
+#include "bench/extent_cost.h"
 #include "scene/scene.h"
 
 #include <jansson.h>

@@ -9,7 +9,7 @@
 static const RtCommand commands[] = {
     {"accels", "[NAME]", "list the accelerators, their parameters, defaults, ranges and papers",
      rt_command_accels},
-    {"scenes", "", "list the built-in scenes and their parameters", rt_command_scenes},
+    {"scenes", "[NAME]", "list the built-in scenes and their parameters", rt_command_scenes},
     {"info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene", rt_command_info},
     {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
      rt_command_render},

@@ -2,7 +2,7 @@
 #ifndef RT_CLI_PROGRESS_H
 #define RT_CLI_PROGRESS_H
 
-#include "experiments/trial.h"
+#include "bench/trial.h"
 
 typedef struct RtProgress {
     bool terminal;

@@ -5,7 +5,6 @@
 #include "scene/mesh.h"
 #include "scene/nff.h"
 #include "scene/yaml.h"
-#include "scenes/builtin.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -13,17 +12,27 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-typedef RtStatus (*Load)(const char *path, RtScene *scene, RtError *error);
+typedef RtStatus Load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
+
+static RtStatus load_nff(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+    (void)open_named;
+    return rt_nff_load(path, scene, error);
+}
+
+static RtStatus load_mesh(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+    (void)open_named;
+    return rt_mesh_load(path, scene, error);
+}
 
 /* Formats with a reader and a writer of our own; all else is a mesh. */
 static const struct {
     const char *extension; /* without the dot */
-    Load load;
+    Load *load;
     RtStatus (*save)(const RtScene *scene, FILE *file, RtError *error);
 } formats[] = {
     {"yaml", rt_yaml_load, rt_yaml_save},
     {"yml", rt_yaml_load, rt_yaml_save},
-    {"nff", rt_nff_load, rt_nff_save},
+    {"nff", load_nff, rt_nff_save},
 };
 
 enum { FORMAT_COUNT = sizeof formats / sizeof formats[0], MAX_WRITTEN = FORMAT_COUNT + 8 };
@@ -42,9 +51,9 @@ static int find_format(const char *extension) {
     return -1;
 }
 
-static Load find_loader(const char *extension) {
+static Load *find_loader(const char *extension) {
     int own = find_format(extension);
-    return own >= 0 ? formats[own].load : rt_mesh_reads(extension) ? rt_mesh_load : NULL;
+    return own >= 0 ? formats[own].load : rt_mesh_reads(extension) ? load_mesh : NULL;
 }
 
 /* The extensions that can be written, to names[0..MAX_WRITTEN); returns how many there are. */
@@ -89,32 +98,29 @@ static RtStatus fail_missing(const char *path, RtError *error) {
                    best[0] ? "'?" : "");
 }
 
-static RtStatus load_file(const char *path, Load load, RtScene *scene, RtError *error) {
+bool rt_scene_is_file(const char *spec) {
+    return rt_file_exists(spec) || strchr(spec, '/') || extension_of(spec)[0];
+}
+
+RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+    *scene = (RtScene){0};
+    struct stat found;
+    bool exists = stat(path, &found) == 0;
+    if (exists && S_ISDIR(found.st_mode)) {
+        return rt_fail(error, RT_BAD_INPUT, "%s is a folder: give the name of a file in it", path);
+    }
+    Load *load = find_loader(extension_of(path));
+    if (!load) return fail_extension(path, "read", ", and the other mesh formats of Assimp", error);
+    if (!exists) return fail_missing(path, error);
     rt_scene_init(scene);
     snprintf(scene->name, sizeof scene->name, "%.*s", (int)sizeof scene->name - 1, path);
-    RtStatus status = load(path, scene, error);
+    RtStatus status = load(path, open_named, scene, error);
     if (status == RT_OK && scene->geometry.object_count == 0) {
         status = rt_fail_at(error, path, 0, 0, "the scene is empty: it needs at least one object");
     }
     if (status == RT_OK) status = rt_scene_finish(scene, error);
     if (status != RT_OK) rt_scene_clear(scene);
     return status;
-}
-
-RtStatus rt_scene_open(const char *spec, RtScene *scene, RtError *error) {
-    *scene = (RtScene){0};
-    if (rt_builtin_find(spec)) return rt_builtin_open(spec, scene, error);
-    struct stat found;
-    bool exists = stat(spec, &found) == 0;
-    if (exists && S_ISDIR(found.st_mode)) {
-        return rt_fail(error, RT_BAD_INPUT, "%s is a folder: give the name of a file in it", spec);
-    }
-    Load load = find_loader(extension_of(spec));
-    if (load) return exists ? load_file(spec, load, scene, error) : fail_missing(spec, error);
-    if (exists || strchr(spec, '/') || extension_of(spec)[0]) {
-        return fail_extension(spec, "read", ", and the other mesh formats of Assimp", error);
-    }
-    return rt_builtin_open(spec, scene, error); /* which says that there is none of that name */
 }
 
 RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, RtError *error) {

@@ -47,6 +47,9 @@ typedef struct RtScene {
     RtSampling sampling; /* of the camera's image: where primary rays go through */
 } RtScene;
 
+/* Opens the scene that `spec` names, finished; on failure *scene is empty. */
+typedef RtStatus RtSceneOpener(const char *spec, RtScene *scene, RtError *error);
+
 /* Gives the scene its default ambient light, background and camera settings. */
 void rt_scene_init(RtScene *scene);
 

@@ -4,7 +4,6 @@
 #include "scene/mesh.h"
 #include "scene/yaml.h"
 #include "scene/yaml_reader.h"
-#include "scenes/builtin.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -175,7 +174,7 @@ static RtStatus add_builtin(RtYamlReader *r, const RtYamlBuiltin *builtin) {
     RT_TRY(rt_yaml_make_transform(r, builtin->transform, builtin->transform_count, &transform));
     rt_yaml_at(r, "name");
     RtScene scene;
-    RT_TRY(rt_builtin_open(builtin->name, &scene, r->error));
+    RT_TRY(r->open_named(builtin->name, &scene, r->error));
     rt_yaml_at(r, "transform");
     RtStatus status =
         rt_scene_append(r->scene, &scene, builtin->transform_count ? &transform : NULL, r->error);
@@ -294,9 +293,13 @@ static RtStatus build(RtYamlReader *r) {
 }
 
 /* Closes the file. */
-static RtStatus load(RtYamlFile *file, RtScene *scene, RtError *error) {
-    RtYamlReader r = {
-        .file = file, .yaml = file->data, .scene = scene, .standard = UINT32_MAX, .error = error};
+static RtStatus load(RtYamlFile *file, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+    RtYamlReader r = {.file = file,
+                      .yaml = file->data,
+                      .open_named = open_named,
+                      .scene = scene,
+                      .standard = UINT32_MAX,
+                      .error = error};
     uint32_t materials = r.yaml->materials_count, solids = r.yaml->solids_count;
     r.materials = rt_alloc(materials, sizeof *r.materials);
     r.solids = rt_alloc(solids, sizeof *r.solids);
@@ -314,18 +317,19 @@ static RtStatus load(RtYamlFile *file, RtScene *scene, RtError *error) {
     return status;
 }
 
-RtStatus rt_yaml_load(const char *path, RtScene *scene, RtError *error) {
+RtStatus rt_yaml_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
     RtYamlFile file;
     RT_TRY(rt_yaml_file_open(&file, path, &rt_yaml_scene_schema, error));
-    return load(&file, scene, error);
+    return load(&file, open_named, scene, error);
 }
 
-RtStatus rt_yaml_load_text(const char *name, const char *text, RtScene *scene, RtError *error) {
+RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *open_named, RtScene *scene,
+                           RtError *error) {
     RtYamlFile file;
     size_t length = strlen(text);
     char *copy = rt_alloc(length + 1, 1);
     if (!copy) return rt_fail_memory(error, name, length + 1);
     memcpy(copy, text, length + 1);
     RT_TRY(rt_yaml_file_take(&file, name, copy, length, &rt_yaml_scene_schema, error));
-    return load(&file, scene, error);
+    return load(&file, open_named, scene, error);
 }

@@ -17,6 +17,7 @@ typedef struct RtYamlNamed {
 typedef struct RtYamlReader {
     const RtYamlFile *file;
     const RtYamlScene *yaml;
+    RtSceneOpener *open_named;
     RtScene *scene;
     RtYamlNamed *materials; /* [yaml->materials_count], sorted by name */
     uint32_t standard;      /* index of the default material; UINT32_MAX until an object wants it */

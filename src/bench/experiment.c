@@ -1,0 +1,177 @@
+#include "bench/experiment.h"
+
+#include "render/frame.h"
+
+#include <ctype.h>
+#include <string.h>
+
+void rt_experiment_init(RtExperiment *experiment) {
+    memset(experiment, 0, sizeof *experiment);
+    experiment->limit = 100000;
+    experiment->together = 1;
+    experiment->rounds = 10;
+    experiment->milliseconds = 20;
+    experiment->seed = 1;
+    experiment->kind_count = RT_RAY_KIND_COUNT;
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) experiment->kinds[k] = (RtRayKind)k;
+}
+
+RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder, RtError *error) {
+    if (strlen(spec) >= sizeof trial->spec) {
+        return rt_fail(error, RT_BAD_INPUT, "%.40s...: a scene has at most %zu characters", spec,
+                       sizeof trial->spec - 1);
+    }
+    strcpy(trial->spec, spec);
+    trial->file = strcspn(spec, "./") < strcspn(spec, ":");
+    const char *slash = trial->file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
+    size_t length = trial->file ? strcspn(start, ".") : strlen(start);
+    snprintf(trial->label, RT_MAX_LABEL, "%.*s", (int)length, start);
+    return rt_path_join(trial->file ? folder : "", spec, trial->path, error);
+}
+
+/* ---- who is where ---- */
+
+bool rt_contender_runs(const RtExperiment *experiment, uint32_t c, uint32_t t) {
+    if (c == experiment->contender_count) return true;
+    return !experiment->contenders[c].missing && !(experiment->contenders[c].left_out >> t & 1);
+}
+
+uint32_t rt_contender_find(const RtExperiment *experiment, const char *label, uint32_t t) {
+    if (strcmp(label, "null") == 0) return experiment->contender_count;
+    for (uint32_t c = 0; c < experiment->contender_count; c++) {
+        const RtContender *contender = &experiment->contenders[c];
+        if (strcmp(contender->label, label) == 0 && !(contender->left_out >> t & 1)) return c;
+    }
+    return experiment->contender_count + 1;
+}
+
+uint32_t rt_trial_find(const RtExperiment *experiment, const char *label) {
+    uint32_t t = 0;
+    while (t < experiment->trial_count && strcmp(experiment->trials[t].label, label) != 0) t++;
+    return t;
+}
+
+/* ---- checks ---- */
+
+static RtStatus check_label(const char *label, RtError *error) {
+    if (strcmp(label, "null") == 0) {
+        return rt_fail(error, RT_BAD_INPUT, "the label 'null' is taken by the baseline's second measurement");
+    }
+    for (const char *c = label; *c; c++) {
+        if (isgraph((unsigned char)*c) && !strchr("\"'`/\\$&<>@^{}", *c)) continue;
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s' cannot name a row or a plot: give a `label` without blanks, quotes and any of "
+                       "/ \\ $ & < > @ ^ { }",
+                       label);
+    }
+    return RT_OK;
+}
+
+static RtStatus fail_twice(const char *label, RtError *error) {
+    return rt_fail(error, RT_BAD_INPUT, "the label '%s' is used twice: give one of them another `label`",
+                   label);
+}
+
+static RtStatus check_range(const char *what, uint64_t value, uint64_t lo, uint64_t hi, RtError *error) {
+    if (value >= lo && value <= hi) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: %llu will not do: it must be %llu..%llu", what,
+                   (unsigned long long)value, (unsigned long long)lo, (unsigned long long)hi);
+}
+
+static RtStatus check_contender(RtExperiment *experiment, uint32_t i, RtError *error) {
+    RtContender *contender = &experiment->contenders[i];
+    RtSpec spec;
+    RtError why = {RT_OK, ""};
+    contender->missing = false;
+    if (rt_spec_parse(contender->spec, &spec, &why) != RT_OK) {
+        contender->missing = why.status == RT_NOT_AVAILABLE;
+        if (!contender->missing) return rt_fail(error, why.status, "%s", why.message);
+    }
+    RT_TRY(check_range("every", contender->every, 1, RT_MAX_RAYS_A_KIND, error));
+    const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->trial_count) - 1);
+    for (uint32_t k = 0; k < i; k++) {
+        const RtContender *other = &experiment->contenders[k];
+        bool meet = ~(contender->left_out | other->left_out) & all;
+        if (meet && strcmp(contender->label, other->label) == 0) return fail_twice(contender->label, error);
+    }
+    return check_label(contender->label, error);
+}
+
+static RtStatus check_trial(const RtExperiment *experiment, uint32_t i, RtError *error) {
+    const RtTrial *trial = &experiment->trials[i];
+    RT_TRY(check_range("depth", trial->depth, 1, RT_MAX_DEPTH, error));
+    if (rt_trial_find(experiment, trial->label) < i) return fail_twice(trial->label, error);
+    return check_label(trial->label, error);
+}
+
+static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
+    if (experiment->baseline >= experiment->contender_count) {
+        return rt_fail(error, RT_BAD_INPUT, "this is not the label of one of the accelerators");
+    }
+    const RtContender *baseline = &experiment->contenders[experiment->baseline];
+    if (baseline->missing) {
+        return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",
+                       baseline->label);
+    }
+    if (baseline->every == 1 && !baseline->left_out) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the baseline '%s' has to be measured on every ray of every scene: choose another, or "
+                   "leave its `every` and `scenes` out",
+                   baseline->label);
+}
+
+/* The files are copied into the result directory under their names. */
+static RtStatus check_beside(const char *name, RtError *error) {
+    if (*name != '/' && !strstr(name, "..")) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "'%s' must lie beside the experiment, or in a folder there: its name may not begin with / or "
+        "have .. in it",
+        name);
+}
+
+static RtStatus check_published(const RtExperiment *experiment, RtError *error) {
+    const RtPublishedSetup *published = &experiment->published;
+    for (uint32_t i = 0; i < published->table_count; i++) {
+        RT_TRY(check_beside(published->tables[i], error));
+    }
+    for (int c = 0; c < RT_COLUMN_COUNT; c++) {
+        if (published->tolerance[c] >= 0) continue;
+        return rt_fail(error, RT_BAD_INPUT, "tolerance: %g will not do: it must be percents, 0 or more",
+                       published->tolerance[c]);
+    }
+    return check_beside(published->reasons, error);
+}
+
+RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
+    for (uint32_t i = 0; i < experiment->trial_count; i++) {
+        snprintf(where, RT_MAX_LABEL, "scenes[%u]", i);
+        RT_TRY(check_trial(experiment, i, error));
+    }
+    for (uint32_t i = 0; i < experiment->contender_count; i++) {
+        snprintf(where, RT_MAX_LABEL, "accelerators[%u]", i);
+        RT_TRY(check_contender(experiment, i, error));
+    }
+    for (uint32_t i = 0; i < experiment->kind_count; i++) {
+        snprintf(where, RT_MAX_LABEL, "rays[%u]", i);
+        for (uint32_t k = 0; k < i; k++) {
+            if (experiment->kinds[k] != experiment->kinds[i]) continue;
+            return rt_fail(error, RT_BAD_INPUT, "%s rays are given twice",
+                           rt_ray_kind_name(experiment->kinds[i]));
+        }
+    }
+    strcpy(where, "baseline");
+    RT_TRY(check_baseline(experiment, error));
+    strcpy(where, "published");
+    RT_TRY(check_published(experiment, error));
+    strcpy(where, "limit");
+    RT_TRY(check_range("limit", experiment->limit, 1, RT_MAX_RAYS_A_KIND, error));
+    strcpy(where, "together");
+    RT_TRY(check_range("together", experiment->together, 1, RT_MAX_RAYS_A_KIND, error));
+    strcpy(where, "rounds");
+    RT_TRY(check_range("rounds", experiment->rounds, 1, RT_MAX_ROUNDS, error));
+    strcpy(where, "milliseconds");
+    RT_TRY(check_range("milliseconds", experiment->milliseconds, 1, 60000, error));
+    strcpy(where, "name");
+    return check_label(experiment->name, error);
+}

@@ -1,0 +1,120 @@
+/* An experiment: a question, and what is measured to answer it. Every accelerator of the list is counted and
+ * timed on every scene, for every kind of ray; experiments/README.md explains the YAML form key by key. */
+#ifndef RT_BENCH_EXPERIMENT_H
+#define RT_BENCH_EXPERIMENT_H
+
+#include "accel/accel.h"
+#include "base/file.h"
+#include "bench/statistics.h"
+
+#define RT_MAX_LABEL       48
+#define RT_MAX_TEXT        4096
+#define RT_MAX_TRIALS      32
+#define RT_MAX_CONTENDERS  256
+#define RT_MAX_PLOTS       8
+#define RT_MAX_RAYS_A_KIND UINT64_C(100000000)
+
+/* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
+typedef struct RtTrial {
+    char label[RT_MAX_LABEL];
+    char spec[RT_MAX_SCENE_NAME]; /* as written */
+    char path[RT_MAX_PATH];       /* for rt_scene_open: a built-in, or the file seen from the YAML's folder */
+    uint32_t width, height;       /* of the frame whose rays are recorded; 0 x 0: the camera's */
+    uint32_t depth;               /* levels of the ray tree */
+    bool corners;                 /* samples at pixel corners instead of centres */
+    bool outward_light;           /* shadow rays as in RtFrameOptions */
+    bool file;                    /* path names a file, not a built-in */
+    bool optional;                /* a missing file is a notice, not an error */
+} RtTrial;
+
+/* One accelerator of an experiment. No two on the same scene have the same label. */
+typedef struct RtContender {
+    char label[RT_MAX_LABEL];
+    char spec[RT_MAX_SPEC_CHARS]; /* as written */
+    uint64_t every;    /* measured on every `every`th ray of a set, so that slow ones finish; >= 1 */
+    uint32_t left_out; /* bit t: it is not measured on trials[t] */
+    bool missing;      /* this build does not have it: skipped with a notice */
+    bool ours;         /* one of those that are to need less than every published row */
+} RtContender;
+
+_Static_assert(RT_MAX_TRIALS <= 32, "a bit of left_out for every trial");
+
+/* What published tables may have a figure for. Of structures: as in RtDescription. Per ray of all kinds of
+ * the experiment together: as in RtTally. Of the rays themselves: how many there are, and how many of them
+ * hit; secondary are reflection and transmission. X(name) */
+#define RT_PUBLISHED_OF_STRUCTURES(X) X(interior) X(leaves) X(empty_leaves) X(references)
+#define RT_PUBLISHED_PER_RAY(X)       X(object_tests) X(steps) X(leaf_steps) X(empty_steps)
+#define RT_PUBLISHED_OF_RAYS(X)                                                                              \
+    X(primary) X(primary_hit) X(shadow) X(shadow_hit) X(secondary) X(secondary_hit)
+#define RT_PUBLISHED_COLUMNS(X) RT_PUBLISHED_OF_STRUCTURES(X) RT_PUBLISHED_PER_RAY(X) RT_PUBLISHED_OF_RAYS(X)
+
+typedef enum RtColumn {
+#define RT_COLUMN(name) RT_COLUMN_##name,
+    RT_PUBLISHED_COLUMNS(RT_COLUMN)
+#undef RT_COLUMN
+        RT_COLUMN_COUNT
+} RtColumn;
+
+#define RT_MAX_PUBLISHED 4
+
+/* Published figures that the measured ones are compared with (literature/published.h). */
+typedef struct RtPublishedSetup {
+    char tables[RT_MAX_PUBLISHED][RT_MAX_LABEL]; /* CSV files, seen from the YAML's folder */
+    uint32_t table_count;                        /* 0: nothing is compared */
+    char reasons[RT_MAX_LABEL];                  /* CSV file, or "" */
+    double tolerance[RT_COLUMN_COUNT];           /* in percent; 0: shown, not judged */
+} RtPublishedSetup;
+
+typedef struct RtExperiment {
+    char name[RT_MAX_LABEL];
+    char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
+    RtTrial trials[RT_MAX_TRIALS];
+    uint32_t trial_count;
+    RtContender contenders[RT_MAX_CONTENDERS];
+    uint32_t contender_count;
+    uint32_t baseline; /* index of the contender that ratios refer to; it is not thinned */
+    RtRayKind kinds[RT_RAY_KIND_COUNT];
+    uint32_t kind_count;
+    uint64_t limit;        /* rays of one kind at most; a larger set is thinned evenly */
+    uint64_t together;     /* neighbouring rays that are kept together where a set is thinned */
+    uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
+    uint32_t milliseconds; /* a short set is repeated within a round until it takes this long */
+    uint64_t seed;
+    char plots[RT_MAX_PLOTS][RT_MAX_LABEL]; /* gnuplot scripts beside the YAML, run in this order in one go */
+    uint32_t plot_count;
+    RtPublishedSetup published;
+    bool count_only;          /* nothing is timed */
+    bool quick;               /* the smaller variant, for a first look */
+    char path[RT_MAX_PATH];   /* of the YAML; "" where there is none */
+    char folder[RT_MAX_PATH]; /* of the YAML */
+    uint64_t fingerprint;     /* of the YAML's bytes */
+} RtExperiment;
+
+/* No scenes, no contenders, all ray kinds, and the defaults: limit 100000, rays kept singly, 10 rounds, 20
+ * milliseconds. */
+void rt_experiment_init(RtExperiment *experiment);
+
+/* Reads the YAML at `path`. Whatever is wrong (unknown keys, specs that do not parse, labels used twice, a
+ * baseline that is no contender) is told with its line. `quick` applies the overrides under `quick:`. */
+RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error);
+
+/* Whether contender `c`, which may be the null run (contender_count), is measured on trial `t`. */
+bool rt_contender_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
+
+/* The contender of that label on trial `t`; contender_count + 1 where there is none. "null" is the null
+ * run. */
+uint32_t rt_contender_find(const RtExperiment *experiment, const char *label, uint32_t t);
+
+/* The trial of that label; trial_count where there is none. */
+uint32_t rt_trial_find(const RtExperiment *experiment, const char *label);
+
+/* Sets spec, path, file and a label made from them: the file's name without folder and extension, or the
+ * built-in as it is written. A dot or a slash before the first colon makes `spec` a file, seen from
+ * `folder`. */
+RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder, RtError *error);
+
+/* What every experiment must satisfy however it came about; marks contenders that this build lacks. *where
+ * gets the path of the fault in the YAML ("accelerators[2].accel"), room for RT_MAX_LABEL. */
+RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error);
+
+#endif

@@ -1,0 +1,215 @@
+#include "bench/journal.h"
+
+#include "accel/structure_json.h"
+#include "base/json.h"
+#include "bench/machine.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* ---- to JSON ---- */
+
+static json_t *header_json(const RtExperiment *experiment) {
+    return json_pack("{s:s, s:o, s:b, s:s}", "experiment", experiment->name, "hash",
+                     rt_json_hex(experiment->fingerprint), "quick", experiment->quick, "build",
+                     rt_build_identity());
+}
+
+static json_t *trial_json(const RtTrialResult *trial) {
+    json_t *sets = json_object();
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        json_object_set_new(sets, rt_ray_kind_name((RtRayKind)k),
+                            json_pack("{s:I, s:o}", "rays", (json_int_t)trial->rays[k], "hash",
+                                      rt_json_hex(trial->ray_fingerprints[k])));
+    }
+    return json_pack("{s:I, s:I, s:I, s:o, s:o}", "objects", (json_int_t)trial->objects, "width",
+                     (json_int_t)trial->width, "height", (json_int_t)trial->height, "hash",
+                     rt_json_hex(trial->scene), "sets", sets);
+}
+
+static json_t *build_json(const RtBuildResult *build) {
+    json_t *object = rt_json_structure(&build->shape);
+    json_t *run =
+        json_pack("{s:s, s:b, s:b, s:f, s:I}", "spec", build->spec, "exact", build->exact, "counts",
+                  build->counts, "seconds", build->seconds, "bytes", (json_int_t)build->shape.bytes);
+    json_object_update_new(object, run);
+    return object;
+}
+
+static json_t *count_json(const RtCell *cell) {
+    json_t *object = rt_json_tally(&cell->tally);
+    json_object_set_new(object, "differ", json_integer((json_int_t)cell->differ));
+    return object;
+}
+
+static json_t *estimate_json(const RtEstimate *e) {
+    return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
+}
+
+static json_t *time_json(const RtCell *cell) {
+    return json_pack("{s:I, s:I, s:i, s:o, s:o, s:o}", "rays", (json_int_t)cell->tally.rays, "rounds",
+                     (json_int_t)cell->rounds, "threads", cell->threads, "seconds",
+                     estimate_json(&cell->seconds), "wall", estimate_json(&cell->wall), "ratio",
+                     estimate_json(&cell->ratio));
+}
+
+static json_t *event_json(const RtResults *results, const RtEvent *event) {
+    const RtExperiment *experiment = results->experiment;
+    const RtCell *cell = rt_cell_at(results, event->trial, event->contender, event->kind);
+    const char *scene = experiment->trials[event->trial].label;
+    const char *accel = rt_contender_label(experiment, event->contender);
+    const char *kind = rt_ray_kind_name(event->kind);
+    switch (event->what) {
+    case RT_EVENT_TRIAL:
+        return json_pack("{s:s, s:o}", "scene", scene, "trial", trial_json(&results->trials[event->trial]));
+    case RT_EVENT_BUILD:
+        return json_pack("{s:s, s:s, s:o}", "scene", scene, "accel", accel, "built",
+                         build_json(rt_build_at(results, event->trial, event->contender)));
+    case RT_EVENT_COUNT:
+        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "counted",
+                         count_json(cell));
+    case RT_EVENT_TIME:
+        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
+                         time_json(cell));
+    }
+    return NULL;
+}
+
+/* ---- writing ---- */
+
+RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
+                         RtError *error) {
+    RT_TRY(rt_json_lines_open(journal, path, resume, error));
+    return resume ? RT_OK : rt_json_lines_write(journal, header_json(experiment), error);
+}
+
+RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
+                           RtError *error) {
+    return rt_json_lines_write(journal, event_json(results, event), error);
+}
+
+/* ---- from JSON ---- */
+
+/* Members that are missing or of another type read as 0, which no journal of ours has. */
+static uint64_t get_integer(const json_t *object, const char *key) {
+    return (uint64_t)json_integer_value(json_object_get(object, key));
+}
+
+static uint64_t get_hex(const json_t *object, const char *key) {
+    const char *text = json_string_value(json_object_get(object, key));
+    uint64_t value = 0;
+    return text && sscanf(text, "%" SCNx64, &value) == 1 ? value : 0;
+}
+
+static double get_number(const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    return json_is_number(value) ? json_number_value(value) : (double)NAN;
+}
+
+static RtEstimate get_estimate(const json_t *object, const char *key) {
+    const json_t *list = json_object_get(object, key);
+    return (RtEstimate){
+        json_number_value(json_array_get(list, 0)), json_number_value(json_array_get(list, 1)),
+        json_number_value(json_array_get(list, 2)), json_number_value(json_array_get(list, 3))};
+}
+
+static void take_trial(RtTrialResult *trial, const json_t *object) {
+    const json_t *sets = json_object_get(object, "sets");
+    trial->known = true;
+    trial->objects = (uint32_t)get_integer(object, "objects");
+    trial->width = (uint32_t)get_integer(object, "width");
+    trial->height = (uint32_t)get_integer(object, "height");
+    trial->scene = get_hex(object, "hash");
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const json_t *set = json_object_get(sets, rt_ray_kind_name((RtRayKind)k));
+        trial->rays[k] = get_integer(set, "rays");
+        trial->ray_fingerprints[k] = get_hex(set, "hash");
+    }
+}
+
+static void take_build(RtBuildResult *build, const json_t *object) {
+    const char *spec = json_string_value(json_object_get(object, "spec"));
+    build->known = true;
+    build->exact = json_is_true(json_object_get(object, "exact"));
+    build->counts = json_is_true(json_object_get(object, "counts"));
+    snprintf(build->spec, sizeof build->spec, "%s", spec ? spec : "");
+    build->seconds = get_number(object, "seconds");
+    build->shape = (RtDescription){.interior = get_integer(object, "interior"),
+                                   .leaves = get_integer(object, "leaves"),
+                                   .empty_leaves = get_integer(object, "empty_leaves"),
+                                   .references = get_integer(object, "references"),
+                                   .depth = get_integer(object, "depth"),
+                                   .bytes = get_integer(object, "bytes")};
+#define TAKE_PREDICTION(name, meaning) build->shape.name = get_number(object, #name);
+    RT_PREDICTIONS(TAKE_PREDICTION)
+#undef TAKE_PREDICTION
+}
+
+static void take_count(RtCell *cell, const json_t *object) {
+    cell->counted = true;
+    cell->differ = get_integer(object, "differ");
+#define TAKE(name, meaning) cell->tally.name = get_integer(object, #name);
+    RT_TALLY_COUNTERS(TAKE)
+#undef TAKE
+}
+
+static void take_time(RtCell *cell, const json_t *object) {
+    cell->timed = true;
+    cell->tally.rays = get_integer(object, "rays");
+    cell->rounds = (uint32_t)get_integer(object, "rounds");
+    cell->threads = (int)get_integer(object, "threads");
+    cell->seconds = get_estimate(object, "seconds");
+    cell->wall = get_estimate(object, "wall");
+    cell->ratio = get_estimate(object, "ratio");
+}
+
+/* Places a line where its labels say; lines about what the experiment does not have are passed over. */
+static void take_line(RtResults *results, const json_t *line) {
+    const RtExperiment *experiment = results->experiment;
+    const char *scene = json_string_value(json_object_get(line, "scene"));
+    const char *accel = json_string_value(json_object_get(line, "accel"));
+    const char *kind_name = json_string_value(json_object_get(line, "kind"));
+    const json_t *object;
+    RtRayKind kind = RT_RAY_PRIMARY;
+    uint32_t trial = scene ? rt_trial_find(experiment, scene) : experiment->trial_count;
+    if (trial == experiment->trial_count) return;
+    if ((object = json_object_get(line, "trial"))) take_trial(&results->trials[trial], object);
+    if (!accel) return;
+    uint32_t contender = rt_contender_find(experiment, accel, trial);
+    if (contender > experiment->contender_count) return;
+    if ((object = json_object_get(line, "built"))) take_build(rt_build_at(results, trial, contender), object);
+    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;
+    RtCell *cell = rt_cell_at(results, trial, contender, kind);
+    if ((object = json_object_get(line, "counted"))) take_count(cell, object);
+    if ((object = json_object_get(line, "timed"))) take_time(cell, object);
+}
+
+static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,
+                             bool same_build, RtError *error) {
+    const char *build = json_string_value(json_object_get(line, "build"));
+    if (get_hex(line, "hash") != experiment->fingerprint ||
+        json_is_true(json_object_get(line, "quick")) != experiment->quick) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: this is a run of another experiment, or of an older version of it: start anew, "
+                       "without --resume, or give another --out",
+                       path);
+    }
+    if (!same_build || (build && strcmp(build, rt_build_identity()) == 0)) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "%s: this run was begun by another build (%s; this is %s): start anew, without --resume, or "
+        "give another --out",
+        path, build ? build : "unknown", rt_build_identity());
+}
+
+RtStatus rt_journal_load(const char *path, RtResults *results, bool same_build, RtError *error) {
+    json_t *lines;
+    RT_TRY(rt_json_lines_load(path, &lines, error));
+    RtStatus status = check_header(path, json_array_get(lines, 0), results->experiment, same_build, error);
+    for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
+        take_line(results, json_array_get(lines, i));
+    }
+    json_decref(lines);
+    return status;
+}

@@ -1,0 +1,25 @@
+/* The journal of a run: one JSON object a line for everything found, on the disk before the next is measured.
+ * It is what an interrupted run resumes from, and what the tables and the report are made of.
+ *
+ * The first line names the experiment (the fingerprint of its YAML), whether it is the quick variant, and the
+ * build; a journal of another experiment or build is refused. A last line that was cut off is passed over. */
+#ifndef RT_BENCH_JOURNAL_H
+#define RT_BENCH_JOURNAL_H
+
+#include "bench/json_lines.h"
+#include "bench/trial.h"
+
+/* Opens the journal at `path` for appending: a new one, or, with `resume`, the one that is there. Close with
+ * rt_json_lines_close, also after a failure. */
+RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
+                         RtError *error);
+
+/* Writes down what the event says is known now. */
+RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
+                           RtError *error);
+
+/* Fills `results` with all that the journal at `path` knows. Refuses one of another experiment; of another
+ * build if `same_build`. */
+RtStatus rt_journal_load(const char *path, RtResults *results, bool same_build, RtError *error);
+
+#endif

@@ -1,0 +1,26 @@
+/* Files of one JSON object a line, each on the disk before the next is found out: what an interrupted run
+ * goes on from. A last line that was cut off is none. */
+#ifndef RT_BENCH_JSON_LINES_H
+#define RT_BENCH_JSON_LINES_H
+
+#include "base/file.h"
+
+#include <jansson.h>
+
+typedef struct RtJsonLines {
+    FILE *file;
+    char path[RT_MAX_PATH];
+} RtJsonLines;
+
+/* Opens the file at `path` for writing: anew, or with `append` behind what is there. Close with
+ * rt_json_lines_close, also after a failure. */
+RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, bool append, RtError *error);
+void rt_json_lines_close(RtJsonLines *lines);
+
+/* Writes one line; it is on the disk when this returns. Takes the reference; NULL is memory that is short. */
+RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error);
+
+/* All lines of the file, those that are not JSON as null, as a new array. Refuses a file without any. */
+RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error);
+
+#endif

@@ -1,0 +1,60 @@
+#include "bench/machine.h"
+
+#include "accel/embree_info.h"
+#include "base/parallel.h"
+#include "build_info.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/utsname.h>
+
+/* The model name of the first processor, "" where /proc does not tell. */
+static void read_cpu(char *out, size_t room) {
+    char line[512];
+    out[0] = '\0';
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file && !out[0] && fgets(line, sizeof line, file)) {
+        char *value = strchr(line, ':');
+        if (strncmp(line, "model name", 10) != 0 || !value) continue;
+        line[strcspn(line, "\n")] = '\0';
+        snprintf(out, room, "%s", value + 1 + strspn(value + 1, " \t"));
+    }
+    if (file) fclose(file);
+}
+
+static const char *simd_level(void) {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("avx512f") ? "AVX-512"
+           : __builtin_cpu_supports("avx2")  ? "AVX2"
+           : __builtin_cpu_supports("avx")   ? "AVX"
+                                             : "SSE2";
+#elif defined(__aarch64__)
+    return "NEON";
+#else
+    return "";
+#endif
+}
+
+static json_t *text_or_null(const char *text) {
+    return *text ? json_string(text) : json_null();
+}
+
+json_t *rt_machine_json(void) {
+    char cpu[256], system[256] = "", embree[64];
+    struct utsname name;
+    read_cpu(cpu, sizeof cpu);
+    if (uname(&name) == 0) {
+        snprintf(system, sizeof system, "%.64s %.64s %.64s", name.sysname, name.release, name.machine);
+    }
+    rt_embree_info(embree, sizeof embree);
+    return json_pack("{s:o, s:o, s:i, s:o, s:s, s:s, s:s, s:s, s:b, s:o}", "cpu", text_or_null(cpu), "simd",
+                     text_or_null(simd_level()), "processors", rt_processor_count(), "os",
+                     text_or_null(system), "compiler", RT_COMPILER, "flags", RT_FLAGS, "version", RT_VERSION,
+                     "commit", RT_COMMIT, "dirty", RT_DIRTY, "embree", text_or_null(embree));
+}
+
+const char *rt_build_identity(void) {
+    return RT_DIRTY ? RT_VERSION " " RT_COMMIT " with changes, " RT_COMPILER
+                    : RT_VERSION " " RT_COMMIT ", " RT_COMPILER;
+}

@@ -1,0 +1,15 @@
+/* What the measurements were made with: the machine, the compiler, the version. */
+#ifndef RT_BENCH_MACHINE_H
+#define RT_BENCH_MACHINE_H
+
+#include <jansson.h>
+
+/* {"cpu", "simd", "processors", "os", "compiler", "flags", "version", "commit", "dirty", "embree"}; what
+ * cannot be found out is null. NULL where memory is short; the caller owns the reference. */
+json_t *rt_machine_json(void);
+
+/* Version, commit and dirty flag in one line: only what was measured by one and the same build may be
+ * mixed. */
+const char *rt_build_identity(void);
+
+#endif

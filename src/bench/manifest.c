@@ -1,0 +1,81 @@
+#include "bench/manifest.h"
+
+#include "base/json.h"
+#include "base/parallel.h"
+#include "bench/machine.h"
+
+static json_t *scenes_json(const RtResults *results) {
+    const RtExperiment *experiment = results->experiment;
+    json_t *list = json_array();
+    for (uint32_t t = 0; t < experiment->trial_count; t++) {
+        const RtTrialResult *trial = &results->trials[t];
+        json_t *sets = json_object();
+        for (uint32_t k = 0; trial->known && k < experiment->kind_count; k++) {
+            RtRayKind kind = experiment->kinds[k];
+            json_object_set_new(sets, rt_ray_kind_name(kind),
+                                json_pack("{s:I, s:o}", "rays", (json_int_t)trial->rays[kind], "hash",
+                                          rt_json_hex(trial->ray_fingerprints[kind])));
+        }
+        json_array_append_new(
+            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o}", "label",
+                            experiment->trials[t].label, "scene", experiment->trials[t].spec, "skipped",
+                            trial->skipped, "objects", (json_int_t)trial->objects, "hash",
+                            rt_json_hex(trial->scene), "width", (json_int_t)trial->width, "height",
+                            (json_int_t)trial->height, "corners", experiment->trials[t].corners,
+                            "outward_light", experiment->trials[t].outward_light, "depth",
+                            (json_int_t)experiment->trials[t].depth, "rays", sets));
+    }
+    return list;
+}
+
+static json_t *contenders_json(const RtExperiment *experiment) {
+    json_t *list = json_array();
+    for (uint32_t c = 0; c < experiment->contender_count; c++) {
+        const RtContender *contender = &experiment->contenders[c];
+        json_t *scenes = json_array();
+        for (uint32_t t = 0; t < experiment->trial_count; t++) {
+            if (contender->left_out >> t & 1) continue;
+            json_array_append_new(scenes, json_string(experiment->trials[t].label));
+        }
+        json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:b, s:o}", "label", contender->label, "accel",
+                                              contender->spec, "every", (json_int_t)contender->every,
+                                              "missing", contender->missing, "scenes", scenes));
+    }
+    return list;
+}
+
+static json_t *manifest_json(const RtResults *results, const RtTrialOptions *options) {
+    const RtExperiment *experiment = results->experiment;
+    return json_pack(
+        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:i, s:i, s:o, s:o, s:o}",
+        "experiment", experiment->name, "file", experiment->path, "hash",
+        rt_json_hex(experiment->fingerprint), "question", experiment->question, "prediction",
+        experiment->prediction, "quick", experiment->quick, "seed", (json_int_t)experiment->seed, "limit",
+        (json_int_t)experiment->limit, "together", (json_int_t)experiment->together, "rounds",
+        (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
+        experiment->contenders[experiment->baseline].label, "date", rt_json_now(), "threads_counting",
+        rt_thread_count(options->threads), "threads_timing", rt_thread_count(options->timing), "scenes",
+        scenes_json(results), "accelerators", contenders_json(experiment), "machine", rt_machine_json());
+}
+
+RtStatus rt_manifest_write(const RtResults *results, const RtTrialOptions *options, const char *directory,
+                           RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    return rt_json_save(path, manifest_json(results, options), error);
+}
+
+RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error) {
+    char path[RT_MAX_PATH];
+    json_error_t fault;
+    *manifest = NULL;
+    RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    if (!rt_file_exists(path)) {
+        return rt_fail(error, RT_BAD_INPUT, "%s is no finished result directory: it has no manifest.json",
+                       directory);
+    }
+    *manifest = json_load_file(path, 0, &fault);
+    if (*manifest) return RT_OK;
+    return rt_fail_at(error, path, fault.line > 0 ? (size_t)fault.line : 0, 0,
+                      "%s; the file is damaged: run the experiment again", fault.text);
+}

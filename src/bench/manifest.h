@@ -1,0 +1,16 @@
+/* The manifest of a result: what was run, and with what. */
+#ifndef RT_BENCH_MANIFEST_H
+#define RT_BENCH_MANIFEST_H
+
+#include "bench/trial.h"
+
+#include <jansson.h>
+
+/* Writes `directory`/manifest.json, dated now. */
+RtStatus rt_manifest_write(const RtResults *results, const RtTrialOptions *options, const char *directory,
+                           RtError *error);
+
+/* Reads it back; the caller owns the reference. */
+RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error);
+
+#endif

@@ -1,0 +1,148 @@
+#include "bench/measure.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "bench/rounds.h"
+
+#include <string.h>
+
+/* Rays handed to a thread at a time. */
+enum { CHUNK = 4096 };
+
+/* One pass of an accelerator over a ray set. Either `hits` or `blocked` takes the answers. */
+typedef struct Pass {
+    const RtRaySet *set;
+    RtQuery *queries; /* [threads] */
+    int threads;
+    RtHit *hits;
+    bool *blocked;
+    RtTally (*tallies)[RT_RAY_KIND_COUNT]; /* [threads], or NULL: the timed kernels */
+} Pass;
+
+static bool is_shadow(const RtRaySet *set) {
+    return set->kind == RT_RAY_SHADOW;
+}
+
+static void pass_clear(Pass *pass) {
+    for (int i = 0; pass->queries && i < pass->threads; i++) rt_query_clear(&pass->queries[i]);
+    rt_free(pass->queries);
+    rt_free(pass->tallies);
+    rt_free(pass->hits);
+    rt_free(pass->blocked);
+    *pass = (Pass){0};
+}
+
+/* Everything a pass needs, so that nothing is allocated while it runs. Clear it also after a failure. */
+static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set, int threads, bool counted,
+                          RtError *error) {
+    *pass = (Pass){.set = set, .threads = rt_thread_count(threads)};
+    size_t count = set->count, answer = is_shadow(set) ? sizeof(bool) : sizeof(RtHit);
+    pass->queries = rt_alloc((size_t)pass->threads, sizeof *pass->queries);
+    if (counted) pass->tallies = rt_alloc((size_t)pass->threads, sizeof *pass->tallies);
+    if (is_shadow(set)) {
+        pass->blocked = rt_alloc(count, answer);
+    } else {
+        pass->hits = rt_alloc(count, answer);
+    }
+    if (!pass->queries || (counted && !pass->tallies) || (!pass->hits && !pass->blocked)) {
+        return rt_fail_memory(error, "the answers to a ray set", count * answer);
+    }
+    for (int i = 0; i < pass->threads; i++) RT_TRY(rt_query_init(&pass->queries[i], accel, error));
+    return RT_OK;
+}
+
+static void trace(Pass *pass, int thread, size_t first, size_t count) {
+    const RtRay *rays = pass->set->rays + first;
+    rt_query_begin(&pass->queries[thread]);
+    RtTally *tallies = pass->tallies ? pass->tallies[thread] : NULL;
+    if (pass->blocked) {
+        rt_occluded(&pass->queries[thread], rays, count, pass->blocked + first, tallies);
+    } else {
+        rt_nearest(&pass->queries[thread], rays, count, pass->hits + first, tallies);
+    }
+}
+
+static RtStatus trace_chunk(void *context, size_t item, int thread, RtError *error) {
+    (void)error;
+    Pass *pass = context;
+    size_t first = item * CHUNK, left = pass->set->count - first;
+    trace(pass, thread, first, left < CHUNK ? left : CHUNK);
+    return RT_OK;
+}
+
+/* Chunk by chunk also on a single thread: counts may depend on where chunks begin. */
+static RtStatus run_pass(Pass *pass, RtError *error) {
+    uint64_t shortages = rt_csg_shortages();
+    size_t chunks = (pass->set->count + CHUNK - 1) / CHUNK;
+    if (pass->threads == 1) {
+        for (size_t chunk = 0; chunk < chunks; chunk++) RT_TRY(trace_chunk(pass, chunk, 0, error));
+    } else {
+        RT_TRY(rt_parallel_for(chunks, pass->threads, trace_chunk, pass, error));
+    }
+    return rt_csg_check(shortages, error);
+}
+
+/* ---- counting ---- */
+
+RtStatus rt_measure_answers(const RtAccel *accel, const RtRaySet *set, int threads, RtHit *hits,
+                            RtError *error) {
+    /* `nearest` also for shadow rays: a hit is then known by its object. */
+    RtRaySet nearest = *set;
+    nearest.kind = RT_RAY_PRIMARY;
+    Pass pass;
+    RtStatus status = pass_init(&pass, accel, &nearest, threads, false, error);
+    if (status == RT_OK) status = run_pass(&pass, error);
+    if (status == RT_OK) memcpy(hits, pass.hits, set->count * sizeof(RtHit));
+    pass_clear(&pass);
+    return status;
+}
+
+static bool answers_agree(const Pass *pass, size_t i, RtHit expected) {
+    if (pass->blocked) return pass->blocked[i] == (expected.object != RT_NO_OBJECT);
+    return memcmp(&pass->hits[i], &expected, sizeof expected) == 0;
+}
+
+RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
+                          RtCount *count, RtError *error) {
+    *count = (RtCount){0};
+    Pass pass;
+    RtStatus status = pass_init(&pass, accel, set, threads, true, error);
+    if (status == RT_OK) status = run_pass(&pass, error);
+    if (status == RT_OK) {
+        for (int i = 0; i < pass.threads; i++) rt_tally_add(&count->tally, &pass.tallies[i][set->kind]);
+        for (size_t i = 0; i < set->count; i++) {
+            if (answers_agree(&pass, i, expected[i])) continue;
+            if (count->differ++ == 0) count->first = i;
+        }
+    }
+    pass_clear(&pass);
+    return status;
+}
+
+/* ---- timing ---- */
+
+static RtStatus run_runner(void *context, RtError *error) {
+    return run_pass(context, error);
+}
+
+RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, RtError *error) {
+    Pass *passes = rt_alloc(count, sizeof(Pass));
+    RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
+    RtStatus status = RT_OK;
+    if (!passes || !runners) status = rt_fail_memory(error, "the rounds", count * sizeof(Pass));
+    for (size_t i = 0; status == RT_OK && i < count; i++) {
+        status = pass_init(&passes[i], timed[i].accel, timed[i].set, timing->threads, false, error);
+        runners[i] = (RtRunner){.run = run_runner,
+                                .context = &passes[i],
+                                .work = (double)timed[i].set->count,
+                                .parallel = passes[i].threads > 1,
+                                .seconds = timed[i].seconds,
+                                .wall = timed[i].wall};
+    }
+    const RtRounds rounds = {timing->rounds, timing->least, timing->seed};
+    if (status == RT_OK) status = rt_rounds_run(runners, count, &rounds, error);
+    for (size_t i = 0; passes && i < count; i++) pass_clear(&passes[i]);
+    rt_free(passes);
+    rt_free(runners);
+    return status;
+}

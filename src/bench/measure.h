@@ -1,0 +1,47 @@
+/* Measuring an accelerator on a ray set: counting and timing, which are separate passes over the same rays.
+ * Shadow rays are asked of `occluded`, all others of `nearest`. */
+#ifndef RT_BENCH_MEASURE_H
+#define RT_BENCH_MEASURE_H
+
+#include "bench/rayset.h"
+#include "bench/statistics.h"
+
+/* ---- counting ---- */
+
+/* The right answers to `set`: hits[0..set->count), by the timed kernel of an exact accelerator. */
+RtStatus rt_measure_answers(const RtAccel *accel, const RtRaySet *set, int threads, RtHit *hits,
+                            RtError *error);
+
+typedef struct RtCount {
+    RtTally tally;
+    uint64_t differ; /* answers unlike the expected ones */
+    uint64_t first;  /* index of the first of them */
+} RtCount;
+
+/* Counts what `set` costs, the same at any number of threads, and compares each answer with
+ * expected[0..set->count): object id and bits of t, or for shadow rays whether there is a hit. */
+RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
+                          RtCount *count, RtError *error);
+
+/* ---- timing ---- */
+
+/* One of the things that are timed against each other: an accelerator on its rays. */
+typedef struct RtTimed {
+    const RtAccel *accel;
+    const RtRaySet *set; /* not empty */
+    double *seconds;     /* [rounds] out: seconds a ray, by the clock of the comparison */
+    double *wall;        /* [rounds] out: seconds a ray on the wall clock, all threads together */
+} RtTimed;
+
+typedef struct RtTiming {
+    uint32_t rounds; /* 1..RT_MAX_ROUNDS, after one more that warms up */
+    double least;    /* seconds: short sets are repeated within a round until they take this long */
+    int threads;     /* 1: the clock of the comparison is the thread's processor time; more: the wall's;
+                        0 = all processors */
+    uint64_t seed;   /* of the order */
+} RtTiming;
+
+/* Times timed[0..count) in interleaved rounds (rounds.h). */
+RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, RtError *error);
+
+#endif

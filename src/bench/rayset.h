@@ -1,0 +1,56 @@
+/* Ray sets: rays of one kind recorded from one scene, to be replayed to every accelerator alike.
+ *
+ * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order in which
+ * the frame's tiles produce them (tile after tile), whatever the number of threads. Diffuse rays start at the
+ * primary hits, cosine-distributed about the normal; random rays are chords of the scene's bounding sphere
+ * between two uniform points of it. */
+#ifndef RT_BENCH_RAYSET_H
+#define RT_BENCH_RAYSET_H
+
+#include "base/random.h"
+#include "render/frame.h"
+
+typedef struct RtRaySet {
+    RtRayKind kind;
+    uint64_t count;
+    RtRay *rays;          /* [count], owned; every ray is valid */
+    uint64_t fingerprint; /* XXH3 of the rays: equal sets, equal fingerprint, on every machine */
+} RtRaySet;
+
+typedef struct RtRecording {
+    uint32_t depth;     /* levels of the ray tree */
+    uint64_t seed;      /* of diffuse and random rays */
+    uint64_t random;    /* number of random rays */
+    int threads;        /* 0 = all processors; does not change the sets */
+    bool outward_light; /* as in RtFrameOptions */
+} RtRecording;
+
+/* Fills sets[RT_RAY_KIND_COUNT], indexed by kind; a kind that the scene does not produce gets an empty set.
+ * `accel` answers the recorded rays (any exact one will do: hits are the same). Free each with
+ * rt_rayset_clear. */
+RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording, RtError *error);
+
+/* Keeps every `every`th ray, starting with the first; 1 keeps all. */
+RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t every, RtRaySet *to, RtError *error);
+
+/* At most `limit` rays, evenly spread, in runs of `together` neighbours: of every ceil(count / limit) runs
+ * one is kept. Runs of 1 thin the set as above: the widest spread, for counting. Longer ones, up to a
+ * sixteenth of `limit`, are picked at random within their group and keep the coherence that packets and
+ * caches live on, for timing. */
+RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t together, RtRaySet *to,
+                         RtError *error);
+
+void rt_rayset_clear(RtRaySet *set);
+
+/* The sphere through the corners of `box`; the unit sphere for the empty box. */
+RtBall rt_bounding_sphere(const RtBox *box);
+
+/* One random ray: from one uniform point of `sphere` towards another, dir not normalised, so that t = 1 is
+ * the other point; tmin 0, tmax infinite. Such chords are uniformly distributed lines: by direction, and
+ * across it by area. */
+RtRay rt_sphere_chord(const RtBall *sphere, RtRandom *random);
+
+/* The same of the bounding sphere of `box`. */
+RtRay rt_random_chord(const RtBox *box, RtRandom *random);
+
+#endif

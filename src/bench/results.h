@@ -1,0 +1,75 @@
+/* What an experiment found, in memory: dense arrays over trial x contender x ray kind, filled cell by cell.
+ * Behind the contenders stands one more, the null run: the baseline built and measured a second time, whose
+ * ratio to the baseline must straddle 1. */
+#ifndef RT_BENCH_RESULTS_H
+#define RT_BENCH_RESULTS_H
+
+#include "bench/experiment.h"
+#include "bench/statistics.h"
+
+typedef struct RtTrialResult {
+    bool known;   /* the scene was opened and its rays recorded */
+    bool skipped; /* optional, and its file is missing */
+    uint32_t objects;
+    uint32_t width, height;                       /* of the frame */
+    uint64_t scene;                               /* rt_scene_fingerprint */
+    uint64_t rays[RT_RAY_KIND_COUNT];             /* in the set, after the limit */
+    uint64_t ray_fingerprints[RT_RAY_KIND_COUNT]; /* of the set */
+} RtTrialResult;
+
+typedef struct RtBuildResult {
+    bool known, exact, counts;    /* as in RtAccel */
+    char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
+    double seconds;               /* median of up to three builds */
+    RtDescription shape;
+} RtBuildResult;
+
+typedef struct RtCell {
+    bool counted, timed;
+    RtTally tally;   /* tally.rays: of the thinned set */
+    uint64_t differ; /* answers unlike the baseline's; of an exact accelerator always 0 */
+    uint32_t rounds;
+    int threads;        /* of the timing */
+    RtEstimate seconds; /* a ray: processor time on one thread, wall time on several */
+    RtEstimate wall;    /* a ray, on the wall clock */
+    RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
+} RtCell;
+
+typedef struct RtResults {
+    const RtExperiment *experiment; /* borrowed */
+    RtTrialResult *trials;          /* [trial_count] */
+    RtBuildResult *builds;          /* see rt_build_at */
+    RtCell *cells;                  /* see rt_cell_at */
+} RtResults;
+
+/* All unknown. Clear with rt_results_clear, also after a failure. */
+RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error);
+void rt_results_clear(RtResults *results);
+
+/* Places in the arrays; contender = contender_count is the null run. */
+RtBuildResult *rt_build_at(const RtResults *results, uint32_t trial, uint32_t contender);
+RtCell *rt_cell_at(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind);
+
+/* The contender's label, "null" for the null run. */
+const char *rt_contender_label(const RtExperiment *experiment, uint32_t contender);
+
+/* How many of the null runs there are, and how many of them have an interval with 1 inside. */
+void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
+
+/* What a contender's cells of one trial add up to. Per ray means per ray of all kinds together, each kind
+ * with the weight of its unthinned set, so that thinned and full measurements compare. NAN where unknown. */
+typedef struct RtTotal {
+    uint64_t rays;                            /* measured */
+    double object_tests, extent_tests, steps; /* a ray */
+    double seconds;                           /* a ray */
+    double ratio;                             /* of throughput to the baseline's on the same rays */
+} RtTotal;
+
+RtTotal rt_results_total(const RtResults *results, uint32_t trial, uint32_t contender);
+
+/* How often a counter counted for a ray of the cell; NAN where that is not known: nothing was counted, or the
+ * counter stayed at 0 in an accelerator that does not count everything (Embree its own boxes). */
+double rt_cell_per_ray(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind,
+                       uint64_t counter);
+
+#endif

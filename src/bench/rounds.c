@@ -1,0 +1,66 @@
+#include "bench/rounds.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/random.h"
+
+#include <assert.h>
+#include <math.h>
+
+enum { MOST_REPEATS = 1000000 };
+
+/* Runs `repeats` times; seconds of both clocks for all of them. */
+static RtStatus time_runner(const RtRunner *runner, double *seconds, double *wall, RtError *error) {
+    double processor_start = rt_thread_seconds(), wall_start = rt_wall_seconds();
+    for (uint32_t i = 0; i < runner->repeats; i++) RT_TRY(runner->run(runner->context, error));
+    *wall = rt_wall_seconds() - wall_start;
+    *seconds = runner->parallel ? *wall : rt_thread_seconds() - processor_start;
+    return RT_OK;
+}
+
+/* Brings code and data into the caches, and finds how often each must run to last `least` seconds. */
+static RtStatus warm_up(RtRunner *runners, size_t count, double least, RtError *error) {
+    for (size_t i = 0; i < count; i++) {
+        double seconds, wall;
+        runners[i].repeats = 1;
+        RT_TRY(time_runner(&runners[i], &seconds, &wall, error));
+        seconds = seconds > 1e-9 ? seconds : 1e-9;
+        runners[i].repeats = (uint32_t)fmin(fmax(ceil(least / seconds), 1), MOST_REPEATS);
+    }
+    return RT_OK;
+}
+
+static void shuffle(size_t *order, size_t count, RtRandom *random) {
+    for (size_t i = count; i > 1; i--) {
+        size_t k = ((uint64_t)rt_random_bits(random) * i) >> 32, other = order[k];
+        order[k] = order[i - 1];
+        order[i - 1] = other;
+    }
+}
+
+static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const RtRounds *rounds,
+                           RtError *error) {
+    RtRandom random = rt_random(rounds->seed, 0);
+    for (size_t i = 0; i < count; i++) order[i] = i;
+    RT_TRY(warm_up(runners, count, rounds->least, error));
+    for (uint32_t round = 0; round < rounds->rounds; round++) {
+        shuffle(order, count, &random);
+        for (size_t i = 0; i < count; i++) {
+            RtRunner *runner = &runners[order[i]];
+            double seconds, wall, work = runner->repeats * runner->work;
+            RT_TRY(time_runner(runner, &seconds, &wall, error));
+            runner->seconds[round] = seconds / work;
+            if (runner->wall) runner->wall[round] = wall / work;
+        }
+    }
+    return RT_OK;
+}
+
+RtStatus rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *rounds, RtError *error) {
+    assert(rounds->rounds >= 1 && rounds->rounds <= RT_MAX_ROUNDS);
+    size_t *order = rt_alloc(count, sizeof(size_t));
+    if (!order) return rt_fail_memory(error, "the rounds", count * sizeof(size_t));
+    RtStatus status = run_rounds(runners, order, count, rounds, error);
+    rt_free(order);
+    return status;
+}

@@ -1,0 +1,44 @@
+/* A trial: one scene of an experiment, with every contender measured on the rays recorded from it. What is
+ * already known (from an earlier, interrupted run) is not measured again. */
+#ifndef RT_BENCH_TRIAL_H
+#define RT_BENCH_TRIAL_H
+
+#include "bench/results.h"
+
+typedef enum RtEventKind {
+    RT_EVENT_TRIAL, /* results->trials[trial] is known */
+    RT_EVENT_BUILD, /* the build of `contender` is known */
+    RT_EVENT_COUNT, /* the cell is counted */
+    RT_EVENT_TIME   /* the cell is timed */
+} RtEventKind;
+
+/* Which part of the results was just filled. */
+typedef struct RtEvent {
+    RtEventKind what;
+    uint32_t trial, contender;
+    RtRayKind kind;
+} RtEvent;
+
+/* Who is told. Both members are called from the thread that runs the trial; either may be NULL. A status
+ * other than RT_OK ends the trial with it. */
+typedef struct RtObserver {
+    void *context;
+    RtStatus (*event)(void *context, const RtResults *results, const RtEvent *event, RtError *error);
+    void (*notice)(void *context, const char *message);
+} RtObserver;
+
+typedef struct RtTrialOptions {
+    int threads;     /* of recording and counting: 0 = all processors; changes no count */
+    int timing;      /* threads of the timing, 1 as a rule */
+    bool count_only; /* no timing */
+    RtObserver observer;
+} RtTrialOptions;
+
+/* RT_OK where the scene is there to be opened, or optional; tells before anything is measured. */
+RtStatus rt_trial_find_scene(const RtTrial *setup, RtError *error);
+
+/* Fills what is unknown of the experiment's trial number `index`. An exact accelerator whose answers differ
+ * from the baseline's, or whose hits are not the same number, is RT_MISMATCH. */
+RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error);
+
+#endif

@@ -1,0 +1,83 @@
+/* The timing of one kind of rays in a trial. */
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "bench/trial_state.h"
+
+/* All that is timed against each other: each contender on its share, and the baseline on every share that is
+ * thinned, so that a ratio compares times on the same rays. */
+typedef struct Contest {
+    uint32_t count, rounds;
+    RtTimed *timed;  /* [count] */
+    double *seconds; /* [count][2][rounds], where they go */
+    uint32_t *place; /* [trial->count] of a contender among them */
+    uint32_t *rival; /* [trial->count] of the baseline on its rays */
+} Contest;
+
+static uint32_t enter(Contest *contest, const RtAccel *accel, const RtRaySet *set) {
+    double *place = contest->seconds + 2 * (size_t)contest->count * contest->rounds;
+    contest->timed[contest->count] = (RtTimed){accel, set, place, place + contest->rounds};
+    return contest->count++;
+}
+
+/* Clear it also after a failure. */
+static RtStatus contest_init(Contest *contest, const RtTrialState *trial, RtError *error) {
+    const uint32_t baseline = trial->experiment->baseline;
+    size_t most = 2 * (size_t)trial->count, doubles = 2 * most * trial->experiment->rounds;
+    *contest = (Contest){.rounds = trial->experiment->rounds,
+                         .timed = rt_alloc(most, sizeof(RtTimed)),
+                         .seconds = rt_alloc(doubles, sizeof(double)),
+                         .place = rt_alloc(trial->count, sizeof(uint32_t)),
+                         .rival = rt_alloc(trial->count, sizeof(uint32_t))};
+    if (!contest->timed || !contest->seconds || !contest->place || !contest->rival) {
+        return rt_fail_memory(error, "times", doubles * sizeof(double));
+    }
+    for (uint32_t c = 0; c < trial->count; c++) {
+        if (trial->accels[c]) contest->place[c] = enter(contest, trial->accels[c], &trial->shares[c].set);
+    }
+    for (uint32_t c = 0; c < trial->count; c++) {
+        contest->rival[c] = contest->place[baseline];
+        if (!trial->accels[c] || rt_trial_every(trial, c) == 1) continue;
+        contest->rival[c] = enter(contest, trial->accels[baseline], &trial->shares[c].set);
+    }
+    return RT_OK;
+}
+
+static void contest_clear(Contest *contest) {
+    rt_free(contest->timed);
+    rt_free(contest->seconds);
+    rt_free(contest->place);
+    rt_free(contest->rival);
+}
+
+/* Takes what was timed into the cells. */
+static RtStatus keep_times(RtTrialState *trial, RtRayKind kind, const Contest *contest, RtError *error) {
+    uint32_t rounds = contest->rounds;
+    for (uint32_t c = 0; c < trial->count; c++) {
+        RtCell *cell = rt_cell_at(trial->results, trial->index, c, kind);
+        const RtTimed *own = &contest->timed[contest->place[c]], *rival = &contest->timed[contest->rival[c]];
+        if (!trial->accels[c] || cell->timed) continue;
+        cell->timed = true;
+        cell->rounds = rounds;
+        cell->threads = rt_thread_count(trial->options->timing);
+        cell->tally.rays = own->set->count;
+        cell->seconds = rt_estimate(own->seconds, rounds);
+        cell->wall = rt_estimate(own->wall, rounds);
+        cell->ratio = rt_estimate_ratio(rival->seconds, own->seconds, rounds);
+        RT_TRY(rt_trial_tell(trial, RT_EVENT_TIME, c, kind, error));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_trial_time(RtTrialState *trial, RtRayKind kind, RtError *error) {
+    const RtExperiment *experiment = trial->experiment;
+    RtTiming timing = {.rounds = experiment->rounds,
+                       .least = 1e-3 * experiment->milliseconds,
+                       .threads = trial->options->timing,
+                       .seed = experiment->seed + (uint64_t)kind};
+    Contest contest;
+    RtStatus status = contest_init(&contest, trial, error);
+    if (status == RT_OK) status = rt_measure_time(contest.timed, contest.count, &timing, error);
+    if (status == RT_OK) status = keep_times(trial, kind, &contest, error);
+    contest_clear(&contest);
+    return status;
+}

@@ -1,0 +1,85 @@
+#include "exact/border.h"
+
+double rt_border_unit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line) {
+    double reach = 0;
+    for (int a = 0; a < 3; a++) {
+        reach = fmax(reach, fabs((double)geometry->boxes[id].lo.at[a] - line->org.at[a]));
+        reach = fmax(reach, fabs((double)geometry->boxes[id].hi.at[a] - line->org.at[a]));
+    }
+    return 0x1p-24 * reach;
+}
+
+static bool same_place(const RtGeometry *g, uint32_t id, const RtWideRay *line, float ours,
+                       long double exact) {
+    RtShape shape = rt_ref_shape(g->objects[id]);
+    if (shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON) return true;
+    double off = (double)fabsl((long double)ours - exact) * rt_lengthd(line->dir);
+    double size = rt_lengthd(rt_widen(rt_box_size(g->boxes[id])));
+    return off <= 0x1p-8 * size + 2 * rt_border_unit(g, id, line);
+}
+
+RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray) {
+    RtPreparedRay prepared = rt_ray_prepare(ray, &geometry->box);
+    RtDecision decision = {.t = INFINITY};
+    decision.hit = rt_object_hit(geometry, id, &prepared, &decision.t, NULL);
+    return decision;
+}
+
+RtFinding rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
+                            RtDecision decision) {
+    long double t;
+    RtFinding finding = rt_referee_hit(geometry, id, line, &t);
+    if (finding == RT_UNDECIDED) return finding;
+    if (!decision.hit || finding == RT_MISSED)
+        return decision.hit == (finding == RT_HIT) ? RT_HIT : RT_MISSED;
+    return same_place(geometry, id, line, decision.t, t) ? RT_HIT : RT_MISSED;
+}
+
+/* The distance of the line from the segment a b: of the origin from its projection along the line. `dir` is
+ * unit. */
+static double distance_from_edge(const RtWideRay *line, RtVec3d dir, RtVec3 a, RtVec3 b) {
+    RtVec3d from = rt_subd(rt_widen(a), line->org), side = rt_subd(rt_widen(b), rt_widen(a));
+    from = rt_add_scaledd(from, dir, -rt_dotd(from, dir));
+    side = rt_add_scaledd(side, dir, -rt_dotd(side, dir));
+    double length = rt_dotd(side, side);
+    double part = length > 0 ? fmin(fmax(-rt_dotd(from, side) / length, 0), 1) : 0;
+    return rt_lengthd(rt_add_scaledd(from, side, part));
+}
+
+static double distance_from_edges(const RtWideRay *line, const RtVec3 *vertices, uint32_t count) {
+    double least = HUGE_VAL;
+    RtVec3d dir = rt_normalized(line->dir);
+    for (uint32_t i = 0; i < count; i++) {
+        least = fmin(least, distance_from_edge(line, dir, vertices[i], vertices[(i + 1) % count]));
+    }
+    return least;
+}
+
+/* By moving the line until the referee decides so, along the faces, edges and corners of a cube. */
+static double least_move(const RtGeometry *g, uint32_t id, RtWideRay line, double unit, RtDecision decision) {
+    RtVec3d org = line.org;
+    for (int k = RT_BORDER_NEAR; k <= RT_BORDER_FAR; k++) {
+        for (int i = 0; i < 27; i++) {
+            int x = i % 3, y = i / 3 % 3, z = i / 9;
+            RtVec3d move = {x - 1, y - 1, z - 1};
+            line.org = rt_add_scaledd(org, move, ldexp(unit, k));
+            if (rt_decision_check(g, id, &line, decision) == RT_HIT) return ldexp(1, k);
+        }
+    }
+    return INFINITY;
+}
+
+double rt_border_distance(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtDecision decision) {
+    RtWideRay line = rt_wide_ray(ray);
+    uint32_t index = rt_ref_index(geometry->objects[id]);
+    double unit = rt_border_unit(geometry, id, &line);
+    switch (rt_ref_shape(geometry->objects[id])) {
+    case RT_SHAPE_TRIANGLE: return distance_from_edges(&line, geometry->triangles[index].v, 3) / unit;
+    case RT_SHAPE_POLYGON: {
+        const RtPolygon *polygon = &geometry->polygons[index];
+        const RtVec3 *vertices = geometry->polygon_vertices + polygon->first;
+        return distance_from_edges(&line, vertices, polygon->count) / unit;
+    }
+    default: return least_move(geometry, id, line, unit, decision);
+    }
+}

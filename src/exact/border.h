@@ -1,0 +1,38 @@
+/* How near to a border a decision is: a hit function that says otherwise than exact arithmetic is excused if
+ * the ray, moved a little, would be decided its way.
+ *
+ * The unit is what rounding to float32 may do to a place seen from the origin: 2^-24 of the distance from
+ * there to the farthest plane of the object's box, along the axis that is largest. The thickness by which
+ * boxes are widened (base/ray.h) is 16 of them. */
+#ifndef RT_EXACT_BORDER_H
+#define RT_EXACT_BORDER_H
+
+#include "exact/referee.h"
+
+/* What a hit function says of a ray and an object. */
+typedef struct RtDecision {
+    bool hit;
+    float t;
+} RtDecision;
+
+/* The unit for object `id`. */
+double rt_border_unit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line);
+
+/* What our hit function says. */
+RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray);
+
+/* Is it what exact arithmetic decides? A hit on an object that a line can meet more than once has to be the
+ * same one: t and the exact t are no farther apart than 2^-8 of the size of the box and two units.
+ * RT_UNDECIDED where that is. */
+RtFinding rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
+                            RtDecision decision);
+
+/* How near to a border of the object the ray's line passes, in units. Of flat shapes it is the distance from
+ * the nearest edge. Of others it is the least power of two, 2^RT_BORDER_NEAR or more, by which the origin has
+ * to be moved, along one of the 26 directions of a cube's faces, edges and corners, for exact arithmetic to
+ * decide like `decision`; INFINITY where 2^RT_BORDER_FAR does not do. */
+#define RT_BORDER_NEAR (-6)
+#define RT_BORDER_FAR  20
+double rt_border_distance(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtDecision decision);
+
+#endif

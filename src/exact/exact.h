@@ -1,0 +1,96 @@
+/* Exact numbers: rationals (GMP), vectors of them, and surds p + q sqrt(d), which are what roots of quadratic
+ * equations are. A float32 or double is a rational, so whatever + - * / make of such numbers is here without
+ * any rounding, and order and sign are decided, never estimated.
+ *
+ * Signs of sums of roots are found by algebra alone. Of a + b sqrt(c): where a and b pull opposite ways, that
+ * of a^2 - b^2 c. Of (p + q sqrt(d)) + r sqrt(e): where the two parts pull opposite ways, that of the
+ * difference of their squares, which has one root less. No approximation comes in, so a tie is a tie.
+ *
+ * Layout. Numbers are written on a slate, one after another, and never changed; wiping the slate back to a
+ * mark forgets the later ones, and their memory serves again. Memory is that of GMP (a number of a ray takes
+ * a few hundred bytes), which ends the program with a message where there is none. */
+#ifndef RT_EXACT_EXACT_H
+#define RT_EXACT_EXACT_H
+
+#include "base/vec.h"
+
+#include <gmp.h>
+#include <stddef.h>
+
+/* A number on a slate. */
+typedef mpq_srcptr RtRational;
+
+/* A zeroed struct is empty. One thread uses it at a time. */
+typedef struct RtSlate {
+    mpq_t **blocks; /* [block_count] of RT_SLATE_BLOCK numbers each, all initialised */
+    size_t block_count, used;
+} RtSlate;
+
+#define RT_SLATE_BLOCK 64
+
+void rt_slate_clear(RtSlate *slate);
+
+static inline size_t rt_slate_mark(const RtSlate *slate) {
+    return slate->used;
+}
+
+/* Forgets what was written after the mark was taken. */
+static inline void rt_slate_wipe(RtSlate *slate, size_t mark) {
+    slate->used = mark;
+}
+
+/* A number of the slate that is still to be written, once. */
+mpq_ptr rt_slate_number(RtSlate *slate);
+
+/* ---- rationals ---- */
+
+/* `x`, which is finite. */
+RtRational rt_exact_of(RtSlate *slate, double x);
+RtRational rt_exact_add(RtSlate *slate, RtRational a, RtRational b);
+RtRational rt_exact_sub(RtSlate *slate, RtRational a, RtRational b);
+RtRational rt_exact_mul(RtSlate *slate, RtRational a, RtRational b);
+RtRational rt_exact_div(RtSlate *slate, RtRational a, RtRational b); /* b is not 0 */
+RtRational rt_exact_neg(RtSlate *slate, RtRational a);
+
+/* -1, 0, 1 */
+static inline int rt_exact_sign(RtRational a) {
+    return mpq_sgn(a);
+}
+
+/* The nearest long double, or one of the two beside: an error below 2^-62 of the number. */
+long double rt_exact_value(RtRational a);
+
+typedef struct RtExactVec {
+    RtRational at[3];
+} RtExactVec;
+
+RtExactVec rt_exact_vec(RtSlate *slate, RtVec3d v);
+RtExactVec rt_exact_vec_sub(RtSlate *slate, RtExactVec a, RtExactVec b);
+RtExactVec rt_exact_vec_add_scaled(RtSlate *slate, RtExactVec a, RtExactVec b, RtRational scale);
+RtRational rt_exact_dot(RtSlate *slate, RtExactVec a, RtExactVec b);
+RtExactVec rt_exact_cross(RtSlate *slate, RtExactVec a, RtExactVec b);
+
+/* ---- surds ---- */
+
+/* p + q sqrt(d), d >= 0 */
+typedef struct RtSurd {
+    RtRational p, q, d;
+} RtSurd;
+
+RtSurd rt_surd_of(RtSlate *slate, RtRational p);
+
+/* a + b x */
+RtSurd rt_surd_line(RtSlate *slate, RtRational a, RtRational b, const RtSurd *x);
+
+/* -1, 0, 1: that of the number, and that of a - b. Nothing stays on the slate. */
+int rt_surd_sign(RtSlate *slate, const RtSurd *a);
+int rt_surd_compare(RtSlate *slate, const RtSurd *a, const RtSurd *b);
+
+/* Like rt_exact_value, however much p and q sqrt(d) cancel. */
+long double rt_surd_value(RtSlate *slate, const RtSurd *a);
+
+/* The real roots of a t^2 + 2 b t + c in ascending order; gives their number. A double root is given once; an
+ * equation that holds for no t or for all of them has none. */
+int rt_exact_roots(RtSlate *slate, RtRational a, RtRational half_b, RtRational c, RtSurd roots[2]);
+
+#endif

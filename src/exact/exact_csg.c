@@ -1,0 +1,261 @@
+/* CSG trees in exact arithmetic. A solid is made of parts that one equation describes, a quadric, a
+ * half-space or a torus; on a line the inside of each is an alternation of in and out at a few places. Meshes
+ * are parts with any number of places (exact_mesh.c). Solids join parts, and trees join solids, by the same
+ * machine: a stack of such lists, the two on top of which are merged. All lists lie one behind another in one
+ * array. */
+#include "exact/exact_hit.h"
+
+#include "base/memory.h"
+
+#include <assert.h>
+
+/* What is inside along the line: `before` all places, and changing at each. */
+typedef struct List {
+    bool before;
+    uint32_t first, count;
+} List;
+
+/* A solid of parts has two lists of its own on top of those of the tree. */
+#define MOST_LISTS (RT_CSG_MAX_LISTS + 2)
+
+typedef struct Machine {
+    RtSlate *slate;
+    const RtExactLine *line;
+    List lists[MOST_LISTS];
+    uint32_t depth;
+    uint32_t capacity;
+    RtPlace *places; /* [capacity] */
+} Machine;
+
+/* ---- lists ---- */
+
+/* Adds a place behind those of the list on top. */
+static RtStatus extend(Machine *m, RtPlace place, RtError *error) {
+    List *top = &m->lists[m->depth - 1];
+    uint32_t end = top->first + top->count;
+    RT_TRY(rt_reserve(&m->places, &m->capacity, (uint64_t)end + 1, sizeof(RtPlace), error));
+    m->places[end] = place;
+    top->count++;
+    return RT_OK;
+}
+
+static RtStatus push(Machine *m, bool before, const RtSurd *places, int count, RtError *error) {
+    const List *top = m->depth > 0 ? &m->lists[m->depth - 1] : NULL;
+    m->lists[m->depth++] = (List){before, top ? top->first + top->count : 0, 0};
+    for (int i = 0; i < count; i++) RT_TRY(extend(m, rt_place_of_surd(&places[i]), error));
+    return RT_OK;
+}
+
+static bool joined(RtCsgOp op, bool left, bool right) {
+    switch (op) {
+    case RT_CSG_UNION: return left || right;
+    case RT_CSG_INTERSECTION: return left && right;
+    case RT_CSG_DIFFERENCE: return left && !right;
+    }
+    return false;
+}
+
+/* Puts what `op` makes of the two lists on top in their place. */
+static RtStatus apply(Machine *m, RtCsgOp op, bool reversed, RtError *error) {
+    List *low = &m->lists[m->depth - 2], *high = &m->lists[m->depth - 1];
+    const List *left = reversed ? high : low, *right = reversed ? low : high;
+    uint32_t end = high->first + high->count, count = 0, i = 0, k = 0;
+    uint64_t room = (uint64_t)end + left->count + right->count;
+    RT_TRY(rt_reserve(&m->places, &m->capacity, room, sizeof(RtPlace), error));
+    bool in_left = left->before, in_right = right->before;
+    bool before = joined(op, in_left, in_right), inside = before;
+    while (i < left->count || k < right->count) {
+        const RtPlace *a = &m->places[left->first + i], *b = &m->places[right->first + k];
+        int order = i == left->count ? 1 : k == right->count ? -1 : rt_place_compare(m->slate, a, b);
+        if (order <= 0) in_left = !in_left, i++;
+        if (order >= 0) in_right = !in_right, k++;
+        if (joined(op, in_left, in_right) == inside) continue;
+        inside = !inside;
+        m->places[end + count++] = order <= 0 ? *a : *b;
+    }
+    for (uint32_t n = 0; n < count; n++) m->places[low->first + n] = m->places[end + n];
+    *low = (List){before, low->first, count};
+    m->depth--;
+    return RT_OK;
+}
+
+/* ---- parts ---- */
+
+/* Where a t^2 + 2 b t + c < 0. A place where it is 0 without a change of sign is none. */
+static RtStatus push_quadric(Machine *m, RtRational a, RtRational half_b, RtRational c, RtError *error) {
+    RtSurd roots[2];
+    int count = rt_exact_roots(m->slate, a, half_b, c, roots);
+    if (rt_exact_sign(a) != 0) return push(m, rt_exact_sign(a) < 0, roots, count == 2 ? 2 : 0, error);
+    return push(m, count == 1 ? rt_exact_sign(half_b) > 0 : rt_exact_sign(c) < 0, roots, count, error);
+}
+
+/* Where gap - rate t > 0. */
+static RtStatus push_half(Machine *m, RtRational gap, RtRational rate, RtError *error) {
+    if (rt_exact_sign(rate) == 0) return push(m, rt_exact_sign(gap) > 0, NULL, 0, error);
+    RtSurd at = rt_surd_of(m->slate, rt_exact_div(m->slate, gap, rate));
+    return push(m, rt_exact_sign(rate) > 0, &at, 1, error);
+}
+
+/* ---- solids ---- */
+
+/* The line in standard coordinates, all times `unit`, which spares divisions: rows of the inverse of the
+ * place are cross products of columns over the determinant, and that is the unit. It is above 0, for what is
+ * flat or turned inside out is no solid (rt_solid_finish). */
+typedef struct Standard {
+    RtExactVec org, dir;
+    RtRational unit;
+} Standard;
+
+static Standard standard(RtSlate *slate, const RtSolid *solid, const RtExactLine *line) {
+    RtExactVec columns[4];
+    for (int i = 0; i < 4; i++) columns[i] = rt_exact_vec(slate, rt_transform_column(&solid->place, i));
+    RtExactVec from = rt_exact_vec_sub(slate, line->org, columns[3]);
+    Standard out;
+    for (int i = 0; i < 3; i++) {
+        RtExactVec row = rt_exact_cross(slate, columns[(i + 1) % 3], columns[(i + 2) % 3]);
+        if (i == 0) out.unit = rt_exact_dot(slate, columns[0], row);
+        out.org.at[i] = rt_exact_dot(slate, row, from);
+        out.dir.at[i] = rt_exact_dot(slate, row, line->dir);
+    }
+    assert(rt_exact_sign(out.unit) > 0);
+    return out;
+}
+
+static RtStatus push_sphere(Machine *m, const RtSolid *solid, RtError *error) {
+    Standard s = standard(m->slate, solid, m->line);
+    RtRational radius = rt_exact_mul(m->slate, s.unit, s.unit);
+    RtRational c = rt_exact_sub(m->slate, rt_exact_dot(m->slate, s.org, s.org), radius);
+    return push_quadric(m, rt_exact_dot(m->slate, s.dir, s.dir), rt_exact_dot(m->slate, s.org, s.dir), c,
+                        error);
+}
+
+/* x^2 + y^2 - R^2 with R = 1 + (ratio - 1) z; where that is below 0 beyond the tip, R is negative, and z is
+ * out of 0..1. */
+static RtStatus push_cone(Machine *m, const RtSolid *solid, RtError *error) {
+    RtSlate *slate = m->slate;
+    Standard s = standard(slate, solid, m->line);
+    RtRational z = s.org.at[2], dz = s.dir.at[2];
+    RtRational slope = rt_exact_sub(slate, rt_exact_of(slate, solid->ratio), rt_exact_of(slate, 1));
+    RtExactVec org = s.org, dir = s.dir;
+    org.at[2] = rt_exact_add(slate, s.unit, rt_exact_mul(slate, slope, z));
+    dir.at[2] = rt_exact_mul(slate, slope, dz);
+    RtExactVec mirrored = dir, turned = org;
+    mirrored.at[2] = rt_exact_neg(slate, dir.at[2]);
+    turned.at[2] = rt_exact_neg(slate, org.at[2]);
+    RT_TRY(push_quadric(m, rt_exact_dot(slate, dir, mirrored), rt_exact_dot(slate, org, mirrored),
+                        rt_exact_dot(slate, org, turned), error));
+    RT_TRY(push_half(m, z, rt_exact_neg(slate, dz), error));
+    RT_TRY(apply(m, RT_CSG_INTERSECTION, false, error));
+    RT_TRY(push_half(m, rt_exact_sub(slate, s.unit, z), dz, error));
+    return apply(m, RT_CSG_INTERSECTION, false, error);
+}
+
+/* The square of the distance of org + t dir from the origin, in the first `axes` coordinates, is
+ * c[0] + c[1] t + c[2] t^2. */
+static void squared_distance(RtSlate *slate, const Standard *s, int axes, RtRational c[3]) {
+    for (int i = 0; i < 3; i++) c[i] = rt_exact_of(slate, 0);
+    for (int a = 0; a < axes; a++) {
+        RtRational cross = rt_exact_mul(slate, s->org.at[a], s->dir.at[a]);
+        c[0] = rt_exact_add(slate, c[0], rt_exact_mul(slate, s->org.at[a], s->org.at[a]));
+        c[1] = rt_exact_add(slate, c[1], rt_exact_add(slate, cross, cross));
+        c[2] = rt_exact_add(slate, c[2], rt_exact_mul(slate, s->dir.at[a], s->dir.at[a]));
+    }
+}
+
+/* Inside is where (x^2 + y^2 + z^2 + 1 - ratio^2)^2 < 4 (x^2 + y^2): see shape/solid_torus.c. */
+static RtPolynomial torus_polynomial(RtSlate *slate, const RtSolid *solid, const Standard *s) {
+    RtPolynomial p = {.degree = 4};
+    RtRational k[3], w[3], one = rt_exact_of(slate, 1), ratio = rt_exact_of(slate, solid->ratio);
+    squared_distance(slate, s, 3, k);
+    squared_distance(slate, s, 2, w);
+    RtRational square = rt_exact_mul(slate, s->unit, s->unit);
+    RtRational rest = rt_exact_sub(slate, one, rt_exact_mul(slate, ratio, ratio));
+    RtRational four = rt_exact_mul(slate, rt_exact_of(slate, -4), square);
+    k[0] = rt_exact_add(slate, k[0], rt_exact_mul(slate, rest, square));
+    for (int i = 0; i < 5; i++) {
+        p.at[i] = i < 3 ? rt_exact_mul(slate, four, w[i]) : rt_exact_of(slate, 0);
+        for (int n = i < 2 ? 0 : i - 2; n <= i && n < 3; n++)
+            p.at[i] = rt_exact_add(slate, p.at[i], rt_exact_mul(slate, k[n], k[i - n]));
+    }
+    return p;
+}
+
+/* A place where the polynomial is 0 without a change of sign is none. */
+static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
+    Standard s = standard(m->slate, solid, m->line);
+    RtPolynomial p = torus_polynomial(m->slate, solid, &s);
+    RtAlgebraic roots[RT_MAX_DEGREE];
+    int count = rt_polynomial_roots(m->slate, &p, roots);
+    RT_TRY(push(m, false, NULL, 0, error));
+    for (int i = 0; i < count; i++) {
+        int before = rt_polynomial_sign(m->slate, &p, roots[i].lo);
+        if (before == rt_polynomial_sign(m->slate, &p, roots[i].hi)) continue;
+        RT_TRY(extend(m, rt_place_of_root(&roots[i]), error));
+    }
+    return RT_OK;
+}
+
+static RtStatus push_polyhedron(Machine *m, const RtPlane *planes, uint32_t count, RtError *error) {
+    for (uint32_t i = 0; i < count; i++) {
+        RtExactVec normal = rt_exact_vec(m->slate, planes[i].normal);
+        RtRational offset = rt_exact_of(m->slate, planes[i].offset);
+        RtRational gap = rt_exact_sub(m->slate, offset, rt_exact_dot(m->slate, normal, m->line->org));
+        RT_TRY(push_half(m, gap, rt_exact_dot(m->slate, normal, m->line->dir), error));
+        if (i > 0) RT_TRY(apply(m, RT_CSG_INTERSECTION, false, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus push_mesh(Machine *m, const RtSolidSet *set, uint32_t index, RtError *error) {
+    RtRational *places;
+    uint32_t count;
+    RT_TRY(rt_exact_mesh_places(m->slate, set, index, m->line, &places, &count, error));
+    RtStatus status = push(m, false, NULL, 0, error);
+    for (uint32_t i = 0; i < count && status == RT_OK; i++)
+        status = extend(m, rt_place_of(m->slate, places[i]), error);
+    rt_free(places);
+    return status;
+}
+
+static RtStatus push_solid(Machine *m, const RtSolidSet *set, uint32_t index, RtError *error) {
+    const RtSolid *solid = &set->solids[index];
+    switch (solid->kind) {
+    case RT_SOLID_SPHERE: return push_sphere(m, solid, error);
+    case RT_SOLID_CONE: return push_cone(m, solid, error);
+    case RT_SOLID_POLYHEDRON: return push_polyhedron(m, set->planes + solid->first, solid->count, error);
+    case RT_SOLID_MESH: return push_mesh(m, set, index, error);
+    case RT_SOLID_TORUS: return push_torus(m, solid, error);
+    case RT_SOLID_KIND_COUNT: break;
+    }
+    return RT_OK;
+}
+
+/* ---- trees ---- */
+
+/* The whole program, no operand spared. */
+static RtStatus run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, RtError *error) {
+    const RtCsgInstruction *program = forest->instructions + tree->first;
+    for (uint32_t i = 0; i < tree->count; i++) {
+        if (program[i].code == RT_CSG_PUSH) RT_TRY(push_solid(m, &forest->set, program[i].operand, error));
+        if (program[i].code == RT_CSG_APPLY) {
+            RT_TRY(apply(m, (RtCsgOp)program[i].operand, program[i].reversed, error));
+        }
+    }
+    return RT_OK;
+}
+
+RtFinding rt_exact_csg_hit(RtSlate *slate, const RtCsgForest *forest, const RtCsg *tree,
+                           const RtExactLine *line, RtPlace *t) {
+    Machine machine = {.slate = slate, .line = line};
+    RtError error;
+    RtFinding finding = RT_UNDECIDED;
+    if (run(&machine, forest, tree, &error) == RT_OK) {
+        finding = RT_MISSED;
+        for (uint32_t i = 0; i < machine.lists[0].count && finding == RT_MISSED; i++) {
+            *t = machine.places[i];
+            if (rt_exact_counts(slate, line, t)) finding = RT_HIT;
+        }
+    }
+    rt_free(machine.places);
+    return finding;
+}

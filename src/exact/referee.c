@@ -1,0 +1,156 @@
+#include "exact/referee.h"
+
+const char *rt_side_name(RtSide side) {
+    static const char *const names[RT_SIDE_COUNT] = {
+#define RT_SIDE_NAME(CONSTANT, name, meaning) #name,
+        RT_SIDES(RT_SIDE_NAME)
+#undef RT_SIDE_NAME
+    };
+    return names[side];
+}
+
+long double rt_float_ulp(long double x) {
+    int exponent;
+    frexpl(x, &exponent);
+    return ldexpl(1, x == 0 || exponent < FLT_MIN_EXP ? FLT_MIN_EXP - FLT_MANT_DIG : exponent - FLT_MANT_DIG);
+}
+
+/* ---- the nearest ---- */
+
+typedef struct Search {
+    RtSlate slate;
+    const RtGeometry *geometry;
+    RtWideRay line;
+    RtExactLine exact;
+    RtPlace best;
+    RtRuling ruling;
+    double open; /* the soonest t at which an undecided object may be met */
+} Search;
+
+static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray) {
+    *s = (Search){.geometry = geometry,
+                  .line = rt_wide_ray(ray),
+                  .ruling = {.finding = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
+                  .open = HUGE_VAL};
+    s->exact = rt_exact_line(&s->slate, &s->line);
+}
+
+/* Numbers of what is not the nearest are forgotten at once. */
+static void consider(Search *s, uint32_t id, double soonest) {
+    size_t mark = rt_slate_mark(&s->slate);
+    RtPlace t;
+    RtFinding finding = rt_exact_hit(&s->slate, s->geometry, id, &s->exact, &t);
+    if (finding == RT_UNDECIDED) s->open = fmin(s->open, soonest);
+    int order = -1;
+    if (finding == RT_HIT && s->ruling.together > 0) order = rt_place_compare(&s->slate, &t, &s->best);
+    if (finding != RT_HIT || order >= 0) {
+        if (finding == RT_HIT && order == 0) s->ruling.together++;
+        rt_slate_wipe(&s->slate, mark);
+        return;
+    }
+    s->best = t;
+    s->ruling = (RtRuling){
+        .finding = RT_HIT, .object = id, .together = 1, .t = rt_place_value(&s->slate, &t, s->exact.zero)};
+}
+
+static void search(Search *s) {
+    for (uint32_t id = 0; id < s->geometry->object_count; id++) {
+        double soonest;
+        if (!rt_line_may_meet(&s->line, &s->geometry->boxes[id], &soonest)) continue;
+        if ((long double)soonest * (1 - RT_LINE_SLACK) > s->ruling.t) continue;
+        consider(s, id, soonest);
+    }
+    if (s->open < HUGE_VAL && (long double)s->open <= s->ruling.t) s->ruling.finding = RT_UNDECIDED;
+}
+
+RtRuling rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
+    Search s;
+    search_init(&s, geometry, ray);
+    search(&s);
+    rt_slate_clear(&s.slate);
+    return s.ruling;
+}
+
+RtFinding rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
+    Search s;
+    search_init(&s, geometry, ray);
+    for (uint32_t id = 0; id < geometry->object_count && s.ruling.finding != RT_HIT; id++) {
+        double soonest;
+        if (rt_line_may_meet(&s.line, &geometry->boxes[id], &soonest)) consider(&s, id, soonest);
+    }
+    rt_slate_clear(&s.slate);
+    return s.ruling.finding == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.ruling.finding;
+}
+
+/* ---- judging ---- */
+
+/* RT_HIT: the answer is right. */
+static RtFinding is_right(const RtGeometry *geometry, const RtRay *ray, const RtRuling *ruling, RtHit answer,
+                          double tolerance) {
+    if (answer.object == RT_NO_OBJECT) return ruling->finding == RT_MISSED ? RT_HIT : RT_MISSED;
+    if (ruling->finding == RT_MISSED || answer.object >= geometry->object_count) return RT_MISSED;
+    RtWideRay line = rt_wide_ray(ray);
+    long double t;
+    RtFinding own = rt_referee_hit(geometry, answer.object, &line, &t);
+    if (own != RT_HIT) return own;
+    long double most = fmaxl((long double)tolerance, rt_float_ulp(ruling->t));
+    bool right = t - ruling->t <= most && fabsl((long double)answer.t - t) <= most;
+    return right ? RT_HIT : RT_MISSED;
+}
+
+RtRuling rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit got,
+                          double tolerance) {
+    RtRuling ruling = rt_referee_nearest(geometry, ray);
+    ruling.side = RT_SIDE_UNDECIDED;
+    if (ruling.finding == RT_UNDECIDED) return ruling;
+    RtFinding one = is_right(geometry, ray, &ruling, expected, tolerance);
+    RtFinding other = is_right(geometry, ray, &ruling, got, tolerance);
+    if (one == RT_UNDECIDED || other == RT_UNDECIDED) return ruling;
+    ruling.side = one == RT_HIT ? (other == RT_HIT ? RT_SIDE_BOTH : RT_SIDE_EXPECTED)
+                                : (other == RT_HIT ? RT_SIDE_GOT : RT_SIDE_NEITHER);
+    return ruling;
+}
+
+/* ---- one or two objects ---- */
+
+RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
+    RtSlate slate = {0};
+    RtExactLine exact = rt_exact_line(&slate, line);
+    RtPlace at;
+    RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);
+    if (finding == RT_HIT) *t = rt_place_value(&slate, &at, exact.zero);
+    rt_slate_clear(&slate);
+    return finding;
+}
+
+RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray, int *order,
+                           long double *apart) {
+    RtSlate slate = {0};
+    RtWideRay line = rt_wide_ray(ray);
+    RtExactLine exact = rt_exact_line(&slate, &line);
+    RtPlace at[2];
+    RtFinding finding = rt_exact_hit(&slate, geometry, a, &exact, &at[0]);
+    if (finding == RT_HIT) finding = rt_exact_hit(&slate, geometry, b, &exact, &at[1]);
+    if (finding == RT_HIT) {
+        *order = rt_place_compare(&slate, &at[0], &at[1]);
+        long double first = rt_place_value(&slate, &at[0], exact.zero);
+        *apart = *order == 0 ? 0 : fabsl(first - rt_place_value(&slate, &at[1], exact.zero));
+    }
+    rt_slate_clear(&slate);
+    return finding;
+}
+
+RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                           long double *ulps) {
+    RtSlate slate = {0};
+    RtWideRay line = rt_wide_ray(ray);
+    RtExactLine exact = rt_exact_line(&slate, &line);
+    RtPlace at;
+    RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);
+    if (finding == RT_HIT) {
+        long double ulp = rt_float_ulp(rt_place_value(&slate, &at, exact.zero));
+        *ulps = -rt_place_value(&slate, &at, rt_exact_of(&slate, (double)t)) / ulp;
+    }
+    rt_slate_clear(&slate);
+    return finding;
+}

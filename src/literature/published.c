@@ -1,0 +1,271 @@
+#include "literature/published.h"
+
+#include <fnmatch.h>
+#include <math.h>
+#include <string.h>
+
+void rt_published_row_name(const RtPublishedRow *row, char *out) {
+    const char *name = row->of_rays || !*row->structure ? row->source : row->structure;
+    bool more = name == row->structure && *row->parameters;
+    snprintf(out, RT_MAX_ROW_NAME, "%s%s%s", name, more ? " " : "", more ? row->parameters : "");
+}
+
+void rt_figure_measured(const RtFigure *figure, char out[RT_MAX_FIGURE]) {
+    out[0] = '\0';
+    if (isnan(figure->measured)) return;
+    snprintf(out, RT_MAX_FIGURE, figure->measured == floor(figure->measured) ? "%.0f" : "%.6g",
+             figure->measured);
+}
+
+/* ---- looking up ---- */
+
+const RtFigure *rt_published_figure(const RtPublished *published, const RtPublishedRow *row,
+                                    RtColumn column) {
+    for (uint32_t i = row->first; i < row->first + row->count; i++) {
+        if (published->figures[i].column == column) return &published->figures[i];
+    }
+    return NULL;
+}
+
+RtColumnSummary rt_column_summary(const RtPublished *published, RtColumn column) {
+    RtColumnSummary summary = {0};
+    for (uint32_t i = 0; i < published->figure_count; i++) {
+        if (published->figures[i].column != column) continue;
+        summary.figures++;
+        summary.judged[published->figures[i].judgement]++;
+    }
+    return summary;
+}
+
+bool rt_published_columns(const RtPublished *published, uint32_t trial, bool of_rays,
+                          bool shown[RT_COLUMN_COUNT]) {
+    bool any = false;
+    for (int c = 0; c < RT_COLUMN_COUNT; c++) shown[c] = false;
+    for (uint32_t i = 0; i < published->figure_count; i++) {
+        const RtFigure *figure = &published->figures[i];
+        const RtPublishedRow *row = &published->rows[figure->row];
+        if (row->trial == trial && row->of_rays == of_rays) any = shown[figure->column] = true;
+    }
+    return any;
+}
+
+/* ---- what was measured ---- */
+
+/* Of all ray kinds together; no rays where nothing was counted. */
+static RtTally tally_of(const RtResults *results, uint32_t trial, uint32_t contender) {
+    RtTally sum = {0};
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtCell *cell = rt_cell_at(results, trial, contender, (RtRayKind)k);
+        if (cell->counted) rt_tally_add(&sum, &cell->tally);
+    }
+    return sum;
+}
+
+/* Rays of the baseline, which is measured on all of them. */
+static double count_rays(const RtResults *results, uint32_t trial, RtColumn column) {
+    RtTally tally[RT_RAY_KIND_COUNT];
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        tally[k] = rt_cell_at(results, trial, results->experiment->baseline, (RtRayKind)k)->tally;
+    }
+    RtTally secondary = tally[RT_RAY_REFLECTION];
+    rt_tally_add(&secondary, &tally[RT_RAY_TRANSMISSION]);
+    switch (column) {
+    case RT_COLUMN_primary: return (double)tally[RT_RAY_PRIMARY].rays;
+    case RT_COLUMN_primary_hit: return (double)tally[RT_RAY_PRIMARY].hits;
+    case RT_COLUMN_shadow: return (double)tally[RT_RAY_SHADOW].rays;
+    case RT_COLUMN_shadow_hit: return (double)tally[RT_RAY_SHADOW].hits;
+    case RT_COLUMN_secondary: return (double)secondary.rays;
+    default: return (double)secondary.hits;
+    }
+}
+
+static double measure_row(const RtResults *results, const RtPublishedRow *row, RtColumn column) {
+    const RtDescription *shape = &rt_build_at(results, row->trial, row->contender)->shape;
+    RtTally tally = tally_of(results, row->trial, row->contender);
+    double rays = (double)tally.rays; /* 0: what is a ray then is NAN */
+    switch (column) {
+    case RT_COLUMN_interior: return (double)shape->interior;
+    case RT_COLUMN_leaves: return (double)shape->leaves;
+    case RT_COLUMN_empty_leaves: return (double)shape->empty_leaves;
+    case RT_COLUMN_references: return (double)shape->references;
+    case RT_COLUMN_object_tests:
+        return (double)tally.object_tests / (row->per_hit ? (double)tally.hits : rays);
+    case RT_COLUMN_steps: return (double)tally.steps / rays;
+    case RT_COLUMN_leaf_steps: return (double)tally.leaf_steps / rays;
+    default: return (double)tally.empty_steps / rays;
+    }
+}
+
+/* NAN where it was not measured. */
+static double measure(const RtResults *results, const RtPublishedRow *row, RtColumn column) {
+    if (!results->trials[row->trial].known) return (double)NAN;
+    if (row->of_rays) return count_rays(results, row->trial, column);
+    if (row->contender == RT_NOT_MEASURED) return (double)NAN;
+    if (!rt_build_at(results, row->trial, row->contender)->known) return (double)NAN;
+    return measure_row(results, row, column);
+}
+
+/* ---- comparing ---- */
+
+static RtJudgement judge(const RtExperiment *experiment, const RtFigure *figure) {
+    double tolerance = experiment->published.tolerance[figure->column];
+    bool of_structure = figure->column < RT_COLUMN_object_tests;
+    if (isnan(figure->measured) || tolerance <= 0 || (experiment->quick && !of_structure)) return RT_UNJUDGED;
+    double most = 0.01 * tolerance * figure->published + figure->half_unit;
+    return fabs(figure->measured - figure->published) <= most ? RT_WITHIN : RT_OUTSIDE;
+}
+
+static bool fits(const char *pattern, const char *text) {
+    return fnmatch(pattern, text, 0) == 0;
+}
+
+static uint32_t find_reason(const RtPublished *published, const RtFigure *figure) {
+    const RtPublishedRow *row = &published->rows[figure->row];
+    const char *scene = published->experiment->trials[row->trial].label;
+    for (uint32_t i = 0; i < published->reason_count; i++) {
+        const RtReason *reason = &published->reasons[i];
+        if (fits(reason->scene, scene) && fits(reason->source, row->source) &&
+            fits(reason->accel, row->accel) && fits(reason->column, rt_column_name(figure->column))) {
+            return i;
+        }
+    }
+    return RT_NO_REASON;
+}
+
+/* ---- what is least ---- */
+
+/* A row's figure per ray of ours, NAN where it has none. */
+static double per_ray(const RtPublished *published, const RtPublishedRow *row, RtColumn column,
+                      const RtTally *rays) {
+    const RtFigure *figure = rt_published_figure(published, row, column);
+    bool per_hit = row->per_hit && column == RT_COLUMN_object_tests;
+    if (!figure) return (double)NAN;
+    return figure->published * (per_hit ? (double)rays->hits / (double)rays->rays : 1);
+}
+
+static bool is_less(double value, double than) {
+    return isnan(than) ? !isnan(value) : value < than;
+}
+
+static RtLeast find_least(const RtPublished *published, const RtResults *results, uint32_t trial,
+                          RtMeasure measure) {
+    const RtExperiment *experiment = published->experiment;
+    RtLeast least = {RT_NOT_MEASURED, RT_NOT_MEASURED, (double)NAN, (double)NAN, (double)NAN};
+    RtTally rays = tally_of(results, trial, experiment->baseline);
+    bool steps = measure == RT_LEAST_TESTS_AND_STEPS;
+    for (uint32_t r = 0; r < published->row_count; r++) {
+        const RtPublishedRow *row = &published->rows[r];
+        if (row->trial != trial || row->of_rays) continue;
+        double value = per_ray(published, row, RT_COLUMN_object_tests, &rays);
+        if (steps) value += per_ray(published, row, RT_COLUMN_steps, &rays);
+        if (!is_less(value, least.published)) continue;
+        least.published = value;
+        least.row = r;
+    }
+    for (uint32_t c = 0; c < experiment->contender_count; c++) {
+        if (!experiment->contenders[c].ours || !rt_build_at(results, trial, c)->known) continue;
+        RtTotal total = rt_results_total(results, trial, c);
+        double value = total.object_tests + (steps ? total.steps : 0);
+        if (!is_less(value, least.ours)) continue;
+        least.ours = value;
+        least.extent_tests = total.extent_tests;
+        least.contender = c;
+    }
+    return least;
+}
+
+const char *rt_measure_name(RtMeasure measure) {
+    return measure == RT_LEAST_TESTS ? "object_tests" : "object_tests+steps";
+}
+
+bool rt_least_is_ahead(const RtLeast *least) {
+    return least->ours < least->published;
+}
+
+void rt_published_compare(RtPublished *published, const RtResults *results) {
+    for (uint32_t i = 0; i < published->reason_count; i++) published->reasons[i].used = 0;
+    for (uint32_t i = 0; i < published->figure_count; i++) {
+        RtFigure *figure = &published->figures[i];
+        const RtPublishedRow *row = &published->rows[figure->row];
+        figure->measured = measure(results, row, figure->column);
+        double difference = figure->measured - figure->published;
+        figure->deviation = difference == 0 ? 0 : 100 * difference / figure->published;
+        figure->judgement = judge(published->experiment, figure);
+        figure->reason = figure->judgement == RT_OUTSIDE ? find_reason(published, figure) : RT_NO_REASON;
+        if (figure->reason != RT_NO_REASON) published->reasons[figure->reason].used++;
+    }
+    for (uint32_t t = 0; t < published->experiment->trial_count; t++) {
+        for (int m = 0; m < RT_MEASURE_COUNT; m++)
+            published->least[t][m] = find_least(published, results, t, (RtMeasure)m);
+    }
+}
+
+/* ---- the check ---- */
+
+static RtStatus fail_outside(const RtPublished *published, const RtFigure *figure, uint32_t count,
+                             RtError *error) {
+    const RtPublishedRow *row = &published->rows[figure->row];
+    char name[RT_MAX_ROW_NAME], measured[RT_MAX_FIGURE];
+    rt_published_row_name(row, name);
+    rt_figure_measured(figure, measured);
+    return rt_fail(
+        error, RT_MISMATCH,
+        "%u published figures are missed by more than their tolerance, and nobody says why; the first: %s of "
+        "%s on %s is %s, published is %s",
+        count, rt_column_name(figure->column), name, published->experiment->trials[row->trial].label,
+        measured, figure->text);
+}
+
+static RtStatus check_figures(const RtPublished *published, RtError *error) {
+    const RtFigure *first = NULL;
+    uint32_t count = 0;
+    for (uint32_t i = published->figure_count; i-- > 0;) {
+        const RtFigure *figure = &published->figures[i];
+        if (figure->judgement != RT_OUTSIDE || figure->reason != RT_NO_REASON) continue;
+        first = figure;
+        count++;
+    }
+    return first ? fail_outside(published, first, count, error) : RT_OK;
+}
+
+static RtStatus check_reasons(const RtPublished *published, RtError *error) {
+    for (uint32_t i = 0; i < published->reason_count; i++) {
+        if (published->reasons[i].used) continue;
+        return rt_fail_at(
+            error, published->reasons_path, published->reasons[i].line, 0,
+            "no figure needs this reason: all that it is about are within their tolerance, not measured, "
+            "or have an earlier one");
+    }
+    return RT_OK;
+}
+
+static RtStatus check_least(const RtPublished *published, RtError *error) {
+    const RtExperiment *experiment = published->experiment;
+    bool any = false;
+    for (uint32_t c = 0; c < experiment->contender_count; c++) any |= experiment->contenders[c].ours;
+    for (uint32_t t = 0; any && t < experiment->trial_count; t++) {
+        for (int m = 0; m < RT_MEASURE_COUNT; m++) {
+            const RtLeast *least = &published->least[t][m];
+            if (least->row == RT_NOT_MEASURED || rt_least_is_ahead(least)) continue;
+            return rt_fail(error, RT_MISMATCH,
+                           "on %s none of ours needs less than the best published row: %s are %.4g a ray, "
+                           "published %.4g",
+                           experiment->trials[t].label, rt_measure_name((RtMeasure)m), least->ours,
+                           least->published);
+        }
+    }
+    return RT_OK;
+}
+
+/* A status of the check, though a file is its place. */
+static RtStatus as_mismatch(RtStatus status, RtError *error) {
+    if (status != RT_OK && error) error->status = RT_MISMATCH;
+    return status == RT_OK ? RT_OK : RT_MISMATCH;
+}
+
+RtStatus rt_published_check(const RtPublished *published, RtError *error) {
+    RT_TRY(check_figures(published, error));
+    if (published->experiment->quick) return RT_OK;
+    RT_TRY(as_mismatch(check_reasons(published, error), error));
+    return check_least(published, error);
+}

@@ -1,0 +1,159 @@
+#include "report/plot.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 3 };
+
+const char *rt_contender_color(uint32_t contender) {
+    /* The eight of Okabe & Ito (2008), told apart by colour-blind readers too, led by grey; then four
+     * more. */
+    static const char *const colors[] = {"#8c8c8c", "#e69f00", "#009e73", "#0072b2", "#56b4e9", "#d55e00",
+                                         "#cc79a7", "#5b4a9f", "#a6761d", "#66a61e", "#b2182b", "#17becf"};
+    return colors[contender % (sizeof colors / sizeof colors[0])];
+}
+
+/* ---- scripts ---- */
+
+static RtStatus copy_script(const char *folder, const char *name, const char *directory, RtError *error) {
+    char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
+    RT_TRY(rt_path_join(folder, name, from, error));
+    RT_TRY(rt_path_join(directory, "plots", plots, error));
+    RT_TRY(rt_path_join(plots, name, to, error));
+    return rt_file_copy(from, to, error);
+}
+
+RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error) {
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        RT_TRY(copy_script(experiment->folder, experiment->plots[i], directory, error));
+    }
+    return RT_OK;
+}
+
+/* Whether the CSV files have rows of the contender, and it is the first of its label. */
+static bool has_rows(const RtResults *results, uint32_t contender) {
+    const RtContender *contenders = results->experiment->contenders;
+    for (uint32_t c = 0; c < contender; c++) {
+        if (strcmp(contenders[c].label, contenders[contender].label) == 0) return false;
+    }
+    for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
+        for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+            const RtCell *cell = rt_cell_at(results, t, contender, (RtRayKind)k);
+            if (cell->counted || cell->timed) return true;
+        }
+    }
+    return false;
+}
+
+static bool has_rays(const RtResults *results, RtRayKind kind) {
+    for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
+        if (results->trials[t].rays[kind]) return true;
+    }
+    return false;
+}
+
+/* Labels hold nothing that gnuplot's double quotes would interpret (rt_experiment_check). */
+static RtStatus write_names(const RtResults *results, const char *directory, RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    char path[RT_MAX_PATH];
+    RtOutput output;
+    RT_TRY(rt_path_join(directory, "plots/names.gp", path, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    FILE *out = output.file;
+    fprintf(out,
+            "# What counts.csv and times.csv have rows of, in the order of the experiment.\n"
+            "experiment = \"%s\"\nscenes = \"",
+            experiment->name);
+    for (uint32_t t = 0; t < experiment->trial_count; t++) {
+        if (results->trials[t].known) fprintf(out, "%s ", experiment->trials[t].label);
+    }
+    fprintf(out, "\"\naccels = \"");
+    for (uint32_t c = 0; c < experiment->contender_count; c++) {
+        if (has_rows(results, c)) fprintf(out, "%s ", experiment->contenders[c].label);
+    }
+    fprintf(out, "\"\ncolors = \"");
+    for (uint32_t c = 0; c < experiment->contender_count; c++) {
+        if (has_rows(results, c)) fprintf(out, "%s ", rt_contender_color(c));
+    }
+    fprintf(out, "\"\nkinds = \"");
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        if (has_rays(results, experiment->kinds[k]))
+            fprintf(out, "%s ", rt_ray_kind_name(experiment->kinds[k]));
+    }
+    fprintf(out, "\"\n");
+    return rt_output_commit(&output, error);
+}
+
+/* ---- gnuplot ---- */
+
+/* Runs gnuplot in `directory` with the scripts as arguments, its messages going to plots/gnuplot.log. */
+static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *error) {
+    pid_t child;
+    int result = 0;
+    posix_spawn_file_actions_t actions;
+    if (posix_spawn_file_actions_init(&actions) != 0) return rt_fail_memory(error, "starting gnuplot", 0);
+    posix_spawn_file_actions_addchdir_np(&actions, directory);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "plots/gnuplot.log",
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    int failed = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed == ENOENT) {
+        return rt_fail(
+            error, RT_NOT_AVAILABLE,
+            "gnuplot is not installed, so no plots were drawn; `raytally plot %s` draws them later",
+            directory);
+    }
+    if (failed) return rt_fail(error, RT_IO, "starting gnuplot failed: %s", strerror(failed));
+    while (waitpid(child, &result, 0) < 0 && errno == EINTR) continue;
+    if (WIFEXITED(result) && WEXITSTATUS(result) == 0) return RT_OK;
+    return rt_fail(error, RT_IO, "gnuplot failed: %s/plots/gnuplot.log tells why", directory);
+}
+
+/* What becomes of the files that the scripts wrote: they get their names, or go where drawing failed. */
+typedef struct Settling {
+    bool keep;
+    RtStatus status;
+    RtError *error;
+} Settling;
+
+static void settle_file(void *context, const char *path) {
+    Settling *settling = context;
+    char name[RT_MAX_PATH];
+    snprintf(name, sizeof name, "%.*s", (int)(strlen(path) - strlen(".tmp")), path);
+    if (!settling->keep) {
+        remove(path);
+    } else if (rename(path, name) != 0) {
+        settling->status = rt_fail(settling->error, RT_IO, "%s: renaming failed: %s", path, strerror(errno));
+    }
+}
+
+static RtStatus settle(const char *directory, bool keep, RtError *error) {
+    char plots[RT_MAX_PATH];
+    Settling settling = {keep, RT_OK, error};
+    RT_TRY(rt_path_join(directory, "plots", plots, error));
+    rt_directory_each(plots, ".svg.tmp", settle_file, &settling);
+    return settling.status;
+}
+
+RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
+    char program[] = "gnuplot", *arguments[MOST_ARGUMENTS] = {program};
+    if (experiment->plot_count == 0) return RT_OK;
+    RT_TRY(write_names(results, directory, error));
+    for (uint32_t i = 0; i <= experiment->plot_count; i++) {
+        snprintf(paths[i], sizeof paths[i], "plots/%s", i ? experiment->plots[i - 1] : "names.gp");
+        arguments[i + 1] = paths[i];
+    }
+    RtStatus status = run_gnuplot(arguments, directory, error);
+    if (status != RT_OK) {
+        settle(directory, false, NULL);
+        return status;
+    }
+    return settle(directory, true, error);
+}

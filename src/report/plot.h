@@ -1,0 +1,22 @@
+/* Plots of a result directory, drawn by gnuplot from its CSV files.
+ *
+ * The experiment's scripts are copied into DIR/plots and run there in one process, in the order of the YAML,
+ * after DIR/plots/names.gp, which defines `experiment`, and the lists of words `scenes`, `accels`, `colors`
+ * (one for each accelerator, the same in every figure) and `kinds`: what the CSV files have rows of. Scripts
+ * run in DIR and write plots/NAME.svg.tmp; what they wrote is renamed when all is done. So a person redraws
+ * with raytally plot DIR after changing the copies. */
+#ifndef RT_REPORT_PLOT_H
+#define RT_REPORT_PLOT_H
+
+#include "bench/results.h"
+
+/* Copies the scripts from the experiment's folder to `directory`/plots, which exists. */
+RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error);
+
+/* Draws. RT_NOT_AVAILABLE where gnuplot is not installed. */
+RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error);
+
+/* The colour of a contender, "#rrggbb". */
+const char *rt_contender_color(uint32_t contender);
+
+#endif

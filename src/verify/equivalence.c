@@ -1,0 +1,269 @@
+#include "verify/equivalence.h"
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Rays of one item of work, and the longest stream. */
+#define CHUNK 1024
+
+static const size_t stream_lengths[] = {1, 7, 64, CHUNK};
+enum { STREAM_LENGTHS = sizeof stream_lengths / sizeof stream_lengths[0], KERNELS = 2 };
+
+/* What one thread writes to. */
+typedef struct Desk {
+    RtQuery query;
+    RtHit hits[KERNELS][CHUNK]; /* timed, counted */
+    bool blocked[KERNELS][CHUNK];
+    RtTally tallies[RT_RAY_KIND_COUNT];
+} Desk;
+
+typedef struct Job {
+    const RtReference *reference;
+    const RtAccel *accel;
+    int threads;
+    size_t chunks;
+    Desk *desks;          /* [threads] */
+    RtHit *hits;          /* what a reference is filled with, or NULL */
+    RtEquivalence *parts; /* [chunks] what a check is summed from, or NULL */
+} Job;
+
+static size_t stream_of(size_t chunk, bool counted) {
+    return stream_lengths[(chunk + (counted ? 1 : 0)) % STREAM_LENGTHS];
+}
+
+/* ---- work in chunks, a desk a thread ---- */
+
+static RtStatus run(Job *job, RtWork work, RtError *error) {
+    job->threads = rt_thread_count(job->threads);
+    job->chunks = (job->reference->count + CHUNK - 1) / CHUNK;
+    job->desks = rt_alloc((size_t)job->threads, sizeof(Desk));
+    if (!job->desks) return rt_fail_memory(error, "answers", (size_t)job->threads * sizeof(Desk));
+    RtStatus status = RT_OK;
+    uint64_t shortages = rt_csg_shortages();
+    for (int i = 0; i < job->threads && status == RT_OK; i++) {
+        status = rt_query_init(&job->desks[i].query, job->accel, error);
+    }
+    if (status == RT_OK) status = rt_parallel_for(job->chunks, job->threads, work, job, error);
+    if (status == RT_OK) status = rt_csg_check(shortages, error);
+    for (int i = 0; i < job->threads; i++) rt_query_clear(&job->desks[i].query);
+    rt_free(job->desks);
+    return status;
+}
+
+static size_t chunk_count(const Job *job, size_t chunk) {
+    size_t left = job->reference->count - chunk * CHUNK;
+    return left < CHUNK ? left : CHUNK;
+}
+
+/* ---- the reference ---- */
+
+static RtStatus answer_chunk(void *context, size_t chunk, int thread, RtError *error) {
+    (void)error;
+    Job *job = context;
+    rt_nearest(&job->desks[thread].query, job->reference->rays + chunk * CHUNK, chunk_count(job, chunk),
+               job->hits + chunk * CHUNK, NULL);
+    return RT_OK;
+}
+
+RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const RtRay *rays, size_t count,
+                           int threads, RtError *error) {
+    *reference = (RtReference){
+        .scene = oracle->scene, .rays = rays, .count = count, .hits = rt_alloc(count, sizeof(RtHit))};
+    if (!reference->hits) return rt_fail_memory(error, "reference answers", count * sizeof(RtHit));
+    Job job = {.reference = reference, .accel = oracle, .threads = threads, .hits = reference->hits};
+    RtStatus status = run(&job, answer_chunk, error);
+    if (status != RT_OK) rt_reference_clear(reference);
+    return status;
+}
+
+void rt_reference_clear(RtReference *reference) {
+    rt_free(reference->hits);
+    *reference = (RtReference){0};
+}
+
+/* ---- checking ---- */
+
+/* Answers a chunk by both kernels. */
+static void ask(Desk *desk, const RtRay *rays, size_t count, size_t chunk) {
+    for (int counted = 0; counted < KERNELS; counted++) {
+        size_t stream = stream_of(chunk, counted);
+        RtTally *tallies = counted ? desk->tallies : NULL;
+        for (size_t first = 0; first < count; first += stream) {
+            size_t n = count - first < stream ? count - first : stream;
+            rt_nearest(&desk->query, rays + first, n, desk->hits[counted] + first, tallies);
+            rt_occluded(&desk->query, rays + first, n, desk->blocked[counted] + first, tallies);
+        }
+    }
+}
+
+RtVerdict rt_answer_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, RtHit got) {
+    if (memcmp(&expected, &got, sizeof got) == 0) return RT_EQUAL;
+    if (accel->exact) return RT_WRONG;
+    return rt_verdict_nearest(&accel->scene->geometry, ray, expected, got);
+}
+
+RtVerdict rt_blocked_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, bool got) {
+    bool blocked = expected.object != RT_NO_OBJECT;
+    if (blocked == got) return RT_EQUAL;
+    if (accel->exact) return RT_WRONG;
+    return rt_verdict_occluded(&accel->scene->geometry, ray, blocked, got);
+}
+
+void rt_witness_context(const RtReference *reference, const RtWitness *witness, size_t *first,
+                        size_t *count) {
+    size_t place = witness->index % CHUNK;
+    *first = witness->index - place;
+    size_t end = (place / witness->stream + 1) * witness->stream;
+    size_t left = reference->count - *first;
+    if (end > CHUNK) end = CHUNK;
+    *count = end < left ? end : left;
+}
+
+static void keep_witness(RtEquivalence *part, RtWitness witness) {
+    if (part->any_wrong) return;
+    part->any_wrong = true;
+    part->first_wrong = witness;
+}
+
+/* The verdict of ray `i` of a chunk goes to the chunk's part. */
+static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
+    RtEquivalence *part = &job->parts[chunk];
+    size_t index = chunk * CHUNK + i;
+    const RtRay *ray = &job->reference->rays[index];
+    RtHit expected = job->reference->hits[index];
+    RtVerdict worst = RT_EQUAL;
+    bool occluded_wrong = false;
+    const RtHit *doubtful = NULL;
+    for (int counted = 0; counted < KERNELS; counted++) {
+        RtHit got = desk->hits[counted][i];
+        bool blocked = desk->blocked[counted][i];
+        RtWitness witness = {.index = index,
+                             .counted = counted,
+                             .stream = stream_of(chunk, counted),
+                             .ray = *ray,
+                             .expected = expected,
+                             .got = got,
+                             .blocked = blocked};
+        RtVerdict verdict = rt_answer_verdict(job->accel, ray, expected, got);
+        if (verdict == RT_WRONG) keep_witness(part, witness);
+        if (verdict >= RT_MARGINAL) doubtful = &desk->hits[counted][i];
+        if (verdict > worst) worst = verdict;
+        verdict = rt_blocked_verdict(job->accel, ray, expected, blocked);
+        if (verdict == RT_WRONG) {
+            occluded_wrong = witness.occluded = true;
+            keep_witness(part, witness);
+        } else if (verdict > worst) {
+            worst = verdict;
+        }
+    }
+    part->rays++;
+    part->verdicts[worst]++;
+    if (doubtful && !job->accel->exact) {
+        part->sides[rt_verdict_side(&job->reference->scene->geometry, ray, expected, *doubtful)]++;
+    }
+    part->occluded_wrong += occluded_wrong;
+}
+
+static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *error) {
+    (void)error;
+    Job *job = context;
+    Desk *desk = &job->desks[thread];
+    size_t count = chunk_count(job, chunk);
+    ask(desk, job->reference->rays + chunk * CHUNK, count, chunk);
+    for (size_t i = 0; i < count; i++) judge(job, desk, chunk, i);
+    return RT_OK;
+}
+
+RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
+                              RtError *error) {
+    *out = (RtEquivalence){0};
+    RT_TRY(rt_accel_learn(accel, reference->rays, reference->hits, reference->count, error));
+    Job job = {.reference = reference, .accel = accel, .threads = threads};
+    size_t chunks = (reference->count + CHUNK - 1) / CHUNK;
+    job.parts = rt_alloc(chunks, sizeof(RtEquivalence));
+    if (!job.parts) return rt_fail_memory(error, "verdicts", chunks * sizeof(RtEquivalence));
+    RtStatus status = run(&job, check_chunk, error);
+    for (size_t i = 0; i < chunks && status == RT_OK; i++) {
+        out->rays += job.parts[i].rays;
+        out->occluded_wrong += job.parts[i].occluded_wrong;
+        for (int v = 0; v < RT_VERDICT_COUNT; v++) out->verdicts[v] += job.parts[i].verdicts[v];
+        for (int s = 0; s < RT_SIDE_COUNT; s++) out->sides[s] += job.parts[i].sides[s];
+        if (job.parts[i].any_wrong) keep_witness(out, job.parts[i].first_wrong);
+    }
+    rt_free(job.parts);
+    return status;
+}
+
+/* ---- results as text ---- */
+
+/* Nine significant digits read back to the same float32. */
+static json_t *float_json(float x) {
+    char text[32];
+    snprintf(text, sizeof text, "%.9g", (double)x);
+    return json_string(text);
+}
+
+static json_t *vector_json(RtVec3 v) {
+    return json_pack("[o, o, o]", float_json(v.x), float_json(v.y), float_json(v.z));
+}
+
+static json_t *hit_json(RtHit hit) {
+    json_t *object = hit.object == RT_NO_OBJECT ? json_null() : json_integer(hit.object);
+    return json_pack("{s:o, s:o}", "t", float_json(hit.t), "object", object);
+}
+
+static json_t *witness_json(const RtWitness *w) {
+    json_t *expected = w->occluded ? json_boolean(w->expected.object != RT_NO_OBJECT) : hit_json(w->expected);
+    json_t *got = w->occluded ? json_boolean(w->blocked) : hit_json(w->got);
+    char says[512];
+    rt_witness_format(w, says, sizeof says);
+    return json_pack("{s:I, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "index", (json_int_t)w->index,
+                     "says", says, "query", w->occluded ? "occluded" : "nearest", "kernel",
+                     w->counted ? "counted" : "timed", "stream", (json_int_t)w->stream, "org",
+                     vector_json(w->ray.org), "dir", vector_json(w->ray.dir), "tmin", float_json(w->ray.tmin),
+                     "tmax", float_json(w->ray.tmax), "expected", expected, "got", got);
+}
+
+json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, const char *accel,
+                            const char *against) {
+    json_t *row = json_pack("{s:s, s:s, s:s, s:I}", "scene", scene, "accel", accel, "against", against,
+                            "rays", (json_int_t)result->rays);
+    for (int v = 0; v < RT_VERDICT_COUNT; v++) {
+        json_object_set_new(row, rt_verdict_name((RtVerdict)v),
+                            json_integer((json_int_t)result->verdicts[v]));
+    }
+    json_t *sides = json_object();
+    for (int s = 0; s < RT_SIDE_COUNT; s++) {
+        json_object_set_new(sides, rt_side_name((RtSide)s), json_integer((json_int_t)result->sides[s]));
+    }
+    json_object_set_new(row, "exactly_right", sides);
+    json_object_set_new(row, "occluded_wrong", json_integer((json_int_t)result->occluded_wrong));
+    json_object_set_new(row, "first_wrong",
+                        result->any_wrong ? witness_json(&result->first_wrong) : json_null());
+    return row;
+}
+
+static void format_hit(RtHit hit, char *out, size_t room) {
+    if (hit.object == RT_NO_OBJECT) {
+        snprintf(out, room, "no hit");
+    } else {
+        snprintf(out, room, "object %u at t = %.9g", hit.object, (double)hit.t);
+    }
+}
+
+void rt_witness_format(const RtWitness *w, char *out, size_t room) {
+    char expected[64], got[64];
+    format_hit(w->expected, expected, sizeof expected);
+    format_hit(w->got, got, sizeof got);
+    if (w->occluded) snprintf(got, sizeof got, "%s", w->blocked ? "blocked" : "not blocked");
+    snprintf(out, room,
+             "ray %zu, %s, %s kernel, streams of %zu: org (%.9g, %.9g, %.9g) dir (%.9g, %.9g, %.9g) "
+             "t in [%.9g, %.9g]: expected %s, got %s",
+             w->index, w->occluded ? "occluded" : "nearest", w->counted ? "counted" : "timed", w->stream,
+             (double)w->ray.org.x, (double)w->ray.org.y, (double)w->ray.org.z, (double)w->ray.dir.x,
+             (double)w->ray.dir.y, (double)w->ray.dir.z, (double)w->ray.tmin, (double)w->ray.tmax, expected,
+             got);
+}

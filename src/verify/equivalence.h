@@ -1,0 +1,72 @@
+/* Equivalence: does an accelerator answer every ray like brute?
+ *
+ * The reference answers are computed once for a scene and its rays, and then compared with any number of
+ * accelerators. Each ray is asked four times, `nearest` and `occluded` by the timed and by the counted
+ * kernel, in streams of 1, 7, 64 or a whole chunk of rays in turn. An exact accelerator must give the bits of
+ * t and the id of the reference in all of them; one that is not exact gets a verdict (verify/verdict.h),
+ * the most severe of the four. Results are the same on any number of threads. */
+#ifndef RT_VERIFY_EQUIVALENCE_H
+#define RT_VERIFY_EQUIVALENCE_H
+
+#include "accel/accel.h"
+#include "verify/verdict.h"
+
+#include <jansson.h>
+
+typedef struct RtReference {
+    const RtScene *scene; /* borrowed */
+    const RtRay *rays;    /* [count] borrowed; they stay where they are */
+    size_t count;
+    RtHit *hits; /* [count] owned */
+} RtReference;
+
+/* Answers rays[0..count), all valid, by `oracle`: brute as a rule, or another that has been proved exact
+ * where the scene is too large for it. */
+RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const RtRay *rays, size_t count,
+                           int threads, RtError *error);
+void rt_reference_clear(RtReference *reference);
+
+/* One wrong answer. */
+typedef struct RtWitness {
+    size_t index; /* of the ray in the reference */
+    bool occluded, counted;
+    size_t stream; /* length of the streams in which it was asked */
+    RtRay ray;
+    RtHit expected;
+    RtHit got;    /* of `nearest` */
+    bool blocked; /* of `occluded` */
+} RtWitness;
+
+typedef struct RtEquivalence {
+    uint64_t rays;
+    uint64_t verdicts[RT_VERDICT_COUNT]; /* they sum to rays */
+    /* Rays with a marginal or wrong answer to `nearest`, by who is exactly right. */
+    uint64_t sides[RT_SIDE_COUNT];
+    uint64_t occluded_wrong; /* rays, whatever their verdict */
+    bool any_wrong;
+    RtWitness first_wrong; /* if any_wrong: of the ray with the lowest index */
+} RtEquivalence;
+
+/* Compares `accel`, built over the reference's scene. Wrong answers are a result, not an error. An
+ * accelerator that learns is taught the reference's hits first. */
+RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
+                              RtError *error);
+
+/* The verdict on an answer of `accel` to `nearest`, or to `occluded`, where brute's nearest hit is
+ * `expected`: RT_EQUAL or RT_WRONG if it is exact. */
+RtVerdict rt_answer_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, RtHit got);
+RtVerdict rt_blocked_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, bool got);
+
+/* The rays that were asked together with a witness's, from those that came before it to the end of its
+ * stream: `count` of the reference's, from `first` on. */
+void rt_witness_context(const RtReference *reference, const RtWitness *witness, size_t *first, size_t *count);
+
+/* The row of `verify --json`; a new reference, NULL if memory is short. Floats are strings that read back to
+ * the same bits ("inf" included). */
+json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, const char *accel,
+                            const char *against);
+
+/* One line that says what was asked, expected and got, to out[0..room). */
+void rt_witness_format(const RtWitness *witness, char *out, size_t room);
+
+#endif

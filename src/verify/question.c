@@ -1,0 +1,88 @@
+#include "verify/question.h"
+
+#include "base/memory.h"
+
+static RtStatus build_spec(const void *context, const RtScene *scene, RtAccel **out, RtError *error) {
+    return rt_accel_open(context, scene, out, error);
+}
+
+RtMaker rt_maker_of_spec(const char *spec) {
+    return (RtMaker){build_spec, spec};
+}
+
+/* What is asked of, and room for the answers. */
+typedef struct Session {
+    RtAccel *brute, *accel;
+    RtQuery truth, query;
+    RtHit *expected, *got; /* [count] */
+    bool *blocked;         /* [count] */
+} Session;
+
+static RtStatus open_session(Session *s, const RtQuestion *question, const RtScene *scene, RtMaker maker,
+                             RtError *error) {
+    size_t count = question->count;
+    s->expected = rt_alloc(count, sizeof(RtHit));
+    s->got = rt_alloc(count, sizeof(RtHit));
+    s->blocked = rt_alloc(count, sizeof(bool));
+    if (!s->expected || !s->got || !s->blocked) {
+        return rt_fail_memory(error, "answers", count * (2 * sizeof(RtHit) + sizeof(bool)));
+    }
+    RT_TRY(rt_accel_open("brute", scene, &s->brute, error));
+    RT_TRY(rt_query_init(&s->truth, s->brute, error));
+    rt_nearest(&s->truth, question->rays, count, s->expected, NULL);
+    RT_TRY(maker.build(maker.context, scene, &s->accel, error));
+    RT_TRY(rt_accel_learn(s->accel, question->rays, s->expected, count, error));
+    return rt_query_init(&s->query, s->accel, error);
+}
+
+static void close_session(Session *s) {
+    rt_query_clear(&s->query);
+    rt_query_clear(&s->truth);
+    rt_accel_destroy(s->accel);
+    rt_accel_destroy(s->brute);
+    rt_free(s->expected);
+    rt_free(s->got);
+    rt_free(s->blocked);
+}
+
+static RtReply ask(Session *s, const RtQuestion *question) {
+    RtTally tallies[RT_RAY_KIND_COUNT] = {0}, *counted = question->counted ? tallies : NULL;
+    for (size_t first = 0; first < question->count; first += question->stream) {
+        size_t left = question->count - first, n = left < question->stream ? left : question->stream;
+        rt_nearest(&s->query, question->rays + first, n, s->got + first, counted);
+        rt_occluded(&s->query, question->rays + first, n, s->blocked + first, counted);
+    }
+    size_t i = question->asked;
+    const RtRay *ray = &question->rays[i];
+    RtReply reply = {.expected = s->expected[i], .got = s->got[i], .blocked = s->blocked[i]};
+    reply.wrong =
+        RT_WRONG == (question->occluded ? rt_blocked_verdict(s->accel, ray, reply.expected, reply.blocked)
+                                        : rt_answer_verdict(s->accel, ray, reply.expected, reply.got));
+    return reply;
+}
+
+RtStatus rt_question_ask(const RtQuestion *question, const RtScene *scene, RtMaker maker, RtReply *reply,
+                         RtError *error) {
+    Session session = {0};
+    RtStatus status = open_session(&session, question, scene, maker, error);
+    if (status == RT_OK) *reply = ask(&session, question);
+    close_session(&session);
+    return status;
+}
+
+RtStatus rt_question_of_witness(const RtReference *reference, const RtWitness *witness, RtMaker maker,
+                                RtQuestion *question, RtReply *reply, RtError *error) {
+    *question = (RtQuestion){.rays = reference->rays + witness->index,
+                             .count = 1,
+                             .stream = 1,
+                             .occluded = witness->occluded,
+                             .counted = witness->counted};
+    RT_TRY(rt_question_ask(question, reference->scene, maker, reply, error));
+    if (reply->wrong) return RT_OK;
+    size_t first;
+    rt_witness_context(reference, witness, &first, &question->count);
+    question->rays = reference->rays + first;
+    question->asked = witness->index - first;
+    question->stream = witness->stream;
+    return rt_question_ask(question, reference->scene, maker, reply, error);
+}

@@ -1,0 +1,341 @@
+/* The families of rays: one function a family, which makes one ray from the random numbers it is given. */
+#include "verify/ray_families.h"
+#include "bench/rayset.h"
+#include "verify/ray_points.h"
+
+#include <assert.h>
+
+typedef struct Maker {
+    RtQuery *query;
+    const RtScene *scene;
+    const RtGeometry *geometry; /* the scene's */
+    RtView view;                /* of its camera; without samples if that sees nothing */
+    RtVec3d center;             /* of the scene's box */
+    double size;                /* half its diagonal */
+    RtRandom random;
+} Maker;
+
+static uint32_t below(Maker *m, uint32_t n) {
+    return rt_random_below(&m->random, n);
+}
+
+static RtRay ray_along(RtVec3d from, RtVec3d dir) {
+    return (RtRay){.org = rt_narrow(from), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+}
+
+/* From a random place around or inside the scene through `target`. */
+static RtRay ray_through(Maker *m, RtVec3d target) {
+    RtVec3d from = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random)
+                               : rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
+    return (RtRay){.org = rt_narrow(from),
+                   .dir = rt_sub(rt_narrow(target), rt_narrow(from)),
+                   .tmax = INFINITY,
+                   .kind = RT_RAY_RANDOM};
+}
+
+/* ---- the families ---- */
+
+static RtRay chord(Maker *m) {
+    return rt_random_chord(&m->geometry->box, &m->random);
+}
+
+/* Parallel to an axis, the other components +0 or -0. */
+static RtRay along_axis(Maker *m) {
+    RtVec3d p = rt_point_in_scene(m->geometry, &m->random), dir;
+    int axis = (int)below(m, 3);
+    for (int a = 0; a < 3; a++) dir.at[a] = below(m, 2) ? 0.0 : -0.0;
+    dir.at[axis] = below(m, 2) ? 1 : -1;
+    if (below(m, 2)) p.at[axis] = m->center.at[axis] - 2 * m->size * dir.at[axis];
+    return ray_along(p, dir);
+}
+
+/* Directions of whole numbers from points at whole fractions of a box: through its corners, edges and
+ * halves, and through the corners of a grid's voxels. */
+static RtRay on_fractions(Maker *m) {
+    const RtBox *box = rt_some_box(m->geometry, &m->random);
+    RtVec3d from, to;
+    for (int a = 0; a < 3; a++) {
+        double lo = (double)box->lo.at[a], hi = (double)box->hi.at[a];
+        from.at[a] = lo + (hi - lo) * ((double)below(m, 17) - 4) / 8;
+        to.at[a] = lo + (hi - lo) * (double)below(m, 9) / 8;
+    }
+    RtVec3 dir = rt_sub(rt_narrow(to), rt_narrow(from));
+    RtRay ray = ray_along(from, rt_vec3d(1, -1, 1));
+    if (dir.x != 0 || dir.y != 0 || dir.z != 0) ray.dir = dir;
+    return ray;
+}
+
+static RtRay from_surface(Maker *m) {
+    uint32_t id;
+    RtVec3d p = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id);
+    return ray_along(p, rt_random_direction(&m->random));
+}
+
+/* From a point in a face of a box, in the face or off it. */
+static RtRay from_box_face(Maker *m) {
+    const RtBox *box = rt_some_box(m->geometry, &m->random);
+    RtVec3d p = rt_point_in_box(box, &m->random), dir = rt_random_direction(&m->random);
+    int axis = (int)below(m, 3);
+    p.at[axis] = (double)(below(m, 2) ? box->hi : box->lo).at[axis];
+    if (below(m, 2)) dir.at[axis] = below(m, 2) ? 0.0 : -0.0;
+    if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[axis] = 1;
+    return ray_along(p, dir);
+}
+
+static RtRay from_inside(Maker *m) {
+    const RtBox *box = rt_some_box(m->geometry, &m->random);
+    RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : rt_point_in_box(box, &m->random);
+    return ray_along(p, rt_random_direction(&m->random));
+}
+
+static RtRay at_vertex(Maker *m) {
+    uint32_t id;
+    return ray_through(m, rt_point_of_object(m->geometry, RT_AT_VERTEX, &m->random, &id));
+}
+
+static RtRay at_edge(Maker *m) {
+    uint32_t id;
+    return ray_through(m, rt_point_of_object(m->geometry, RT_ON_EDGE, &m->random, &id));
+}
+
+/* Touches an object: in the plane of a flat one, along the silhouette of a round one. */
+static RtRay tangent(Maker *m) {
+    uint32_t id;
+    RtVec3d p = rt_point_of_object(m->geometry, below(m, 2) ? RT_ON_SURFACE : RT_AT_VERTEX, &m->random, &id);
+    RtVec3d dir = rt_random_direction(&m->random);
+    if (id != RT_NO_OBJECT) {
+        RtRay at = ray_along(p, dir);
+        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0).geometric;
+        dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
+    }
+    return ray_along(rt_add_scaledd(p, dir, -m->size), dir);
+}
+
+/* From 10^3 to 10^7 sizes away. */
+static RtRay from_afar(Maker *m) {
+    static const double sizes[] = {1e3, 1e4, 1e5, 1e6, 1e7};
+    double distance = m->size * sizes[below(m, 5)];
+    RtVec3d from = rt_add_scaledd(m->center, rt_random_direction(&m->random), distance);
+    uint32_t id;
+    RtVec3d to = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random)
+                             : rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id);
+    return ray_along(from, rt_normalized(rt_subd(to, from)));
+}
+
+/* Begins or ends exactly at a hit, or one float beside it. */
+static RtRay ends_at_hit(Maker *m) {
+    RtRay ray = below(m, 2) ? chord(m) : at_vertex(m);
+    RtHit hit = RT_MISS;
+    if (rt_ray_is_valid(&ray)) rt_nearest(m->query, &ray, 1, &hit, NULL);
+    if (hit.object == RT_NO_OBJECT) return ray;
+    float t = hit.t;
+    uint32_t side = below(m, 3);
+    if (side == 1) t = nextafterf(t, INFINITY);
+    if (side == 2) t = rt_maxf(0, nextafterf(t, -INFINITY));
+    uint32_t which = below(m, 3);
+    if (which != 0) ray.tmin = t;
+    if (which != 1) ray.tmax = t;
+    return ray;
+}
+
+/* A length of direction anywhere from 1e-15 to 1e15. */
+static RtRay of_any_length(Maker *m) {
+    static const double lengths[] = {1e-15, 1e-10, 1e-5, 1e-2, 1e2, 1e5, 1e10, 1e15};
+    RtRay ray = chord(m);
+    RtVec3d dir = rt_normalized(rt_widen(ray.dir));
+    ray.dir = rt_narrow(rt_scaled(dir, lengths[below(m, 8)]));
+    return ray;
+}
+
+/* Any direction, or one whose components are 0 or +-1: along axes and diagonals. */
+static RtVec3d free_direction(Maker *m) {
+    if (below(m, 2)) return rt_random_direction(&m->random);
+    RtVec3d dir;
+    for (int a = 0; a < 3; a++) dir.at[a] = (double)below(m, 3) - 1;
+    if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[below(m, 3)] = 1;
+    return dir;
+}
+
+/* A plane of the voxels of a grid over the scene, or over a box in it; in float32 or rounded from double. */
+static double voxel_plane(Maker *m, const RtBox *box, int axis, uint32_t voxels) {
+    float lo = box->lo.at[axis], hi = box->hi.at[axis];
+    uint32_t i = below(m, voxels + 1);
+    if (below(m, 2)) return (double)(lo + (hi - lo) / (float)voxels * (float)i);
+    return (double)lo + ((double)hi - (double)lo) * i / voxels;
+}
+
+static uint32_t some_resolution(Maker *m) {
+    return below(m, 2) ? 1U << below(m, 7) : 1 + below(m, 50);
+}
+
+/* From a corner of a voxel, or from a point of an edge of one. */
+static RtRay from_voxel_corner(Maker *m) {
+    const RtBox *box = below(m, 2) ? &m->geometry->box : rt_some_box(m->geometry, &m->random);
+    if (m->geometry->object_count == 0) box = rt_some_box(m->geometry, &m->random);
+    RtVec3d p = rt_point_in_box(box, &m->random);
+    uint32_t voxels = some_resolution(m), along = below(m, 6);
+    for (int a = 0; a < 3; a++) {
+        if (a != (int)along) p.at[a] = voxel_plane(m, box, a, voxels);
+    }
+    return ray_along(p, free_direction(m));
+}
+
+/* Within a plane of voxels or a face of a box, from inside or outside. */
+static RtRay in_plane(Maker *m) {
+    const RtBox *box = rt_some_box(m->geometry, &m->random);
+    int axis = (int)below(m, 3);
+    RtVec3d p = rt_point_in_box(box, &m->random), dir = free_direction(m);
+    p.at[axis] = voxel_plane(m, box, axis, below(m, 2) ? 1 : some_resolution(m));
+    dir.at[axis] = below(m, 2) ? 0.0 : -0.0;
+    if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir.at[(axis + 1) % 3] = -1;
+    if (below(m, 2)) p = rt_add_scaledd(p, dir, -2 * m->size);
+    return ray_along(p, dir);
+}
+
+/* Along an edge: from one vertex to the next, from before it, or from between them. */
+static RtRay along_edge(Maker *m) {
+    const RtGeometry *g = m->geometry;
+    if (g->triangle_count + g->polygon_count == 0) return along_axis(m);
+    uint32_t i = below(m, g->triangle_count + g->polygon_count), count = 3;
+    const RtVec3 *v;
+    if (i < g->triangle_count) {
+        v = g->triangles[i].v;
+    } else {
+        const RtPolygon *polygon = &g->polygons[i - g->triangle_count];
+        v = g->polygon_vertices + polygon->first;
+        count = polygon->count;
+    }
+    uint32_t first = below(m, count);
+    RtVec3 dir = rt_sub(v[(first + 1) % count], v[first]);
+    static const double starts[] = {0, -1, -4, 0.5, 1};
+    RtVec3d from = rt_add_scaledd(rt_widen(v[first]), rt_widen(dir), starts[below(m, 5)]);
+    return ray_along(from, rt_widen(dir));
+}
+
+/* Nearly parallel to a flat object or to the silhouette of a round one, by an angle of 1e-2 to 1e-8. */
+static RtRay grazing(Maker *m) {
+    static const double angles[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+    uint32_t id;
+    RtVec3d p = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id),
+            dir = rt_random_direction(&m->random);
+    if (id != RT_NO_OBJECT) {
+        RtRay at = ray_along(p, dir);
+        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0).geometric;
+        dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
+        double angle = angles[below(m, 7)];
+        dir = rt_add_scaledd(rt_normalized(dir), normal, below(m, 2) ? angle : -angle);
+    }
+    return ray_along(rt_add_scaledd(p, dir, -m->size * rt_random_betweend(&m->random, 0, 2)), dir);
+}
+
+/* Components that are denormal, the least normal number, 0 or -0, beside one that is not. */
+static RtRay denormal(Maker *m) {
+    static const float tiny[] = {0x1p-149f, -0x1p-149f, 0x1p-140f, -0x1p-130f, 0x1p-127f,
+                                 0x1p-126f, -0x1p-126f, 0.0f,      -0.0f};
+    uint32_t id;
+    RtRay ray = along_axis(m);
+    if (below(m, 2)) {
+        RtVec3d from = rt_point_of_object(m->geometry, RT_AT_VERTEX, &m->random, &id);
+        ray = ray_along(from, free_direction(m));
+    }
+    int whole = (int)below(m, 3);
+    for (int a = 0; a < 3; a++) {
+        if (a != whole) ray.dir.at[a] = tiny[below(m, sizeof tiny / sizeof tiny[0])];
+    }
+    if (ray.dir.at[whole] == 0) ray.dir.at[whole] = 1;
+    if (below(m, 2)) ray.org.at[whole] -= 2 * (float)m->size * ray.dir.at[whole];
+    return ray;
+}
+
+/* A shadow ray, as the renderer makes them or nearly so: off a surface, on it, at an edge, or from anywhere
+ * around; some with the wrong light, a limit of their own, or a direction that is not quite the light's. */
+static RtRay to_light(Maker *m) {
+    if (m->scene->light_count == 0) return chord(m);
+    uint32_t id, light = below(m, m->scene->light_count);
+    RtVec3d to = rt_widen(m->scene->lights[light].position), from;
+    switch (below(m, 4)) {
+    case 0: from = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id); break;
+    case 1: from = rt_point_of_object(m->geometry, RT_ON_EDGE, &m->random, &id); break;
+    case 2: from = rt_point_in_scene(m->geometry, &m->random); break;
+    default: from = rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
+    }
+    if (below(m, 2)) from = rt_add_scaledd(from, rt_subd(to, from), rt_random_betweend(&m->random, 0, 1e-4));
+    RtRay ray = {.org = rt_narrow(from), .tmax = 1, .kind = RT_RAY_SHADOW, .source = light};
+    ray.dir = rt_sub(m->scene->lights[light].position, ray.org);
+    switch (below(m, 16)) {
+    case 0: ray.source = below(m, m->scene->light_count + 2); break;
+    case 1: ray.tmax = (float)rt_random_betweend(&m->random, 0, 2); break;
+    case 2: ray.dir.at[below(m, 3)] *= 1 + 0x1p-20f; break;
+    default: break;
+    }
+    return ray;
+}
+
+/* A primary ray of the scene's sampling, or nearly so: some of another sample, or not quite through it. */
+static RtRay through_sample(Maker *m) {
+    const RtSampling *s = &m->scene->sampling;
+    if (m->view.sampling.columns == 0) return chord(m);
+    /* Not as arguments: in what order these are evaluated C leaves open. */
+    uint32_t row = below(m, s->rows), column = below(m, s->columns);
+    RtRay ray = rt_view_ray(&m->view, column, row);
+    switch (below(m, 16)) {
+    case 0: ray.source = below(m, s->columns * s->rows + 2); break;
+    case 1: ray.tmax = (float)rt_random_betweend(&m->random, 0, 2 * m->size); break;
+    case 2: ray.dir.at[below(m, 3)] *= 1 + 0x1p-20f; break;
+    case 3: ray.org.at[below(m, 3)] += (float)m->size * 0x1p-10f; break;
+    default: break;
+    }
+    return ray;
+}
+
+static const struct {
+    const char *name;
+    RtRay (*make)(Maker *maker);
+} families[] = {
+    {"chord", chord},
+    {"along-axis", along_axis},
+    {"on-fractions", on_fractions},
+    {"from-surface", from_surface},
+    {"from-box-face", from_box_face},
+    {"from-inside", from_inside},
+    {"at-vertex", at_vertex},
+    {"at-edge", at_edge},
+    {"tangent", tangent},
+    {"from-afar", from_afar},
+    {"ends-at-hit", ends_at_hit},
+    {"of-any-length", of_any_length},
+    {"to-light", to_light},
+    {"through-sample", through_sample},
+    {"from-voxel-corner", from_voxel_corner},
+    {"in-plane", in_plane},
+    {"along-edge", along_edge},
+    {"grazing", grazing},
+    {"denormal", denormal},
+};
+
+size_t rt_ray_family_count(void) {
+    return sizeof families / sizeof families[0];
+}
+
+const char *rt_ray_family_name(size_t family) {
+    return families[family].name;
+}
+
+void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t first, size_t count,
+                        RtRay *rays) {
+    Maker maker = {
+        .query = query, .scene = query->accel->scene, .geometry = &query->accel->scene->geometry, .size = 1};
+    rt_view_init(&maker.view, &maker.scene->camera, maker.scene->sampling, NULL);
+    if (maker.geometry->object_count > 0) {
+        const RtBox *box = &maker.geometry->box;
+        maker.center = rt_widen(rt_box_center(*box));
+        maker.size = rt_lengthd(rt_subd(rt_widen(box->hi), maker.center));
+    }
+    for (size_t i = 0; i < count; i++) {
+        maker.random = rt_random(seed, (uint64_t)family << 56 | (first + i));
+        rays[i] = families[family].make(&maker);
+        /* A target that is its own origin, or a direction that rounds to zero. */
+        if (!rt_ray_is_valid(&rays[i])) rays[i] = chord(&maker);
+        assert(rt_ray_is_valid(&rays[i]));
+    }
+}

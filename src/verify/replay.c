@@ -1,0 +1,227 @@
+#include "verify/replay.h"
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/memory.h"
+#include "scene/append.h"
+#include "scene/yaml.h"
+#include "scenes/builtin.h"
+#include "scenes/open.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MOST_BYTES = 1 << 30, /* of a replay file */
+    MOST_OBJECTS = 20000, /* of a scene that is written down whole */
+    NUMBERS = 8           /* of a ray: org, dir, tmin, tmax */
+};
+
+/* ---- to JSON ---- */
+
+static json_t *float_json(float x) {
+    char text[32];
+    snprintf(text, sizeof text, "%a", (double)x);
+    return json_string(text);
+}
+
+static json_t *ray_json(const RtRay *ray) {
+    const float numbers[NUMBERS] = {ray->org.x, ray->org.y, ray->org.z, ray->dir.x,
+                                    ray->dir.y, ray->dir.z, ray->tmin,  ray->tmax};
+    json_t *list = json_array();
+    for (int i = 0; i < NUMBERS; i++) json_array_append_new(list, float_json(numbers[i]));
+    return json_pack("{s:s, s:I, s:o}", "kind", rt_ray_kind_name((RtRayKind)ray->kind), "source",
+                     (json_int_t)ray->source, "org_dir_tmin_tmax", list);
+}
+
+static json_t *hit_json(RtHit hit) {
+    if (hit.object == RT_NO_OBJECT) return json_null();
+    return json_pack("{s:I, s:o}", "object", (json_int_t)hit.object, "t", float_json(hit.t));
+}
+
+static json_t *got_json(const RtQuestion *question, const RtReply *reply) {
+    return question->occluded ? json_boolean(reply->blocked) : hit_json(reply->got);
+}
+
+/* The scene as YAML; NULL if memory is short. */
+static json_t *yaml_json(const RtScene *scene) {
+    char *text = NULL;
+    size_t size = 0;
+    RtError error;
+    json_t *json = NULL;
+    FILE *file = open_memstream(&text, &size);
+    if (!file) return NULL;
+    RtStatus status = rt_yaml_save(scene, file, &error);
+    if (fclose(file) == 0 && status == RT_OK) json = json_stringn(text, size);
+    free(text);
+    return json;
+}
+
+static json_t *shrunk_json(const RtReplayRecord *r, RtError *error) {
+    const RtShrunk *shrunk = r->shrunk;
+    RtScene part;
+    if (rt_scene_subset(r->scene, shrunk->ids, shrunk->count, &part, error) != RT_OK) return NULL;
+    json_t *ids = json_array();
+    for (uint32_t i = 0; i < shrunk->count; i++) json_array_append_new(ids, json_integer(shrunk->ids[i]));
+    json_t *object = json_pack("{s:o, s:b, s:o, s:o, s:o}", "objects", ids, "minimal", shrunk->minimal,
+                               "expected", hit_json(shrunk->reply.expected), "got",
+                               got_json(r->question, &shrunk->reply), "yaml", yaml_json(&part));
+    rt_scene_clear(&part);
+    return object;
+}
+
+static json_t *record_json(const RtReplayRecord *r, RtError *error) {
+    const RtQuestion *q = r->question;
+    json_t *rays = json_array();
+    for (size_t i = 0; i < q->count; i++) json_array_append_new(rays, ray_json(&q->rays[i]));
+    bool whole = !rt_builtin_find(r->scene_spec) && r->scene->geometry.object_count <= MOST_OBJECTS;
+    return json_pack("{s:s, s:o, s:o, s:[I, I], s:s, s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "scene",
+                     r->scene_spec, "fingerprint", rt_json_hex(rt_scene_fingerprint(r->scene)), "yaml",
+                     whole ? yaml_json(r->scene) : json_null(), "sampling",
+                     (json_int_t)r->scene->sampling.columns, (json_int_t)r->scene->sampling.rows, "accel",
+                     r->accel_spec, "query", q->occluded ? "occluded" : "nearest", "kernel",
+                     q->counted ? "counted" : "timed", "stream", (json_int_t)q->stream, "asked",
+                     (json_int_t)q->asked, "rays", rays, "expected", hit_json(r->reply->expected), "got",
+                     got_json(q, r->reply), "shrunk", r->shrunk ? shrunk_json(r, error) : json_null());
+}
+
+RtStatus rt_replay_save(const char *path, const RtReplayRecord *record, RtError *error) {
+    return rt_json_save(path, record_json(record, error), error);
+}
+
+/* ---- from JSON ---- */
+
+static bool get_float(const json_t *list, size_t i, float *out) {
+    const char *text = json_string_value(json_array_get(list, i));
+    char *end = NULL;
+    if (!text) return false;
+    *out = strtof(text, &end);
+    return end != text && *end == '\0';
+}
+
+static bool get_count(const json_t *object, const char *key, uint64_t most, uint64_t *out) {
+    const json_t *value = json_object_get(object, key);
+    *out = (uint64_t)json_integer_value(value);
+    return json_is_integer(value) && json_integer_value(value) >= 0 && *out <= most;
+}
+
+static bool get_word(const json_t *object, const char *key, const char *no, const char *yes, bool *out) {
+    const char *word = json_string_value(json_object_get(object, key));
+    *out = word && strcmp(word, yes) == 0;
+    return word && (*out || strcmp(word, no) == 0);
+}
+
+static bool get_ray(const json_t *object, RtRay *ray) {
+    const json_t *list = json_object_get(object, "org_dir_tmin_tmax");
+    const char *kind_name = json_string_value(json_object_get(object, "kind"));
+    RtRayKind kind;
+    float x[NUMBERS];
+    uint64_t source;
+    for (size_t i = 0; i < NUMBERS; i++) {
+        if (!get_float(list, i, &x[i])) return false;
+    }
+    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return false;
+    if (!get_count(object, "source", UINT32_MAX, &source)) return false;
+    *ray = (RtRay){.org = {{x[0], x[1], x[2]}},
+                   .dir = {{x[3], x[4], x[5]}},
+                   .tmin = x[6],
+                   .tmax = x[7],
+                   .kind = (uint32_t)kind,
+                   .source = (uint32_t)source};
+    return rt_ray_is_valid(ray);
+}
+
+/* False, with the name of the first member that is wrong, or NULL where memory is short. */
+static bool take(RtReplay *r, const char **wrong) {
+    const json_t *d = r->document, *rays = json_object_get(d, "rays");
+    const json_t *sampling = json_object_get(d, "sampling"), *shrunk = json_object_get(d, "shrunk");
+    uint64_t stream, asked;
+    const char *hex = json_string_value(json_object_get(d, "fingerprint"));
+    r->scene_spec = json_string_value(json_object_get(d, "scene"));
+    r->accel_spec = json_string_value(json_object_get(d, "accel"));
+    r->yaml = json_string_value(json_object_get(d, "yaml"));
+    r->shrunk_yaml = json_string_value(json_object_get(shrunk, "yaml"));
+    r->columns = (uint32_t)json_integer_value(json_array_get(sampling, 0));
+    r->rows = (uint32_t)json_integer_value(json_array_get(sampling, 1));
+    RtQuestion *q = &r->question;
+    q->count = json_array_size(rays);
+    if (*wrong = "scene", !r->scene_spec) return false;
+    if (*wrong = "accel", !r->accel_spec) return false;
+    if (*wrong = "fingerprint", !hex || sscanf(hex, "%" SCNx64, &r->fingerprint) != 1) return false;
+    if (*wrong = "sampling", json_array_size(sampling) != 2) return false;
+    if (*wrong = "query", !get_word(d, "query", "nearest", "occluded", &q->occluded)) return false;
+    if (*wrong = "kernel", !get_word(d, "kernel", "timed", "counted", &q->counted)) return false;
+    if (*wrong = "stream", !get_count(d, "stream", UINT32_MAX, &stream) || stream == 0) return false;
+    if (*wrong = "rays", q->count == 0) return false;
+    if (*wrong = "asked", !get_count(d, "asked", q->count - 1, &asked)) return false;
+    q->stream = stream;
+    q->asked = asked;
+    *wrong = NULL;
+    if (!(q->rays = r->rays = rt_alloc(q->count, sizeof(RtRay)))) return false;
+    *wrong = "rays";
+    for (size_t i = 0; i < q->count; i++) {
+        if (!get_ray(json_array_get(rays, i), &r->rays[i])) return false;
+    }
+    return true;
+}
+
+RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error) {
+    *replay = (RtReplay){0};
+    char *text;
+    size_t size;
+    json_error_t at;
+    const char *wrong;
+    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
+    replay->document = json_loadb(text, size, 0, &at);
+    rt_free(text);
+    if (!replay->document) {
+        return rt_fail_at(error, path, (size_t)(at.line > 0 ? at.line : 0), 0, "this is no JSON: %s",
+                          at.text);
+    }
+    if (take(replay, &wrong)) return RT_OK;
+    RtStatus status =
+        wrong ? rt_fail(error, RT_BAD_INPUT,
+                        "%s: this is no file to replay: '%s' is missing or not what `raytally verify` writes",
+                        path, wrong)
+              : rt_fail_memory(error, "rays", replay->question.count * sizeof(RtRay));
+    rt_replay_clear(replay);
+    return status;
+}
+
+void rt_replay_clear(RtReplay *replay) {
+    rt_free(replay->rays);
+    json_decref(replay->document);
+    *replay = (RtReplay){0};
+}
+
+/* ---- asking again ---- */
+
+static RtStatus open_text(const char *text, RtScene *scene, RtError *error) {
+    rt_scene_init(scene);
+    RtStatus status = rt_yaml_load_text("the scene of the replay file", text, rt_builtin_open, scene, error);
+    if (status == RT_OK) status = rt_scene_finish(scene, error);
+    if (status != RT_OK) rt_scene_clear(scene);
+    return status;
+}
+
+static RtStatus open_scene(const RtReplay *r, bool shrunk, RtScene *scene, RtError *error) {
+    if (shrunk && !r->shrunk_yaml) return rt_fail(error, RT_NOT_AVAILABLE, "the scene was not shrunk");
+    if (shrunk) return open_text(r->shrunk_yaml, scene, error);
+    RT_TRY(r->yaml ? open_text(r->yaml, scene, error) : rt_scene_open(r->scene_spec, scene, error));
+    if (rt_scene_fingerprint(scene) == r->fingerprint) return RT_OK;
+    rt_scene_clear(scene);
+    return rt_fail(error, RT_BAD_INPUT, "%s is no longer the scene that it was when this was written",
+                   r->scene_spec);
+}
+
+RtStatus rt_replay_ask(const RtReplay *replay, RtMaker maker, bool shrunk, RtReply *reply, RtError *error) {
+    RtScene scene;
+    RT_TRY(open_scene(replay, shrunk, &scene, error));
+    RtStatus status = rt_scene_sample(&scene, replay->columns, replay->rows, 1, false, error);
+    if (status == RT_OK) {
+        status = rt_question_ask(&replay->question, &scene, maker, reply, error);
+    }
+    rt_scene_clear(&scene);
+    return status;
+}

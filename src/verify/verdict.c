@@ -1,0 +1,276 @@
+#include "verify/verdict.h"
+
+#define ERROR     0x1p-20
+#define SHIFT     0x1p-21
+#define TOLERANCE 0x1p-18
+
+/* Sums of a few products of this size may be more than float32 holds. */
+#define OVERFLOW_SIZE 0x1p124
+
+enum { PROBES = 28 }; /* unmoved first, straightened last */
+
+/* One ray, moved by the error bound, with its interval widened and narrowed. */
+typedef struct Probes {
+    RtPreparedRay wide[PROBES], narrow[PROBES];
+    double shift;     /* of the origin along an axis */
+    double error;     /* of a place, as float32 arithmetic finds it */
+    double tolerance; /* of t */
+} Probes;
+
+/* Where one object may be hit. */
+typedef struct Margin {
+    bool possible, certain;
+    double lo[2], hi[2]; /* possible t, in up to two ranges; empty is lo > hi */
+    double latest;       /* if certain: it is hit no later than this */
+} Margin;
+
+static const Margin impossible = {.lo = {HUGE_VAL, HUGE_VAL}, .hi = {-HUGE_VAL, -HUGE_VAL}};
+
+const char *rt_verdict_name(RtVerdict verdict) {
+    static const char *const names[RT_VERDICT_COUNT] = {"equal", "tie", "marginal", "wrong"};
+    return names[verdict];
+}
+
+/* ---- probes ---- */
+
+static double largest_coordinate(const RtGeometry *g, const RtRay *ray) {
+    float most = 0;
+    for (int a = 0; a < 3; a++) {
+        most = rt_maxf(fabsf(ray->org.at[a]), most);
+        if (g->object_count == 0) continue;
+        most = rt_maxf(fabsf(g->box.lo.at[a]), rt_maxf(fabsf(g->box.hi.at[a]), most));
+    }
+    return (double)most;
+}
+
+static double tolerance_of(const RtGeometry *g, const RtRay *ray) {
+    return TOLERANCE * largest_coordinate(g, ray) / rt_lengthd(rt_widen(ray->dir));
+}
+
+static bool within(double a, double b, double tolerance) {
+    return fabs(a - b) <= tolerance;
+}
+
+/* The direction without components that move no place by more than its rounding; Embree is given it so. */
+static RtVec3 straightened(RtVec3 dir) {
+    float least = 0x1p-24f * fabsf(dir.at[rt_major_axis(dir)]);
+    for (int a = 0; a < 3; a++) {
+        if (fabsf(dir.at[a]) < least) dir.at[a] = 0;
+    }
+    return dir;
+}
+
+static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray) {
+    p->shift = SHIFT * largest_coordinate(g, ray);
+    p->error = ERROR * largest_coordinate(g, ray);
+    p->tolerance = tolerance_of(g, ray);
+    double tmin = (double)ray->tmin, tmax = (double)ray->tmax;
+    for (int i = 0; i < PROBES; i++) {
+        /* 13, the middle of the 3 x 3 x 3 places, comes first. */
+        bool last = i == PROBES - 1;
+        int place = i == 0 || last ? 13 : i <= 13 ? i - 1 : i;
+        int x = place % 3, y = place / 3 % 3, z = place / 9;
+        RtVec3d to = {x - 1, y - 1, z - 1};
+        RtRay moved = *ray;
+        if (last) moved.dir = straightened(ray->dir);
+        moved.org = rt_narrow(rt_add_scaledd(rt_widen(ray->org), to, p->shift));
+        moved.tmin = (float)fmax(tmin - p->tolerance, 0);
+        moved.tmax = (float)(tmax + p->tolerance);
+        p->wide[i] = rt_ray_prepare(&moved, &g->box);
+        moved.tmin = (float)(tmin + p->tolerance);
+        moved.tmax = (float)(tmax - p->tolerance);
+        p->narrow[i] = rt_ray_prepare(&moved, &g->box);
+    }
+}
+
+/* Can a probe meet the object at all? Its box, grown by the shift, is asked once for all of them. */
+static bool in_reach(const RtGeometry *g, uint32_t id, const Probes *p) {
+    RtBox box = g->boxes[id];
+    for (int a = 0; a < 3; a++) {
+        box.lo.at[a] = rt_float_below((double)box.lo.at[a] - 2 * p->shift);
+        box.hi.at[a] = rt_float_above((double)box.hi.at[a] + 2 * p->shift);
+    }
+    float enter;
+    return rt_box_hit(&box, &p->wide[0], p->wide[0].tmax, &enter);
+}
+
+/* Does the ray meet the object's front, seen along its normal, or its back? */
+static int side_met(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, float t) {
+    RtRay again = {.org = ray->org, .tmin = ray->tmin, .dir = ray->dir, .tmax = ray->tmax};
+    return rt_dotd(rt_object_normals(g, id, &again, t).geometric, rt_widen(ray->dir)) > 0;
+}
+
+/* Shapes that only our hit functions know: what the probes say. */
+static Margin probed_margin(const RtGeometry *g, uint32_t id, const Probes *p) {
+    Margin m = impossible;
+    m.certain = true;
+    for (int i = 0; i < PROBES; i++) {
+        const RtPreparedRay *rays[2] = {&p->wide[i], &p->narrow[i]};
+        for (int k = 0; k < 2; k++) {
+            float t;
+            if (!rt_object_hit(g, id, rays[k], &t, NULL)) {
+                m.certain = false;
+                continue;
+            }
+            int side = side_met(g, id, rays[k], t);
+            m.possible = true;
+            m.lo[side] = fmin(m.lo[side], (double)t);
+            m.hi[side] = fmax(m.hi[side], (double)t);
+        }
+    }
+    m.latest = fmax(m.hi[0], m.hi[1]);
+    return m;
+}
+
+/* ---- shapes that Embree has arithmetic of its own for: the errors of that arithmetic, in double ---- */
+
+/* Is t in lo..hi possibly, or certainly, within the ray's interval? */
+static bool may_count(const Probes *p, const RtRay *ray, double lo, double hi) {
+    return hi >= (double)ray->tmin - p->tolerance && lo <= (double)ray->tmax + p->tolerance;
+}
+
+static bool must_count(const Probes *p, const RtRay *ray, double lo, double hi) {
+    return lo >= (double)ray->tmin + p->tolerance && hi <= (double)ray->tmax - p->tolerance;
+}
+
+/* The edge functions, their sum and the height above the plane are triple products of vectors that are wrong
+ * by `error` each, and a side, which is a difference of two and up to twice as long, by 2 `error`; a plane
+ * seen edge on is hit anywhere along the ray, and so is one where the products overflow. */
+static Margin triangle_margin(const RtTriangle *triangle, const RtRay *ray, const Probes *p) {
+    RtVec3d dir = rt_widen(ray->dir), from[3], side[3];
+    double longest = 0, least = HUGE_VAL, most = -HUGE_VAL, sum = 0;
+    for (int i = 0; i < 3; i++) from[i] = rt_subd(rt_widen(triangle->v[i]), rt_widen(ray->org));
+    for (int i = 0; i < 3; i++) {
+        side[i] = rt_subd(from[(i + 1) % 3], from[i]);
+        longest = fmax(longest, rt_lengthd(side[i]));
+        double edge = rt_dotd(rt_crossd(from[i], side[i]), dir);
+        least = fmin(least, edge);
+        most = fmax(most, edge);
+        sum += edge;
+    }
+    Margin m = impossible;
+    double error = 4 * p->error * longest * rt_lengthd(dir);
+    double farthest = fmax(rt_lengthd(from[0]), fmax(rt_lengthd(from[1]), rt_lengthd(from[2])));
+    bool overflows = farthest * longest * fmax(longest, rt_lengthd(dir)) > OVERFLOW_SIZE;
+    if (!overflows && least < -error && most > error) return m;
+    if (overflows || fabs(sum) <= 3 * error) {
+        return (Margin){.possible = true, .lo = {-HUGE_VAL, HUGE_VAL}, .hi = {HUGE_VAL, -HUGE_VAL}};
+    }
+    double t = rt_dotd(rt_crossd(side[0], side[1]), from[0]) / sum;
+    double slack = 3 * p->error * longest * longest / fabs(sum);
+    m.lo[0] = t - slack;
+    m.hi[0] = m.latest = t + slack;
+    m.possible = may_count(p, ray, m.lo[0], m.hi[0]);
+    m.certain = (least >= error || most <= -error) && must_count(p, ray, m.lo[0], m.hi[0]);
+    return m;
+}
+
+/* The distance of the line from the centre is wrong by `error`; near the silhouette half the chord, and with
+ * it t, is wrong by much more. */
+static Margin sphere_margin(const RtSphere *sphere, const RtRay *ray, const Probes *p) {
+    RtVec3d dir = rt_widen(ray->dir), org = rt_subd(rt_widen(ray->org), rt_widen(sphere->center));
+    double dd = rt_dotd(dir, dir), radius = (double)sphere->radius;
+    double closest = -rt_dotd(org, dir) / dd;
+    RtVec3d across = rt_add_scaledd(org, dir, closest);
+    double ll = rt_dotd(across, across), outer = radius + p->error, inner = fmax(radius - p->error, 0);
+    Margin m = impossible;
+    if (ll > outer * outer) return m;
+    double longest = sqrt((outer * outer - ll) / dd);
+    double shortest = inner * inner > ll ? sqrt((inner * inner - ll) / dd) : 0;
+    const double lo[2] = {closest - longest, closest + shortest};
+    const double hi[2] = {closest - shortest, closest + longest};
+    bool front_may = may_count(p, ray, lo[0], hi[0]), front_must = must_count(p, ray, lo[0], hi[0]);
+    bool back_may = may_count(p, ray, lo[1], hi[1]), back_must = must_count(p, ray, lo[1], hi[1]);
+    for (int k = 0; k < 2; k++) {
+        if (k == 0 ? !front_may : !back_may || (front_must && shortest > 0)) continue;
+        m.lo[k] = lo[k];
+        m.hi[k] = hi[k];
+    }
+    m.possible = front_may || back_may;
+    m.certain = shortest > 0 && (front_must || back_must);
+    m.latest = front_must ? hi[0] : hi[1];
+    return m;
+}
+
+static Margin margin_of(const RtGeometry *g, uint32_t id, const RtRay *ray, const Probes *p) {
+    uint32_t index = rt_ref_index(g->objects[id]);
+    RtShape shape = rt_ref_shape(g->objects[id]);
+    /* A needle seen edge on may be found hit beside its box, too. */
+    if (shape != RT_SHAPE_TRIANGLE && !in_reach(g, id, p)) return impossible;
+    switch (shape) {
+    case RT_SHAPE_TRIANGLE: return triangle_margin(&g->triangles[index], ray, p);
+    case RT_SHAPE_SPHERE: return sphere_margin(&g->spheres[index], ray, p);
+    default: return probed_margin(g, id, p);
+    }
+}
+
+static bool in_margin(const Margin *m, double t, double tolerance) {
+    for (int side = 0; side < 2; side++) {
+        if (t >= m->lo[side] - tolerance && t <= m->hi[side] + tolerance) return true;
+    }
+    return false;
+}
+
+/* ---- verdicts ---- */
+
+static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer) {
+    Probes probes;
+    make_probes(&probes, g, ray);
+    double nearest_certain = HUGE_VAL;
+    bool named = answer.object == RT_NO_OBJECT;
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        Margin m = margin_of(g, id, ray, &probes);
+        if (m.certain) nearest_certain = fmin(nearest_certain, m.latest);
+        if (id == answer.object) named = in_margin(&m, (double)answer.t, probes.tolerance);
+    }
+    if (answer.object == RT_NO_OBJECT) return nearest_certain == HUGE_VAL;
+    return named && (double)answer.t <= nearest_certain + probes.tolerance;
+}
+
+/* Does the ray meet both objects, exactly, at t's within the tolerance? Our hit function, which is quick, is
+ * asked first. */
+static bool is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, double tolerance) {
+    float t;
+    int order;
+    long double apart;
+    RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
+    if (!within((double)answer.t, (double)expected.t, tolerance)) return false;
+    if (!rt_object_hit(g, answer.object, &prepared, &t, NULL)) return false;
+    if (!within((double)t, (double)expected.t, tolerance)) return false;
+    RtFinding finding = rt_referee_order(g, expected.object, answer.object, ray, &order, &apart);
+    return finding == RT_UNDECIDED || (finding == RT_HIT && apart <= (long double)tolerance);
+}
+
+RtSide rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer) {
+    return rt_referee_judge(geometry, ray, expected, answer, tolerance_of(geometry, ray)).side;
+}
+
+RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer) {
+    double tolerance = tolerance_of(geometry, ray);
+    if (answer.object == RT_NO_OBJECT) {
+        if (expected.object == RT_NO_OBJECT) return RT_EQUAL;
+    } else {
+        if (answer.object >= geometry->object_count) return RT_WRONG;
+        bool near = within((double)answer.t, (double)expected.t, tolerance);
+        if (answer.object == expected.object && near) return RT_EQUAL;
+        if (expected.object != RT_NO_OBJECT && is_tie(geometry, ray, expected, answer, tolerance))
+            return RT_TIE;
+    }
+    RtSide side = rt_verdict_side(geometry, ray, expected, answer);
+    bool right = side == RT_SIDE_GOT || side == RT_SIDE_BOTH;
+    return right || is_marginal(geometry, ray, answer) ? RT_MARGINAL : RT_WRONG;
+}
+
+RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer) {
+    if (answer == expected) return RT_EQUAL;
+    if (rt_referee_occluded(geometry, ray) == (answer ? RT_HIT : RT_MISSED)) return RT_MARGINAL;
+    Probes probes;
+    make_probes(&probes, geometry, ray);
+    bool possible = false, certain = false;
+    for (uint32_t id = 0; id < geometry->object_count; id++) {
+        Margin m = margin_of(geometry, id, ray, &probes);
+        possible |= m.possible;
+        certain |= m.certain;
+    }
+    return (answer ? possible : !certain) ? RT_MARGINAL : RT_WRONG;
+}

@@ -1,0 +1,287 @@
+#include "verify/verify.h"
+
+#include "base/json.h"
+#include "base/memory.h"
+#include "bench/json_lines.h"
+#include "bench/machine.h"
+#include "scenes/open.h"
+#include "verify/replay.h"
+#include "verify/verify_table.h"
+
+#include <ctype.h>
+#include <string.h>
+
+/* More marginal answers than this part of all rays are too many to be called margins; rays of the families
+ * are aimed at the margins, and may have any number. */
+#define MARGINAL_PART 0.01
+
+#define FAILURES "verify-failures" /* where no folder is given */
+
+typedef struct Run {
+    const RtVerify *verify;
+    const RtVerifyObserver *observer;
+    RtVerifyProgress progress;
+    json_t *header; /* what a run must have in common with the one that it goes on with */
+    json_t *known;  /* the journal, or NULL */
+    size_t next_known;
+    json_t *rows;
+    RtJsonLines journal;
+} Run;
+
+/* One scene with its rays and the right answers. */
+typedef struct Stage {
+    const char *name;
+    RtScene scene;
+    RtAccel *brute;
+    RtRay *rays;
+    RtReference reference;
+} Stage;
+
+static RtMaker maker_of(const RtVerifySpec *spec) {
+    return spec->maker.build ? spec->maker : rt_maker_of_spec(spec->spec);
+}
+
+static void doing(Run *run, const char *what) {
+    run->progress.what = what;
+    run->observer->doing(run->observer->context, &run->progress);
+}
+
+/* ---- the journal ---- */
+
+/* Every scene is opened once before any is verified: one that cannot be would stop the run in the night. */
+static RtStatus fingerprint_scenes(const RtVerify *v, json_t *fingerprints, RtError *error) {
+    for (uint32_t i = 0; i < v->scene_count; i++) {
+        RtScene scene;
+        RT_TRY(rt_scene_open(v->scenes[i], &scene, error));
+        json_array_append_new(fingerprints, rt_json_hex(rt_scene_fingerprint(&scene)));
+        rt_scene_clear(&scene);
+    }
+    return RT_OK;
+}
+
+/* Takes the reference of `fingerprints`. */
+static json_t *header_json(const RtVerify *v, json_t *fingerprints) {
+    json_t *scenes = json_array(), *specs = json_array();
+    for (uint32_t i = 0; i < v->scene_count; i++) json_array_append_new(scenes, json_string(v->scenes[i]));
+    for (uint32_t i = 0; i < v->spec_count; i++) {
+        json_array_append_new(specs, json_string(v->specs[i].spec));
+    }
+    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:I, s:b}", "build", rt_build_identity(), "scenes", scenes,
+                     "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count, "seed",
+                     (json_int_t)v->rays.seed, "families", v->rays.families);
+}
+
+/* What was verified, and with what, in the folder's manifest.json. */
+static RtStatus write_manifest(const Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(run->verify->folder, "manifest.json", path, error));
+    json_t *manifest = json_copy(run->header);
+    json_object_set_new(manifest, "date", rt_json_now());
+    json_object_set_new(manifest, "machine", rt_machine_json());
+    return rt_json_save(path, manifest, error);
+}
+
+static RtStatus load_known(Run *run, const char *path, RtError *error) {
+    const char *key;
+    json_t *value;
+    RT_TRY(rt_json_lines_load(path, &run->known, error));
+    run->next_known = 1;
+    json_object_foreach(run->header, key, value) {
+        if (json_equal(json_object_get(json_array_get(run->known, 0), key), value)) continue;
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: this is the journal of another verification, with other %s (see its first line): "
+                       "start anew, without --resume, or give another --out",
+                       path, key);
+    }
+    return RT_OK;
+}
+
+static RtStatus open_journal(Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    if (!run->verify->folder) return RT_OK;
+    RT_TRY(rt_directory_create(run->verify->folder, error));
+    RT_TRY(rt_path_join(run->verify->folder, "rows.jsonl", path, error));
+    bool resume = run->verify->resume && rt_file_exists(path);
+    if (resume) RT_TRY(load_known(run, path, error));
+    RT_TRY(rt_json_lines_open(&run->journal, path, resume, error));
+    return resume ? RT_OK : rt_json_lines_write(&run->journal, json_incref(run->header), error);
+}
+
+static bool is_text(const json_t *row, const char *key, const char *text) {
+    const char *value = json_string_value(json_object_get(row, key));
+    return value && strcmp(value, text) == 0;
+}
+
+/* The row of an earlier run, borrowed, or NULL. The journal has its rows in the order in which they are asked
+ * for here, so the next one is this one or there is none. */
+static json_t *known_row(Run *run, const char *scene, const char *spec) {
+    json_t *row;
+    while (json_is_null(row = json_array_get(run->known, run->next_known))) run->next_known++;
+    if (!is_text(row, "scene", scene) || !is_text(row, "accel", spec)) return NULL;
+    run->next_known++;
+    return row;
+}
+
+/* Takes the reference. */
+static RtStatus add_row(Run *run, json_t *row, RtError *error) {
+    if (!row || json_array_append_new(run->rows, row) != 0) return rt_fail_memory(error, "a row", 0);
+    if (run->journal.file) RT_TRY(rt_json_lines_write(&run->journal, json_incref(row), error));
+    run->observer->row(run->observer->context, row);
+    return RT_OK;
+}
+
+/* ---- a wrong answer ---- */
+
+static void on_tried(void *context, uint32_t left, uint32_t tries) {
+    char what[64];
+    snprintf(what, sizeof what, "shrinking a failure: %u objects left, try %u", left, tries);
+    doing(context, what);
+}
+
+/* FOLDER/NUMBER-SCENE-SPEC.json, in letters that every file system takes. */
+static RtStatus replay_path(const Run *run, const char *scene, const char *spec, char *path, RtError *error) {
+    const char *folder = run->verify->folder ? run->verify->folder : FAILURES;
+    char name[160];
+    snprintf(name, sizeof name, "%04zu-%.60s-%.50s.json", json_array_size(run->rows) + 1, scene, spec);
+    for (char *c = name; *c; c++) {
+        if (!isalnum((unsigned char)*c) && *c != '.') *c = '-';
+    }
+    RT_TRY(rt_directory_create(folder, error));
+    return rt_path_join(folder, name, path, error);
+}
+
+/* Shrinks the failure, writes it to a replay file, and names that in the row. */
+static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *spec, const RtWitness *witness,
+                             json_t *row, RtError *error) {
+    RtMaker maker = maker_of(spec);
+    RtShrinkObserver observer = {on_tried, run};
+    RtQuestion question;
+    RtReply reply;
+    RtShrunk shrunk = {0};
+    char path[RT_MAX_PATH];
+    RT_TRY(replay_path(run, stage->name, spec->spec, path, error));
+    RT_TRY(rt_question_of_witness(&stage->reference, witness, maker, &question, &reply, error));
+    RtReplayRecord record = {stage->name, spec->spec, &stage->scene, &question, &reply, NULL};
+    if (reply.wrong) {
+        RT_TRY(
+            rt_shrink(&stage->scene, &question, &reply, maker, RT_SHRINK_BUDGET, &observer, &shrunk, error));
+        record.shrunk = &shrunk;
+    }
+    RtStatus status = rt_replay_save(path, &record, error);
+    json_t *first = json_object_get(row, "first_wrong");
+    json_object_set_new(first, "replay", json_string(path));
+    json_object_set_new(first, "objects_left", reply.wrong ? json_integer(shrunk.count) : json_null());
+    rt_free(shrunk.ids);
+    return status;
+}
+
+/* ---- a row ---- */
+
+static json_t *problem_json(const Run *run, const RtEquivalence *result, const char *broken) {
+    bool too_marginal = !run->verify->rays.families &&
+                        (double)result->verdicts[RT_MARGINAL] > MARGINAL_PART * (double)result->rays;
+    if (broken[0]) return json_string(broken);
+    if (!too_marginal) return json_null();
+    return json_sprintf("more than %g %% of the answers are marginal", MARGINAL_PART * 100);
+}
+
+/* A broken structure is a problem, like a wrong answer; rays are traced through it all the same. */
+static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVerifySpec *spec,
+                      RtError *error) {
+    char broken[sizeof error->message] = "";
+    RtEquivalence result;
+    RtStatus status = rt_accel_validate(accel, error);
+    if (status == RT_MISMATCH) {
+        memcpy(broken, error->message, sizeof broken);
+    } else {
+        RT_TRY(status);
+    }
+    RT_TRY(rt_equivalence_check(&stage->reference, accel, run->verify->rays.threads, &result, error));
+    json_t *row = rt_equivalence_json(&result, stage->name, spec->spec, "brute");
+    json_object_set_new(row, "exact", json_boolean(accel->exact));
+    json_object_set_new(row, "problem", problem_json(run, &result, broken));
+    status = result.any_wrong ? keep_failure(run, stage, spec, &result.first_wrong, row, error) : RT_OK;
+    if (status == RT_OK) return add_row(run, row, error);
+    json_decref(row);
+    return status;
+}
+
+static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *spec, RtError *error) {
+    RtAccel *accel;
+    RtMaker maker = maker_of(spec);
+    doing(run, spec->spec);
+    RtStatus status = maker.build(maker.context, &stage->scene, &accel, error);
+    if ((status == RT_NOT_AVAILABLE || status == RT_BAD_INPUT) && !spec->named) {
+        char notice[sizeof error->message + RT_MAX_SPEC_CHARS + RT_MAX_SCENE_NAME];
+        snprintf(notice, sizeof notice, "%s on %s is skipped: %s", spec->spec, stage->name, error->message);
+        run->observer->notice(run->observer->context, notice);
+        return RT_OK;
+    }
+    RT_TRY(status);
+    status = check(run, stage, accel, spec, error);
+    rt_accel_destroy(accel);
+    return status;
+}
+
+/* ---- a scene ---- */
+
+static RtStatus set_stage(Run *run, Stage *stage, RtError *error) {
+    const RtVerify *v = run->verify;
+    doing(run, "recording rays");
+    RT_TRY(rt_scene_open(stage->name, &stage->scene, error));
+    RT_TRY(rt_verify_sample(&v->rays, &stage->scene, error));
+    RT_TRY(rt_accel_open("brute", &stage->scene, &stage->brute, error));
+    stage->rays = rt_alloc(v->rays.count, sizeof(RtRay));
+    if (!stage->rays) return rt_fail_memory(error, "rays", v->rays.count * sizeof(RtRay));
+    RT_TRY(rt_verify_rays(&v->rays, stage->brute, stage->rays, error));
+    doing(run, "answering them by brute force");
+    return rt_reference_init(&stage->reference, stage->brute, stage->rays, v->rays.count, v->rays.threads,
+                             error);
+}
+
+static RtStatus verify_scene(Run *run, const char *name, RtError *error) {
+    const RtVerify *v = run->verify;
+    Stage stage = {.name = name};
+    RtStatus status = RT_OK;
+    for (uint32_t i = 0; i < v->spec_count && status == RT_OK; i++) {
+        json_t *known = known_row(run, name, v->specs[i].spec);
+        if (known) {
+            json_array_append(run->rows, known);
+            run->observer->row(run->observer->context, known);
+            run->progress.all -= v->rays.count;
+            continue;
+        }
+        if (!stage.reference.hits) status = set_stage(run, &stage, error);
+        if (status == RT_OK) status = verify_spec(run, &stage, &v->specs[i], error);
+        run->progress.done += v->rays.count;
+    }
+    rt_reference_clear(&stage.reference);
+    rt_free(stage.rays);
+    rt_accel_destroy(stage.brute);
+    rt_scene_clear(&stage.scene);
+    return status;
+}
+
+/* ---- the whole ---- */
+
+RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
+                       RtError *error) {
+    Run run = {.verify = verify, .observer = observer, .rows = json_array()};
+    run.progress.all = (uint64_t)verify->scene_count * verify->spec_count * verify->rays.count;
+    json_t *fingerprints = json_array();
+    RtStatus status = fingerprint_scenes(verify, fingerprints, error);
+    run.header = header_json(verify, fingerprints);
+    if (status == RT_OK && !run.header) status = rt_fail_memory(error, "what is verified", 0);
+    if (status == RT_OK) status = open_journal(&run, error);
+    for (uint32_t i = 0; i < verify->scene_count && status == RT_OK; i++) {
+        run.progress.scene = i;
+        status = verify_scene(&run, verify->scenes[i], error);
+    }
+    if (status == RT_OK && verify->folder) status = rt_verify_write(run.rows, verify->folder, error);
+    if (status == RT_OK && verify->folder) status = write_manifest(&run, error);
+    rt_json_lines_close(&run.journal);
+    json_decref(run.known);
+    json_decref(run.header);
+    *rows = run.rows;
+    return status;
+}

@@ -1,0 +1,66 @@
+#include "verify/verify_rays.h"
+
+#include "bench/rayset.h"
+#include "verify/ray_families.h"
+
+#include <string.h>
+
+#define FRAME_DEPTH 4
+
+/* The part of the rays that is the camera's: one in so many. */
+static uint64_t camera_part(const RtVerifyRays *wanted) {
+    return wanted->families ? 10 : 2;
+}
+
+/* Half of the camera's rays are primary ones at most, in the shape of its image. */
+RtStatus rt_verify_sample(const RtVerifyRays *wanted, RtScene *scene, RtError *error) {
+    uint64_t primary = wanted->count / (2 * camera_part(wanted));
+    double samples = (double)primary;
+    double aspect = (double)scene->camera.width / (double)scene->camera.height;
+    double width = fmin(fmax(sqrt(samples * aspect), 1), RT_MAX_IMAGE_SIDE);
+    double height = fmin(fmax(width / aspect, 1), RT_MAX_IMAGE_SIDE);
+    return rt_scene_sample(scene, (uint32_t)width, (uint32_t)height, 1, false, error);
+}
+
+/* Appends at most `limit` rays of `set`, evenly spread. */
+static RtStatus append(RtRay *rays, uint64_t *count, const RtRaySet *set, uint64_t limit, RtError *error) {
+    RtRaySet thin;
+    if (limit == 0) return RT_OK;
+    RT_TRY(rt_rayset_limit(set, limit, 1, &thin, error));
+    memcpy(rays + *count, thin.rays, thin.count * sizeof(RtRay));
+    *count += thin.count;
+    rt_rayset_clear(&thin);
+    return RT_OK;
+}
+
+/* Appends the share of each kind of ray that the camera's frame produces. */
+static RtStatus append_camera_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay *rays,
+                                   uint64_t *count, RtError *error) {
+    RtRecording recording = {.depth = FRAME_DEPTH, .seed = wanted->seed, .threads = wanted->threads};
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RT_TRY(rt_rayset_record(sets, oracle, &recording, error));
+    uint64_t kinds = 0;
+    for (int kind = 0; kind < RT_RAY_RANDOM; kind++) kinds += sets[kind].count > 0;
+    RtStatus status = RT_OK;
+    for (int kind = 0; kind < RT_RAY_RANDOM && status == RT_OK; kind++) {
+        if (sets[kind].count > 0)
+            status = append(rays, count, &sets[kind], wanted->count / camera_part(wanted) / kinds, error);
+    }
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
+    return status;
+}
+
+/* What the camera's kinds leave goes to the families, the first of which is the chords. */
+RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay *rays, RtError *error) {
+    RtQuery query;
+    uint64_t count = 0, families = wanted->families ? rt_ray_family_count() : 1;
+    RT_TRY(append_camera_rays(wanted, oracle, rays, &count, error));
+    RT_TRY(rt_query_init(&query, oracle, error));
+    uint64_t left = wanted->count - count;
+    for (uint64_t f = 0; f < families; f++) {
+        uint64_t first = left * f / families, end = left * (f + 1) / families;
+        rt_ray_family_fill((size_t)f, &query, wanted->seed, 0, (size_t)(end - first), rays + count + first);
+    }
+    rt_query_clear(&query);
+    return RT_OK;
+}

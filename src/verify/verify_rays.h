@@ -1,0 +1,24 @@
+/* The rays by which a scene is verified.
+ *
+ * Half of them come from a small frame of the scene's camera, in equal shares of primary, shadow, reflection,
+ * transmission and diffuse rays as far as the scene produces them, and the others are random chords. With
+ * `families` a tenth come from the camera, and the others are rays of every family that is hard on
+ * accelerators, in equal shares. */
+#ifndef RT_VERIFY_VERIFY_RAYS_H
+#define RT_VERIFY_VERIFY_RAYS_H
+
+#include "accel/accel.h"
+
+typedef struct RtVerifyRays {
+    uint64_t count, seed;
+    bool families;
+    int threads;
+} RtVerifyRays;
+
+/* Has the scene sampled as sparsely as its share of rays asks for; before accelerators are built over it. */
+RtStatus rt_verify_sample(const RtVerifyRays *wanted, RtScene *scene, RtError *error);
+
+/* Fills rays[0..wanted->count), the same ones at any number of threads. `oracle` is any exact accelerator. */
+RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay *rays, RtError *error);
+
+#endif
