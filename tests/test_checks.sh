@@ -7,15 +7,15 @@ failures=0
 
 fresh_tree() {
     rm -rf "${tree:?}"/*
-    mkdir -p "$tree"/{src/base,src/scene,src/render,accel,scenes,tests}
+    mkdir -p "$tree"/{src/base,src/scene,src/render,accel,scenes,tests/accel}
     echo '#include "accel/accel.h"' >"$tree/src/render/frame.c"
     echo '#include "scene/scene.h"' >"$tree/scenes/balls.c"
     echo '#include "base/file.h"' >"$tree/src/scene/load.c"
     echo 'const RtAccelOps rt_grid_ops = {' >"$tree/accel/grid.c"
     echo 'X(rt_grid_ops)' >"$tree/accel/registry.c"
-    echo '#include "testing.h"' >"$tree/tests/test_grid.c"
+    echo '#include "testing.h"' >"$tree/tests/accel/test_grid.c"
     printf '%s\n' 'set(ALL src/render/frame.c' 'src/scene/load.c scenes/balls.c' 'accel/grid.c accel/registry.c)' \
-        'raytally_test(grid)' >"$tree/CMakeLists.txt"
+        'raytally_tests(accel bvh' '  grid)' >"$tree/CMakeLists.txt"
 }
 
 # expect passes|fails CHECK WHAT
@@ -41,7 +41,7 @@ fresh_tree && echo '#include "scenes/builtin.h"' >>"$tree/src/scene/load.c"
 expect fails check_layers.sh "a reader that includes generators"
 fresh_tree && echo 'return &rt_grid_ops;' >>"$tree/src/render/frame.c"
 expect fails check_layers.sh "a renderer that names an accelerator"
-fresh_tree && echo 'extern const RtAccelOps rt_grid_ops;' >>"$tree/tests/test_grid.c"
+fresh_tree && echo 'extern const RtAccelOps rt_grid_ops;' >>"$tree/tests/accel/test_grid.c"
 expect fails check_layers.sh "a test that names an accelerator"
 
 fresh_tree && mkdir "$tree/accel/octree" && echo 'const RtAccelOps rt_octree_ops = {' >"$tree/accel/octree/octree.c"
@@ -52,7 +52,7 @@ expect fails check_layers.sh "an accelerator that names another"
 
 fresh_tree && touch "$tree/accel/octree.c"
 expect fails check_files.sh "a file that is not built"
-fresh_tree && touch "$tree/tests/test_octree.c"
+fresh_tree && touch "$tree/tests/accel/test_octree.c"
 expect fails check_files.sh "a test that is not registered"
 fresh_tree && touch "$tree/accel/grid_c.c" && sed -i 's|accel/grid\.c|accel/grid.c.orig|' "$tree/CMakeLists.txt"
 expect fails check_files.sh "a name that only resembles one in the list"

@@ -11,6 +11,12 @@
 
 #include <stdbool.h>
 
+/* The tests of the file test_NAME.c: the body runs them and gives what cmocka_run_group_tests gives, or
+ * RT_TEST_SKIPPED. tests/main.c calls it. */
+#define RT_TEST_GROUP(name)                                                                                  \
+    int test_##name(void);                                                                                   \
+    int test_##name(void)
+
 /* Exit code of a test executable that ctest reports as skipped. */
 #define RT_TEST_SKIPPED 77
 

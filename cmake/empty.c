@@ -1,0 +1,4 @@
+/* The program that each room of the library is linked into, whole: see raytally_room in CMakeLists.txt. */
+int main(void) {
+    return 0;
+}

@@ -1,0 +1,163 @@
+/* accel/bvh from the inside: its invariants, broken on purpose, and its depth. */
+#include "accel_testing.h"
+
+#include "accel/bvh/bvh.h"
+
+#include <stdio.h>
+
+/* `count` unit spheres in a row along x, `apart` from centre to centre. */
+static void make_row(RtScene *scene, uint32_t count, float apart) {
+    begin_scene(scene);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(apart * (float)i, 0, 0), 1, error));
+    }
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+static RtBvh *make_bvh(const RtScene *scene, const char *spec) {
+    RtAccel *accel;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    assert_ok(accel->ops->validate(accel, error));
+    return (RtBvh *)accel;
+}
+
+static RtDescription described(const RtBvh *bvh) {
+    RtDescription description;
+    rt_accel_describe(&bvh->base, &description);
+    return description;
+}
+
+static void validate_names_each_invariant_that_is_broken(void **state) {
+    (void)state;
+    RtScene scene;
+    make_row(&scene, 16, 3);
+    RtBvh *bvh = make_bvh(&scene, "bvh:leaf=1");
+    RtHierarchy *hierarchy = &bvh->hierarchy;
+
+    RtNode root = hierarchy->nodes[0];
+    hierarchy->nodes[0].box.hi.x -= 1;
+    assert_broken(&bvh->base, "bvh: node 0 does not contain its child");
+    hierarchy->nodes[0].first = 0;
+    assert_broken(&bvh->base, "children that are not there");
+    hierarchy->nodes[0].first = hierarchy->node_count - 1;
+    assert_broken(&bvh->base, "children that are not there");
+    hierarchy->nodes[0] = root;
+    hierarchy->nodes[0].count = 3; /* the traversal knows pairs only */
+    assert_broken(&bvh->base, "node 0 has 3 children, not 2 to 2");
+    hierarchy->nodes[0] = root;
+
+    for (uint32_t i = 0; i < hierarchy->node_count; i++) {
+        if (!rt_node_is_leaf(&hierarchy->nodes[i])) continue;
+        RtNode leaf = hierarchy->nodes[i];
+        hierarchy->nodes[i].box.lo.y = 0;
+        assert_broken(&bvh->base, "does not contain its object");
+        hierarchy->nodes[i] = leaf;
+    }
+    rt_accel_destroy(&bvh->base);
+    rt_scene_clear(&scene);
+
+    make_row(&scene, 2, 0);
+    bvh = make_bvh(&scene, "bvh:leaf=2");
+    hierarchy = &bvh->hierarchy;
+    uint32_t *ids = hierarchy->ids;
+    ids[1] = ids[0];
+    assert_broken(&bvh->base, "object 0 is in 2 leaves");
+    ids[1] = 7;
+    assert_broken(&bvh->base, "holds no object");
+    ids[1] = 1 - ids[0];
+    hierarchy->nodes[0].first = 1;
+    assert_broken(&bvh->base, "holds no object");
+    hierarchy->nodes[0].first = 0;
+    hierarchy->nodes[0].count = RT_NODE_LEAF | 1;
+    assert_broken(&bvh->base, "is in 0 leaves");
+    rt_accel_destroy(&bvh->base);
+    rt_scene_clear(&scene);
+}
+
+/* Every inner node gets a leaf and the next inner node as children. */
+static void validate_names_a_node_that_is_too_deep(void **state) {
+    (void)state;
+    RtScene scene;
+    make_row(&scene, RT_TREE_MAX_DEPTH + 3, 0);
+    RtBvh *bvh = make_bvh(&scene, "bvh:leaf=1");
+    RtNode *nodes = bvh->hierarchy.nodes;
+    RtBox box = nodes[0].box;
+    for (uint32_t i = 0; i + 1 < scene.geometry.object_count; i++) {
+        nodes[2 * i] = (RtNode){.box = box, .first = 2 * i + 1, .count = 2};
+        nodes[2 * i + 1] = (RtNode){.box = box, .first = i, .count = RT_NODE_LEAF | 1};
+    }
+    assert_broken(&bvh->base, "node 129 is too deep");
+    rt_accel_destroy(&bvh->base);
+    rt_scene_clear(&scene);
+}
+
+static const char *const builds[] = {"binned,bins=2", "sweep", "lbvh", "lbvh,bits=1", "ploc"};
+enum { BUILD_COUNT = sizeof builds / sizeof builds[0] };
+
+static void coincident_objects_are_halved_within_the_depth_limit(void **state) {
+    (void)state;
+    RtScene scene;
+    make_row(&scene, 1000, 0);
+    for (int b = 0; b < BUILD_COUNT; b++) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "bvh:leaf=1,build=%s", builds[b]);
+        RtBvh *bvh = make_bvh(&scene, spec);
+        RtDescription description = described(bvh);
+        assert_int_equal(description.leaves, 1000);
+        assert_int_equal(description.depth, 10);
+        rt_accel_destroy(&bvh->base);
+    }
+    rt_scene_clear(&scene);
+}
+
+/* Spheres at distances that grow by powers of 2: a split always cuts off the last few, the worst case in
+ * depth. */
+static void a_chain_of_growing_distances_stays_within_the_depth_limit(void **state) {
+    (void)state;
+    RtScene scene;
+    begin_scene(&scene);
+    float x = 1e-17f;
+    for (int i = 0; i < 110; i++, x *= 2) {
+        for (int copy = 0; copy < 40; copy++) {
+            assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(x, 0, 0), x / 8, error));
+        }
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    for (int b = 0; b < BUILD_COUNT; b++) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "bvh:leaf=1,build=%s", builds[b]);
+        RtBvh *bvh = make_bvh(&scene, spec);
+        RtDescription description = described(bvh);
+        if (b < 2 || b == 4) assert_true(description.depth > 34); /* or the test would show nothing */
+        assert_true(description.depth <= RT_TREE_MAX_DEPTH);
+        rt_accel_destroy(&bvh->base);
+    }
+    rt_scene_clear(&scene);
+}
+
+static void the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand(void **state) {
+    (void)state;
+    RtScene scene;
+    make_row(&scene, 2, 8);
+    RtBvh *bvh = make_bvh(&scene, "bvh:leaf=1,traversal=0.5");
+    RtDescription description = described(bvh);
+    /* Root 10 x 2 x 2: half area 44; each leaf 2 x 2 x 2: 12. 0.5 + 12 / 44 + 12 / 44. */
+    assert_true(fabs(description.predicted_cost - (0.5 + 24.0 / 44.0)) < 1e-12);
+    assert_int_equal(description.interior, 1);
+    assert_int_equal(description.leaves, 2);
+    assert_int_equal(description.references, 2);
+    assert_int_equal(description.depth, 1);
+    rt_accel_destroy(&bvh->base);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(bvh) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
+        cmocka_unit_test(validate_names_a_node_that_is_too_deep),
+        cmocka_unit_test(coincident_objects_are_halved_within_the_depth_limit),
+        cmocka_unit_test(a_chain_of_growing_distances_stays_within_the_depth_limit),
+        cmocka_unit_test(the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,331 @@
+/* bvh:build=spatial: what is cut, that nothing of it is lost, and rays that would find out. */
+#include "accel_testing.h"
+
+#include "accel/bvh/bvh.h"
+#include "base/random.h"
+#include "scenes/open.h"
+
+#include <stdlib.h>
+
+static void add_triangle(RtScene *scene, RtVec3 a, RtVec3 b, RtVec3 c) {
+    const RtVec3 v[3] = {a, b, c};
+    assert_ok(rt_scene_add_triangle(scene, 0, v, NULL, error));
+}
+
+static RtBvh *make_bvh(const RtScene *scene, const char *spec) {
+    RtAccel *accel;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    assert_ok(accel->ops->validate(accel, error));
+    return (RtBvh *)accel;
+}
+
+/* In the plane z = 0: a sliver (object 0) along the diagonal of [0,16]^2, and four equal triangles in each of
+ * the two other corners. To cut the sliver at any x costs 5 * 256 by the heuristic; whole, with one of the
+ * corners, 5 * 256 + 4. */
+static RtScene make_diagonal(void) {
+    RtScene scene;
+    begin_scene(&scene);
+    add_triangle(&scene, rt_vec3(0, 0, 0), rt_vec3(16, 16, 0), rt_vec3(16, 15.9f, 0));
+    for (int i = 0; i < 4; i++) {
+        add_triangle(&scene, rt_vec3(0, 15, 0), rt_vec3(1, 15, 0), rt_vec3(0, 16, 0));
+        add_triangle(&scene, rt_vec3(15, 0, 0), rt_vec3(16, 0, 0), rt_vec3(15, 1, 0));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+static void a_long_diagonal_triangle_is_in_two_leaves(void **state) {
+    (void)state;
+    RtScene scene = make_diagonal();
+    RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial");
+    assert_true(bvh->hierarchy.divided);
+    assert_int_equal(bvh->hierarchy.id_count, 10);
+    uint32_t leaves = 0;
+    for (uint32_t i = 0; i < bvh->hierarchy.id_count; i++) leaves += bvh->hierarchy.ids[i] == 0;
+    assert_int_equal(leaves, 2);
+    rt_accel_destroy(&bvh->base);
+    rt_scene_clear(&scene);
+}
+
+static RtTally count_ray(const RtScene *scene, const char *spec, const RtRay *ray) {
+    RtBvh *bvh = make_bvh(scene, spec);
+    RtQuery query;
+    RtHit hit;
+    RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+    assert_ok(rt_query_init(&query, &bvh->base, error));
+    rt_nearest(&query, ray, 1, &hit, tallies);
+    assert_int_equal(hit.object, RT_NO_OBJECT);
+    rt_query_clear(&query);
+    rt_accel_destroy(&bvh->base);
+    return tallies[ray->kind];
+}
+
+/* A ray in the plane of the triangles, which it misses, along the diagonal: the root, both of its children,
+ * and the two leaves with parts of the sliver, whose siblings in the corners it passes by. */
+static void a_part_that_was_tested_before_is_not_tested_again(void **state) {
+    (void)state;
+    RtScene scene = make_diagonal();
+    const RtRay ray = {{-1, -1, 0}, 0, {1, 1, 0}, INFINITY, RT_RAY_RANDOM, 0};
+    RtTally on = count_ray(&scene, "bvh:build=spatial", &ray);
+    RtTally off = count_ray(&scene, "bvh:build=spatial,mailbox=off", &ray);
+    assert_int_equal(on.object_tests, 1);
+    assert_int_equal(on.repeats_avoided, 1);
+    assert_int_equal(off.object_tests, 2);
+    assert_int_equal(off.repeats_avoided, 0);
+    assert_int_equal(on.extent_tests, 7);
+    assert_int_equal(on.steps, 5);
+    assert_int_equal(on.leaf_steps, 2);
+    assert_int_equal(off.steps, 5);
+    rt_scene_clear(&scene);
+}
+
+/* ---- scenes of slivers ---- */
+
+static RtVec3 point_in(RtRandom *random, float scale, float offset) {
+    RtVec3 p;
+    for (int a = 0; a < 3; a++) p.at[a] = offset + scale * rt_random_between(random, 0, 1);
+    return p;
+}
+
+/* `count` objects: long slivers in all directions, with spheres, cones and thin polygons among them. */
+static RtScene make_slivers(uint32_t count, uint64_t seed, float scale, float offset) {
+    RtScene scene;
+    begin_scene(&scene);
+    RtRandom random = rt_random(seed, 0);
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3 a = point_in(&random, scale, offset), b = point_in(&random, scale, offset), c = b;
+        for (int k = 0; k < 3; k++) c.at[k] += scale * rt_random_between(&random, -0.01f, 0.01f);
+        const RtVec3 corners[4] = {a, b, c, {{a.x + c.x - b.x, a.y + c.y - b.y, a.z + c.z - b.z}}};
+        RtError ignored; /* a polygon may have turned out not to be planar */
+        if (i % 8 == 7) {
+            assert_ok(
+                rt_scene_add_sphere(&scene, 0, a, scale * rt_random_between(&random, 0.01f, 0.4f), error));
+        } else if (i % 8 == 6) {
+            assert_ok(rt_scene_add_cone(&scene, 0, a, scale * 0.01f, b, 0, error));
+        } else if (i % 8 > 3 || rt_scene_add_polygon(&scene, 0, corners, 4, &ignored) != RT_OK) {
+            add_triangle(&scene, a, b, c);
+        }
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+static void the_budget_is_kept_and_used(void **state) {
+    (void)state;
+    RtScene scene = make_slivers(2000, 1, 1, 0);
+    RtDescription description;
+    double before = INFINITY;
+    const struct {
+        const char *spec;
+        uint64_t least, most;
+    } rows[] = {{"bvh:build=spatial,leaf=1,budget=1", 2000, 2000},
+                {"bvh:build=spatial,leaf=1,budget=1.1", 2050, 2200},
+                {"bvh:build=spatial,leaf=1,budget=3", 2500, 6000}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        RtBvh *bvh = make_bvh(&scene, rows[i].spec);
+        rt_accel_describe(&bvh->base, &description);
+        assert_in_range(description.references, rows[i].least, rows[i].most);
+        assert_true(description.predicted_cost < before);
+        before = description.predicted_cost;
+        rt_accel_destroy(&bvh->base);
+    }
+    rt_scene_clear(&scene);
+}
+
+static void without_budget_or_overlap_it_is_the_binned_tree(void **state) {
+    (void)state;
+    RtScene scene = make_slivers(500, 2, 1, 0);
+    RtBvh *binned = make_bvh(&scene, "bvh");
+    const char *specs[] = {"bvh:build=spatial,budget=1", "bvh:build=spatial,alpha=1"};
+    for (int i = 0; i < 2; i++) {
+        RtBvh *bvh = make_bvh(&scene, specs[i]);
+        const RtHierarchy *a = &binned->hierarchy, *b = &bvh->hierarchy;
+        assert_false(b->divided);
+        assert_int_equal(a->node_count, b->node_count);
+        assert_memory_equal(a->nodes, b->nodes, a->node_count * sizeof(RtNode));
+        assert_memory_equal(a->ids, b->ids, a->id_count * sizeof(uint32_t));
+        rt_accel_destroy(&bvh->base);
+    }
+    rt_accel_destroy(&binned->base);
+    rt_scene_clear(&scene);
+}
+
+static void validate_misses_a_part_of_a_divided_object(void **state) {
+    (void)state;
+    RtScene scene = make_slivers(200, 3, 1, 0);
+    RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial,leaf=4");
+    RtHierarchy *hierarchy = &bvh->hierarchy;
+    assert_true(hierarchy->divided);
+    uint32_t tried = 0;
+    for (uint32_t i = 0; i < hierarchy->node_count; i++) {
+        RtNode *node = &hierarchy->nodes[i], kept = *node;
+        if (!rt_node_is_leaf(node)) continue;
+        int axis = (int)(i % 3);
+        node->box.hi.at[axis] -= 0.5f * (node->box.hi.at[axis] - node->box.lo.at[axis]);
+        assert_broken(&bvh->base, "part of object");
+        *node = kept;
+        tried++;
+        if (rt_node_fanout(node) < 2) continue;
+        uint32_t id = hierarchy->ids[node->first];
+        hierarchy->ids[node->first] = hierarchy->ids[node->first + 1];
+        assert_broken(&bvh->base, "twice");
+        hierarchy->ids[node->first] = id;
+    }
+    assert_true(tried > 50);
+    rt_accel_destroy(&bvh->base);
+    rt_scene_clear(&scene);
+}
+
+/* ---- hostile rays ---- */
+
+enum { RAYS = 300 };
+
+/* At points of objects, from in and around the scene or very far away; in the planes of nodes' sides, along
+ * axes or across; with dirs of any length; ending at the point or beyond. */
+static void aim(RtRandom *random, const RtScene *scene, const RtHierarchy *hierarchy, RtRay *ray) {
+    const RtGeometry *g = &scene->geometry;
+    RtVec3 size = rt_box_size(g->box), from, to;
+    float longest = size.at[rt_major_axis(size)], away = 1;
+    uint32_t pick = rt_random_bits(random), id = rt_random_below(random, g->object_count);
+    for (uint32_t i = pick % 8; i > 4; i--) away *= 100; /* 1, 1e2, 1e4, 1e6 scene sizes */
+    for (int a = 0; a < 3; a++) {
+        const RtBox *own = &g->boxes[id];
+        to.at[a] = own->lo.at[a] + (own->hi.at[a] - own->lo.at[a]) * rt_random_between(random, 0, 1);
+        from.at[a] = to.at[a] + longest * away * rt_random_between(random, -1, 1);
+    }
+    if (rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE) { /* a point of it, or of an edge */
+        const RtVec3 *v = g->triangles[rt_ref_index(g->objects[id])].v;
+        float u = rt_random_between(random, 0, 1),
+              w = pick & 16 ? 0 : (1 - u) * rt_random_between(random, 0, 1);
+        for (int a = 0; a < 3; a++) to.at[a] = v[0].at[a] * (1 - u - w) + v[1].at[a] * u + v[2].at[a] * w;
+    }
+    if ((pick & 6144) == 0) from = rt_vec3(0, 0, 0); /* where rounding the origin makes no ray thicker */
+    if (pick & 32) {                                 /* in a plane of a node */
+        const RtBox *box = &hierarchy->nodes[rt_random_below(random, hierarchy->node_count)].box;
+        int a = (int)(rt_random_below(random, 3));
+        from.at[a] = to.at[a] = (pick & 64 ? box->lo : box->hi).at[a];
+        if (pick & 128) from.at[(a + 1) % 3] = to.at[(a + 1) % 3]; /* along an axis */
+    }
+    RtVec3 dir = rt_sub(to, from);
+    float reach = 1;
+    if (pick & 256) {
+        float factor = pick & 512 ? 0x1p-70f : 0x1p70f; /* beyond what float32 bears, nearly */
+        dir = rt_scale(dir, factor);
+        reach = 1 / factor;
+    }
+    *ray = (RtRay){from, 0, dir, pick & 1024 ? reach : INFINITY, RT_RAY_RANDOM, 0};
+    if (!rt_ray_is_valid(ray)) *ray = (RtRay){to, 0, {{1, 0, 0}}, INFINITY, RT_RAY_RANDOM, 0};
+}
+
+static void assert_like_brute(const RtScene *scene, const char *spec, uint64_t seed) {
+    RtAccel *brute;
+    RtBvh *bvh = make_bvh(scene, spec);
+    RtQuery query, truth;
+    RtRandom random = rt_random(seed, 1);
+    assert_ok(rt_accel_open("brute", scene, &brute, error));
+    assert_ok(rt_query_init(&query, &bvh->base, error));
+    assert_ok(rt_query_init(&truth, brute, error));
+    for (int i = 0; i < RAYS; i++) {
+        RtRay ray;
+        RtHit hit, expected;
+        bool blocked, is_blocked;
+        aim(&random, scene, &bvh->hierarchy, &ray);
+        rt_nearest(&query, &ray, 1, &hit, NULL);
+        rt_nearest(&truth, &ray, 1, &expected, NULL);
+        rt_occluded(&query, &ray, 1, &blocked, NULL);
+        rt_occluded(&truth, &ray, 1, &is_blocked, NULL);
+        assert_int_equal(hit.object, expected.object);
+        assert_memory_equal(&hit.t, &expected.t, sizeof hit.t);
+        assert_int_equal(blocked, is_blocked);
+    }
+    rt_query_clear(&truth);
+    rt_query_clear(&query);
+    rt_accel_destroy(brute);
+    rt_accel_destroy(&bvh->base);
+}
+
+static void hostile_rays_hit_like_brute(void **state) {
+    (void)state;
+    const char *specs[] = {"bvh:build=spatial", "bvh:build=spatial,alpha=0,budget=16,leaf=1,traversal=0",
+                           "bvh:build=spatial,reinsertion=2,mailbox=off,budget=4"};
+    const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
+    for (uint64_t round = 0; round < 18; round++) {
+        RtScene scene = make_slivers(160, round, scales[round % 6], offsets[round % 6]);
+        for (int s = 0; s < 3; s++) assert_like_brute(&scene, specs[s], round);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* ---- limits ---- */
+
+static void degenerate_scenes_are_built(void **state) {
+    (void)state;
+    const char *specs[] = {"random:n=0", "random:n=1,shape=triangle", "random:n=300,distribution=coincident",
+                           "random:n=300,distribution=plane,shape=mixed", "random:n=300,distribution=line"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        RtScene scene;
+        if (i == 0) {
+            begin_scene(&scene);
+            assert_ok(rt_scene_finish(&scene, error));
+        } else {
+            assert_ok(rt_scene_open(specs[i], &scene, error));
+            assert_like_brute(&scene, "bvh:build=spatial,alpha=0,budget=4", i);
+        }
+        rt_accel_destroy(&make_bvh(&scene, "bvh:build=spatial")->base);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void what_may_take_too_much_is_refused_with_what_would_fit(void **state) {
+    (void)state;
+    RtScene scene = make_slivers(1000, 5, 1, 0);
+    RtSpatial how = {.bins = 16, .alpha = 0, .budget = 4, .leaf = 8, .traversal = 1, .limit = 300000};
+    RtTree tree;
+    RtError refusal;
+    assert_int_equal(rt_tree_spatial(&tree, &scene.geometry, &how, &refusal), RT_BAD_INPUT);
+    const char *fits = strstr(refusal.message, "budget=");
+    assert_non_null(fits);
+    how.budget = atof(fits + strlen("budget="));
+    assert_in_range((int64_t)how.budget, 1, 3);
+    assert_ok(rt_tree_spatial(&tree, &scene.geometry, &how, error));
+    rt_tree_clear(&tree);
+    how.limit = 1000;
+    assert_int_equal(rt_tree_spatial(&tree, &scene.geometry, &how, &refusal), RT_BAD_INPUT);
+    assert_non_null(strstr(refusal.message, "another build"));
+    rt_scene_clear(&scene);
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    RtScene scene = make_slivers(100, 6, 1, 0);
+    int64_t live = rt_alloc_live();
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status != RT_OK; n++) {
+        RtAccel *accel = NULL;
+        RtError failure = {RT_OK, ""};
+        rt_alloc_fail_at(n);
+        status = rt_accel_open("bvh:build=spatial,reinsertion=1", &scene, &accel, &failure);
+        if (status == RT_OK) status = rt_accel_validate(accel, &failure);
+        rt_alloc_fail_at(0);
+        if (status != RT_OK) assert_int_equal(status, RT_NO_MEMORY);
+        rt_accel_destroy(accel);
+        assert_int_equal(rt_alloc_live(), live);
+        assert_in_range(n, 1, 30);
+    }
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(bvh_spatial) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_long_diagonal_triangle_is_in_two_leaves),
+        cmocka_unit_test(a_part_that_was_tested_before_is_not_tested_again),
+        cmocka_unit_test(the_budget_is_kept_and_used),
+        cmocka_unit_test(without_budget_or_overlap_it_is_the_binned_tree),
+        cmocka_unit_test(validate_misses_a_part_of_a_divided_object),
+        cmocka_unit_test(hostile_rays_hit_like_brute),
+        cmocka_unit_test(degenerate_scenes_are_built),
+        cmocka_unit_test(what_may_take_too_much_is_refused_with_what_would_fit),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
+}

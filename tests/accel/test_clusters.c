@@ -1,0 +1,258 @@
+/* accel/clusters: exactness of every kind of extent with every order and method, the shape of its nodes, and
+ * each invariant broken on purpose. */
+#include "accel_testing.h"
+#include "equivalence_testing.h"
+
+#include "accel/clusters/clusters.h"
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const methods[] = {"agglomerative", "ploc", "goldsmith-salmon", "rubin-whitted", "sah"};
+enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
+
+/* Every kind with every order and method, on wide nodes and full leaves: more than one parameter at a
+ * time. */
+static void every_combination_answers_like_brute(void **state) {
+    (void)state;
+    static const char *const shapes[] = {"width=2", "width=5,leaf=4", "width=16,leaf=32"};
+    static const char *const kinds[] = {"box", "sphere", "obb", "slabs"};
+    static const char *const families[] = {"mixed", "duplicates", "huge-beside-tiny", "mixed-far"};
+    for (size_t f = 0; f < 4; f++) {
+        FamilyBench bench;
+        set_up_family(&bench, scene_family(families[f]), 3, 64);
+        for (size_t i = 0; i < 4 * 2 * 3 * METHOD_COUNT; i++) {
+            char spec[RT_MAX_SPEC_CHARS];
+            snprintf(spec, sizeof spec, "clusters:extent=%s,traversal_order=%s,%s,method=%s", kinds[i % 4],
+                     i / 4 % 2 ? "fixed" : "nearest", shapes[i / 8 % 3], methods[i / 24]);
+            assert_answers_like_brute(&bench, spec);
+        }
+        tear_down_family(&bench);
+    }
+}
+
+/* Unit spheres at x = 0, 4, 8, ...: two a pair, four a group. */
+static RtScene make_row(uint32_t count) {
+    RtScene scene;
+    begin_scene(&scene);
+    for (uint32_t i = 0; i < count; i++) {
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(4 * (float)i, 0, 0), 1, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    return scene;
+}
+
+static RtClusters *make_clusters(const RtScene *scene, const char *spec) {
+    RtAccel *accel;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    assert_ok(accel->ops->validate(accel, error));
+    return (RtClusters *)accel;
+}
+
+static void widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_visit(void **state) {
+    (void)state;
+    RtScene scene = make_row(6);
+    /* Medians: {0 1 2} and {3 4 5}, both of {a b} and {c}. Boxes of n spheres are 4 n - 2 long: half areas 92
+     * for six, 44 for three, 28 for two, 12 for one. */
+    static const struct {
+        const char *spec;
+        uint32_t interior;
+        double cost;
+    } rows[] = {
+        {"clusters:method=rubin-whitted", 5, (92 + 2 * 44 + 2 * 28 + 6 * 12) / 92.0},
+        {"clusters:method=rubin-whitted,width=3", 3, (92 + 44 + 28 + 6 * 12) / 92.0},
+        {"clusters:method=rubin-whitted,width=4", 3, (92 + 2 * 28 + 6 * 12) / 92.0},
+        {"clusters:method=rubin-whitted,width=16", 1, (92 + 6 * 12) / 92.0},
+        {"clusters:method=rubin-whitted,width=16,extent=sphere", 1, (92 + 6 * 12) / 92.0},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        RtClusters *self = make_clusters(&scene, rows[i].spec);
+        RtDescription description;
+        self->base.ops->describe(&self->base, &description);
+        assert_int_equal(description.interior, rows[i].interior);
+        assert_int_equal(description.leaves, 6);
+        assert_int_equal(description.references, 6);
+        assert_true(fabs(description.predicted_cost - rows[i].cost) < 1e-12);
+        rt_accel_destroy(&self->base);
+    }
+    rt_scene_clear(&scene);
+}
+
+static void objects_share_a_leaf_where_that_costs_no_more(void **state) {
+    (void)state;
+    RtScene apart = make_row(2);
+    RtClusters *self = make_clusters(&apart, "clusters:leaf=2");
+    assert_int_equal(self->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&apart);
+    RtScene scene;
+    begin_scene(&scene);
+    for (int i = 0; i < 2; i++) assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    self = make_clusters(&scene, "clusters:leaf=2");
+    assert_int_equal(self->hierarchy.node_count, 1);
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&scene);
+}
+
+static void count_box(void *context, const RtBox *box, uint32_t depth) {
+    uint32_t *at_depth = context;
+    assert_false(rt_box_is_empty(*box));
+    at_depth[depth]++;
+}
+
+static void pictures_get_every_node_with_its_depth(void **state) {
+    (void)state;
+    RtScene scene = make_row(4);
+    RtClusters *self = make_clusters(&scene, "clusters");
+    uint32_t at_depth[3] = {0};
+    self->base.ops->each_box(&self->base, (RtBoxViewer){count_box, at_depth});
+    assert_int_equal(at_depth[0], 1);
+    assert_int_equal(at_depth[1], 2);
+    assert_int_equal(at_depth[2], 4);
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&scene);
+}
+
+static void groups_of_spheres_get_tight_extents(void **state) {
+    (void)state;
+    RtScene scene = make_row(2); /* a capsule 6 long, 2 thick */
+    RtClusters *self = make_clusters(&scene, "clusters:extent=sphere");
+    assert_true(self->set.balls[0].radius >= 3 && self->set.balls[0].radius < 3.000001);
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&scene);
+
+    begin_scene(&scene);
+    for (int i = 0; i < 8; i++) {
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3 * (float)i, 4 * (float)i, 0), 1, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    self = make_clusters(&scene, "clusters:extent=obb");
+    /* Along the diagonal: 37 x 2 x 2. */
+    const double *half = self->set.oriented[0].half;
+    assert_true(fabs(half[0] * half[1] * half[2] - 18.5) < 1e-6);
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&scene);
+}
+
+/* ---- broken on purpose ---- */
+
+/* The first leaf in the array. */
+static uint32_t some_leaf(const RtClusters *self) {
+    uint32_t i = 0;
+    while (!rt_node_is_leaf(&self->hierarchy.nodes[i])) i++;
+    return i;
+}
+
+static void validate_names_each_invariant_of_the_tree_that_is_broken(void **state) {
+    (void)state;
+    RtScene scene = make_row(16);
+    RtClusters *self = make_clusters(&scene, "clusters:width=4");
+    RtNode root = self->hierarchy.nodes[0], *leaf = &self->hierarchy.nodes[some_leaf(self)], kept = *leaf;
+
+    self->hierarchy.nodes[0].box.hi.x -= 1;
+    assert_broken(&self->base, "node 0 does not contain its child");
+    self->hierarchy.nodes[0] = root;
+    self->hierarchy.nodes[0].count = 5;
+    assert_broken(&self->base, "node 0 has 5 children, not 2 to 4");
+    self->hierarchy.nodes[0].count = 1;
+    assert_broken(&self->base, "node 0 has 1 children, not 2 to 4");
+    self->hierarchy.nodes[0] = root;
+    self->hierarchy.nodes[0].first = 0;
+    assert_broken(&self->base, "node 0 has children that are not there");
+    self->hierarchy.nodes[0].first = self->hierarchy.node_count - 1;
+    assert_broken(&self->base, "node 0 has children that are not there");
+    self->hierarchy.nodes[0] = root;
+
+    leaf->box.lo.y = 0;
+    assert_broken(&self->base, "does not contain its object");
+    *leaf = kept;
+    leaf->count = RT_NODE_LEAF | 2;
+    assert_broken(&self->base, "has 2 objects, not 1 to 1");
+    leaf->count = RT_NODE_LEAF;
+    assert_broken(&self->base, "has 0 objects");
+    *leaf = kept;
+    leaf->first = 16;
+    assert_broken(&self->base, "holds no object");
+    *leaf = kept;
+    self->hierarchy.ids[leaf->first] = 99;
+    assert_broken(&self->base, "holds no object");
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&scene);
+}
+
+static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(void **state) {
+    (void)state;
+    RtScene scene = make_row(2);
+    for (uint32_t i = 0; i < 2; i++) scene.geometry.boxes[i] = scene.geometry.box;
+    RtClusters *self = make_clusters(&scene, "clusters");
+    self->hierarchy.ids[1] = self->hierarchy.ids[0];
+    assert_broken(&self->base, "in 2 leaves");
+    self->hierarchy.node_count = 1;
+    assert_broken(&self->base, "children that are not there");
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&scene);
+
+    RtScene three = make_row(3);
+    self = make_clusters(&three, "clusters:method=rubin-whitted,leaf=3");
+    RtNode root = self->hierarchy.nodes[0];
+    assert_int_equal(self->hierarchy.node_count, 5);
+    self->hierarchy.nodes[0] = (RtNode){root.box, 0, RT_NODE_LEAF | 3};
+    assert_broken(&self->base, "1 of 5 nodes are in the tree");
+    self->hierarchy.nodes[0] = root;
+    RtNode two = self->hierarchy.nodes[1], one = self->hierarchy.nodes[2];
+    self->hierarchy.nodes[1] = one;
+    self->hierarchy.nodes[2] = two;
+    assert_broken(&self->base, "the ids of leaf 1 begin at 2, not at 0");
+    self->hierarchy.nodes[1] = two;
+    assert_broken(&self->base, "has two parents");
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&three);
+
+    /* A chain by hand: node 2 i has a leaf and the rest. */
+    enum { COUNT = 80 };
+    RtScene row = make_row(COUNT);
+    self = make_clusters(&row, "clusters");
+    for (uint32_t i = 0; i < COUNT; i++) {
+        self->hierarchy.ids[i] = i;
+        uint32_t leaf = i + 1 < COUNT ? 2 * i + 1 : 2 * i;
+        if (i + 1 < COUNT) self->hierarchy.nodes[2 * i] = (RtNode){row.geometry.box, 2 * i + 1, 2};
+        self->hierarchy.nodes[leaf] = (RtNode){row.geometry.boxes[i], i, RT_NODE_LEAF | 1};
+    }
+    assert_broken(&self->base, "too deep");
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&row);
+}
+
+static void validate_names_the_extent_that_does_not_hold_its_objects(void **state) {
+    (void)state;
+    RtScene scene = make_row(8);
+    RtClusters *self = make_clusters(&scene, "clusters:extent=sphere");
+    self->set.balls[0].radius *= 1 - 1e-4;
+    assert_broken(&self->base, "clusters: the sphere 0 does not contain object");
+    rt_accel_destroy(&self->base);
+    self = make_clusters(&scene, "clusters:extent=obb");
+    self->set.oriented[1].half[0] *= 0.99;
+    assert_broken(&self->base, "clusters: the oriented box 1 does not contain object");
+    rt_accel_destroy(&self->base);
+    self = make_clusters(&scene, "clusters:extent=slabs,slabs=13");
+    self->set.slabs[2 * 13 + 12].lo += 0.01f;
+    assert_broken(&self->base, "clusters: the set of slabs 2 does not contain object");
+    rt_accel_destroy(&self->base);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(clusters) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_combination_answers_like_brute),
+        cmocka_unit_test(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_visit),
+        cmocka_unit_test(objects_share_a_leaf_where_that_costs_no_more),
+        cmocka_unit_test(pictures_get_every_node_with_its_depth),
+        cmocka_unit_test(groups_of_spheres_get_tight_extents),
+        cmocka_unit_test(validate_names_each_invariant_of_the_tree_that_is_broken),
+        cmocka_unit_test(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep),
+        cmocka_unit_test(validate_names_the_extent_that_does_not_hold_its_objects),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,75 @@
+/* accel/embree: no objects, a structure outgrown, memory, and which Embree it is. Skipped without Embree. */
+#include "embree_testing.h"
+
+#include "accel/embree_info.h"
+
+static void an_empty_scene_is_hit_by_nothing(void **state) {
+    (void)state;
+    static const char *const specs[] = {"embree", "embree:query=16", "embree:query=stream",
+                                        "embree:mode=user", "embree:mode=user,query=8"};
+    RtScene scene;
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_finish(&scene, error));
+    RtRay ray = {.dir = {1, 0, 0}, .tmax = INFINITY};
+    compare_with_brute(&scene, (Rays){&ray, 1}, specs, sizeof specs / sizeof specs[0]);
+    rt_scene_clear(&scene);
+}
+
+static void a_scene_that_outgrows_its_structure_is_noticed_in_user_mode(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    make_soup(&scene, 40, 1, 10);
+    assert_ok(rt_accel_open("embree:mode=user", &scene, &accel, error));
+    assert_ok(rt_accel_validate(accel, error));
+    scene.geometry.box.hi.y += 1;
+    assert_broken(accel, "bounds do not contain");
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static void building_ten_times_leaks_nothing(void **state) {
+    (void)state;
+    RtScene scene;
+    make_soup(&scene, 60, 1, 10);
+    int64_t before = rt_alloc_live();
+    for (int i = 0; i < 10; i++) {
+        RtAccel *accel;
+        RtDescription description;
+        assert_ok(rt_accel_open(i % 2 ? "embree" : "embree:mode=user", &scene, &accel, error));
+        accel->ops->describe(accel, &description);
+        assert_true(description.bytes > 1000 && description.bytes < 1000000);
+        assert_int_equal(description.references, 60);
+        rt_accel_destroy(accel);
+    }
+    for (uint64_t nth = 1; nth <= 2; nth++) {
+        RtAccel *accel;
+        RtError error;
+        rt_alloc_fail_at(nth);
+        assert_int_equal(rt_accel_open("embree", &scene, &accel, &error), RT_NO_MEMORY);
+    }
+    rt_alloc_fail_at(0);
+    assert_int_equal(rt_alloc_live(), before);
+    rt_scene_clear(&scene);
+}
+
+static void info_names_a_version_and_an_isa(void **state) {
+    (void)state;
+    char text[64];
+    assert_true(rt_embree_info(text, sizeof text));
+    int major, minor, patch;
+    char isa[16];
+    assert_int_equal(sscanf(text, "%d.%d.%d %15s", &major, &minor, &patch, isa), 4);
+    assert_true(major >= 3);
+}
+
+RT_TEST_GROUP(embree) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_empty_scene_is_hit_by_nothing),
+        cmocka_unit_test(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode),
+        cmocka_unit_test(building_ten_times_leaks_nothing),
+        cmocka_unit_test(info_names_a_version_and_an_isa),
+    };
+    if (!embree_is_built_in()) return RT_TEST_SKIPPED;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

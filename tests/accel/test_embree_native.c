@@ -1,0 +1,173 @@
+/* accel/embree, mode=native: as brute says but at edges, and what it says otherwise is a margin. Skipped
+ * without Embree. */
+#include "embree_testing.h"
+
+#include "scenes/open.h"
+#include "verify/question.h"
+
+static void make_triangles(RtScene *scene, uint32_t count) {
+    RtRandom random = rt_random(7, 2);
+    begin_scene(scene);
+    for (uint32_t i = 0; i < count; i++) add_triangle(scene, &random, 1, 0.3f);
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+/* Rays between random points, which go past edges and corners at ordinary distances; dir short and long. */
+static Rays make_plain_rays(size_t count, float size) {
+    Rays r = {rt_alloc(count, sizeof(RtRay)), count};
+    assert_non_null(r.rays);
+    RtRandom random = rt_random(3, 3);
+    for (size_t i = 0; i < count; i++) {
+        RtVec3 from = rt_narrow(rt_scaled(rt_random_direction(&random), 3 * (double)size));
+        RtVec3 to = rt_random_point(&random, size);
+        r.rays[i] = (RtRay){.org = from, .dir = rt_sub(to, from), .tmax = INFINITY};
+        if (i % 2) r.rays[i].dir = rt_scale(r.rays[i].dir, i % 4 == 1 ? 1e30f : 1e-30f);
+    }
+    return r;
+}
+
+/* Between triangles lie edges, where native mode may see another object; hence 99.9 %. */
+static void native_mode_agrees_with_brute_on_triangles(void **state) {
+    (void)state;
+    static const char *const specs[] = {
+        "embree",           "embree:query=8",  "embree:query=16",     "embree:query=stream",
+        "embree:robust=on", "embree:isa=sse2", "embree:quality=high", "embree:quality=low",
+    };
+    RtScene scene;
+    make_triangles(&scene, 500);
+    Rays rays = make_plain_rays(20000, 1);
+    Answers right = ask(&scene, "brute", rays, false);
+    for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
+        Answers got = ask(&scene, specs[s], rays, s % 2 == 1);
+        size_t agree = 0, hits = 0;
+        for (size_t i = 0; i < rays.count; i++) {
+            RtHit g = got.hits[i], r = right.hits[i];
+            bool same_t = fabsf(g.t - r.t) <= 1e-5f * r.t;
+            agree += (g.object == r.object || same_t) && got.blocked[i] == right.blocked[i];
+            if (g.object == r.object && r.object != RT_NO_OBJECT) assert_true(same_t);
+            hits += r.object != RT_NO_OBJECT;
+        }
+        assert_true(hits > rays.count / 4);
+        if (agree < rays.count / 1000 * 999)
+            fail_msg("%s: only %zu of %zu agree", specs[s], agree, rays.count);
+        forget(&got);
+    }
+    forget(&right);
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
+}
+
+static void native_mode_sees_every_shape(void **state) {
+    (void)state;
+    RtScene scene;
+    make_soup(&scene, 80, 1, 10);
+    Rays rays = make_plain_rays(20000, 10);
+    Answers right = ask(&scene, "brute", rays, false), got = ask(&scene, "embree", rays, false);
+    size_t seen[RT_SHAPE_COUNT] = {0}, agreed[RT_SHAPE_COUNT] = {0};
+    for (size_t i = 0; i < rays.count; i++) {
+        uint32_t object = right.hits[i].object;
+        if (object == RT_NO_OBJECT) continue;
+        RtShape shape = rt_ref_shape(scene.geometry.objects[object]);
+        seen[shape]++;
+        agreed[shape] += got.hits[i].object == object;
+    }
+    for (size_t s = 0; s < RT_SHAPE_COUNT; s++) {
+        assert_true(seen[s] > 100);
+        if ((double)agreed[s] < 0.999 * (double)seen[s]) {
+            fail_msg("%s: only %zu of %zu agree", rt_shape_name((RtShape)s), agreed[s], seen[s]);
+        }
+    }
+    forget(&right);
+    forget(&got);
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
+}
+
+/* Embree asserts what it assumes, and ends the process where that does not hold. */
+static void native_mode_takes_every_valid_ray(void **state) {
+    (void)state;
+    static const char *const specs[] = {"embree",
+                                        "embree:query=8",
+                                        "embree:query=16",
+                                        "embree:query=stream",
+                                        "embree:query=8,robust=on",
+                                        "embree:query=stream,isa=avx"};
+    RtScene scene;
+    make_soup(&scene, 60, 2, 10);
+    Rays rays = make_rays(&scene, 50000, 10, 3);
+    for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
+        Answers got = ask(&scene, specs[s], rays, false);
+        for (size_t i = 0; i < rays.count; i++) {
+            assert_true(got.hits[i].object == RT_NO_OBJECT ? isinf(got.hits[i].t) : isfinite(got.hits[i].t));
+        }
+        forget(&got);
+    }
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
+}
+
+/* ---- margins that verify found ---- */
+
+static RtReply ask_native(const char *scene_spec, const char *spec, RtRay ray) {
+    RtScene scene;
+    RtReply reply;
+    RtError error;
+    RtQuestion question = {.rays = &ray, .count = 1, .stream = 1};
+    assert_int_equal(rt_scene_open(scene_spec, &scene, &error), RT_OK);
+    RtStatus status = rt_question_ask(&question, &scene, rt_maker_of_spec(spec), &reply, &error);
+    rt_scene_clear(&scene);
+    if (status == RT_NOT_AVAILABLE) skip(); /* no such processor */
+    assert_int_equal(status, RT_OK);
+    return reply;
+}
+
+/* Along faces of boxes of a CSG tree, and off them by a component of 2^-130, which Embree does not see: a
+ * margin. */
+static void a_component_that_embree_drops_is_a_margin(void **state) {
+    (void)state;
+    RtReply reply = ask_native("family:kind=csg-coincident,seed=1", "embree:mode=native",
+                               (RtRay){.org = {{-0.125f, -0x1.d991ccp-1f, 0.0625f}},
+                                       .dir = {{-0x1p-130f, 1, -0.0f}},
+                                       .tmax = INFINITY,
+                                       .kind = RT_RAY_RANDOM});
+    assert_true(reply.expected.object != reply.got.object);
+    assert_false(reply.wrong);
+}
+
+/* A needle seen edge on, which Embree without fused operations says is hit where its plane is not. */
+static void a_needle_seen_edge_on_is_a_margin(void **state) {
+    (void)state;
+    RtReply reply = ask_native("family:kind=slivers,seed=1", "embree:isa=sse2",
+                               (RtRay){.org = {{-0.709930062f, 0.908542037f, 0.687071741f}},
+                                       .dir = {{2.6491189f, -5.61743689f, 3.32413292f}},
+                                       .tmax = 1,
+                                       .kind = RT_RAY_SHADOW});
+    assert_int_equal(reply.expected.object, RT_NO_OBJECT);
+    assert_false(reply.wrong);
+}
+
+/* A triangle of 2^39, 2^54 away: the dot product of its corner and its normal, 2^134, is beyond float32. */
+static void where_products_overflow_is_a_margin_and_no_hit_at_infinity(void **state) {
+    (void)state;
+    RtReply reply = ask_native("family:kind=slivers-scaled,seed=16", "embree",
+                               (RtRay){.org = {{0x1.d29b58p+53f, -0x1.469a9ap+53f, -0x1.cc3184p+51f}},
+                                       .dir = {{-0x1.9b2646p-1f, 0x1.1fcc8cp-1f, 0x1.95666cp-3f}},
+                                       .tmax = INFINITY,
+                                       .kind = RT_RAY_RANDOM});
+    assert_int_equal(reply.expected.object, 95);
+    assert_int_equal(reply.got.object, RT_NO_OBJECT);
+    assert_false(reply.wrong);
+}
+
+RT_TEST_GROUP(embree_native) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(native_mode_agrees_with_brute_on_triangles),
+        cmocka_unit_test(native_mode_sees_every_shape),
+        cmocka_unit_test(native_mode_takes_every_valid_ray),
+        cmocka_unit_test(a_component_that_embree_drops_is_a_margin),
+        cmocka_unit_test(a_needle_seen_edge_on_is_a_margin),
+        cmocka_unit_test(where_products_overflow_is_a_margin_and_no_hit_at_infinity),
+    };
+    if (!embree_is_built_in()) return RT_TEST_SKIPPED;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,142 @@
+/* accel/embree, mode=user: brute bit for bit, by every query, instruction set and quality, at every size.
+ * Skipped without Embree. */
+#include "embree_testing.h"
+
+static void user_mode_is_brute_bit_for_bit_by_every_query(void **state) {
+    (void)state;
+    static const char *const specs[] = {
+        "embree:mode=user,query=1,robust=on",  "embree:mode=user,query=1,robust=off",
+        "embree:mode=user,query=8,robust=off", "embree:mode=user,query=8,robust=on",
+        "embree:mode=user,query=16,robust=on", "embree:mode=user,query=16,robust=off",
+        "embree:mode=user,query=stream",       "embree:mode=user,query=stream,robust=on",
+    };
+    RtScene scene;
+    make_soup(&scene, 60, 2, 10);
+    Rays rays = make_rays(&scene, 100003, 10, 3);
+    compare_with_brute(&scene, rays, specs, sizeof specs / sizeof specs[0]);
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
+}
+
+/* An ISA that the machine lacks is refused, and then there is nothing to compare. */
+static void user_mode_is_brute_by_every_isa_and_quality(void **state) {
+    (void)state;
+    static const char *const isas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
+    static const char *const qualities[] = {"low", "medium", "high"};
+    static const char *const queries[] = {"1", "8", "16", "stream"};
+    RtScene scene;
+    make_soup(&scene, 40, 2, 1000);
+    Rays rays = make_rays(&scene, 5000, 1000, 20);
+    for (size_t i = 0; i < 60; i++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        snprintf(spec, sizeof spec, "embree:mode=user,isa=%s,quality=%s,query=%s", isas[i % 5],
+                 qualities[i / 5 % 3], queries[i / 15]);
+        RtAccel *accel;
+        RtError error;
+        RtStatus status = rt_accel_open(spec, &scene, &accel, &error);
+        if (status == RT_OK) {
+            rt_accel_destroy(accel);
+            const char *const one[] = {spec};
+            compare_with_brute(&scene, rays, one, 1);
+        } else {
+            assert_int_equal(status, RT_NOT_AVAILABLE);
+            assert_non_null(strstr(error.message, isas[i % 5]));
+        }
+    }
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
+}
+
+static void user_mode_is_brute_in_scenes_of_every_size_and_from_far_away(void **state) {
+    (void)state;
+    static const float sizes[] = {1e-12f, 1e-6f, 1e6f, 1e12f};
+    static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        RtScene scene;
+        make_soup(&scene, 40, 1, sizes[i]);
+        Rays rays = make_rays(&scene, 4000, sizes[i], i % 2 ? 3 : 1e5f);
+        compare_with_brute(&scene, rays, specs, 2);
+        rt_free(rays.rays);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* Every hit is asked for again with nothing but its t left of the interval, and from where it is. */
+static void user_mode_finds_hits_at_the_very_ends_of_the_interval(void **state) {
+    (void)state;
+    static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=8,robust=on",
+                                        "embree:mode=user,query=16", "embree:mode=user,query=stream"};
+    RtScene scene;
+    make_soup(&scene, 60, 2, 10);
+    Rays rays = make_rays(&scene, 10000, 10, 3);
+    Answers hit = ask(&scene, "brute", rays, false);
+    for (size_t i = 0; i < rays.count; i++) {
+        RtRay *ray = &rays.rays[i];
+        if (hit.hits[i].object == RT_NO_OBJECT) continue;
+        if (i % 2) {
+            ray->tmin = ray->tmax = hit.hits[i].t;
+        } else {
+            ray->org = rt_narrow(rt_ray_point(ray, hit.hits[i].t));
+            ray->tmin = ray->tmax = 0;
+        }
+    }
+    compare_with_brute(&scene, rays, specs, sizeof specs / sizeof specs[0]);
+    forget(&hit);
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
+}
+
+/* Directions so long that a step between two values of t is as large as an object, or as the scene. */
+static void user_mode_is_brute_where_t_is_denormal(void **state) {
+    (void)state;
+    static const float sizes[] = {1e-9f, 1e-8f, 1e-7f};
+    static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        RtScene scene;
+        make_soup(&scene, 40, 1, sizes[i]);
+        Rays rays = make_rays(&scene, 4000, sizes[i], 3);
+        for (size_t k = 0; k < rays.count; k++) {
+            RtRay *ray = &rays.rays[k];
+            RtVec3d dir = rt_widen(ray->dir);
+            ray->dir = rt_narrow(rt_scaled(dir, 0x1p126 / fabs(dir.at[rt_major_axis(ray->dir)])));
+            ray->tmin = k % 3 ? 0 : 0x1p-149f;
+            ray->tmax = INFINITY;
+            assert_true(rt_ray_is_valid(ray));
+        }
+        compare_with_brute(&scene, rays, specs, 2);
+        rt_free(rays.rays);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void user_mode_counts_tests_where_it_is_asked_to(void **state) {
+    (void)state;
+    RtScene scene;
+    make_soup(&scene, 60, 1, 10);
+    Rays rays = make_rays(&scene, 600, 10, 3);
+    Answers brute = ask(&scene, "brute", rays, true), user = ask(&scene, "embree:mode=user", rays, true);
+    for (size_t kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        const RtTally *b = &brute.tallies[kind], *u = &user.tallies[kind];
+        assert_int_equal(u->rays, 100);
+        assert_int_equal(u->hits, b->hits);
+        assert_true(u->object_tests >= u->object_hits && u->object_hits >= u->hits);
+        assert_true(u->object_tests < b->object_tests);
+    }
+    forget(&brute);
+    forget(&user);
+    rt_free(rays.rays);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(embree_user) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(user_mode_is_brute_bit_for_bit_by_every_query),
+        cmocka_unit_test(user_mode_is_brute_by_every_isa_and_quality),
+        cmocka_unit_test(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away),
+        cmocka_unit_test(user_mode_finds_hits_at_the_very_ends_of_the_interval),
+        cmocka_unit_test(user_mode_is_brute_where_t_is_denormal),
+        cmocka_unit_test(user_mode_counts_tests_where_it_is_asked_to),
+    };
+    if (!embree_is_built_in()) return RT_TEST_SKIPPED;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

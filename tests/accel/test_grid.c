@@ -1,0 +1,153 @@
+/* accel/grid/ from the inside: its invariants, broken on purpose, its rules of resolution, its limits. */
+#include "accel_testing.h"
+
+#include "accel/grid/grid.h"
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static RtGrid *make_grid(const RtScene *scene, const char *spec) {
+    RtAccel *accel = NULL;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    return (RtGrid *)accel;
+}
+
+static void assert_resolution(const RtScene *scene, const char *spec, uint32_t x, uint32_t y, uint32_t z) {
+    RtGrid *grid = make_grid(scene, spec);
+    const RtGridBlock *block = grid->levels[0].blocks;
+    if (block->n[0] != x || block->n[1] != y || block->n[2] != z) {
+        fail_msg("%s gave %ux%ux%u", spec, block->n[0], block->n[1], block->n[2]);
+    }
+    assert_ok(rt_grid_validate(&grid->base, error));
+    rt_grid_destroy(&grid->base);
+}
+
+/* A box of 8 x 4 x 2 with 64 spheres in it. */
+static void the_rules_of_resolution_give_what_their_formulas_say(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 8, 4, 2);
+    assert_resolution(&scene, "grid:density=1", 8, 4, 2);
+    assert_resolution(&scene, "grid:density=8", 16, 8, 4);
+    assert_resolution(&scene, "grid:rule=woo,density=1", 4, 2, 1); /* 4 = cbrt(64) along the longest side */
+    assert_resolution(&scene, "grid:rule=woo,density=1000", 40, 20, 10);
+    assert_resolution(&scene, "grid:rule=heterogeneous,density=1", 8, 4, 2);
+    assert_resolution(&scene, "grid:rule=heterogeneous,density=2.2", 10, 5, 3); /* 140.8 / 50 is 2.8 */
+    assert_resolution(&scene, "grid:rule=regular,density=1", 4, 4, 4);
+    assert_resolution(&scene, "grid:rule=regular,density=1.01", 5, 5, 5);
+    assert_resolution(&scene, "grid:resolution=3x5x7", 3, 5, 7);
+    assert_resolution(&scene, "grid:density=0.000001", 1, 1, 1);
+    rt_scene_clear(&scene);
+}
+
+/* The planes halfway are where spheres touch one another. A voxel holds its lower planes but not its upper
+ * ones: along each axis the lower sphere is in both voxels, the upper one in its own alone. */
+static void a_voxel_holds_its_lower_planes(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 2, 2, 2);
+    RtGrid *grid = make_grid(&scene, "grid:resolution=2x2x2");
+    RtDescription description;
+    rt_grid_describe(&grid->base, &description);
+    assert_int_equal(description.leaves, 8);
+    assert_int_equal(description.empty_leaves, 0);
+    assert_int_equal(description.references, 27);
+    assert_true(fabs(description.predicted_cost - 27.0 / 4.0) < 1e-6);
+    rt_grid_destroy(&grid->base);
+    rt_scene_clear(&scene);
+}
+
+static void validate_names_each_invariant_that_is_broken(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 4, 4, 4);
+    RtGrid *grid = make_grid(&scene, "grid:resolution=8x8x8");
+    RtGridLevel *level = &grid->levels[0];
+    RtGridBlock *block = level->blocks;
+    assert_ok(rt_grid_validate(&grid->base, error));
+
+    float plane = block->planes[1][3];
+    block->planes[1][3] = 100;
+    assert_broken(&grid->base, "lies behind");
+    block->planes[1][3] = plane;
+    float ends[2] = {block->planes[2][0], block->planes[2][8]};
+    block->planes[2][0] += 1e-3f;
+    assert_broken(&grid->base, "planes of axis 2 do not enclose its box");
+    block->planes[2][0] = ends[0];
+    block->planes[2][8] -= 1e-3f;
+    assert_broken(&grid->base, "planes of axis 2 do not enclose its box");
+    block->planes[2][8] = ends[1];
+
+    RtBox box = grid->box;
+    grid->box.hi.z -= 1;
+    assert_broken(&grid->base, "does not contain the scene");
+    grid->box = box;
+
+    uint32_t first = level->first[10];
+    level->first[10] = 0;
+    assert_broken(&grid->base, "is broken");
+    level->first[10] = first;
+
+    uint32_t last = level->first[11] - 1, id = level->ids[last];
+    level->ids[last] = 63;
+    assert_broken(&grid->base, "which it does not touch");
+    level->ids[last] = 64;
+    assert_broken(&grid->base, "not ascending ids");
+    level->ids[last] = id;
+
+    /* The first object taken out of the first list. */
+    memmove(level->ids, level->ids + 1, (level->first[512] - 1) * sizeof(uint32_t));
+    for (uint32_t v = 1; v <= 512; v++) level->first[v]--;
+    assert_broken(&grid->base, "voxels, but");
+
+    rt_grid_destroy(&grid->base);
+    rt_scene_clear(&scene);
+}
+
+static void a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 2, 2, 2);
+    RtAccel *accel;
+    RtError refusal = {RT_OK, ""};
+    int64_t live = rt_alloc_live();
+    assert_int_equal(rt_accel_open("grid:resolution=2000x2000x2000", &scene, &accel, &refusal), RT_BAD_INPUT);
+    assert_non_null(strstr(refusal.message, "would fit"));
+    assert_int_equal(rt_alloc_live(), live);
+    assert_int_equal(rt_accel_open("grid:density=1e6,resolution=4096x4096x4096", &scene, &accel, &refusal),
+                     RT_BAD_INPUT);
+    assert_int_equal(rt_alloc_live(), live);
+
+    /* What is said to fit does, and one voxel more a side does not. */
+    static const char *const specs[] = {"density=1e6", "resolution=500x90x3", "overlap=exact,density=1e5"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        enum { LIMIT = 100000 };
+        RtValue values[RT_GRID_PARAM_COUNT];
+        uint32_t *n = values[RT_GRID_RESOLUTION].resolution;
+        assert_ok(rt_params_parse(rt_grid_params, RT_GRID_PARAM_COUNT, specs[i], "grid", values, error));
+        assert_int_equal(rt_grid_build_within(LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+        const char *remedy = strstr(refusal.message, ": resolution=");
+        assert_non_null(remedy);
+        assert_int_equal(sscanf(remedy, ": resolution=%ux%ux%u", &n[0], &n[1], &n[2]), 3);
+        assert_ok(rt_grid_build_within(LIMIT, &scene, values, &accel, error));
+        RtDescription description;
+        rt_grid_describe(accel, &description);
+        assert_true((description.leaves + description.references + 1) * sizeof(uint32_t) <= LIMIT);
+        rt_grid_destroy(accel);
+        uint32_t longest = n[0];
+        for (int a = 0; a < 3; a++) n[a] += n[a] == longest;
+        assert_int_equal(rt_grid_build_within(LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+    }
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(grid) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_rules_of_resolution_give_what_their_formulas_say),
+        cmocka_unit_test(a_voxel_holds_its_lower_planes),
+        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
+        cmocka_unit_test(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,238 @@
+/* The item buffer: how much it decides, what it passes on, limits, and its invariants broken. */
+#include "item_testing.h"
+
+#include "scenes/builtin.h"
+#include "scenes/open.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- what is decided ---- */
+
+static void check_decided(const RtScene *scene, const char *name, const char *how) {
+    RtAccel *accel;
+    RtFrame frame;
+    RtFrameOptions options = {.depth = 1, .counted = true};
+    assert_ok(rt_accel_open("item+bvh", scene, &accel, error));
+    assert_ok(rt_frame_trace(&frame, accel, &options, error));
+    const RtTally *tally = &frame.tallies[RT_RAY_PRIMARY];
+    double share = 1 - (double)tally->passed_on / (double)tally->rays;
+    if (!(share >= 0.97)) fail_msg("%s %s: %.2f %% are decided", name, how, 100 * share);
+    rt_frame_clear(&frame);
+    rt_accel_destroy(accel);
+}
+
+static void nearly_all_primary_rays_of_every_builtin_scene_are_decided(void **state) {
+    (void)state;
+    for (size_t i = 0; i < rt_builtin_count(); i++) {
+        RtScene scene;
+        const char *name = rt_builtin_at(i)->name;
+        assert_ok(rt_scene_open(name, &scene, error));
+        check_decided(&scene, name, "at pixel centres");
+        assert_ok(rt_scene_sample(&scene, 0, 0, 1, true, error));
+        check_decided(&scene, name, "at pixel corners");
+        rt_scene_clear(&scene);
+    }
+}
+
+static void a_decided_ray_makes_at_most_one_object_test(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtQuery query;
+    RtView view;
+    assert_ok(rt_scene_open("random:n=300,shape=mixed", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 64, 48, 1, false, error));
+    assert_ok(rt_view_init(&view, &scene.camera, scene.sampling, error));
+    assert_ok(rt_accel_open("item+bvh", &scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    uint32_t nothing = 0, seen = 0;
+    for (uint32_t i = 0; i < 64 * 48; i++) {
+        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+        const RtTally *tally = &tallies[RT_RAY_PRIMARY];
+        RtRay ray = rt_view_ray(&view, i % 64, i / 64);
+        RtHit hit;
+        rt_nearest(&query, &ray, 1, &hit, tallies);
+        if (tally->passed_on) continue;
+        assert_int_equal(tally->object_tests, hit.object != RT_NO_OBJECT);
+        assert_int_equal(tally->extent_tests, 0);
+        nothing += hit.object == RT_NO_OBJECT;
+        seen += hit.object != RT_NO_OBJECT;
+    }
+    assert_true(nothing > 100 && seen > 100);
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static void every_way_to_sample_an_image_is_answered_like_brute(void **state) {
+    (void)state;
+    const struct {
+        uint32_t width, height, samples;
+        bool corners;
+    } ways[] = {{1, 1, 1, false},  {1, 1, 1, true},    {1, 40, 2, false},
+                {40, 1, 3, false}, {17, 23, 4, false}, {33, 20, 1, true}};
+    RtScene scene;
+    assert_ok(rt_scene_open("random:n=100,shape=mixed", &scene, error));
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+        assert_ok(
+            rt_scene_sample(&scene, ways[i].width, ways[i].height, ways[i].samples, ways[i].corners, error));
+        assert_true(decided_share(&scene) >= 0.97);
+    }
+    rt_scene_clear(&scene);
+}
+
+static void a_scene_without_objects_is_nothing_everywhere(void **state) {
+    (void)state;
+    RtScene scene;
+    RtDescription d;
+    RtAccel *accel;
+    begin_view(&scene);
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
+    rt_accel_describe(accel, &d);
+    assert_int_equal(d.leaves, 48 * 36);
+    assert_int_equal(d.empty_leaves, 48 * 36);
+    assert_int_equal(d.references, 0);
+    rt_accel_destroy(accel);
+    check_finished(&scene, 1);
+}
+
+/* ---- what is passed on ---- */
+
+static void rays_that_are_not_of_a_sample_are_passed_on(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtQuery query;
+    RtView view;
+    begin_view(&scene);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_view_init(&view, &scene.camera, scene.sampling, error));
+    assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    enum { RAYS = 9 };
+    RtRay own = rt_view_ray(&view, 24, 18), rays[RAYS];
+    for (int i = 0; i < RAYS; i++) rays[i] = own;
+    rays[1].source++;
+    rays[2].source = 48 * 36;
+    rays[3].source = UINT32_MAX;
+    rays[4].org.x = nextafterf(rays[4].org.x, 0);
+    rays[5].dir.y = nextafterf(rays[5].dir.y, 0);
+    rays[6].tmax = 1e6f;
+    rays[7].tmin = 1e-6f;
+    rays[8].kind = RT_RAY_REFLECTION; /* none of its business */
+    for (int i = 0; i < RAYS; i++) {
+        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+        RtHit hit;
+        bool blocked;
+        rt_nearest(&query, &rays[i], 1, &hit, tallies);
+        assert_int_equal(hit.object, 0);
+        assert_int_equal(tallies[rays[i].kind].passed_on, i > 0 && i < 8);
+        assert_int_equal(tallies[rays[i].kind].rays, 1);
+        /* Whether anything is in the way is not what samples are for. */
+        rt_occluded(&query, &rays[i], 1, &blocked, tallies);
+        assert_true(blocked);
+        assert_int_equal(tallies[rays[i].kind].passed_on, i > 0 && i < 8);
+        assert_int_equal(tallies[rays[i].kind].rays, 2);
+    }
+    /* In one stream, runs of other kinds among them. */
+    RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+    RtHit hits[RAYS];
+    rt_nearest(&query, rays, RAYS, hits, tallies);
+    assert_int_equal(tallies[RT_RAY_PRIMARY].passed_on, 7);
+    assert_int_equal(tallies[RT_RAY_PRIMARY].rays, 8);
+    assert_int_equal(tallies[RT_RAY_REFLECTION].rays, 1);
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static void a_frame_of_another_sampling_is_passed_on_whole_and_right(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtFrame frame;
+    RtFrameOptions options = {.depth = 1, .threads = 1, .counted = true};
+    begin_view(&scene);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
+    assert_ok(rt_scene_sample(&scene, 31, 19, 1, false, error));
+    RtFrame right = trace("brute", &scene, false);
+    assert_ok(rt_frame_trace(&frame, accel, &options, error));
+    assert_int_equal(frame.tallies[RT_RAY_PRIMARY].passed_on, 31 * 19);
+    assert_memory_equal(frame.depth, right.depth, sizeof(float) * 31 * 19);
+    rt_frame_clear(&frame);
+    rt_frame_clear(&right);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+/* ---- limits, and invariants broken ---- */
+
+static void too_many_samples_are_refused_with_a_number_that_fits(void **state) {
+    (void)state;
+    const struct {
+        uint32_t width, height, samples;
+        const char *says;
+    } sizes[] = {{32768, 32768, 1, "an image of 146"},
+                 {32768, 32768, 64, "an image of"},
+                 {2048, 2048, 64, "7 samples a side"}};
+    RtScene scene;
+    begin_view(&scene);
+    assert_ok(rt_scene_finish(&scene, error));
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        RtAccel *accel;
+        assert_ok(rt_scene_sample(&scene, sizes[i].width, sizes[i].height, sizes[i].samples, false, error));
+        RtError error = {RT_OK, ""};
+        assert_int_equal(rt_accel_open("item+brute", &scene, &accel, &error), RT_BAD_INPUT);
+        if (!strstr(error.message, sizes[i].says)) fail_msg("%s", error.message);
+    }
+    rt_scene_clear(&scene);
+}
+
+static void each_broken_invariant_is_named(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    begin_view(&scene);
+    look(&scene, rt_vec3(0, -8, 0), rt_vec3(0, 0, 0));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 4, 0), 1, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_accel_open("item+brute", &scene, &accel, error));
+    assert_ok(rt_accel_validate(accel, error));
+    RtItemSample *middle = &((RtItemBuffer *)accel)->samples[18 * 48 + 24], kept = *middle;
+    assert_int_equal(kept.id, 1);
+    assert_true(kept.other > 10 && kept.other < 12); /* the far sphere begins at 11 */
+    middle->other = INFINITY;
+    assert_broken(accel, "meets object 0");
+    *middle = (RtItemSample){0, kept.other};
+    assert_broken(accel, "meets object 1");
+    *middle = (RtItemSample){RT_NO_OBJECT, INFINITY};
+    assert_broken(accel, "meets object");
+    *middle = (RtItemSample){RT_NO_OBJECT, kept.other};
+    assert_broken(accel, "names object");
+    *middle = (RtItemSample){2, kept.other};
+    assert_broken(accel, "names object 2");
+    *middle = kept;
+    assert_ok(rt_accel_validate(accel, error));
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(item) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nearly_all_primary_rays_of_every_builtin_scene_are_decided),
+        cmocka_unit_test(a_decided_ray_makes_at_most_one_object_test),
+        cmocka_unit_test(every_way_to_sample_an_image_is_answered_like_brute),
+        cmocka_unit_test(a_scene_without_objects_is_nothing_everywhere),
+        cmocka_unit_test(rays_that_are_not_of_a_sample_are_passed_on),
+        cmocka_unit_test(a_frame_of_another_sampling_is_passed_on_whole_and_right),
+        cmocka_unit_test(too_many_samples_are_refused_with_a_number_that_fits),
+        cmocka_unit_test(each_broken_invariant_is_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
+}

@@ -1,0 +1,274 @@
+/* accel/kd/ from the inside: splits worked out by hand, its invariants, broken on purpose, its limits. */
+#include "accel_testing.h"
+#include "equivalence_testing.h"
+
+#include "accel/kd/kd.h"
+#include "scenes/open.h"
+
+#include <stdio.h>
+
+static RtKd *make_kd(const RtScene *scene, const char *spec) {
+    RtAccel *accel = NULL;
+    assert_ok(rt_accel_open(spec, scene, &accel, error));
+    assert_ok(rt_kd_validate(accel, error));
+    return (RtKd *)accel;
+}
+
+static RtDescription description_of(const RtScene *scene, const char *spec) {
+    RtDescription description;
+    RtKd *kd = make_kd(scene, spec);
+    rt_kd_describe(&kd->base, &description);
+    rt_kd_destroy(&kd->base);
+    return description;
+}
+
+static void assert_split(const RtKd *kd, uint32_t node, uint32_t axis, float plane) {
+    assert_false(rt_kd_is_leaf(&kd->nodes[node]));
+    assert_int_equal(rt_kd_axis(&kd->nodes[node]), axis);
+    assert_true(kd->nodes[node].split == plane);
+}
+
+static void assert_lists(const RtKd *kd, uint32_t node, uint32_t length, uint32_t first_id) {
+    assert_true(rt_kd_is_leaf(&kd->nodes[node]));
+    assert_int_equal(rt_kd_length(&kd->nodes[node]), length);
+    if (length > 0) assert_int_equal(kd->ids[kd->nodes[node].first], first_id);
+}
+
+/* An upright square at height z. */
+static void add_floor(RtScene *scene, float x, float y, float z, float size) {
+    const RtVec3 v[4] = {{x, y, z}, {x + size, y, z}, {x + size, y + size, z}, {x, y + size, z}};
+    assert_ok(rt_scene_add_polygon(scene, 0, v, 4, error));
+}
+
+/* Spheres with the boxes [0,1] and [3,4] x [0,1]^2 in [0,4] x [0,1]^2, of half areas 3, 3 and 9. Cutting at
+ * x = 1 or 3 costs 0.3 * 9 + 3 + 7 for 18; what lies above 1, of half area 7, is then cut at 3 for
+ * (0.3 * 7 + 3) * 0.8 instead of 7. */
+static void two_spheres_are_split_as_by_hand(void **state) {
+    (void)state;
+    RtScene scene;
+    RtDescription d;
+    begin_scene(&scene);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    RtKd *kd = make_kd(&scene, "kd:failures=0,traversal=0.3,empty_bonus=0.2,max_objects=0");
+    assert_split(kd, 0, 0, 1);
+    assert_lists(kd, 1, 1, 0);
+    assert_split(kd, 2, 0, 3);
+    assert_lists(kd, 3, 0, 0);
+    assert_lists(kd, 4, 1, 1);
+    rt_kd_describe(&kd->base, &d);
+    rt_kd_destroy(&kd->base);
+    assert_int_equal(d.interior, 2);
+    assert_int_equal(d.leaves, 3);
+    assert_int_equal(d.empty_leaves, 1);
+    assert_int_equal(d.references, 2);
+    assert_int_equal(d.depth, 2);
+    assert_true(fabs(d.predicted_tests - 6.0 / 9) < 1e-12);
+    assert_true(fabs(d.predicted_steps - (9 + 7 + 3 + 5 + 3) / 9.0) < 1e-12);
+    assert_true(fabs(d.predicted_cost - (6 + 0.3 * 16) / 9) < 1e-12);
+
+    assert_int_equal(description_of(&scene, "kd:traversal=10,failures=0").leaves, 1);
+    assert_int_equal(description_of(&scene, "kd:traversal=10,failures=1").leaves, 2);
+    assert_int_equal(description_of(&scene, "kd:max_depth=1").leaves, 2);
+    rt_scene_clear(&scene);
+}
+
+/* A floor in the lowest face of the scene gets a cell without width, so that rays that do not come down to it
+ * leave it alone; one in the middle goes into one of the cells it parts. */
+static void polygons_in_a_plane_go_to_one_side_of_it(void **state) {
+    (void)state;
+    RtScene scene;
+    begin_scene(&scene);
+    add_floor(&scene, 0, 0, 0, 10);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(5, 5, 1.5f), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    RtKd *kd = make_kd(&scene, "kd:failures=0,traversal=0.3");
+    assert_split(kd, 0, 2, 0);
+    assert_lists(kd, 1, 1, 0);
+    assert_int_equal(kd->id_count, 2);
+    rt_kd_destroy(&kd->base);
+    rt_scene_clear(&scene);
+
+    begin_scene(&scene);
+    for (int z = 0; z < 3; z++) add_floor(&scene, 0, 0, (float)z, 10);
+    assert_ok(rt_scene_finish(&scene, error));
+    kd = make_kd(&scene, "kd:traversal=0");
+    assert_int_equal(kd->id_count, 3);
+    rt_kd_destroy(&kd->base);
+    rt_scene_clear(&scene);
+}
+
+/* Tiles of a floor and nothing else: cells are cut across it, never along it. */
+static void a_flat_scene_is_divided_within_its_plane(void **state) {
+    (void)state;
+    RtScene scene;
+    begin_scene(&scene);
+    for (int i = 0; i < 64; i++) {
+        add_floor(&scene, 2 * (float)(i % 8), (float)(i - i % 8) / 4, 5, 1);
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    RtKd *kd = make_kd(&scene, "kd");
+    assert_int_equal(kd->id_count, 64);
+    for (uint32_t i = 0; i < kd->node_count; i++) {
+        assert_true(rt_kd_is_leaf(&kd->nodes[i]) ? rt_kd_length(&kd->nodes[i]) <= 1
+                                                 : rt_kd_axis(&kd->nodes[i]) != 2);
+    }
+    rt_kd_destroy(&kd->base);
+    rt_scene_clear(&scene);
+}
+
+/* Objects in one place cannot be parted: whatever is spent on it ends. */
+static void coincident_objects_stay_in_one_leaf(void **state) {
+    (void)state;
+    RtScene scene;
+    begin_scene(&scene);
+    for (int i = 0; i < 30; i++) {
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_int_equal(description_of(&scene, "kd:traversal=0,failures=60,max_depth=60").leaves, 1);
+    RtDescription d = description_of(&scene, "kd:traversal=0,margin=0.5");
+    assert_int_equal(d.references, 30);
+    assert_int_equal(d.empty_leaves, 6); /* one at each face */
+    rt_scene_clear(&scene);
+}
+
+/* Ten parallel cylinders across the boxes of each other: only their surfaces can be parted. */
+static void slanted_objects_are_parted_by_their_surfaces(void **state) {
+    (void)state;
+    RtScene scene;
+    begin_scene(&scene);
+    for (int i = 0; i < 10; i++) {
+        RtVec3 foot = rt_vec3(0, (float)i, 0), head = rt_vec3(10, (float)(i + 10), 0);
+        assert_ok(rt_scene_add_cone(&scene, 0, foot, 0.1f, head, 0.1f, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    RtDescription box = description_of(&scene, "kd:max_depth=8");
+    RtDescription exact = description_of(&scene, "kd:max_depth=8,overlap=exact");
+    assert_true(exact.predicted_tests < 0.5 * box.predicted_tests);
+    rt_scene_clear(&scene);
+}
+
+static uint32_t find_leaf(const RtKd *kd, uint32_t least) {
+    uint32_t i = 0;
+    while (!rt_kd_is_leaf(&kd->nodes[i]) || rt_kd_length(&kd->nodes[i]) < least) i++;
+    return i;
+}
+
+static void validate_names_each_invariant_that_is_broken(void **state) {
+    (void)state;
+    RtScene scene;
+    make_lattice(&scene, 4, 4, 4);
+    RtKd *kd = make_kd(&scene, "kd:max_objects=4,margin=0.1");
+    RtBox box = kd->box;
+    kd->box.hi.z = 1;
+    assert_broken(&kd->base, "root does not contain");
+    kd->box = box;
+
+    RtKdNode *root = &kd->nodes[0], saved = *root;
+    root->link = (kd->node_count - 1) << 2;
+    assert_broken(&kd->base, "not where nodes are");
+    *root = saved;
+    root->split = 100;
+    assert_broken(&kd->base, "outside its cell");
+    *root = saved;
+
+    uint32_t depth = kd->max_depth;
+    kd->max_depth = 2;
+    assert_broken(&kd->base, "deeper than 2");
+    kd->max_depth = depth;
+
+    RtKdNode *leaf = &kd->nodes[find_leaf(kd, 2)], kept = *leaf;
+    leaf->first = kd->id_count - 1;
+    assert_broken(&kd->base, "not where lists are");
+    *leaf = kept;
+    uint32_t *ids = kd->ids + leaf->first, first = ids[0];
+    ids[0] = ids[1];
+    assert_broken(&kd->base, "not ascending ids");
+    ids[0] = first;
+    leaf->link -= 4;
+    assert_broken(&kd->base, "not where lists end");
+    *leaf = kept;
+    uint32_t last = ids[rt_kd_length(leaf) - 1];
+    assert_true(last != 63);
+    ids[rt_kd_length(leaf) - 1] = 63;
+    assert_broken(&kd->base, "not just those it has a part in");
+    ids[rt_kd_length(leaf) - 1] = last;
+
+    assert_ok(rt_kd_validate(&kd->base, error));
+    *root = (RtKdNode){.first = 0, .link = RT_KD_LEAF};
+    assert_broken(&kd->base, "has no parent");
+    *root = saved;
+    rt_kd_destroy(&kd->base);
+    rt_scene_clear(&scene);
+}
+
+static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t limit) {
+    RtAccel *accel = NULL;
+    RtError refusal;
+    values[RT_KD_MAX_DEPTH].i = depth;
+    bool built = rt_kd_build_within(limit, scene, values, &accel, &refusal) == RT_OK;
+    if (built) rt_kd_destroy(accel);
+    return built;
+}
+
+static void a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
+    (void)state;
+    static const char *const scenes[] = {"balls", "random:n=3000,radius=2", "random:n=3000,shape=mixed"};
+    static const char *const specs[] = {"traversal=0,failures=60,max_depth=40", "",
+                                        "traversal=0,failures=60,overlap=exact,empty_bonus=1"};
+    for (size_t i = 0; i < 9; i++) {
+        const uint64_t limit = 1 << 15;
+        RtScene scene;
+        RtValue values[RT_KD_PARAM_COUNT];
+        RtAccel *accel = NULL;
+        RtError refusal = {RT_OK, ""};
+        double gib;
+        long depth;
+        assert_ok(rt_scene_open(scenes[i % 3], &scene, error));
+        assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, specs[i / 3], "kd", values, error));
+        int64_t live = rt_alloc_live();
+        assert_int_equal(rt_kd_build_within(limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+        assert_int_equal(rt_alloc_live(), live);
+        const char *about = strstr(refusal.message, "about "), *remedy = strstr(refusal.message, ": max_");
+        assert_true(about && remedy);
+        assert_int_equal(sscanf(about, "about %lf GiB", &gib), 1);
+        assert_int_equal(sscanf(remedy, ": max_depth=%ld", &depth), 1);
+        assert_true(gib * 0x1p30 > (double)limit);
+        assert_true(depth >= 3);
+        assert_true(fits(&scene, values, depth, limit));
+        assert_false(fits(&scene, values, depth + 6, limit));
+        rt_scene_clear(&scene);
+    }
+}
+
+/* Together what the spread of the conformance test leaves at its default. */
+static void every_structure_answers_like_brute(void **state) {
+    (void)state;
+    static const char *const specs[] = {
+        "kd:overlap=exact,traversal=0,failures=4", "kd:overlap=exact,max_objects=3,margin=0.3,mailbox=off",
+        "kd:traversal=0,failures=9,empty_bonus=1", "kd:overlap=exact,max_depth=4,failures=60"};
+    for (size_t s = 0; s < rt_family_count(); s++) {
+        FamilyBench bench;
+        set_up_family(&bench, s, 7, 32);
+        for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+            assert_answers_like_brute(&bench, specs[i]);
+        }
+        tear_down_family(&bench);
+    }
+}
+
+RT_TEST_GROUP(kd) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(two_spheres_are_split_as_by_hand),
+        cmocka_unit_test(polygons_in_a_plane_go_to_one_side_of_it),
+        cmocka_unit_test(a_flat_scene_is_divided_within_its_plane),
+        cmocka_unit_test(coincident_objects_stay_in_one_leaf),
+        cmocka_unit_test(slanted_objects_are_parted_by_their_surfaces),
+        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
+        cmocka_unit_test(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit),
+        cmocka_unit_test(every_structure_answers_like_brute),
+    };
+    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
+}

@@ -1,0 +1,208 @@
+/* The light buffer answers like brute where that is hard: lights in awkward places, rounding from far off,
+ * rays along edges and corners of cells; and it is no worse for it. */
+#include "light_testing.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+/* Asks `spec` about the rays; fails where brute says otherwise. Gives what was counted. */
+static RtTally check_like_brute(const char *spec, const RtScene *scene, const RtRay *rays, size_t count) {
+    RtTally tallies[RT_RAY_KIND_COUNT] = {{0}}, of_brute[RT_RAY_KIND_COUNT] = {{0}};
+    const char *specs[2] = {"brute", spec};
+    bool *blocked[2];
+    for (int i = 0; i < 2; i++) {
+        RtAccel *accel;
+        RtQuery query;
+        blocked[i] = rt_alloc(count, sizeof(bool));
+        assert_non_null(blocked[i]);
+        assert_ok(rt_accel_open(specs[i], scene, &accel, error));
+        assert_ok(rt_accel_validate(accel, error));
+        assert_ok(rt_query_init(&query, accel, error));
+        rt_occluded(&query, rays, count, blocked[i], i ? tallies : of_brute);
+        rt_query_clear(&query);
+        rt_accel_destroy(accel);
+    }
+    for (size_t k = 0; k < count; k++) {
+        if (blocked[0][k] != blocked[1][k]) fail_msg("%s: ray %zu", spec, k);
+    }
+    rt_free(blocked[0]);
+    rt_free(blocked[1]);
+    return tallies[RT_RAY_SHADOW];
+}
+
+/* ---- lights in awkward places ---- */
+
+enum { AWKWARD_RAYS = 40000 };
+
+/* Rays from anywhere, from vertices and poles, and from points just off the edges between cells. */
+static void make_awkward_rays(const RtScene *scene, RtRay *rays, float away) {
+    RtRandom random = rt_random(6, 0);
+    for (size_t i = 0; i < AWKWARD_RAYS; i++) {
+        uint32_t light = (uint32_t)i % scene->light_count, k = rt_random_bits(&random);
+        RtVec3 from = moved(random_point(&random, 6), away);
+        if (k % 4 == 0) from = scene->geometry.triangles[k / 4 % 40].v[k / 256 % 3];
+        if (k % 4 == 1) {
+            RtVec3 to = scene->lights[light].position;
+            float depth = 5 * rt_random_unit(&random), u = (float)((int)(k / 4 % 17) - 8) / 8;
+            from = rt_add(to, rt_vec3(u * depth, (k & 64 ? u : 0.3f) * depth, k & 128 ? depth : -depth));
+        }
+        rays[i] = shadow_ray(scene, from, light);
+        if (!rt_ray_is_valid(&rays[i])) rays[i] = shadow_ray(scene, moved(rt_vec3(5, 5, 5), away), light);
+    }
+}
+
+static void lights_in_awkward_places_are_answered_like_brute(void **state) {
+    (void)state;
+    static RtRay rays[AWKWARD_RAYS];
+    const char *specs[] = {"light:cells=1+bvh", "light:cells=16+bvh", "light:cells=61,extents=off+bvh",
+                           "light:cells=16,full_occlusion=off+bvh", "cache+light+bvh"};
+    const float places[] = {0, 1000};
+    for (size_t p = 0; p < 2; p++) {
+        RtScene scene;
+        make_awkward(&scene, places[p]);
+        make_awkward_rays(&scene, rays, places[p]);
+        for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+            RtTally tally = check_like_brute(specs[i], &scene, rays, AWKWARD_RAYS);
+            assert_int_equal(tally.rays, AWKWARD_RAYS);
+            assert_true(tally.passed_on < AWKWARD_RAYS / 2 || strstr(specs[i], "cache"));
+        }
+        rt_scene_clear(&scene);
+    }
+}
+
+/* ---- rounding, partial occluders, edges, receivers ---- */
+
+/* A triangle 1 below the light, its edges just inside borders of the 8 x 8 cells and one corner that its
+ * diagonal passes; specks 2000 off widen the domain. A vertex is seen from 1000 off with an error of 2^-24 of
+ * that, which is 2^-14 of the distance to the light: rays that miss by less are said to hit, from the cells
+ * beside. */
+static void rounding_far_off_is_within_the_margin(void **state) {
+    (void)state;
+    enum { COUNT = 100000 };
+    static RtRay rays[COUNT];
+    const RtVec3 light = {{0.1f, 0.2f, 0.3f}};
+    const float in = 0x1p-18f, a = 0.25f - in, b = -0.25f + 3 * in;
+    const RtVec3 corners[3] = {{{a, b, -1}}, {{b, a, -1}}, {{a, a, -1}}};
+    RtScene scene;
+    begin_scene(&scene);
+    RtVec3 triangle[3] = {rt_add(light, corners[0]), rt_add(light, corners[1]), rt_add(light, corners[2])};
+    assert_ok(rt_scene_add_triangle(&scene, 0, triangle, NULL, error));
+    for (int i = -1; i <= 1; i += 2) {
+        assert_ok(rt_scene_add_sphere(&scene, 0, moved(rt_vec3(0, 0, 0), 2000.0f * (float)i), 1, error));
+    }
+    assert_ok(rt_scene_add_light(&scene, light, rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    RtRandom random = rt_random(7, 0);
+    for (size_t i = 0; i < COUNT; i++) {
+        double depth = 500 + 1000 * (double)rt_random_unit(&random), at[2];
+        for (int k = 0; k < 2; k++) {
+            double off = 0x1p-15 * ((double)rt_random_unit(&random) - 0.5);
+            at[k] = 0.25 * ((double)(rt_random_below(&random, 3)) - 1) + off;
+        }
+        if (i % 2) at[i / 2 % 2] = 0.5 * (double)rt_random_unit(&random) - 0.25; /* along a border */
+        RtVec3d from = rt_vec3d(at[0] * depth, at[1] * depth, -depth);
+        rays[i] = shadow_ray(&scene, rt_add(light, rt_narrow(from)), 0);
+    }
+    check_like_brute("light:cells=8,extents=off+brute", &scene, rays, COUNT);
+    check_like_brute("light:cells=8+brute", &scene, rays, COUNT);
+    rt_scene_clear(&scene);
+}
+
+/* What a sphere over half of a cell does not hide is seen, without asking below. */
+static void a_partial_occluder_hides_nothing_beside_it(void **state) {
+    (void)state;
+    enum { COUNT = 20000 };
+    static RtRay rays[COUNT];
+    const char *specs[] = {"light:cells=1+brute", "light:cells=3+brute", "light:cells=16+brute",
+                           "light:cells=61,cache=off+brute"};
+    RtScene scene;
+    begin_scene(&scene);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.3f, 0.2f, 8), 1, error));
+    assert_ok(rt_scene_add_cone(&scene, 0, rt_vec3(-2, -2, 6), 0.5f, rt_vec3(2, -2, 6), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, -8), 8, error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    RtRandom random = rt_random(8, 0);
+    for (size_t i = 0; i < COUNT; i++) {
+        rays[i] = shadow_ray(&scene, rt_add(random_point(&random, 4), rt_vec3(0, 0, 4)), 0);
+    }
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        RtTally tally = check_like_brute(specs[i], &scene, rays, COUNT);
+        assert_int_equal(tally.passed_on, 0);
+        assert_in_range(tally.hits, COUNT / 20, COUNT - COUNT / 20);
+    }
+    rt_scene_clear(&scene);
+}
+
+/* Directions exactly along edges and corners of cells and of the cube, to three lights and to none. */
+static void directions_along_edges_and_corners_are_answered_like_brute(void **state) {
+    (void)state;
+    enum { SIDE = 9, COUNT = 3 * SIDE * SIDE * SIDE };
+    static RtRay rays[COUNT];
+    const RtVec3 places[3] = {{{0, 0, 0}}, {{4, 4, 4}}, {{-1, 2, 0.5f}}};
+    for (int lights = 3; lights >= 0; lights -= 3) {
+        RtScene scene;
+        begin_scene(&scene);
+        for (int i = 0; i < 27; i++) {
+            RtVec3 at = rt_vec3((float)(i % 3 * 2 - 2), (float)(i / 3 % 3 * 2 - 2), (float)(i / 9 * 2 - 2));
+            assert_ok(rt_scene_add_sphere(&scene, 0, at, 0.25f + 0.125f * (float)(i % 2), error));
+        }
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 3.75f), 0.25f, error));
+        const RtVec3 square[4] = {{{-4, -4, -4}}, {{4, -4, -4}}, {{4, 4, -4}}, {{-4, 4, -4}}};
+        assert_ok(rt_scene_add_polygon(&scene, 0, square, 4, error));
+        for (int i = 0; i < lights; i++) {
+            assert_ok(rt_scene_add_light(&scene, places[i], rt_vec3(1, 1, 1), error));
+        }
+        assert_ok(rt_scene_finish(&scene, error));
+        size_t count = 0;
+        for (int i = 0; i < COUNT; i++) {
+            int k = i / 3;
+            RtVec3 to = places[i % 3], from = rt_vec3((float)(k % SIDE - 4), (float)(k / SIDE % SIDE - 4),
+                                                      (float)(k / SIDE / SIDE - 4));
+            RtRay ray = {.org = from, .dir = rt_sub(to, from), .tmax = 1, .kind = RT_RAY_SHADOW};
+            ray.source = (uint32_t)i % 3;
+            if (rt_ray_is_valid(&ray)) rays[count++] = ray;
+        }
+        RtTally tally = check_like_brute("light:cells=1+brute", &scene, rays, count);
+        assert_true(lights ? tally.passed_on == 0 : tally.passed_on == count);
+        check_like_brute("light:cells=4+brute", &scene, rays, count);
+        check_like_brute("light:cells=8,extents=off,cache=off+brute", &scene, rays, count);
+        check_like_brute("light:cells=9+brute", &scene, rays, count);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* A ray that leaves a triangle on the light's side tests neither it nor those in its plane. */
+static void a_receiver_that_faces_the_light_is_not_tested(void **state) {
+    (void)state;
+    const RtVec3 corners[4] = {{{-1, -1, -1}}, {{1, -1, 1}}, {{1, 1, 1}}, {{-1, 1, -1}}};
+    RtScene scene;
+    begin_scene(&scene);
+    for (int i = 1; i < 3; i++) {
+        const RtVec3 half[3] = {corners[0], corners[i], corners[i + 1]};
+        assert_ok(rt_scene_add_triangle(&scene, 0, half, NULL, error));
+    }
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(1, 2, 3), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    RtRay off = shadow_ray(&scene, rt_vec3(-0x1p-17f, 0, 0x1p-17f), 0),
+          on = shadow_ray(&scene, rt_vec3(0, 0, 0), 0);
+    RtTally tally = check_like_brute("light:full_occlusion=off+brute", &scene, &off, 1);
+    assert_int_equal(tally.steps, 2);
+    assert_int_equal(tally.extent_tests, 4);
+    assert_int_equal(tally.object_tests, 0);
+    tally = check_like_brute("light:full_occlusion=off+brute", &scene, &on, 1);
+    assert_int_equal(tally.object_hits, 1);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(light_exact) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lights_in_awkward_places_are_answered_like_brute),
+        cmocka_unit_test(rounding_far_off_is_within_the_margin),
+        cmocka_unit_test(a_partial_occluder_hides_nothing_beside_it),
+        cmocka_unit_test(directions_along_edges_and_corners_are_answered_like_brute),
+        cmocka_unit_test(a_receiver_that_faces_the_light_is_not_tested),
+    };
+    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
+}

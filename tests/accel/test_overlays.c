@@ -1,0 +1,200 @@
+/* Overlays: specs with '+', the layers they build, what is counted where, and the shadow cache. */
+#include "accel_testing.h"
+
+#include "accel/accel.h"
+#include "base/memory.h"
+
+#include <string.h>
+
+/* Two unit-diameter spheres, 0 about (0.5, 0.5, 0.5) and 1 about (3.5, 0.5, 0.5), and two lights at x = 8:
+ * one behind both spheres, seen along +x, one above them. */
+static int set_up(void **state) {
+    static RtScene scene;
+    begin_scene(&scene);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(8, 0.5f, 0.5f), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(8, 0.5f, 9), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    *state = &scene;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    rt_scene_clear(*state);
+    return rt_alloc_live() == 0 ? 0 : -1;
+}
+
+/* ---- specs ---- */
+
+static void a_spec_is_read_from_the_top_down_and_written_as_it_was(void **state) {
+    (void)state;
+    RtSpec spec;
+    char text[RT_MAX_SPEC_CHARS];
+    assert_ok(rt_spec_parse("cache+grid:density=1e+06", &spec, error));
+    assert_int_equal(spec.layer_count, 2);
+    assert_string_equal(spec.layers[0].ops->name, "cache");
+    assert_string_equal(spec.layers[1].ops->name, "grid");
+    rt_spec_format(&spec, text);
+    assert_memory_equal(text, "cache+grid:", 11);
+    RtSpec again;
+    assert_ok(rt_spec_parse(text, &again, error));
+    assert_true(again.layers[1].values[1].f == 1e6);
+}
+
+static void a_wrong_plus_is_refused_with_a_remedy(void **state) {
+    (void)state;
+    const struct {
+        const char *spec, *says;
+    } wrong[] = {
+        {"cache", "needs an accelerator below it: write cache+bvh"},
+        {"cache+cache", "write cache+cache+bvh"},
+        {"grid+bvh", "grid answers every ray"},
+        {"cache+grid+bvh", "grid answers every ray"},
+        {"cache+", "'' is no spec"},
+        {"+bvh", "'+bvh' is no spec"},
+        {"cache++bvh", "'+bvh' is no spec"},
+        {"cash+bvh", "did you mean 'cache'"},
+        {"cache:size=1+bvh", "accelerator cache has no parameter"},
+        {"cache+cache+cache+cache+bvh", "more than 4"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        RtSpec spec;
+        RtError error = {RT_OK, ""};
+        assert_int_equal(rt_spec_parse(wrong[i].spec, &spec, &error), RT_BAD_INPUT);
+        if (!strstr(error.message, wrong[i].says)) fail_msg("%s: %s", wrong[i].spec, error.message);
+    }
+}
+
+/* ---- layers ---- */
+
+static void layers_are_described_together(void **state) {
+    RtAccel *base, *top;
+    RtDescription of_base, of_top;
+    assert_ok(rt_accel_open("grid:resolution=3x1x1", *state, &base, error));
+    assert_ok(rt_accel_open("cache+light:cells=2+grid:resolution=3x1x1", *state, &top, error));
+    rt_accel_describe(base, &of_base);
+    rt_accel_describe(top, &of_top);
+    assert_int_equal(of_top.leaves, 3 + 2 * 6 * 2 * 2); /* voxels, and cells of two lights */
+    assert_true(of_top.references > of_base.references);
+    assert_true(of_top.bytes > of_base.bytes);
+    assert_string_equal(rt_accel_base(top)->ops->name, "grid");
+    assert_ok(rt_accel_validate(top, error));
+    rt_accel_destroy(base);
+    rt_accel_destroy(top);
+}
+
+static void a_stack_is_only_as_exact_as_its_base(void **state) {
+    RtAccel *accel;
+    assert_ok(rt_accel_open("cache+bvh", *state, &accel, error));
+    assert_true(accel->exact && accel->counts);
+    rt_accel_destroy(accel);
+    if (rt_accel_open("cache+embree:mode=native", *state, &accel, NULL) == RT_NOT_AVAILABLE) return;
+    assert_false(accel->exact || accel->counts);
+    rt_accel_destroy(accel);
+}
+
+/* ---- the shadow cache ---- */
+
+/* Shadow rays in this order, each with what cache+brute is to count for it. */
+static void the_cache_counts_what_was_counted_by_hand(void **state) {
+    const RtScene *scene = *state;
+    const struct {
+        RtVec3 from;
+        uint32_t light;
+        bool begin, blocked;
+        RtTally expected;
+    } rows[] = {
+        /* Nothing is remembered: brute's two tests, of which the first hits. */
+        {{{-1, 0.5f, 0.5f}},
+         0,
+         true,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
+        /* Sphere 0 is remembered, and blocks again: one test, nothing passed on. */
+        {{{-1, 0.4f, 0.5f}},
+         0,
+         false,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .steps = 1}},
+        /* From between the spheres: 0 is tested in vain, brute tests both and finds 1. */
+        {{{2, 0.5f, 0.5f}},
+         0,
+         false,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 3, .object_hits = 1, .steps = 1, .passed_on = 1}},
+        /* The other light has an entry of its own, empty yet; nothing is in the way. */
+        {{{2, 0.5f, 5}}, 1, false, false, {.rays = 1, .object_tests = 2, .passed_on = 1}},
+        /* Sphere 1 is remembered for the first light, in vain; what misses changes nothing: */
+        {{{6, 0.5f, 0.5f}}, 0, false, false, {.rays = 1, .object_tests = 3, .steps = 1, .passed_on = 1}},
+        {{{2, 0.5f, 0.5f}},
+         0,
+         false,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .steps = 1}},
+        /* After a new beginning nothing is remembered. */
+        {{{2, 0.5f, 0.5f}},
+         0,
+         true,
+         true,
+         {.rays = 1, .hits = 1, .object_tests = 2, .object_hits = 1, .passed_on = 1}},
+    };
+    RtAccel *accel;
+    RtQuery query;
+    assert_ok(rt_accel_open("cache+brute", scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        RtRay ray = shadow_ray(scene, rows[i].from, rows[i].light);
+        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+        bool blocked;
+        if (rows[i].begin) rt_query_begin(&query);
+        rt_occluded(&query, &ray, 1, &blocked, tallies);
+        assert_int_equal(blocked, rows[i].blocked);
+        for (size_t c = 0; c < RT_TALLY_COUNTER_COUNT; c++) {
+            uint64_t got = rt_tally_get(&tallies[RT_RAY_SHADOW], c),
+                     by_hand = rt_tally_get(&rows[i].expected, c);
+            if (got != by_hand)
+                fail_msg("row %zu, %s: %d, by hand %d", i, rt_tally_name(c), (int)got, (int)by_hand);
+        }
+    }
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+}
+
+static void rays_of_other_kinds_pass_an_overlay_uncounted(void **state) {
+    const RtScene *scene = *state;
+    RtAccel *accel;
+    RtQuery query;
+    RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+    RtRay toward = shadow_ray(scene, rt_vec3(-1, 0.5f, 0.5f), 0), rays[3] = {toward, toward, toward};
+    rays[1].kind = RT_RAY_DIFFUSE;
+    rays[2].source = 7; /* there is no such light */
+    bool blocked[3];
+    RtHit hits[3];
+    assert_ok(rt_accel_open("cache+brute", scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    rt_occluded(&query, rays, 3, blocked, tallies);
+    assert_true(blocked[0] && blocked[1] && blocked[2]);
+    assert_int_equal(tallies[RT_RAY_DIFFUSE].rays, 1);
+    assert_int_equal(tallies[RT_RAY_DIFFUSE].passed_on, 0);
+    assert_int_equal(tallies[RT_RAY_SHADOW].rays, 2);
+    assert_int_equal(tallies[RT_RAY_SHADOW].passed_on, 2);
+    rt_nearest(&query, rays, 3, hits, tallies);
+    assert_int_equal(hits[0].object, 0);
+    assert_int_equal(tallies[RT_RAY_SHADOW].rays, 4);
+    assert_int_equal(tallies[RT_RAY_SHADOW].passed_on, 2);
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+}
+
+RT_TEST_GROUP(overlays) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_spec_is_read_from_the_top_down_and_written_as_it_was),
+        cmocka_unit_test(a_wrong_plus_is_refused_with_a_remedy),
+        cmocka_unit_test(layers_are_described_together),
+        cmocka_unit_test(a_stack_is_only_as_exact_as_its_base),
+        cmocka_unit_test(the_cache_counts_what_was_counted_by_hand),
+        cmocka_unit_test(rays_of_other_kinds_pass_an_overlay_uncounted),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

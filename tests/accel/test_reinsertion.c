@@ -1,0 +1,264 @@
+/* accel/tree/reinsertion.c: what moves, what it gains, and that nothing else changes. */
+#include "tree_testing.h"
+
+#include <string.h>
+
+/* A binned tree, and poor ones: medians, and chains in the order of ids. */
+enum { BINNED, MEDIANS, CHAIN, KINDS };
+
+static RtTree make_tree(const RtBox *boxes, uint32_t count, int kind) {
+    RtTree tree;
+    if (kind != CHAIN) {
+        assert_ok(rt_tree_topdown(&tree, boxes, count, kind == BINNED ? 16 : 0, error));
+        return tree;
+    }
+    assert_ok(rt_tree_init_leaves(&tree, boxes, count, error));
+    for (uint32_t i = 1, top = 0; i < count; i++) top = rt_tree_unite(&tree, top, i);
+    return tree;
+}
+
+static RtTree copy_of(const RtTree *tree) {
+    RtTree copy = *tree;
+    copy.nodes = rt_alloc(tree->used, sizeof(RtTreeNode));
+    memcpy(copy.nodes, tree->nodes, tree->used * sizeof(RtTreeNode));
+    return copy;
+}
+
+/* Each object is in one leaf, with the box it had. */
+static void assert_same_references(const RtTree *tree, const RtBox *boxes) {
+    uint32_t count = rt_tree_leaf_count(tree), *seen = rt_alloc(count, sizeof(uint32_t));
+    assert_tree(tree);
+    for (uint32_t i = 0; i < tree->used; i++) {
+        if (!rt_tree_is_leaf(tree, i)) continue;
+        uint32_t id = tree->nodes[i].child[1];
+        assert_memory_equal(&tree->nodes[i].box, &boxes[id], sizeof(RtBox));
+        assert_int_equal(seen[id]++, 0);
+    }
+    rt_free(seen);
+}
+
+/* Boxes of unions hold their children and nothing else. */
+static void assert_tight(const RtTree *tree) {
+    for (uint32_t i = 0; i < tree->used; i++) {
+        if (rt_tree_is_leaf(tree, i)) continue;
+        const uint32_t *child = tree->nodes[i].child;
+        RtBox both = rt_box_union(tree->nodes[child[0]].box, tree->nodes[child[1]].box);
+        assert_memory_equal(&both, &tree->nodes[i].box, sizeof both);
+    }
+}
+
+static void pairs_that_were_parted_are_united(void **state) {
+    (void)state;
+    /* Two cubes here and two far away, paired crosswise: areas of 3 * 1 + 1000 thin boxes. */
+    const RtBox boxes[4] = {{{0, 0, 0}, {1, 1, 1}},
+                            {{2, 0, 0}, {3, 1, 1}},
+                            {{100, 0, 0}, {101, 1, 1}},
+                            {{102, 0, 0}, {103, 1, 1}}};
+    RtTree tree;
+    assert_ok(rt_tree_init_leaves(&tree, boxes, 4, error));
+    uint32_t a = rt_tree_unite(&tree, 0, 2), b = rt_tree_unite(&tree, 1, 3);
+    rt_tree_unite(&tree, a, b);
+    /* Half areas: 101 and 101 long, 203 each, and the root of 103: 207. */
+    assert_true(rt_tree_cost(&tree) == 203 + 203 + 207);
+    assert_ok(rt_tree_reinsert(&tree, 10, 1, error));
+    assert_true(rt_tree_cost(&tree) == 7 + 7 + 207); /* 3 x 1 x 1 twice */
+    assert_same_references(&tree, boxes);
+    rt_tree_clear(&tree);
+}
+
+static void a_round_never_costs_more_and_a_poor_tree_gets_good(void **state) {
+    (void)state;
+    enum { COUNT = 2000 };
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        RtBox *boxes = make_boxes(COUNT, seed);
+        double good = 0;
+        for (int kind = 0; kind < KINDS; kind++) {
+            RtTree tree = make_tree(boxes, COUNT, kind);
+            assert_ok(rt_tree_limit_depth(&tree, error));
+            double first = rt_tree_cost(&tree), before = first;
+            if (kind == BINNED) good = first;
+            for (int round = 0; round < 6; round++) {
+                assert_ok(rt_tree_reinsert(&tree, 1, 0, error));
+                double cost = rt_tree_cost(&tree);
+                assert_true(cost <= before);
+                assert_same_references(&tree, boxes);
+                assert_tight(&tree);
+                before = cost;
+            }
+            assert_true(before < first);
+            assert_true(before <= good);
+            rt_tree_clear(&tree);
+        }
+        rt_free(boxes);
+    }
+}
+
+static void the_tree_does_not_depend_on_threads(void **state) {
+    (void)state;
+    enum { COUNT = 5000 };
+    RtBox *boxes = make_boxes(COUNT, 9);
+    RtTree first = make_tree(boxes, COUNT, MEDIANS);
+    assert_ok(rt_tree_reinsert(&first, 3, 1, error));
+    for (int threads = 2; threads <= 3; threads++) {
+        RtTree tree = make_tree(boxes, COUNT, MEDIANS);
+        assert_ok(rt_tree_reinsert(&tree, 3, threads, error));
+        assert_int_equal(tree.root, first.root);
+        assert_memory_equal(tree.nodes, first.nodes, tree.used * sizeof(RtTreeNode));
+        rt_tree_clear(&tree);
+    }
+    rt_tree_clear(&first);
+    rt_free(boxes);
+}
+
+/* ---- against all moves there are ---- */
+
+static uint32_t parent_of(const RtTree *tree, uint32_t node) {
+    for (uint32_t i = 0; i < tree->used; i++) {
+        if (rt_tree_is_leaf(tree, i)) continue;
+        if (tree->nodes[i].child[0] == node || tree->nodes[i].child[1] == node) return i;
+    }
+    return UINT32_MAX;
+}
+
+static bool is_below(const RtTree *tree, uint32_t node, uint32_t top) {
+    while (node != top && node != UINT32_MAX) node = parent_of(tree, node);
+    return node == top;
+}
+
+static void put_instead(RtTree *tree, uint32_t parent, uint32_t from, uint32_t to) {
+    if (parent == UINT32_MAX)
+        tree->root = to;
+    else
+        tree->nodes[parent].child[tree->nodes[parent].child[0] == from ? 0 : 1] = to;
+}
+
+static RtBox refit(RtTree *tree, uint32_t node) {
+    RtTreeNode *n = &tree->nodes[node];
+    if (!rt_tree_is_leaf(tree, node))
+        n->box = rt_box_union(refit(tree, n->child[0]), refit(tree, n->child[1]));
+    return n->box;
+}
+
+/* The cost after moving `node` beside `target`. */
+static double cost_after(const RtTree *tree, uint32_t node, uint32_t target) {
+    RtTree copy = copy_of(tree);
+    uint32_t p = parent_of(tree, node);
+    uint32_t sibling = tree->nodes[p].child[tree->nodes[p].child[0] == node ? 1 : 0];
+    put_instead(&copy, parent_of(tree, p), p, sibling);
+    copy.nodes[p].child[0] = RT_TREE_LEAF; /* it is the parent of none for now */
+    put_instead(&copy, parent_of(&copy, target), target, p);
+    copy.nodes[p].child[0] = target;
+    copy.nodes[p].child[1] = node;
+    refit(&copy, copy.root);
+    double cost = rt_tree_cost(&copy);
+    rt_tree_clear(&copy);
+    return cost;
+}
+
+static void where_it_ends_no_move_there_is_would_gain(void **state) {
+    (void)state;
+    enum { COUNT = 14 };
+    for (uint64_t seed = 1; seed <= 8; seed++) {
+        RtBox *boxes = make_boxes(COUNT, seed);
+        RtTree tree = make_tree(boxes, COUNT, seed % 2 ? CHAIN : MEDIANS);
+        assert_ok(rt_tree_reinsert(&tree, 1000, 0, error));
+        double cost = rt_tree_cost(&tree);
+        for (uint32_t node = 0; node < tree.used; node++) {
+            uint32_t p = parent_of(&tree, node);
+            for (uint32_t target = 0; target < tree.used && p != UINT32_MAX; target++) {
+                if (is_below(&tree, target, node) || target == p) continue;
+                assert_true(cost_after(&tree, node, target) > cost * (1 - 1e-9));
+            }
+        }
+        rt_tree_clear(&tree);
+        rt_free(boxes);
+    }
+}
+
+/* ---- degenerate ---- */
+
+static void what_cannot_gain_stays_as_it_is(void **state) {
+    (void)state;
+    enum { COUNT = 300 };
+    RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox)); /* all at one point, then all the unit cube */
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t count = 1; count <= COUNT; count = count < 3 ? count + 1 : count * 10) {
+            RtTree tree = make_tree(boxes, count, MEDIANS), before = copy_of(&tree);
+            assert_ok(rt_tree_reinsert(&tree, 5, 0, error));
+            assert_memory_equal(tree.nodes, before.nodes, tree.used * sizeof(RtTreeNode));
+            rt_tree_clear(&tree);
+            rt_tree_clear(&before);
+        }
+        for (int i = 0; i < COUNT; i++) boxes[i] = (RtBox){{0, 0, 0}, {1, 1, 1}};
+    }
+    rt_free(boxes);
+}
+
+/* Boxes about one point: each holds all the smaller ones, and bounds do not prune. A chain would be the best
+ * tree; moves along it would take the square of their number. */
+static void nested_boxes_take_no_time_to_speak_of(void **state) {
+    (void)state;
+    enum { COUNT = 20000 };
+    RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
+    for (int step = 1; step <= 7919; step += 7918) { /* in order, and mixed */
+        for (int i = 0; i < COUNT; i++) {
+            float r = (float)(i + 1);
+            boxes[(i * step) % COUNT] = (RtBox){{-r, -r, -r}, {r, r, r}};
+        }
+        RtTree tree = make_tree(boxes, COUNT, MEDIANS);
+        double before = rt_tree_cost(&tree);
+        assert_ok(rt_tree_reinsert(&tree, 4, 0, error));
+        assert_true(rt_tree_cost(&tree) <= before);
+        assert_same_references(&tree, boxes);
+        uint32_t depth = assert_tree(&tree);
+        if (depth > COUNT / 4) fail_msg("the tree is %u deep", depth);
+        rt_tree_clear(&tree);
+    }
+    rt_free(boxes);
+}
+
+static void a_tree_that_is_too_deep_is_limited_first(void **state) {
+    (void)state;
+    enum { COUNT = 1000 };
+    RtBox *boxes = make_boxes(COUNT, 3);
+    RtTree tree = make_tree(boxes, COUNT, CHAIN);
+    assert_int_equal(assert_tree(&tree), COUNT - 1);
+    assert_ok(rt_tree_reinsert(&tree, 1, 0, error));
+    assert_true(assert_tree(&tree) < 2 * RT_TREE_MAX_DEPTH);
+    rt_tree_clear(&tree);
+    rt_free(boxes);
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    RtBox *boxes = make_boxes(100, 5);
+    RtTree tree = make_tree(boxes, 100, MEDIANS);
+    int64_t live = rt_alloc_live();
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status != RT_OK; n++) {
+        RtError failure = {RT_OK, ""};
+        rt_alloc_fail_at(n);
+        status = rt_tree_reinsert(&tree, 2, 1, &failure);
+        rt_alloc_fail_at(0);
+        if (status != RT_OK) assert_int_equal(status, RT_NO_MEMORY);
+        assert_int_equal(rt_alloc_live(), live);
+        assert_same_references(&tree, boxes);
+        assert_in_range(n, 1, 10);
+    }
+    rt_tree_clear(&tree);
+    rt_free(boxes);
+}
+
+RT_TEST_GROUP(reinsertion) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pairs_that_were_parted_are_united),
+        cmocka_unit_test(a_round_never_costs_more_and_a_poor_tree_gets_good),
+        cmocka_unit_test(the_tree_does_not_depend_on_threads),
+        cmocka_unit_test(where_it_ends_no_move_there_is_would_gain),
+        cmocka_unit_test(what_cannot_gain_stays_as_it_is),
+        cmocka_unit_test(nested_boxes_take_no_time_to_speak_of),
+        cmocka_unit_test(a_tree_that_is_too_deep_is_limited_first),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

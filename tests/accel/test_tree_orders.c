@@ -1,0 +1,133 @@
+/* accel/tree: orders along axes and by Morton codes, and the methods that rest on them, linear hierarchies
+ * and sweeps. */
+#include "tree_testing.h"
+
+#include "accel/tree/order.h"
+
+static void an_axis_is_sorted_by_centres_and_ids(void **state) {
+    (void)state;
+    static const float centers[] = {3, -1, 0, -1e30f, 3, -0.5f, 1e-40f, 1e30f, -1};
+    static const uint32_t expected[] = {3, 1, 8, 5, 2, 6, 0, 4, 7};
+    enum { COUNT = sizeof expected / sizeof expected[0] };
+    RtBox boxes[COUNT];
+    for (int axis = 0; axis < 3; axis++) {
+        for (uint32_t i = 0; i < COUNT; i++) {
+            boxes[i] = (RtBox){{0, 0, 0}, {0, 0, 0}};
+            boxes[i].lo.at[axis] = boxes[i].hi.at[axis] = centers[i];
+        }
+        RtKeyed *order = rt_order_axis(boxes, COUNT, axis);
+        for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(order[i].id, expected[i]);
+        rt_free(order);
+    }
+}
+
+/* Object i of 64 is in cell (i % 4, i / 4 % 4, i / 16) of 4 x 4 x 4. */
+static void make_cells(RtBox *boxes) {
+    for (uint32_t i = 0; i < 64; i++) {
+        RtVec3 corner = {{(float)(i % 4), (float)(i / 4 % 4), (float)(i / 16)}};
+        boxes[i] = (RtBox){corner, rt_add(corner, (RtVec3){{1, 1, 1}})};
+    }
+}
+
+static void morton_codes_interleave_the_cells_of_centres(void **state) {
+    (void)state;
+    RtBox boxes[64];
+    make_cells(boxes);
+    RtKeyed *order = rt_order_morton(boxes, 64, 2);
+    for (uint32_t i = 0; i < 64; i++) {
+        uint32_t id = order[i].id, code = 0;
+        for (uint32_t bit = 0; bit < 6; bit++) code |= (id >> (bit % 3 * 2 + bit / 3) & 1) << bit;
+        assert_int_equal(order[i].key, code);
+        assert_int_equal(code, i);
+    }
+    rt_free(order);
+    order = rt_order_morton(boxes, 64, 1); /* eight a cell, by id */
+    for (uint32_t i = 1; i < 64; i++) {
+        assert_int_equal(order[i].key, i / 8);
+        if (i % 8) assert_true(order[i].id > order[i - 1].id);
+    }
+    rt_free(order);
+}
+
+static void lbvh_halves_space_along_one_axis_after_another(void **state) {
+    (void)state;
+    RtBox boxes[64];
+    make_cells(boxes);
+    RtTree tree;
+    assert_ok(rt_tree_lbvh(&tree, boxes, 64, 21, error));
+    assert_int_equal(assert_tree(&tree), 6);
+    uint32_t node = tree.root;
+    for (int level = 0; level < 6; level++, node = tree.nodes[node].child[0]) { /* z, y, x, z, y, x */
+        int axis = 2 - level % 3;
+        RtVec3 size = rt_box_size(tree.nodes[node].box);
+        const uint32_t *child = tree.nodes[node].child;
+        for (int s = 0; s < 2; s++) {
+            RtVec3 half = rt_box_size(tree.nodes[child[s]].box);
+            for (int a = 0; a < 3; a++) {
+                assert_true(half.at[a] == (a == axis ? size.at[a] / 2 : size.at[a]));
+            }
+        }
+    }
+    rt_tree_clear(&tree);
+}
+
+/* The least cost of a split by a plane between centres along an axis, of which none are equal. */
+static double least_split_cost(const RtBox *boxes, uint32_t count) {
+    double least = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        for (uint32_t i = 0; i < count; i++) {
+            RtBox sides[2] = {RT_EMPTY_BOX, RT_EMPTY_BOX};
+            uint32_t counts[2] = {0, 0};
+            for (uint32_t j = 0; j < count; j++) {
+                int side = rt_box_center(boxes[j]).at[axis] >= rt_box_center(boxes[i]).at[axis];
+                sides[side] = rt_box_union(sides[side], boxes[j]);
+                counts[side]++;
+            }
+            double cost = rt_box_half_area(sides[0]) * counts[0] + rt_box_half_area(sides[1]) * counts[1];
+            if (counts[0] > 0 && cost < least) least = cost;
+        }
+    }
+    return least;
+}
+
+static uint32_t leaves_below(const RtTree *tree, uint32_t node) {
+    if (rt_tree_is_leaf(tree, node)) return 1;
+    const uint32_t *child = tree->nodes[node].child;
+    return leaves_below(tree, child[0]) + leaves_below(tree, child[1]);
+}
+
+static double root_split_cost(const RtTree *tree) {
+    const uint32_t *child = tree->nodes[tree->root].child;
+    double cost = 0;
+    for (int s = 0; s < 2; s++)
+        cost += rt_box_half_area(tree->nodes[child[s]].box) * leaves_below(tree, child[s]);
+    return cost;
+}
+
+static void a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objects(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        for (uint32_t count = 16; count <= 200; count += 184) {
+            RtBox *boxes = make_boxes(count, seed);
+            RtTree binned, sweep;
+            assert_ok(rt_tree_topdown(&binned, boxes, count, 16, error));
+            assert_ok(rt_tree_sweep(&sweep, boxes, count, error));
+            double least = least_split_cost(boxes, count);
+            assert_true(root_split_cost(&sweep) == least);
+            assert_true(count == 16 ? root_split_cost(&binned) == least : root_split_cost(&binned) >= least);
+            rt_tree_clear(&binned);
+            rt_tree_clear(&sweep);
+            rt_free(boxes);
+        }
+    }
+}
+
+RT_TEST_GROUP(tree_orders) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_axis_is_sorted_by_centres_and_ids),
+        cmocka_unit_test(morton_codes_interleave_the_cells_of_centres),
+        cmocka_unit_test(lbvh_halves_space_along_one_axis_after_another),
+        cmocka_unit_test(a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objects),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,247 @@
+/* accel/tree: the methods against their definitions, and bounded depth. */
+#include "tree_testing.h"
+
+#include "accel/tree/neighbours.h"
+#include "accel/tree/split.h"
+
+#include <string.h>
+
+enum { METHOD_COUNT = 7 }; /* of make_tree */
+
+/* ---- trees of boxes ---- */
+
+static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
+    const RtInsertionOrder order = {.random = true, .tries = 1, .seed = 1};
+    RtTree tree;
+    switch (method) {
+    case 0: assert_ok(rt_tree_agglomerative(&tree, boxes, count, error)); break;
+    case 1: assert_ok(rt_tree_ploc(&tree, boxes, count, 21, 25, error)); break;
+    case 2: assert_ok(rt_tree_insertion(&tree, boxes, count, &order, error)); break;
+    case 3: assert_ok(rt_tree_topdown(&tree, boxes, count, 0, error)); break;
+    case 4: assert_ok(rt_tree_topdown(&tree, boxes, count, 16, error)); break;
+    case 5: assert_ok(rt_tree_sweep(&tree, boxes, count, error)); break;
+    default: assert_ok(rt_tree_lbvh(&tree, boxes, count, 21, error)); break;
+    }
+    return tree;
+}
+
+static void the_nearest_neighbour_is_the_one_that_a_scan_finds(void **state) {
+    (void)state;
+    enum { COUNT = 333 };
+    RtBox *boxes = make_boxes(COUNT, 1);
+    RtTree tree;
+    RtNeighbours neighbours;
+    bool gone[2 * COUNT] = {false};
+    assert_ok(rt_tree_init_leaves(&tree, boxes, COUNT, error));
+    assert_ok(rt_neighbours_init(&neighbours, &tree, error));
+    RtRandom random = rt_random(2, 0);
+    for (uint32_t left = COUNT; left > 1; left--) {
+        uint32_t from, other;
+        double distance, least = INFINITY;
+        do from = rt_random_below(&random, tree.used);
+        while (gone[from]);
+        uint32_t nearest = rt_neighbours_nearest(&neighbours, from, &distance);
+        for (other = 0; other < tree.used; other++) {
+            if (gone[other] || other == from) continue;
+            double d = rt_tree_distance(&tree, from, other);
+            least = d < least ? d : least;
+        }
+        assert_true(distance == least);
+        assert_true(distance == rt_tree_distance(&tree, from, nearest));
+        /* A union with any cluster, near or far. */
+        do other = rt_random_below(&random, tree.used);
+        while (gone[other] || other == from);
+        gone[from] = gone[other] = true;
+        rt_neighbours_unite(&neighbours, from, other, rt_tree_unite(&tree, from, other));
+    }
+    double distance;
+    assert_int_equal(rt_neighbours_nearest(&neighbours, tree.root, &distance), RT_NO_CLUSTER);
+    rt_neighbours_clear(&neighbours);
+    rt_tree_clear(&tree);
+    rt_free(boxes);
+}
+
+/* The definition: of all pairs of all clusters the nearest, until one is left. */
+static RtTree make_greedy_tree(const RtBox *boxes, uint32_t count) {
+    RtTree tree;
+    bool gone[1024] = {false};
+    assert_ok(rt_tree_init_leaves(&tree, boxes, count, error));
+    while (tree.used < 2 * count - 1) {
+        uint32_t a = 0, b = 0;
+        double least = INFINITY;
+        for (uint32_t i = 0; i < tree.used; i++) {
+            for (uint32_t j = i + 1; j < tree.used && !gone[i]; j++) {
+                if (gone[j] || !(rt_tree_distance(&tree, i, j) < least)) continue;
+                least = rt_tree_distance(&tree, i, j);
+                a = i;
+                b = j;
+            }
+        }
+        gone[a] = gone[b] = true;
+        rt_tree_unite(&tree, a, b);
+    }
+    return tree;
+}
+
+static void agglomeration_unites_the_nearest_pair_of_all(void **state) {
+    (void)state;
+    enum { COUNT = 150 };
+    for (uint64_t seed = 1; seed <= 5; seed++) {
+        RtBox *boxes = make_boxes(COUNT, seed);
+        RtTree greedy = make_greedy_tree(boxes, COUNT), tree = make_tree(boxes, COUNT, 0);
+        assert_tree(&tree);
+        /* The same unions, in another order. */
+        for (uint32_t i = COUNT; i < greedy.used; i++) {
+            uint32_t j = COUNT;
+            while (j < tree.used && memcmp(&tree.nodes[j].box, &greedy.nodes[i].box, sizeof(RtBox)) != 0) j++;
+            assert_true(j < tree.used);
+        }
+        rt_tree_clear(&greedy);
+        rt_tree_clear(&tree);
+        rt_free(boxes);
+    }
+}
+
+static void clustering_beats_medians_and_more_neighbours_beat_fewer(void **state) {
+    (void)state;
+    enum { COUNT = 3000 };
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        RtBox *boxes = make_boxes(COUNT, seed);
+        double cost[METHOD_COUNT];
+        for (int m = 0; m < METHOD_COUNT; m++) {
+            RtTree tree = make_tree(boxes, COUNT, m);
+            assert_tree(&tree);
+            cost[m] = rt_tree_cost(&tree);
+            rt_tree_clear(&tree);
+        }
+        assert_true(cost[0] <= cost[1]); /* agglomerative, ploc */
+        assert_true(cost[1] <= cost[3]); /* rubin-whitted */
+        assert_true(cost[2] <= cost[3]); /* goldsmith-salmon */
+        assert_true(cost[5] <= cost[4]); /* sweep, binned */
+        assert_true(cost[4] <= cost[6]); /* lbvh */
+        rt_free(boxes);
+    }
+}
+
+static void more_orders_of_insertion_never_cost_more(void **state) {
+    (void)state;
+    enum { COUNT = 500 };
+    RtBox *boxes = make_boxes(COUNT, 4);
+    double before = INFINITY, first = 0;
+    for (uint32_t tries = 1; tries <= 8; tries++) {
+        const RtInsertionOrder order = {.random = true, .tries = tries, .seed = 7};
+        RtTree tree;
+        assert_ok(rt_tree_insertion(&tree, boxes, COUNT, &order, error));
+        assert_tree(&tree);
+        double cost = rt_tree_cost(&tree);
+        assert_true(cost <= before);
+        if (tries == 1) first = cost;
+        before = cost;
+        rt_tree_clear(&tree);
+    }
+    assert_true(before < first);
+    rt_free(boxes);
+}
+
+static void an_object_is_inserted_where_areas_grow_least(void **state) {
+    (void)state;
+    /* Two pairs far apart; the fifth, beside the second, makes the pair of 2 and 3 grow or unites with 3. */
+    RtBox boxes[5] = {{{0, 0, 0}, {1, 1, 1}},
+                      {{2, 0, 0}, {3, 1, 1}},
+                      {{100, 0, 0}, {101, 1, 1}},
+                      {{102, 0, 0}, {103, 1, 1}},
+                      {{103.5f, 0, 0}, {104, 1, 1}}};
+    const RtInsertionOrder order = {.random = false, .tries = 1};
+    RtTree tree;
+    assert_ok(rt_tree_insertion(&tree, boxes, 5, &order, error));
+    assert_int_equal(assert_tree(&tree), 3);
+    const uint32_t *child = tree.nodes[8].child; /* the last union */
+    assert_int_equal(child[0], 3);
+    assert_int_equal(child[1], 4);
+    rt_tree_clear(&tree);
+}
+
+static void medians_put_the_lesser_half_in_front(void **state) {
+    (void)state;
+    RtRandom random = rt_random(9, 0);
+    for (uint32_t count = 1; count <= 64; count++) {
+        RtTreeRef refs[64];
+        for (uint32_t i = 0; i < count; i++) {
+            float x = (float)(rt_random_below(&random, count / 2 + 1)); /* many are equal */
+            refs[i] = (RtTreeRef){{{x, 0, 0}, {x + 1, 1, 1}}, i};
+        }
+        uint32_t half = rt_split_median(refs, count);
+        assert_int_equal(half, (count + 1) / 2);
+        for (uint32_t i = 0; i < half; i++) {
+            for (uint32_t j = half; j < count; j++) {
+                float x = refs[i].box.lo.x, y = refs[j].box.lo.x;
+                assert_true(x < y || (x == y && refs[i].id < refs[j].id));
+            }
+        }
+    }
+}
+
+/* ---- depth ---- */
+
+static void coincident_objects_stay_within_the_depth_limit(void **state) {
+    (void)state;
+    enum { COUNT = 1000 };
+    RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
+    for (int i = 0; i < COUNT; i++) boxes[i] = (RtBox){{0, 0, 0}, {1, 1, 1}};
+    for (int m = 0; m < METHOD_COUNT; m++) {
+        RtTree tree = make_tree(boxes, COUNT, m);
+        uint32_t before = assert_tree(&tree);
+        if (m == 2) assert_true(before > RT_TREE_MAX_DEPTH); /* or the test would show less */
+        if (m != 2) assert_in_range(before, 10, 12);
+        assert_ok(rt_tree_limit_depth(&tree, error));
+        assert_true(assert_tree(&tree) <= RT_TREE_MAX_DEPTH);
+        rt_tree_clear(&tree);
+    }
+    rt_free(boxes);
+}
+
+/* Boxes at distances that grow by powers of 2, each so large that all smaller ones are nearer to one another:
+ * every bottom-up method makes a chain. */
+static void a_chain_of_growing_distances_is_cut_by_medians(void **state) {
+    (void)state;
+    enum { COUNT = 110 };
+    RtBox boxes[COUNT];
+    float x = 1e-17f;
+    for (int i = 0; i < COUNT; i++, x *= 2) boxes[i] = (RtBox){{x, 0, 0}, {x * 1.25f, x / 8, x / 8}};
+    for (int m = 0; m < METHOD_COUNT; m++) {
+        RtTree tree = make_tree(boxes, COUNT, m);
+        uint32_t before = assert_tree(&tree);
+        if (m < 2) assert_true(before > RT_TREE_MAX_DEPTH);
+        if (m == 1) assert_in_range(before, RT_TREE_MAX_DEPTH, 80); /* its patience is at an end */
+        assert_ok(rt_tree_limit_depth(&tree, error));
+        assert_true(assert_tree(&tree) <= RT_TREE_MAX_DEPTH);
+        rt_tree_clear(&tree);
+    }
+}
+
+static void what_is_shallow_enough_is_left_as_it_is(void **state) {
+    (void)state;
+    RtBox *boxes = make_boxes(500, 1);
+    RtTree tree = make_tree(boxes, 500, 0);
+    RtTreeNode before[999];
+    memcpy(before, tree.nodes, sizeof before);
+    assert_ok(rt_tree_limit_depth(&tree, error));
+    assert_memory_equal(before, tree.nodes, sizeof before);
+    rt_tree_clear(&tree);
+    rt_free(boxes);
+}
+
+RT_TEST_GROUP(trees) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_nearest_neighbour_is_the_one_that_a_scan_finds),
+        cmocka_unit_test(agglomeration_unites_the_nearest_pair_of_all),
+        cmocka_unit_test(clustering_beats_medians_and_more_neighbours_beat_fewer),
+        cmocka_unit_test(more_orders_of_insertion_never_cost_more),
+        cmocka_unit_test(an_object_is_inserted_where_areas_grow_least),
+        cmocka_unit_test(medians_put_the_lesser_half_in_front),
+        cmocka_unit_test(coincident_objects_stay_within_the_depth_limit),
+        cmocka_unit_test(a_chain_of_growing_distances_is_cut_by_medians),
+        cmocka_unit_test(what_is_shallow_enough_is_left_as_it_is),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,240 @@
+/* base/: files, tallies, parameters, memory, rounding, random numbers. */
+#include "testing.h"
+
+#include "base/box.h"
+#include "base/elementary.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/param.h"
+#include "base/random.h"
+#include "base/tally.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static void rounding_outward_brackets_the_number(void **state) {
+    (void)state;
+    double third = 1.0 / 3.0;
+    assert_true((double)rt_float_below(third) < third);
+    assert_true((double)rt_float_above(third) > third);
+    assert_true(rt_float_below(0.5) == 0.5f && rt_float_above(0.5) == 0.5f);
+}
+
+static __attribute__((noinline)) void narrow_and_widen(const double *from, double *to) {
+    float x = (float)from[0], y = (float)from[1];
+    to[0] = (double)x;
+    to[1] = (double)y;
+}
+
+static void narrowing_rounds_also_where_widening_follows(void **state) {
+    (void)state;
+    volatile double third = 1.0 / 3.0; /* volatile: not to be computed by the compiler */
+    volatile float rounded = (float)third;
+    const double from[2] = {third, 2 * third};
+    double to[2];
+    narrow_and_widen(from, to);
+    assert_true(to[0] == (double)rounded && to[1] == 2 * (double)rounded);
+}
+
+static void tallies_add_counter_by_counter(void **state) {
+    (void)state;
+    RtTally sum = {.rays = 1, .passed_on = 2}, part = {.rays = 10, .steps = 5};
+    rt_tally_add(&sum, &part);
+    assert_int_equal(sum.rays, 11);
+    assert_int_equal(sum.steps, 5);
+    assert_int_equal(sum.passed_on, 2);
+    assert_string_equal(rt_tally_name(0), "rays");
+    assert_int_equal(rt_tally_get(&sum, 0), 11);
+}
+
+static const RtParam table[] = {
+    {.name = "width",
+     .type = RT_PARAM_INT,
+     .standard = "4",
+     .lo = 1,
+     .hi = 64,
+     .meaning = "m",
+     .source = "s"},
+    {.name = "rule",
+     .type = RT_PARAM_CHOICE,
+     .standard = "woo",
+     .choices = "cubic|woo",
+     .meaning = "m",
+     .source = "s"},
+    {.name = "resolution",
+     .type = RT_PARAM_RESOLUTION,
+     .standard = "auto",
+     .lo = 1,
+     .hi = 512,
+     .meaning = "m",
+     .source = "s"},
+    {.name = "mailbox", .type = RT_PARAM_FLAG, .standard = "on", .meaning = "m", .source = "s"},
+};
+
+/* Opening a pipe would wait for its other end; renaming a file to a device would replace the device. */
+static void what_is_not_a_file_is_neither_read_nor_replaced(void **state) {
+    (void)state;
+    static const char *const pipe = RT_BINARY_DIR "/test_base.pipe";
+    remove(pipe);
+    assert_int_equal(mkfifo(pipe, 0600), 0);
+    const char *const paths[] = {pipe, "/dev/zero", RT_BINARY_DIR};
+    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
+        RtError problem;
+        RtOutput output;
+        char *data, temporary[RT_MAX_PATH + 8];
+        size_t size;
+        assert_int_equal(rt_file_read(paths[i], 1 << 20, &data, &size, &problem), RT_BAD_INPUT);
+        assert_non_null(strstr(problem.message, "not a file"));
+        assert_int_equal(rt_output_open(&output, paths[i], &problem), RT_IO);
+        assert_non_null(strstr(problem.message, paths[i]));
+        snprintf(temporary, sizeof temporary, "%s.tmp", paths[i]);
+        assert_false(rt_file_exists(temporary));
+    }
+    remove(pipe);
+}
+
+static void parameters_left_out_have_their_defaults(void **state) {
+    (void)state;
+    RtValue v[4];
+    RtError error;
+    assert_int_equal(rt_params_parse(table, 4, "rule=cubic,resolution=46x46x3", "it", v, &error), RT_OK);
+    char text[128];
+    rt_params_format(table, 4, v, text, sizeof text);
+    assert_string_equal(text, "width=4,rule=cubic,resolution=46x46x3,mailbox=on");
+}
+
+static void wrong_parameters_are_refused_with_what_would_be_right(void **state) {
+    (void)state;
+    const struct {
+        const char *text, *says;
+    } cases[] = {
+        {"width=0", "1..64"},           {"width=1000000000", "1..64"},
+        {"width=3.5", "whole number"},  {"wdith=3", "mean 'width'"},
+        {"width", "key=value"},         {"width=2,width=3", "twice"},
+        {"rule=grid", "cubic|woo"},     {"mailbox=yes", "on|off"},
+        {"resolution=4x4", "NXxNYxNZ"}, {"resolution=-4x4x4", "NXxNYxNZ"},
+        {"width=nan", "1..64"},         {"width=", "1..64"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtValue v[4];
+        RtError error;
+        assert_int_equal(rt_params_parse(table, 4, cases[i].text, "it", v, &error), RT_BAD_INPUT);
+        if (!strstr(error.message, cases[i].says)) fail_msg("'%s' gave: %s", cases[i].text, error.message);
+    }
+}
+
+static void the_nth_allocation_fails_when_told_to(void **state) {
+    (void)state;
+    rt_alloc_fail_at(2);
+    void *a = rt_alloc(1, 1), *b = rt_alloc(1, 1), *c = rt_alloc(1, 1);
+    assert_non_null(a);
+    assert_null(b);
+    assert_non_null(c);
+    rt_free(a);
+    rt_free(c);
+    assert_null(rt_alloc(SIZE_MAX, 2));
+}
+
+static void random_numbers_depend_on_seed_stream_and_place_alone(void **state) {
+    (void)state;
+    RtRandom a = rt_random(7, 1), b = rt_random(7, 1), c = rt_random(7, 2);
+    bool differ = false;
+    for (int i = 0; i < 9; i++) {
+        uint32_t x = rt_random_bits(&a);
+        assert_int_equal(x, rt_random_bits(&b));
+        differ |= x != rt_random_bits(&c);
+    }
+    assert_true(differ);
+}
+
+static void note_path(void *context, const char *path) {
+    char *list = context;
+    strcat(strcat(list, strrchr(path, '/')), " ");
+}
+
+static void files_are_listed_by_name_whatever_their_folder_is_called(void **state) {
+    (void)state;
+    static const char *const names[] = {"b.svg", "a.svg", "c.svg.tmp"};
+    char root[] = "/tmp/raytally_base_XXXXXX", folder[64], path[96], found[64] = "";
+    assert_non_null(mkdtemp(root));
+    snprintf(folder, sizeof folder, "%s/a[1]*?", root);
+    assert_ok(rt_directory_create(folder, error));
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        assert_ok(rt_file_write(path, "x", 1, error));
+    }
+    assert_int_equal(rt_directory_each(folder, ".svg", note_path, found), 2);
+    assert_string_equal(found, "/a.svg /b.svg ");
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        remove(path);
+    }
+    rmdir(folder);
+    rmdir(root);
+    assert_int_equal(rt_directory_each(folder, "", note_path, found), 0);
+}
+
+static void logarithms_are_within_a_unit_in_the_last_place(void **state) {
+    (void)state;
+    RtRandom random = rt_random(1, 0);
+    for (int i = 0; i < 200000; i++) {
+        int exponent = i % 2 ? 0 : (int)(rt_random_below(&random, 2000)) - 1000;
+        double x = ldexp(rt_random_betweend(&random, 0.5, 2), exponent), computed = rt_log(x);
+        double unit = nextafter(fabs(computed), INFINITY) - fabs(computed);
+        assert_true(fabsl((long double)computed - logl((long double)x)) <= (long double)unit);
+    }
+    assert_true(rt_log(1) == 0);
+}
+
+static void cube_roots_are_within_their_bound(void **state) {
+    (void)state;
+    RtRandom random = rt_random(2, 0);
+    for (int i = 0; i < 200000; i++) {
+        int exponent = i % 2 ? 0 : (int)(rt_random_below(&random, 2000)) - 1000;
+        double x = ldexp(rt_random_betweend(&random, 0.5, 2), exponent);
+        long double root = cbrtl((long double)x);
+        assert_true(fabsl((long double)rt_cube_root(x) - root) <= 4e-16L * root);
+    }
+    assert_true(rt_cube_root(1) == 1);
+}
+
+static void sines_and_cosines_are_within_their_bound(void **state) {
+    (void)state;
+    for (int i = -72000; i <= 72000; i++) {
+        double degrees = i * 0.0125; /* a double, so the angle is what it is */
+        long double angle = (long double)degrees * 3.14159265358979323846264L / 180;
+        RtTurn turn = rt_turn(degrees);
+        assert_true(fabsl((long double)turn.sine - sinl(angle)) < 4e-16L);
+        assert_true(fabsl((long double)turn.cosine - cosl(angle)) < 4e-16L);
+    }
+}
+
+static void quarter_turns_are_exact(void **state) {
+    (void)state;
+    static const double cosines[4] = {1, 0, -1, 0};
+    for (int quarter = -9; quarter <= 9; quarter++) {
+        RtTurn turn = rt_turn(90.0 * quarter);
+        assert_true(turn.cosine == cosines[quarter & 3] && turn.sine == cosines[(quarter - 1) & 3]);
+    }
+}
+
+RT_TEST_GROUP(base) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rounding_outward_brackets_the_number),
+        cmocka_unit_test(narrowing_rounds_also_where_widening_follows),
+        cmocka_unit_test(files_are_listed_by_name_whatever_their_folder_is_called),
+        cmocka_unit_test(what_is_not_a_file_is_neither_read_nor_replaced),
+        cmocka_unit_test(tallies_add_counter_by_counter),
+        cmocka_unit_test(parameters_left_out_have_their_defaults),
+        cmocka_unit_test(wrong_parameters_are_refused_with_what_would_be_right),
+        cmocka_unit_test(the_nth_allocation_fails_when_told_to),
+        cmocka_unit_test(random_numbers_depend_on_seed_stream_and_place_alone),
+        cmocka_unit_test(logarithms_are_within_a_unit_in_the_last_place),
+        cmocka_unit_test(cube_roots_are_within_their_bound),
+        cmocka_unit_test(sines_and_cosines_are_within_their_bound),
+        cmocka_unit_test(quarter_turns_are_exact),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,81 @@
+/* scene/transform: steps in order, exact quarter turns, normals, uniform scale. */
+#include "testing.h"
+
+#include "base/transform.h"
+
+#include <string.h>
+
+static void assert_point(RtVec3 p, float x, float y, float z) {
+    if (p.x == x && p.y == y && p.z == z) return;
+    fail_msg("(%.9g, %.9g, %.9g) instead of (%g, %g, %g)", (double)p.x, (double)p.y, (double)p.z, (double)x,
+             (double)y, (double)z);
+}
+
+static void steps_are_applied_in_the_order_they_are_made(void **state) {
+    (void)state;
+    RtTransform t = rt_transform_identity();
+    assert_ok(rt_transform_scale(&t, rt_vec3(2, 2, 2), error));
+    assert_ok(rt_transform_translate(&t, rt_vec3(10, 0, 0), error));
+    assert_point(rt_transform_point(&t, rt_vec3(1, 0, 0)), 12, 0, 0);
+    assert_ok(rt_transform_rotate(&t, rt_vec3(0, 0, 7), 90, error));
+    assert_point(rt_transform_point(&t, rt_vec3(1, 0, 0)), 0, 12, 0);
+}
+
+static void quarter_turns_are_exact_and_follow_the_right_hand(void **state) {
+    (void)state;
+    const RtVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int a = 0; a < 3; a++) {
+        RtTransform t = rt_transform_identity();
+        RtVec3 next = axes[(a + 1) % 3], after = axes[(a + 2) % 3];
+        assert_ok(rt_transform_rotate(&t, axes[a], 90 + 360 * 5, error));
+        assert_point(rt_transform_point(&t, next), after.x, after.y, after.z);
+        assert_ok(rt_transform_rotate(&t, axes[a], -180, error));
+        assert_point(rt_transform_point(&t, next), -after.x, -after.y, -after.z);
+    }
+}
+
+static void a_rotation_keeps_lengths_and_a_squeeze_does_not(void **state) {
+    (void)state;
+    RtTransform t = rt_transform_identity();
+    assert_ok(rt_transform_rotate(&t, rt_vec3(1, 2, 3), 37.5, error));
+    assert_ok(rt_transform_scale(&t, rt_vec3(3, 3, 3), error));
+    double scale = rt_transform_uniform_scale(&t);
+    assert_true(fabs(scale - 3) < 1e-12);
+    assert_ok(rt_transform_scale(&t, rt_vec3(1, 1, 2), error));
+    assert_true(rt_transform_uniform_scale(&t) == 0);
+}
+
+static void a_normal_stays_across_its_squeezed_plane(void **state) {
+    (void)state;
+    RtTransform t = rt_transform_identity();
+    assert_ok(rt_transform_scale(&t, rt_vec3(4, 1, 1), error));
+    RtVec3 normal = rt_transform_normal(&t, rt_vec3(1, 1, 0));
+    RtVec3 along =
+        rt_sub(rt_transform_point(&t, rt_vec3(1, -1, 0)), rt_transform_point(&t, rt_vec3(0, 0, 0)));
+    assert_true(fabsf(rt_dot(normal, along)) < 1e-6f);
+    assert_true(normal.x > 0 && normal.y > 0);
+}
+
+static void steps_that_make_no_sense_are_refused(void **state) {
+    (void)state;
+    RtTransform t = rt_transform_identity();
+    RtError error;
+    assert_int_equal(rt_transform_scale(&t, rt_vec3(1, 0, 1), &error), RT_BAD_INPUT);
+    assert_int_equal(rt_transform_scale(&t, rt_vec3(1, -1, 1), &error), RT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "above 0"));
+    assert_int_equal(rt_transform_rotate(&t, rt_vec3(0, 0, 0), 10, &error), RT_BAD_INPUT);
+    assert_int_equal(rt_transform_rotate(&t, rt_vec3(0, 0, 1), (double)NAN, &error), RT_BAD_INPUT);
+    assert_int_equal(rt_transform_translate(&t, rt_vec3(INFINITY, 0, 0), &error), RT_BAD_INPUT);
+    assert_point(rt_transform_point(&t, rt_vec3(1, 2, 3)), 1, 2, 3);
+}
+
+RT_TEST_GROUP(transform) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_are_applied_in_the_order_they_are_made),
+        cmocka_unit_test(quarter_turns_are_exact_and_follow_the_right_hand),
+        cmocka_unit_test(a_rotation_keeps_lengths_and_a_squeeze_does_not),
+        cmocka_unit_test(a_normal_stays_across_its_squeezed_plane),
+        cmocka_unit_test(steps_that_make_no_sense_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

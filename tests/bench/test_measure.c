@@ -1,0 +1,100 @@
+/* bench/measure.h and trial.h: what is counted is the sum over threads and is compared with right
+ * answers; thinned contenders are timed against the baseline on their own rays. */
+#include "testing.h"
+
+#include "base/memory.h"
+#include "bench/measure.h"
+#include "bench/trial.h"
+#include "scenes/open.h"
+
+#include <string.h>
+
+/* The spheres of balls:size=1 are 10, and one polygon; brute tests each for every ray. */
+static void a_count_is_the_sum_over_threads_and_finds_wrong_answers(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RtRecording recording = {.depth = 1, .seed = 1, .random = 10000, .threads = 1};
+    RtCount count;
+    assert_ok(rt_scene_open("balls:size=1", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 8, 8, 1, false, error));
+    assert_ok(rt_accel_open("brute", &scene, &accel, error));
+    assert_ok(rt_rayset_record(sets, accel, &recording, error));
+    const RtRaySet *set = &sets[RT_RAY_RANDOM];
+    RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
+    assert_ok(rt_measure_answers(accel, set, 2, expected, error));
+    for (int threads = 1; threads <= 3; threads++) {
+        assert_ok(rt_measure_count(accel, set, expected, threads, &count, error));
+        assert_int_equal(count.tally.rays, 10000);
+        assert_int_equal(count.tally.object_tests, 10000u * scene.geometry.object_count);
+        assert_int_equal(count.differ, 0);
+    }
+    expected[42].object ^= 1;
+    expected[4242].t += 1;
+    assert_ok(rt_measure_count(accel, set, expected, 2, &count, error));
+    assert_int_equal(count.differ, expected[4242].object == RT_NO_OBJECT ? 1 : 2);
+    assert_int_equal(count.first, 42);
+    rt_free(expected);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+/* Times `spec` on every 16th primary ray of a cloud against `baseline` on all, and gives the cell. In a frame
+ * 16 wide those are the rays of the leftmost column, which pass by everything. */
+static RtCell time_thinned(const char *baseline, const char *spec) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtTrialOptions options = {.threads = 1, .timing = 1};
+    RtResults results;
+    char where[RT_MAX_LABEL];
+    assert_non_null(e);
+    rt_experiment_init(e);
+    strcpy(e->name, "thinned");
+    e->milliseconds = 1;
+    e->kind_count = 1;
+    e->trial_count = 1;
+    e->trials[0].depth = 1;
+    e->trials[0].width = e->trials[0].height = 16;
+    e->contender_count = 2;
+    e->contenders[0] = (RtContender){.label = "all", .every = 1};
+    e->contenders[1] = (RtContender){.label = "some", .every = 16};
+    strcpy(e->contenders[0].spec, baseline);
+    strcpy(e->contenders[1].spec, spec);
+    assert_ok(rt_trial_set_scene(&e->trials[0], "random:n=300", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    assert_ok(rt_trial_run(&results, 0, &options, error));
+    RtCell cell = *rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    assert_true(fabs(rt_results_total(&results, 0, 1).ratio / cell.ratio.median - 1) < 1e-9);
+    rt_results_clear(&results);
+    rt_free(e);
+    return cell;
+}
+
+/* The hierarchy needs 1 extent test for each of these rays and 10 for one of all: on all rays the ratio would
+ * be 4 and more. */
+static void a_thinned_contender_is_compared_with_the_baseline_on_its_own_rays(void **state) {
+    (void)state;
+    RtCell cell = time_thinned("bvh", "bvh");
+    assert_int_equal(cell.tally.rays, 16);
+    assert_int_equal(cell.tally.extent_tests, 16);
+    assert_true(0.5 < cell.ratio.median && cell.ratio.median < 2);
+}
+
+/* ideal knows rays by their addresses; a ray that it does not know costs it 300 tests. */
+static void a_baseline_that_learns_knows_the_rays_of_thinned_contenders(void **state) {
+    (void)state;
+    RtCell cell = time_thinned("ideal", "ideal");
+    assert_int_equal(cell.tally.object_tests, cell.tally.hits);
+    assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
+}
+
+RT_TEST_GROUP(measure) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_count_is_the_sum_over_threads_and_finds_wrong_answers),
+        cmocka_unit_test(a_thinned_contender_is_compared_with_the_baseline_on_its_own_rays),
+        cmocka_unit_test(a_baseline_that_learns_knows_the_rays_of_thinned_contenders),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,46 @@
+/* raytally convert, as a user runs it: what it keeps, what it refuses. */
+#include "scene_testing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define OUT RT_BINARY_DIR "/test_cmd_convert"
+
+static int convert(const char *arguments) {
+    char command[1024];
+    snprintf(command, sizeof command, "%s convert %s 2>/dev/null", RT_PROGRAM, arguments);
+    int result = system(command);
+    return WIFEXITED(result) ? WEXITSTATUS(result) : -1;
+}
+
+static void convert_keeps_the_scene_and_the_files_that_are_there(void **state) {
+    (void)state;
+    remove(OUT ".yaml");
+    assert_int_equal(convert("balls:size=1 " OUT ".yaml"), 0);
+    RtScene made = open_scene("balls:size=1"), read = open_scene(OUT ".yaml");
+    assert_true(rt_scene_fingerprint(&made) == rt_scene_fingerprint(&read));
+    rt_scene_clear(&made);
+    rt_scene_clear(&read);
+    assert_int_equal(convert("balls:size=2 " OUT ".yaml"), 2);
+    assert_int_equal(convert("balls:size=2 " OUT ".yaml --force"), 0);
+}
+
+static void convert_refuses_and_leaves_nothing_behind(void **state) {
+    (void)state;
+    remove(OUT ".ply");
+    assert_int_equal(convert("balls:size=1"), 2);
+    assert_int_equal(convert("nothing " OUT ".yaml"), 2);
+    assert_int_equal(convert("balls:size=1 " OUT ".ply"), 2); /* spheres are no triangles */
+    assert_int_equal(access(OUT ".ply", F_OK), -1);
+    assert_int_equal(access(OUT ".ply.tmp", F_OK), -1);
+}
+
+RT_TEST_GROUP(cmd_convert) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(convert_keeps_the_scene_and_the_files_that_are_there),
+        cmocka_unit_test(convert_refuses_and_leaves_nothing_behind),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,268 @@
+/* raytally verify, as a user runs it: the document it prints, the exit codes, what it refuses. */
+#include "testing.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#define OUT RT_BINARY_DIR "/test_cmd_verify"
+
+/* Runs `raytally verify ARGUMENTS`, output to OUT.out and messages to OUT.err; gives the exit code. */
+static int verify(const char *arguments) {
+    char command[2048];
+    snprintf(command, sizeof command, "'%s' verify %s > '%s.out' 2> '%s.err'", RT_PROGRAM, arguments, OUT,
+             OUT);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static const char *text_of(const char *path) {
+    static char text[65536];
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+static json_t *document(const char *arguments) {
+    assert_int_equal(verify(arguments), 0);
+    assert_string_equal(text_of(OUT ".err"), "");
+    json_t *json = json_load_file(OUT ".out", 0, NULL);
+    assert_non_null(json);
+    return json;
+}
+
+static json_int_t number(const json_t *row, const char *key) {
+    const json_t *value = json_object_get(row, key);
+    assert_true(json_is_integer(value));
+    return json_integer_value(value);
+}
+
+static void a_row_says_how_each_ray_was_answered(void **state) {
+    (void)state;
+    json_t *json =
+        document("balls:size=1 tetra:size=2 --accel bvh --accel grid:density=1 --rays 1001 --seed 9 --json");
+    assert_int_equal(number(json, "seed"), 9);
+    const json_t *rows = json_object_get(json, "rows");
+    assert_int_equal(json_array_size(rows), 4);
+    const char *const accels[2] = {"bvh", "grid:density=1"};
+    for (size_t i = 0; i < 4; i++) {
+        const json_t *row = json_array_get(rows, i);
+        assert_string_equal(json_string_value(json_object_get(row, "scene")),
+                            i < 2 ? "balls:size=1" : "tetra:size=2");
+        assert_string_equal(json_string_value(json_object_get(row, "accel")), accels[i % 2]);
+        assert_string_equal(json_string_value(json_object_get(row, "against")), "brute");
+        assert_int_equal(number(row, "rays"), 1001);
+        assert_int_equal(number(row, "equal"), 1001);
+        assert_int_equal(number(row, "tie") + number(row, "marginal") + number(row, "wrong"), 0);
+        assert_int_equal(number(row, "occluded_wrong"), 0);
+        assert_true(json_is_null(json_object_get(row, "first_wrong")));
+    }
+    json_decref(json);
+}
+
+static void the_spread_tries_each_value_of_each_parameter(void **state) {
+    (void)state;
+    json_t *json = document("balls:size=1 --accel bvh --spread --rays 10 --json");
+    const json_t *rows = json_object_get(json, "rows");
+    bool leaf = false;
+    for (size_t i = 0; i < json_array_size(rows); i++) {
+        const char *accel = json_string_value(json_object_get(json_array_get(rows, i), "accel"));
+        assert_true(strncmp(accel, "bvh", 3) == 0);
+        leaf |= strcmp(accel, "bvh:leaf=1") == 0;
+    }
+    assert_true(leaf && json_array_size(rows) > 5);
+    json_decref(json);
+}
+
+static void all_is_the_default_and_threads_change_nothing(void **state) {
+    (void)state;
+    static char one[65536];
+    assert_int_equal(verify("random:n=30,shape=mixed --rays 5000 --threads 1"), 0);
+    strcpy(one, text_of(OUT ".out"));
+    assert_non_null(strstr(one, " brute "));
+    assert_non_null(strstr(one, " grid "));
+    assert_non_null(strstr(one, " pairs of a ray and an accelerator: 0 wrong\n"));
+    assert_int_equal(verify("random:n=30,shape=mixed --rays 5000 --threads 3 --accel all"), 0);
+    assert_string_equal(text_of(OUT ".out"), one);
+}
+
+/* The hard rays graze and touch, where Embree's arithmetic differs by margins: they are not held against
+ * it. */
+static void the_families_are_rays_of_their_own_and_hard_ones(void **state) {
+    (void)state;
+    static char chords[65536];
+    const char *arguments = "random:n=40,distribution=coincident random:n=0 --rays 3001 --json";
+    char with_families[256];
+    snprintf(with_families, sizeof with_families, "%s --families", arguments);
+    assert_int_equal(verify(arguments), 0);
+    strcpy(chords, text_of(OUT ".out"));
+    json_t *json = document(with_families);
+    assert_string_not_equal(text_of(OUT ".out"), chords);
+    const json_t *rows = json_object_get(json, "rows");
+    for (size_t i = 0; i < json_array_size(rows); i++) {
+        assert_int_equal(number(json_array_get(rows, i), "rays"), 3001);
+    }
+    json_decref(json);
+}
+
+static void what_cannot_be_verified_is_refused_before_anything_is_printed(void **state) {
+    (void)state;
+    const struct {
+        const char *arguments, *says;
+    } cases[] = {
+        {"nothing.yaml", "nothing.yaml"},
+        {"balls:size=99999", "size=99999"},
+        {"ball", "balls"},
+        {"tetra:size=1 nothing.yaml", "nothing.yaml"},
+        {"balls --accel gird", "did you mean 'grid'"},
+        {"balls --accel bvh:leaf=0", "1..1024"},
+        {"--rays 0", "whole number 1.."},
+        {"--rays 1e6", "whole number"},
+        {"--threads -1", "whole number"},
+        {"--wrong", "unrecognized option"},
+        {"--resume", "--out DIR"},
+        {"family:kind=silvers", "did you mean 'slivers'"},
+        {"family:kind=", "empty|one-sphere|"},
+        {"family:kind=slivers,sed=1", "did you mean 'seed'?"},
+        {"family:kind=slivers,seed=", "seed"},
+        {"--replay nothing.json", "nothing.json"},
+        {"--replay nothing.json balls", "takes no SCENE"},
+        {"--replay nothing.json --json", "prints text"},
+        {"--replay " RT_SOURCE_DIR "/README.md", "no JSON"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        if (verify(cases[i].arguments) != 2) fail_msg("'%s' is not refused", cases[i].arguments);
+        if (!strstr(text_of(OUT ".err"), cases[i].says)) {
+            fail_msg("'%s' says: %s", cases[i].arguments, text_of(OUT ".err"));
+        }
+        assert_string_equal(text_of(OUT ".out"), "");
+    }
+}
+
+static void scenes_of_families_have_the_seed_of_the_rays(void **state) {
+    (void)state;
+    json_t *json =
+        document("families family:kind=soup,seed=9 --accel grid --rays 40 --seed 3 --families --json");
+    const json_t *rows = json_object_get(json, "rows");
+    size_t count = json_array_size(rows);
+    assert_true(count > 20);
+    const char *first = json_string_value(json_object_get(json_array_get(rows, 0), "scene"));
+    const char *last = json_string_value(json_object_get(json_array_get(rows, count - 1), "scene"));
+    assert_string_equal(first, "family:kind=empty,seed=3");
+    assert_string_equal(last, "family:kind=soup,seed=9");
+    json_decref(json);
+}
+
+/* Prints what a run that was not interrupted prints. */
+static void a_run_is_gone_on_with(void **state) {
+    (void)state;
+    static char whole[65536], table[65536];
+    const char *arguments =
+        "random:n=20,shape=mixed tetra:size=1 --accel bvh --accel grid --rays 500 --out '" OUT ".rows'";
+    char again[1024];
+    snprintf(again, sizeof again, "%s --resume", arguments);
+    assert_int_equal(verify(arguments), 0);
+    strcpy(whole, text_of(OUT ".out"));
+    strcpy(table, text_of(OUT ".rows/verify.csv"));
+    assert_non_null(
+        strstr(table, "scene,accel,against,rays,equal,tie,marginal,wrong,occluded_wrong,problem"));
+    assert_non_null(strstr(table, "tetra:size=1,grid,brute,500,500,0,0,0,0,,0,0,0,0,0,\n"));
+    assert_int_equal(verify(again), 0);
+    assert_string_equal(text_of(OUT ".out"), whole);
+    assert_string_equal(text_of(OUT ".rows/verify.csv"), table);
+    snprintf(again, sizeof again, "%s --resume --seed 2", arguments);
+    assert_int_equal(verify(again), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), "another verification, with other seed"));
+}
+
+static void write_sphere(const char *path, int radius) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "objects: [{sphere: {center: [0, 0, 0], radius: %d}}]\n", radius);
+    fclose(file);
+}
+
+static void a_run_is_not_gone_on_with_where_a_scene_file_was_edited(void **state) {
+    (void)state;
+    const char *arguments = "'" OUT ".yaml' --accel bvh --rays 50 --out '" OUT ".edited'";
+    char again[1024];
+    snprintf(again, sizeof again, "%s --resume", arguments);
+    write_sphere(OUT ".yaml", 1);
+    assert_int_equal(verify(arguments), 0);
+    write_sphere(OUT ".yaml", 2);
+    assert_int_equal(verify(again), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), "with other fingerprints"));
+}
+
+/* No accelerator lies, so the journal is made to say so of one, and gone on with. */
+static void the_last_line_tells_of_wrong_answers_to_occluded_too(void **state) {
+    (void)state;
+    const char *arguments = "random:n=20 --accel bvh --accel grid --rays 50 --out '" OUT ".lies'";
+    char again[1024];
+    snprintf(again, sizeof again, "%s --resume", arguments);
+    assert_int_equal(verify(arguments), 0);
+    assert_int_equal(system("sed -i -e '2s/\"occluded_wrong\": *0/\"occluded_wrong\": 3/' "
+                            "-e '2s/\"problem\": *null/\"problem\": \"a lie\"/' '" OUT ".lies/rows.jsonl'"),
+                     0);
+    assert_int_equal(verify(again), 1);
+    assert_non_null(strstr(text_of(OUT ".out"),
+                           "2 rows, 100 pairs of a ray and an accelerator: 0 wrong, 3 occluded wrong; "
+                           "rows that fail: 1\n"));
+    assert_non_null(strstr(text_of(OUT ".err"), "a lie"));
+}
+
+/* A replay file of a scene that is not what it was, with what it was shrunk to or "null". */
+static void write_replay(const char *path, const char *shrunk) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(
+        file,
+        "{\"scene\": \"random:n=1\", \"fingerprint\": \"0000000000000000\", \"accel\": \"bvh\",\n"
+        " \"sampling\": [4, 4], \"query\": \"nearest\", \"kernel\": \"timed\", \"stream\": 1, \"asked\": 0,\n"
+        " \"rays\": [{\"kind\": \"random\", \"source\": 0, \"org_dir_tmin_tmax\":\n"
+        "  [\"0x0p+0\", \"0x0p+0\", \"0x1p+3\", \"-0x0p+0\", \"0x0p+0\", \"-0x1p+0\", \"0x0p+0\", "
+        "\"inf\"]}],\n"
+        " \"shrunk\": %s}\n",
+        shrunk);
+    fclose(file);
+}
+
+/* What was wrong once and is not any more: the answer that the file tells of does not count, the one now
+ * does. */
+static void a_replay_says_whether_the_answer_is_still_wrong(void **state) {
+    (void)state;
+    write_replay(OUT ".json", "{\"yaml\": \"objects: [{sphere: {center: [0, 0, 0], radius: 1}}]\"}");
+    assert_int_equal(verify("--replay '" OUT ".json'"), 0);
+    assert_non_null(strstr(text_of(OUT ".err"), "no longer the scene"));
+    assert_non_null(strstr(text_of(OUT ".out"), "shrunk: right: ray 0, nearest, timed kernel"));
+    assert_non_null(strstr(text_of(OUT ".out"), "expected object 0 at t = 7, got object 0 at t = 7"));
+}
+
+/* By exit code 1 a bisection would take it for the fault that it looks for. */
+static void a_replay_that_cannot_be_asked_is_not_called_wrong(void **state) {
+    (void)state;
+    write_replay(OUT ".json", "null");
+    assert_int_equal(verify("--replay '" OUT ".json'"), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), "no longer the scene"));
+}
+
+RT_TEST_GROUP(cmd_verify) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_row_says_how_each_ray_was_answered),
+        cmocka_unit_test(the_spread_tries_each_value_of_each_parameter),
+        cmocka_unit_test(all_is_the_default_and_threads_change_nothing),
+        cmocka_unit_test(the_families_are_rays_of_their_own_and_hard_ones),
+        cmocka_unit_test(scenes_of_families_have_the_seed_of_the_rays),
+        cmocka_unit_test(a_run_is_gone_on_with),
+        cmocka_unit_test(a_run_is_not_gone_on_with_where_a_scene_file_was_edited),
+        cmocka_unit_test(the_last_line_tells_of_wrong_answers_to_occluded_too),
+        cmocka_unit_test(a_replay_says_whether_the_answer_is_still_wrong),
+        cmocka_unit_test(a_replay_that_cannot_be_asked_is_not_called_wrong),
+        cmocka_unit_test(what_cannot_be_verified_is_refused_before_anything_is_printed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

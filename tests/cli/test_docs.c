@@ -1,0 +1,135 @@
+/* The documents say what the program says: parameters in accel/README.md, accelerators in README.md; and the
+ * tests that they name are there. */
+#include "testing.h"
+
+#include "accel/accel.h"
+
+#include <glob.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Text {
+    char chars[16384];
+    size_t length;
+} Text;
+
+__attribute__((format(printf, 2, 3))) static void append(Text *text, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    size_t room = sizeof text->chars - text->length;
+    int n = vsnprintf(text->chars + text->length, room, format, args);
+    va_end(args);
+    assert_true(n >= 0 && (size_t)n < room);
+    text->length += (size_t)n;
+}
+
+/* A cell of a Markdown table: its bars are escaped. */
+static void append_cell(Text *text, const char *cell) {
+    append(text, "| ");
+    for (; *cell; cell++) append(text, "%s%c", *cell == '|' ? "\\" : "", *cell);
+    append(text, " ");
+}
+
+/* How a section of accel/README.md begins. */
+static void write_section(Text *text, const RtAccelOps *ops) {
+    append(text, "## %s\n\n%s.\n\nPaper: %s.\n", ops->name, ops->summary, ops->paper);
+    if (ops->param_count == 0) return;
+    append(text, "\n| parameter | default | range | meaning | source of the default |\n");
+    append(text, "| --- | --- | --- | --- | --- |\n");
+    for (size_t i = 0; i < ops->param_count; i++) {
+        const RtParam *p = &ops->params[i];
+        char range[RT_MAX_SPEC_CHARS];
+        rt_param_range(p, range, sizeof range);
+        append(text, "| `%s` ", p->name);
+        append_cell(text, p->standard);
+        append_cell(text, range);
+        append_cell(text, p->meaning);
+        append_cell(text, p->source);
+        append(text, "|\n");
+    }
+}
+
+/* A file of the source tree, for free(). */
+static char *read_document(const char *name) {
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s", RT_SOURCE_DIR, name);
+    FILE *file = fopen(path, "rb");
+    if (!file) fail_msg("%s cannot be read", path);
+    enum { ROOM = 1 << 20 };
+    char *text = malloc(ROOM);
+    assert_non_null(text);
+    size_t length = fread(text, 1, ROOM - 1, file);
+    text[length] = '\0';
+    fclose(file);
+    return text;
+}
+
+static void every_accelerator_has_its_section_with_its_parameters_as_they_are(void **state) {
+    (void)state;
+    char *readme = read_document("accel/README.md");
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        Text section = {.length = 0};
+        write_section(&section, rt_accel_at(i));
+        if (!strstr(readme, section.chars)) fail_msg("accel/README.md lacks:\n\n%s", section.chars);
+    }
+    free(readme);
+}
+
+static void the_readme_lists_every_accelerator(void **state) {
+    (void)state;
+    char *readme = read_document("README.md");
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        char row[64];
+        snprintf(row, sizeof row, "\n| `%s` |", rt_accel_at(i)->name);
+        if (!strstr(readme, row)) fail_msg("the table of README.md lacks a row%s", row);
+    }
+    free(readme);
+}
+
+static bool is_name(const char *code) {
+    return code[strspn(code, "abcdefghijklmnopqrstuvwxyz0123456789_.")] == '\0' && strchr(code, '_');
+}
+
+/* A name behind `tests/FILE` is in that file; dots stand for how it begins. How many files are named. */
+static size_t check_line(const char *document, char *line) {
+    size_t files = 0;
+    char *tests = NULL;
+    strsep(&line, "`");
+    for (char *code; (code = strsep(&line, "`")); strsep(&line, "`")) {
+        if (strncmp(code, "tests/", 6) == 0 && !strchr(code, '*')) {
+            free(tests);
+            tests = read_document(code);
+            files++;
+        } else if (tests && is_name(code) && !strstr(tests, code + strspn(code, "."))) {
+            fail_msg("%s names %s, which is not there", document, code);
+        }
+    }
+    free(tests);
+    return files;
+}
+
+static void tests_that_documents_name_are_there(void **state) {
+    (void)state;
+    glob_t found;
+    size_t files = 0;
+    assert_int_equal(glob("*.md", 0, NULL, &found), 0);
+    assert_int_equal(glob("*/*.md", GLOB_APPEND, NULL, &found), 0);
+    for (size_t i = 0; i < found.gl_pathc; i++) {
+        char *text = read_document(found.gl_pathv[i]), *rest = text;
+        while (rest) files += check_line(found.gl_pathv[i], strsep(&rest, "\n"));
+        free(text);
+    }
+    assert_true(files >= 20);
+    globfree(&found);
+}
+
+RT_TEST_GROUP(docs) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_accelerator_has_its_section_with_its_parameters_as_they_are),
+        cmocka_unit_test(the_readme_lists_every_accelerator),
+        cmocka_unit_test(tests_that_documents_name_are_there),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,387 @@
+/* The referee: exact numbers, hits at borders, true ties, and that our hit functions and it are of one mind
+ * but for rays that pass a border within the rounding of float32. */
+#include "testing.h"
+
+#include "exact/referee.h"
+
+/* ---- numbers ---- */
+
+static RtSurd surd(RtSlate *slate, double p, double q, double d) {
+    return (RtSurd){rt_exact_of(slate, p), rt_exact_of(slate, q), rt_exact_of(slate, d)};
+}
+
+/* All p + q sqrt(d) of small numbers, by pairs: 240,100 of them, with many ties (sqrt(8) = 2 sqrt(2),
+ * sqrt(9) = 3). Two that differ do so by more than the error of long double. */
+static void surds_are_ordered_like_their_values_and_ties_are_found(void **state) {
+    (void)state;
+    enum { MOST = 7 * 7 * 10 };
+    static RtSurd all[MOST];
+    static long double values[MOST];
+    RtSlate slate = {0};
+    int count = 0, ties = 0;
+    for (int p = -3; p <= 3; p++) {
+        for (int q = -3; q <= 3; q++) {
+            for (int d = 0; d < 10; d++, count++) {
+                all[count] = surd(&slate, p, q, d);
+                values[count] = (long double)p + (long double)q * sqrtl((long double)d);
+                long double value = rt_surd_value(&slate, &all[count]);
+                assert_true(fabsl(value - values[count]) <= 0x1p-60L);
+                assert_true((rt_surd_sign(&slate, &all[count]) == 0) == (value == 0));
+            }
+        }
+    }
+    for (int a = 0; a < count; a++) {
+        for (int b = 0; b < count; b++) {
+            long double apart = values[a] - values[b];
+            int expected = apart > 1e-6L ? 1 : apart < -1e-6L ? -1 : 0;
+            if (rt_surd_compare(&slate, &all[a], &all[b]) != expected) {
+                fail_msg("%Lg and %Lg", values[a], values[b]);
+            }
+            ties += a != b && expected == 0;
+        }
+    }
+    assert_true(ties > 1000);
+    rt_slate_clear(&slate);
+}
+
+/* With x^2 - 2 y^2 = 1 (Pell) x - y sqrt(2) is 1 / (x + y sqrt(2)): nearly all digits cancel. */
+static void a_surd_that_cancels_keeps_all_its_digits(void **state) {
+    (void)state;
+    RtSlate slate = {0};
+    double x = 3, y = 2;
+    while (x < 0x1p50) {
+        RtSurd small = surd(&slate, x, -y, 2);
+        long double value = rt_surd_value(&slate, &small);
+        long double expected = 1 / ((long double)x + (long double)y * sqrtl(2));
+        assert_true(fabsl(value - expected) <= 0x1p-60L * expected);
+        assert_int_equal(rt_surd_sign(&slate, &small), 1);
+        double next = 3 * x + 4 * y;
+        y = 2 * x + 3 * y;
+        x = next;
+    }
+    rt_slate_clear(&slate);
+}
+
+static void rationals_of_any_size_become_the_nearest_long_double(void **state) {
+    (void)state;
+    RtSlate slate = {0};
+    RtRational third = rt_exact_div(&slate, rt_exact_of(&slate, 1), rt_exact_of(&slate, -3));
+    assert_true(fabsl(rt_exact_value(third) + 1 / 3.0L) <= 0x1p-64L);
+    const double sizes[] = {0x1p-149, 0x1p-1074, 1, 0x1.fffffffffffffp1023};
+    for (int i = 0; i < 4; i++) assert_true(rt_exact_value(rt_exact_of(&slate, sizes[i])) == sizes[i]);
+    RtRational tiny = rt_exact_mul(&slate, rt_exact_of(&slate, 0x1p-1000), rt_exact_of(&slate, 0x1p-1000));
+    assert_true(rt_exact_value(tiny) == 0x1p-2000L);
+    rt_slate_clear(&slate);
+}
+
+/* ---- one object ---- */
+
+static RtRay ray_from(float x, float y, float z, float dx, float dy, float dz) {
+    return (RtRay){.org = {{x, y, z}}, .dir = {{dx, dy, dz}}, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+}
+
+/* t, INFINITY for a miss. */
+static long double first_t(const RtGeometry *g, uint32_t id, const RtRay *ray) {
+    long double t = HUGE_VALL;
+    RtWideRay line = rt_wide_ray(ray);
+    assert_int_not_equal(rt_referee_hit(g, id, &line, &t), RT_UNDECIDED);
+    return t;
+}
+
+static long double first_t_within(const RtGeometry *g, uint32_t id, RtRay ray, float tmin, float tmax) {
+    ray.tmin = tmin;
+    ray.tmax = tmax;
+    return first_t(g, id, &ray);
+}
+
+static void the_unit_sphere_is_met_at_9_and_11(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay ray = ray_from(0, 0, 10, 0, 0, -1);
+    assert_true(first_t(&g, 0, &ray) == 9);
+    assert_true(first_t_within(&g, 0, ray, 9, 9) == 9);
+    assert_true(first_t_within(&g, 0, ray, nextafterf(9, 10), INFINITY) == 11);
+    assert_true(first_t_within(&g, 0, ray, nextafterf(9, 10), nextafterf(11, 10)) == HUGE_VALL);
+    rt_geometry_clear(&g);
+}
+
+/* 3-4-5: the distance of the line from the centre is 5, not nearly 5. */
+static void a_sphere_is_touched_in_one_point_exactly(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), 5, error));
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), nextafterf(5, 4), error));
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), nextafterf(5, 6), error));
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay ray = ray_from(4, 5, -10, 0, 0, 2);
+    assert_true(first_t(&g, 0, &ray) == 5);
+    assert_true(first_t(&g, 1, &ray) == HUGE_VALL);
+    assert_true(first_t(&g, 2, &ray) < 5 && first_t(&g, 2, &ray) > 4.99L);
+    rt_geometry_clear(&g);
+}
+
+/* Corners (0, 0), (4, 0), (0, 4) at z = 0; the edge between the last two is x + y = 4. */
+static void edges_and_vertices_belong_to_triangles_and_polygons(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    const RtVec3 v[4] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}}; /* with the last: concave */
+    const RtVec3 needle[3] = {{0, 0, 0}, {1, 1, 0}, {3, 3, 0}};
+    assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
+    assert_ok(rt_geometry_add_polygon(&g, v, 3, error));
+    assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
+    assert_ok(rt_geometry_add_triangle(&g, needle, NULL, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    float above = nextafterf(1, 2);
+    const struct {
+        float x, y;
+        bool in[3];
+    } points[] = {{0, 0, {1, 1, 1}},       {4, 0, {1, 1, 1}},          {0, 4, {1, 1, 1}},
+                  {2, 0, {1, 1, 1}},       {1, 3, {1, 1, 1}},          {above, 3, {0, 0, 0}},
+                  {3, above, {0, 0, 0}},   {-0x1p-149f, 0, {0, 0, 0}}, {1, 1, {1, 1, 1}},
+                  {0.5f, 0.5f, {1, 1, 1}}, {0.5f, 1, {1, 1, 0}},       {0.25f, 3, {1, 1, 0}},
+                  {1, 0.5f, {1, 1, 1}}};
+    for (size_t i = 0; i < sizeof points / sizeof points[0]; i++) {
+        for (uint32_t id = 0; id < 3; id++) {
+            RtRay down = ray_from(points[i].x, points[i].y, 3, 0, 0, -2);
+            long double expected = points[i].in[id] ? 1.5L : HUGE_VALL;
+            if (first_t(&g, id, &down) != expected) fail_msg("point %zu, object %u", i, id);
+        }
+    }
+    RtRay along = ray_from(-1, 1, 0, 1, 0, 0), through_needle = ray_from(1, 1, 1, 0, 0, -1);
+    for (uint32_t id = 0; id < 3; id++) assert_true(first_t(&g, id, &along) == HUGE_VALL);
+    assert_true(first_t(&g, 3, &through_needle) == HUGE_VALL);
+    rt_geometry_clear(&g);
+}
+
+/* The vertices are those of a square but for one ulp: they lie in no plane. The hit is in the plane that is
+ * as far above two of them as below the others, a quarter of an ulp. */
+static void a_polygon_that_is_not_planar_has_one_plane_all_the_same(void **state) {
+    (void)state;
+    float one = 1, above = nextafterf(1, 2);
+    RtGeometry g = {0};
+    const RtVec3 v[4] = {{0, 0, one}, {1, 0, one}, {1, 1, above}, {0, 1, one}};
+    assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay middle = ray_from(0.5f, 0.5f, 2, 0, 0, -1);
+    assert_true(first_t(&g, 0, &middle) == 1 - 0x1p-25L);
+    rt_geometry_clear(&g);
+}
+
+/* A cylinder of radius 5 about x: met at 3-4-5; a full cone with its tip at the origin, at 45 degrees. */
+static void circles_and_the_tip_belong_to_cones(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(-2, 0, 0), 5, rt_vec3(2, 0, 0), 5, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(2, 0, 0), 2, rt_vec3(0, 0, 0), 0, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay at_end = ray_from(2, 3, 10, 0, 0, -1), beyond = ray_from(nextafterf(2, 3), 3, 10, 0, 0, -1);
+    assert_true(first_t(&g, 0, &at_end) == 6);
+    assert_true(first_t(&g, 0, &beyond) == HUGE_VALL);
+    RtRay inside = ray_from(-9, 0, 0, 1, 0, 0), tangent = ray_from(0, 5, 10, 0, 0, -1);
+    assert_true(first_t(&g, 0, &inside) == HUGE_VALL);
+    assert_true(first_t(&g, 0, &tangent) == 10);
+    RtRay tip = ray_from(0, 0, 10, 0, 0, -1), generator = ray_from(3, 3, 0, -1, -1, 0);
+    assert_true(first_t(&g, 1, &tip) == 10);
+    assert_true(first_t(&g, 1, &generator) == HUGE_VALL);
+    RtRay axis = ray_from(-1, 0, 0, 1, 0, 0), across = ray_from(-1, 1, 0, 1, 0, 0);
+    assert_true(first_t(&g, 1, &axis) == 1);
+    assert_true(first_t(&g, 1, &across) == 2);
+    rt_geometry_clear(&g);
+}
+
+/* ---- order ---- */
+
+static int order_of(const RtGeometry *g, uint32_t a, uint32_t b, const RtRay *ray) {
+    int order = 99;
+    long double apart;
+    assert_int_equal(rt_referee_order(g, a, b, ray, &order, &apart), RT_HIT);
+    assert_true((order == 0) == (apart == 0));
+    return order;
+}
+
+/* The ray meets the sphere at z = 4 (3-4-5), where a triangle lies, and others an ulp before and behind. */
+static void a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    const float heights[3] = {4, nextafterf(4, 5), nextafterf(4, 3)};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 5, error));
+    for (int i = 0; i < 3; i++) {
+        const RtVec3 v[3] = {{-9, -9, heights[i]}, {9, -9, heights[i]}, {0, 9, heights[i]}};
+        assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
+    }
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay ray = ray_from(3, 0, 7, 0, 0, -3);
+    assert_int_equal(order_of(&g, 0, 1, &ray), 0);
+    assert_int_equal(order_of(&g, 0, 2, &ray), 1);
+    assert_int_equal(order_of(&g, 0, 3, &ray), -1);
+    assert_int_equal(order_of(&g, 2, 3, &ray), -1);
+    RtRuling ruling = rt_referee_nearest(&g, &ray);
+    assert_int_equal(ruling.object, 2);
+    assert_int_equal(ruling.together, 1);
+    rt_geometry_clear(&g);
+}
+
+/* Three spheres and a cylinder are met at t = 10 - sqrt(3), which is no number that any of them stores. */
+static void equal_roots_of_different_objects_are_a_tie(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 2, error));
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(4, 2, 0), 4, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, -5, 0), 2, rt_vec3(0, 7, 0), 2, error));
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(2, 0, 0), 2, error));
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(2, 0, 0), nextafterf(2, 1), error));
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay ray = ray_from(1, 0, 10, 0, 0, -1);
+    for (uint32_t id = 1; id < 4; id++) assert_int_equal(order_of(&g, 0, id, &ray), 0);
+    assert_int_equal(order_of(&g, 0, 4, &ray), -1);
+    RtRuling ruling = rt_referee_nearest(&g, &ray);
+    assert_int_equal(ruling.object, 0);
+    assert_int_equal(ruling.together, 4);
+    assert_true(fabsl(ruling.t - (10 - sqrtl(3))) <= 0x1p-60L);
+    assert_int_equal(rt_referee_occluded(&g, &ray), RT_HIT);
+    ray.tmax = 8;
+    assert_int_equal(rt_referee_nearest(&g, &ray).finding, RT_MISSED);
+    assert_int_equal(rt_referee_occluded(&g, &ray), RT_MISSED);
+    rt_geometry_clear(&g);
+}
+
+/* ---- numbers at the ends of float32 ---- */
+
+static void huge_and_denormal_numbers_are_as_exact_as_others(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 0x1p-140f, error));
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0x1p58f, 0), 0x1p57f, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay denormal = ray_from(0x1p-140f, 0, 0x1p-130f, 0, 0, -0x1p-149f);
+    assert_true(first_t(&g, 0, &denormal) == 0x1p19L);
+    denormal.org.x = 0x1.01p-140f;
+    assert_true(first_t(&g, 0, &denormal) == HUGE_VALL);
+    RtRay far = ray_from(0, 0x1p58f, 0x1p58f, 0, 0, -0x1p-60f);
+    assert_true(first_t(&g, 1, &far) == 0x1p117L);
+    far.dir.z = -0x1p-100f; /* t = 2^157 is beyond the largest float32 */
+    assert_true(first_t(&g, 1, &far) == HUGE_VALL);
+    assert_int_equal(rt_referee_nearest(&g, &far).finding, RT_MISSED);
+    rt_geometry_clear(&g);
+}
+
+/* ---- trees ---- */
+
+static RtCsgTerm solid_term(RtCsgBuilder *b, uint32_t solid) {
+    RtCsgTerm term;
+    assert_ok(rt_csg_solid(b, solid, 0, &term, error));
+    return term;
+}
+
+static RtCsgTerm ball_term(RtCsgBuilder *b, float x, float radius) {
+    uint32_t solid;
+    assert_ok(
+        rt_solid_add_ellipsoid(&b->set, rt_vec3(x, 0, 0), rt_vec3(radius, radius, radius), &solid, error));
+    return solid_term(b, solid);
+}
+
+static RtCsgTerm box_term(RtCsgBuilder *b, float x0, float x1) {
+    uint32_t solid;
+    assert_ok(rt_solid_add_box(&b->set, rt_vec3(x0, -1, -1), rt_vec3(x1, 1, 1), &solid, error));
+    return solid_term(b, solid);
+}
+
+static void add_tree(RtGeometry *g, RtCsgBuilder *b, RtCsgOp op, RtCsgTerm left, RtCsgTerm right) {
+    RtCsgTerm root;
+    assert_ok(rt_csg_combine(b, op, left, right, &root, error));
+    assert_ok(rt_geometry_add_csg(g, b, root, true, error));
+}
+
+static void trees_are_met_where_their_inside_begins_and_ends(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    RtCsgBuilder b = {0};
+    RtCsgTerm ball = ball_term(&b, 0, 5), touching = ball_term(&b, 10, 5), cube = box_term(&b, -1, 9);
+    RtCsgTerm wall = box_term(&b, 1, nextafterf(1, 2)), room = box_term(&b, 0, 3);
+    uint32_t solid;
+    assert_ok(rt_solid_add_frustum(&b.set, rt_vec3(0, 0, 0), 5, rt_vec3(8, 0, 0), 0, &solid, error));
+    RtCsgTerm cone = solid_term(&b, solid);
+    add_tree(&g, &b, RT_CSG_UNION, ball, touching);    /* 0 */
+    add_tree(&g, &b, RT_CSG_DIFFERENCE, ball, cube);   /* 1 */
+    add_tree(&g, &b, RT_CSG_INTERSECTION, ball, cube); /* 2 */
+    add_tree(&g, &b, RT_CSG_DIFFERENCE, ball, ball);   /* 3 */
+    add_tree(&g, &b, RT_CSG_INTERSECTION, room, wall); /* 4: an ulp thick */
+    add_tree(&g, &b, RT_CSG_UNION, cone, cone);        /* 5 */
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay x = ray_from(-8, 0, 0, 1, 0, 0), within = x;
+    within.tmin = 4;
+    assert_true(first_t(&g, 0, &x) == 3);
+    assert_true(first_t(&g, 0, &within) == 23); /* no wall where they touch */
+    assert_true(first_t(&g, 1, &x) == 3);
+    assert_true(first_t(&g, 1, &within) == 7);
+    assert_true(first_t(&g, 2, &x) == 7);
+    assert_true(first_t_within(&g, 2, x, 8, INFINITY) == 13);
+    assert_true(first_t(&g, 3, &x) == HUGE_VALL);
+    assert_true(first_t(&g, 4, &x) == 9);
+    assert_true(first_t_within(&g, 4, x, nextafterf(9, 10), INFINITY) == HUGE_VALL);
+    assert_true(first_t(&g, 5, &x) == 8);
+    assert_true(first_t_within(&g, 5, x, 9, INFINITY) == 16);
+    RtRay down = ray_from(4, 0, 8, 0, 0, -1); /* the cone's radius is 2.5 there */
+    assert_true(fabsl(first_t(&g, 5, &down) - 5.5L) <= 0x1p-50L);
+    rt_csg_builder_clear(&b);
+    rt_geometry_clear(&g);
+}
+
+/* ---- judging ---- */
+
+/* 0: a wall at z = 0; 1: one an ulp behind; 2: one at z = -1. */
+static void the_referee_says_who_is_right(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    const float heights[3] = {0, -0x1p-24f, -1};
+    for (int i = 0; i < 3; i++) {
+        const RtVec3 v[3] = {{-9, -9, heights[i]}, {9, -9, heights[i]}, {0, 9, heights[i]}};
+        assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
+    }
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay ray = ray_from(0, 0, 1, 0, 0, -1), aside = ray_from(20, 0, 1, 0, 0, -1);
+    const struct {
+        RtRay ray;
+        RtHit expected, got;
+        RtSide side;
+    } cases[] = {
+        {ray, {1, 0}, {1, 0}, RT_SIDE_BOTH},      {ray, {1, 0}, {1, 1}, RT_SIDE_BOTH},
+        {ray, {1, 0}, {2, 2}, RT_SIDE_EXPECTED},  {ray, RT_MISS, {1, 0}, RT_SIDE_GOT},
+        {ray, {2, 0}, RT_MISS, RT_SIDE_NEITHER},  {ray, {1, 2}, {NAN, 0}, RT_SIDE_NEITHER},
+        {ray, {1, 0}, {1, 77}, RT_SIDE_EXPECTED}, {aside, RT_MISS, {1, 0}, RT_SIDE_EXPECTED},
+        {aside, RT_MISS, RT_MISS, RT_SIDE_BOTH},  {ray, {1.001f, 0}, {1, 0}, RT_SIDE_GOT},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtSide side = rt_referee_judge(&g, &cases[i].ray, cases[i].expected, cases[i].got, 0).side;
+        if (side != cases[i].side) fail_msg("case %zu: %s", i, rt_side_name(side));
+    }
+    assert_int_equal(rt_referee_judge(&g, &ray, (RtHit){1.001f, 0}, RT_MISS, 0.01).side, RT_SIDE_EXPECTED);
+    long double ulps;
+    assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 2), &ulps), RT_HIT);
+    assert_true(ulps == 1);
+    assert_int_equal(rt_referee_error(&g, 0, &ray, nextafterf(1, 0), &ulps), RT_HIT);
+    assert_true(ulps == -0.5L);
+    assert_int_equal(rt_referee_error(&g, 0, &aside, 1, &ulps), RT_MISSED);
+    rt_geometry_clear(&g);
+}
+
+RT_TEST_GROUP(referee) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(surds_are_ordered_like_their_values_and_ties_are_found),
+        cmocka_unit_test(a_surd_that_cancels_keeps_all_its_digits),
+        cmocka_unit_test(rationals_of_any_size_become_the_nearest_long_double),
+        cmocka_unit_test(the_unit_sphere_is_met_at_9_and_11),
+        cmocka_unit_test(a_sphere_is_touched_in_one_point_exactly),
+        cmocka_unit_test(edges_and_vertices_belong_to_triangles_and_polygons),
+        cmocka_unit_test(a_polygon_that_is_not_planar_has_one_plane_all_the_same),
+        cmocka_unit_test(circles_and_the_tip_belong_to_cones),
+        cmocka_unit_test(a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t),
+        cmocka_unit_test(equal_roots_of_different_objects_are_a_tie),
+        cmocka_unit_test(huge_and_denormal_numbers_are_as_exact_as_others),
+        cmocka_unit_test(trees_are_met_where_their_inside_begins_and_ends),
+        cmocka_unit_test(the_referee_says_who_is_right),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,268 @@
+/* render/: images, heatmaps and pictures of structures, read back from the files they were written to. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "render/draw.h"
+#include "render/heatmap.h"
+#include "render/image.h"
+#include "render/structure.h"
+
+#include <openexr.h>
+#include <png.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define PNG_FILE RT_BINARY_DIR "/test_image.png"
+#define EXR_FILE RT_BINARY_DIR "/test_image.exr"
+
+/* A sphere of radius 1 with id 1 before a wall at z = -2 with id 0, seen from (0, 0, 10); matte red under
+ * white ambient light, so that colours are 1, 0, 0 on objects and 0, 0, 1 beside them. */
+static void open_scene(RtScene *scene) {
+    uint32_t red;
+    RtMaterial material = {.color = {1, 0, 0}, .ambient = 1, .ior = 1};
+    RtVec3 corners[4] = {{-3, -3, -2}, {3, -3, -2}, {3, 3, -2}, {-3, 3, -2}};
+    rt_scene_init(scene);
+    scene->background = rt_vec3(0, 0, 1);
+    scene->camera =
+        (RtCamera){.from = {0, 0, 10}, .at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 45, .width = 1, .height = 1};
+    assert_ok(rt_scene_add_material(scene, &material, &red, error));
+    assert_ok(rt_scene_add_polygon(scene, red, corners, 4, error));
+    assert_ok(rt_scene_add_sphere(scene, red, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+static RtFrame trace(const char *spec, uint32_t width, uint32_t height, uint32_t samples, bool corners) {
+    RtScene scene;
+    RtAccel *accel;
+    RtFrame frame;
+    RtFrameOptions options = {.depth = 1, .threads = 1, .counted = true};
+    open_scene(&scene);
+    assert_ok(rt_scene_sample(&scene, width, height, samples, corners, error));
+    assert_ok(rt_accel_open(spec, &scene, &accel, error));
+    assert_ok(rt_frame_trace(&frame, accel, &options, error));
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+    return frame;
+}
+
+static void a_png_reads_back_as_the_image(void **state) {
+    (void)state;
+    RtFrame frame = trace("brute", 40, 30, 1, false);
+    RtImage image;
+    assert_ok(rt_image_from_frame(&image, &frame, error));
+    assert_ok(rt_png_write(&image, PNG_FILE, error));
+    png_image png = {.version = PNG_IMAGE_VERSION};
+    assert_true(png_image_begin_read_from_file(&png, PNG_FILE));
+    assert_int_equal(png.width, 40);
+    assert_int_equal(png.height, 30);
+    png.format = PNG_FORMAT_RGB;
+    uint8_t pixels[40 * 30 * 3];
+    assert_true(png_image_finish_read(&png, NULL, pixels, 0, NULL));
+    assert_memory_equal(pixels, image.rgb, sizeof pixels);
+    const uint8_t sky[3] = {0, 0, 255}, red[3] = {255, 0, 0};
+    assert_memory_equal(pixels, sky, 3);
+    assert_memory_equal(pixels + 3 * (15 * 40 + 20), red, 3);
+    assert_false(rt_file_exists(PNG_FILE ".tmp"));
+    unlink(PNG_FILE);
+    rt_image_clear(&image);
+    rt_frame_clear(&frame);
+}
+
+static void linear_halves_are_written_as_srgb_188(void **state) {
+    (void)state;
+    RtVec3 color[3] = {{0.5f, 0, 2}, {0, 1, -1}, {0.001f, NAN, 0.25f}};
+    RtFrame frame = {.color = color};
+    assert_ok(rt_sampling_init(&frame.sampling, 3, 1, 1, false, error));
+    RtImage image;
+    assert_ok(rt_image_from_frame(&image, &frame, error));
+    const uint8_t expected[9] = {188, 0, 255, 0, 255, 0, 3, 0, 137};
+    assert_memory_equal(image.rgb, expected, 9);
+    rt_image_clear(&image);
+}
+
+static void a_pixel_is_the_mean_of_its_samples_or_of_its_corners(void **state) {
+    (void)state;
+    RtVec3 color[16];
+    RtFrame frame = {.color = color};
+    for (int i = 0; i < 16; i++) color[i] = rt_vec3((float)i, 0, 0);
+    assert_ok(rt_sampling_init(&frame.sampling, 2, 2, 2, false, error)); /* 4 x 4 samples */
+    assert_true(rt_frame_pixel(&frame, 1, 0).x == (2 + 3 + 6 + 7) / 4.0f);
+    assert_true(rt_frame_pixel(&frame, 0, 1).x == (8 + 9 + 12 + 13) / 4.0f);
+    assert_ok(rt_sampling_init(&frame.sampling, 3, 3, 1, true, error)); /* 4 x 4 corners */
+    assert_true(rt_frame_pixel(&frame, 0, 0).x == (0 + 1 + 4 + 5) / 4.0f);
+    assert_true(rt_frame_pixel(&frame, 2, 2).x == (10 + 11 + 14 + 15) / 4.0f);
+}
+
+/* One channel of an OpenEXR file of scan lines into out[width * height] of 4 bytes each. */
+static void read_channel(const char *path, const char *name, void *out, int width, int height) {
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_context_t context;
+    int32_t lines;
+    assert_int_equal(exr_start_read(&context, path, &init), EXR_ERR_SUCCESS);
+    assert_int_equal(exr_get_scanlines_per_chunk(context, 0, &lines), EXR_ERR_SUCCESS);
+    bool found = false;
+    for (int y = 0; y < height; y += lines) {
+        exr_chunk_info_t chunk;
+        exr_decode_pipeline_t decoder = EXR_DECODE_PIPELINE_INITIALIZER;
+        assert_int_equal(exr_read_scanline_chunk_info(context, 0, y, &chunk), EXR_ERR_SUCCESS);
+        assert_int_equal(exr_decoding_initialize(context, 0, &chunk, &decoder), EXR_ERR_SUCCESS);
+        for (int c = 0; c < decoder.channel_count; c++) {
+            exr_coding_channel_info_t *channel = &decoder.channels[c];
+            if (strcmp(channel->channel_name, name) != 0) continue;
+            found = true;
+            channel->decode_to_ptr = (uint8_t *)out + (size_t)y * (size_t)width * 4;
+            channel->user_pixel_stride = 4;
+            channel->user_line_stride = 4 * width;
+            channel->user_bytes_per_element = 4;
+            channel->user_data_type = channel->data_type;
+        }
+        assert_int_equal(exr_decoding_choose_default_routines(context, 0, &decoder), EXR_ERR_SUCCESS);
+        assert_int_equal(exr_decoding_run(context, 0, &decoder), EXR_ERR_SUCCESS);
+        exr_decoding_destroy(context, &decoder);
+    }
+    exr_finish(&context);
+    if (!found) fail_msg("%s has no channel %s", path, name);
+}
+
+static void an_exr_reads_back_with_colours_ids_depths_and_counts(void **state) {
+    (void)state;
+    enum { W = 37, H = 41, PIXELS = W * H };
+    RtFrame frame = trace("brute", W, H, 1, false);
+    assert_ok(rt_exr_write(&frame, EXR_FILE, error));
+    static float values[PIXELS];
+    static uint32_t ids[PIXELS];
+    read_channel(EXR_FILE, "R", values, W, H);
+    for (int i = 0; i < PIXELS; i++) assert_true(values[i] == frame.color[i].x);
+    read_channel(EXR_FILE, "B", values, W, H);
+    for (int i = 0; i < PIXELS; i++) assert_true(values[i] == frame.color[i].z);
+    read_channel(EXR_FILE, "Z", values, W, H);
+    for (int i = 0; i < PIXELS; i++) assert_true(values[i] == frame.depth[i]);
+    read_channel(EXR_FILE, "id", ids, W, H);
+    assert_memory_equal(ids, frame.object, sizeof ids);
+    assert_int_equal(ids[0], RT_NO_OBJECT);
+    assert_int_equal(ids[H / 2 * W + W / 2], 1);
+    read_channel(EXR_FILE, "object_tests", values, W, H);
+    for (int i = 0; i < PIXELS; i++) assert_true(values[i] == (float)frame.cost[i].object_tests);
+    assert_true(values[0] == 2); /* brute, two objects, a miss: no shadow ray */
+    read_channel(EXR_FILE, "steps", values, W, H);
+    assert_false(rt_file_exists(EXR_FILE ".tmp"));
+    unlink(EXR_FILE);
+    rt_frame_clear(&frame);
+}
+
+static void a_file_that_cannot_be_written_is_a_status_and_leaves_nothing(void **state) {
+    (void)state;
+    RtFrame frame = trace("brute", 4, 4, 1, false);
+    RtImage image;
+    RtError refusal;
+    assert_ok(rt_image_from_frame(&image, &frame, error));
+    int64_t live = rt_alloc_live();
+    const char *const folders[] = {RT_BINARY_DIR "/no such folder/a", RT_BINARY_DIR};
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(rt_png_write(&image, folders[i], &refusal), RT_IO);
+        assert_non_null(strstr(refusal.message, folders[i]));
+        assert_int_equal(rt_exr_write(&frame, folders[i], &refusal), RT_IO);
+        assert_non_null(strstr(refusal.message, folders[i]));
+    }
+    assert_false(rt_file_exists(RT_BINARY_DIR ".tmp"));
+    assert_int_equal(rt_alloc_live(), live);
+    rt_image_clear(&image);
+    rt_frame_clear(&frame);
+}
+
+static void a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most(void **state) {
+    (void)state;
+    enum { W = 240, H = 20 };
+    static RtTally cost[W * H];
+    RtFrame frame = {.cost = cost};
+    assert_ok(rt_sampling_init(&frame.sampling, W, H, 1, false, error));
+    for (int i = 0; i < W * H; i++) cost[i].object_tests = i == 0 ? 0 : i == 1 ? 100 : 50;
+    RtImage image;
+    assert_ok(rt_heatmap(&image, &frame, offsetof(RtTally, object_tests) / sizeof(uint64_t), error));
+    RtColor none = rt_color_scale(0), half = rt_color_scale(0.5), most = rt_color_scale(1);
+    assert_memory_equal(image.rgb, none.rgb, 3);
+    assert_memory_equal(image.rgb + 3, most.rgb, 3);
+    assert_memory_equal(image.rgb + 6, half.rgb, 3); /* linear */
+    assert_true(image.height > H);
+    rt_image_clear(&image);
+    /* One pixel far above all others: a logarithmic scale still tells 0 from 50. */
+    cost[1].object_tests = 1000000;
+    assert_ok(rt_heatmap(&image, &frame, offsetof(RtTally, object_tests) / sizeof(uint64_t), error));
+    RtColor some = rt_color_scale(log1p(50) / log1p(1e6));
+    assert_memory_equal(image.rgb + 6, some.rgb, 3);
+    rt_image_clear(&image);
+}
+
+static void a_heatmap_of_nothing_or_of_one_pixel_has_its_legend(void **state) {
+    (void)state;
+    RtTally cost = {0};
+    RtFrame frame = {.cost = &cost};
+    assert_ok(rt_sampling_init(&frame.sampling, 1, 1, 1, false, error));
+    for (uint64_t steps = 0; steps < 3; steps++) {
+        cost.steps = steps == 2 ? UINT64_MAX : steps;
+        RtImage image;
+        assert_ok(rt_heatmap(&image, &frame, offsetof(RtTally, steps) / sizeof(uint64_t), error));
+        assert_true(image.width > 100);
+        rt_image_clear(&image);
+    }
+}
+
+static void the_scale_grows_in_lightness(void **state) {
+    (void)state;
+    double before = -1;
+    for (int i = 0; i <= 100; i++) {
+        RtColor c = rt_color_scale(i / 100.0);
+        double lightness = 0.2126 * c.rgb[0] + 0.7152 * c.rgb[1] + 0.0722 * c.rgb[2];
+        assert_true(lightness >= before);
+        before = lightness;
+    }
+}
+
+static void the_root_box_is_drawn_where_the_camera_sees_it(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtImage image;
+    RtError refusal;
+    open_scene(&scene);
+    assert_ok(rt_accel_open("bvh:leaf=64", &scene, &accel, error));
+    assert_ok(rt_image_init(&image, 200, 200, error));
+    assert_ok(rt_draw_structure(&image, accel, error));
+    /* The near face of the box is x, y in -3..3 at z = 1, 9 in front of the eye. */
+    double reach = 3 / 9.0 / tan(45 * 3.14159265358979 / 360) * 100;
+    int left = (int)floor(100 - reach);
+    RtColor yellow = rt_color_scale(1);
+    assert_memory_equal(image.rgb + 3 * (100 * 200 + left), yellow.rgb, 3);
+    assert_int_equal(image.rgb[3 * (100 * 200 + left - 1)], 0);
+    rt_image_clear(&image);
+    rt_accel_destroy(accel);
+
+    /* From inside the box, with corners behind the eye: clipped, and no crash. */
+    scene.camera.from = rt_vec3(0, 0, 0.5f);
+    assert_ok(rt_accel_open("bvh", &scene, &accel, error));
+    assert_ok(rt_image_init(&image, 200, 200, error));
+    assert_ok(rt_draw_structure(&image, accel, error));
+    rt_image_clear(&image);
+    rt_accel_destroy(accel);
+    const RtAccelOps *brute = NULL;
+    assert_ok(rt_accel_find("brute", &brute, error));
+    assert_int_equal(rt_structure_available(brute, &refusal), RT_NOT_AVAILABLE);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(image) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_png_reads_back_as_the_image),
+        cmocka_unit_test(linear_halves_are_written_as_srgb_188),
+        cmocka_unit_test(a_pixel_is_the_mean_of_its_samples_or_of_its_corners),
+        cmocka_unit_test(an_exr_reads_back_with_colours_ids_depths_and_counts),
+        cmocka_unit_test(a_file_that_cannot_be_written_is_a_status_and_leaves_nothing),
+        cmocka_unit_test(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most),
+        cmocka_unit_test(a_heatmap_of_nothing_or_of_one_pixel_has_its_legend),
+        cmocka_unit_test(the_scale_grows_in_lightness),
+        cmocka_unit_test(the_root_box_is_drawn_where_the_camera_sees_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,226 @@
+/* render/frame.h: how deep rays go, what is counted, who sees it, and what fails; the same bytes on any
+ * number of threads. */
+#include "render_testing.h"
+
+#include "base/memory.h"
+
+#include <pthread.h>
+
+static void two_mirrors_return_a_ray_as_often_as_the_depth_allows(void **state) {
+    (void)state;
+    RtScene scene;
+    start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .ambient = 1, .reflection = 0.5f, .ior = 1});
+    add_square(&scene, 1000, 0);
+    add_square(&scene, 1000, 20);
+    assert_ok(rt_scene_finish(&scene, error));
+    const uint32_t depths[] = {1, 2, 5, RT_MAX_DEPTH};
+    for (size_t i = 0; i < sizeof depths / sizeof depths[0]; i++) {
+        RtFrameOptions options = options_for(&scene, 1, 1, false);
+        options.depth = depths[i];
+        options.counted = true;
+        RtFrame frame = trace(&scene, &options);
+        assert_int_equal(frame.tallies[RT_RAY_PRIMARY].rays, 1);
+        assert_int_equal(frame.tallies[RT_RAY_REFLECTION].rays, depths[i] - 1);
+        /* 1 + 1/2 + 1/4 + ... */
+        assert_near(frame.color[0].x, 2 - pow(0.5, depths[i] - 1), 1e-5);
+        rt_frame_clear(&frame);
+    }
+    rt_scene_clear(&scene);
+}
+
+/* Mirrors, glass and matte, of every shape, over a floor, under two lights. */
+static void busy_scene(RtScene *scene) {
+    start_scene(scene, rt_default_material());
+    RtMaterial others[2] = {
+        {.color = {1, 0.5f, 0.2f},
+         .diffuse = 0.5f,
+         .specular = 0.5f,
+         .shine = 9,
+         .reflection = 0.5f,
+         .ior = 1},
+        {.color = {1, 1, 1}, .diffuse = 0.1f, .reflection = 0.1f, .transmission = 0.9f, .ior = 1.5f}};
+    uint32_t mirror, clear;
+    assert_ok(rt_scene_add_material(scene, &others[0], &mirror, error));
+    assert_ok(rt_scene_add_material(scene, &others[1], &clear, error));
+    add_square(scene, 6, -1);
+    for (int i = 0; i < 5; i++) {
+        float x = (float)i - 2;
+        assert_ok(rt_scene_add_sphere(scene, mirror, rt_vec3(x, x * x / 4, 0), 0.45f, error));
+        assert_ok(rt_scene_add_sphere(scene, clear, rt_vec3(x, -1 + x * x / 4, 1), 0.4f, error));
+    }
+    for (int i = 0; i < 3; i++) { /* panes over the left half: rays multiply */
+        float z = 2 + (float)i;
+        RtVec3 pane[4] = {{-6, -6, z}, {0, -6, z}, {0, 6, z}, {-6, 6, z}};
+        assert_ok(rt_scene_add_polygon(scene, clear, pane, 4, error));
+    }
+    RtVec3 corners[3] = {{-2, 2, 0}, {2, 2, 0}, {0, 2.5f, 2}},
+           normals[3] = {{0, -1, 1}, {0, -1, 1}, {0, -1, 0}};
+    assert_ok(rt_scene_add_triangle(scene, mirror, corners, normals, error));
+    assert_ok(rt_scene_add_cone(scene, 0, rt_vec3(-2, -2, -1), 0.5f, rt_vec3(-2, -2, 1), 0.2f, error));
+    assert_ok(rt_scene_add_light(scene, rt_vec3(3, 4, 8), rt_vec3(0.6f, 0.6f, 0.6f), error));
+    assert_ok(rt_scene_add_light(scene, rt_vec3(-5, 0, 4), rt_vec3(0.5f, 0.4f, 0.4f), error));
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+static void assert_same_frames(const RtFrame *a, const RtFrame *b) {
+    size_t samples = (size_t)a->sampling.columns * a->sampling.rows;
+    assert_memory_equal(a->color, b->color, samples * sizeof *a->color);
+    assert_memory_equal(a->object, b->object, samples * sizeof *a->object);
+    assert_memory_equal(a->depth, b->depth, samples * sizeof *a->depth);
+    if (!a->cost || !b->cost) return;
+    assert_memory_equal(a->cost, b->cost, samples * sizeof *a->cost);
+    assert_memory_equal(a->tallies, b->tallies, sizeof a->tallies);
+}
+
+static void a_frame_is_the_same_bytes_on_any_number_of_threads_counted_or_timed(void **state) {
+    (void)state;
+    RtScene scene;
+    busy_scene(&scene);
+    RtFrameOptions options = options_for(&scene, 70, 41, false);
+    options.depth = 7; /* streams above 1024 rays are cut */
+    options.counted = true;
+    RtFrame one = trace(&scene, &options);
+    assert_true(one.tallies[RT_RAY_TRANSMISSION].rays > 2 * one.tallies[RT_RAY_PRIMARY].rays);
+    for (int threads = 1; threads <= 3; threads++) {
+        for (int counted = 0; counted < 2; counted++) {
+            options.threads = threads;
+            options.counted = counted == 1;
+            RtFrame other = trace(&scene, &options);
+            assert_same_frames(&one, &other);
+            rt_frame_clear(&other);
+        }
+    }
+    rt_frame_clear(&one);
+    rt_scene_clear(&scene);
+}
+
+static void what_the_samples_cost_adds_up_to_the_tallies_by_kind(void **state) {
+    (void)state;
+    RtScene scene;
+    busy_scene(&scene);
+    RtFrameOptions options = options_for(&scene, 20, 20, false);
+    options.counted = true;
+    RtFrame frame = trace(&scene, &options);
+    RtTally by_sample = {0}, by_kind = {0};
+    for (size_t i = 0; i < 400; i++) rt_tally_add(&by_sample, &frame.cost[i]);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_tally_add(&by_kind, &frame.tallies[kind]);
+    assert_memory_equal(&by_sample, &by_kind, sizeof by_kind);
+    /* brute tests every object for every ray, until a shadow ray is blocked */
+    const RtTally *primary = &frame.tallies[RT_RAY_PRIMARY];
+    assert_int_equal(primary->rays, 400);
+    assert_int_equal(primary->object_tests, primary->rays * scene.geometry.object_count);
+    rt_frame_clear(&frame);
+    rt_scene_clear(&scene);
+}
+
+static void corner_sampling_traces_one_more_ray_than_pixels_a_side(void **state) {
+    (void)state;
+    RtScene scene;
+    busy_scene(&scene);
+    RtFrameOptions options = options_for(&scene, 32, 16, true);
+    options.counted = true;
+    options.depth = 1;
+    RtFrame frame = trace(&scene, &options);
+    assert_int_equal(frame.tallies[RT_RAY_PRIMARY].rays, 33 * 17);
+    rt_frame_clear(&frame);
+    rt_scene_clear(&scene);
+}
+
+/* Counts rays by kind, and the tiles that came. */
+typedef struct Seen {
+    pthread_mutex_t lock;
+    uint64_t rays[RT_RAY_KIND_COUNT];
+    uint64_t invalid;
+    size_t fail_at_tile; /* SIZE_MAX: never */
+} Seen;
+
+static RtStatus see(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error) {
+    Seen *seen = context;
+    if (tile == seen->fail_at_tile) return rt_fail(error, RT_MISMATCH, "tile %zu", tile);
+    pthread_mutex_lock(&seen->lock);
+    for (size_t i = 0; i < count; i++) {
+        seen->rays[rays[i].kind]++;
+        seen->invalid += !rt_ray_is_valid(&rays[i]);
+    }
+    pthread_mutex_unlock(&seen->lock);
+    return RT_OK;
+}
+
+static void the_sink_sees_every_ray_that_is_counted(void **state) {
+    (void)state;
+    RtScene scene;
+    busy_scene(&scene);
+    Seen seen = {.lock = PTHREAD_MUTEX_INITIALIZER, .fail_at_tile = SIZE_MAX};
+    RtFrameOptions options = options_for(&scene, 40, 40, false);
+    options.counted = true;
+    options.threads = 2;
+    options.sink = see;
+    options.sink_context = &seen;
+    RtFrame frame = trace(&scene, &options);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        assert_int_equal(seen.rays[kind], frame.tallies[kind].rays);
+    }
+    assert_int_equal(seen.invalid, 0);
+    assert_true(seen.rays[RT_RAY_SHADOW] > 0 && seen.rays[RT_RAY_REFLECTION] > 0);
+    rt_frame_clear(&frame);
+    rt_scene_clear(&scene);
+}
+
+static void a_sink_that_fails_stops_the_frame_and_leaves_nothing(void **state) {
+    (void)state;
+    RtScene scene;
+    busy_scene(&scene);
+    RtAccel *accel;
+    assert_ok(rt_accel_open("brute", &scene, &accel, error));
+    Seen seen = {.lock = PTHREAD_MUTEX_INITIALIZER, .fail_at_tile = 3};
+    RtFrameOptions options = options_for(&scene, 64, 64, false);
+    options.sink = see;
+    options.sink_context = &seen;
+    int64_t live = rt_alloc_live();
+    RtFrame frame;
+    RtError error;
+    assert_int_equal(rt_frame_trace(&frame, accel, &options, &error), RT_MISMATCH);
+    assert_string_equal(error.message, "tile 3");
+    assert_null(frame.color);
+    assert_int_equal(rt_alloc_live(), live);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static void a_frame_without_memory_is_a_status_and_leaks_nothing(void **state) {
+    (void)state;
+    RtScene scene;
+    busy_scene(&scene);
+    RtAccel *accel;
+    assert_ok(rt_accel_open("brute", &scene, &accel, error));
+    RtFrameOptions options = options_for(&scene, 4, 4, false);
+    options.counted = true;
+    int64_t live = rt_alloc_live();
+    RtFrame frame;
+    RtStatus status = RT_NO_MEMORY;
+    uint64_t n = 0;
+    while (status != RT_OK) {
+        rt_alloc_fail_at(++n);
+        status = rt_frame_trace(&frame, accel, &options, NULL);
+        rt_alloc_fail_at(0);
+        if (status == RT_OK) rt_frame_clear(&frame);
+        assert_int_equal(rt_alloc_live(), live);
+        assert_true(status == RT_OK || status == RT_NO_MEMORY);
+    }
+    assert_true(n > 10);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(render) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(two_mirrors_return_a_ray_as_often_as_the_depth_allows),
+        cmocka_unit_test(a_frame_is_the_same_bytes_on_any_number_of_threads_counted_or_timed),
+        cmocka_unit_test(what_the_samples_cost_adds_up_to_the_tallies_by_kind),
+        cmocka_unit_test(corner_sampling_traces_one_more_ray_than_pixels_a_side),
+        cmocka_unit_test(the_sink_sees_every_ray_that_is_counted),
+        cmocka_unit_test(a_sink_that_fails_stops_the_frame_and_leaves_nothing),
+        cmocka_unit_test(a_frame_without_memory_is_a_status_and_leaks_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

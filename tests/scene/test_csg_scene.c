@@ -1,0 +1,288 @@
+/* CSG trees as objects of a scene: materials of solids, refraction within a tree, copies of scenes, the
+ * fingerprint, counting, and lack of memory while a frame is traced. */
+#include "csg_testing.h"
+
+#include "base/memory.h"
+#include "render/illumination.h"
+#include "scene/append.h"
+
+/* ---- helpers ---- */
+
+static uint32_t add_glass(RtScene *scene, const char *name, float ior) {
+    RtMaterial material = rt_default_material();
+    uint32_t index;
+    strcpy(material.name, name);
+    material.transmission = 1;
+    material.ior = ior;
+    assert_ok(rt_scene_add_material(scene, &material, &index, error));
+    return index;
+}
+
+static void add_tree(RtScene *scene, RtCsgBuilder *builder, RtCsgTerm root) {
+    assert_ok(rt_scene_add_csg(scene, builder, root, true, error));
+    rt_csg_builder_clear(builder);
+}
+
+/* A glass cube from -2 to 2 with a bubble of radius 1 in its middle, whose wall is of another material. */
+static void make_bubble(RtScene *scene) {
+    RtCsgBuilder b = {0};
+    rt_scene_init(scene);
+    uint32_t glass = add_glass(scene, "glass", 1.5f), wall = add_glass(scene, "wall", 1.25f);
+    RtCsgTerm cube = box(&b, rt_vec3(-2, -2, -2), rt_vec3(2, 2, 2), glass);
+    add_tree(scene, &b, cut(&b, cube, ball(&b, rt_vec3(0, 0, 0), 1, wall)));
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+static RtSurface surface_at(const RtScene *scene, const RtRay *ray, float t) {
+    return rt_surface(scene, ray, (RtHit){t, 0});
+}
+
+/* A random tree as the only object. */
+static void make_random(RtScene *scene, uint64_t seed, bool extents) {
+    RtRandom random = rt_random(31, seed);
+    RtCsgBuilder b = {0};
+    rt_scene_init(scene);
+    for (int i = 0; i < 4; i++) add_glass(scene, (const char *[]){"a", "b", "c", "d"}[i], 1);
+    RtCsgTerm root = random_term(&b, &random, 20, seed % 2);
+    assert_ok(rt_scene_add_csg(scene, &b, root, extents, error));
+    rt_csg_builder_clear(&b);
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+/* ---- materials and refraction ---- */
+
+static void a_surface_has_the_material_of_its_solid(void **state) {
+    (void)state;
+    RtScene scene;
+    make_bubble(&scene);
+    RtRay ray = ray_along(rt_vec3(-4, 0, 0), along_x);
+    const char *const names[4] = {"glass", "wall", "wall", "glass"};
+    for (int i = 0; i < 4; i++) {
+        RtSurface surface = surface_at(&scene, &ray, (float[]){2, 3, 5, 6}[i]);
+        assert_string_equal(surface.material->name, names[i]);
+        assert_true(surface.entering == (i % 2 == 0));
+        assert_true(surface.side.x == -1);
+    }
+    assert_int_equal(scene.material_of[0], 0);
+    rt_scene_clear(&scene);
+}
+
+/* Snell's law: out of the glass and into the bubble the ray bends away from the normal of the bubble's
+ * wall. */
+static void light_is_refracted_out_of_the_tree_where_a_bubble_begins(void **state) {
+    (void)state;
+    RtScene scene;
+    make_bubble(&scene);
+    RtRay ray = ray_along(rt_vec3(-4, 0.5f, 0), along_x), rays[RT_MAX_SPAWN];
+    float factors[RT_MAX_SPAWN], t = (float)(4 - sqrt(0.75));
+    RtSurface surface = surface_at(&scene, &ray, t);
+    assert_false(surface.entering);
+    assert_int_equal(rt_spawn_rays(&surface, rays, factors), 1);
+    assert_int_equal(rays[0].kind, RT_RAY_TRANSMISSION);
+    RtVec3d out = rt_normalized(rt_widen(rays[0].dir)), across = rt_crossd(out, surface.side);
+    assert_true(fabs(rt_lengthd(across) - 0.5 * 1.25) < 1e-6);
+    rt_scene_clear(&scene);
+}
+
+/* ---- copies ---- */
+
+static void a_tree_may_be_appended_under_any_transform(void **state) {
+    (void)state;
+    RtTransform uneven = rt_transform_identity();
+    assert_ok(rt_transform_rotate(&uneven, rt_vec3(1, 2, 3), 30, error));
+    assert_ok(rt_transform_scale(&uneven, rt_vec3(2, 1, 0.5f), error));
+    RtRandom random = rt_random(32, 0);
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        RtScene from, to;
+        make_random(&from, seed, true);
+        rt_scene_init(&to);
+        add_glass(&to, "other", 1);
+        assert_ok(rt_scene_append(&to, &from, &uneven, error));
+        assert_ok(rt_scene_append(&to, &from, NULL, error));
+        assert_ok(rt_scene_finish(&to, error));
+        const RtGeometry *g = &to.geometry;
+        assert_int_equal(g->csg_count, 2);
+        for (uint32_t i = 0; i < from.geometry.forest.set.solid_count; i++) {
+            uint32_t material = from.geometry.forest.set.solids[i].material + 1;
+            assert_int_equal(g->forest.set.solids[i].material, material);
+            assert_int_equal(g->forest.set.solids[g->csgs[1].first_solid + i].material, material);
+        }
+        RtCsg moved;
+        RtCsgForest forest = {0};
+        assert_ok(
+            rt_csg_transplant(&forest, &from.geometry.forest, from.geometry.csgs, &uneven, &moved, error));
+        for (uint32_t i = 0; i < 200; i++) {
+            RtRay ray = random_ray(&random, i);
+            Hits first = hits_of(&g->forest, &g->csgs[0], &ray), wanted = hits_of(&forest, &moved, &ray);
+            assert_true(same_hits(&first, &wanted));
+            Hits second = hits_of(&g->forest, &g->csgs[1], &ray);
+            wanted = hits_of(&from.geometry.forest, from.geometry.csgs, &ray);
+            assert_true(same_hits(&second, &wanted));
+        }
+        rt_csg_forest_clear(&forest);
+        rt_scene_clear(&to);
+        rt_scene_clear(&from);
+    }
+}
+
+/* ---- the fingerprint ---- */
+
+static void the_fingerprint_sees_trees_but_not_their_extents(void **state) {
+    (void)state;
+    RtScene scene, plain;
+    make_random(&scene, 3, true);
+    make_random(&plain, 3, false);
+    uint64_t before = rt_scene_fingerprint(&scene);
+    assert_true(before == rt_scene_fingerprint(&plain));
+    RtCsgForest *forest = &scene.geometry.forest;
+
+    forest->set.solids[0].material++;
+    assert_true(before != rt_scene_fingerprint(&scene));
+    forest->set.solids[0].material--;
+    forest->set.solids[0].subtracted = !forest->set.solids[0].subtracted;
+    assert_true(before != rt_scene_fingerprint(&scene));
+    forest->set.solids[0].subtracted = !forest->set.solids[0].subtracted;
+    forest->set.solids[0].place.m[0][3] += 1;
+    assert_true(before != rt_scene_fingerprint(&scene));
+    forest->set.solids[0].place.m[0][3] -= 1;
+    uint32_t last = forest->instruction_count - 1;
+    assert_int_equal(forest->instructions[last].code, RT_CSG_APPLY);
+    forest->instructions[last].operand = (forest->instructions[last].operand + 1) % 3;
+    assert_true(before != rt_scene_fingerprint(&scene));
+    rt_scene_clear(&plain);
+    rt_scene_clear(&scene);
+}
+
+/* ---- counting ---- */
+
+static RtTally counted(const RtScene *scene, RtRay ray) {
+    RtAccel *brute;
+    RtQuery query;
+    RtHit hit;
+    RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+    assert_ok(rt_accel_open("brute", scene, &brute, error));
+    assert_ok(rt_query_init(&query, brute, error));
+    rt_nearest(&query, &ray, 1, &hit, tallies);
+    rt_query_clear(&query);
+    rt_accel_destroy(brute);
+    return tallies[ray.kind];
+}
+
+static void solids_and_boxes_are_counted_as_they_are_tested(void **state) {
+    (void)state;
+    RtScene scene;
+    make_bubble(&scene);
+    /* Through both; past the box of the ball; past the tree. */
+    const RtVec3 origins[3] = {{-4, 0, 0}, {-4, 1.5f, 0}, {-4, 3, 0}};
+    const uint64_t solids[3] = {2, 1, 0}, boxes[3] = {2, 2, 0};
+    for (int i = 0; i < 3; i++) {
+        RtTally tally = counted(&scene, ray_along(origins[i], along_x));
+        assert_int_equal(tally.object_tests, 1);
+        assert_int_equal(tally.csg_tests, solids[i]);
+        assert_int_equal(tally.extent_tests, boxes[i]);
+    }
+    rt_scene_clear(&scene);
+}
+
+/* Two clusters of four balls each: the ray meets the box of one of them. */
+static void a_node_that_is_missed_costs_one_test(void **state) {
+    (void)state;
+    RtScene scene;
+    RtCsgBuilder b = {0};
+    RtCsgTerm clusters[2];
+    rt_scene_init(&scene);
+    add_glass(&scene, "glass", 1);
+    for (int c = 0; c < 2; c++) {
+        clusters[c] = ball(&b, rt_vec3(0, 20 * (float)c, 0), 1, 0);
+        for (int i = 1; i < 4; i++) {
+            clusters[c] = join(&b, clusters[c], ball(&b, rt_vec3(3 * (float)i, 20 * (float)c, 0), 1, 0));
+        }
+    }
+    add_tree(&scene, &b, join(&b, clusters[0], clusters[1]));
+    assert_ok(rt_scene_finish(&scene, error));
+    RtTally tally = counted(&scene, ray_along(rt_vec3(0, 0, -5), rt_vec3(0, 0, 1)));
+    assert_int_equal(tally.csg_tests, 1);
+    /* Both clusters; in the first, which is met, what its three left balls have in common; and its balls. */
+    assert_true(tally.extent_tests <= 2 + 1 + 4);
+    rt_scene_clear(&scene);
+}
+
+/* ---- memory ---- */
+
+/* Rays along a row of 200 balls take more crossings than the C stack holds. */
+static void a_frame_that_lacks_memory_says_so(void **state) {
+    (void)state;
+    RtScene scene;
+    RtCsgBuilder b = {0};
+    rt_scene_init(&scene);
+    add_glass(&scene, "glass", 1);
+    RtCsgTerm row = ball(&b, rt_vec3(0, 0, 0), 1, 0);
+    for (int i = 1; i < 200; i++) row = join(&b, row, ball(&b, rt_vec3(3 * (float)i, 0, 0), 1, 0));
+    add_tree(&scene, &b, row);
+    scene.camera.from = rt_vec3(-50, 0, 0);
+    scene.camera.at = rt_vec3(0, 0, 0);
+    scene.camera.fov = 2;
+    scene.camera.width = scene.camera.height = 8;
+    assert_ok(rt_scene_finish(&scene, error));
+    RtAccel *brute;
+    assert_ok(rt_accel_open("brute", &scene, &brute, error));
+    int64_t live = rt_alloc_live();
+    RtFrameOptions options = {.depth = 1, .threads = 1};
+    bool traced = false;
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status != RT_OK && n < 1000; n++) {
+        RtFrame frame;
+        RtError error = {RT_OK, ""};
+        rt_alloc_fail_at(n);
+        status = rt_frame_trace(&frame, brute, &options, &error);
+        rt_alloc_fail_at(0);
+        traced |= strstr(error.message, "a ray through a CSG tree") != NULL;
+        if (status == RT_OK) rt_frame_clear(&frame);
+        assert_true(status == RT_OK || status == RT_NO_MEMORY);
+        assert_true(rt_alloc_live() == live);
+    }
+    assert_int_equal(status, RT_OK);
+    assert_true(traced);
+    rt_accel_destroy(brute);
+    rt_scene_clear(&scene);
+}
+
+static void adding_a_tree_fails_cleanly_at_every_allocation(void **state) {
+    (void)state;
+    RtRandom random = rt_random(33, 0);
+    RtCsgBuilder b = {0};
+    RtCsgTerm root = random_term(&b, &random, 10, true);
+    RtStatus status = RT_NO_MEMORY;
+    int64_t live = rt_alloc_live();
+    for (uint64_t n = 1; status != RT_OK && n < 1000; n++) {
+        RtScene scene;
+        rt_scene_init(&scene);
+        for (int i = 0; i < 4; i++) add_glass(&scene, "glass", 1);
+        rt_alloc_fail_at(n);
+        status = rt_scene_add_csg(&scene, &b, root, true, NULL);
+        rt_alloc_fail_at(0);
+        if (status != RT_OK) {
+            assert_int_equal(status, RT_NO_MEMORY);
+            assert_int_equal(scene.geometry.object_count, 0);
+            assert_int_equal(scene.geometry.forest.instruction_count, 0);
+        }
+        rt_scene_clear(&scene);
+    }
+    assert_int_equal(status, RT_OK);
+    assert_true(rt_alloc_live() == live);
+    rt_csg_builder_clear(&b);
+}
+
+RT_TEST_GROUP(csg_scene) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_surface_has_the_material_of_its_solid),
+        cmocka_unit_test(light_is_refracted_out_of_the_tree_where_a_bubble_begins),
+        cmocka_unit_test(a_tree_may_be_appended_under_any_transform),
+        cmocka_unit_test(the_fingerprint_sees_trees_but_not_their_extents),
+        cmocka_unit_test(solids_and_boxes_are_counted_as_they_are_tested),
+        cmocka_unit_test(a_node_that_is_missed_costs_one_test),
+        cmocka_unit_test(a_frame_that_lacks_memory_says_so),
+        cmocka_unit_test(adding_a_tree_fails_cleanly_at_every_allocation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

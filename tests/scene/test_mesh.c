@@ -1,0 +1,264 @@
+/* Meshes through Assimp: what is kept, what is placed where, what is refused. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "scene/load.h"
+#include "scene/mesh.h"
+#include "scenes/open.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define OBJ_NAME RT_BINARY_DIR "/test_mesh_scene.obj"
+#define BUNNY    "/usr/share/glmark2/models/bunny.obj"
+
+static RtStatus load_text(const char *path, const char *text, RtScene *scene, RtError *out) {
+    assert_ok(rt_file_write(path, text, strlen(text), error));
+    return rt_scene_open(path, scene, out);
+}
+
+static void triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text(OBJ_NAME,
+                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\n"
+                        "f 1 2 3\nf 1 2 4\nf 1 1 1\nf 1 2 5 3\n",
+                        &scene, error));
+    const RtGeometry *g = &scene.geometry;
+    assert_int_equal(g->triangle_count, 5);
+    assert_int_equal(g->vertex_normal_count, 0);
+    assert_true(g->triangles[0].v[2].y == 1);
+    assert_true(g->triangles[1].v[2].z == 1);
+    assert_true(g->triangles[2].v[2].x == 0);
+    assert_true(scene.camera.up.y == 1);
+    assert_int_equal(scene.light_count, 1);
+    rt_scene_clear(&scene);
+}
+
+static void vertex_normals_of_the_file_are_kept(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text(OBJ_NAME,
+                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 2\nvn 0 1 0\nvn 1 0 0\nf 1//1 2//2 3//3\n", &scene,
+                        error));
+    assert_int_equal(scene.geometry.vertex_normal_count, 1);
+    const RtVec3 *n = scene.geometry.vertex_normals[0].n;
+    assert_true(n[0].z == 1 && n[1].y == 1 && n[2].x == 1);
+    rt_scene_clear(&scene);
+}
+
+static void a_mesh_goes_where_its_transform_puts_it(void **state) {
+    (void)state;
+    RtScene scene;
+    uint32_t material;
+    RtMaterial standard = rt_default_material();
+    RtTransform transform = rt_transform_identity();
+    assert_ok(rt_transform_scale(&transform, rt_vec3(2, 2, 2), error));
+    assert_ok(rt_transform_translate(&transform, rt_vec3(0, 0, 5), error));
+    assert_ok(rt_file_write(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 32, error));
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &standard, &material, error));
+    assert_ok(rt_mesh_append(&scene, OBJ_NAME, material, &transform, error));
+    const RtVec3 *v = scene.geometry.triangles[0].v;
+    assert_true(v[0].z == 5 && v[1].x == 2 && v[2].y == 2);
+    rt_scene_clear(&scene);
+}
+
+/* One triangle in an embedded buffer; two nodes use it, the second with a matrix that mirrors x and moves
+ * z. */
+static const char two_nodes[] =
+    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],"
+    "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"matrix\":[-1,0,0,0,0,1,0,0,0,0,1,0,0,0,7,1]}],"
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\","
+    "\"min\":[0,0,0],\"max\":[1,1,0]}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+    "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
+    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
+
+static void the_matrices_of_nodes_are_applied_and_mirrors_keep_the_outside_out(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes, &scene, error));
+    assert_int_equal(scene.geometry.triangle_count, 2);
+    RtBox box = scene.geometry.box;
+    assert_true(box.lo.x == -1 && box.hi.x == 1 && box.lo.z == 0 && box.hi.z == 7);
+    for (int i = 0; i < 2; i++) assert_true(rt_triangle_normal(&scene.geometry.triangles[i]).z == 1);
+    rt_scene_clear(&scene);
+}
+
+static void binary_formats_bring_triangles_back_bit_for_bit(void **state) {
+    (void)state;
+    static const char *const names[] = {RT_BINARY_DIR "/test_mesh.ply", RT_BINARY_DIR "/test_mesh.stl",
+                                        RT_BINARY_DIR "/test_mesh.glb"};
+    RtScene scene, again;
+    assert_ok(rt_scene_open("random:n=300,shape=triangle", &scene, error));
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        assert_ok(rt_scene_save(&scene, names[i], true, error));
+        assert_ok(rt_scene_open(names[i], &again, error));
+        assert_int_equal(again.geometry.triangle_count, 300);
+        assert_memory_equal(again.geometry.triangles, scene.geometry.triangles, 300 * sizeof(RtTriangle));
+        rt_scene_clear(&again);
+    }
+    rt_scene_clear(&scene);
+}
+
+static void obj_comes_back_within_the_rounding_of_its_reader(void **state) {
+    (void)state;
+    RtScene scene, again;
+    assert_ok(rt_scene_open("random:n=300,shape=triangle", &scene, error));
+    assert_ok(rt_scene_save(&scene, OBJ_NAME, true, error));
+    assert_ok(rt_scene_open(OBJ_NAME, &again, error));
+    assert_int_equal(again.geometry.triangle_count, 300);
+    assert_int_equal(again.geometry.vertex_normal_count, 0);
+    for (int i = 0; i < 300; i++) {
+        for (int k = 0; k < 3; k++) {
+            RtVec3 a = scene.geometry.triangles[i].v[k], b = again.geometry.triangles[i].v[k];
+            for (int axis = 0; axis < 3; axis++) assert_true(fabsf(a.at[axis] - b.at[axis]) <= 2e-7f);
+        }
+    }
+    rt_scene_clear(&scene);
+    rt_scene_clear(&again);
+}
+
+static void a_scene_with_other_shapes_is_not_written_as_a_mesh(void **state) {
+    (void)state;
+    RtScene scene;
+    RtError problem;
+    const char *path = RT_BINARY_DIR "/test_mesh_refused.ply";
+    assert_ok(rt_scene_open("balls:size=1", &scene, error));
+    assert_int_equal(rt_scene_save(&scene, path, true, &problem), RT_BAD_INPUT);
+    assert_non_null(strstr(problem.message, "sphere: 10"));
+    assert_false(rt_file_exists(path));
+    assert_false(rt_file_exists(RT_BINARY_DIR "/test_mesh_refused.ply.tmp"));
+    rt_scene_clear(&scene);
+}
+
+#define PLY(faces)                                                                                           \
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"        \
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" faces
+
+static void bad_meshes_are_refused_with_what_is_wrong(void **state) {
+    (void)state;
+    const struct {
+        const char *path, *text, *says;
+    } cases[] = {
+        {OBJ_NAME, "", "Assimp cannot read"},
+        {OBJ_NAME, "v 0 0 0\nv 1 0 0\n", ""},
+        {OBJ_NAME, "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "vertex 1 of mesh"},
+        {OBJ_NAME, "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n", "beyond"},
+        {OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n", "no triangle"},
+        {OBJ_NAME, "v 0 0 0\nv 1 0 0\nf 1 2 9\n", ""},
+        {RT_BINARY_DIR "/test_mesh.glb", "glTF but not really", "Assimp cannot read"},
+        {RT_BINARY_DIR "/test_mesh.stl", "solid\nfacet", ""},
+        {RT_BINARY_DIR "/test_mesh.ply", PLY("0\n"), "has no corners"},
+        {RT_BINARY_DIR "/test_mesh.ply", PLY("4 0 1 2 99999999\n"), "names vertex 99999999 of 3"},
+        {RT_BINARY_DIR "/test_mesh.ply", PLY("5 0 1 2 0 -1\n"), "names vertex 4294967295 of 3"},
+        {RT_BINARY_DIR "/test_mesh.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n",
+         ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene;
+        RtError problem;
+        if (load_text(cases[i].path, cases[i].text, &scene, &problem) != RT_BAD_INPUT) {
+            fail_msg("'%s' was not refused", cases[i].text);
+        }
+        if (strncmp(problem.message, cases[i].path, strlen(cases[i].path)) != 0 ||
+            !strstr(problem.message, cases[i].says)) {
+            fail_msg("'%s' gave: %s", cases[i].text, problem.message);
+        }
+    }
+    RtScene scene = {0};
+    RtError problem;
+    assert_int_equal(rt_mesh_append(&scene, "no_such.obj", 0, NULL, &problem), RT_BAD_INPUT);
+    assert_non_null(strstr(problem.message, "No such file"));
+}
+
+static void assimp_says_nothing_on_the_terminal(void **state) {
+    (void)state;
+    FILE *both = tmpfile();
+    assert_non_null(both);
+    fflush(stdout);
+    fflush(stderr);
+    int out = dup(1), err = dup(2);
+    dup2(fileno(both), 1);
+    dup2(fileno(both), 2);
+    RtScene scene;
+    RtError problem;
+    RtStatus good = load_text(OBJ_NAME, "mtllib none.mtl\nusemtl x\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+                              &scene, &problem);
+    if (good == RT_OK) rt_scene_clear(&scene);
+    RtStatus bad = load_text(OBJ_NAME, "nothing of the kind\n", &scene, &problem);
+    fflush(stdout);
+    fflush(stderr);
+    dup2(out, 1);
+    dup2(err, 2);
+    close(out);
+    close(err);
+    fseek(both, 0, SEEK_END);
+    assert_int_equal(ftell(both), 0);
+    fclose(both);
+    assert_int_equal(good, RT_OK);
+    assert_int_equal(bad, RT_BAD_INPUT);
+}
+
+static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    int64_t before = rt_alloc_live();
+    RtScene scene, again;
+    RtError problem;
+    RtStatus status = RT_NO_MEMORY;
+    assert_ok(rt_file_write(OBJ_NAME, "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n", 51, error));
+    for (uint64_t n = 1; status != RT_OK; n++) {
+        rt_alloc_fail_at(n);
+        status = rt_scene_open(OBJ_NAME, &scene, &problem);
+        rt_alloc_fail_at(0);
+        assert_true(status == RT_OK || status == RT_NO_MEMORY);
+        if (status != RT_OK) assert_int_equal(rt_alloc_live(), before);
+    }
+    status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status != RT_OK; n++) {
+        rt_alloc_fail_at(n);
+        status = rt_scene_save(&scene, RT_BINARY_DIR "/test_mesh.ply", true, &problem);
+        rt_alloc_fail_at(0);
+        assert_true(status == RT_OK || status == RT_NO_MEMORY);
+    }
+    assert_ok(rt_scene_open(RT_BINARY_DIR "/test_mesh.ply", &again, error));
+    assert_int_equal(again.geometry.vertex_normal_count, 1);
+    rt_scene_clear(&again);
+    rt_scene_clear(&scene);
+    assert_int_equal(rt_alloc_live(), before);
+}
+
+static void the_bunny_has_69666_triangles_all_with_area(void **state) {
+    (void)state;
+    if (!rt_file_exists(BUNNY)) {
+        print_message("%s is not there (package glmark2-data)\n", BUNNY);
+        skip();
+    }
+    RtScene scene;
+    assert_ok(rt_scene_open(BUNNY, &scene, error));
+    assert_int_equal(scene.geometry.triangle_count, 69666);
+    for (uint32_t i = 0; i < 69666; i++) {
+        assert_true(rt_lengthd(rt_triangle_normal(&scene.geometry.triangles[i])) > 0);
+    }
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(mesh) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own),
+        cmocka_unit_test(vertex_normals_of_the_file_are_kept),
+        cmocka_unit_test(a_mesh_goes_where_its_transform_puts_it),
+        cmocka_unit_test(the_matrices_of_nodes_are_applied_and_mirrors_keep_the_outside_out),
+        cmocka_unit_test(binary_formats_bring_triangles_back_bit_for_bit),
+        cmocka_unit_test(obj_comes_back_within_the_rounding_of_its_reader),
+        cmocka_unit_test(a_scene_with_other_shapes_is_not_written_as_a_mesh),
+        cmocka_unit_test(bad_meshes_are_refused_with_what_is_wrong),
+        cmocka_unit_test(assimp_says_nothing_on_the_terminal),
+        cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
+        cmocka_unit_test(the_bunny_has_69666_triangles_all_with_area),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

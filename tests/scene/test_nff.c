@@ -1,0 +1,289 @@
+/* NFF: what is read, what is written, and what is refused with which line. */
+#include "scene_testing.h"
+
+#include "base/file.h"
+#include "base/random.h"
+#include "scene/load.h"
+#include "scene/nff.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define FILE_NAME RT_BINARY_DIR "/test_nff_scene.nff"
+
+static const char everything[] = "# a comment\n"
+                                 "v\nfrom 1 2 3\nat 0 0 0\nup 0 0 1\nangle 30\nhither 0.5\nresolution 64 48\n"
+                                 "b 0.1 0.2 0.3\n"
+                                 "l 4 5 6\nl 1 2 3 .5 .25 1\n"
+                                 "f 1 0.5 0.25 0.6 0.3 20 0.1 1.5 # trailing\n"
+                                 "s 0 0 0 0.5\n"
+                                 "c 0 0 0 1\n  0 0 2 0\n"
+                                 "p 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+                                 "f 1 1 1 1 0 100000 0 0\n"
+                                 "p 3\n0 0 0\n1 0 0\n0 1 0\n"
+                                 "pp 4\n0 0 0 0 0 1\n1 0 0 0 0 2\n1 1 0 0 0 1\n0 1 0 0 1 0\n";
+
+/* Without the wait for the disk that rt_file_write takes. */
+static RtStatus load_bytes(const char *text, size_t size, RtScene *scene, RtError *out) {
+    FILE *file = fopen(FILE_NAME, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+    return rt_scene_open(FILE_NAME, scene, out);
+}
+
+static RtStatus load_text(const char *text, RtScene *scene, RtError *out) {
+    return load_bytes(text, strlen(text), scene, out);
+}
+
+static void every_statement_is_read(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text(everything, &scene, error));
+    const RtGeometry *g = &scene.geometry;
+    assert_int_equal(g->object_count, 6);
+    assert_int_equal(g->sphere_count, 1);
+    assert_int_equal(g->cone_count, 1);
+    assert_int_equal(g->polygon_count, 1);
+    assert_int_equal(g->triangle_count, 3);
+    assert_int_equal(g->vertex_normal_count, 2);
+    assert_true(g->vertex_normals[0].n[1].z == 1);
+    assert_true(g->vertex_normals[1].n[2].y == 1);
+
+    const RtMaterial *m = &scene.materials[0];
+    assert_true(m->color.x == 1 && m->color.z == 0.25f && m->diffuse == 0.6f && m->specular == 0.3f);
+    assert_true(m->reflection == 0.3f && m->shine == 20 && m->transmission == 0.1f && m->ior == 1.5f);
+    assert_true(m->ambient == RT_NFF_AMBIENT);
+    assert_true(scene.materials[1].ior == 1);
+    assert_int_equal(scene.material_of[2], 0);
+    assert_int_equal(scene.material_of[3], 1);
+
+    assert_true(scene.camera.from.y == 2 && scene.camera.fov == 30 && scene.camera.hither == 0.5f);
+    assert_int_equal(scene.camera.width, 64);
+    assert_int_equal(scene.camera.height, 48);
+    assert_true(scene.background.z == 0.3f);
+    rt_scene_clear(&scene);
+}
+
+static void a_light_without_colour_has_the_suggested_intensity(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text(everything, &scene, error));
+    assert_int_equal(scene.light_count, 2);
+    assert_true(scene.lights[0].intensity.x == (float)(sqrt(2.0) / 4));
+    assert_true(scene.lights[1].intensity.x == 0.5f && scene.lights[1].intensity.z == 1);
+    rt_scene_clear(&scene);
+}
+
+static void repeated_materials_are_stored_once(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text("f 1 0 0 1 0 0 0 1\ns 0 0 0 1\nf 0 1 0 1 0 0 0 1\ns 1 0 0 1\nf 1 0 0 1 0 0 0 1\n"
+                        "s 2 0 0 1\n",
+                        &scene, error));
+    assert_int_equal(scene.material_count, 2);
+    assert_int_equal(scene.material_of[2], 0);
+    rt_scene_clear(&scene);
+}
+
+static void signs_of_radii_and_line_ends_do_not_matter(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text("s 0 0 0 -2\r\nc 0 0 0 -1 0 0 1 -1\r\n\r\n\ts\t1\n1\n1\n1", &scene, error));
+    assert_int_equal(scene.geometry.object_count, 3);
+    assert_true(scene.geometry.spheres[0].radius == 2);
+    rt_scene_clear(&scene);
+}
+
+static void what_is_written_reads_back_bit_for_bit(void **state) {
+    (void)state;
+    RtScene scene, again;
+    assert_ok(rt_scene_open("random:n=400,shape=mixed", &scene, error));
+    assert_ok(rt_scene_save(&scene, FILE_NAME, true, error));
+    assert_ok(rt_scene_open(FILE_NAME, &again, error));
+    const RtGeometry *a = &scene.geometry, *b = &again.geometry;
+    assert_int_equal(a->object_count, b->object_count);
+    assert_memory_equal(a->objects, b->objects, a->object_count * sizeof *a->objects);
+    assert_memory_equal(a->spheres, b->spheres, a->sphere_count * sizeof *a->spheres);
+    assert_memory_equal(a->cones, b->cones, a->cone_count * sizeof *a->cones);
+    assert_memory_equal(a->triangles, b->triangles, a->triangle_count * sizeof *a->triangles);
+    assert_memory_equal(a->polygon_vertices, b->polygon_vertices,
+                        a->polygon_vertex_count * sizeof *a->polygon_vertices);
+    assert_memory_equal(&scene.camera, &again.camera, sizeof scene.camera);
+    assert_memory_equal(scene.lights, again.lights, scene.light_count * sizeof *scene.lights);
+    rt_scene_clear(&scene);
+    rt_scene_clear(&again);
+}
+
+static void a_triangle_without_area_survives_being_written(void **state) {
+    (void)state;
+    RtScene scene, again;
+    uint32_t material;
+    RtMaterial standard = rt_default_material();
+    const RtVec3 point[3] = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &standard, &material, error));
+    assert_ok(rt_scene_add_triangle(&scene, material, point, NULL, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_scene_save(&scene, FILE_NAME, true, error));
+    assert_ok(rt_scene_open(FILE_NAME, &again, error));
+    assert_memory_equal(again.geometry.triangles[0].v, point, sizeof point);
+    rt_scene_clear(&scene);
+    rt_scene_clear(&again);
+}
+
+static void an_existing_file_is_kept_unless_it_may_be_overwritten(void **state) {
+    (void)state;
+    RtScene scene, again;
+    RtError problem;
+    assert_ok(load_text("s 0 0 0 1\n", &scene, error));
+    assert_int_equal(rt_scene_save(&scene, FILE_NAME, false, &problem), RT_BAD_INPUT);
+    assert_non_null(strstr(problem.message, "exists already"));
+    assert_int_equal(rt_scene_save(&scene, RT_BINARY_DIR "/x.nfff", true, &problem), RT_BAD_INPUT);
+    assert_non_null(strstr(problem.message, "did you mean '.nff'?"));
+    assert_int_not_equal(rt_scene_save(&scene, RT_BINARY_DIR "/no/such/folder/x.nff", true, &problem), RT_OK);
+    assert_ok(rt_scene_open(FILE_NAME, &again, error));
+    rt_scene_clear(&scene);
+    rt_scene_clear(&again);
+}
+
+static void bad_files_are_refused_with_line_and_remedy(void **state) {
+    (void)state;
+    const struct {
+        const char *text, *line, *says;
+    } cases[] = {
+        {"", "", "at least one object"},
+        {"# nothing\n\n", "", "at least one object"},
+        {"l 1 2 3\n", "", "at least one object"},
+        {"s 0 0 0 1\nq 1 2 3\n", ":2:", "'q'"},
+        {"s 0 0 0 1\nsphere 1 2 3\n", ":2:", "v b l f s c p pp"},
+        {"s 0 0 0\n", ":1:", "the end of the file"},
+        {"s 0 0 0\ns 1 1 1 1\n", ":1:", "radius is needed here, but there is 's'"},
+        {"s 0 0 0 0\n", ":1:", "radius above 0"},
+        {"\n\ns 0 0 nan 1\n", ":3:", "'nan' is no finite number"},
+        {"s 0 0 inf 1\n", ":1:", "no finite number"},
+        {"s 0 0 1e999 1\n", ":1:", "no finite number"},
+        {"s 0 0 1e30 1\n", ":1:", "beyond"},
+        {"s 0 0 0 1x\n", ":1:", "'1x'"},
+        {"s 0 0 0 1 2\n", ":1:", "'2'"},
+        {"c 0 0 0 1 0 0 0 1\n", ":1:", "same point"},
+        {"c 0 0 0 0 0 0 1 0\n", ":1:", "above 0"},
+        {"c 0 0 0 1\n0 0 1\n", ":2:", "apex.radius"},
+        {"p 2\n0 0 0\n1 0 0\n", ":1:", "3..4294967295"},
+        {"p 3.5\n0 0 0\n1 0 0\n0 1 0\n", ":1:", "whole number"},
+        {"p -3\n0 0 0\n1 0 0\n0 1 0\n", ":1:", "3..4294967295"},
+        {"p 1000000000\n0 0 0\n1 0 0\n0 1 0\n", ":1:", "what is left of the file"},
+        {"pp 4294967295\n0 0 0 0 0 1\n", ":1:", "what is left of the file"},
+        {"p 4\n0 0 0\n1 0 0\n0 1 0\nf 1 1 1 1 0 0 0 1\n", ":4:", "'f'"},
+        {"p 3\n0 0 0\n1 1 1\n2 2 2\n", ":1:", "no area"},
+        {"s 0 0 0 1\np 4\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n", ":2:", "no area"},
+        {"p 4\n0 0 0\n1 0 0\n1 1 1\n0 1 0\n", ":1:", "not planar"},
+        {"pp 3\n0 0 0 0 0 0\n1 0 0 0 0 1\n0 1 0 0 0 1\n", ":1:", "normal"},
+        {"pp 4\n-7 7 0 0 0 1\n-2 0 0 0 0 1\n-7 -7 0 0 0 1\n9 0 0 0 0 1\n", ":1:", "concave"},
+        {"f 1 1 1 1 0 0 0\ns 0 0 0 1\n", ":1:", "Kd Ks shine T ior"},
+        {"f -1 1 1 1 0 0 0 1\ns 0 0 0 1\n", ":1:", "red"},
+        {"f 1 1 1 1 2 0 0 1\ns 0 0 0 1\n", ":1:", "reflection"},
+        {"f 1 1 1 1 0 0 1 0\ns 0 0 0 1\n", ":1:", "ior"},
+        {"b -1 0 0\ns 0 0 0 1\n", ":1:", "background"},
+        {"l 1 2 3 -1 0 0\ns 0 0 0 1\n", ":1:", "negative"},
+        {"l 1 2 3 1\ns 0 0 0 1\n", ":1:", "colour of a light"},
+        {"v\nfrom 0 0 1\nat 0 0 0\nangle 45\ns 0 0 0 1\n", ":4:", "'up'"},
+        {"v\nfrom 0 0 0\nat 0 0 0\nup 0 0 1\nangle 45\ns 0 0 0 1\n", ":1:", "looks nowhere"},
+        {"v\nfrom 0 0 1\nat 0 0 0\nup 0 0 1\nangle 45\ns 0 0 0 1\n", ":1:", "along its line of sight"},
+        {"v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 180\ns 0 0 0 1\n", ":1:", "180"},
+        {"v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 45\nhither -1\ns 0 0 0 1\n", ":1:", "hither"},
+        {"v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 45\nresolution 0 9\n", ":6:", "1..32768"},
+        {"\x89PNG\r\n", ":1:", "'?PNG'"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene;
+        RtError problem;
+        RtStatus status = load_text(cases[i].text, &scene, &problem);
+        if (status != RT_BAD_INPUT) fail_msg("'%s' was not refused", cases[i].text);
+        bool has_line =
+            strncmp(problem.message, FILE_NAME, strlen(FILE_NAME)) == 0 &&
+            strncmp(problem.message + strlen(FILE_NAME), cases[i].line, strlen(cases[i].line)) == 0;
+        if (!has_line || !strstr(problem.message, cases[i].says)) {
+            fail_msg("'%s' gave: %s", cases[i].text, problem.message);
+        }
+    }
+}
+
+static void a_binary_file_is_refused_as_such(void **state) {
+    (void)state;
+    RtScene scene;
+    RtError problem;
+    assert_int_equal(load_bytes("s 0 0 0 1\n\0\1\2", 13, &scene, &problem), RT_BAD_INPUT);
+    assert_non_null(strstr(problem.message, "binary"));
+}
+
+static void a_file_cut_anywhere_is_read_or_refused(void **state) {
+    (void)state;
+    int64_t before = rt_alloc_live();
+    for (size_t size = 0; size < sizeof everything; size++) {
+        RtScene scene;
+        RtError problem;
+        RtStatus status = load_bytes(everything, size, &scene, &problem);
+        assert_true(status == RT_OK || status == RT_BAD_INPUT);
+        if (status == RT_OK) rt_scene_clear(&scene);
+        assert_int_equal(rt_alloc_live(), before);
+    }
+}
+
+static void a_file_with_any_bytes_changed_is_read_or_refused(void **state) {
+    (void)state;
+    static const char bytes[] = "0123456789-+.eE \n#pscfvblnx\x01\xff";
+    int64_t before = rt_alloc_live();
+    for (uint64_t run = 0; run < 2000; run++) {
+        char text[sizeof everything];
+        RtRandom random = rt_random(2, run);
+        memcpy(text, everything, sizeof text);
+        for (int i = 0; i < 4; i++) {
+            text[rt_random_bits(&random) % (sizeof text - 1)] =
+                bytes[rt_random_bits(&random) % (sizeof bytes - 1)];
+        }
+        RtScene scene;
+        RtError problem;
+        RtStatus status = load_bytes(text, sizeof text - 1, &scene, &problem);
+        assert_true(status == RT_OK || status == RT_BAD_INPUT);
+        if (status == RT_OK) rt_scene_clear(&scene);
+        assert_int_equal(rt_alloc_live(), before);
+    }
+}
+
+static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    assert_ok(rt_file_write(FILE_NAME, everything, strlen(everything), error));
+    assert_failed_allocations_are_reported(FILE_NAME);
+}
+
+static void the_jewel_is_whole(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(rt_scene_open(RT_SOURCE_DIR "/scenes/jewel.nff", &scene, error));
+    assert_int_equal(scene.geometry.object_count, 1137);
+    assert_int_equal(scene.geometry.sphere_count, 100);
+    assert_int_equal(scene.geometry.polygon_count, 274);
+    assert_int_equal(scene.geometry.triangle_count, 656);
+    assert_int_equal(scene.geometry.cone_count, 107);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(nff) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_statement_is_read),
+        cmocka_unit_test(a_light_without_colour_has_the_suggested_intensity),
+        cmocka_unit_test(repeated_materials_are_stored_once),
+        cmocka_unit_test(signs_of_radii_and_line_ends_do_not_matter),
+        cmocka_unit_test(what_is_written_reads_back_bit_for_bit),
+        cmocka_unit_test(a_triangle_without_area_survives_being_written),
+        cmocka_unit_test(an_existing_file_is_kept_unless_it_may_be_overwritten),
+        cmocka_unit_test(bad_files_are_refused_with_line_and_remedy),
+        cmocka_unit_test(a_binary_file_is_refused_as_such),
+        cmocka_unit_test(a_file_cut_anywhere_is_read_or_refused),
+        cmocka_unit_test(a_file_with_any_bytes_changed_is_read_or_refused),
+        cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
+        cmocka_unit_test(the_jewel_is_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

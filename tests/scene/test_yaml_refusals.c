@@ -1,0 +1,246 @@
+/* The YAML scene format: what it refuses, and where; nothing is left of it, whichever allocation fails. */
+#include "yaml_testing.h"
+
+/* ---- what is said of bad input: its line, and a phrase ---- */
+
+#define SPHERE "objects:\n- sphere: {center: [0, 0, 0], radius: 1}\n"
+#define SOLIDS                                                                                               \
+    "solids:\n"                                                                                              \
+    "- {name: a, sphere: {center: [0, 0, 0], radius: 1}}\n"                                                  \
+    "- {name: h, half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}\n"                                       \
+    "# line 4\n"
+#define JOIN_4(x)            x "|" x "|" x "|" x
+#define TIMES_64(name, part) "- {name: " name ", formula: " JOIN_4(JOIN_4(JOIN_4(part))) "}\n"
+#define CSG(formula)         "objects:\n- csg: {formula: " formula "}\n"
+
+static const struct {
+    const char *text;
+    int line;
+    const char *says;
+} hostile[] = {
+    /* not YAML, not a scene */
+    {"", 1, "empty"},
+    {"# nothing\n", 1, "empty"},
+    {"objects: [", 2, "not YAML"},
+    {"objects:\n\t- x\n", 2, "not YAML"},
+    {"\x7f"
+     "ELF\x02\x01\x01\x03",
+     1, "UTF-8"},
+    {"a: \xff\xfe\n", 1, "UTF-8"},
+    {"just words\n", 1, "the keys camera"},
+    {"- a\n- b\n", 1, "a list found"},
+    {SPHERE "---\n" SPHERE, 3, "second document"},
+    {"{}\n", 1, "'objects' is missing"},
+    {"objects: []\n", 1, "at least 1"},
+    {"objects:\n", 1, "nothing found where a list"},
+    {"objects: &a [*a]\n", 1, "aliases"},
+    {"a: &a [x,x]\nb: &b [*a,*a]\n", 1, "unknown key 'a'"},
+    /* keys */
+    {"object:\n  - sphere: {}\n", 1, "did you mean 'objects'?"},
+    {SPHERE "camera:\n  from: [1, 1, 1]\n  too: [0, 0, 0]\n", 5, "unknown key 'too'"},
+    {"objects:\n- sphere: {center: [0, 0, 0],\n   radios: 1}\n", 3, "did you mean 'radius'?"},
+    {"objects:\n- sphere:\n    radius: 1\n", 2, "'center' is missing"},
+    {SPHERE SPHERE, 3, "'objects' is given twice"},
+    {"objects:\n- ? [a]\n  : 1\n", 2, "plain word"},
+    /* numbers */
+    {"objects:\n- sphere:\n    center: [0, 0, 0]\n    radius: 0\n", 4, "radius above 0"},
+    {"objects:\n- sphere:\n    center: [0, 0, 0]\n    radius: -3\n", 4, "radius above 0"},
+    {"objects:\n- sphere:\n    radius: 1\n    center: [0,\n      nan, 0]\n", 5,
+     "'nan' is not a finite number"},
+    {"objects:\n- sphere: {center: [0, .inf, 0], radius: 1}\n", 2, "'.inf' is not a finite number"},
+    {"objects:\n- sphere: {center: [0, 1, 0], radius: 1e39}\n", 2, "fits float32"},
+    {"objects:\n- sphere: {center: [0, 1, 0], radius: 1m}\n", 2, "'1m' is not"},
+    {"objects:\n- sphere: {center: [0, 1, 0], radius: }\n", 2, "is not a finite number"},
+    {"objects:\n- sphere: {center: [0, 1, 0], radius: \"1\\02\"}\n", 2, "zero byte"},
+    {"objects:\n- sphere: {center: [0, 1, 0], radius: [1]}\n", 2, "a list found where a number"},
+    {"objects:\n- sphere: {center: [0, 1], radius: 1}\n", 2, "has 2 entries"},
+    {"objects:\n- sphere: {center: [0, 1, 2, 3], radius: 1}\n", 2, "more than 3"},
+    {"objects:\n- sphere: {center: 7, radius: 1}\n", 2, "'7' found where a list of 3 numbers"},
+    {"objects:\n- sphere: {center: [1e18, 0, 0], radius: 1}\n", 2, "scale the scene down"},
+    /* objects */
+    {"objects:\n- {}\n", 2, "0 of them"},
+    {SPHERE "- sphere: {center: [0, 0, 0], radius: 1}\n  cone: {base: [0, 0, 0], apex: [0, 0, 1], "
+            "base_radius: 1, apex_radius: 0}\n",
+     3, "2 of them"},
+    {"objects:\n- polygon: {vertices: [[0, 0, 0], [1, 0, 0]]}\n", 2, "at least 3"},
+    {"objects:\n- polygon:\n    vertices: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\n", 3, "no area"},
+    {"objects:\n- polygon: {vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1]]}\n", 2, "not planar"},
+    {"objects:\n- triangle: {vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0]],\n"
+     "  normals: [[0, 0, 0], [0, 0, 1], [0, 0, 1]]}\n",
+     2, "vertex normal 0"},
+    {SPHERE "- cylinder: {base: [0, 0, 0], apex: [0, 0, 0], radius: 1}\n", 3, "objects[1].cylinder"},
+    {SPHERE "- cone: {base: [0, 0, 0], apex: [0, 0, 1], base_radius: -1, apex_radius: 0}\n", 3,
+     "objects[1].cone"},
+    /* materials */
+    {"objects:\n- sphere:\n    center: [0, 0, 0]\n    radius: 1\n    material: blu\n", 5,
+     "no material 'blu'"},
+    {SPHERE "materials:\n- {name: a}\n- {name: b}\n- {name: a}\n", 6, "two materials 'a'"},
+    {SPHERE "materials:\n- {name: a, reflection: 2}\n", 4, "reflection is 2"},
+    {SPHERE "materials:\n- {name: a, ior: 0}\n", 4, "ior is 0"},
+    {SPHERE "materials:\n- {color: [1, 1, 1]}\n", 4, "'name' is missing"},
+    {SPHERE "materials:\n- {name: ''}\n", 4, "0 characters"},
+    {SPHERE "materials:\n- {name: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa}\n", 4,
+     "64 characters, must have 1..63"},
+    {SPHERE "materials:\n- {name: \"a\\nb\"}\n", 4, "control character"},
+    {SPHERE "materials: {red: {color: [1, 0, 0]}}\n", 3, "a mapping found where a list"},
+    /* camera, lights, colours */
+    {SPHERE "camera:\n  from: [1, 2, 3]\n", 3, "belong together"},
+    {SPHERE "camera:\n  from: [1, 2, 3]\n  at: [1, 2, 3]\n", 5, "looks nowhere"},
+    {SPHERE "camera:\n  from: [0, 0, 3]\n  at: [0, 0, 0]\n  up: [0, 0, 1]\n", 6, "`up`"},
+    {SPHERE "camera:\n  up: [0, 0, 0]\n", 4, "`up`"},
+    {SPHERE "camera:\n  up: [0, 0, 1]\n  fov: 180\n", 5, "below 180"},
+    {SPHERE "camera:\n  hither: -1\n", 4, "at least 0"},
+    {SPHERE "camera:\n  size: [0, 100]\n", 4, "1..32768"},
+    {SPHERE "camera:\n  size: [1000000000, 100]\n", 4, "1..32768"},
+    {SPHERE "camera:\n  size: [5000000000, 100]\n", 4, "whole number"},
+    {SPHERE "camera:\n  size: [-5, 100]\n", 4, "whole number"},
+    {SPHERE "camera:\n  size: [1.5, 100]\n", 4, "whole number"},
+    {SPHERE "camera:\n  from: [1e18, 0, 0]\n  at: [0, 0, 0]\n", 4, "nearer"},
+    {SPHERE "lights:\n- {position: [0, 0, 0]}\n- {position: [0, 0, 0], intensity: [-1, 0, 0]}\n", 5,
+     "negative"},
+    {SPHERE "lights:\n- {intensity: [1, 1, 1]}\n", 4, "'position' is missing"},
+    {SPHERE "background: [0, -1, 0]\n", 3, "no negative"},
+    {SPHERE "ambient: [a, b, c]\n", 3, "'a' is not"},
+    /* meshes, built-ins, transforms */
+    {SPHERE "- mesh:\n    path: no-such.obj\n", 4, "no-such.obj"},
+    {SPHERE "- mesh:\n    path: scene.yaml\n", 4, "scene.yaml"},
+    {SPHERE "- builtin:\n    name: bals\n", 4, "balls"},
+    {SPHERE "- builtin: {name: \"balls:size=1000000000\"}\n", 3, "size"},
+    {SPHERE "- builtin:\n    name: balls:size=1\n    transform:\n    - scale: 1\n    - stretch: [1, 1, 2]\n",
+     5, "unevenly"},
+    {SPHERE "- builtin:\n    name: balls:size=1\n    transform:\n    - scale: 1\n    - scale: 0\n", 7,
+     "above 0"},
+    {SPHERE "- builtin:\n    name: balls:size=1\n    transform:\n    - {scale: 1, translate: [0, 0, 0]}\n", 6,
+     "2 of them"},
+    {SPHERE "- mesh:\n    path: corner.obj\n    transform:\n    - rotate: {axis: [0, 0, 0], degrees: 1}\n", 6,
+     "length 0"},
+    {SPHERE "- mesh:\n    path: corner.obj\n    transform:\n    - scale: 1e30\n", 4, "corner.obj"},
+    /* CSG */
+    {SOLIDS "- {name: c, formula: c | a}\n" CSG("a"), 5, "cannot contain itself"},
+    {SOLIDS "- {name: c, formula: d}\n- {name: d, formula: c}\n" CSG("a"), 5, "comes after this formula"},
+    {SOLIDS "- {name: a, sphere: {center: [0, 0, 0], radius: 1}}\n" CSG("a"), 5, "two solids 'a'"},
+    {SOLIDS "- {name: a b, sphere: {center: [0, 0, 0], radius: 1}}\n" CSG("a"), 5, "a name is a letter or _"},
+    {SOLIDS "- {name: c}\n" CSG("a"), 5, "0 of them"},
+    {SOLIDS "- {name: c, box: {lo: [0, 0, 0], hi: [1, 1, 0]}}\n" CSG("a"), 5, "lo < hi on each axis"},
+    {SOLIDS "- {name: c, box: {lo: [1, 0, 0], hi: [0, 1, 1]}}\n" CSG("a"), 5, "lo < hi on each axis"},
+    {SOLIDS "- {name: c, torus: {center: [0, 0, 0], major: 1, minor: 2}}\n" CSG("a"), 5, "minor < major"},
+    {SOLIDS "- {name: c, half_space: {point: [0, 0, 0], normal: [0, 0, 0]}}\n" CSG("a"), 5,
+     "the normal not 0"},
+    {SOLIDS "- {name: c, polyhedron: {}}\n" CSG("a"), 5, "give one of the two"},
+    {SOLIDS "- {name: c, polyhedron: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}}\n" CSG("a"), 5,
+     "in one plane"},
+    {SOLIDS "- name: c\n  mesh:\n    path: corner.obj\n" CSG("a"), 7, "at least; this one has 1"},
+    {SOLIDS "- name: c\n  mesh:\n    path: open.obj\n" CSG("a"), 7, "closed"},
+    {SOLIDS CSG("x"), 6, "no solid 'x'"},
+    {SOLIDS CSG("a |"), 6, "at character 4"},
+    {SOLIDS CSG("a h"), 6, "(difference) or ')' should stand here"},
+    {SOLIDS CSG("(a - h"), 6, "a ')' is missing"},
+    {SOLIDS CSG("a - h)"), 6, "has no '(' before it"},
+    {SOLIDS CSG("a - - h"), 6, "a name or '(' should stand here"},
+    {SOLIDS CSG("''"), 6, "0 characters"},
+    {SOLIDS CSG("h"), 6, "no end"},
+    {SOLIDS CSG("a | h"), 6, "no end"},
+    {SOLIDS CSG("h - a"), 6, "no end"},
+    {SOLIDS CSG("a, extents: maybe"), 6, "on or off, not 'maybe'"},
+    {SOLIDS CSG("a, extents: ''"), 6, "on or off, not ''"},
+    {SOLIDS CSG("a, extents: true"), 6, "on or off, not 'true'"},
+    {SOLIDS CSG("a, material: blu"), 6, "no material 'blu'"},
+    {"objects:\n- csg: {extents: on}\n", 2, "'formula' is missing"},
+    {SOLIDS TIMES_64("c", "a") TIMES_64("d", "c") TIMES_64("e", "d") TIMES_64("f", "e") TIMES_64("g", "f")
+         CSG("g"),
+     9, "at most 16777216"},
+};
+
+static void bad_input_is_refused_with_its_line_and_a_remedy(void **state) {
+    (void)state;
+    int64_t live = rt_alloc_live();
+    for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
+        RtScene scene;
+        RtError error = {RT_OK, ""};
+        if (load_text(hostile[i].text, &scene, &error) == RT_OK) fail_msg("accepted:\n%s", hostile[i].text);
+        char place[512];
+        snprintf(place, sizeof place, "%s/scene.yaml:%d:", RT_TEST_FOLDER, hostile[i].line);
+        if (strncmp(error.message, place, strlen(place)) != 0 || !strstr(error.message, hostile[i].says)) {
+            fail_msg("expected line %d and '%s', got: %s", hostile[i].line, hostile[i].says, error.message);
+        }
+        assert_int_equal(rt_alloc_live(), live);
+    }
+}
+
+static void the_column_is_that_of_the_value(void **state) {
+    (void)state;
+    RtScene scene;
+    RtError error;
+    assert_int_equal(load_text("objects:\n- sphere: {center: [0, 0, 0], radius: 0}\n", &scene, &error),
+                     RT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "scene.yaml:2:39: objects[0].sphere.radius: "));
+}
+
+static void files_that_are_none_are_refused(void **state) {
+    (void)state;
+    RtScene scene;
+    RtError error;
+    assert_int_equal(load(RT_TEST_FOLDER "/missing.yaml", &scene, &error), RT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "missing.yaml: cannot be opened"));
+    assert_int_equal(load(RT_TEST_FOLDER, &scene, &error), RT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "not a file"));
+    assert_int_equal(load("/dev/zero", &scene, &error), RT_BAD_INPUT);
+    char zeros[4096] = "";
+    write_bytes(RT_TEST_FOLDER "/zeros.yaml", zeros, sizeof zeros);
+    assert_int_equal(load(RT_TEST_FOLDER "/zeros.yaml", &scene, &error), RT_BAD_INPUT);
+}
+
+static void deep_nesting_is_refused_without_descending(void **state) {
+    (void)state;
+    enum { DEPTH = 100000 };
+    static char text[DEPTH + 16] = "objects: ";
+    memset(text + 9, '[', DEPTH);
+    RtScene scene;
+    RtError error;
+    assert_int_equal(load_text(text, &scene, &error), RT_BAD_INPUT);
+}
+
+static void every_prefix_of_a_scene_is_read_or_refused(void **state) {
+    (void)state;
+    int64_t live = rt_alloc_live();
+    for (size_t length = 0; length < sizeof everything; length += 7) {
+        write_bytes(RT_TEST_FOLDER "/scene.yaml", everything, length);
+        RtScene scene;
+        RtError error;
+        if (load(RT_TEST_FOLDER "/scene.yaml", &scene, &error) == RT_OK) rt_scene_clear(&scene);
+        assert_int_equal(rt_alloc_live(), live);
+    }
+}
+
+/* ---- memory ---- */
+
+static void whichever_allocation_fails_nothing_is_left(void **state) {
+    (void)state;
+    write_text(RT_TEST_FOLDER "/scene.yaml", everything);
+    int64_t live = rt_alloc_live();
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status == RT_NO_MEMORY; n++) {
+        RtScene scene;
+        RtError error;
+        rt_alloc_fail_at(n);
+        status = load(RT_TEST_FOLDER "/scene.yaml", &scene, &error);
+        rt_alloc_fail_at(0);
+        if (status == RT_OK) rt_scene_clear(&scene);
+        if (status != RT_OK && status != RT_NO_MEMORY) fail_msg("allocation %d: %s", (int)n, error.message);
+        assert_int_equal(rt_alloc_live(), live);
+        assert_true(n < 100000);
+    }
+    assert_int_equal(status, RT_OK);
+}
+
+RT_TEST_GROUP(yaml_refusals) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bad_input_is_refused_with_its_line_and_a_remedy),
+        cmocka_unit_test(the_column_is_that_of_the_value),
+        cmocka_unit_test(files_that_are_none_are_refused),
+        cmocka_unit_test(deep_nesting_is_refused_without_descending),
+        cmocka_unit_test(every_prefix_of_a_scene_is_read_or_refused),
+        cmocka_unit_test(whichever_allocation_fails_nothing_is_left),
+    };
+    return cmocka_run_group_tests(tests, make_folder, NULL);
+}

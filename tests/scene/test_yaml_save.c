@@ -1,0 +1,116 @@
+/* The YAML scene format: what is saved and loaded again is the same to the bit. */
+#include "yaml_testing.h"
+
+#include "scenes/builtin.h"
+
+static void save_to(const RtScene *scene, const char *path) {
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    assert_ok(rt_yaml_save(scene, out, error));
+    assert_int_equal(fclose(out), 0);
+}
+
+static void assert_survives(const RtScene *scene) {
+    RtScene again;
+    save_to(scene, RT_TEST_FOLDER "/again.yaml");
+    assert_ok(load(RT_TEST_FOLDER "/again.yaml", &again, error));
+    assert_true(rt_scene_fingerprint(&again) == rt_scene_fingerprint(scene));
+    rt_scene_clear(&again);
+}
+
+/* What a large built-in has in a file of a hundred megabytes it has in a small one, too. */
+static const char *spec_of(const char *name) {
+    if (strcmp(name, "forest") == 0) return "forest:n=20";
+    return strcmp(name, "hall") == 0 ? "hall:size=1" : name;
+}
+
+static void a_scene_saved_and_loaded_keeps_every_bit(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text(everything, &scene, error));
+    assert_survives(&scene);
+    rt_scene_clear(&scene);
+    for (size_t i = 0; i < rt_builtin_count(); i++) {
+        assert_ok(rt_builtin_open(spec_of(rt_builtin_at(i)->name), &scene, error));
+        assert_survives(&scene);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* Half-spaces are saved as polyhedra of one plane, slabs as polyhedra of two. */
+static void solids_without_an_end_survive_saving(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text("solids:\n"
+                        "  - {name: ball, sphere: {center: [1, 2, 3], radius: 1.1}}\n"
+                        "  - {name: below, half_space: {point: [1, 2, 3], normal: [1, 2, 3]}}\n"
+                        "  - {name: slab, polyhedron: {planes: [[0.3, 1, 0, 2.5], [-0.3, -1, 0, -1.7]]}}\n"
+                        "objects:\n"
+                        "  - csg: {formula: ball & below}\n"
+                        "  - csg: {formula: ball & slab, transform: [{scale: 0.3}]}\n",
+                        &scene, error));
+    assert_survives(&scene);
+    rt_scene_clear(&scene);
+}
+
+static void vertex_normals_survive_saving_bit_for_bit(void **state) {
+    (void)state;
+    RtScene scene;
+    rt_scene_init(&scene);
+    RtMaterial material = rt_default_material();
+    uint32_t index;
+    assert_ok(rt_scene_add_material(&scene, &material, &index, error));
+    for (int i = 1; i < 500; i++) {
+        float a = (float)i, b = a * a;
+        RtVec3 v[3] = {{0, 0, 0}, {a, 0, 1}, {0, b, 2}};
+        RtVec3 n[3] = {{a, b, 1}, {1, -a, b / 7}, {b, a / 3, -a}};
+        assert_ok(rt_scene_add_triangle(&scene, index, v, n, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_survives(&scene);
+    rt_scene_clear(&scene);
+}
+
+static void names_that_cannot_be_written_are_replaced_by_numbers(void **state) {
+    (void)state;
+    static const char *const pairs[][2] = {{"a", "a"}, {"a", ""}, {"a", "b\n"}, {"a", "\xff"}};
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        RtScene scene;
+        rt_scene_init(&scene);
+        for (uint32_t k = 0; k < 2; k++) {
+            RtMaterial material = rt_default_material();
+            uint32_t index;
+            snprintf(material.name, sizeof material.name, "%s", pairs[i][k]);
+            material.ambient = (float)k;
+            assert_ok(rt_scene_add_material(&scene, &material, &index, error));
+            assert_ok(rt_scene_add_sphere(&scene, index, rt_vec3((float)k, 0, 0), 1, error));
+        }
+        assert_ok(rt_scene_finish(&scene, error));
+        assert_survives(&scene);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void a_full_disk_is_reported(void **state) {
+    (void)state;
+    FILE *out = fopen("/dev/full", "wb");
+    if (!out) skip();
+    setvbuf(out, NULL, _IONBF, 0);
+    RtScene scene;
+    RtError error = {RT_OK, ""};
+    assert_int_equal(load_text(everything, &scene, &error), RT_OK);
+    assert_int_equal(rt_yaml_save(&scene, out, &error), RT_IO);
+    rt_scene_clear(&scene);
+    fclose(out);
+}
+
+RT_TEST_GROUP(yaml_save) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_scene_saved_and_loaded_keeps_every_bit),
+        cmocka_unit_test(solids_without_an_end_survive_saving),
+        cmocka_unit_test(vertex_normals_survive_saving_bit_for_bit),
+        cmocka_unit_test(names_that_cannot_be_written_are_replaced_by_numbers),
+        cmocka_unit_test(a_full_disk_is_reported),
+    };
+    return cmocka_run_group_tests(tests, make_folder, NULL);
+}

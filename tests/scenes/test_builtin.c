@@ -1,0 +1,238 @@
+/* scenes/: random scenes, what is refused, and memory; test_spd.c has the databases. */
+#include "scene_testing.h"
+
+#include "scenes/builtin.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void random_scenes_have_as_many_objects_as_asked_for(void **state) {
+    (void)state;
+    const struct {
+        const char *spec;
+        uint32_t spheres, triangles;
+    } cases[] = {
+        {"random:n=7", 7, 0},
+        {"random:n=1", 1, 0},
+        {"random:n=8,shape=triangle", 0, 8},
+        {"random:n=0", 0, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene = open_scene(cases[i].spec);
+        assert_int_equal(scene.geometry.sphere_count, cases[i].spheres);
+        assert_int_equal(scene.geometry.triangle_count, cases[i].triangles);
+        assert_int_equal(scene.geometry.object_count, cases[i].spheres + cases[i].triangles);
+        rt_scene_clear(&scene);
+    }
+}
+
+static RtVec3 extent_of(const RtScene *scene, uint32_t first, uint32_t count) {
+    RtBox box = RT_EMPTY_BOX;
+    for (uint32_t i = first; i < first + count; i++) box = rt_box_union(box, scene->geometry.boxes[i]);
+    return rt_sub(box.hi, box.lo);
+}
+
+static void random_objects_are_where_their_distribution_says(void **state) {
+    (void)state;
+    RtScene scene = open_scene("random:n=16,distribution=coincident");
+    for (uint32_t i = 1; i < 16; i++) {
+        assert_memory_equal(&scene.geometry.spheres[i], &scene.geometry.spheres[0], sizeof(RtSphere));
+    }
+    rt_scene_clear(&scene);
+
+    scene = open_scene("random:n=32,distribution=line,radius=0.1");
+    RtVec3 extent = extent_of(&scene, 0, 32);
+    assert_true(extent.x > 1.9f && extent.y < 0.02f && extent.z < 0.02f);
+    rt_scene_clear(&scene);
+
+    scene = open_scene("random:n=32,distribution=plane,shape=triangle");
+    assert_true(extent_of(&scene, 0, 32).z == 0);
+    rt_scene_clear(&scene);
+    scene = open_scene("random:n=32,distribution=plane,shape=mixed");
+    for (uint32_t i = 0; i < scene.geometry.polygon_vertex_count; i++) {
+        assert_true(scene.geometry.polygon_vertices[i].z == 0.5f);
+    }
+    rt_scene_clear(&scene);
+
+    scene = open_scene("random:n=32,distribution=stadium");
+    RtVec3 huge = extent_of(&scene, 8, 1), tiny = extent_of(&scene, 9, 7);
+    assert_true(huge.x > 0.1f && tiny.x < 0.01f && tiny.x > 0);
+    rt_scene_clear(&scene);
+}
+
+/* Two triangles, of which number `with` has vertex normals. */
+static uint64_t fingerprint_with_normals(uint32_t with) {
+    static const RtVec3 vertices[2][3] = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                          {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
+    static const RtVec3 normals[3] = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}};
+    RtScene scene;
+    uint32_t material;
+    RtMaterial standard = rt_default_material();
+    rt_scene_init(&scene);
+    assert_ok(rt_scene_add_material(&scene, &standard, &material, error));
+    for (uint32_t i = 0; i < 2; i++) {
+        assert_ok(rt_scene_add_triangle(&scene, material, vertices[i], i == with ? normals : NULL, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    uint64_t fingerprint = rt_scene_fingerprint(&scene);
+    rt_scene_clear(&scene);
+    return fingerprint;
+}
+
+static void a_fingerprint_tells_which_triangle_has_normals(void **state) {
+    (void)state;
+    assert_int_not_equal(fingerprint_with_normals(0), fingerprint_with_normals(1));
+    assert_int_equal(fingerprint_with_normals(1), fingerprint_with_normals(1));
+}
+
+static void random_scenes_depend_on_the_seed_alone(void **state) {
+    (void)state;
+    RtScene a = open_scene("random:n=500,shape=mixed,seed=7"),
+            b = open_scene("random:n=500,shape=mixed,seed=7");
+    RtScene c = open_scene("random:n=500,shape=mixed,seed=8");
+    assert_int_equal(rt_scene_fingerprint(&a), rt_scene_fingerprint(&b));
+    assert_int_not_equal(rt_scene_fingerprint(&a), rt_scene_fingerprint(&c));
+    assert_int_equal(a.geometry.sphere_count, 125);
+    assert_int_equal(a.geometry.polygon_count, 125);
+    assert_int_equal(a.geometry.triangle_count, 125);
+    assert_int_equal(a.geometry.cone_count, 125);
+    rt_scene_clear(&a);
+    rt_scene_clear(&b);
+    rt_scene_clear(&c);
+}
+
+static void a_random_object_does_not_depend_on_those_before_it(void **state) {
+    (void)state;
+    RtScene few = open_scene("random:n=10"), many = open_scene("random:n=1000");
+    assert_memory_equal(&few.geometry.spheres[9].center, &many.geometry.spheres[9].center, sizeof(RtVec3));
+    rt_scene_clear(&few);
+    rt_scene_clear(&many);
+}
+
+static void one_narrow_cluster_lies_together(void **state) {
+    (void)state;
+    RtScene scene = open_scene("random:n=2000,distribution=clustered,clusters=1,width=0.001,radius=0.001");
+    RtVec3 size = rt_box_size(scene.geometry.box);
+    assert_true(rt_maxf(size.x, rt_maxf(size.y, size.z)) < 0.1f);
+    rt_scene_clear(&scene);
+}
+
+static void wrong_names_are_refused_with_what_would_be_right(void **state) {
+    (void)state;
+    const struct {
+        const char *spec, *says;
+    } cases[] = {
+        {"bals", "did you mean 'balls'?"},
+        {"", "Built-in are: balls, "},
+        {"balls:size=0", "1..7"},
+        {"balls:size=8", "1..7"},
+        {"balls:size=1000000000", "1..7"},
+        {"balls:sise=2", "did you mean 'size'?"},
+        {"balls:4", "key=value"},
+        {"random:n=-1", "0..268435456"},
+        {"random:n=1000000000", "0..268435456"},
+        {"random:n=nan", "0..268435456"},
+        {"random:shape=cube", "sphere|triangle|mixed"},
+        {"balls.nof", "'.nff'?"},
+        {"tests/no_such_scene.nff", "there is no such file"},
+        {"scenes/jewl.nff", "did you mean 'scenes/jewel.nff'?"},
+        {"no_such_folder/a.nff", "nor a folder no_such_folder/"},
+        {"scenes", "is a folder"},
+        {"README.md", "the other mesh formats"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene;
+        RtError problem;
+        assert_int_equal(rt_scene_open(cases[i].spec, &scene, &problem), RT_BAD_INPUT);
+        if (!strstr(problem.message, cases[i].says))
+            fail_msg("'%s' gave: %s", cases[i].spec, problem.message);
+        assert_int_equal(scene.geometry.object_count, 0);
+    }
+}
+
+static void too_large_a_scene_is_refused_with_the_size_that_fits(void **state) {
+    (void)state;
+    const struct {
+        const char *name;
+        int64_t value;
+        uint64_t objects; /* for which there is memory */
+        const char *says;
+    } cases[] = {
+        {"random", 1000000, 1234, "n=1234 would fit"}, {"balls", 7, 7382, "size=4 would fit"},
+        {"balls", 7, 7381, "size=3 would fit"},        {"tetra", 9, 65535, "size=7 would fit"},
+        {"lattice", 400, 8281, "size=12 would fit"},   {"mount", 9, 8195, "size=5 would fit"},
+        {"tree", 20, 8191, "size=11 would fit"},       {"gears", 100, 9344, "size=3 would fit"},
+        {"jacks", 8, 657, "size=3 would fit"},         {"rings", 200, 8401, "size=7 would fit"},
+        {"shells", 20, 5760, "size=4 would fit"},      {"csg-field", 1000000, 99, "n=99 would fit"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const RtBuiltin *builtin = rt_builtin_find(cases[i].name);
+        RtValue values[RT_MAX_PARAMS];
+        RtError problem;
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
+        values[0].i = cases[i].value;
+        uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
+        uint64_t bytes = cases[i].objects * each;
+        assert_int_equal(rt_builtin_check_memory(builtin, values, bytes, &problem), RT_BAD_INPUT);
+        if (!strstr(problem.message, cases[i].says)) fail_msg("%s gave: %s", cases[i].name, problem.message);
+    }
+}
+
+static void the_estimate_of_memory_is_no_less_than_what_is_used(void **state) {
+    (void)state;
+    static const char *const more[] = {"random:n=20000", "random:n=20000,shape=mixed",
+                                       "csg-field:n=65,least=64"};
+    size_t extra = sizeof more / sizeof more[0];
+    for (size_t i = 0; i < rt_builtin_count() + extra; i++) {
+        const char *spec = i < extra ? more[i] : rt_builtin_at(i - extra)->name;
+        const RtBuiltin *builtin = rt_builtin_find(spec);
+        const char *colon = strchr(spec, ':');
+        RtValue values[RT_MAX_PARAMS];
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, "it",
+                                  values, error));
+        RtScene scene = open_scene(spec);
+        if (rt_scene_bytes(&scene) > rt_builtin_bytes(builtin, values)) fail_msg("%s takes more", spec);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void the_count_of_objects_is_told_beforehand(void **state) {
+    (void)state;
+    for (size_t i = 0; i < rt_builtin_count(); i++) {
+        const RtBuiltin *builtin = rt_builtin_at(i);
+        RtValue values[RT_MAX_PARAMS];
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
+        RtScene scene = open_scene(builtin->name);
+        assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    for (size_t i = 0; i < rt_builtin_count(); i++) { /* the smallest scene of each */
+        const RtBuiltin *builtin = rt_builtin_at(i);
+        char spec[RT_MAX_NAME + 32];
+        snprintf(spec, sizeof spec, "%s:%s=%.0f", builtin->name, builtin->params[0].name,
+                 builtin->params[0].lo);
+        assert_failed_allocations_are_reported(spec);
+    }
+    assert_failed_allocations_are_reported("random:n=100,shape=mixed");
+}
+
+RT_TEST_GROUP(builtin) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(random_scenes_have_as_many_objects_as_asked_for),
+        cmocka_unit_test(random_objects_are_where_their_distribution_says),
+        cmocka_unit_test(a_fingerprint_tells_which_triangle_has_normals),
+        cmocka_unit_test(random_scenes_depend_on_the_seed_alone),
+        cmocka_unit_test(a_random_object_does_not_depend_on_those_before_it),
+        cmocka_unit_test(one_narrow_cluster_lies_together),
+        cmocka_unit_test(wrong_names_are_refused_with_what_would_be_right),
+        cmocka_unit_test(too_large_a_scene_is_refused_with_the_size_that_fits),
+        cmocka_unit_test(the_estimate_of_memory_is_no_less_than_what_is_used),
+        cmocka_unit_test(the_count_of_objects_is_told_beforehand),
+        cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

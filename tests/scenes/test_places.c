@@ -1,0 +1,343 @@
+/* scenes/: the built-in scenes that are places (a teapot on a board, in a stadium, a hall, a forest, a city)
+ * and the forms that they are made of. */
+#include "scene_testing.h"
+
+#include "accel/accel.h"
+#include "scenes/builtin.h"
+#include "scenes/forms.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- counts ---- */
+
+static void places_have_the_objects_that_they_say(void **state) {
+    (void)state;
+    static const ShapeCounts rows[] = {
+        {"teapot", 0, 144, 9120, 0},
+        {"teapot:size=6", 0, 36, 2256, 0},
+        {"teapot:size=1", 0, 1, 56, 0},
+        {"stadium", 48, 6621, 9120, 13},
+        {"stadium:size=1,ratio=50", 48, 6621, 56, 13},
+        {"hall", 0, 0, 283194, 0},
+        {"hall:size=1", 0, 0, 69302, 0},
+        {"city", 3726, 37812, 0, 8350},
+        {"city:size=1", 39, 686, 0, 112},
+    };
+    assert_shape_counts(rows, sizeof rows / sizeof rows[0]);
+}
+
+/* At other values than the defaults, which test_builtin.c goes through. */
+static const char *const specs[] = {"teapot:size=3", "stadium:size=2", "hall:size=3", "forest:n=30,seed=5",
+                                    "city:size=3,seed=9"};
+
+enum { SPECS = sizeof specs / sizeof specs[0] };
+
+static void a_count_before_making_is_the_count_made(void **state) {
+    (void)state;
+    for (size_t i = 0; i < SPECS; i++) {
+        const RtBuiltin *builtin = rt_builtin_find(specs[i]);
+        const char *colon = strchr(specs[i], ':');
+        RtValue values[RT_MAX_PARAMS];
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, "it",
+                                  values, error));
+        RtScene scene = open_scene(specs[i]);
+        assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* ---- surfaces ---- */
+
+/* From one point to another, as bits: equal points have equal bits here, -0 made 0. */
+typedef struct Edge {
+    RtVec3 from, to;
+} Edge;
+
+static int compare_edges(const void *a, const void *b) {
+    return memcmp(a, b, sizeof(Edge));
+}
+
+static RtVec3 without_negative_zero(RtVec3 p) {
+    return rt_vec3(p.x + 0.0f, p.y + 0.0f, p.z + 0.0f);
+}
+
+/* How many edges of triangles first..end-1 no other triangle has the other way round. */
+static uint32_t open_edges(const RtGeometry *g, uint32_t first, uint32_t end) {
+    uint32_t count = 3 * (end - first), open = 0;
+    Edge *edges = malloc(count * sizeof *edges);
+    assert_non_null(edges);
+    for (uint32_t i = 0; i < count; i++) {
+        const RtTriangle *t = &g->triangles[first + i / 3];
+        edges[i] = (Edge){without_negative_zero(t->v[i % 3]), without_negative_zero(t->v[(i + 1) % 3])};
+    }
+    qsort(edges, count, sizeof *edges, compare_edges);
+    for (uint32_t i = 0; i < count; i++) {
+        const Edge reverse = {edges[i].to, edges[i].from};
+        open += bsearch(&reverse, edges, count, sizeof *edges, compare_edges) == NULL;
+    }
+    free(edges);
+    return open;
+}
+
+static void normals_point_where_the_triangles_do(const RtGeometry *g) {
+    for (uint32_t i = 0; i < g->triangle_count; i++) {
+        if (g->triangle_normals[i] == RT_NO_NORMALS) continue;
+        const RtVec3 *v = g->triangles[i].v, *n = g->vertex_normals[g->triangle_normals[i]].n;
+        RtVec3d a = rt_widen(v[0]);
+        RtVec3d normal = rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a));
+        assert_true(rt_lengthd(normal) > 0);
+        for (int k = 0; k < 3; k++) assert_true(rt_dotd(normal, rt_widen(n[k])) > 0);
+    }
+}
+
+/* Lid and body end in a circle of 4 n edges, the handle at both ends in 2 n, and so does the spout. */
+static void a_teapot_is_open_at_its_rims_alone(void **state) {
+    (void)state;
+    for (uint32_t n = 2; n <= 12; n += 5) {
+        char spec[32];
+        snprintf(spec, sizeof spec, "teapot:size=%u", n);
+        RtScene scene = open_scene(spec);
+        assert_int_equal(open_edges(&scene.geometry, 0, scene.geometry.triangle_count), 16 * n);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void a_teapot_stands_on_its_board_and_its_normals_point_out(void **state) {
+    (void)state;
+    RtScene scene = open_scene("teapot");
+    RtBox box = scene.geometry.box;
+    assert_true(box.lo.x == -4 && box.lo.y == -4 && box.lo.z == 0);
+    assert_true(box.hi.x == 4 && box.hi.y == 4 && box.hi.z == 3.15f);
+    normals_point_where_the_triangles_do(&scene.geometry);
+    rt_scene_clear(&scene);
+}
+
+static void a_stadium_is_ratio_times_as_long_as_its_teapot(void **state) {
+    (void)state;
+    const double ratios[] = {50, 1000, 1e6};
+    for (size_t i = 0; i < sizeof ratios / sizeof ratios[0]; i++) {
+        char spec[64];
+        snprintf(spec, sizeof spec, "stadium:size=4,ratio=%g", ratios[i]);
+        RtScene scene = open_scene(spec);
+        const RtGeometry *g = &scene.geometry;
+        RtBox teapot = RT_EMPTY_BOX, tiers = RT_EMPTY_BOX;
+        for (uint32_t k = 0; k < g->triangle_count; k++) {
+            teapot = rt_box_union(teapot, g->boxes[g->triangle_ids[k]]);
+        }
+        for (uint32_t k = 1; k < g->polygon_count; k++) { /* polygon 0 is the ground */
+            tiers = rt_box_union(tiers, g->boxes[g->polygon_ids[k]]);
+        }
+        RtVec3 small = rt_box_size(teapot), large = rt_box_size(tiers);
+        double ratio = (double)large.x / (double)rt_maxf(small.x, small.y);
+        assert_true(ratio > 0.9 * ratios[i] && ratio < 1.0 * ratios[i]);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* The corners of a square of `side` pixels: (side + 1)^2 primary rays. */
+static uint64_t count_misses(RtScene *scene, uint32_t side) {
+    RtAccel *accel;
+    RtQuery query;
+    RtView view;
+    assert_ok(rt_scene_sample(scene, side, side, 1, true, error));
+    assert_ok(rt_view_init(&view, &scene->camera, scene->sampling, error));
+    assert_ok(rt_accel_open("bvh", scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    uint64_t misses = 0;
+    for (uint32_t row = 0; row <= side; row++) {
+        for (uint32_t column = 0; column <= side; column++) {
+            RtRay ray = rt_view_ray(&view, column, row);
+            RtHit hit;
+            rt_nearest(&query, &ray, 1, &hit, NULL);
+            misses += hit.object == RT_NO_OBJECT;
+        }
+    }
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    return misses;
+}
+
+/* The room itself is the first of its triangles: 39 columns, 2 * 12 - 2 a column. */
+static void a_hall_is_closed_so_that_every_primary_ray_hits(void **state) {
+    (void)state;
+    RtScene scene = open_scene("hall");
+    assert_int_equal(open_edges(&scene.geometry, 0, 39 * 22), 0);
+    assert_int_equal(count_misses(&scene, 512), 0);
+    RtVec3 eye = scene.camera.from;
+    for (int a = 0; a < 3; a++) {
+        assert_true(eye.at[a] > scene.geometry.box.lo.at[a] && eye.at[a] < scene.geometry.box.hi.at[a]);
+    }
+    assert_int_equal(scene.light_count, 4);
+    rt_scene_clear(&scene);
+    scene = open_scene("hall:size=1");
+    assert_int_equal(count_misses(&scene, 512), 0);
+    rt_scene_clear(&scene);
+}
+
+/* Recorded with gcc 12 and clang 14 on x86-64. */
+static void places_are_the_same_bit_for_bit_everywhere(void **state) {
+    (void)state;
+    const struct {
+        const char *spec;
+        uint64_t fingerprint;
+    } cases[] = {
+        {"teapot", UINT64_C(0xc1b558451260f684)}, {"stadium", UINT64_C(0x7dc374975cc60f30)},
+        {"hall", UINT64_C(0x56abc2c79b8cbfee)},   {"forest:n=100", UINT64_C(0xa05cd20f7f937b8b)},
+        {"city", UINT64_C(0xf33a5ba9ddfe6869)},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtScene scene = open_scene(cases[i].spec);
+        assert_int_equal(rt_scene_fingerprint(&scene), cases[i].fingerprint);
+        rt_scene_clear(&scene);
+    }
+}
+
+static void assert_same(const char *one, const char *other, bool same) {
+    RtScene a = open_scene(one), b = open_scene(other);
+    assert_true((rt_scene_fingerprint(&a) == rt_scene_fingerprint(&b)) == same);
+    rt_scene_clear(&a);
+    rt_scene_clear(&b);
+}
+
+static void random_places_depend_on_the_seed_alone(void **state) {
+    (void)state;
+    assert_same("forest:n=20,seed=7", "forest:n=20,seed=7", true);
+    assert_same("forest:n=20,seed=7", "forest:n=20,seed=8", false);
+    assert_same("city:size=2,seed=7", "city:size=2,seed=7", true);
+    assert_same("city:size=2,seed=7", "city:size=2,seed=8", false);
+}
+
+/* Trees of two kinds: 1036 triangles, or 986. */
+static void a_forest_grows_from_a_thousand_triangles_to_any_number(void **state) {
+    (void)state;
+    for (uint32_t n = 1; n <= 1000; n *= 10) {
+        char spec[32];
+        snprintf(spec, sizeof spec, "forest:n=%u", n);
+        RtScene scene = open_scene(spec);
+        uint32_t edge = (uint32_t)ceil(sqrt(n)) + 6, ground = 2 * (2 * edge) * (2 * edge);
+        uint32_t trees = scene.geometry.triangle_count - ground;
+        assert_true(trees >= 986 * n && trees <= 1036 * n && (trees - 986 * n) % 50 == 0);
+        for (uint32_t i = 0; i < scene.geometry.triangle_count; i++) {
+            const RtVec3 *v = scene.geometry.triangles[i].v;
+            RtVec3d a = rt_widen(v[0]);
+            assert_true(rt_lengthd(rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a))) > 0);
+        }
+        rt_scene_clear(&scene);
+    }
+}
+
+static int compare_floats(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of the polygons that are flat along `axis`, how many there are, and how many have `others` in their
+ * plane. */
+static void count_in_planes(const RtGeometry *g, int axis, uint32_t others, uint32_t *flat, uint32_t *share) {
+    float *planes = malloc(g->polygon_count * sizeof *planes);
+    assert_non_null(planes);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < g->polygon_count; i++) {
+        const RtBox *box = &g->boxes[g->polygon_ids[i]];
+        if (box->lo.at[axis] == box->hi.at[axis]) planes[count++] = box->lo.at[axis];
+    }
+    qsort(planes, count, sizeof *planes, compare_floats);
+    for (uint32_t i = 0, end; i < count; i = end) {
+        for (end = i; end < count && planes[end] == planes[i];) end++;
+        if (end - i > others) *share += end - i;
+    }
+    *flat += count;
+    free(planes);
+}
+
+static void three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_others(void **state) {
+    (void)state;
+    RtScene scene = open_scene("city");
+    uint32_t flat = 0, share = 0;
+    for (int axis = 0; axis < 3; axis++) count_in_planes(&scene.geometry, axis, 10, &flat, &share);
+    assert_true(flat > scene.geometry.polygon_count * 9 / 10);
+    assert_true(share > flat * 3 / 4);
+    rt_scene_clear(&scene);
+}
+
+/* ---- forms ---- */
+
+static void points_on_the_circle_are_exact_where_they_can_be(void **state) {
+    (void)state;
+    for (uint32_t n = 1; n <= 512; n++) {
+        for (uint32_t i = 0; i <= n; i++) {
+            RtVec3d p = rt_on_circle(i, n);
+            double angle = 6.283185307179586477 * i / n;
+            assert_true(fabs(p.x - cos(angle)) < 2e-15 && fabs(p.y - sin(angle)) < 2e-15);
+        }
+    }
+    for (uint32_t i = 0; i < 4; i++) {
+        RtVec3d p = rt_on_circle(i, 4);
+        assert_true(fabs(p.x) + fabs(p.y) == 1 && p.x == (i == 0) - (i == 2) && p.y == (i == 1) - (i == 3));
+    }
+}
+
+static void a_box_faces_outwards(void **state) {
+    (void)state;
+    RtScene scene;
+    RtMaterial standard = rt_default_material();
+    rt_scene_init(&scene);
+    RtForms forms = rt_forms(&scene);
+    assert_ok(rt_forms_materials(&forms, &standard, 1, error));
+    for (int quarters = 0; quarters < 4; quarters++) {
+        rt_forms_at(&forms, rt_vec3d(10 * quarters, 0, 0), quarters);
+        assert_ok(rt_forms_box(&forms, rt_vec3d(-1, -1, -1), rt_vec3d(1, 1, 1), RT_SIDES_ALL, error));
+    }
+    assert_int_equal(scene.geometry.triangle_count, 48);
+    for (uint32_t i = 0; i < 48; i++) {
+        const RtVec3 *v = scene.geometry.triangles[i].v;
+        RtVec3d a = rt_widen(v[0]), center = rt_vec3d(10 * (i / 12), 0, 0);
+        RtVec3d normal = rt_crossd(rt_subd(rt_widen(v[1]), a), rt_subd(rt_widen(v[2]), a));
+        assert_true(rt_lengthd(normal) == 4 && rt_dotd(normal, rt_subd(a, center)) == 4);
+    }
+    assert_int_equal(open_edges(&scene.geometry, 0, 12), 0);
+    rt_forms_clear(&forms);
+    rt_scene_clear(&scene);
+}
+
+static void a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards(void **state) {
+    (void)state;
+    static const RtVec3d profile[] = {{0, 0, 0}, {1, 0, 0.2}, {0.5, 0, 1}, {0, 0, 1.5}};
+    RtScene scene;
+    RtMaterial standard = rt_default_material();
+    rt_scene_init(&scene);
+    RtForms forms = rt_forms(&scene);
+    assert_ok(rt_forms_materials(&forms, &standard, 1, error));
+    const RtLathe lathe = {
+        .center = {5, 6, 7}, .profile = profile, .count = 4, .steps = 9, .sides = 7, .scale = 2};
+    assert_ok(rt_forms_lathe(&forms, &lathe, error));
+    assert_int_equal(scene.geometry.triangle_count, 7 * (2 * 9 - 2));
+    assert_int_equal(forms.count, scene.geometry.triangle_count);
+    assert_int_equal(open_edges(&scene.geometry, 0, scene.geometry.triangle_count), 0);
+    normals_point_where_the_triangles_do(&scene.geometry);
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_true(scene.geometry.box.lo.z == 7 && scene.geometry.box.hi.z == 10);
+    rt_forms_clear(&forms);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST_GROUP(places) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(places_have_the_objects_that_they_say),
+        cmocka_unit_test(a_count_before_making_is_the_count_made),
+        cmocka_unit_test(a_teapot_is_open_at_its_rims_alone),
+        cmocka_unit_test(a_teapot_stands_on_its_board_and_its_normals_point_out),
+        cmocka_unit_test(a_stadium_is_ratio_times_as_long_as_its_teapot),
+        cmocka_unit_test(a_hall_is_closed_so_that_every_primary_ray_hits),
+        cmocka_unit_test(places_are_the_same_bit_for_bit_everywhere),
+        cmocka_unit_test(random_places_depend_on_the_seed_alone),
+        cmocka_unit_test(a_forest_grows_from_a_thousand_triangles_to_any_number),
+        cmocka_unit_test(three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_others),
+        cmocka_unit_test(points_on_the_circle_are_exact_where_they_can_be),
+        cmocka_unit_test(a_box_faces_outwards),
+        cmocka_unit_test(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

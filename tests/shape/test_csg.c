@@ -1,0 +1,260 @@
+/* shape/csg: what each operation leaves, faces and materials, refusals, and the identities of sets. Hits are
+ * compared by their bits, over random rays through random trees (experiments/random_tree). */
+#include "csg_testing.h"
+
+/* ---- by hand ---- */
+
+static void each_operation_keeps_its_part_of_two_boxes(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgForest forest = {0};
+    RtCsgTerm left = box(&b, rt_vec3(0, 0, 0), rt_vec3(2, 1, 1), 0);
+    RtCsgTerm right = box(&b, rt_vec3(1, 0, 0), rt_vec3(3, 1, 1), 1);
+    RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
+    RtCsg tree = plant(&forest, &b, join(&b, left, right));
+    assert_hits(&forest, &tree, ray, 2, (float[]){1, 4});
+    tree = plant(&forest, &b, meet(&b, left, right));
+    assert_hits(&forest, &tree, ray, 2, (float[]){2, 3});
+    tree = plant(&forest, &b, cut(&b, left, right));
+    assert_hits(&forest, &tree, ray, 2, (float[]){1, 2});
+    tree = plant(&forest, &b, cut(&b, right, left));
+    assert_hits(&forest, &tree, ray, 2, (float[]){3, 4});
+    clear(&forest, &b);
+}
+
+static void touching_boxes_are_joined_without_a_wall(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgForest forest = {0};
+    RtCsgTerm left = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0);
+    RtCsgTerm right = box(&b, rt_vec3(1, 0, 0), rt_vec3(2, 1, 1), 1);
+    RtCsg joined = plant(&forest, &b, join(&b, left, right));
+    assert_hits(&forest, &joined, ray_along(rt_vec3(-1, 0.5f, 0.25f), along_x), 2, (float[]){1, 3});
+    assert_hits(&forest, &joined, ray_along(rt_vec3(0.25f, 0.5f, 0.25f), along_x), 1, (float[]){1.75f});
+    RtCsg common = plant(&forest, &b, meet(&b, left, right));
+    assert_hits(&forest, &common, ray_along(rt_vec3(-1, 0.5f, 0.25f), along_x), 0, NULL);
+    RtCsg rest = plant(&forest, &b, cut(&b, left, right));
+    assert_hits(&forest, &rest, ray_along(rt_vec3(-1, 0.5f, 0.25f), along_x), 2, (float[]){1, 2});
+    clear(&forest, &b);
+}
+
+static void the_wall_of_a_drilled_hole_looks_into_the_hole(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgForest forest = {0};
+    RtCsgTerm plate = box(&b, rt_vec3(-2, -2, -1), rt_vec3(2, 2, 1), 1);
+    RtCsg tree = plant(&forest, &b, cut(&b, plate, ball(&b, rt_vec3(0, 0, 0), 1, 2)));
+    RtRay ray = ray_along(rt_vec3(-4, 0, 0), along_x);
+    assert_hits(&forest, &tree, ray, 4, (float[]){2, 3, 5, 6});
+    const double normals[4] = {-1, 1, -1, 1};
+    const uint32_t materials[4] = {1, 2, 2, 1};
+    for (int i = 0; i < 4; i++) {
+        RtCsgFacet facet = facet_at(&forest, &tree, &ray, (float[]){2, 3, 5, 6}[i]);
+        assert_true(facet.normal.x == normals[i] && facet.normal.y == 0 && facet.normal.z == 0);
+        assert_int_equal(forest.set.solids[facet.solid].material, materials[i]);
+    }
+    clear(&forest, &b);
+}
+
+static void what_is_taken_from_what_is_taken_away_looks_outward_again(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgForest forest = {0};
+    RtCsgTerm hole = cut(&b, ball(&b, rt_vec3(0, 0, 0), 2, 2), ball(&b, rt_vec3(0, 0, 0), 1, 3));
+    RtCsgTerm all = cut(&b, box(&b, rt_vec3(-4, -4, -4), rt_vec3(4, 4, 4), 1), hole);
+    RtCsg tree = plant(&forest, &b, all);
+    RtRay ray = ray_along(rt_vec3(0, 0, 0), along_x);
+    assert_hits(&forest, &tree, ray, 3, (float[]){1, 2, 4});
+    const double normals[3] = {1, -1, 1};
+    for (int i = 0; i < 3; i++) {
+        RtCsgFacet facet = facet_at(&forest, &tree, &ray, (float[]){1, 2, 4}[i]);
+        assert_true(facet.normal.x == normals[i]);
+        assert_int_equal(forest.set.solids[facet.solid].material, 3 - i);
+    }
+    clear(&forest, &b);
+}
+
+static void the_left_operand_names_a_face_that_both_have(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgForest forest = {0};
+    RtCsgTerm a = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 1);
+    RtCsgTerm c = box(&b, rt_vec3(0, 0, 0), rt_vec3(2, 1, 1), 2);
+    RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
+    for (int op = 0; op < 2; op++) {
+        for (int swapped = 0; swapped < 2; swapped++) {
+            RtCsg tree = plant(&forest, &b, combine(&b, (RtCsgOp)op, swapped ? c : a, swapped ? a : c));
+            RtCsgFacet facet = facet_at(&forest, &tree, &ray, 1);
+            assert_int_equal(forest.set.solids[facet.solid].material, swapped ? 2 : 1);
+            assert_true(facet.normal.x == -1);
+        }
+    }
+    clear(&forest, &b);
+}
+
+static void an_empty_result_is_a_point_and_never_hit(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgForest forest = {0};
+    RtCsgTerm near = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0);
+    RtCsgTerm far = box(&b, rt_vec3(2, 0, 0), rt_vec3(3, 1, 1), 0);
+    RtCsg tree = plant(&forest, &b, meet(&b, near, far));
+    assert_true(memcmp(&tree.box.lo, &tree.box.hi, sizeof tree.box.lo) == 0);
+    RtRay through = ray_along(rt_vec3(tree.box.lo.x - 1, tree.box.lo.y, tree.box.lo.z), along_x);
+    assert_hits(&forest, &tree, through, 0, NULL);
+    clear(&forest, &b);
+}
+
+static void a_ray_is_answered_within_its_interval_only(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgForest forest = {0};
+    RtCsg tree = plant(&forest, &b, box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0));
+    RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
+    ray.tmin = 1, ray.tmax = 1;
+    assert_hits(&forest, &tree, ray, 1, (float[]){1});
+    ray.tmin = 1.25f, ray.tmax = 1.75f;
+    assert_hits(&forest, &tree, ray, 0, NULL);
+    ray.tmin = 1.25f, ray.tmax = 2;
+    assert_hits(&forest, &tree, ray, 1, (float[]){2});
+    clear(&forest, &b);
+}
+
+static void a_tree_without_end_is_refused_and_leaves_nothing_behind(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgForest forest = {0};
+    RtTransform place = rt_transform_identity();
+    RtPlane floor = {{0, 0, 1}, 0};
+    uint32_t solid;
+    RtCsgTerm half;
+    assert_ok(rt_solid_add_polyhedron(&b.set, &floor, 1, &place, &solid, error));
+    assert_ok(rt_csg_solid(&b, solid, 0, &half, error));
+    RtCsgTerm unit = ball(&b, rt_vec3(0, 0, 0), 1, 0);
+    RtCsg tree;
+    RtError error;
+    const RtCsgTerm endless[3] = {half, join(&b, unit, half), cut(&b, half, unit)};
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(rt_csg_plant(&forest, &b, endless[i], true, &tree, &error), RT_BAD_INPUT);
+        assert_non_null(strstr(error.message, "no end"));
+        assert_int_equal(forest.set.solid_count + forest.set.plane_count + forest.instruction_count, 0);
+    }
+    tree = plant(&forest, &b, meet(&b, unit, half));
+    assert_hits(&forest, &tree, ray_along(rt_vec3(0, 0, 3), rt_vec3(0, 0, -1)), 2, (float[]){3, 4});
+    assert_true(tree.box.hi.z == 0);
+    tree = plant(&forest, &b, cut(&b, unit, half));
+    assert_hits(&forest, &tree, ray_along(rt_vec3(0, 0, 3), rt_vec3(0, 0, -1)), 2, (float[]){2, 3});
+    clear(&forest, &b);
+}
+
+static void a_tree_of_too_many_solids_is_refused(void **state) {
+    (void)state;
+    RtCsgBuilder b = {0};
+    RtCsgTerm term = ball(&b, rt_vec3(0, 0, 0), 1, 0);
+    RtError error;
+    RtStatus status = RT_OK;
+    for (int i = 0; i < 100 && status == RT_OK; i++) {
+        status = rt_csg_combine(&b, RT_CSG_UNION, term, term, &term, &error);
+    }
+    assert_int_equal(status, RT_BAD_INPUT);
+    assert_int_equal(b.nodes[term].size, RT_CSG_MAX_SOLIDS);
+    assert_non_null(strstr(error.message, "at most 16777216"));
+    rt_csg_builder_clear(&b);
+}
+
+/* ---- identities ---- */
+
+typedef RtCsgTerm Side(RtCsgBuilder *b, const RtCsgTerm *terms, bool right_side);
+
+/* Both sides of an identity, made of three random terms and a box about all of them, give the same hits. */
+static void check_identity(Side *side, uint64_t seed) {
+    RtRandom random = rt_random(seed, 0);
+    for (uint32_t round = 0; round < 60; round++) {
+        RtCsgBuilder b = {0};
+        RtCsgForest forest = {0};
+        RtCsgTerm terms[4];
+        for (int i = 0; i < 3; i++) terms[i] = random_term(&b, &random, 6, round % 2);
+        terms[3] = box(&b, rt_vec3(-9, -9, -9), rt_vec3(9, 9, 9), 0);
+        RtCsg one = plant(&forest, &b, side(&b, terms, false)),
+              other = plant(&forest, &b, side(&b, terms, true));
+        for (uint32_t i = 0; i < 400; i++) {
+            RtRay ray = random_ray(&random, i);
+            Hits expected = hits_of(&forest, &one, &ray), found = hits_of(&forest, &other, &ray);
+            if (!same_hits(&expected, &found)) fail_msg("round %u, ray %u", round, i);
+        }
+        clear(&forest, &b);
+    }
+}
+
+static RtCsgTerm commuted_union(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    return right ? join(b, t[1], t[0]) : join(b, t[0], t[1]);
+}
+
+static RtCsgTerm commuted_intersection(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    return right ? meet(b, t[1], t[0]) : meet(b, t[0], t[1]);
+}
+
+static RtCsgTerm associated_union(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    return right ? join(b, join(b, t[0], t[1]), t[2]) : join(b, t[0], join(b, t[1], t[2]));
+}
+
+static RtCsgTerm associated_intersection(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    return right ? meet(b, meet(b, t[0], t[1]), t[2]) : meet(b, t[0], meet(b, t[1], t[2]));
+}
+
+static RtCsgTerm de_morgan(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    RtCsgTerm all = t[3];
+    return right ? meet(b, cut(b, all, t[0]), cut(b, all, t[1])) : cut(b, all, join(b, t[0], t[1]));
+}
+
+static RtCsgTerm de_morgan_dual(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    RtCsgTerm all = t[3];
+    return right ? join(b, cut(b, all, t[0]), cut(b, all, t[1])) : cut(b, all, meet(b, t[0], t[1]));
+}
+
+static RtCsgTerm distributed(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    return right ? join(b, meet(b, t[0], t[1]), meet(b, t[0], t[2])) : meet(b, t[0], join(b, t[1], t[2]));
+}
+
+static RtCsgTerm difference_by_complement(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    return right ? meet(b, t[0], cut(b, t[3], t[1])) : cut(b, t[0], t[1]);
+}
+
+static RtCsgTerm joined_with_itself(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    return right ? join(b, t[0], t[0]) : t[0];
+}
+
+static RtCsgTerm met_with_itself(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    return right ? meet(b, t[0], t[0]) : t[0];
+}
+
+static RtCsgTerm less_itself(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
+    RtCsgTerm nothing =
+        meet(b, box(b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0), box(b, rt_vec3(2, 2, 2), rt_vec3(3, 3, 3), 0));
+    return right ? cut(b, t[0], t[0]) : nothing;
+}
+
+static void identities_of_sets_hold_bit_for_bit(void **state) {
+    (void)state;
+    Side *const sides[] = {
+        commuted_union,     commuted_intersection, associated_union, associated_intersection,
+        de_morgan,          de_morgan_dual,        distributed,      difference_by_complement,
+        joined_with_itself, met_with_itself,       less_itself};
+    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) check_identity(sides[i], i);
+}
+
+RT_TEST_GROUP(csg) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_operation_keeps_its_part_of_two_boxes),
+        cmocka_unit_test(touching_boxes_are_joined_without_a_wall),
+        cmocka_unit_test(the_wall_of_a_drilled_hole_looks_into_the_hole),
+        cmocka_unit_test(what_is_taken_from_what_is_taken_away_looks_outward_again),
+        cmocka_unit_test(the_left_operand_names_a_face_that_both_have),
+        cmocka_unit_test(an_empty_result_is_a_point_and_never_hit),
+        cmocka_unit_test(a_ray_is_answered_within_its_interval_only),
+        cmocka_unit_test(a_tree_without_end_is_refused_and_leaves_nothing_behind),
+        cmocka_unit_test(a_tree_of_too_many_solids_is_refused),
+        cmocka_unit_test(identities_of_sets_hold_bit_for_bit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

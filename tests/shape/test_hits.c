@@ -1,0 +1,127 @@
+/* shape/: what all hit functions promise: closed intervals of t, powers of two that scale it exactly, and no
+ * hits beyond an object, however flat. */
+#include "shape_testing.h"
+
+#include "base/random.h"
+
+/* One object of each kind, about the origin, 2^exponent in size; 0.75 and the like survive the scaling. */
+static RtGeometry one_of_each(int exponent) {
+    RtGeometry g = {0};
+    float s = ldexpf(1, exponent);
+    const RtVec3 notched[] = {{{-s, -s, 0.25f * s}},
+                              {{s, -s, 0.25f * s}},
+                              {{s, s, -0.25f * s}},
+                              {{0, 0, 0}},
+                              {{-s, s, -0.25f * s}}};
+    const RtVec3 triangle[] = {{{-s, -s, 0}}, {{s, -0.5f * s, 0.5f * s}}, {{0.25f * s, s, -0.25f * s}}};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0.125f * s, 0, 0), 0.75f * s, error));
+    assert_ok(rt_geometry_add_polygon(&g, notched, 5, error));
+    assert_ok(rt_geometry_add_triangle(&g, triangle, NULL, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, -s, 0), s, rt_vec3(0.5f * s, s, 0), 0, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, -s), 0.5f * s, rt_vec3(0, 0, s), 0.5f * s, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(-s, 0, 0), 0.25f * s, rt_vec3(s, s, s), 0.75f * s, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    return g;
+}
+
+/* Through a point of [-1, 1]^3, from up to 3 before it. */
+static RtRay random_ray(RtRandom *random) {
+    RtVec3 target = rt_random_point(random, 1);
+    RtVec3d dir = rt_random_direction(random);
+    RtVec3d org = rt_add_scaledd(rt_widen(target), dir, -3 * (double)rt_random_unit(random));
+    return make_ray(rt_narrow(org), rt_narrow(dir));
+}
+
+enum { RAYS = 4000 };
+
+static void both_ends_of_the_interval_of_t_belong_to_it(void **state) {
+    (void)state;
+    RtGeometry g = one_of_each(0);
+    RtRandom random = rt_random(1, 0);
+    int hits = 0;
+    for (int i = 0; i < RAYS; i++) {
+        RtRay ray = random_ray(&random);
+        uint32_t id = (uint32_t)i % g.object_count;
+        float t, again;
+        if (!hit(&g, id, &ray, &t) || t == 0) continue;
+        hits++;
+        ray.tmin = ray.tmax = t;
+        assert_true(hit(&g, id, &ray, &again) && again == t);
+        ray.tmin = 0, ray.tmax = nextafterf(t, 0);
+        assert_false(hit(&g, id, &ray, &again));
+        ray.tmin = nextafterf(t, INFINITY), ray.tmax = INFINITY;
+        assert_true(!hit(&g, id, &ray, &again) || again > t);
+    }
+    assert_true(hits > RAYS / 8);
+    rt_geometry_clear(&g);
+}
+
+static void a_direction_twice_as_long_halves_t_to_the_bit(void **state) {
+    (void)state;
+    RtGeometry g = one_of_each(0);
+    RtRandom random = rt_random(2, 0);
+    for (int i = 0; i < RAYS; i++) {
+        RtRay ray = random_ray(&random), longer = ray;
+        uint32_t id = (uint32_t)i % g.object_count;
+        float t = 0, half = 0, third = 0;
+        longer.dir = rt_scale(ray.dir, 2);
+        bool met = hit(&g, id, &ray, &t);
+        assert_int_equal(met, hit(&g, id, &longer, &half));
+        assert_true(half == t / 2);
+        longer.dir = rt_scale(ray.dir, 3);
+        if (met && hit(&g, id, &longer, &third)) assert_true(fabsf(third * 3 - t) <= 1e-4f);
+    }
+    rt_geometry_clear(&g);
+}
+
+static void a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit(void **state) {
+    (void)state;
+    static const int exponents[] = {-40, -17, 1, 23, 40};
+    RtGeometry unit = one_of_each(0);
+    for (int e = 0; e < 5; e++) {
+        RtGeometry g = one_of_each(exponents[e]);
+        RtRandom random = rt_random(3, 0);
+        for (int i = 0; i < RAYS; i++) {
+            RtRay ray = random_ray(&random), scaled = ray;
+            uint32_t id = (uint32_t)i % g.object_count;
+            float t = 0, t_scaled = 0;
+            scaled.org = rt_scale(ray.org, ldexpf(1, exponents[e]));
+            assert_int_equal(hit(&unit, id, &ray, &t), hit(&g, id, &scaled, &t_scaled));
+            assert_true(t_scaled == ldexpf(t, exponents[e]));
+        }
+        rt_geometry_clear(&g);
+    }
+    rt_geometry_clear(&unit);
+}
+
+/* Nearly a disc with a hole, tilted: what is hit must not depend on heights that have lost their digits. */
+static void a_flat_cone_is_hit_between_its_circles_only(void **state) {
+    (void)state;
+    RtRandom random = rt_random(4, 0);
+    int hits = 0;
+    for (int i = 0; i < RAYS; i++) {
+        RtGeometry g = {0};
+        RtVec3 apex = rt_narrow(rt_scaled(rt_random_direction(&random), ldexp(1, -20 - i % 40)));
+        assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 0.75f, apex, 0.25f, error));
+        assert_ok(rt_geometry_finish(&g, error));
+        RtRay ray = random_ray(&random);
+        float t;
+        if (hit(&g, 0, &ray, &t)) {
+            double from_center = rt_lengthd(rt_ray_point(&ray, t));
+            assert_true(from_center > 0.2499 && from_center < 0.7501);
+            hits++;
+        }
+        rt_geometry_clear(&g);
+    }
+    assert_true(hits > RAYS / 20);
+}
+
+RT_TEST_GROUP(hits) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(both_ends_of_the_interval_of_t_belong_to_it),
+        cmocka_unit_test(a_direction_twice_as_long_halves_t_to_the_bit),
+        cmocka_unit_test(a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit),
+        cmocka_unit_test(a_flat_cone_is_hit_between_its_circles_only),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

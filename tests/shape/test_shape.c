@@ -1,0 +1,281 @@
+/* shape/: hits, normals and refusals of every shape, against answers known by hand. */
+#include "shape_testing.h"
+
+#include <string.h>
+
+/* ---- hits ---- */
+
+#define MISS NAN
+
+/* A ray, in words, and where it first meets the only object: t, or MISS. */
+typedef struct Case {
+    const char *what;
+    RtVec3 org, dir;
+    float t;
+} Case;
+
+/* Finishes `g`, asks every case of its object 0, and clears it. */
+static void check(RtGeometry *g, const Case *cases, size_t count) {
+    assert_ok(rt_geometry_finish(g, error));
+    for (size_t i = 0; i < count; i++) {
+        RtRay ray = make_ray(cases[i].org, cases[i].dir);
+        float t = NAN;
+        bool met = hit(g, 0, &ray, &t);
+        if (met == !isnan(cases[i].t) && (!met || t == cases[i].t)) continue;
+        fail_msg("%s: %s at %.9g, expected %.9g", cases[i].what, met ? "hit" : "missed", (double)t,
+                 (double)cases[i].t);
+    }
+    rt_geometry_clear(g);
+}
+
+#define CHECK(g, cases) check(g, cases, sizeof cases / sizeof *(cases))
+
+static void the_lecture_ray_meets_the_unit_sphere_at_9_and_11(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    RtRay ray = make_ray(rt_vec3(0, 0, 10), rt_vec3(0, 0, -1));
+    float t;
+    assert_true(hit(&g, 0, &ray, &t));
+    assert_true(t == 9.0f);
+    ray.tmin = 9.5f;
+    assert_true(hit(&g, 0, &ray, &t));
+    assert_true(t == 11.0f);
+    ray.tmin = 11.5f;
+    assert_false(hit(&g, 0, &ray, &t));
+    rt_geometry_clear(&g);
+}
+
+static void a_sphere_is_hit_from_outside_and_inside_and_touched(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"from outside", {{1, 2, -7}}, {{0, 0, 1}}, 8},
+        {"from the centre", {{1, 2, 3}}, {{0, 1, 0}}, 2},
+        {"from inside, off the centre", {{1, 2, 4}}, {{0, 0, 1}}, 1},
+        {"from the surface inward", {{1, 2, 1}}, {{0, 0, 1}}, 0},
+        {"from the surface outward", {{1, 2, 1}}, {{0, 0, -1}}, 0},
+        {"towards it, off the centre", {{-6, 2, 3}}, {{0.5f, 0, 0}}, 10},
+        {"touching", {{3, 2, -7}}, {{0, 0, 1}}, 10},
+        {"just outside of touching", {{3.001f, 2, -7}}, {{0, 0, 1}}, MISS},
+        {"behind", {{1, 2, -7}}, {{0, 0, -1}}, MISS},
+        {"passing far away", {{100, 2, -7}}, {{0, 0, 1}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 2, 3), 2, error));
+    CHECK(&g, cases);
+}
+
+static void a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"from the front", {{1, 1, 5}}, {{0, 0, -1}}, 4},
+        {"from behind it", {{1, 1, -5}}, {{0, 0, 2}}, 3},
+        {"from its plane, across", {{1, 1, 1}}, {{0, 0, 1}}, 0},
+        {"through an edge", {{2, 0, 5}}, {{0, 0, -1}}, 4},
+        {"through the slanting edge", {{2, 2, 5}}, {{0, 0, -1}}, 4},
+        {"through a vertex", {{0, 0, 5}}, {{0, 0, -1}}, 4},
+        {"through another vertex", {{4, 0, 5}}, {{0, 0, -1}}, 4},
+        {"just outside of an edge", {{2, -1e-6f, 5}}, {{0, 0, -1}}, MISS},
+        {"beyond the slanting edge", {{2, 2.001f, 5}}, {{0, 0, -1}}, MISS},
+        {"away from it", {{1, 1, 5}}, {{0, 0, 1}}, MISS},
+        {"parallel to it", {{-1, 1, 5}}, {{1, 0, 0}}, MISS},
+        {"in its plane", {{-1, 1, 1}}, {{1, 0, 0}}, MISS},
+        {"in its plane, along an edge", {{-1, 0, 1}}, {{1, 0, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_triangle(&g, (RtVec3[]){{{0, 0, 1}}, {{4, 0, 1}}, {{0, 4, 1}}}, NULL, error));
+    CHECK(&g, cases);
+}
+
+static void a_triangle_without_area_is_let_in_and_never_hit(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"across it", {{1, 0, 5}}, {{0, 0, -1}}, MISS},
+        {"along it", {{-1, 0, 0}}, {{1, 0, 0}}, MISS},
+        {"at its end", {{0, -3, 0}}, {{0, 1, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_triangle(&g, (RtVec3[]){{{0, 0, 0}}, {{4, 0, 0}}, {{2, 0, 0}}}, NULL, error));
+    CHECK(&g, cases);
+}
+
+/* A U in the plane x = 2, with its notch open towards +z. */
+static void a_concave_polygon_is_missed_in_its_notch(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"through the left arm", {{0, 0.5f, 2}}, {{1, 0, 0}}, 2},
+        {"through the right arm, from behind", {{4, 2.5f, 2}}, {{-1, 0, 0}}, 2},
+        {"through the bottom", {{0, 1.5f, 0.5f}}, {{1, 0, 0}}, 2},
+        {"through the notch", {{0, 1.5f, 2}}, {{1, 0, 0}}, MISS},
+        {"through the notch, level with its bottom corners", {{0, 1.5f, 1.5f}}, {{1, 0, 0}}, MISS},
+        {"on the floor of the notch", {{0, 1.5f, 1}}, {{1, 0, 0}}, 2},
+        {"on the wall of the notch", {{0, 1, 2}}, {{1, 0, 0}}, 2},
+        {"on the upper edge of an arm", {{0, 0.5f, 3}}, {{1, 0, 0}}, 2},
+        {"on the lower left corner", {{0, 0, 0}}, {{1, 0, 0}}, 2},
+        {"on the upper right corner", {{0, 3, 3}}, {{1, 0, 0}}, 2},
+        {"between the corners of the arms", {{0, 1.5f, 3}}, {{1, 0, 0}}, MISS},
+        {"beside it", {{0, 3.5f, 1}}, {{1, 0, 0}}, MISS},
+        {"level with a corner, beside it", {{0, -1, 1}}, {{1, 0, 0}}, MISS},
+        {"slanting", {{0, 0, 0}}, {{4, 1, 1}}, 0.5f},
+        {"behind", {{3, 0.5f, 2}}, {{1, 0, 0}}, MISS},
+        {"parallel to it", {{0, 0.5f, 2}}, {{0, 1, 0}}, MISS},
+        {"in its plane", {{2, -1, 0.5f}}, {{0, 1, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    static const RtVec3 vertices[] = {{{2, 0, 0}}, {{2, 3, 0}}, {{2, 3, 3}}, {{2, 2, 3}},
+                                      {{2, 2, 1}}, {{2, 1, 1}}, {{2, 1, 3}}, {{2, 0, 3}}};
+    assert_ok(rt_geometry_add_polygon(&g, vertices, 8, error));
+    CHECK(&g, cases);
+}
+
+static void a_cylinder_is_open_at_both_ends(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"from outside", {{-5, 0, 2}}, {{1, 0, 0}}, 4},
+        {"from inside", {{0, 0, 2}}, {{0, -1, 0}}, 1},
+        {"touching", {{-5, 1, 2}}, {{1, 0, 0}}, 5},
+        {"just outside of touching", {{-5, 1.001f, 2}}, {{1, 0, 0}}, MISS},
+        {"on the circle of an end", {{-5, 0, 0}}, {{1, 0, 0}}, 4},
+        {"on the circle of the other end", {{-5, 0, 4}}, {{1, 0, 0}}, 4},
+        {"beyond an end", {{-5, 0, 4.001f}}, {{1, 0, 0}}, MISS},
+        {"along the axis", {{0, 0, -5}}, {{0, 0, 1}}, MISS},
+        {"parallel to the axis, inside", {{0.5f, 0, -5}}, {{0, 0, 1}}, MISS},
+        {"parallel to the axis, outside", {{1.5f, 0, -5}}, {{0, 0, 1}}, MISS},
+        {"in by the open end, out by the wall", {{0, 0, -1}}, {{0.5f, 0, 1}}, 2},
+        {"behind", {{-5, 0, 2}}, {{-1, 0, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 1, error));
+    CHECK(&g, cases);
+}
+
+static void a_full_cone_is_hit_up_to_its_tip(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"half way up", {{-5, 0, 0.5f}}, {{1, 0, 0}}, 4.5f},
+        {"half way up, from inside", {{0, 0, 0.5f}}, {{1, 0, 0}}, 0.5f},
+        {"at the tip, across", {{-5, 0, 1}}, {{1, 0, 0}}, 5},
+        {"at the tip, along the axis through the open end", {{0, 0, -5}}, {{0, 0, 1}}, 6},
+        {"at the tip, from above", {{0, 0, 5}}, {{0, 0, -1}}, 4},
+        {"above the tip, where the other half of the double cone is", {{-5, 0, 1.5f}}, {{1, 0, 0}}, MISS},
+        {"through the open end", {{0, 0, -0.5f}}, {{1, 0, 1}}, 0.75f},
+        {"along the side, outside", {{0, 0, -2}}, {{1, 0, -1}}, MISS},
+        {"on the circle", {{-5, 0, 0}}, {{1, 0, 0}}, 4},
+        {"below the circle", {{-5, 0, -0.001f}}, {{1, 0, 0}}, MISS},
+    };
+    RtGeometry g = {0};
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 1), 0, error));
+    CHECK(&g, cases);
+}
+
+/* ---- normals ---- */
+
+/* What a ray that starts at `point` meets there. */
+static RtNormals normals_at(const RtGeometry *g, uint32_t id, RtVec3d point) {
+    RtRay ray = {.org = rt_narrow(point), .dir = {0, 0, 1}, .tmax = INFINITY};
+    return rt_object_normals(g, id, &ray, 0);
+}
+
+static void assert_vector(RtVec3d a, double x, double y, double z) {
+    if (rt_lengthd(rt_subd(a, rt_vec3d(x, y, z))) < 1e-12) return;
+    fail_msg("(%g, %g, %g) is not (%g, %g, %g)", a.x, a.y, a.z, x, y, z);
+}
+
+static void normals_point_outward_or_by_the_right_hand_rule(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    static const RtVec3 square[] = {{{0, 0, 5}}, {{0, 2, 5}}, {{2, 2, 5}}, {{2, 0, 5}}};
+    assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 0, 0), 2, error));
+    assert_ok(rt_geometry_add_polygon(&g, square, 4, error));
+    assert_ok(rt_geometry_add_triangle(&g, (RtVec3[]){{{0, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}, NULL, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 1, rt_vec3(0, 0, 4), 1, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 5, rt_vec3(0, 0, 4), 2, error));
+    assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 2, rt_vec3(0, 0, 4), 5, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_vector(normals_at(&g, 0, rt_vec3d(-1, 0, 0)).geometric, -1, 0, 0);
+    assert_vector(normals_at(&g, 1, rt_vec3d(1, 1, 5)).geometric, 0, 0, -1);
+    assert_vector(normals_at(&g, 2, rt_vec3d(0, 0, 0)).geometric, 1, 0, 0);
+    assert_vector(normals_at(&g, 3, rt_vec3d(0, 1, 2)).geometric, 0, 1, 0);
+    /* A frustum that narrows by 3 over a height of 4 leans outward and up, one that widens outward and
+     * down. */
+    assert_vector(normals_at(&g, 4, rt_vec3d(3.5, 0, 2)).geometric, 0.8, 0, 0.6);
+    assert_vector(normals_at(&g, 5, rt_vec3d(0, -3.5, 2)).geometric, 0, -0.8, -0.6);
+    rt_geometry_clear(&g);
+}
+
+static void vertex_normals_are_interpolated_for_shading_only(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    const RtVec3 vertices[3] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
+    const RtVec3 normals[3] = {{{0, 0, 7}}, {{3, 0, 0}}, {{0, 0.5f, 0}}};
+    assert_ok(rt_geometry_add_triangle(&g, vertices, NULL, error));
+    assert_ok(rt_geometry_add_triangle(&g, vertices, normals, error));
+    assert_ok(rt_geometry_finish(&g, error));
+    assert_vector(normals_at(&g, 0, rt_vec3d(0.5, 0.5, 0)).shading, 0, 0, 1);
+    assert_vector(normals_at(&g, 1, rt_vec3d(0, 0, 0)).shading, 0, 0, 1);
+    assert_vector(normals_at(&g, 1, rt_vec3d(1, 0, 0)).shading, 1, 0, 0);
+    assert_vector(normals_at(&g, 1, rt_vec3d(0.5, 0.5, 0)).shading, sqrt(0.5), sqrt(0.5), 0);
+    assert_vector(normals_at(&g, 1, rt_vec3d(0.5, 0.5, 0)).geometric, 0, 0, 1);
+    rt_geometry_clear(&g);
+}
+
+/* ---- refusals ---- */
+
+static void assert_refused(const RtGeometry *g, RtStatus status, const RtError *error, const char *phrase) {
+    assert_int_equal(status, RT_BAD_INPUT);
+    if (!strstr(error->message, phrase)) fail_msg("'%s' does not say '%s'", error->message, phrase);
+    assert_int_equal(g->object_count, 0);
+}
+
+#define REFUSE(phrase, call)                                                                                 \
+    do {                                                                                                     \
+        RtError failure = {RT_OK, ""}, *error = &failure;                                                    \
+        RtStatus status = (call);                                                                            \
+        assert_refused(&g, status, error, phrase);                                                           \
+    } while (0)
+
+static void degenerate_objects_are_refused_with_the_reason(void **state) {
+    (void)state;
+    RtGeometry g = {0};
+    const RtVec3 o = {{0, 0, 0}}, z = {{0, 0, 1}}, nan = {{NAN, 0, 0}}, huge = {{0, 6e17f, 0}};
+    const RtVec3 line[] = {{{0, 0, 0}}, {{1, 1, 1}}, {{2, 2, 2}}, {{5, 5, 5}}};
+    const RtVec3 warped[] = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0.1f}}, {{0, 1, 0}}};
+    const RtVec3 infinite[] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, INFINITY, 0}}};
+    const RtVec3 normals[] = {{{0, 0, 1}}, {{0, 0, 0}}, {{0, 0, 1}}};
+    REFUSE("radius above 0", rt_geometry_add_sphere(&g, o, 0, error));
+    REFUSE("radius above 0", rt_geometry_add_sphere(&g, o, -1, error));
+    REFUSE("a radius of nan", rt_geometry_add_sphere(&g, o, NAN, error));
+    REFUSE("a radius of inf", rt_geometry_add_sphere(&g, o, INFINITY, error));
+    REFUSE("not a finite number", rt_geometry_add_sphere(&g, nan, 1, error));
+    REFUSE("scale the scene down", rt_geometry_add_sphere(&g, huge, 1, error));
+    REFUSE("at least 3 vertices", rt_geometry_add_polygon(&g, line, 0, error));
+    REFUSE("at least 3 vertices", rt_geometry_add_polygon(&g, line, 2, error));
+    REFUSE("has no area", rt_geometry_add_polygon(&g, line, 4, error));
+    REFUSE("not planar", rt_geometry_add_polygon(&g, warped, 4, error));
+    REFUSE("not a finite number", rt_geometry_add_polygon(&g, infinite, 3, error));
+    REFUSE("not a finite number", rt_geometry_add_triangle(&g, infinite, NULL, error));
+    REFUSE("vertex normal 1 is zero", rt_geometry_add_triangle(&g, warped, normals, error));
+    REFUSE("one of them above 0", rt_geometry_add_cone(&g, o, 0, z, 0, error));
+    REFUSE("radii of at least 0", rt_geometry_add_cone(&g, o, -1, z, 1, error));
+    REFUSE("the same point", rt_geometry_add_cone(&g, z, 1, z, 1, error));
+    REFUSE("not a finite number", rt_geometry_add_cone(&g, o, 1, nan, 1, error));
+    REFUSE("a radius of nan", rt_geometry_add_cone(&g, o, 1, z, NAN, error));
+    rt_geometry_clear(&g);
+}
+
+RT_TEST_GROUP(shape) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_lecture_ray_meets_the_unit_sphere_at_9_and_11),
+        cmocka_unit_test(a_sphere_is_hit_from_outside_and_inside_and_touched),
+        cmocka_unit_test(a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices),
+        cmocka_unit_test(a_triangle_without_area_is_let_in_and_never_hit),
+        cmocka_unit_test(a_concave_polygon_is_missed_in_its_notch),
+        cmocka_unit_test(a_cylinder_is_open_at_both_ends),
+        cmocka_unit_test(a_full_cone_is_hit_up_to_its_tip),
+        cmocka_unit_test(normals_point_outward_or_by_the_right_hand_rule),
+        cmocka_unit_test(vertex_normals_are_interpolated_for_shading_only),
+        cmocka_unit_test(degenerate_objects_are_refused_with_the_reason),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,265 @@
+/* Equivalence and verdicts: lies are found, whichever kernel tells them and in whatever stream; margins and
+ * ties are told from errors. */
+#include "equivalence_testing.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- an accelerator that lies ---- */
+
+typedef enum Lie { NO_LIE, T_IN_TIMED, ID_IN_COUNTED, BLOCKED_IN_STREAMS_OF_64, LOST_LAST_RAY } Lie;
+
+typedef struct Liar {
+    RtAccel base;
+    RtQuery truth;
+    Lie lie;
+} Liar;
+
+enum { RAYS = 5000, LAST = RAYS - 1 };
+static RtRay rays[RAYS];
+static RtAccelOps liar_ops;
+
+static void lie_nearest(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count, RtHit *hits) {
+    (void)scratch;
+    const Liar *liar = (const Liar *)accel;
+    RtQuery query = liar->truth;
+    rt_nearest(&query, asked, count, hits, NULL);
+    for (size_t i = 0; i < count; i++) {
+        if (liar->lie == T_IN_TIMED && &asked[i] == &rays[1234]) hits[i].t = nextafterf(hits[i].t, 0);
+        if (liar->lie == LOST_LAST_RAY && &asked[i] == &rays[LAST]) hits[i] = RT_MISS;
+    }
+}
+
+static void lie_nearest_counted(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count,
+                                RtHit *hits, RtTally *tallies) {
+    (void)scratch, (void)tallies;
+    const Liar *liar = (const Liar *)accel;
+    RtQuery query = liar->truth;
+    rt_nearest(&query, asked, count, hits, NULL);
+    for (size_t i = 0; i < count; i++) {
+        if (liar->lie == ID_IN_COUNTED && &asked[i] == &rays[77]) hits[i].object ^= 1;
+    }
+}
+
+static void lie_occluded(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count,
+                         uint32_t *blockers) {
+    (void)scratch;
+    const Liar *liar = (const Liar *)accel;
+    liar->truth.accel->ops->occluded(liar->truth.accel, liar->truth.scratch, asked, count, blockers);
+    if (liar->lie == BLOCKED_IN_STREAMS_OF_64 && count == 64) {
+        blockers[63] = blockers[63] == RT_NO_OBJECT ? 0 : RT_NO_OBJECT;
+    }
+}
+
+static void lie_occluded_counted(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count,
+                                 uint32_t *blockers, RtTally *tallies) {
+    (void)scratch, (void)tallies;
+    const RtQuery *truth = &((const Liar *)accel)->truth;
+    truth->accel->ops->occluded(truth->accel, truth->scratch, asked, count, blockers);
+}
+
+typedef struct Stage {
+    RtScene scene;
+    RtAccel *brute;
+    RtReference reference;
+    Liar liar;
+} Stage;
+
+static int set_up(void **state) {
+    static Stage stage;
+    open_family(scene_family("uniform"), 3, &stage.scene);
+    assert_ok(rt_accel_open("brute", &stage.scene, &stage.brute, error));
+    assert_ok(rt_query_init(&stage.liar.truth, stage.brute, error));
+    rt_ray_family_fill(0, &stage.liar.truth, 3, 0, RAYS, rays);
+    /* The rays that are lied about hit something. */
+    const size_t needed[] = {77, 1234, LAST};
+    for (size_t i = 0; i < 3; i++) {
+        RtHit hit = RT_MISS;
+        for (uint64_t k = RAYS + 100 * i; hit.object == RT_NO_OBJECT; k++) {
+            rt_ray_family_fill(0, &stage.liar.truth, 3, k, 1, &rays[needed[i]]);
+            rt_nearest(&stage.liar.truth, &rays[needed[i]], 1, &hit, NULL);
+        }
+    }
+    assert_ok(rt_reference_init(&stage.reference, stage.brute, rays, RAYS, 0, error));
+    liar_ops = *stage.brute->ops;
+    liar_ops.nearest = lie_nearest;
+    liar_ops.nearest_counted = lie_nearest_counted;
+    liar_ops.occluded = lie_occluded;
+    liar_ops.occluded_counted = lie_occluded_counted;
+    stage.liar.base = *stage.brute;
+    stage.liar.base.ops = &liar_ops;
+    *state = &stage;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    Stage *stage = *state;
+    rt_query_clear(&stage->liar.truth);
+    rt_reference_clear(&stage->reference);
+    rt_accel_destroy(stage->brute);
+    rt_scene_clear(&stage->scene);
+    return rt_alloc_live() == 0 ? 0 : -1;
+}
+
+static RtEquivalence check(Stage *stage, Lie lie) {
+    RtEquivalence one, many;
+    stage->liar.lie = lie;
+    assert_ok(rt_equivalence_check(&stage->reference, &stage->liar.base, 1, &one, error));
+    assert_ok(rt_equivalence_check(&stage->reference, &stage->liar.base, 3, &many, error));
+    assert_int_equal(one.rays, RAYS);
+    assert_memory_equal(one.verdicts, many.verdicts, sizeof one.verdicts);
+    assert_int_equal(one.occluded_wrong, many.occluded_wrong);
+    assert_int_equal(one.first_wrong.index, many.first_wrong.index);
+    return one;
+}
+
+static void the_truth_is_equal_throughout(void **state) {
+    RtEquivalence e = check(*state, NO_LIE);
+    assert_int_equal(e.verdicts[RT_EQUAL], RAYS);
+    assert_int_equal(e.occluded_wrong, 0);
+    assert_false(e.any_wrong);
+}
+
+static void one_ulp_of_t_in_the_timed_kernel_is_wrong(void **state) {
+    RtEquivalence e = check(*state, T_IN_TIMED);
+    assert_int_equal(e.verdicts[RT_WRONG], 1);
+    assert_int_equal(e.first_wrong.index, 1234);
+    assert_false(e.first_wrong.counted || e.first_wrong.occluded);
+    assert_true(e.first_wrong.got.t < e.first_wrong.expected.t);
+}
+
+static void another_object_in_the_counted_kernel_is_wrong(void **state) {
+    RtEquivalence e = check(*state, ID_IN_COUNTED);
+    assert_int_equal(e.verdicts[RT_WRONG], 1);
+    assert_int_equal(e.first_wrong.index, 77);
+    assert_true(e.first_wrong.counted);
+}
+
+static void a_lie_in_streams_of_one_length_alone_is_found(void **state) {
+    RtEquivalence e = check(*state, BLOCKED_IN_STREAMS_OF_64);
+    assert_int_equal(e.verdicts[RT_WRONG], 0);
+    assert_true(e.occluded_wrong > 0 && e.any_wrong);
+    assert_true(e.first_wrong.occluded);
+    assert_int_equal(e.first_wrong.stream, 64);
+}
+
+static void the_last_ray_counts_too(void **state) {
+    RtEquivalence e = check(*state, LOST_LAST_RAY);
+    assert_int_equal(e.verdicts[RT_WRONG], 1);
+    assert_int_equal(e.first_wrong.index, LAST);
+    char text[512];
+    rt_witness_format(&e.first_wrong, text, sizeof text);
+    assert_non_null(strstr(text, "got no hit"));
+    json_t *row = rt_equivalence_json(&e, "s", "a", "brute");
+    assert_int_equal(json_integer_value(json_object_get(row, "wrong")), 1);
+    json_t *witness = json_object_get(row, "first_wrong");
+    const char *x = json_string_value(json_array_get(json_object_get(witness, "org"), 0));
+    assert_true(strtof(x, NULL) == rays[LAST].org.x);
+    json_decref(row);
+}
+
+static void an_accelerator_that_is_not_exact_is_judged_by_verdicts(void **state) {
+    Stage *stage = *state;
+    stage->liar.base.exact = false;
+    RtEquivalence e = check(stage, T_IN_TIMED);
+    assert_int_equal(e.verdicts[RT_EQUAL], RAYS);
+    e = check(stage, LOST_LAST_RAY);
+    assert_int_equal(e.verdicts[RT_WRONG], 1);
+    stage->liar.base.exact = true;
+}
+
+/* ---- verdicts ---- */
+
+/* 0, 1: coincident unit spheres about the origin; 2, 3: the halves of the square |x|, |y| <= 1 at z = -5, cut
+ * along x = y; 4: a wall at z = -9. */
+static void make_geometry(RtGeometry *g) {
+    *g = (RtGeometry){0};
+    const RtVec3 a[3] = {{-1, -1, -5}, {1, -1, -5}, {1, 1, -5}},
+                 b[3] = {{-1, -1, -5}, {1, 1, -5}, {-1, 1, -5}};
+    const RtVec3 wall[4] = {{-9, -9, -9}, {9, -9, -9}, {9, 9, -9}, {-9, 9, -9}};
+    assert_ok(rt_geometry_add_sphere(g, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_add_sphere(g, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_geometry_add_triangle(g, a, NULL, error));
+    assert_ok(rt_geometry_add_triangle(g, b, NULL, error));
+    assert_ok(rt_geometry_add_polygon(g, wall, 4, error));
+    assert_ok(rt_geometry_finish(g, error));
+}
+
+static RtRay down_from(float x, float y, float z) {
+    return (RtRay){.org = {{x, y, z}}, .dir = {{0, 0, -1}}, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+}
+
+typedef struct Case {
+    const char *what;
+    RtRay ray;
+    RtHit expected, answer;
+    RtVerdict verdict;
+} Case;
+
+static void verdicts_tell_ties_and_margins_from_errors(void **state) {
+    (void)state;
+    RtGeometry g;
+    make_geometry(&g);
+    RtRay center = down_from(0, 0, 3), above_edge = down_from(0.5f, 0.5f, -2), inner = down_from(0.5f, 0, -2);
+    RtRay tangent = down_from(1, 0, 3), beside = down_from(1.5f, 0, 3), far = down_from(20, 0, 3);
+    RtRay from_surface = down_from(0, 0, 1);
+    const Case cases[] = {
+        {"the same", center, {2, 0}, {2, 0}, RT_EQUAL},
+        {"an ulp beside", center, {2, 0}, {2.0000002f, 0}, RT_EQUAL},
+        {"a hundredth beside", center, {2, 0}, {2.01f, 0}, RT_WRONG},
+        {"the coincident sphere", center, {2, 0}, {2, 1}, RT_TIE},
+        {"its far side", center, {2, 0}, {4, 0}, RT_WRONG},
+        {"what lies behind it", center, {2, 0}, {8, 2}, RT_WRONG},
+        {"nothing, where there is much", center, {2, 0}, RT_MISS, RT_WRONG},
+        {"no such object", center, {2, 0}, {2, 99}, RT_WRONG},
+        {"t is not a number", center, {2, 0}, {NAN, 0}, RT_WRONG},
+        {"a touched sphere, passed by", tangent, {3, 0}, {8, 2}, RT_MARGINAL},
+        {"a touched sphere, passed by to the wall", tangent, {3, 0}, {12, 4}, RT_MARGINAL},
+        {"the other triangle of an edge", above_edge, {3, 2}, {3, 3}, RT_TIE},
+        {"through the edge, to the wall", above_edge, {3, 2}, {7, 4}, RT_MARGINAL},
+        {"through a triangle, to the wall", inner, {3, 2}, {7, 4}, RT_WRONG},
+        {"a sphere clear of the ray", beside, {12, 4}, {3, 0}, RT_WRONG},
+        {"nothing, twice", far, RT_MISS, RT_MISS, RT_EQUAL},
+        {"a hit from nowhere", far, RT_MISS, {12, 4}, RT_WRONG},
+        {"from the surface: its t = 0, not seen", from_surface, {0, 0}, {2, 0}, RT_MARGINAL},
+        {"from the surface: a hit within", from_surface, {0, 0}, {1, 0}, RT_WRONG},
+    };
+    size_t wrong = 0;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const Case *c = &cases[i];
+        RtVerdict got = rt_verdict_nearest(&g, &c->ray, c->expected, c->answer);
+        if (got == c->verdict) continue;
+        print_error("%s: %s instead of %s\n", c->what, rt_verdict_name(got), rt_verdict_name(c->verdict));
+        wrong++;
+    }
+    rt_geometry_clear(&g);
+    assert_int_equal(wrong, 0);
+}
+
+static void occlusion_is_marginal_only_where_a_hit_is(void **state) {
+    (void)state;
+    RtGeometry g;
+    make_geometry(&g);
+    RtRay up = down_from(0.5f, 0, -2), ends_before = up, ends_at = up;
+    ends_before.tmax = 2.9f;
+    ends_at.tmax = 3;
+    assert_int_equal(rt_verdict_occluded(&g, &up, true, true), RT_EQUAL);
+    assert_int_equal(rt_verdict_occluded(&g, &up, true, false), RT_WRONG);
+    assert_int_equal(rt_verdict_occluded(&g, &ends_before, false, true), RT_WRONG);
+    assert_int_equal(rt_verdict_occluded(&g, &ends_at, true, false), RT_MARGINAL);
+    rt_geometry_clear(&g);
+}
+
+RT_TEST_GROUP(equivalence) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_truth_is_equal_throughout),
+        cmocka_unit_test(one_ulp_of_t_in_the_timed_kernel_is_wrong),
+        cmocka_unit_test(another_object_in_the_counted_kernel_is_wrong),
+        cmocka_unit_test(a_lie_in_streams_of_one_length_alone_is_found),
+        cmocka_unit_test(the_last_ray_counts_too),
+        cmocka_unit_test(an_accelerator_that_is_not_exact_is_judged_by_verdicts),
+        cmocka_unit_test(verdicts_tell_ties_and_margins_from_errors),
+        cmocka_unit_test(occlusion_is_marginal_only_where_a_hit_is),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,116 @@
+/* A test of the test: accelerators with a known pitfall are caught by the rays and scenes that `verify`
+ * takes, within a bounded number of rays, and their first failure shrinks to a few objects; the same code
+ * without the fault is not caught. */
+#include "equivalence_testing.h"
+#include "mutants.h"
+
+#include "verify/shrink.h"
+
+enum { RAYS_PER_FAMILY = 256, MOST_RAYS = 400000, MOST_OBJECTS_LEFT = 3 };
+
+static const char *const names[] = {
+#define MUTANT_NAME(CONSTANT, name, what) name,
+    MUTANTS(MUTANT_NAME)
+#undef MUTANT_NAME
+};
+
+static RtEquivalence check(const FamilyBench *bench, RtMaker maker) {
+    RtEquivalence result;
+    RtAccel *accel;
+    assert_ok(maker.build(maker.context, &bench->scene, &accel, error));
+    assert_ok(rt_equivalence_check(&bench->reference, accel, 0, &result, error));
+    rt_accel_destroy(accel);
+    return result;
+}
+
+/* The failure shrinks to a few objects, of which none can be spared. */
+static void shrink(const FamilyBench *bench, RtMaker maker, const RtWitness *witness, const char *name) {
+    RtQuestion question;
+    RtReply reply;
+    RtShrunk shrunk;
+    char says[512];
+    assert_ok(rt_question_of_witness(&bench->reference, witness, maker, &question, &reply, error));
+    assert_true(reply.wrong);
+    assert_int_equal(question.count, 1);
+    assert_ok(rt_shrink(&bench->scene, &question, &reply, maker, RT_SHRINK_BUDGET, NULL, &shrunk, error));
+    rt_witness_format(witness, says, sizeof says);
+    print_message("%s: scene %s with %u objects, rays %s, %u objects left after %u tries: %s\n", name,
+                  bench->scene.name, bench->scene.geometry.object_count,
+                  rt_ray_family_name(witness->index / RAYS_PER_FAMILY), shrunk.count, shrunk.tries, says);
+    assert_true(shrunk.minimal && shrunk.reply.wrong);
+    assert_in_range(shrunk.count, 1, MOST_OBJECTS_LEFT);
+    rt_free(shrunk.ids);
+}
+
+static void a_mutant_is_caught_and_its_failure_shrinks(void **state) {
+    MutantRecipe recipe = {*(const MutantKind *)*state, true};
+    RtMaker maker = maker_of_mutant(&recipe);
+    uint64_t rays = 0;
+    for (size_t scene = 0; scene < rt_family_count() && rays < MOST_RAYS; scene++) {
+        FamilyBench bench;
+        set_up_family(&bench, scene, 1, RAYS_PER_FAMILY);
+        RtEquivalence result = check(&bench, maker);
+        /* One that fails where there is little to fail on would be no example. */
+        bool caught = result.any_wrong && bench.scene.geometry.object_count > MOST_OBJECTS_LEFT;
+        if (caught) shrink(&bench, maker, &result.first_wrong, names[recipe.kind]);
+        rays += result.rays;
+        tear_down_family(&bench);
+        if (caught) return;
+    }
+    fail_msg("'%s' is not caught by %llu rays", names[recipe.kind], (unsigned long long)rays);
+}
+
+static void its_control_is_not_caught(void **state) {
+    MutantRecipe recipe = {*(const MutantKind *)*state, false};
+    for (size_t scene = 0; scene < rt_family_count(); scene++) {
+        FamilyBench bench;
+        set_up_family(&bench, scene, 1, RAYS_PER_FAMILY);
+        RtEquivalence result = check(&bench, maker_of_mutant(&recipe));
+        tear_down_family(&bench);
+        if (!result.any_wrong) continue;
+        char says[512];
+        rt_witness_format(&result.first_wrong, says, sizeof says);
+        fail_msg("the control of '%s' fails on %s: %s", names[recipe.kind], rt_family_name(scene), says);
+    }
+}
+
+/* Without a budget nothing is left out, and with a little of it no more than that allows. */
+static void shrinking_ends_with_its_budget(void **state) {
+    (void)state;
+    MutantRecipe recipe = {EARLY_EXIT, true};
+    RtMaker maker = maker_of_mutant(&recipe);
+    FamilyBench bench;
+    set_up_family(&bench, scene_family("line"), 1, RAYS_PER_FAMILY);
+    RtEquivalence result = check(&bench, maker);
+    RtQuestion question;
+    RtReply reply;
+    assert_ok(rt_question_of_witness(&bench.reference, &result.first_wrong, maker, &question, &reply, error));
+    assert_true(reply.wrong);
+    for (uint64_t budget = 0; budget <= 2000; budget += 400) {
+        RtShrunk shrunk;
+        assert_ok(rt_shrink(&bench.scene, &question, &reply, maker, budget, NULL, &shrunk, error));
+        assert_false(shrunk.minimal);
+        assert_true(shrunk.reply.wrong && shrunk.tries <= budget / 32);
+        if (budget == 0) assert_int_equal(shrunk.count, bench.scene.geometry.object_count);
+        for (uint32_t i = 1; i < shrunk.count; i++) assert_true(shrunk.ids[i - 1] < shrunk.ids[i]);
+        rt_free(shrunk.ids);
+    }
+    tear_down_family(&bench);
+}
+
+RT_TEST_GROUP(mutants) {
+    static MutantKind kinds[MUTANT_COUNT];
+    static char titles[2 * MUTANT_COUNT][128];
+    struct CMUnitTest tests[2 * MUTANT_COUNT + 1] = {[2 * MUTANT_COUNT] =
+                                                         cmocka_unit_test(shrinking_ends_with_its_budget)};
+    for (size_t i = 0; i < MUTANT_COUNT; i++) {
+        kinds[i] = (MutantKind)i;
+        snprintf(titles[2 * i], sizeof titles[0], "a_mutant_is_caught_and_its_failure_shrinks: %s", names[i]);
+        snprintf(titles[2 * i + 1], sizeof titles[0], "its_control_is_not_caught: %s", names[i]);
+        tests[2 * i] = (struct CMUnitTest){titles[2 * i], a_mutant_is_caught_and_its_failure_shrinks, NULL,
+                                           NULL, &kinds[i]};
+        tests[2 * i + 1] =
+            (struct CMUnitTest){titles[2 * i + 1], its_control_is_not_caught, NULL, NULL, &kinds[i]};
+    }
+    return _cmocka_run_group_tests("mutants", tests, 2 * MUTANT_COUNT + 1, NULL, NULL);
+}

@@ -1,0 +1,297 @@
+/* Verification as the harness runs it: what it finds is kept in a replay file that still disagrees when it is
+ * asked again, and no longer does once the fault is mended; an interrupted run goes on to the same table. */
+#include "mutants.h"
+#include "testing.h"
+
+#include "base/file.h"
+#include "scenes/open.h"
+#include "verify/replay.h"
+#include "verify/verify.h"
+#include "verify/verify_table.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+#define OUT RT_BINARY_DIR "/test_verify.out"
+
+static const MutantRecipe unpadded = {UNPADDED_BOX, true}, padded = {UNPADDED_BOX, false};
+static const char *const scenes[] = {"family:kind=plane,seed=1", "random:n=30,shape=mixed"};
+
+static int rows_seen, scenes_worked_on;
+
+static void on_doing(void *context, const RtVerifyProgress *progress) {
+    (void)context;
+    scenes_worked_on += strcmp(progress->what, "recording rays") == 0;
+}
+
+static void on_row(void *context, const json_t *row) {
+    (void)context, (void)row;
+    rows_seen++;
+}
+
+static void on_notice(void *context, const char *message) {
+    (void)context;
+    print_message("%s\n", message);
+}
+
+static const RtVerifyObserver observer = {on_doing, on_row, on_notice, NULL};
+
+/* Verifies grid and a mutant on both scenes; the rows are the caller's. */
+static json_t *verify(const char *folder, int threads, bool resume) {
+    static const RtVerifySpec specs[] = {{"grid", true, {NULL, NULL}},
+                                         {"unpadded", true, {build_mutant, &unpadded}}};
+    RtVerify work = {.scenes = scenes,
+                     .scene_count = 2,
+                     .specs = specs,
+                     .spec_count = 2,
+                     .rays = {6000, 1, true, threads},
+                     .folder = folder,
+                     .resume = resume};
+    json_t *rows;
+    rows_seen = scenes_worked_on = 0;
+    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    return rows;
+}
+
+static char *text_of(const char *folder, const char *name) {
+    char path[RT_MAX_PATH], *text;
+    size_t size;
+    assert_ok(rt_path_join(folder, name, path, error));
+    assert_ok(rt_file_read(path, 1 << 24, &text, &size, error));
+    return text;
+}
+
+static void assert_same_file(const char *name, const char *a, const char *b) {
+    char *x = text_of(a, name), *y = text_of(b, name);
+    assert_string_equal(x, y);
+    rt_free(x);
+    rt_free(y);
+}
+
+static const char *replay_of(const json_t *row) {
+    const char *path = json_string_value(json_object_get(json_object_get(row, "first_wrong"), "replay"));
+    assert_non_null(path);
+    return path;
+}
+
+static void a_failure_can_be_replayed_until_it_is_mended(void **state) {
+    (void)state;
+    json_t *rows = verify(OUT "/a", 0, false);
+    assert_int_equal(json_array_size(rows), 4);
+    assert_false(rt_verify_row_fails(json_array_get(rows, 0)));
+    assert_true(rt_verify_row_fails(json_array_get(rows, 1)));
+    RtReplay replay;
+    assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 1)), error));
+    assert_string_equal(replay.scene_spec, scenes[0]);
+    assert_string_equal(replay.accel_spec, "unpadded");
+    for (int shrunk = 0; shrunk < 2; shrunk++) {
+        RtReply broken, mended;
+        assert_ok(rt_replay_ask(&replay, maker_of_mutant(&unpadded), shrunk, &broken, error));
+        assert_ok(rt_replay_ask(&replay, maker_of_mutant(&padded), shrunk, &mended, error));
+        assert_true(broken.wrong);
+        assert_false(mended.wrong);
+    }
+    rt_replay_clear(&replay);
+    json_decref(rows);
+}
+
+static void threads_and_interruptions_change_no_byte(void **state) {
+    (void)state;
+    json_decref(verify(OUT "/a", 1, false));
+    json_decref(verify(OUT "/b", 2, false));
+    char *journal = text_of(OUT "/b", "rows.jsonl");
+    /* The header, two rows, and a part of the third: as if the power had failed then. */
+    char *end = journal;
+    for (int line = 0; line < 3; line++) end = strchr(end, '\n') + 1;
+    assert_ok(rt_file_write(OUT "/b/rows.jsonl", journal, (size_t)(end - journal) + 7, error));
+    assert_int_equal(unlink(OUT "/b/verify.csv"), 0);
+    rt_free(journal);
+    json_decref(verify(OUT "/b", 0, true));
+    assert_int_equal(rows_seen, 4);
+    assert_int_equal(scenes_worked_on, 1);
+    char *a = text_of(OUT "/a", "verify.csv"), *b = text_of(OUT "/b", "verify.csv");
+    /* They differ in the folder of the replay files alone. */
+    for (char *at; (at = strstr(a, OUT "/a"));) at[strlen(OUT) + 1] = 'b';
+    assert_string_equal(a, b);
+    rt_free(a);
+    rt_free(b);
+    assert_same_file("0002-family-kind-plane-seed-1-unpadded.json", OUT "/a", OUT "/b");
+    json_decref(verify(OUT "/b", 0, true));
+    assert_int_equal(scenes_worked_on, 0);
+}
+
+static void another_run_is_not_gone_on_with(void **state) {
+    (void)state;
+    json_decref(verify(OUT "/c", 0, false));
+    RtVerify work = {.scenes = scenes, .scene_count = 1, .folder = OUT "/c", .resume = true};
+    RtError error;
+    json_t *rows;
+    assert_int_equal(rt_verify_run(&work, &observer, &rows, &error), RT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "another verification"));
+    json_decref(rows);
+}
+
+/* Loses the last ray of every stream but the shortest. */
+static void lose_last(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits) {
+    nearest_timed(accel, scratch, rays, count, hits);
+    if (count > 1) hits[count - 1] = RT_MISS;
+}
+
+static RtAccelOps losing_ops;
+
+static RtStatus build_losing(const void *context, const RtScene *scene, RtAccel **out, RtError *error) {
+    losing_ops = mutant_ops;
+    losing_ops.nearest = lose_last;
+    RT_TRY(build_mutant(context, scene, out, error));
+    (*out)->ops = &losing_ops;
+    return RT_OK;
+}
+
+static void a_failure_that_takes_its_neighbours_is_kept_with_them(void **state) {
+    (void)state;
+    const RtVerifySpec spec = {"losing", true, {build_losing, &padded}};
+    RtVerify work = {.scenes = scenes,
+                     .scene_count = 1,
+                     .specs = &spec,
+                     .spec_count = 1,
+                     .rays = {4000, 1, false, 0},
+                     .folder = OUT "/d"};
+    json_t *rows;
+    RtReplay replay;
+    RtReply reply;
+    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 0)), error));
+    assert_true(replay.question.count > 1 && replay.question.stream > 1);
+    assert_int_equal((replay.question.asked + 1) % replay.question.stream, 0);
+    for (int shrunk = 0; shrunk < 2; shrunk++) {
+        assert_ok(rt_replay_ask(&replay, spec.maker, shrunk, &reply, error));
+        assert_true(reply.wrong);
+    }
+    rt_replay_clear(&replay);
+    json_decref(rows);
+}
+
+/* A scene from a file is written into the replay file whole, and read from there to the last bit. */
+static void a_replay_file_needs_no_other_file(void **state) {
+    (void)state;
+    const char *path = OUT "/lecture.json";
+    RtScene scene;
+    uint32_t ids[] = {1};
+    RtReply reply = {.expected = {1, 0}, .got = RT_MISS, .wrong = true}, again;
+    RtShrunk shrunk = {.ids = ids, .count = 1, .reply = reply, .minimal = true};
+    RtRay ray = {.org = {{0x1.234567p-140f, -0.0f, 0x1.fffffep+9f}},
+                 .tmin = 0x1p-149f,
+                 .dir = {{-0.0f, 0x1p-149f, -1}},
+                 .tmax = INFINITY,
+                 .kind = RT_RAY_SHADOW,
+                 .source = UINT32_MAX};
+    RtQuestion question = {&ray, 1, 0, 1, true, true};
+    assert_ok(rt_directory_create(OUT, error));
+    assert_ok(rt_scene_open(RT_SOURCE_DIR "/scenes/csg-lecture.yaml", &scene, error));
+    RtReplayRecord record = {"moved-away.yaml", "bvh", &scene, &question, &reply, &shrunk};
+    assert_ok(rt_replay_save(path, &record, error));
+    RtReplay replay;
+    assert_ok(rt_replay_load(&replay, path, error));
+    assert_memory_equal(&replay.rays[0], &ray, sizeof ray);
+    assert_true(replay.question.occluded && replay.question.counted);
+    assert_int_equal(replay.fingerprint, rt_scene_fingerprint(&scene));
+    for (int part = 0; part < 2; part++) {
+        assert_ok(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), part, &again, error));
+        assert_false(again.wrong);
+    }
+    replay.fingerprint ^= 1;
+    RtError error;
+    assert_int_equal(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), false, &again, &error), RT_BAD_INPUT);
+    rt_replay_clear(&replay);
+    rt_scene_clear(&scene);
+}
+
+static void what_is_no_replay_file_is_refused(void **state) {
+    (void)state;
+    const char *const members[] = {"scene",  "fingerprint", "sampling", "accel", "query",
+                                   "kernel", "stream",      "rays",     "asked"};
+    const char *path = OUT "/broken.json";
+    json_t *rows = verify(OUT "/a", 0, false);
+    RtError error;
+    RtReplay replay;
+    for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
+        json_t *document = json_load_file(replay_of(json_array_get(rows, 1)), 0, NULL);
+        json_object_set_new(document, members[i], json_real(0.5));
+        assert_int_equal(json_dump_file(document, path, 0), 0);
+        assert_int_equal(rt_replay_load(&replay, path, &error), RT_BAD_INPUT);
+        assert_non_null(strstr(error.message, members[i]));
+        json_decref(document);
+    }
+    json_decref(rows);
+    assert_int_equal(rt_file_write(path, "{\n\"a\": nan}", 11, &error), RT_OK);
+    assert_int_equal(rt_replay_load(&replay, path, &error), RT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "broken.json:2"));
+}
+
+static json_t *row_of(const char *scene, const char *accel, bool exact, int marginal) {
+    return json_pack("{s:s, s:s, s:s, s:b, s:i, s:i, s:i, s:i, s:i, s:i, s:n, s:n, s:{s:i, s:i}}", "scene",
+                     scene, "accel", accel, "against", "brute", "exact", exact, "rays", 100, "equal",
+                     100 - marginal, "tie", 0, "marginal", marginal, "wrong", 0, "occluded_wrong", 0,
+                     "first_wrong", "problem", "exactly_right", "both", marginal - marginal / 2, "got",
+                     marginal / 2);
+}
+
+static void rows_add_up_over_the_parameters_of_an_accelerator(void **state) {
+    (void)state;
+    json_t *rows = json_pack("[o, o, o, o, o]", row_of("balls", "item:facets=on+bvh:leaf=1,bits=6", true, 0),
+                             row_of("balls", "item+bvh", true, 0), row_of("balls", "embree", false, 7),
+                             row_of("tetra", "item+bvh", true, 0), row_of("tetra", "embree", true, 0));
+    json_object_set_new(json_array_get(rows, 1), "problem", json_string("a leaf is not reached"));
+    json_object_set_new(json_array_get(rows, 3), "occluded_wrong", json_integer(5));
+    RtVerifySum *sums;
+    uint32_t count;
+    assert_ok(rt_verify_sums(rows, RT_BY_ACCEL, &sums, &count, error));
+    assert_int_equal(count, 3);
+    assert_string_equal(sums[0].name, "item+bvh");
+    assert_int_equal(sums[0].rows, 3);
+    assert_int_equal(sums[0].failed, 1);
+    assert_int_equal(sums[0].pairs, 300);
+    assert_true(sums[0].exact && !sums[1].exact && sums[2].exact);
+    assert_int_equal(sums[1].verdicts[RT_EQUAL], 93);
+    assert_int_equal(sums[1].verdicts[RT_MARGINAL], 7);
+    assert_int_equal(sums[1].sides[RT_SIDE_BOTH], 4);
+    assert_int_equal(sums[1].sides[RT_SIDE_GOT], 3);
+    assert_int_equal(sums[0].occluded_wrong, 5);
+    assert_int_equal(rt_verify_total(sums, count).pairs, 500);
+    assert_int_equal(rt_verify_total(sums, count).occluded_wrong, 5);
+    rt_free(sums);
+    assert_ok(rt_verify_sums(rows, RT_BY_SCENE, &sums, &count, error));
+    assert_int_equal(count, 2);
+    assert_string_equal(sums[1].name, "tetra");
+    assert_int_equal(sums[1].pairs, 200);
+    rt_free(sums);
+    assert_ok(rt_directory_create(OUT "/e", error));
+    assert_ok(rt_verify_write(rows, OUT "/e", error));
+    char *table = text_of(OUT "/e", "verify.md");
+    assert_non_null(strstr(table, "500 pairs of a ray and an accelerator"));
+    assert_non_null(strstr(table, "0 answers to `nearest` are wrong, 5 to `occluded`"));
+    assert_non_null(strstr(table, "\n| `item+bvh` | 3 | 300 | 300 | 0 | 0 | 0 | 5 | 1 |\n"));
+    assert_non_null(strstr(table, "\n| `embree` * | 1 | 100 | 93 | 0 | 7 | 0 | 0 | 0 |\n"));
+    assert_non_null(strstr(table, "\n| `embree` | 4 | 0 | 3 | 0 | 0 |\n"));
+    assert_non_null(strstr(table, "\n| `tetra` | 2 | 200 | 200 | 0 | 0 | 0 | 5 | 0 |\n"));
+    rt_free(table);
+    json_decref(rows);
+}
+
+static int nothing_is_kept(void **state) {
+    (void)state;
+    return rt_alloc_live() == 0 ? 0 : -1;
+}
+
+RT_TEST_GROUP(verify) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_failure_can_be_replayed_until_it_is_mended),
+        cmocka_unit_test(threads_and_interruptions_change_no_byte),
+        cmocka_unit_test(another_run_is_not_gone_on_with),
+        cmocka_unit_test(a_failure_that_takes_its_neighbours_is_kept_with_them),
+        cmocka_unit_test(a_replay_file_needs_no_other_file),
+        cmocka_unit_test(what_is_no_replay_file_is_refused),
+        cmocka_unit_test(rows_add_up_over_the_parameters_of_an_accelerator),
+    };
+    return cmocka_run_group_tests(tests, NULL, nothing_is_kept);
+}
