@@ -234,7 +234,23 @@ refuses 'occupied.*(directory|folder)' run small.yaml --out occupied
 does run small.yaml
 does run small.yaml --resume
 does reproduce results/small
-sed -i 's/,50,/,49,/' results/small/counts.csv
-"$program" reproduce results/small >stdout 2>stderr && complain 'raytally reproduce: takes counts that differ'
+cp results/small/counts.csv counted
+# differs WHERE THERE NOW: from what is counted now
+differs() {
+    "$program" reproduce results/small >stdout 2>stderr && complain "raytally reproduce: takes counts that differ"
+    message=$(tr '\n' ' ' <stderr)
+    [[ $message =~ counts\.csv:$1:.*there:\ *$2\ *now:\ *$3\ *$ ]] ||
+        complain "raytally reproduce: does not say that line $1 has '$2', not '$3': $message"
+    cp counted results/small/counts.csv
+}
+lines=$(wc -l <counted) last=$(tail -n 1 counted)
+sed -i '$s/,50,/,49,/' results/small/counts.csv
+differs "$lines" "${last/,50,/,49,}" "$last"
+echo >>results/small/counts.csv
+differs $((lines + 1)) '' '\(nothing more\)'
+sed -i '$d' results/small/counts.csv
+differs "$lines" '\(nothing more\)' "$last"
+head -c -1 counted >results/small/counts.csv
+differs "$lines" "$last \(without an end of line\)" "$last"
 
 [ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }
