@@ -48,6 +48,13 @@ expect passes check_layers.sh "an accelerator in a folder of its own"
 echo 'extern const RtAccelOps rt_octree_ops;' >>"$tree/accel/grid.c"
 expect fails check_layers.sh "an accelerator that names another"
 
+fresh_tree && printf '%s\n' '/* by log(1 + x) */' ' * or pow(x, y)' 'double root = sqrt(rt_log(x));' >>"$tree/accel/grid.c"
+expect passes check_libm.sh "a root, a logarithm of our own, and others in comments"
+for call in 'tan(x)' 'powf(x, 2)' 'log1p(x)' 'fma(x, y, z)'; do
+    fresh_tree && echo "double y = 2 * $call;" >>"$tree/scenes/balls.c"
+    expect fails check_libm.sh "$call"
+done
+
 fresh_tree && touch "$tree/accel/octree.c"
 expect fails check_files.sh "a file that is not built"
 fresh_tree && touch "$tree/tests/test_octree.c"
