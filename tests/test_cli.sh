@@ -57,6 +57,8 @@ does --version
 does accels --json
 refuses 'Usage: raytally COMMAND'
 refuses "no command 'rendr': did you mean 'render'.*--help" rendr
+refuses "no command 'bnch': did you mean 'bench'.*--help" help bnch
+refuses "no command 'nonsense'.*--help" help nonsense
 refuses "unrecognized option '--bogus'.*--help" accels --bogus
 refuses "no accelerator 'grd': did you mean 'grid'.*raytally accels" accels grd
 "$program" accels >/dev/full 2>stderr
@@ -64,6 +66,8 @@ refuses "no accelerator 'grd': did you mean 'grid'.*raytally accels" accels grd
 rm stderr
 for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
     does "$command" --help
+    cmp -s <("$program" "$command" --help) <("$program" help "$command") ||
+        complain "raytally help $command: says something other than raytally $command --help"
     refuses "unrecognized option '--bogus'.*$command --help" "$command" --bogus
 done
 for command in render info convert; do
