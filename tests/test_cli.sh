@@ -218,6 +218,19 @@ does render family:csg,seed=7 --size 8x8 -o family.png
 does convert family:shared,seed=7 family.yaml
 refuses 'no family of scenes .*slivers' info family:
 does verify tetra:size=1 --accel bvh --rays 10 --out verified
+mkdir 'a folder'
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 3' | tee 'my scene.obj' 'a folder/Größe & Co.obj' >/dev/null
+for scene in 'my scene.obj' 'a folder/Größe & Co.obj'; do
+    does info "$scene"
+    does render "$scene" --size 8x8 -o blank.png
+    does bench "$scene" --accel bvh --size 8x8 --count-only --csv blank.csv
+    does verify "$scene" --accel bvh --rays 10 --out "${scene%.obj} verified"
+    does convert "$scene" "${scene%.obj}.yaml"
+    yaml blank 'name: blank' 'question: b' 'prediction: c' "scenes: [{scene: '$scene'}]" 'accelerators: [{accel: bvh}]' \
+        'count_only: true'
+    does run blank.yaml
+    does reproduce results/blank
+done
 refuses 'verified is no result directory of an experiment' report verified
 
 # ---- and what is right works: the same scenes without their mistake ----
