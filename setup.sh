@@ -59,11 +59,16 @@ install_missing() {
     [ -z "$names" ] || die "packages are missing; as root: apt-get install --no-install-recommends $names"
 }
 
-# build PRESET [CMAKE OPTION...]
+# build PRESET [CMAKE OPTION...]: from the beginning where build/PRESET came with a copy of another tree, which cmake refuses
 build() {
-    local preset=$1
+    local preset=$1 made_for fresh=()
     say "building build/$preset"
-    logged "build/$preset.log" cmake --preset "$@" || die "cmake failed: build/$preset.log"
+    made_for=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "build/$preset/CMakeCache.txt" 2>/dev/null || true)
+    if [ -n "$made_for" ] && ! [ "$made_for" -ef . ]; then
+        say "build/$preset was made for $made_for: configuring it afresh for $PWD"
+        fresh=(--fresh)
+    fi
+    logged "build/$preset.log" cmake "${fresh[@]}" --preset "$@" || die "cmake failed: build/$preset.log"
     grep -A 3 'CMake Warning' "build/$preset.log" | grep '^  ' || true
     logged "build/$preset.log" cmake --build --preset "$preset" -j "$(nproc)" || die "the build failed: build/$preset.log"
 }

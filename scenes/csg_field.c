@@ -61,8 +61,8 @@ static RtVec3 narrow_offset(RtVec3d center, RtVec3d direction, double length) {
 }
 
 static RtStatus add_turned_box(Field *f, RtVec3d center, double size, uint32_t *index) {
-    RtVec3 half = {(float)(size * between(f, 0.3, 1)), (float)(size * between(f, 0.3, 1)),
-                   (float)(size * between(f, 0.3, 1))};
+    RtVec3 half;
+    for (int a = 0; a < 3; a++) half.at[a] = (float)(size * between(f, 0.3, 1));
     RtTransform place = rt_transform_identity();
     RtVec3 axis = rt_narrow(rt_random_direction(&f->random));
     uint32_t standing;
@@ -73,8 +73,8 @@ static RtStatus add_turned_box(Field *f, RtVec3d center, double size, uint32_t *
 }
 
 static RtStatus add_solid(Field *f, uint32_t *index) {
-    RtVec3d center =
-        rt_add_scaledd(f->center, rt_random_direction(&f->random), f->radius * between(f, 0, 0.7));
+    double away = f->radius * between(f, 0, 0.7);
+    RtVec3d center = rt_add_scaledd(f->center, rt_random_direction(&f->random), away);
     RtVec3d axis = rt_random_direction(&f->random);
     double size = f->radius * between(f, 0.12, 0.3);
     RtVec3 base = narrow_offset(center, axis, -size), apex = narrow_offset(center, axis, size);

@@ -50,7 +50,8 @@ static RtVec3d in_cube(RtRandom *random) {
 
 static Place uniform(RtRandom *random, uint32_t i, uint32_t count) {
     (void)i, (void)count;
-    return (Place){in_cube(random), rt_random_betweend(random, 0.02, 0.2)};
+    RtVec3d p = in_cube(random);
+    return (Place){p, rt_random_betweend(random, 0.02, 0.2)};
 }
 
 static Place coincident(RtRandom *random, uint32_t i, uint32_t count) {
@@ -79,7 +80,8 @@ static Place huge_beside_tiny(RtRandom *random, uint32_t i, uint32_t count) {
 static Place clustered(RtRandom *random, uint32_t i, uint32_t count) {
     (void)count;
     RtVec3d corner = {i & 1 ? 0.75 : -0.75, i & 2 ? 0.75 : -0.75, i & 4 ? 0.75 : -0.75};
-    return (Place){rt_add_scaledd(corner, in_cube(random), 0.01), rt_random_betweend(random, 0.001, 0.005)};
+    RtVec3d p = rt_add_scaledd(corner, in_cube(random), 0.01);
+    return (Place){p, rt_random_betweend(random, 0.001, 0.005)};
 }
 
 /* Every four in a row are alike. */

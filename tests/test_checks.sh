@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The checks of the tree find what they are there for: each is shown a small tree that breaks the rule.
+# The checks of the tree find what they are there for: each is shown a small tree that breaks the rule. And setup.sh builds
+# a tree that was copied with its build folder.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 tree=$(mktemp -d) && trap 'rm -rf "$tree"' EXIT
@@ -50,11 +51,37 @@ expect passes check_layers.sh "an accelerator in a folder of its own"
 echo 'extern const RtAccelOps rt_octree_ops;' >>"$tree/accel/grid.c"
 expect fails check_layers.sh "an accelerator that names another"
 
+fresh_tree && printf '%s\n' '/* by log(1 + x) */' ' * or pow(x, y)' 'double root = sqrt(rt_log(x));' >>"$tree/accel/grid.c"
+expect passes check_libm.sh "a root, a logarithm of our own, and others in comments"
+for call in 'tan(x)' 'powf(x, 2)' 'log1p(x)' 'fma(x, y, z)'; do
+    fresh_tree && echo "double y = 2 * $call;" >>"$tree/scenes/balls.c"
+    expect fails check_libm.sh "$call"
+done
+
 fresh_tree && touch "$tree/accel/octree.c"
 expect fails check_files.sh "a file that is not built"
 fresh_tree && touch "$tree/tests/accel/test_octree.c"
 expect fails check_files.sh "a test that is not registered"
 fresh_tree && touch "$tree/accel/grid_c.c" && sed -i 's|accel/grid\.c|accel/grid.c.orig|' "$tree/CMakeLists.txt"
 expect fails check_files.sh "a name that only resembles one in the list"
+
+# built TREE: what setup.sh says while it builds a tree that is as small as can be
+built() {
+    bash -c 'source "$0/setup.sh" && build release' "$1" && [ -e "$1/build/release/made" ]
+}
+mkdir "$tree/original" && cp "$here/../setup.sh" "$here/../CMakePresets.json" "$tree/original"
+printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(small NONE)' \
+    'add_custom_target(made ALL ${CMAKE_COMMAND} -E touch made)' >"$tree/original/CMakeLists.txt"
+for round in first second; do
+    said=$(built "$tree/original") && [[ $said != *afresh* ]] || {
+        echo "setup.sh: the $round time a tree is built: $said"
+        failures=$((failures + 1))
+    }
+done
+cp -r "$tree/original" "$tree/copy" && rm "$tree/copy/build/release/made"
+said=$(built "$tree/copy") && [[ $said == *"made for $tree/original: configuring it afresh for $tree/copy"* ]] || {
+    echo "setup.sh: where the tree is a copy: $said"
+    failures=$((failures + 1))
+}
 
 [ "$failures" = 0 ]

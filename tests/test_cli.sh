@@ -57,6 +57,8 @@ does --version
 does accels --json
 refuses 'Usage: raytally COMMAND'
 refuses "no command 'rendr': did you mean 'render'.*--help" rendr
+refuses "no command 'bnch': did you mean 'bench'.*--help" help bnch
+refuses "no command 'nonsense'.*--help" help nonsense
 refuses "unrecognized option '--bogus'.*--help" accels --bogus
 refuses "no accelerator 'grd': did you mean 'grid'.*raytally accels" accels grd
 "$program" accels >/dev/full 2>stderr
@@ -64,6 +66,8 @@ refuses "no accelerator 'grd': did you mean 'grid'.*raytally accels" accels grd
 rm stderr
 for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
     does "$command" --help
+    cmp -s <("$program" "$command" --help) <("$program" help "$command") ||
+        complain "raytally help $command: says something other than raytally $command --help"
     refuses "unrecognized option '--bogus'.*$command --help" "$command" --bogus
 done
 for command in render info convert; do
@@ -215,6 +219,19 @@ does convert family:kind=shared,seed=7 family.yaml
 refuses "no built-in scene 'famly': did you mean 'family'" scenes famly
 refuses 'empty|one-sphere' info family:kind=
 does verify tetra:size=1 --accel bvh --rays 10 --out verified
+mkdir 'a folder'
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 0 1 0' 'f 1 2 3' | tee 'my scene.obj' 'a folder/Größe & Co.obj' >/dev/null
+for scene in 'my scene.obj' 'a folder/Größe & Co.obj'; do
+    does info "$scene"
+    does render "$scene" --size 8x8 -o blank.png
+    does bench "$scene" --accel bvh --size 8x8 --count-only --csv blank.csv
+    does verify "$scene" --accel bvh --rays 10 --out "${scene%.obj} verified"
+    does convert "$scene" "${scene%.obj}.yaml"
+    yaml blank 'name: blank' 'question: b' 'prediction: c' "scenes: [{scene: '$scene'}]" 'accelerators: [{accel: bvh}]' \
+        'count_only: true'
+    does run blank.yaml
+    does reproduce results/blank
+done
 refuses 'verified is no result directory of an experiment' report verified
 
 # ---- and what is right works: the same scenes without their mistake ----
@@ -235,7 +252,23 @@ refuses 'occupied.*(directory|folder)' run small.yaml --out occupied
 does run small.yaml
 does run small.yaml --resume
 does reproduce results/small
-sed -i 's/,50,/,49,/' results/small/counts.csv
-"$program" reproduce results/small >stdout 2>stderr && complain 'raytally reproduce: takes counts that differ'
+cp results/small/counts.csv counted
+# differs WHERE THERE NOW: from what is counted now
+differs() {
+    "$program" reproduce results/small >stdout 2>stderr && complain "raytally reproduce: takes counts that differ"
+    message=$(tr '\n' ' ' <stderr)
+    [[ $message =~ counts\.csv:$1:.*there:\ *$2\ *now:\ *$3\ *$ ]] ||
+        complain "raytally reproduce: does not say that line $1 has '$2', not '$3': $message"
+    cp counted results/small/counts.csv
+}
+lines=$(wc -l <counted) last=$(tail -n 1 counted)
+sed -i '$s/,50,/,49,/' results/small/counts.csv
+differs "$lines" "${last/,50,/,49,}" "$last"
+echo >>results/small/counts.csv
+differs $((lines + 1)) '' '\(nothing more\)'
+sed -i '$d' results/small/counts.csv
+differs "$lines" '\(nothing more\)' "$last"
+head -c -1 counted >results/small/counts.csv
+differs "$lines" "$last \(without an end of line\)" "$last"
 
 [ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }

@@ -1,10 +1,14 @@
-/* Logarithm, cube root, sine and cosine from + - * / alone: libraries differ in their last bits, these are
- * the same with every compiler and library. For what is computed once, such as built-in scenes. */
+/* Logarithm, powers, cube root, sine and cosine from + - * / alone: libraries differ in their last bits,
+ * these are the same with every compiler and library. Rays, hits, counts and images depend on no others. */
 #ifndef RT_BASE_ELEMENTARY_H
 #define RT_BASE_ELEMENTARY_H
 
-/* The natural logarithm of a normal number x > 0, to within one unit in the last place. */
+/* The natural logarithm of a finite x > 0, to within one unit in the last place. */
 double rt_log(double x);
+
+/* p, x to the power y, for finite x > 0 and y: to within 4e-16 (1 + |log p|) p, and exact where p is 1
+ * because x is 1 or y is 0. 0 where log p is below -708, infinite where it is above 709. */
+double rt_power(double x, double y);
 
 /* The cube root of a normal number x > 0, to within 4e-16 of itself. */
 double rt_cube_root(double x);
@@ -13,7 +17,7 @@ typedef struct RtTurn {
     double cosine, sine;
 } RtTurn;
 
-/* Of an angle in degrees, at most 1e15, each to within 4e-16; multiples of 90 degrees are exact. */
+/* Of any finite angle in degrees, each to within 4e-16; multiples of 90 degrees are exact. */
 RtTurn rt_turn(double degrees);
 
 #endif

@@ -1,6 +1,7 @@
 /* Counter-based random numbers (Philox 4x32-10, Salmon et al. 2011, through Random123): the nth number of a
  * stream is a function of (seed, stream, n) alone, so any part of an experiment can be generated on its own
- * and on any thread. Uniform numbers use + - * only; the same bits everywhere. */
+ * and on any thread. Uniform numbers use + - * only; the same bits everywhere, as long as no two are drawn in
+ * one list of initialisers or arguments, nor on both sides of an operator: C leaves their order open. */
 #ifndef RT_BASE_RANDOM_H
 #define RT_BASE_RANDOM_H
 

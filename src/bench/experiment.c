@@ -16,6 +16,11 @@ void rt_experiment_init(RtExperiment *experiment) {
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) experiment->kinds[k] = (RtRayKind)k;
 }
 
+/* Whether labels may have this character: they name rows of CSV, plots and files of images. */
+static bool may_name(char c) {
+    return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
+}
+
 RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder, RtError *error) {
     if (strlen(spec) >= sizeof trial->spec) {
         return rt_fail(error, RT_BAD_INPUT, "%.40s...: a scene has at most %zu characters", spec,
@@ -26,6 +31,9 @@ RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder
     const char *slash = trial->file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
     size_t length = trial->file ? strcspn(start, ".") : strlen(start);
     snprintf(trial->label, RT_MAX_LABEL, "%.*s", (int)length, start);
+    for (char *c = trial->label; *c; c++) {
+        if (!may_name(*c)) *c = '_';
+    }
     return rt_path_join(trial->file ? folder : "", spec, trial->path, error);
 }
 
@@ -58,7 +66,7 @@ static RtStatus check_label(const char *label, RtError *error) {
         return rt_fail(error, RT_BAD_INPUT, "the label 'null' is taken by the baseline's second measurement");
     }
     for (const char *c = label; *c; c++) {
-        if (isgraph((unsigned char)*c) && !strchr("\"'`/\\$&<>@^{}", *c)) continue;
+        if (may_name(*c)) continue;
         return rt_fail(error, RT_BAD_INPUT,
                        "'%s' cannot name a row or a plot: give a `label` without blanks, quotes and any of "
                        "/ \\ $ & < > @ ^ { }",

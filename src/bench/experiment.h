@@ -109,8 +109,8 @@ uint32_t rt_contender_find(const RtExperiment *experiment, const char *label, ui
 uint32_t rt_trial_find(const RtExperiment *experiment, const char *label);
 
 /* Sets spec, path, file and a label made from them: the file's name without folder and extension, or the
- * built-in as it is written. A dot or a slash before the first colon makes `spec` a file, seen from
- * `folder`. */
+ * built-in as it is written, with _ for what a label may not have. A dot or a slash before the first colon
+ * makes `spec` a file, seen from `folder`. */
 RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder, RtError *error);
 
 /* What every experiment must satisfy however it came about; marks contenders that this build lacks. *where

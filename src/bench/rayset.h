@@ -35,8 +35,8 @@ RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t every, RtRaySet *to, RtEr
 
 /* At most `limit` rays, evenly spread, in runs of `together` neighbours: of every ceil(count / limit) runs
  * one is kept. Runs of 1 thin the set as above: the widest spread, for counting. Longer ones, up to a
- * sixteenth of `limit`, are picked at random within their group and keep the coherence that packets and
- * caches live on, for timing. */
+ * 64th of `limit`, are picked at random within their group and keep the coherence that packets and caches
+ * live on, for timing. */
 RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t together, RtRaySet *to,
                          RtError *error);
 

@@ -26,9 +26,11 @@ typedef struct Options {
     uint32_t samples, depth;
     int threads;
     bool corners, check;
-    const char *png, *exr, *heatmap, *structure, *stats; /* paths, or NULL */
-    size_t heatmap_counter;
+    const char *png, *exr, *structure, *stats;    /* paths, or NULL */
+    const char *heatmaps[RT_TALLY_COUNTER_COUNT]; /* by counter */
 } Options;
+
+enum { MOST_OUTPUTS = RT_TALLY_COUNTER_COUNT + 4 };
 
 enum { KEY_CORNERS = 256, KEY_HEATMAP, KEY_STRUCTURE, KEY_STATS, KEY_CHECK };
 
@@ -41,7 +43,9 @@ static const struct argp_option options[] = {
     {"threads", 't', "N", 0, "Threads (default: all processors)", 0},
     {"output", 'o', "FILE", 0, "The image, .png or .exr; may be given once for each", 0},
     {"heatmap", KEY_HEATMAP, "COUNTER FILE.png", 0,
-     "What each pixel cost: object_tests, extent_tests, steps, or any other counter", 0},
+     "What each pixel cost: object_tests, extent_tests, steps, or any other counter; may be given once for "
+     "each",
+     0},
     {"structure", KEY_STRUCTURE, "FILE.png", 0, "The boxes of the accelerator over the image", 0},
     {"stats", KEY_STATS, "FILE.json", 0, "Counts by ray kind, times and sizes", 0},
     {"check", KEY_CHECK, 0, 0,
@@ -55,12 +59,13 @@ static bool has_extension(const char *path, const char *extension) {
     return length > tail && strcmp(path + length - tail, extension) == 0;
 }
 
-static const char *checked_path(struct argp_state *state, const char *option, const char *path,
-                                const char *extension) {
+static void set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
+                     const char *extension) {
     if (!has_extension(path, extension)) {
         argp_error(state, "%s: '%s' will not do: its name must end in %s", option, path, extension);
     }
-    return path;
+    if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
+    *slot = path;
 }
 
 static size_t counter_by_name(struct argp_state *state, const char *name) {
@@ -86,12 +91,47 @@ static void parse_output(Options *o, struct argp_state *state, const char *path)
     *slot = path;
 }
 
+static void parse_heatmap(Options *o, struct argp_state *state, const char *counter) {
+    const char **slot = &o->heatmaps[counter_by_name(state, counter)];
+    if (state->next >= state->argc) argp_error(state, "--heatmap: a FILE.png is needed after the counter");
+    char option[64];
+    snprintf(option, sizeof option, "--heatmap %s", counter);
+    set_path(state, option, slot, state->argv[state->next++], ".png");
+}
+
+static bool any_heatmap(const Options *o) {
+    size_t i = 0;
+    while (i < RT_TALLY_COUNTER_COUNT && !o->heatmaps[i]) i++;
+    return i < RT_TALLY_COUNTER_COUNT;
+}
+
+/* All that is to be written; returns how many files. */
+static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
+    const char *const others[] = {o->png, o->exr, o->structure, o->stats};
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        if (others[i]) paths[count++] = others[i];
+    }
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        if (o->heatmaps[i]) paths[count++] = o->heatmaps[i];
+    }
+    return count;
+}
+
 static void check_options(const Options *o, struct argp_state *state) {
+    const char *paths[MOST_OUTPUTS];
+    size_t count = list_outputs(o, paths);
     if (!o->scene)
         argp_error(state,
                    "a SCENE is needed: a file or a built-in, as in `raytally render balls -o balls.png`");
-    if (!o->png && !o->exr && !o->heatmap && !o->structure && !o->stats && !o->check) {
+    if (count == 0 && !o->check) {
         argp_error(state, "nothing to make: give -o FILE.png, or --heatmap, --structure, --stats or --check");
+    }
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < i; k++) {
+            if (strcmp(paths[k], paths[i]) != 0) continue;
+            argp_error(state, "'%s' would be written twice: give each its own file", paths[i]);
+        }
     }
 }
 
@@ -106,14 +146,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'o': parse_output(o, state, argument); return 0;
     case KEY_CORNERS: o->corners = true; return 0;
     case KEY_CHECK: o->check = true; return 0;
-    case KEY_STRUCTURE: o->structure = checked_path(state, "--structure", argument, ".png"); return 0;
-    case KEY_STATS: o->stats = checked_path(state, "--stats", argument, ".json"); return 0;
-    case KEY_HEATMAP:
-        o->heatmap_counter = counter_by_name(state, argument);
-        if (state->next >= state->argc)
-            argp_error(state, "--heatmap: a FILE.png is needed after the counter");
-        o->heatmap = checked_path(state, "--heatmap", state->argv[state->next++], ".png");
-        return 0;
+    case KEY_STRUCTURE: set_path(state, "--structure", &o->structure, argument, ".png"); return 0;
+    case KEY_STATS: set_path(state, "--stats", &o->stats, argument, ".json"); return 0;
+    case KEY_HEATMAP: parse_heatmap(o, state, argument); return 0;
     case ARGP_KEY_ARG:
         if (o->scene) argp_error(state, "one SCENE at a time: '%s' is too much", argument);
         o->scene = argument;
@@ -164,7 +199,7 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->sink = count_by_kind;
     f->sink_context = run;
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
-    if (!o->heatmap && !o->stats && !o->exr) return RT_OK;
+    if (!o->stats && !o->exr && !any_heatmap(o)) return RT_OK;
     f->progress_context = "counting";
     f->counted = true;
     f->sink = NULL;
@@ -199,9 +234,10 @@ static RtStatus write_images(const Run *run, RtError *error) {
         if (status == RT_OK && o->structure) status = rt_png_write(&image, o->structure, error);
         rt_image_clear(&image);
     }
-    if (status == RT_OK && o->heatmap) {
-        status = rt_heatmap(&image, &run->counted, o->heatmap_counter, error);
-        if (status == RT_OK) status = rt_png_write(&image, o->heatmap, error);
+    for (size_t i = 0; status == RT_OK && i < RT_TALLY_COUNTER_COUNT; i++) {
+        if (!o->heatmaps[i]) continue;
+        status = rt_heatmap(&image, &run->counted, i, error);
+        if (status == RT_OK) status = rt_png_write(&image, o->heatmaps[i], error);
         rt_image_clear(&image);
     }
     return status;
@@ -257,14 +293,10 @@ static void print_summary(const Run *run) {
     uint64_t rays = total_rays(run);
     printf("%llu rays in %.3g s on %d threads: %.3g Mrays/s.", (unsigned long long)rays, run->timed.seconds,
            rt_thread_count(o->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
-    const char *const written[] = {o->png, o->exr, o->heatmap, o->structure, o->stats};
-    const char *before = " Wrote ";
-    for (size_t i = 0; i < sizeof written / sizeof written[0]; i++) {
-        if (!written[i]) continue;
-        printf("%s%s", before, written[i]);
-        before = ", ";
-    }
-    puts(before[0] == ',' ? "." : "");
+    const char *written[MOST_OUTPUTS];
+    size_t count = list_outputs(o, written);
+    for (size_t i = 0; i < count; i++) printf("%s%s", i ? ", " : " Wrote ", written[i]);
+    puts(count ? "." : "");
 }
 
 /* ---- the check ---- */

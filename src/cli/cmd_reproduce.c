@@ -24,19 +24,28 @@ static RtStatus count_again(RtResults *results, RtError *error) {
     return status;
 }
 
+/* What stands behind a line, if not the next one. */
+static const char *end_of_line(const char *line) {
+    return *line == '\0'                       ? "(nothing more)"
+           : line[strcspn(line, "\n")] == '\0' ? " (without an end of line)"
+                                               : "";
+}
+
 /* RT_MISMATCH with the first line that differs. */
 static RtStatus compare(const char *path, const char *kept, const char *counted, RtError *error) {
     if (strcmp(kept, counted) == 0) return RT_OK;
-    size_t line = 1;
-    while (strcspn(kept, "\n") == strcspn(counted, "\n") &&
-           strncmp(kept, counted, strcspn(kept, "\n")) == 0 && kept[strcspn(kept, "\n")]) {
-        kept += strcspn(kept, "\n") + 1;
-        counted += strcspn(counted, "\n") + 1;
+    size_t line = 1, start = 0; /* of the line in hand: up to there the texts are alike */
+    for (size_t i = 0; kept[i] && kept[i] == counted[i]; i++) {
+        if (kept[i] != '\n') continue;
         line++;
+        start = i + 1;
     }
+    kept += start;
+    counted += start;
     return rt_fail(error, RT_MISMATCH,
-                   "%s:%zu: differs from what is counted now:\n  there: %.*s\n  now:   %.*s", path, line,
-                   (int)strcspn(kept, "\n"), kept, (int)strcspn(counted, "\n"), counted);
+                   "%s:%zu: differs from what is counted now:\n  there: %.*s%s\n  now:   %.*s%s", path, line,
+                   (int)strcspn(kept, "\n"), kept, end_of_line(kept), (int)strcspn(counted, "\n"), counted,
+                   end_of_line(counted));
 }
 
 static RtStatus compare_file(const char *directory, const RtExactFile *file, const RtResults *results,

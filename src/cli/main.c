@@ -30,7 +30,7 @@ static void print_usage(FILE *to) {
     for (int i = 0; i < COMMAND_COUNT; i++) {
         fprintf(to, "  %-9s %-14s %s\n", commands[i].name, commands[i].arguments, commands[i].summary);
     }
-    fprintf(to, "\n`raytally COMMAND --help` explains a command. To begin with:\n"
+    fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. To begin with:\n"
                 "  raytally accels                          what there is to compare\n"
                 "  raytally render balls -o balls.png       a picture\n"
                 "  raytally bench balls --accel bvh --accel grid   a comparison\n"
@@ -47,6 +47,26 @@ static int run_unknown(const char *name) {
     return RT_EXIT_BAD_INPUT;
 }
 
+static const RtCommand *find_command(const char *name) {
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        if (strcmp(commands[i].name, name) == 0) return &commands[i];
+    }
+    return NULL;
+}
+
+/* argv[0] is the command's name. */
+static int run_command(int argc, char **argv) {
+    const RtCommand *command = find_command(argv[0]);
+    if (!command) return run_unknown(argv[0]);
+    char title[64];
+    snprintf(title, sizeof title, "raytally %s", command->name);
+    argv[0] = title;
+    int code = command->run(argc, argv);
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    fprintf(stderr, "raytally: writing to standard output failed: is the disk full?\n");
+    return RT_EXIT_BAD_INPUT;
+}
+
 int main(int argc, char **argv) {
     argp_err_exit_status = RT_EXIT_BAD_INPUT;
     if (argc < 2) {
@@ -54,7 +74,12 @@ int main(int argc, char **argv) {
         return RT_EXIT_BAD_INPUT;
     }
     const char *name = argv[1];
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
+    bool help = strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0;
+    if (help && argc > 2) {
+        char option[] = "--help", *asked[] = {argv[2], option, NULL};
+        return run_command(2, asked);
+    }
+    if (help) {
         print_usage(stdout);
         return RT_EXIT_OK;
     }
@@ -62,15 +87,5 @@ int main(int argc, char **argv) {
         puts("raytally " RT_VERSION);
         return RT_EXIT_OK;
     }
-    for (int i = 0; i < COMMAND_COUNT; i++) {
-        if (strcmp(commands[i].name, name) != 0) continue;
-        char title[64];
-        snprintf(title, sizeof title, "raytally %s", name);
-        argv[1] = title;
-        int code = commands[i].run(argc - 1, argv + 1);
-        if (fflush(stdout) == 0 && !ferror(stdout)) return code;
-        fprintf(stderr, "raytally: writing to standard output failed: is the disk full?\n");
-        return RT_EXIT_BAD_INPUT;
-    }
-    return run_unknown(name);
+    return run_command(argc - 1, argv + 1);
 }

@@ -1,5 +1,6 @@
 #include "render/heatmap.h"
 
+#include "base/elementary.h"
 #include "render/draw.h"
 
 #include <stdio.h>
@@ -33,14 +34,22 @@ static Scale find_scale(const RtFrame *frame, size_t counter) {
 
 static double position(const Scale *scale, double value) {
     if (!(scale->most > 0)) return 0;
-    return scale->logarithmic ? log1p(value) / log1p(scale->most) : value / scale->most;
+    return scale->logarithmic ? rt_log(1 + value) / rt_log(1 + scale->most) : value / scale->most;
+}
+
+static double power_of_ten(int n) {
+    double power = 1;
+    for (int i = 0; i < n; i++) power *= 10;
+    return power;
 }
 
 /* The value of mark `i`: 0 and powers of ten, or steps of fifths to halves of the range in round numbers. */
 static double mark_value(const Scale *scale, int i) {
-    if (scale->logarithmic) return i > 0 ? pow(10, i - 1) : 0;
+    if (scale->logarithmic) return i > 0 ? power_of_ten(i - 1) : 0;
     if (!(scale->most > 0)) return i;
-    double power = pow(10, floor(log10(scale->most / 2)));
+    double power = 1; /* of ten, the greatest up to half the range */
+    while (10 * power <= scale->most / 2) power *= 10;
+    while (power > scale->most / 2) power /= 10;
     double step = scale->most / power >= 10 ? 5 * power : scale->most / power >= 5 ? 2 * power : power;
     return i * step;
 }

@@ -1,5 +1,6 @@
 #include "render/image.h"
 
+#include "base/elementary.h"
 #include "base/memory.h"
 
 RtStatus rt_image_init(RtImage *image, uint32_t width, uint32_t height, RtError *error) {
@@ -43,7 +44,7 @@ static uint8_t encode_srgb(float linear) {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 255;
     double x = (double)linear;
-    double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+    double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * rt_power(x, 1 / 2.4) - 0.055;
     return (uint8_t)(encoded * 255 + 0.5);
 }
 

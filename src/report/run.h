@@ -1,4 +1,4 @@
-/* Running an experiment into a result directory (DESIGN section 5), and working on one that is there.
+/* Running an experiment into a result directory, and working on one that is there.
  *
  *   cells.jsonl      the journal: everything found, line by line as it was found
  *   experiment.yaml  a copy of what was run

@@ -1,5 +1,7 @@
 #include "scene/camera.h"
 
+#include "base/elementary.h"
+
 #include <stdio.h>
 
 bool rt_image_size_parse(const char *text, uint32_t *width, uint32_t *height) {
@@ -55,9 +57,8 @@ RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling,
     }
     right = rt_normalized(right);
     RtVec3d down = rt_crossd(forward, right);
-    /* tan is the one library function on the way to a ray; rounding it to float32 hides its last bits, in
-     * which libraries may differ. */
-    double half_height = (double)(float)tan((double)camera->fov * (3.14159265358979323846 / 360));
+    RtTurn half = rt_turn((double)camera->fov / 2);
+    double half_height = (double)(float)(half.sine / half.cosine);
     double half_width = half_height * sampling.width / sampling.height;
     *view = (RtView){.sampling = sampling,
                      .eye = rt_widen(camera->from),

@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include "base/elementary.h"
 #include "base/memory.h"
 
 #include <assert.h>
@@ -171,8 +172,7 @@ static void place_camera(RtCamera *camera, const RtBox *box) {
     RtVec3d side = fabs(up.x) < 0.5 ? rt_vec3d(1, 0, 0) : rt_vec3d(0, 1, 0);
     RtVec3d front = rt_normalized(rt_crossd(side, up));
     RtVec3d towards = rt_addd(rt_scaled(front, 1), rt_addd(rt_scaled(side, 0.4), rt_scaled(up, 0.3)));
-    double half_angle = (double)camera->fov * (3.14159265358979323846 / 360);
-    double distance = 1.05 * radius / sin(half_angle);
+    double distance = 1.05 * radius / rt_turn((double)camera->fov / 2).sine;
     camera->at = rt_narrow(center);
     camera->from = within_bounds(rt_add_scaledd(center, rt_normalized(towards), distance));
 }

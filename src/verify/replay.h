@@ -5,9 +5,11 @@
  *   sampling             [columns, rows] of the camera's image, which item buffers depend on
  *   accel                the spec
  *   query, kernel        nearest or occluded, timed or counted
- *   stream, rays, asked  the rays in the order of asking, the length of streams, and which ray is in
- * question; floats in hexadecimal, bit for bit expected, got        the answers shrunk               the
- * objects that are left, by id, their scene as YAML, and the answers there */
+ *   stream, rays, asked  the length of streams, the rays in the order of asking, floats in hexadecimal, bit
+ *                        for bit, and which of the rays is in question
+ *   expected, got        brute's nearest hit of that ray, and what the accelerator answered
+ *   shrunk               null, or the objects that are left, by id, their scene as YAML, the answers there,
+ *                        and "minimal": whether each of them is needed for the answers to differ */
 #ifndef RT_VERIFY_REPLAY_H
 #define RT_VERIFY_REPLAY_H
 

@@ -21,9 +21,8 @@ static inline bool embree_is_built_in(void) {
 /* ---- scenes and rays ---- */
 
 static inline void add_triangle(RtScene *scene, RtRandom *random, float size, float edge) {
-    RtVec3 corner = rt_random_point(random, size);
-    RtVec3 v[3] = {corner, rt_add(corner, rt_random_point(random, edge)),
-                   rt_add(corner, rt_random_point(random, edge))};
+    RtVec3 corner = rt_random_point(random, size), v[3] = {corner};
+    for (int i = 1; i < 3; i++) v[i] = rt_add(corner, rt_random_point(random, edge));
     assert_ok(rt_scene_add_triangle(scene, 0, v, NULL, error));
 }
 

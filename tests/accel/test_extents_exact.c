@@ -169,7 +169,8 @@ static void every_kind_answers_like_brute_among_the_least_numbers(void **state) 
     RtScene scene;
     begin_scene(&scene);
     for (int i = 0; i < 40; i++) {
-        RtVec3 v[3] = {least_point(&random), least_point(&random), least_point(&random)};
+        RtVec3 v[3];
+        for (int k = 0; k < 3; k++) v[k] = least_point(&random);
         assert_ok(rt_scene_add_triangle(&scene, 0, v, NULL, error));
     }
     assert_ok(rt_scene_finish(&scene, error));

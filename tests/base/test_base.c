@@ -211,6 +211,51 @@ static void sines_and_cosines_are_within_their_bound(void **state) {
     }
 }
 
+static void any_finite_angle_is_turned_by(void **state) {
+    (void)state;
+    static const double angles[] = {1e15, 0x1p60, 1e300, 0x1.fffffffffffffp1023};
+    for (size_t i = 0; i < sizeof angles / sizeof angles[0]; i++) {
+        RtTurn far = rt_turn(angles[i]), near = rt_turn(fmod(angles[i], 360));
+        assert_true(far.sine == near.sine && far.cosine == near.cosine);
+    }
+}
+
+/* Half the height of a view is the tangent of half its angle. */
+static void tangents_of_views_are_rounded_rightly_to_float32(void **state) {
+    (void)state;
+    for (int i = 1; i < 180000; i++) {
+        float degrees = (float)(i / 1000.0);
+        RtTurn half = rt_turn((double)degrees / 2);
+        long double tangent = tanl((long double)degrees * 3.14159265358979323846264L / 360);
+        assert_true((float)(half.sine / half.cosine) == (float)tangent);
+    }
+}
+
+static void powers_are_within_their_bound(void **state) {
+    (void)state;
+    RtRandom random = rt_random(3, 0);
+    for (int i = 0; i < 200000; i++) {
+        double x = ldexp(rt_random_betweend(&random, 0.5, 2),
+                         i % 2 ? 0 : (int)(rt_random_below(&random, 200)) - 100);
+        double y = i % 4 < 2 ? rt_random_betweend(&random, -5, 5) : rt_random_betweend(&random, 0, 1000);
+        long double exact = powl((long double)x, (long double)y), logarithm = logl(exact);
+        if (logarithm < -708)
+            assert_true(rt_power(x, y) == 0);
+        else if (logarithm > 709)
+            assert_true(rt_power(x, y) == HUGE_VAL);
+        else
+            assert_true(fabsl((long double)rt_power(x, y) - exact) <=
+                        4e-16L * (1 + fabsl(logarithm)) * exact);
+    }
+}
+
+static void powers_of_one_and_to_nothing_are_exact(void **state) {
+    (void)state;
+    assert_true(rt_power(1, 1e6) == 1 && rt_power(1, -0.3) == 1);
+    assert_true(rt_power(1e-300, 0) == 1 && rt_power(0x1p-1074, 0) == 1);
+    assert_true(rt_power(0x1p-1074, 1e6) == 0 && rt_power(1e300, 1e300) == HUGE_VAL);
+}
+
 static void quarter_turns_are_exact(void **state) {
     (void)state;
     static const double cosines[4] = {1, 0, -1, 0};
@@ -235,6 +280,10 @@ RT_TEST_GROUP(base) {
         cmocka_unit_test(cube_roots_are_within_their_bound),
         cmocka_unit_test(sines_and_cosines_are_within_their_bound),
         cmocka_unit_test(quarter_turns_are_exact),
+        cmocka_unit_test(any_finite_angle_is_turned_by),
+        cmocka_unit_test(tangents_of_views_are_rounded_rightly_to_float32),
+        cmocka_unit_test(powers_are_within_their_bound),
+        cmocka_unit_test(powers_of_one_and_to_nothing_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

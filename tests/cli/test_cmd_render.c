@@ -108,6 +108,31 @@ static void everything_is_written_at_once_and_the_image_depends_on_no_thread(voi
     }
 }
 
+static void every_heatmap_asked_for_is_written(void **state) {
+    (void)state;
+    static const char *const counters[] = {"object_tests", "extent_tests", "steps"};
+    char alone[256], together[1024] = "balls:size=2 --size 80x60";
+    for (int i = 0; i < 3; i++) {
+        snprintf(alone, sizeof alone, "balls:size=2 --size 80x60 --heatmap %s " OUT ".%d.png", counters[i],
+                 i);
+        assert_int_equal(render(alone), 0);
+        size_t used = strlen(together);
+        snprintf(together + used, sizeof together - used, " --heatmap %s " OUT ".with.%d.png", counters[i],
+                 i);
+    }
+    assert_int_equal(render(together), 0);
+    for (int i = 0; i < 3; i++) {
+        char a[256], b[256], compare[600];
+        snprintf(a, sizeof a, OUT ".%d.png", i);
+        snprintf(b, sizeof b, OUT ".with.%d.png", i);
+        assert_says(b);
+        snprintf(compare, sizeof compare, "cmp '%s' '%s'", a, b);
+        assert_int_equal(system(compare), 0);
+        unlink(a);
+        unlink(b);
+    }
+}
+
 static void a_check_compares_every_ray_with_brute(void **state) {
     (void)state;
     assert_int_equal(render("balls:size=2 --size 64x64 --accel grid --check"), 0);
@@ -140,6 +165,10 @@ static void wrong_usage_exits_with_2_and_says_what_would_be_right(void **state) 
         {"balls --threads 1000000000 -o " OUT ".png", "1..1024"},
         {"balls --heatmap steps", "FILE.png"},
         {"balls --heatmap step " OUT ".png", "mean 'steps'"},
+        {"balls --heatmap steps " OUT ".png --heatmap steps " OUT ".2.png", "--heatmap steps: both"},
+        {"balls --heatmap steps " OUT ".png --heatmap object_tests " OUT ".png", "written twice"},
+        {"balls -o " OUT ".png --structure " OUT ".png", "written twice"},
+        {"balls --structure " OUT ".png --structure " OUT ".2.png", "--structure: both"},
         {"balls --stats " OUT ".txt", ".json"},
         {"balls --accel brute --structure " OUT ".png", "no boxes"},
         {"balls:size=1 --size 8x8 -o " OUT "/nowhere/a.png", "nowhere"},
@@ -157,6 +186,7 @@ RT_TEST_GROUP(cmd_render) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_databases_have_the_rays_that_spd_publishes),
         cmocka_unit_test(everything_is_written_at_once_and_the_image_depends_on_no_thread),
+        cmocka_unit_test(every_heatmap_asked_for_is_written),
         cmocka_unit_test(a_check_compares_every_ray_with_brute),
         cmocka_unit_test(wrong_usage_exits_with_2_and_says_what_would_be_right),
     };

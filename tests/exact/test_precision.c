@@ -152,7 +152,8 @@ static void t_of_a_needle_is_that_of_its_plane(void **state) {
     RtSlate slate = {0};
     int hits = 0;
     for (int i = 0; i < 20000; i++) {
-        RtVec3 v[3] = {rt_random_point(&random, 1), rt_random_point(&random, 1), rt_vec3(0, 0, 0)};
+        RtVec3 v[3];
+        for (int k = 0; k < 2; k++) v[k] = rt_random_point(&random, 1);
         float thin = rt_random_between(&random, 0x1p-20f, 0x1p-14f), along = rt_random_unit(&random);
         RtVec3 aside = rt_scale(rt_random_point(&random, 1), thin);
         v[2] = i % 2 ? rt_add(v[1], aside) : rt_add(rt_scale(rt_add(v[0], v[1]), 0.5f), aside);

@@ -7,12 +7,14 @@
 #include "render/heatmap.h"
 #include "render/image.h"
 #include "render/structure.h"
+#include "scene/load.h"
 
 #include <openexr.h>
 #include <png.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 #define PNG_FILE RT_BINARY_DIR "/test_image.png"
 #define EXR_FILE RT_BINARY_DIR "/test_image.exr"
@@ -80,6 +82,49 @@ static void linear_halves_are_written_as_srgb_188(void **state) {
     const uint8_t expected[9] = {188, 0, 255, 0, 255, 0, 3, 0, 137};
     assert_memory_equal(image.rgb, expected, 9);
     rt_image_clear(&image);
+}
+
+/* Also next to where the byte changes, be the power off by some 1e-12. */
+static void every_byte_of_srgb_begins_where_it_should(void **state) {
+    (void)state;
+    RtVec3 color[255];
+    RtFrame frame = {.color = color};
+    for (int i = 0; i < 255; i++) {
+        long double border = (i + 0.5L) / 255;
+        border = border <= 0.04045L ? border / 12.92L : powl((border + 0.055L) / 1.055L, 2.4L);
+        float above = (float)border;
+        if ((long double)above < border) above = nextafterf(above, 1);
+        color[i] = rt_vec3(nextafterf(above, 0), above, nextafterf(above, 1));
+    }
+    assert_ok(rt_sampling_init(&frame.sampling, 255, 1, 1, false, error));
+    RtImage image;
+    assert_ok(rt_image_from_frame(&image, &frame, error));
+    for (int i = 0; i < 255; i++) {
+        const uint8_t expected[3] = {(uint8_t)i, (uint8_t)(i + 1), (uint8_t)(i + 1)};
+        assert_memory_equal(image.rgb + 3 * i, expected, 3);
+    }
+    rt_image_clear(&image);
+}
+
+/* A change of shading changes these, too. */
+static void a_picture_of_mirrors_and_glass_has_the_same_bits_everywhere(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtFrame frame;
+    RtImage image;
+    RtFrameOptions options = {.depth = 5};
+    assert_ok(rt_scene_open(RT_SOURCE_DIR "/scenes/lecture.yaml", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 96, 64, 1, false, error));
+    assert_ok(rt_accel_open("bvh", &scene, &accel, error));
+    assert_ok(rt_frame_trace(&frame, accel, &options, error));
+    assert_ok(rt_image_from_frame(&image, &frame, error));
+    assert_int_equal(XXH3_64bits(frame.color, sizeof *frame.color * 96 * 64), UINT64_C(0x970bed9dfa2e0bd0));
+    assert_int_equal(XXH3_64bits(image.rgb, (size_t)3 * 96 * 64), UINT64_C(0x421a2f9d9d632117));
+    rt_image_clear(&image);
+    rt_frame_clear(&frame);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
 }
 
 static void a_pixel_is_the_mean_of_its_samples_or_of_its_corners(void **state) {
@@ -256,6 +301,8 @@ RT_TEST_GROUP(image) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_png_reads_back_as_the_image),
         cmocka_unit_test(linear_halves_are_written_as_srgb_188),
+        cmocka_unit_test(every_byte_of_srgb_begins_where_it_should),
+        cmocka_unit_test(a_picture_of_mirrors_and_glass_has_the_same_bits_everywhere),
         cmocka_unit_test(a_pixel_is_the_mean_of_its_samples_or_of_its_corners),
         cmocka_unit_test(an_exr_reads_back_with_colours_ids_depths_and_counts),
         cmocka_unit_test(a_file_that_cannot_be_written_is_a_status_and_leaves_nothing),

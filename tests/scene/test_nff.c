@@ -239,8 +239,8 @@ static void a_file_with_any_bytes_changed_is_read_or_refused(void **state) {
         RtRandom random = rt_random(2, run);
         memcpy(text, everything, sizeof text);
         for (int i = 0; i < 4; i++) {
-            text[rt_random_bits(&random) % (sizeof text - 1)] =
-                bytes[rt_random_bits(&random) % (sizeof bytes - 1)];
+            char byte = bytes[rt_random_bits(&random) % (sizeof bytes - 1)];
+            text[rt_random_bits(&random) % (sizeof text - 1)] = byte;
         }
         RtScene scene;
         RtError problem;

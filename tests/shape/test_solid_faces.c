@@ -354,7 +354,8 @@ static void hulls_of_random_points_hold_what_is_between_them(void **state) {
         assert_true(rt_box_contains(set.solids[hull].box, box));
         assert_true(rt_box_contains(rt_box_widened(box, 1e-5), set.solids[hull].box));
         for (int i = 0; i < 40; i++) {
-            RtRay ray = make_ray(rt_random_point(&random, 10), rt_narrow(rt_random_direction(&random)));
+            RtVec3 dir = rt_narrow(rt_random_direction(&random));
+            RtRay ray = make_ray(rt_random_point(&random, 10), dir);
             List list = cross(&set, hull, &ray);
             bool inside = list.count == 2 && list.at[0].t < 0 && list.at[1].t > 0;
             Point p = {(long double)ray.org.x, (long double)ray.org.y, (long double)ray.org.z};

@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# check_libm.sh [TREE]: nothing in the program calls a function of the mathematical library whose last bits differ from one
+# library to the next; src/base/elementary.h has what there is instead. Prints each call; exit code 1 where there is one.
+set -euo pipefail
+cd "${1:-$(dirname "$0")/..}"
+
+inexact='a?(sin|cos|tan)(h|pi)?|atan2|sincos|exp(2|10|m1)?|log(2|10|1p)?|pow|cbrt|hypot|[lt]gamma|erfc?|fma'
+calls=$(find src accel scenes -name '*.[ch]' -print0 | sort -z | xargs -0 grep -nHE "\b($inexact)[fl]?\(" |
+    grep -vE '^[^:]*:[0-9]*: *(/?\*|//)' || true)
+[ -z "$calls" ] || { echo "$calls" && exit 1; }
