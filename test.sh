@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds with warnings as errors, runs every test: by gcc, by clang, under the
-# address, undefined-behaviour and thread sanitizers. --quick: by gcc alone, without the slow ones.
+# Installs what is missing, builds with warnings as errors, and tests every room: by gcc, and under the address and
+# undefined-behaviour sanitizers what does not take long there. --all: every test, also by clang and under the
+# thread sanitizer, as continuous integration does.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 passed=0 failed=0 skipped=0
@@ -25,13 +26,15 @@ run_tests() {
 }
 
 case "${1-}" in
---quick)
-    install_missing build optional data test
+"")
+    install_missing build optional data test check
     fetch_bunny
     build release -DRT_WERROR=ON
     run_tests release -LE slow
+    build debug
+    run_tests debug -LE 'tree|slow|long'
     ;;
-"")
+--all)
     install_missing build optional data test check
     fetch_bunny
     build release -DRT_WERROR=ON
@@ -43,7 +46,7 @@ case "${1-}" in
     build tsan
     run_tests tsan -L threads
     ;;
-*) die "usage: ./test.sh [--quick]" ;;
+*) die "usage: ./test.sh [--all]" ;;
 esac
 
 echo "$passed passed, $failed failed, $skipped skipped"

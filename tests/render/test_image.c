@@ -7,7 +7,7 @@
 #include "render/heatmap.h"
 #include "render/image.h"
 #include "render/structure.h"
-#include "scene/load.h"
+#include "scenes/open.h"
 
 #include <openexr.h>
 #include <png.h>
