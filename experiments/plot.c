@@ -19,17 +19,18 @@ const char *rt_contender_color(uint32_t contender) {
 
 /* ---- scripts ---- */
 
-static RtStatus copy_script(const char *folder, const char *name, const char *directory, RtError *error) {
+static RtStatus copy_script(const RtExperiment *experiment, uint32_t i, const char *directory,
+                            RtError *error) {
     char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
-    RT_TRY(rt_path_join(folder, name, from, error));
+    RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], from, error));
     RT_TRY(rt_path_join(directory, "plots", plots, error));
-    RT_TRY(rt_path_join(plots, name, to, error));
+    RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), to, error));
     return rt_file_copy(from, to, error);
 }
 
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error) {
     for (uint32_t i = 0; i < experiment->plot_count; i++) {
-        RT_TRY(copy_script(experiment->folder, experiment->plots[i], directory, error));
+        RT_TRY(copy_script(experiment, i, directory, error));
     }
     return RT_OK;
 }
@@ -147,7 +148,7 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
     if (experiment->plot_count == 0) return RT_OK;
     RT_TRY(write_names(results, directory, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
-        snprintf(paths[i], sizeof paths[i], "plots/%s", i ? experiment->plots[i - 1] : "names.gp");
+        snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
         arguments[i + 1] = paths[i];
     }
     RtStatus status = run_gnuplot(arguments, directory, error);

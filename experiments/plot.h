@@ -10,7 +10,8 @@
 
 #include "experiments/results.h"
 
-/* Copies the scripts from the experiment's folder to `directory`/plots, which exists. */
+/* Copies the scripts from where they lie, seen from the experiment's folder, to `directory`/plots, which
+ * exists, each under its rt_plot_name. */
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error);
 
 /* Draws. RT_NOT_AVAILABLE where gnuplot is not installed. */
