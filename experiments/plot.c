@@ -1,5 +1,8 @@
 #include "experiments/plot.h"
 
+#include "base/memory.h"
+
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <spawn.h>
@@ -91,6 +94,27 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
 
 /* ---- gnuplot ---- */
 
+/* What gnuplot said last, which names the script and the line; where it said nothing, the scripts it was
+ * given. */
+static RtStatus fail_drawing(char **arguments, const char *directory, RtError *error) {
+    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
+    char path[RT_MAX_PATH], scripts[MOST_SHOWN] = "", *log = NULL;
+    size_t size = 0;
+    RT_TRY(rt_path_join(directory, "plots/gnuplot.log", path, error));
+    for (char **script = arguments + 1; *script; script++) {
+        size_t used = strlen(scripts);
+        snprintf(scripts + used, sizeof scripts - used, " %s", *script);
+    }
+    RT_TRY(rt_file_read(path, MOST_BYTES, &log, &size, error));
+    while (size > 0 && isspace((unsigned char)log[size - 1])) log[--size] = '\0';
+    const char *last = size > MOST_SHOWN ? log + size - MOST_SHOWN : log;
+    while (isspace((unsigned char)*last)) last++;
+    rt_fail(error, RT_MISMATCH, "%s: gnuplot failed%s%s", directory,
+            *last ? ":\n" : " without saying why; it was given", *last ? last : scripts);
+    rt_free(log);
+    return RT_MISMATCH;
+}
+
 /* Runs gnuplot in `directory` with the scripts as arguments, its messages going to plots/gnuplot.log. */
 static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *error) {
     pid_t child;
@@ -112,7 +136,7 @@ static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *er
     if (failed) return rt_fail(error, RT_IO, "starting gnuplot failed: %s", strerror(failed));
     while (waitpid(child, &result, 0) < 0 && errno == EINTR) continue;
     if (WIFEXITED(result) && WEXITSTATUS(result) == 0) return RT_OK;
-    return rt_fail(error, RT_IO, "gnuplot failed: %s/plots/gnuplot.log tells why", directory);
+    return fail_drawing(arguments, directory, error);
 }
 
 /* What becomes of the files that the scripts wrote: they get their names, or go where drawing failed. */
@@ -146,6 +170,7 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
     char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
     char program[] = "gnuplot", *arguments[MOST_ARGUMENTS] = {program};
     if (experiment->plot_count == 0) return RT_OK;
+    settle(directory, false, NULL); /* of a drawing that was cut short */
     RT_TRY(write_names(results, directory, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
         snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");

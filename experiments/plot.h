@@ -14,7 +14,8 @@
  * exists, each under its rt_plot_name. */
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error);
 
-/* Draws. RT_NOT_AVAILABLE where gnuplot is not installed. */
+/* Draws. RT_NOT_AVAILABLE where gnuplot is not installed; RT_MISMATCH, with what it says, where it fails:
+ * then the plots are what they were before. */
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error);
 
 /* The colour of a contender, "#rrggbb". */

@@ -195,18 +195,30 @@ static RtStatus write_compared(Run *run, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus finish(Run *run, RtError *error) {
+static RtStatus write_report(const Run *run, RtError *error) {
     json_t *manifest;
+    RT_TRY(rt_manifest_read(run->options->directory, &manifest, error));
+    RtStatus status =
+        rt_report_write(run->results, &run->published, manifest, run->options->directory, error);
+    json_decref(manifest);
+    return status;
+}
+
+static RtStatus finish(Run *run, RtError *error) {
     RT_TRY(write_compared(run, error));
     RT_TRY(rt_manifest_write(run->results, &run->options->trial, run->options->directory, error));
     /* What was measured is worth a report, drawn or not. */
-    RtError drawing;
-    RtStatus status = rt_plots_draw(run->results, run->options->directory, &drawing);
-    if (status != RT_OK) notice(run, drawing.message);
-    RT_TRY(rt_manifest_read(run->options->directory, &manifest, error));
-    status = rt_report_write(run->results, &run->published, manifest, run->options->directory, error);
-    json_decref(manifest);
-    return status == RT_OK ? rt_published_check(&run->published, error) : status;
+    RtError drawing = {RT_OK, ""};
+    RtStatus drawn = rt_plots_draw(run->results, run->options->directory, &drawing);
+    RT_TRY(write_report(run, error));
+    RtStatus checked = rt_published_check(&run->published, error);
+    if (drawn == RT_OK) return checked;
+    if (drawn == RT_NOT_AVAILABLE || checked != RT_OK) {
+        notice(run, drawing.message);
+        return checked;
+    }
+    if (error) *error = drawing;
+    return drawn;
 }
 
 RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error) {

@@ -23,8 +23,8 @@ typedef struct RtRunOptions {
 } RtRunOptions;
 
 /* Runs what is not yet known, and writes everything. `results` is initialised for the experiment, and filled.
- * Where the plots cannot be drawn there is a notice, and a report without them. RT_MISMATCH, with everything
- * written, where published figures are missed (rt_published_check). */
+ * Without gnuplot there is a notice, and a report without plots. RT_MISMATCH, with everything written, where
+ * gnuplot fails, or published figures are missed (rt_published_check). */
 RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error);
 
 /* Loads experiment and results of a result directory. `results` is initialised here: rt_results_clear. */

@@ -2,6 +2,7 @@
  * killed. */
 #include "experiment_testing.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char small_experiment[] = "name: small\n"
@@ -23,15 +24,18 @@ static int make_small(void **state) {
     return 0;
 }
 
-/* Runs raytally, which must end with this exit code and say this on standard error. */
-static void assert_ends(const Place *place, const char *arguments, int code, const char *says) {
-    int ended = raytally(place, arguments);
+/* raytally must have ended with this exit code and have said this on standard error. */
+static void assert_ended(const Place *place, const char *arguments, int ended, int code, const char *says) {
     char *message = read_in(place, "message");
     if (ended != code || !strstr(message, says)) {
         fail_msg("raytally %s: exit code %d, expected %d with '%s': %s", arguments, ended, code, says,
                  message);
     }
     rt_free(message);
+}
+
+static void assert_ends(const Place *place, const char *arguments, int code, const char *says) {
+    assert_ended(place, arguments, raytally(place, arguments), code, says);
 }
 
 /* ---- plots ---- */
@@ -71,6 +75,50 @@ static void an_experiment_that_is_named_like_a_folder_above_is_refused(void **st
     assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error, "small.yaml:1:");
 }
 
+/* A gnuplot of our own, in the folder bin of the place. */
+static void make_gnuplot(const Place *place, const char *script) {
+    assert_ok(rt_directory_create(path_in(place, "bin").text, error));
+    write_in(place, "bin/gnuplot", script);
+    assert_int_equal(chmod(path_in(place, "bin/gnuplot").text, 0777), 0);
+}
+
+static void assert_ends_with_path(const Place *place, const char *path, const char *arguments, int code,
+                                  const char *says) {
+    char *kept = strdup(getenv("PATH"));
+    setenv("PATH", path, 1);
+    int ended = raytally(place, arguments);
+    setenv("PATH", kept, 1);
+    free(kept);
+    assert_ended(place, arguments, ended, code, says);
+}
+
+static void gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words(void **state) {
+    const Place *place = *state;
+    Path bin = path_in(place, "bin");
+    write_in(place, "x.gp", "plot nonsense\n");
+    write_changed(place, "small.yaml", small_experiment, "limit: 100\n", "limit: 100\nplots: [x.gp]\n");
+    make_gnuplot(place,
+                 "#!/bin/sh\necho '\"plots/x.gp\" line 1: undefined variable: nonsense' >&2\nexit 1\n");
+    const char *says = "gnuplot failed:\n\"plots/x.gp\" line 1: undefined variable: nonsense";
+    assert_ends_with_path(place, bin.text, "run small.yaml --out out", 1, says);
+    assert_in_file(place, "out/counts.csv", "cloud");
+    assert_in_file(place, "out/report.html", "</html>");
+    assert_ends_with_path(place, bin.text, "plot out", 1, says);
+    assert_ends_with_path(place, bin.text, "run small.yaml --out out --resume", 1, says);
+    make_gnuplot(place, "#!/bin/sh\nexit 3\n");
+    assert_ends_with_path(place, bin.text, "plot out", 1, "it was given plots/names.gp plots/x.gp");
+}
+
+static void where_there_is_no_gnuplot_a_note_says_so(void **state) {
+    const Place *place = *state;
+    write_in(place, "x.gp", "print 1\n");
+    write_changed(place, "small.yaml", small_experiment, "limit: 100\n", "limit: 100\nplots: [x.gp]\n");
+    assert_ends_with_path(place, "/nowhere", "run small.yaml --out out", 0, "gnuplot is not installed");
+    assert_ends_with_path(place, "/nowhere", "plot out", 0, "gnuplot is not installed");
+    assert_ends_with_path(place, "/nowhere", "run small.yaml --out out --resume", 0,
+                          "gnuplot is not installed");
+}
+
 #define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_small, remove_place)
 
 int main(void) {
@@ -78,6 +126,8 @@ int main(void) {
         IN_PLACE(a_script_that_lies_elsewhere_is_copied_into_the_directory),
         IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line),
         IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused),
+        IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words),
+        IN_PLACE(where_there_is_no_gnuplot_a_note_says_so),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
