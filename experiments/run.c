@@ -1,6 +1,5 @@
 #include "experiments/run.h"
 
-#include "experiments/families.h"
 #include "experiments/journal.h"
 #include "experiments/manifest.h"
 #include "experiments/plot.h"
@@ -15,6 +14,8 @@ typedef struct Run {
     const RtExperiment *experiment;
     const RtRunOptions *options;
     RtPublished published;
+    RtScene scenes[RT_MAX_TRIALS]; /* at slot_of their trials */
+    bool opened[RT_MAX_TRIALS];
     RtJsonLines journal;
 } Run;
 
@@ -85,19 +86,59 @@ static RtStatus copy_experiment(const Run *run, RtError *error) {
     return *published->reasons ? copy_table(run, published->reasons, error) : RT_OK;
 }
 
+static RtStatus load_journal(Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(in_directory(run, "cells.jsonl", path, error));
+    if (!run->options->resume || !rt_file_exists(path)) return RT_OK;
+    return rt_journal_load(path, run->results, true, error);
+}
+
+/* Where a trial's scene is kept: at the first trial of the same scene. */
+static uint32_t slot_of(const RtExperiment *experiment, uint32_t t) {
+    uint32_t slot = 0;
+    while (strcmp(experiment->trials[slot].path, experiment->trials[t].path) != 0) slot++;
+    return slot;
+}
+
+static RtStatus image_path(const Run *run, uint32_t t, char *path, RtError *error) {
+    char name[RT_MAX_LABEL + 16];
+    snprintf(name, sizeof name, "images/%s.png", run->experiment->trials[t].label);
+    return in_directory(run, name, path, error);
+}
+
+static RtStatus open_scenes(Run *run, RtError *error) {
+    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
+        uint32_t slot = slot_of(run->experiment, t);
+        char image[RT_MAX_PATH];
+        RT_TRY(image_path(run, t, image, error));
+        bool drawn = run->options->resume && rt_file_exists(image);
+        if (run->opened[slot] || (drawn && rt_trial_is_done(run->results, t, &run->options->trial))) continue;
+        RT_TRY(rt_trial_open(run->results, t, &run->options->trial, &run->scenes[slot], error));
+        run->opened[slot] = !run->results->trials[t].skipped;
+    }
+    return RT_OK;
+}
+
+/* Frees the scene of trial `t`, unless a later one is on it, too. */
+static void close_scene(Run *run, uint32_t t) {
+    uint32_t slot = slot_of(run->experiment, t);
+    for (uint32_t later = t + 1; later < run->experiment->trial_count; later++) {
+        if (slot_of(run->experiment, later) == slot) return;
+    }
+    rt_scene_clear(&run->scenes[slot]);
+}
+
 static RtStatus open_journal(Run *run, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(in_directory(run, "cells.jsonl", path, error));
-    bool resume = run->options->resume && rt_file_exists(path);
-    if (resume) RT_TRY(rt_journal_load(path, run->results, true, error));
-    return rt_journal_open(&run->journal, path, run->experiment, resume, error);
+    return rt_journal_open(&run->journal, path, run->experiment, run->options->resume && rt_file_exists(path),
+                           error);
 }
 
 static RtStatus begin(Run *run, RtError *error) {
-    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
-        RT_TRY(rt_trial_find_scene(&run->experiment->trials[t], error));
-    }
     RT_TRY(rt_published_load(&run->published, run->experiment, error));
+    RT_TRY(load_journal(run, error));
+    RT_TRY(open_scenes(run, error));
     RT_TRY(make_directories(run, error));
     RT_TRY(open_journal(run, error));
     RT_TRY(copy_experiment(run, error));
@@ -160,26 +201,23 @@ static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, const cha
 }
 
 /* The picture of a trial's scene, unless it is there. */
-static RtStatus write_image(const Run *run, uint32_t t, RtError *error) {
-    char name[RT_MAX_LABEL + 16], path[RT_MAX_PATH];
-    RtScene scene;
-    snprintf(name, sizeof name, "images/%s.png", run->experiment->trials[t].label);
-    RT_TRY(in_directory(run, name, path, error));
+static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(image_path(run, t, path, error));
     if (run->results->trials[t].skipped || (run->options->resume && rt_file_exists(path))) return RT_OK;
-    RT_TRY(rt_hard_scene_open(run->experiment->trials[t].path, &scene, error));
-    RtStatus status = draw_scene(&scene, &run->results->trials[t], path, error);
-    rt_scene_clear(&scene);
-    return status;
+    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->trials[t], path, error);
 }
 
 static RtStatus measure(Run *run, RtError *error) {
     RtTrialOptions options = run->options->trial;
     options.observer = (RtObserver){run, on_event, on_notice};
     for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
-        RT_TRY(rt_trial_run(run->results, t, &options, error));
+        RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
+        RT_TRY(rt_trial_measure(run->results, t, &options, scene, error));
         RT_TRY(write_exact(run, &rt_exact_files[0], error));
         RT_TRY(write_times(run, error));
         RT_TRY(write_image(run, t, error));
+        close_scene(run, t);
     }
     return RT_OK;
 }
@@ -227,6 +265,7 @@ RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error)
     if (status == RT_OK) status = measure(&run, error);
     rt_json_lines_close(&run.journal);
     if (status == RT_OK) status = finish(&run, error);
+    for (uint32_t t = 0; t < RT_MAX_TRIALS; t++) rt_scene_clear(&run.scenes[t]);
     rt_published_clear(&run.published);
     return status;
 }

@@ -23,6 +23,9 @@ typedef struct RtRunOptions {
 } RtRunOptions;
 
 /* Runs what is not yet known, and writes everything. `results` is initialised for the experiment, and filled.
+ *
+ * Every scene is opened before anything is measured, once, and kept until its trial is over.
+ *
  * Without gnuplot there is a notice, and a report without plots. RT_MISMATCH, with everything written, where
  * gnuplot fails, or published figures are missed (rt_published_check). */
 RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error);

@@ -43,9 +43,9 @@ typedef struct RtVerifyObserver {
     void *context;
 } RtVerifyObserver;
 
-/* Runs it all. *rows is a new array, of rows as `verify --json` prints them, in the order of scenes and
- * specs; each is shown to the observer, those of an earlier run too. A wrong answer is a result, not an
- * error. */
+/* Runs it all. Each scene is opened once, all of them before the first is verified, and kept until its turn
+ * is over. *rows is a new array, of rows as `verify --json` prints them, in the order of scenes and specs;
+ * each is shown to the observer, those of an earlier run too. A wrong answer is a result, not an error. */
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error);
 

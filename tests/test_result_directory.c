@@ -1,6 +1,11 @@
 /* A result directory: what is in it is not lost, whoever runs into it, whatever fails, whenever a run is
- * killed. */
+ * killed.
+ *
+ * Linked so that openings of scenes come here, to be counted. */
 #include "experiment_testing.h"
+
+#include "experiments/families.h"
+#include "experiments/run.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,6 +29,17 @@ static int make_small(void **state) {
     return 0;
 }
 
+static RtStatus run(const Place *place, const char *directory, bool resume, RtError *error) {
+    RtResults results;
+    Path path = path_in(place, directory);
+    RT_TRY(load_small(place, false, error));
+    RT_TRY(rt_results_init(&results, place->experiment, error));
+    RtRunOptions options = {.directory = path.text, .resume = resume, .trial = {.threads = 1, .timing = 1}};
+    RtStatus status = rt_run(&results, &options, error);
+    rt_results_clear(&results);
+    return status;
+}
+
 /* raytally must have ended with this exit code and have said this on standard error. */
 static void assert_ended(const Place *place, const char *arguments, int ended, int code, const char *says) {
     char *message = read_in(place, "message");
@@ -36,6 +52,18 @@ static void assert_ended(const Place *place, const char *arguments, int ended, i
 
 static void assert_ends(const Place *place, const char *arguments, int code, const char *says) {
     assert_ended(place, arguments, raytally(place, arguments), code, says);
+}
+
+/* ---- calls that come here ---- */
+
+RtStatus __real_rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error);
+RtStatus __wrap_rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error);
+
+static int scenes_opened;
+
+RtStatus __wrap_rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error) {
+    scenes_opened++;
+    return __real_rt_hard_scene_open(spec, scene, error);
 }
 
 /* ---- plots ---- */
@@ -119,6 +147,23 @@ static void where_there_is_no_gnuplot_a_note_says_so(void **state) {
                           "gnuplot is not installed");
 }
 
+/* ---- scenes ---- */
+
+static void a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left(void **state) {
+    const Place *place = *state;
+    scenes_opened = 0;
+    assert_ok(run(place, "out", false, error));
+    assert_int_equal(scenes_opened, 2); /* the first and the last trial are on the same */
+    assert_true(rt_file_exists(path_in(place, "out/images/again.png").text));
+    scenes_opened = 0;
+    assert_ok(run(place, "out", true, error));
+    assert_int_equal(scenes_opened, 0);
+    assert_int_equal(remove(path_in(place, "out/images/again.png").text), 0);
+    assert_ok(run(place, "out", true, error));
+    assert_int_equal(scenes_opened, 1);
+    assert_true(rt_file_exists(path_in(place, "out/images/again.png").text));
+}
+
 #define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_small, remove_place)
 
 int main(void) {
@@ -128,6 +173,7 @@ int main(void) {
         IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused),
         IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words),
         IN_PLACE(where_there_is_no_gnuplot_a_note_says_so),
+        IN_PLACE(a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

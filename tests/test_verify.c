@@ -34,6 +34,16 @@ static void on_notice(void *context, const char *message) {
     print_message("%s\n", message);
 }
 
+/* Linked so that calls of rt_hard_scene_open come here, to be counted. */
+RtStatus __real_rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error);
+RtStatus __wrap_rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error);
+static int scenes_opened;
+
+RtStatus __wrap_rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error) {
+    scenes_opened++;
+    return __real_rt_hard_scene_open(spec, scene, error);
+}
+
 static const RtVerifyObserver observer = {on_doing, on_row, on_notice, NULL};
 
 /* Verifies grid and a mutant on both scenes; the rows are the caller's. */
@@ -48,7 +58,7 @@ static json_t *verify(const char *folder, int threads, bool resume) {
                      .folder = folder,
                      .resume = resume};
     json_t *rows;
-    rows_seen = scenes_worked_on = 0;
+    rows_seen = scenes_worked_on = scenes_opened = 0;
     assert_ok(rt_verify_run(&work, &observer, &rows, error));
     return rows;
 }
@@ -118,6 +128,13 @@ static void threads_and_interruptions_change_no_byte(void **state) {
     assert_same_file("0002-family-plane-seed-1-unpadded.json", OUT "/a", OUT "/b");
     json_decref(verify(OUT "/b", 0, true));
     assert_int_equal(scenes_worked_on, 0);
+}
+
+static void each_scene_is_opened_once(void **state) {
+    (void)state;
+    json_decref(verify(OUT "/f", 0, false));
+    assert_int_equal(scenes_worked_on, 2);
+    assert_int_equal(scenes_opened, 2);
 }
 
 static void another_run_is_not_gone_on_with(void **state) {
@@ -287,6 +304,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_failure_can_be_replayed_until_it_is_mended),
         cmocka_unit_test(threads_and_interruptions_change_no_byte),
+        cmocka_unit_test(each_scene_is_opened_once),
         cmocka_unit_test(another_run_is_not_gone_on_with),
         cmocka_unit_test(a_failure_that_takes_its_neighbours_is_kept_with_them),
         cmocka_unit_test(a_replay_file_needs_no_other_file),
