@@ -22,6 +22,17 @@ const char *rt_contender_color(uint32_t contender) {
 
 /* ---- scripts ---- */
 
+RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error) {
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        char path[RT_MAX_PATH];
+        FILE *script;
+        RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], path, error));
+        RT_TRY(rt_file_open(path, &script, error));
+        fclose(script);
+    }
+    return RT_OK;
+}
+
 static RtStatus copy_script(const RtExperiment *experiment, uint32_t i, const char *directory,
                             RtError *error) {
     char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];

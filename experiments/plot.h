@@ -10,6 +10,9 @@
 
 #include "experiments/results.h"
 
+/* Refuses a script that cannot be read. */
+RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error);
+
 /* Copies the scripts from where they lie, seen from the experiment's folder, to `directory`/plots, which
  * exists, each under its rt_plot_name. */
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error);

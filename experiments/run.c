@@ -13,6 +13,8 @@ typedef struct Run {
     RtResults *results;
     const RtExperiment *experiment;
     const RtRunOptions *options;
+    bool resumed;  /* the directory has the journal that is gone on with */
+    bool measured; /* anything that the journal did not know */
     RtPublished published;
     RtScene scenes[RT_MAX_TRIALS]; /* at slot_of their trials */
     bool opened[RT_MAX_TRIALS];
@@ -86,11 +88,15 @@ static RtStatus copy_experiment(const Run *run, RtError *error) {
     return *published->reasons ? copy_table(run, published->reasons, error) : RT_OK;
 }
 
-static RtStatus load_journal(Run *run, RtError *error) {
+static RtStatus look_at_directory(Run *run, RtError *error) {
+    const RtRunOptions *options = run->options;
     char path[RT_MAX_PATH];
-    RT_TRY(in_directory(run, "cells.jsonl", path, error));
-    if (!run->options->resume || !rt_file_exists(path)) return RT_OK;
-    return rt_journal_load(path, run->results, true, error);
+    RT_TRY(in_directory(run, RT_RUN_JOURNAL, path, error));
+    /* A journal tells more of itself than that it is there. */
+    if (options->start != RT_START_ANEW && rt_file_exists(path)) {
+        RT_TRY(rt_journal_load(path, run->results, true, error));
+    }
+    return rt_earlier_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
 
 /* Where a trial's scene is kept: at the first trial of the same scene. */
@@ -111,7 +117,7 @@ static RtStatus open_scenes(Run *run, RtError *error) {
         uint32_t slot = slot_of(run->experiment, t);
         char image[RT_MAX_PATH];
         RT_TRY(image_path(run, t, image, error));
-        bool drawn = run->options->resume && rt_file_exists(image);
+        bool drawn = run->resumed && rt_file_exists(image);
         if (run->opened[slot] || (drawn && rt_trial_is_done(run->results, t, &run->options->trial))) continue;
         RT_TRY(rt_trial_open(run->results, t, &run->options->trial, &run->scenes[slot], error));
         run->opened[slot] = !run->results->trials[t].skipped;
@@ -128,20 +134,23 @@ static void close_scene(Run *run, uint32_t t) {
     rt_scene_clear(&run->scenes[slot]);
 }
 
+/* Up to here nothing of an earlier run was touched. */
 static RtStatus open_journal(Run *run, RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(in_directory(run, "cells.jsonl", path, error));
-    return rt_journal_open(&run->journal, path, run->experiment, run->options->resume && rt_file_exists(path),
-                           error);
+    RT_TRY(in_directory(run, RT_RUN_JOURNAL, path, error));
+    if (!run->resumed) rt_earlier_remove(run->options->directory, RT_RUN_JOURNAL);
+    return rt_journal_open(&run->journal, path, run->experiment, run->resumed, error);
 }
 
 static RtStatus begin(Run *run, RtError *error) {
+    RT_TRY(look_at_directory(run, error));
     RT_TRY(rt_published_load(&run->published, run->experiment, error));
-    RT_TRY(load_journal(run, error));
+    RT_TRY(rt_plots_find(run->experiment, error));
     RT_TRY(open_scenes(run, error));
     RT_TRY(make_directories(run, error));
-    RT_TRY(open_journal(run, error));
     RT_TRY(copy_experiment(run, error));
+    RT_TRY(rt_plots_prepare(run->experiment, run->options->directory, error));
+    RT_TRY(open_journal(run, error));
     for (uint32_t c = 0; c < run->experiment->contender_count; c++) {
         char message[RT_MAX_LABEL + 64];
         if (!run->experiment->contenders[c].missing) continue;
@@ -149,7 +158,7 @@ static RtStatus begin(Run *run, RtError *error) {
                  run->experiment->contenders[c].label);
         notice(run, message);
     }
-    return rt_plots_prepare(run->experiment, run->options->directory, error);
+    return RT_OK;
 }
 
 /* ---- measuring ---- */
@@ -157,6 +166,7 @@ static RtStatus begin(Run *run, RtError *error) {
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
     Run *run = context;
     const RtObserver *observer = &run->options->trial.observer;
+    run->measured = true;
     RT_TRY(rt_journal_append(&run->journal, results, event, error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
 }
@@ -204,7 +214,7 @@ static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, const cha
 static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(image_path(run, t, path, error));
-    if (run->results->trials[t].skipped || (run->options->resume && rt_file_exists(path))) return RT_OK;
+    if (run->results->trials[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
     return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->trials[t], path, error);
 }
 
@@ -219,6 +229,8 @@ static RtStatus measure(Run *run, RtError *error) {
         RT_TRY(write_image(run, t, error));
         close_scene(run, t);
     }
+    if (run->measured || !run->resumed) return RT_OK;
+    notice(run, "nothing was left to measure: this run is finished. --force begins it anew");
     return RT_OK;
 }
 
@@ -233,6 +245,14 @@ static RtStatus write_compared(Run *run, RtError *error) {
     return RT_OK;
 }
 
+/* It tells when and with what was measured: where nothing was, the one that is there still does. */
+static RtStatus write_manifest(const Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(in_directory(run, RT_MANIFEST, path, error));
+    if (!run->measured && rt_file_exists(path)) return RT_OK;
+    return rt_manifest_write(run->results, &run->options->trial, run->options->directory, error);
+}
+
 static RtStatus write_report(const Run *run, RtError *error) {
     json_t *manifest;
     RT_TRY(rt_manifest_read(run->options->directory, &manifest, error));
@@ -244,7 +264,7 @@ static RtStatus write_report(const Run *run, RtError *error) {
 
 static RtStatus finish(Run *run, RtError *error) {
     RT_TRY(write_compared(run, error));
-    RT_TRY(rt_manifest_write(run->results, &run->options->trial, run->options->directory, error));
+    RT_TRY(write_manifest(run, error));
     /* What was measured is worth a report, drawn or not. */
     RtError drawing = {RT_OK, ""};
     RtStatus drawn = rt_plots_draw(run->results, run->options->directory, &drawing);
@@ -275,7 +295,7 @@ RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults 
     json_t *manifest;
     *results = (RtResults){0};
     RT_TRY(rt_path_join(directory, "experiment.yaml", path, error));
-    RT_TRY(rt_path_join(directory, "cells.jsonl", journal, error));
+    RT_TRY(rt_path_join(directory, RT_RUN_JOURNAL, journal, error));
     RT_TRY(rt_manifest_read(directory, &manifest, error));
     bool quick = json_is_true(json_object_get(manifest, "quick"));
     json_decref(manifest);

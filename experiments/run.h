@@ -13,18 +13,21 @@
 #ifndef RT_EXPERIMENTS_RUN_H
 #define RT_EXPERIMENTS_RUN_H
 
+#include "experiments/earlier.h"
 #include "experiments/published.h"
 #include "experiments/trial.h"
 
 typedef struct RtRunOptions {
     const char *directory; /* created where missing */
-    bool resume;           /* take over what an earlier run in it has found */
+    RtStart start;         /* what becomes of what an earlier run in it has found */
     RtTrialOptions trial;  /* its observer is told after the journal */
 } RtRunOptions;
 
 /* Runs what is not yet known, and writes everything. `results` is initialised for the experiment, and filled.
  *
- * Every scene is opened before anything is measured, once, and kept until its trial is over.
+ * What an earlier run has left there is touched only
+ * once all that may be refused has been looked at, every scene been opened: each once, to be kept until its
+ * trial is over. Whenever the process ends, however, its journal or the one before it is whole.
  *
  * Without gnuplot there is a notice, and a report without plots. RT_MISMATCH, with everything written, where
  * gnuplot fails, or published figures are missed (rt_published_check). */

@@ -93,7 +93,7 @@ static RtStatus describe_trial(RtTrialState *trial, RtError *error) {
     }
     if (result->known && !same) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "'%s' has changed since this run was interrupted: start it anew, without --resume",
+                       "'%s' has changed since this run was interrupted: begin anew, with --force",
                        trial->experiment->trials[trial->index].label);
     }
     if (result->known) return RT_OK;

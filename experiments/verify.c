@@ -78,7 +78,7 @@ static json_t *header_json(const Run *run) {
 /* What was verified, and with what, in the folder's manifest.json. */
 static RtStatus write_manifest(const Run *run, RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(rt_path_join(run->verify->folder, "manifest.json", path, error));
+    RT_TRY(rt_path_join(run->verify->folder, RT_MANIFEST, path, error));
     json_t *manifest = json_copy(run->header);
     json_object_set_new(manifest, "date", rt_json_now());
     json_object_set_new(manifest, "machine", rt_machine_json());
@@ -94,27 +94,31 @@ static RtStatus load_known(Run *run, const char *path, RtError *error) {
         if (json_equal(json_object_get(json_array_get(run->known, 0), key), value)) continue;
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: this is the journal of another verification, with other %s (see its first line): "
-                       "start anew, without --resume, or give another --out",
+                       "begin anew and lose it with --force, or give another --out",
                        path, key);
     }
     return RT_OK;
 }
 
-static RtStatus open_journal(Run *run, RtError *error) {
+static RtStatus open_journal(Run *run, bool resumed, RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(rt_directory_create(run->verify->folder, error));
-    RT_TRY(rt_path_join(run->verify->folder, "rows.jsonl", path, error));
-    bool resume = run->verify->resume && rt_file_exists(path);
-    if (resume) RT_TRY(load_known(run, path, error));
-    RT_TRY(rt_json_lines_open(&run->journal, path, resume, error));
-    return resume ? RT_OK : rt_json_lines_write(&run->journal, json_incref(run->header), error);
+    RT_TRY(rt_path_join(run->verify->folder, RT_VERIFY_JOURNAL, path, error));
+    if (resumed) RT_TRY(load_known(run, path, error));
+    if (!resumed) rt_earlier_remove(run->verify->folder, RT_VERIFY_JOURNAL);
+    return rt_json_lines_open(&run->journal, path, resumed ? NULL : run->header, error);
 }
 
+/* Up to the journal nothing of an earlier run is touched. */
 static RtStatus begin(Run *run, RtError *error) {
+    const RtVerify *v = run->verify;
+    bool resumed = false;
+    if (v->folder) RT_TRY(rt_earlier_look(v->folder, RT_VERIFY_JOURNAL, v->start, &resumed, error));
     RT_TRY(open_scenes(run, error));
     run->header = header_json(run);
     if (!run->header) return rt_fail_memory(error, "what is verified", 0);
-    return run->verify->folder ? open_journal(run, error) : RT_OK;
+    if (!v->folder) return RT_OK;
+    RT_TRY(rt_directory_create(v->folder, error));
+    return open_journal(run, resumed, error);
 }
 
 static bool is_text(const json_t *row, const char *key, const char *text) {

@@ -29,15 +29,21 @@ static int make_small(void **state) {
     return 0;
 }
 
-static RtStatus run(const Place *place, const char *directory, bool resume, RtError *error) {
+static RtStatus run(const Place *place, const char *directory, RtStart start, RtError *error) {
     RtResults results;
     Path path = path_in(place, directory);
     RT_TRY(load_small(place, false, error));
     RT_TRY(rt_results_init(&results, place->experiment, error));
-    RtRunOptions options = {.directory = path.text, .resume = resume, .trial = {.threads = 1, .timing = 1}};
+    RtRunOptions options = {.directory = path.text, .start = start, .trial = {.threads = 1, .timing = 1}};
     RtStatus status = rt_run(&results, &options, error);
     rt_results_clear(&results);
     return status;
+}
+
+static void assert_same_file(const Place *place, const char *name, const char *before) {
+    char *now = read_in(place, name);
+    assert_string_equal(now, before);
+    rt_free(now);
 }
 
 /* raytally must have ended with this exit code and have said this on standard error. */
@@ -64,6 +70,106 @@ static int scenes_opened;
 RtStatus __wrap_rt_hard_scene_open(const char *spec, RtScene *scene, RtError *error) {
     scenes_opened++;
     return __real_rt_hard_scene_open(spec, scene, error);
+}
+
+/* ---- whose results they are ---- */
+
+static void results_are_refused_unless_they_are_gone_on_with_or_begun_anew(void **state) {
+    const Place *place = *state;
+    assert_ends(place, "run small.yaml", 0, "");
+    char *journal = read_in(place, "results/small/cells.jsonl"),
+         *page = read_in(place, "results/small/manifest.json");
+    assert_ends(place, "run small.yaml", 2, "is finished: write its tables again with --resume");
+    assert_ends(place, "run small.yaml --out results/small", 2, "with --force");
+    assert_ends(place, "run small.yaml --quick", 2, "without --quick");
+    write_changed(place, "other.yaml", small_experiment, "limit: 100", "limit: 99");
+    assert_ends(place, "run other.yaml", 2, "another version of it ('small')");
+    assert_ends(place, "run other.yaml --resume", 2, "another version of it ('small')");
+    assert_ends(place, "verify tetra:size=1 --accel bvh --rays 10 --out results/small", 2, "of another kind");
+    assert_ends(place, "verify tetra:size=1 --accel bvh --rays 10 --out results/small --resume", 2,
+                "of another kind");
+    assert_same_file(place, "results/small/cells.jsonl", journal);
+    assert_same_file(place, "results/small/manifest.json", page);
+    assert_int_equal(remove(path_in(place, "results/small/manifest.json").text), 0);
+    assert_ends(place, "run small.yaml", 2, "was interrupted: go on with --resume");
+    assert_same_file(place, "results/small/cells.jsonl", journal);
+    assert_ends(place, "run other.yaml --resume --force", 0, "");
+    assert_ends(place, "run other.yaml --force --resume", 0, "nothing was left to measure");
+    rt_free(journal);
+    rt_free(page);
+}
+
+static void a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest(void **state) {
+    const Place *place = *state;
+    assert_ends(place, "run small.yaml --threads 1 --resume", 0, "");
+    char *table = read_in(place, "output"), *manifest = read_in(place, "results/small/manifest.json");
+    assert_non_null(strstr(table, "cloud"));
+    assert_int_equal(remove(path_in(place, "results/small/counts.csv").text), 0);
+    assert_ends(place, "run small.yaml --threads 2 --resume", 0, "nothing was left to measure");
+    assert_same_file(place, "output", table);
+    assert_same_file(place, "results/small/manifest.json", manifest);
+    assert_true(rt_file_exists(path_in(place, "results/small/counts.csv").text));
+    rt_free(table);
+    rt_free(manifest);
+}
+
+static void results_without_their_journal_are_not_gone_on_with(void **state) {
+    const Place *place = *state;
+    assert_ends(place, "run small.yaml", 0, "");
+    char *counts = read_in(place, "results/small/counts.csv");
+    assert_int_equal(remove(path_in(place, "results/small/cells.jsonl").text), 0);
+    assert_ends(place, "run small.yaml --resume", 2, "no cells.jsonl");
+    assert_same_file(place, "results/small/counts.csv", counts);
+    rt_free(counts);
+}
+
+static void what_begins_anew_leaves_nothing_of_what_was_there(void **state) {
+    const Place *place = *state;
+    assert_ends(place, "verify tetra:size=1 --accel bvh --rays 10 --out out", 0, "");
+    assert_ends(place, "run small.yaml --out out --resume", 2, "no cells.jsonl");
+    assert_ends(place, "run small.yaml --out out --force", 0, "");
+    write_in(place, "out/plots/old.svg", "<svg/>");
+    write_in(place, "out/notes.txt", "mine");
+    assert_ends(place, "run small.yaml --out out --force", 0, "");
+    for (int i = 0; i < 3; i++) {
+        const char *const gone[] = {"out/rows.jsonl", "out/verify.csv", "out/plots/old.svg"};
+        assert_false(rt_file_exists(path_in(place, gone[i]).text));
+    }
+    assert_in_file(place, "out/notes.txt", "mine");
+}
+
+/* Each of these fails; with --force, too, no byte of the results that are there has changed then. */
+static void nothing_is_touched_before_all_that_may_fail_was_tried(void **state) {
+    const Place *place = *state;
+    const struct {
+        const char *from, *to;
+    } faults[] = {{"limit: 100\n", "limit: -1\n"},
+                  {"limit: 100\n", "limit: 100\nplots: [nowhere.gp]\n"},
+                  {"limit: 100\n", "limit: 100\npublished: {tables: [nowhere.csv]}\n"},
+                  {"accel: grid", "accel: gird"},
+                  {"accel: grid", "accel: \"grid:density=-1\""},
+                  {"random:n=50", "random:n=-50"},
+                  {"\"random:n=50\"", "nowhere.obj"},
+                  {"\"random:n=50\"", "broken.nff"}};
+    write_in(place, "broken.nff", "s 0 0 0 nan\n");
+    assert_ends(place, "run small.yaml --out out", 0, "");
+    char *journal = read_in(place, "out/cells.jsonl"), *yaml = read_in(place, "out/experiment.yaml"),
+         *manifest = read_in(place, "out/manifest.json");
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+        write_changed(place, "faulty.yaml", small_experiment, faults[i].from, faults[i].to);
+        assert_ends(place, "run faulty.yaml --out out --force", 2, "");
+        assert_same_file(place, "out/cells.jsonl", journal);
+        assert_same_file(place, "out/experiment.yaml", yaml);
+        assert_same_file(place, "out/manifest.json", manifest);
+    }
+    /* A directory that cannot be written, even by root. */
+    assert_int_equal(mkdir(path_in(place, "out/experiment.yaml.tmp").text, 0777), 0);
+    assert_ends(place, "run small.yaml --out out --force", 2, "experiment.yaml.tmp");
+    assert_same_file(place, "out/cells.jsonl", journal);
+    assert_same_file(place, "out/manifest.json", manifest);
+    rt_free(journal);
+    rt_free(yaml);
+    rt_free(manifest);
 }
 
 /* ---- plots ---- */
@@ -152,14 +258,14 @@ static void where_there_is_no_gnuplot_a_note_says_so(void **state) {
 static void a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left(void **state) {
     const Place *place = *state;
     scenes_opened = 0;
-    assert_ok(run(place, "out", false, error));
+    assert_ok(run(place, "out", RT_START_FRESH, error));
     assert_int_equal(scenes_opened, 2); /* the first and the last trial are on the same */
     assert_true(rt_file_exists(path_in(place, "out/images/again.png").text));
     scenes_opened = 0;
-    assert_ok(run(place, "out", true, error));
+    assert_ok(run(place, "out", RT_START_RESUME, error));
     assert_int_equal(scenes_opened, 0);
     assert_int_equal(remove(path_in(place, "out/images/again.png").text), 0);
-    assert_ok(run(place, "out", true, error));
+    assert_ok(run(place, "out", RT_START_RESUME, error));
     assert_int_equal(scenes_opened, 1);
     assert_true(rt_file_exists(path_in(place, "out/images/again.png").text));
 }
@@ -168,6 +274,11 @@ static void a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left(
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew),
+        IN_PLACE(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest),
+        IN_PLACE(results_without_their_journal_are_not_gone_on_with),
+        IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there),
+        IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried),
         IN_PLACE(a_script_that_lies_elsewhere_is_copied_into_the_directory),
         IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line),
         IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused),
