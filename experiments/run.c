@@ -1,5 +1,6 @@
 #include "experiments/run.h"
 
+#include "base/lock.h"
 #include "experiments/journal.h"
 #include "experiments/manifest.h"
 #include "experiments/plot.h"
@@ -13,6 +14,7 @@ typedef struct Run {
     RtResults *results;
     const RtExperiment *experiment;
     const RtRunOptions *options;
+    RtLock lock;
     bool resumed;  /* the directory has the journal that is gone on with */
     bool measured; /* anything that the journal did not know */
     RtPublished published;
@@ -88,9 +90,12 @@ static RtStatus copy_experiment(const Run *run, RtError *error) {
     return *published->reasons ? copy_table(run, published->reasons, error) : RT_OK;
 }
 
-static RtStatus look_at_directory(Run *run, RtError *error) {
+/* Keeps others away from the directory and looks at what is there, as soon as it is there. */
+static RtStatus take_directory(Run *run, RtError *error) {
     const RtRunOptions *options = run->options;
     char path[RT_MAX_PATH];
+    if (rt_lock_is_held(&run->lock)) return RT_OK;
+    RT_TRY(rt_lock_take(&run->lock, options->directory, error));
     RT_TRY(in_directory(run, RT_RUN_JOURNAL, path, error));
     /* A journal tells more of itself than that it is there. */
     if (options->start != RT_START_ANEW && rt_file_exists(path)) {
@@ -143,11 +148,12 @@ static RtStatus open_journal(Run *run, RtError *error) {
 }
 
 static RtStatus begin(Run *run, RtError *error) {
-    RT_TRY(look_at_directory(run, error));
+    RT_TRY(take_directory(run, error));
     RT_TRY(rt_published_load(&run->published, run->experiment, error));
     RT_TRY(rt_plots_find(run->experiment, error));
     RT_TRY(open_scenes(run, error));
     RT_TRY(make_directories(run, error));
+    RT_TRY(take_directory(run, error));
     RT_TRY(copy_experiment(run, error));
     RT_TRY(rt_plots_prepare(run->experiment, run->options->directory, error));
     RT_TRY(open_journal(run, error));
@@ -280,13 +286,14 @@ static RtStatus finish(Run *run, RtError *error) {
 }
 
 RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error) {
-    Run run = {.results = results, .experiment = results->experiment, .options = options};
+    Run run = {.results = results, .experiment = results->experiment, .options = options, .lock = RT_NO_LOCK};
     RtStatus status = begin(&run, error);
     if (status == RT_OK) status = measure(&run, error);
     rt_json_lines_close(&run.journal);
     if (status == RT_OK) status = finish(&run, error);
     for (uint32_t t = 0; t < RT_MAX_TRIALS; t++) rt_scene_clear(&run.scenes[t]);
     rt_published_clear(&run.published);
+    rt_lock_release(&run.lock);
     return status;
 }
 

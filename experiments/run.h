@@ -25,7 +25,7 @@ typedef struct RtRunOptions {
 
 /* Runs what is not yet known, and writes everything. `results` is initialised for the experiment, and filled.
  *
- * What an earlier run has left there is touched only
+ * No other process writes into the directory meanwhile. What an earlier run has left there is touched only
  * once all that may be refused has been looked at, every scene been opened: each once, to be kept until its
  * trial is over. Whenever the process ends, however, its journal or the one before it is whole.
  *

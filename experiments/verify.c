@@ -1,5 +1,6 @@
 #include "experiments/verify.h"
 
+#include "base/lock.h"
 #include "base/memory.h"
 #include "experiments/families.h"
 #include "experiments/json.h"
@@ -21,6 +22,7 @@ typedef struct Run {
     const RtVerify *verify;
     const RtVerifyObserver *observer;
     RtVerifyProgress progress;
+    RtLock lock;
     RtScene *scenes; /* [scene_count], each open until its turn is over */
     json_t *header;  /* what a run must have in common with the one that it goes on with */
     json_t *known;   /* the journal, or NULL */
@@ -100,6 +102,14 @@ static RtStatus load_known(Run *run, const char *path, RtError *error) {
     return RT_OK;
 }
 
+/* Keeps others away from the folder and looks at what is there, as soon as it is there. */
+static RtStatus take_folder(Run *run, bool *resumed, RtError *error) {
+    const char *folder = run->verify->folder;
+    if (!folder || rt_lock_is_held(&run->lock)) return RT_OK;
+    RT_TRY(rt_lock_take(&run->lock, folder, error));
+    return rt_earlier_look(folder, RT_VERIFY_JOURNAL, run->verify->start, resumed, error);
+}
+
 static RtStatus open_journal(Run *run, bool resumed, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(run->verify->folder, RT_VERIFY_JOURNAL, path, error));
@@ -110,14 +120,14 @@ static RtStatus open_journal(Run *run, bool resumed, RtError *error) {
 
 /* Up to the journal nothing of an earlier run is touched. */
 static RtStatus begin(Run *run, RtError *error) {
-    const RtVerify *v = run->verify;
     bool resumed = false;
-    if (v->folder) RT_TRY(rt_earlier_look(v->folder, RT_VERIFY_JOURNAL, v->start, &resumed, error));
+    RT_TRY(take_folder(run, &resumed, error));
     RT_TRY(open_scenes(run, error));
     run->header = header_json(run);
     if (!run->header) return rt_fail_memory(error, "what is verified", 0);
-    if (!v->folder) return RT_OK;
-    RT_TRY(rt_directory_create(v->folder, error));
+    if (!run->verify->folder) return RT_OK;
+    RT_TRY(rt_directory_create(run->verify->folder, error));
+    RT_TRY(take_folder(run, &resumed, error));
     return open_journal(run, resumed, error);
 }
 
@@ -280,7 +290,7 @@ static RtStatus verify_scene(Run *run, uint32_t scene, RtError *error) {
 
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error) {
-    Run run = {.verify = verify, .observer = observer, .rows = json_array()};
+    Run run = {.verify = verify, .observer = observer, .lock = RT_NO_LOCK, .rows = json_array()};
     run.progress.all = (uint64_t)verify->scene_count * verify->spec_count * verify->rays.count;
     RtStatus status = begin(&run, error);
     for (uint32_t i = 0; i < verify->scene_count && status == RT_OK; i++) {
@@ -292,6 +302,7 @@ RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer,
     rt_json_lines_close(&run.journal);
     for (uint32_t i = 0; run.scenes && i < verify->scene_count; i++) rt_scene_clear(&run.scenes[i]);
     rt_free(run.scenes);
+    rt_lock_release(&run.lock);
     json_decref(run.known);
     json_decref(run.header);
     *rows = run.rows;

@@ -4,10 +4,13 @@
  * Linked so that openings of scenes come here, to be counted. */
 #include "experiment_testing.h"
 
+#include "base/lock.h"
 #include "experiments/families.h"
 #include "experiments/run.h"
 
+#include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static const char small_experiment[] = "name: small\n"
@@ -172,6 +175,42 @@ static void nothing_is_touched_before_all_that_may_fail_was_tried(void **state) 
     rt_free(manifest);
 }
 
+/* ---- two at a time ---- */
+
+static void a_second_process_is_refused_with_the_number_of_the_first(void **state) {
+    const Place *place = *state;
+    const char *const writing[] = {"run small.yaml --out out --force", "run small.yaml --out out --resume",
+                                   "verify tetra:size=1 --rays 10 --out out --force", "plot out",
+                                   "report out"};
+    char holder[64];
+    RtLock lock;
+    RtError refused;
+    assert_ends(place, "run small.yaml --out out", 0, "");
+    assert_ok(rt_lock_take(&lock, path_in(place, "out").text, error));
+    assert_true(rt_lock_is_held(&lock));
+    snprintf(holder, sizeof holder, "out: process %d is writing", (int)getpid());
+    for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i++) assert_ends(place, writing[i], 2, holder);
+    assert_ends(place, "reproduce out", 0, "");
+    assert_refused(run(place, "out", RT_START_ANEW, &refused), RT_BAD_INPUT, &refused, "is writing");
+    rt_lock_release(&lock);
+    for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i += 3) assert_ends(place, writing[i], 0, "");
+}
+
+static void a_lock_goes_with_the_process_that_was_killed(void **state) {
+    const Place *place = *state;
+    RtLock lock;
+    int status;
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        if (rt_lock_take(&lock, place->folder, NULL) == RT_OK) kill(getpid(), SIGKILL);
+        _exit(1);
+    }
+    assert_true(waitpid(child, &status, 0) == child && WIFSIGNALED(status));
+    assert_ok(rt_lock_take(&lock, place->folder, error));
+    rt_lock_release(&lock);
+}
+
 /* ---- plots ---- */
 
 static void a_script_that_lies_elsewhere_is_copied_into_the_directory(void **state) {
@@ -279,6 +318,8 @@ int main(void) {
         IN_PLACE(results_without_their_journal_are_not_gone_on_with),
         IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there),
         IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried),
+        IN_PLACE(a_second_process_is_refused_with_the_number_of_the_first),
+        IN_PLACE(a_lock_goes_with_the_process_that_was_killed),
         IN_PLACE(a_script_that_lies_elsewhere_is_copied_into_the_directory),
         IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line),
         IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused),

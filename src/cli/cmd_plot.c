@@ -20,5 +20,5 @@ int rt_command_plot(int argc, char **argv) {
         argc, argv,
         "Draw the plots of a result directory again, from its CSV files and the scripts in "
         "DIR/plots. Exit code 1 where gnuplot fails; without gnuplot there is a note.",
-        plot);
+        true, plot);
 }

@@ -83,7 +83,8 @@ int rt_command_run(int argc, char **argv) {
                               .doc =
                                   "Run an experiment and write its result directory: counts.csv, times.csv, "
                                   "manifest.json, plots, images and report.html. A directory with results, "
-                                  "finished or not, is refused without --resume or --force."
+                                  "finished or not, is refused without --resume or --force; so is one that "
+                                  "another process writes into."
                                   "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
                                   "gnuplot there is a note), or a published figure is missed. "
                                   "experiments/README.md tells how to write an experiment."};
