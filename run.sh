@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 to a report: installs what is missing, builds, runs the first experiment.
-# Options go to `raytally run`: ./run.sh --quick
+# Options go to `raytally run`: ./run.sh --quick. A second time it goes on where the first one stopped, or shows what
+# it found: ./run.sh --force measures anew.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_missing build optional data
 fetch_bunny
 build release
 say "running experiments/first-look.yaml"
-exec build/release/raytally run experiments/first-look.yaml "$@"
+exec build/release/raytally run experiments/first-look.yaml --resume "$@"

@@ -229,7 +229,7 @@ for scene in 'my scene.obj' 'a folder/Größe & Co.obj'; do
     does convert "$scene" "${scene%.obj}.yaml"
     yaml blank 'name: blank' 'question: b' 'prediction: c' "scenes: [{scene: '$scene'}]" 'accelerators: [{accel: bvh}]' \
         'count_only: true'
-    does run blank.yaml
+    does run blank.yaml --force
     does reproduce results/blank
 done
 refuses 'verified is no result directory of an experiment' report verified

@@ -59,6 +59,11 @@ uint32_t rt_trial_find(const RtExperiment *experiment, const char *label) {
     return t;
 }
 
+const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
+    const char *path = experiment->plots[plot], *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 /* ---- checks ---- */
 
 static RtStatus check_label(const char *label, RtError *error) {
@@ -151,6 +156,22 @@ static RtStatus check_published(const RtExperiment *experiment, RtError *error) 
     return check_beside(published->reasons, error);
 }
 
+/* All scripts are copied into one folder, to names.gp (report/plot.h). */
+static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *error) {
+    const char *name = rt_plot_name(experiment, i);
+    if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+        return rt_fail(error, RT_BAD_INPUT, "'%s' does not name a gnuplot script", experiment->plots[i]);
+    }
+    bool taken = strcmp(name, "names.gp") == 0;
+    for (uint32_t k = 0; k < i; k++) taken |= strcmp(name, rt_plot_name(experiment, k)) == 0;
+    if (!taken) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "the result directory has a plots/%s already: give the script another name, though it lies in "
+        "another folder",
+        name);
+}
+
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
     for (uint32_t i = 0; i < experiment->trial_count; i++) {
         snprintf(where, RT_MAX_LABEL, "scenes[%u]", i);
@@ -172,6 +193,10 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     RT_TRY(check_baseline(experiment, error));
     strcpy(where, "published");
     RT_TRY(check_published(experiment, error));
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        snprintf(where, RT_MAX_LABEL, "plots[%u]", i);
+        RT_TRY(check_plot(experiment, i, error));
+    }
     strcpy(where, "limit");
     RT_TRY(check_range("limit", experiment->limit, 1, RT_MAX_RAYS_A_KIND, error));
     strcpy(where, "together");
@@ -181,5 +206,9 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     strcpy(where, "milliseconds");
     RT_TRY(check_range("milliseconds", experiment->milliseconds, 1, 60000, error));
     strcpy(where, "name");
+    if (*experiment->name == '.') {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s' cannot name a result directory: begin it with another letter", experiment->name);
+    }
     return check_label(experiment->name, error);
 }

@@ -80,7 +80,8 @@ typedef struct RtExperiment {
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
     uint32_t milliseconds; /* a short set is repeated within a round until it takes this long */
     uint64_t seed;
-    char plots[RT_MAX_PLOTS][RT_MAX_LABEL]; /* gnuplot scripts beside the YAML, run in this order in one go */
+    char plots[RT_MAX_PLOTS]
+              [RT_MAX_LABEL]; /* gnuplot scripts seen from the YAML, run in this order in one go */
     uint32_t plot_count;
     RtPublishedSetup published;
     bool count_only;          /* nothing is timed */
@@ -107,6 +108,10 @@ uint32_t rt_contender_find(const RtExperiment *experiment, const char *label, ui
 
 /* The trial of that label; trial_count where there is none. */
 uint32_t rt_trial_find(const RtExperiment *experiment, const char *label);
+
+/* Under which name a script is copied into the result directory: without the folders it lies in. No two have
+ * the same. */
+const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot);
 
 /* Sets spec, path, file and a label made from them: the file's name without folder and extension, or the
  * built-in as it is written, with _ for what a label may not have. A dot or a slash before the first colon

@@ -80,8 +80,11 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
 
 RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
                          RtError *error) {
-    RT_TRY(rt_json_lines_open(journal, path, resume, error));
-    return resume ? RT_OK : rt_json_lines_write(journal, header_json(experiment), error);
+    json_t *header = resume ? NULL : header_json(experiment);
+    if (!resume && !header) return rt_fail_memory(error, path, 0);
+    RtStatus status = rt_json_lines_open(journal, path, header, error);
+    json_decref(header);
+    return status;
 }
 
 RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
@@ -188,17 +191,25 @@ static void take_line(RtResults *results, const json_t *line) {
 static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,
                              bool same_build, RtError *error) {
     const char *build = json_string_value(json_object_get(line, "build"));
-    if (get_hex(line, "hash") != experiment->fingerprint ||
-        json_is_true(json_object_get(line, "quick")) != experiment->quick) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: this is a run of another experiment, or of an older version of it: start anew, "
-                       "without --resume, or give another --out",
-                       path);
+    const char *name = json_string_value(json_object_get(line, "experiment"));
+    bool quick = json_is_true(json_object_get(line, "quick"));
+    if (get_hex(line, "hash") != experiment->fingerprint) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: this is a run of another experiment, or of another version of it ('%s'): begin anew "
+            "and lose it with --force, or give another --out",
+            path, name ? name : "");
+    }
+    if (quick != experiment->quick) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: this is a run %s --quick: begin anew and lose it with --force, or give another --out", path,
+            quick ? "with" : "without");
     }
     if (!same_build || (build && strcmp(build, rt_build_identity()) == 0)) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
-        "%s: this run was begun by another build (%s; this is %s): start anew, without --resume, or "
+        "%s: this run was begun by another build (%s; this is %s): begin anew and lose it with --force, or "
         "give another --out",
         path, build ? build : "unknown", rt_build_identity());
 }

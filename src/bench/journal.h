@@ -9,8 +9,8 @@
 #include "bench/json_lines.h"
 #include "bench/trial.h"
 
-/* Opens the journal at `path` for appending: a new one, or, with `resume`, the one that is there. Close with
- * rt_json_lines_close, also after a failure. */
+/* Opens the journal at `path` for appending: with `resume` the one that is there, else a new one that takes
+ * its place. Close with rt_json_lines_close, also after a failure. */
 RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
                          RtError *error);
 

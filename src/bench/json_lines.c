@@ -19,11 +19,23 @@ static RtStatus trim(const char *path, RtError *error) {
     return rt_fail(error, RT_IO, "%s: truncating failed: %s", path, strerror(errno));
 }
 
-RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, bool append, RtError *error) {
+static bool put_line(const json_t *line, FILE *file) {
+    return json_dumpf(line, file, JSON_COMPACT | JSON_REAL_PRECISION(17)) == 0 && fputc('\n', file) != EOF;
+}
+
+static RtStatus begin(const char *path, const json_t *first, RtError *error) {
+    RtOutput output;
+    RT_TRY(rt_output_open(&output, path, error));
+    if (put_line(first, output.file)) return rt_output_commit(&output, error);
+    rt_output_discard(&output);
+    return rt_fail(error, RT_IO, "%s: writing the first line failed", path);
+}
+
+RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, const json_t *first, RtError *error) {
     lines->file = NULL;
     snprintf(lines->path, sizeof lines->path, "%s", path);
-    if (append) RT_TRY(trim(path, error));
-    lines->file = fopen(path, append ? "ab" : "wb");
+    RT_TRY(first ? begin(path, first, error) : trim(path, error));
+    lines->file = fopen(path, "ab");
     if (lines->file) return RT_OK;
     return rt_fail(error, RT_IO, "%s: cannot be written: %s", path, strerror(errno));
 }
@@ -35,12 +47,9 @@ void rt_json_lines_close(RtJsonLines *lines) {
 
 RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error) {
     if (!line) return rt_fail_memory(error, lines->path, 0);
-    int failed = json_dumpf(line, lines->file, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    bool put = put_line(line, lines->file);
     json_decref(line);
-    if (!failed && fputc('\n', lines->file) != EOF && fflush(lines->file) == 0 &&
-        fdatasync(fileno(lines->file)) == 0) {
-        return RT_OK;
-    }
+    if (put && fflush(lines->file) == 0 && fdatasync(fileno(lines->file)) == 0) return RT_OK;
     return rt_fail(error, RT_IO, "%s: writing failed: %s", lines->path, strerror(errno));
 }
 
@@ -57,5 +66,5 @@ RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error) {
     if (json_array_size(*lines) > 0) return RT_OK;
     json_decref(*lines);
     *lines = NULL;
-    return rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty", path);
+    return rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty: begin anew, with --force", path);
 }

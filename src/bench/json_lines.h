@@ -12,9 +12,10 @@ typedef struct RtJsonLines {
     char path[RT_MAX_PATH];
 } RtJsonLines;
 
-/* Opens the file at `path` for writing: anew, or with `append` behind what is there. Close with
- * rt_json_lines_close, also after a failure. */
-RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, bool append, RtError *error);
+/* Opens the file at `path` for writing, behind what is there. With `first`, which is borrowed, that line
+ * alone takes the place of all that was there: a failure, or an end of the process at any time, leaves the
+ * one or the other whole. Close with rt_json_lines_close, also after a failure. */
+RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, const json_t *first, RtError *error);
 void rt_json_lines_close(RtJsonLines *lines);
 
 /* Writes one line; it is on the disk when this returns. Takes the reference; NULL is memory that is short. */

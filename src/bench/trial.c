@@ -1,4 +1,4 @@
-/* A trial in order: the scene is opened, its rays are recorded by the default accelerator, which also gives
+/* A trial in order: the rays of its scene are recorded by the default accelerator, which also gives
  * the answers that all others are held against; every contender is built; then, ray kind by ray kind, each is
  * counted, and all are timed against each other. */
 #include "bench/trial_state.h"
@@ -50,35 +50,7 @@ RtStatus rt_trial_tell(const RtTrialState *trial, RtEventKind what, uint32_t con
     return observer->event ? observer->event(observer->context, trial->results, &event, error) : RT_OK;
 }
 
-static void notice(const RtTrialState *trial, const char *message) {
-    const RtObserver *observer = &trial->options->observer;
-    if (observer->notice) observer->notice(observer->context, message);
-}
-
 /* ---- scene, rays, structures ---- */
-
-static bool is_there(const RtTrial *setup) {
-    return !setup->file || rt_file_exists(setup->path);
-}
-
-RtStatus rt_trial_find_scene(const RtTrial *setup, RtError *error) {
-    if (is_there(setup) || setup->optional) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", setup->path);
-}
-
-static RtStatus open_scene(RtTrialState *trial, RtError *error) {
-    const RtTrial *setup = &trial->experiment->trials[trial->index];
-    RT_TRY(rt_trial_find_scene(setup, error));
-    if (is_there(setup)) return rt_scene_open(setup->path, &trial->scene, error);
-    char message[RT_MAX_PATH + 128];
-    snprintf(message, sizeof message,
-             "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
-             setup->label);
-    notice(trial, message);
-    trial->results->trials[trial->index].skipped = true;
-    return RT_OK;
-}
 
 /* Keeps of the recorded sets what the experiment asks for, at most `limit` of each kind. */
 static RtStatus keep_sets(RtTrialState *trial, const RtRaySet *recorded, RtError *error) {
@@ -98,7 +70,7 @@ static RtStatus record_rays(RtTrialState *trial, RtError *error) {
                              .threads = trial->options->threads,
                              .outward_light = setup->outward_light};
     RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
-    RT_TRY(rt_accel_open(rt_accel_default(), &trial->scene, &trial->reference, error));
+    RT_TRY(rt_accel_open(rt_accel_default(), trial->scene, &trial->reference, error));
     RtStatus status = rt_rayset_record(recorded, trial->reference, &recording, error);
     if (status == RT_OK) status = keep_sets(trial, recorded, error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
@@ -109,10 +81,10 @@ static RtStatus record_rays(RtTrialState *trial, RtError *error) {
 static RtStatus describe_trial(RtTrialState *trial, RtError *error) {
     RtTrialResult *result = &trial->results->trials[trial->index];
     RtTrialResult now = {.known = true,
-                         .objects = trial->scene.geometry.object_count,
-                         .width = trial->scene.sampling.width,
-                         .height = trial->scene.sampling.height,
-                         .scene = rt_scene_fingerprint(&trial->scene)};
+                         .objects = trial->scene->geometry.object_count,
+                         .width = trial->scene->sampling.width,
+                         .height = trial->scene->sampling.height,
+                         .scene = rt_scene_fingerprint(trial->scene)};
     bool same = now.scene == result->scene;
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         now.rays[k] = trial->sets[k].count;
@@ -121,7 +93,7 @@ static RtStatus describe_trial(RtTrialState *trial, RtError *error) {
     }
     if (result->known && !same) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "'%s' has changed since this run was interrupted: start it anew, without --resume",
+                       "'%s' has changed since this run was interrupted: begin anew, with --force",
                        trial->experiment->trials[trial->index].label);
     }
     if (result->known) return RT_OK;
@@ -130,10 +102,8 @@ static RtStatus describe_trial(RtTrialState *trial, RtError *error) {
 }
 
 static RtStatus prepare(RtTrialState *trial, RtError *error) {
-    RT_TRY(open_scene(trial, error));
-    if (trial->results->trials[trial->index].skipped) return RT_OK;
     const RtTrial *setup = &trial->experiment->trials[trial->index];
-    RT_TRY(rt_scene_sample(&trial->scene, setup->width, setup->height, 1, setup->corners, error));
+    RT_TRY(rt_scene_sample(trial->scene, setup->width, setup->height, 1, setup->corners, error));
     RT_TRY(record_rays(trial, error));
     return describe_trial(trial, error);
 }
@@ -148,7 +118,7 @@ static RtStatus build_one(RtTrialState *trial, const RtSpec *spec, RtAccel **out
         rt_accel_destroy(*out);
         *out = NULL;
         double start = rt_wall_seconds();
-        RT_TRY(rt_accel_build(spec, &trial->scene, out, error));
+        RT_TRY(rt_accel_build(spec, trial->scene, out, error));
         seconds[builds] = rt_wall_seconds() - start;
         sum += seconds[builds++];
     } while (builds < MOST_BUILDS && sum < CHEAP_BUILD);
@@ -283,7 +253,6 @@ static RtStatus measure_kind(RtTrialState *trial, RtRayKind kind, RtError *error
 
 static RtStatus measure(RtTrialState *trial, RtError *error) {
     RT_TRY(prepare(trial, error));
-    if (trial->results->trials[trial->index].skipped) return RT_OK;
     RT_TRY(build_all(trial, error));
     for (uint32_t k = 0; k < trial->experiment->kind_count; k++) {
         RT_TRY(measure_kind(trial, trial->experiment->kinds[k], error));
@@ -291,11 +260,42 @@ static RtStatus measure(RtTrialState *trial, RtError *error) {
     return RT_OK;
 }
 
-RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error) {
+static RtTrialState state_of(RtResults *results, uint32_t index, const RtTrialOptions *options) {
     RtTrialState trial = {
         .results = results, .experiment = results->experiment, .options = options, .index = index};
     trial.count_only = options->count_only || trial.experiment->count_only;
     trial.count = trial.experiment->contender_count + !trial.count_only;
+    return trial;
+}
+
+bool rt_trial_is_done(RtResults *results, uint32_t index, const RtTrialOptions *options) {
+    RtTrialState trial = state_of(results, index, options);
+    return trial_is_done(&trial);
+}
+
+RtStatus rt_trial_open(RtResults *results, uint32_t index, const RtTrialOptions *options, RtScene *scene,
+                       RtError *error) {
+    const RtTrial *setup = &results->experiment->trials[index];
+    const RtObserver *observer = &options->observer;
+    char message[RT_MAX_PATH + 128];
+    *scene = (RtScene){0};
+    if (!setup->file || rt_file_exists(setup->path)) return rt_scene_open(setup->path, scene, error);
+    if (!setup->optional) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", setup->path);
+    }
+    snprintf(message, sizeof message,
+             "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
+             setup->label);
+    if (observer->notice) observer->notice(observer->context, message);
+    results->trials[index].skipped = true;
+    return RT_OK;
+}
+
+RtStatus rt_trial_measure(RtResults *results, uint32_t index, const RtTrialOptions *options, RtScene *scene,
+                          RtError *error) {
+    RtTrialState trial = state_of(results, index, options);
+    trial.scene = scene;
     if (trial_is_done(&trial)) return RT_OK;
     trial.accels = rt_alloc(trial.count, sizeof(RtAccel *));
     trial.shares = rt_alloc(trial.count, sizeof(RtTrialShare));
@@ -306,8 +306,16 @@ RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *
     for (uint32_t c = 0; trial.accels && c < trial.count; c++) rt_accel_destroy(trial.accels[c]);
     rt_accel_destroy(trial.reference);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&trial.sets[k]);
-    rt_scene_clear(&trial.scene);
     rt_free(trial.accels);
     rt_free(trial.shares);
+    return status;
+}
+
+RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error) {
+    RtScene scene;
+    if (rt_trial_is_done(results, index, options)) return RT_OK;
+    RT_TRY(rt_trial_open(results, index, options, &scene, error));
+    RtStatus status = rt_trial_measure(results, index, options, &scene, error);
+    rt_scene_clear(&scene);
     return status;
 }

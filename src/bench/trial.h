@@ -34,11 +34,21 @@ typedef struct RtTrialOptions {
     RtObserver observer;
 } RtTrialOptions;
 
-/* RT_OK where the scene is there to be opened, or optional; tells before anything is measured. */
-RtStatus rt_trial_find_scene(const RtTrial *setup, RtError *error);
+/* Whether nothing is unknown of the experiment's trial number `index`. */
+bool rt_trial_is_done(RtResults *results, uint32_t index, const RtTrialOptions *options);
 
-/* Fills what is unknown of the experiment's trial number `index`. An exact accelerator whose answers differ
- * from the baseline's, or whose hits are not the same number, is RT_MISMATCH. */
+/* Opens its scene, which is the caller's: rt_scene_clear. Where it is optional and missing, it is empty, and
+ * the trial is skipped with a notice. */
+RtStatus rt_trial_open(RtResults *results, uint32_t index, const RtTrialOptions *options, RtScene *scene,
+                       RtError *error);
+
+/* Fills what is unknown of the trial, on the scene that was opened, whose sampling it changes. An exact
+ * accelerator whose answers differ from the baseline's, or whose hits are not the same number, is
+ * RT_MISMATCH. */
+RtStatus rt_trial_measure(RtResults *results, uint32_t index, const RtTrialOptions *options, RtScene *scene,
+                          RtError *error);
+
+/* Both, unless it is done. */
 RtStatus rt_trial_run(RtResults *results, uint32_t index, const RtTrialOptions *options, RtError *error);
 
 #endif

@@ -17,7 +17,7 @@ typedef struct RtTrialState {
     const RtTrialOptions *options;
     uint32_t index, count; /* count: contenders and, where times are taken, the null run */
     bool count_only;
-    RtScene scene;
+    RtScene *scene;
     RtAccel *reference;               /* answers */
     RtAccel **accels;                 /* [count], NULL for one that does not run here */
     RtRaySet sets[RT_RAY_KIND_COUNT]; /* behind the `count` rays of one at hand lie its thinned shares */

@@ -23,5 +23,5 @@ static RtStatus report(const char *directory, const RtExperiment *experiment, Rt
 }
 
 int rt_command_report(int argc, char **argv) {
-    return rt_cli_directory(argc, argv, "Write DIR/report.html again, from what is in DIR.", report);
+    return rt_cli_directory(argc, argv, "Write DIR/report.html again, from what is in DIR.", true, report);
 }

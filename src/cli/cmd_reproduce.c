@@ -116,5 +116,5 @@ int rt_command_reproduce(int argc, char **argv) {
         "for byte; with published figures, too, where the experiment names any. Run it from where the "
         "experiment was "
         "run.",
-        reproduce);
+        false, reproduce);
 }

@@ -9,17 +9,24 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OPT_RESUME = 256, OPT_QUICK };
+enum { OPT_RESUME = 256, OPT_FORCE, OPT_QUICK };
 
 typedef struct Options {
     const char *path, *out;
-    bool resume, quick;
+    RtStart start;
+    bool quick;
     int threads, timing;
 } Options;
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "The result directory (results/NAME)", 0},
-    {"resume", OPT_RESUME, 0, 0, "Go on where an interrupted run stopped; what it measured is kept", 0},
+    {"resume", OPT_RESUME, 0, 0,
+     "Go on where an interrupted run stopped; what it measured is kept. Of a finished one, write tables and "
+     "plots "
+     "again",
+     0},
+    {"force", OPT_FORCE, 0, 0,
+     "Begin anew: the results in DIR are lost. Of --resume and --force the last one counts", 0},
     {"threads", 't', "N", 0,
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and counting on all; on "
      "several, wall time is compared",
@@ -31,7 +38,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     Options *o = state->input;
     switch (key) {
     case 'o': o->out = argument; return 0;
-    case OPT_RESUME: o->resume = true; return 0;
+    case OPT_RESUME: o->start = RT_START_RESUME; return 0;
+    case OPT_FORCE: o->start = RT_START_ANEW; return 0;
     case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
     case OPT_QUICK: o->quick = true; return 0;
     case ARGP_KEY_ARG:
@@ -53,7 +61,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     RtProgress progress = rt_progress_begin(experiment, experiment->count_only ? 1 : 2);
     RtRunOptions how = {
         .directory = o->out ? o->out : directory,
-        .resume = o->resume,
+        .start = o->start,
         .trial = {.threads = o->threads, .timing = o->timing, .observer = rt_progress_observer(&progress)}};
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = rt_run(&results, &how, error);
@@ -74,8 +82,12 @@ int rt_command_run(int argc, char **argv) {
                               .args_doc = "EXPERIMENT.yaml",
                               .doc =
                                   "Run an experiment and write its result directory: counts.csv, times.csv, "
-                                  "manifest.json, plots, images and report.html."
-                                  "\vexperiments/README.md tells how to write one."};
+                                  "manifest.json, plots, images and report.html. A directory with results, "
+                                  "finished or not, is refused without --resume or --force; so is one that "
+                                  "another process writes into."
+                                  "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
+                                  "gnuplot there is a note), or a published figure is missed. "
+                                  "experiments/README.md tells how to write an experiment."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);

@@ -38,7 +38,8 @@ typedef struct Options {
     uint32_t scene_count;
     const char *accels[MAX_SPECS]; /* as given */
     int accel_count;
-    bool spread, families, json, resume;
+    bool spread, families, json;
+    RtStart start;
     int threads;
     uint64_t rays, seed;
     const char *folder, *replay;
@@ -47,7 +48,7 @@ typedef struct Options {
     char family_specs[MAX_SCENES][RT_MAX_SPEC_CHARS];
 } Options;
 
-enum { KEY_SPREAD = 256, KEY_FAMILIES, KEY_RESUME, KEY_REPLAY };
+enum { KEY_SPREAD = 256, KEY_FAMILIES, KEY_RESUME, KEY_FORCE, KEY_REPLAY };
 
 static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0, "An accelerator, or `all` of them (the default); may be repeated", 0},
@@ -65,6 +66,11 @@ static const struct argp_option options[] = {
      "be replayed",
      0},
     {"resume", KEY_RESUME, 0, 0, "Go on with the interrupted run in --out DIR", 0},
+    {"force", KEY_FORCE, 0, 0,
+     "Begin anew: the results in --out DIR are lost, which is refused without. Of --resume and --force the "
+     "last one "
+     "counts",
+     0},
     {"replay", KEY_REPLAY, "FILE", 0,
      "Ask again what was answered wrong: exit code 1 if it still is, 2 if it cannot be asked", 0},
     {"json", 'j', 0, 0, "One JSON document on stdout", 0},
@@ -113,7 +119,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         return 0;
     case KEY_SPREAD: o->spread = true; return 0;
     case KEY_FAMILIES: o->families = true; return 0;
-    case KEY_RESUME: o->resume = true; return 0;
+    case KEY_RESUME: o->start = RT_START_RESUME; return 0;
+    case KEY_FORCE: o->start = RT_START_ANEW; return 0;
     case KEY_REPLAY: o->replay = argument; return 0;
     case 'o': o->folder = argument; return 0;
     case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 20000000); return 0;
@@ -126,7 +133,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
             argp_error(state, "--replay asks what is in FILE, and prints text: it takes no SCENE, --accel, "
                               "--out or --json");
         }
-        if (o->resume && !o->folder) argp_error(state, "--resume goes on with the run in --out DIR: name it");
+        if (o->start != RT_START_FRESH && !o->folder) {
+            argp_error(state, "--resume and --force are about the run in --out DIR: name it");
+        }
         choose_scenes(o, state);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
@@ -304,7 +313,7 @@ static RtStatus verify(const Options *o, bool *failed, RtError *error) {
                      .spec_count = o->spec_count,
                      .rays = {o->rays, o->seed, o->families, o->threads},
                      .folder = o->folder,
-                     .resume = o->resume};
+                     .start = o->start};
     json_t *rows;
     RtStatus status = rt_verify_run(&work, &observer, &rows, error);
     clear_progress(&show);

@@ -1,5 +1,6 @@
 #include "cli/directory.h"
 
+#include "base/lock.h"
 #include "base/memory.h"
 #include "cli/cli.h"
 
@@ -19,16 +20,19 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     }
 }
 
-int rt_cli_directory(int argc, char **argv, const char *help, RtDirectoryWork *work) {
+int rt_cli_directory(int argc, char **argv, const char *help, bool writes, RtDirectoryWork *work) {
     const char *directory = NULL;
     const struct argp argp = {.parser = parse_option, .args_doc = "DIR", .doc = help};
     argp_parse(&argp, argc, argv, 0, 0, &directory);
     RtError error;
+    RtLock lock = RT_NO_LOCK;
     RtResults results = {0};
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
-    RtStatus status = experiment ? rt_run_load(directory, experiment, &results, &error)
-                                 : rt_fail_memory(&error, "an experiment", sizeof *experiment);
+    RtStatus status = experiment ? RT_OK : rt_fail_memory(&error, "an experiment", sizeof *experiment);
+    if (status == RT_OK && writes) status = rt_lock_take(&lock, directory, &error);
+    if (status == RT_OK) status = rt_run_load(directory, experiment, &results, &error);
     if (status == RT_OK) status = work(directory, experiment, &results, &error);
+    rt_lock_release(&lock);
     rt_results_clear(&results);
     rt_free(experiment);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);

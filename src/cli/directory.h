@@ -8,7 +8,8 @@
 typedef RtStatus RtDirectoryWork(const char *directory, const RtExperiment *experiment, RtResults *results,
                                  RtError *error);
 
-/* Parses the arguments, loads, works; gives the exit code. `help` explains the command. */
-int rt_cli_directory(int argc, char **argv, const char *help, RtDirectoryWork *work);
+/* Parses the arguments, loads, works; gives the exit code. `help` explains the command. One that writes into
+ * the directory has it to itself. */
+int rt_cli_directory(int argc, char **argv, const char *help, bool writes, RtDirectoryWork *work);
 
 #endif

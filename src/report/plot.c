@@ -1,5 +1,8 @@
 #include "report/plot.h"
 
+#include "base/memory.h"
+
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <spawn.h>
@@ -19,17 +22,29 @@ const char *rt_contender_color(uint32_t contender) {
 
 /* ---- scripts ---- */
 
-static RtStatus copy_script(const char *folder, const char *name, const char *directory, RtError *error) {
+RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error) {
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        char path[RT_MAX_PATH];
+        FILE *script;
+        RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], path, error));
+        RT_TRY(rt_file_open(path, &script, error));
+        fclose(script);
+    }
+    return RT_OK;
+}
+
+static RtStatus copy_script(const RtExperiment *experiment, uint32_t i, const char *directory,
+                            RtError *error) {
     char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
-    RT_TRY(rt_path_join(folder, name, from, error));
+    RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], from, error));
     RT_TRY(rt_path_join(directory, "plots", plots, error));
-    RT_TRY(rt_path_join(plots, name, to, error));
+    RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), to, error));
     return rt_file_copy(from, to, error);
 }
 
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error) {
     for (uint32_t i = 0; i < experiment->plot_count; i++) {
-        RT_TRY(copy_script(experiment->folder, experiment->plots[i], directory, error));
+        RT_TRY(copy_script(experiment, i, directory, error));
     }
     return RT_OK;
 }
@@ -90,6 +105,27 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
 
 /* ---- gnuplot ---- */
 
+/* What gnuplot said last, which names the script and the line; where it said nothing, the scripts it was
+ * given. */
+static RtStatus fail_drawing(char **arguments, const char *directory, RtError *error) {
+    enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
+    char path[RT_MAX_PATH], scripts[MOST_SHOWN] = "", *log = NULL;
+    size_t size = 0;
+    RT_TRY(rt_path_join(directory, "plots/gnuplot.log", path, error));
+    for (char **script = arguments + 1; *script; script++) {
+        size_t used = strlen(scripts);
+        snprintf(scripts + used, sizeof scripts - used, " %s", *script);
+    }
+    RT_TRY(rt_file_read(path, MOST_BYTES, &log, &size, error));
+    while (size > 0 && isspace((unsigned char)log[size - 1])) log[--size] = '\0';
+    const char *last = size > MOST_SHOWN ? log + size - MOST_SHOWN : log;
+    while (isspace((unsigned char)*last)) last++;
+    rt_fail(error, RT_MISMATCH, "%s: gnuplot failed%s%s", directory,
+            *last ? ":\n" : " without saying why; it was given", *last ? last : scripts);
+    rt_free(log);
+    return RT_MISMATCH;
+}
+
 /* Runs gnuplot in `directory` with the scripts as arguments, its messages going to plots/gnuplot.log. */
 static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *error) {
     pid_t child;
@@ -111,7 +147,7 @@ static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *er
     if (failed) return rt_fail(error, RT_IO, "starting gnuplot failed: %s", strerror(failed));
     while (waitpid(child, &result, 0) < 0 && errno == EINTR) continue;
     if (WIFEXITED(result) && WEXITSTATUS(result) == 0) return RT_OK;
-    return rt_fail(error, RT_IO, "gnuplot failed: %s/plots/gnuplot.log tells why", directory);
+    return fail_drawing(arguments, directory, error);
 }
 
 /* What becomes of the files that the scripts wrote: they get their names, or go where drawing failed. */
@@ -145,9 +181,10 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
     char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
     char program[] = "gnuplot", *arguments[MOST_ARGUMENTS] = {program};
     if (experiment->plot_count == 0) return RT_OK;
+    settle(directory, false, NULL); /* of a drawing that was cut short */
     RT_TRY(write_names(results, directory, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
-        snprintf(paths[i], sizeof paths[i], "plots/%s", i ? experiment->plots[i - 1] : "names.gp");
+        snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
         arguments[i + 1] = paths[i];
     }
     RtStatus status = run_gnuplot(arguments, directory, error);

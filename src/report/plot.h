@@ -10,10 +10,15 @@
 
 #include "bench/results.h"
 
-/* Copies the scripts from the experiment's folder to `directory`/plots, which exists. */
+/* Refuses a script that cannot be read. */
+RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error);
+
+/* Copies the scripts from where they lie, seen from the experiment's folder, to `directory`/plots, which
+ * exists, each under its rt_plot_name. */
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error);
 
-/* Draws. RT_NOT_AVAILABLE where gnuplot is not installed. */
+/* Draws. RT_NOT_AVAILABLE where gnuplot is not installed; RT_MISMATCH, with what it says, where it fails:
+ * then the plots are what they were before. */
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error);
 
 /* The colour of a contender, "#rrggbb". */

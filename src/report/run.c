@@ -1,5 +1,6 @@
 #include "report/run.h"
 
+#include "base/lock.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "render/image.h"
@@ -14,7 +15,12 @@ typedef struct Run {
     RtResults *results;
     const RtExperiment *experiment;
     const RtRunOptions *options;
+    RtLock lock;
+    bool resumed;  /* the directory has the journal that is gone on with */
+    bool measured; /* anything that the journal did not know */
     RtPublished published;
+    RtScene scenes[RT_MAX_TRIALS]; /* at slot_of their trials */
+    bool opened[RT_MAX_TRIALS];
     RtJsonLines journal;
 } Run;
 
@@ -85,22 +91,73 @@ static RtStatus copy_experiment(const Run *run, RtError *error) {
     return *published->reasons ? copy_table(run, published->reasons, error) : RT_OK;
 }
 
+/* Keeps others away from the directory and looks at what is there, as soon as it is there. */
+static RtStatus take_directory(Run *run, RtError *error) {
+    const RtRunOptions *options = run->options;
+    char path[RT_MAX_PATH];
+    if (rt_lock_is_held(&run->lock)) return RT_OK;
+    RT_TRY(rt_lock_take(&run->lock, options->directory, error));
+    RT_TRY(in_directory(run, RT_RUN_JOURNAL, path, error));
+    /* A journal tells more of itself than that it is there. */
+    if (options->start != RT_START_ANEW && rt_file_exists(path)) {
+        RT_TRY(rt_journal_load(path, run->results, true, error));
+    }
+    return rt_earlier_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
+}
+
+/* Where a trial's scene is kept: at the first trial of the same scene. */
+static uint32_t slot_of(const RtExperiment *experiment, uint32_t t) {
+    uint32_t slot = 0;
+    while (strcmp(experiment->trials[slot].path, experiment->trials[t].path) != 0) slot++;
+    return slot;
+}
+
+static RtStatus image_path(const Run *run, uint32_t t, char *path, RtError *error) {
+    char name[RT_MAX_LABEL + 16];
+    snprintf(name, sizeof name, "images/%s.png", run->experiment->trials[t].label);
+    return in_directory(run, name, path, error);
+}
+
+static RtStatus open_scenes(Run *run, RtError *error) {
+    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
+        uint32_t slot = slot_of(run->experiment, t);
+        char image[RT_MAX_PATH];
+        RT_TRY(image_path(run, t, image, error));
+        bool drawn = run->resumed && rt_file_exists(image);
+        if (run->opened[slot] || (drawn && rt_trial_is_done(run->results, t, &run->options->trial))) continue;
+        RT_TRY(rt_trial_open(run->results, t, &run->options->trial, &run->scenes[slot], error));
+        run->opened[slot] = !run->results->trials[t].skipped;
+    }
+    return RT_OK;
+}
+
+/* Frees the scene of trial `t`, unless a later one is on it, too. */
+static void close_scene(Run *run, uint32_t t) {
+    uint32_t slot = slot_of(run->experiment, t);
+    for (uint32_t later = t + 1; later < run->experiment->trial_count; later++) {
+        if (slot_of(run->experiment, later) == slot) return;
+    }
+    rt_scene_clear(&run->scenes[slot]);
+}
+
+/* Up to here nothing of an earlier run was touched. */
 static RtStatus open_journal(Run *run, RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(in_directory(run, "cells.jsonl", path, error));
-    bool resume = run->options->resume && rt_file_exists(path);
-    if (resume) RT_TRY(rt_journal_load(path, run->results, true, error));
-    return rt_journal_open(&run->journal, path, run->experiment, resume, error);
+    RT_TRY(in_directory(run, RT_RUN_JOURNAL, path, error));
+    if (!run->resumed) rt_earlier_remove(run->options->directory, RT_RUN_JOURNAL);
+    return rt_journal_open(&run->journal, path, run->experiment, run->resumed, error);
 }
 
 static RtStatus begin(Run *run, RtError *error) {
-    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
-        RT_TRY(rt_trial_find_scene(&run->experiment->trials[t], error));
-    }
+    RT_TRY(take_directory(run, error));
     RT_TRY(rt_published_load(&run->published, run->experiment, error));
+    RT_TRY(rt_plots_find(run->experiment, error));
+    RT_TRY(open_scenes(run, error));
     RT_TRY(make_directories(run, error));
-    RT_TRY(open_journal(run, error));
+    RT_TRY(take_directory(run, error));
     RT_TRY(copy_experiment(run, error));
+    RT_TRY(rt_plots_prepare(run->experiment, run->options->directory, error));
+    RT_TRY(open_journal(run, error));
     for (uint32_t c = 0; c < run->experiment->contender_count; c++) {
         char message[RT_MAX_LABEL + 64];
         if (!run->experiment->contenders[c].missing) continue;
@@ -108,7 +165,7 @@ static RtStatus begin(Run *run, RtError *error) {
                  run->experiment->contenders[c].label);
         notice(run, message);
     }
-    return rt_plots_prepare(run->experiment, run->options->directory, error);
+    return RT_OK;
 }
 
 /* ---- measuring ---- */
@@ -116,6 +173,7 @@ static RtStatus begin(Run *run, RtError *error) {
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
     Run *run = context;
     const RtObserver *observer = &run->options->trial.observer;
+    run->measured = true;
     RT_TRY(rt_journal_append(&run->journal, results, event, error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
 }
@@ -160,27 +218,26 @@ static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, const cha
 }
 
 /* The picture of a trial's scene, unless it is there. */
-static RtStatus write_image(const Run *run, uint32_t t, RtError *error) {
-    char name[RT_MAX_LABEL + 16], path[RT_MAX_PATH];
-    RtScene scene;
-    snprintf(name, sizeof name, "images/%s.png", run->experiment->trials[t].label);
-    RT_TRY(in_directory(run, name, path, error));
-    if (run->results->trials[t].skipped || (run->options->resume && rt_file_exists(path))) return RT_OK;
-    RT_TRY(rt_scene_open(run->experiment->trials[t].path, &scene, error));
-    RtStatus status = draw_scene(&scene, &run->results->trials[t], path, error);
-    rt_scene_clear(&scene);
-    return status;
+static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(image_path(run, t, path, error));
+    if (run->results->trials[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
+    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->trials[t], path, error);
 }
 
 static RtStatus measure(Run *run, RtError *error) {
     RtTrialOptions options = run->options->trial;
     options.observer = (RtObserver){run, on_event, on_notice};
     for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
-        RT_TRY(rt_trial_run(run->results, t, &options, error));
+        RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
+        RT_TRY(rt_trial_measure(run->results, t, &options, scene, error));
         RT_TRY(write_exact(run, &rt_exact_files[0], error));
         RT_TRY(write_times(run, error));
         RT_TRY(write_image(run, t, error));
+        close_scene(run, t);
     }
+    if (run->measured || !run->resumed) return RT_OK;
+    notice(run, "nothing was left to measure: this run is finished. --force begins it anew");
     return RT_OK;
 }
 
@@ -195,27 +252,49 @@ static RtStatus write_compared(Run *run, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus finish(Run *run, RtError *error) {
+/* It tells when and with what was measured: where nothing was, the one that is there still does. */
+static RtStatus write_manifest(const Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(in_directory(run, RT_MANIFEST, path, error));
+    if (!run->measured && rt_file_exists(path)) return RT_OK;
+    return rt_manifest_write(run->results, &run->options->trial, run->options->directory, error);
+}
+
+static RtStatus write_report(const Run *run, RtError *error) {
     json_t *manifest;
-    RT_TRY(write_compared(run, error));
-    RT_TRY(rt_manifest_write(run->results, &run->options->trial, run->options->directory, error));
-    /* What was measured is worth a report, drawn or not. */
-    RtError drawing;
-    RtStatus status = rt_plots_draw(run->results, run->options->directory, &drawing);
-    if (status != RT_OK) notice(run, drawing.message);
     RT_TRY(rt_manifest_read(run->options->directory, &manifest, error));
-    status = rt_report_write(run->results, &run->published, manifest, run->options->directory, error);
+    RtStatus status =
+        rt_report_write(run->results, &run->published, manifest, run->options->directory, error);
     json_decref(manifest);
-    return status == RT_OK ? rt_published_check(&run->published, error) : status;
+    return status;
+}
+
+static RtStatus finish(Run *run, RtError *error) {
+    RT_TRY(write_compared(run, error));
+    RT_TRY(write_manifest(run, error));
+    /* What was measured is worth a report, drawn or not. */
+    RtError drawing = {RT_OK, ""};
+    RtStatus drawn = rt_plots_draw(run->results, run->options->directory, &drawing);
+    RT_TRY(write_report(run, error));
+    RtStatus checked = rt_published_check(&run->published, error);
+    if (drawn == RT_OK) return checked;
+    if (drawn == RT_NOT_AVAILABLE || checked != RT_OK) {
+        notice(run, drawing.message);
+        return checked;
+    }
+    if (error) *error = drawing;
+    return drawn;
 }
 
 RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error) {
-    Run run = {.results = results, .experiment = results->experiment, .options = options};
+    Run run = {.results = results, .experiment = results->experiment, .options = options, .lock = RT_NO_LOCK};
     RtStatus status = begin(&run, error);
     if (status == RT_OK) status = measure(&run, error);
     rt_json_lines_close(&run.journal);
     if (status == RT_OK) status = finish(&run, error);
+    for (uint32_t t = 0; t < RT_MAX_TRIALS; t++) rt_scene_clear(&run.scenes[t]);
     rt_published_clear(&run.published);
+    rt_lock_release(&run.lock);
     return status;
 }
 
@@ -224,7 +303,7 @@ RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults 
     json_t *manifest;
     *results = (RtResults){0};
     RT_TRY(rt_path_join(directory, "experiment.yaml", path, error));
-    RT_TRY(rt_path_join(directory, "cells.jsonl", journal, error));
+    RT_TRY(rt_path_join(directory, RT_RUN_JOURNAL, journal, error));
     RT_TRY(rt_manifest_read(directory, &manifest, error));
     bool quick = json_is_true(json_object_get(manifest, "quick"));
     json_decref(manifest);

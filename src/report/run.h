@@ -13,18 +13,24 @@
 #ifndef RT_REPORT_RUN_H
 #define RT_REPORT_RUN_H
 
+#include "bench/earlier.h"
 #include "bench/trial.h"
 #include "literature/published.h"
 
 typedef struct RtRunOptions {
     const char *directory; /* created where missing */
-    bool resume;           /* take over what an earlier run in it has found */
+    RtStart start;         /* what becomes of what an earlier run in it has found */
     RtTrialOptions trial;  /* its observer is told after the journal */
 } RtRunOptions;
 
 /* Runs what is not yet known, and writes everything. `results` is initialised for the experiment, and filled.
- * Where the plots cannot be drawn there is a notice, and a report without them. RT_MISMATCH, with everything
- * written, where published figures are missed (rt_published_check). */
+ *
+ * No other process writes into the directory meanwhile. What an earlier run has left there is touched only
+ * once all that may be refused has been looked at, every scene been opened: each once, to be kept until its
+ * trial is over. Whenever the process ends, however, its journal or the one before it is whole.
+ *
+ * Without gnuplot there is a notice, and a report without plots. RT_MISMATCH, with everything written, where
+ * gnuplot fails, or published figures are missed (rt_published_check). */
 RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error);
 
 /* Loads experiment and results of a result directory. `results` is initialised here: rt_results_clear. */

@@ -1,6 +1,7 @@
 #include "verify/verify.h"
 
 #include "base/json.h"
+#include "base/lock.h"
 #include "base/memory.h"
 #include "bench/json_lines.h"
 #include "bench/machine.h"
@@ -21,8 +22,10 @@ typedef struct Run {
     const RtVerify *verify;
     const RtVerifyObserver *observer;
     RtVerifyProgress progress;
-    json_t *header; /* what a run must have in common with the one that it goes on with */
-    json_t *known;  /* the journal, or NULL */
+    RtLock lock;
+    RtScene *scenes; /* [scene_count], each open until its turn is over */
+    json_t *header;  /* what a run must have in common with the one that it goes on with */
+    json_t *known;   /* the journal, or NULL */
     size_t next_known;
     json_t *rows;
     RtJsonLines journal;
@@ -31,7 +34,7 @@ typedef struct Run {
 /* One scene with its rays and the right answers. */
 typedef struct Stage {
     const char *name;
-    RtScene scene;
+    RtScene *scene;
     RtAccel *brute;
     RtRay *rays;
     RtReference reference;
@@ -48,21 +51,24 @@ static void doing(Run *run, const char *what) {
 
 /* ---- the journal ---- */
 
-/* Every scene is opened once before any is verified: one that cannot be would stop the run in the night. */
-static RtStatus fingerprint_scenes(const RtVerify *v, json_t *fingerprints, RtError *error) {
+/* Every scene is opened before any is verified: one that cannot be would stop the run in the night. */
+static RtStatus open_scenes(Run *run, RtError *error) {
+    const RtVerify *v = run->verify;
+    run->scenes = rt_alloc(v->scene_count, sizeof(RtScene));
+    if (!run->scenes) return rt_fail_memory(error, "scenes", v->scene_count * sizeof(RtScene));
     for (uint32_t i = 0; i < v->scene_count; i++) {
-        RtScene scene;
-        RT_TRY(rt_scene_open(v->scenes[i], &scene, error));
-        json_array_append_new(fingerprints, rt_json_hex(rt_scene_fingerprint(&scene)));
-        rt_scene_clear(&scene);
+        RT_TRY(rt_scene_open(v->scenes[i], &run->scenes[i], error));
     }
     return RT_OK;
 }
 
-/* Takes the reference of `fingerprints`. */
-static json_t *header_json(const RtVerify *v, json_t *fingerprints) {
-    json_t *scenes = json_array(), *specs = json_array();
-    for (uint32_t i = 0; i < v->scene_count; i++) json_array_append_new(scenes, json_string(v->scenes[i]));
+static json_t *header_json(const Run *run) {
+    const RtVerify *v = run->verify;
+    json_t *scenes = json_array(), *fingerprints = json_array(), *specs = json_array();
+    for (uint32_t i = 0; i < v->scene_count; i++) {
+        json_array_append_new(scenes, json_string(v->scenes[i]));
+        json_array_append_new(fingerprints, rt_json_hex(rt_scene_fingerprint(&run->scenes[i])));
+    }
     for (uint32_t i = 0; i < v->spec_count; i++) {
         json_array_append_new(specs, json_string(v->specs[i].spec));
     }
@@ -74,7 +80,7 @@ static json_t *header_json(const RtVerify *v, json_t *fingerprints) {
 /* What was verified, and with what, in the folder's manifest.json. */
 static RtStatus write_manifest(const Run *run, RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(rt_path_join(run->verify->folder, "manifest.json", path, error));
+    RT_TRY(rt_path_join(run->verify->folder, RT_MANIFEST, path, error));
     json_t *manifest = json_copy(run->header);
     json_object_set_new(manifest, "date", rt_json_now());
     json_object_set_new(manifest, "machine", rt_machine_json());
@@ -90,21 +96,39 @@ static RtStatus load_known(Run *run, const char *path, RtError *error) {
         if (json_equal(json_object_get(json_array_get(run->known, 0), key), value)) continue;
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: this is the journal of another verification, with other %s (see its first line): "
-                       "start anew, without --resume, or give another --out",
+                       "begin anew and lose it with --force, or give another --out",
                        path, key);
     }
     return RT_OK;
 }
 
-static RtStatus open_journal(Run *run, RtError *error) {
+/* Keeps others away from the folder and looks at what is there, as soon as it is there. */
+static RtStatus take_folder(Run *run, bool *resumed, RtError *error) {
+    const char *folder = run->verify->folder;
+    if (!folder || rt_lock_is_held(&run->lock)) return RT_OK;
+    RT_TRY(rt_lock_take(&run->lock, folder, error));
+    return rt_earlier_look(folder, RT_VERIFY_JOURNAL, run->verify->start, resumed, error);
+}
+
+static RtStatus open_journal(Run *run, bool resumed, RtError *error) {
     char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(run->verify->folder, RT_VERIFY_JOURNAL, path, error));
+    if (resumed) RT_TRY(load_known(run, path, error));
+    if (!resumed) rt_earlier_remove(run->verify->folder, RT_VERIFY_JOURNAL);
+    return rt_json_lines_open(&run->journal, path, resumed ? NULL : run->header, error);
+}
+
+/* Up to the journal nothing of an earlier run is touched. */
+static RtStatus begin(Run *run, RtError *error) {
+    bool resumed = false;
+    RT_TRY(take_folder(run, &resumed, error));
+    RT_TRY(open_scenes(run, error));
+    run->header = header_json(run);
+    if (!run->header) return rt_fail_memory(error, "what is verified", 0);
     if (!run->verify->folder) return RT_OK;
     RT_TRY(rt_directory_create(run->verify->folder, error));
-    RT_TRY(rt_path_join(run->verify->folder, "rows.jsonl", path, error));
-    bool resume = run->verify->resume && rt_file_exists(path);
-    if (resume) RT_TRY(load_known(run, path, error));
-    RT_TRY(rt_json_lines_open(&run->journal, path, resume, error));
-    return resume ? RT_OK : rt_json_lines_write(&run->journal, json_incref(run->header), error);
+    RT_TRY(take_folder(run, &resumed, error));
+    return open_journal(run, resumed, error);
 }
 
 static bool is_text(const json_t *row, const char *key, const char *text) {
@@ -161,10 +185,10 @@ static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *s
     char path[RT_MAX_PATH];
     RT_TRY(replay_path(run, stage->name, spec->spec, path, error));
     RT_TRY(rt_question_of_witness(&stage->reference, witness, maker, &question, &reply, error));
-    RtReplayRecord record = {stage->name, spec->spec, &stage->scene, &question, &reply, NULL};
+    RtReplayRecord record = {stage->name, spec->spec, stage->scene, &question, &reply, NULL};
     if (reply.wrong) {
         RT_TRY(
-            rt_shrink(&stage->scene, &question, &reply, maker, RT_SHRINK_BUDGET, &observer, &shrunk, error));
+            rt_shrink(stage->scene, &question, &reply, maker, RT_SHRINK_BUDGET, &observer, &shrunk, error));
         record.shrunk = &shrunk;
     }
     RtStatus status = rt_replay_save(path, &record, error);
@@ -210,7 +234,7 @@ static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *sp
     RtAccel *accel;
     RtMaker maker = maker_of(spec);
     doing(run, spec->spec);
-    RtStatus status = maker.build(maker.context, &stage->scene, &accel, error);
+    RtStatus status = maker.build(maker.context, stage->scene, &accel, error);
     if ((status == RT_NOT_AVAILABLE || status == RT_BAD_INPUT) && !spec->named) {
         char notice[sizeof error->message + RT_MAX_SPEC_CHARS + RT_MAX_SCENE_NAME];
         snprintf(notice, sizeof notice, "%s on %s is skipped: %s", spec->spec, stage->name, error->message);
@@ -228,9 +252,8 @@ static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *sp
 static RtStatus set_stage(Run *run, Stage *stage, RtError *error) {
     const RtVerify *v = run->verify;
     doing(run, "recording rays");
-    RT_TRY(rt_scene_open(stage->name, &stage->scene, error));
-    RT_TRY(rt_verify_sample(&v->rays, &stage->scene, error));
-    RT_TRY(rt_accel_open("brute", &stage->scene, &stage->brute, error));
+    RT_TRY(rt_verify_sample(&v->rays, stage->scene, error));
+    RT_TRY(rt_accel_open("brute", stage->scene, &stage->brute, error));
     stage->rays = rt_alloc(v->rays.count, sizeof(RtRay));
     if (!stage->rays) return rt_fail_memory(error, "rays", v->rays.count * sizeof(RtRay));
     RT_TRY(rt_verify_rays(&v->rays, stage->brute, stage->rays, error));
@@ -239,9 +262,10 @@ static RtStatus set_stage(Run *run, Stage *stage, RtError *error) {
                              error);
 }
 
-static RtStatus verify_scene(Run *run, const char *name, RtError *error) {
+static RtStatus verify_scene(Run *run, uint32_t scene, RtError *error) {
     const RtVerify *v = run->verify;
-    Stage stage = {.name = name};
+    const char *name = v->scenes[scene];
+    Stage stage = {.name = name, .scene = &run->scenes[scene]};
     RtStatus status = RT_OK;
     for (uint32_t i = 0; i < v->spec_count && status == RT_OK; i++) {
         json_t *known = known_row(run, name, v->specs[i].spec);
@@ -258,7 +282,7 @@ static RtStatus verify_scene(Run *run, const char *name, RtError *error) {
     rt_reference_clear(&stage.reference);
     rt_free(stage.rays);
     rt_accel_destroy(stage.brute);
-    rt_scene_clear(&stage.scene);
+    rt_scene_clear(stage.scene);
     return status;
 }
 
@@ -266,20 +290,19 @@ static RtStatus verify_scene(Run *run, const char *name, RtError *error) {
 
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error) {
-    Run run = {.verify = verify, .observer = observer, .rows = json_array()};
+    Run run = {.verify = verify, .observer = observer, .lock = RT_NO_LOCK, .rows = json_array()};
     run.progress.all = (uint64_t)verify->scene_count * verify->spec_count * verify->rays.count;
-    json_t *fingerprints = json_array();
-    RtStatus status = fingerprint_scenes(verify, fingerprints, error);
-    run.header = header_json(verify, fingerprints);
-    if (status == RT_OK && !run.header) status = rt_fail_memory(error, "what is verified", 0);
-    if (status == RT_OK) status = open_journal(&run, error);
+    RtStatus status = begin(&run, error);
     for (uint32_t i = 0; i < verify->scene_count && status == RT_OK; i++) {
         run.progress.scene = i;
-        status = verify_scene(&run, verify->scenes[i], error);
+        status = verify_scene(&run, i, error);
     }
     if (status == RT_OK && verify->folder) status = rt_verify_write(run.rows, verify->folder, error);
     if (status == RT_OK && verify->folder) status = write_manifest(&run, error);
     rt_json_lines_close(&run.journal);
+    for (uint32_t i = 0; run.scenes && i < verify->scene_count; i++) rt_scene_clear(&run.scenes[i]);
+    rt_free(run.scenes);
+    rt_lock_release(&run.lock);
     json_decref(run.known);
     json_decref(run.header);
     *rows = run.rows;

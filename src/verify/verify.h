@@ -8,6 +8,7 @@
 #ifndef RT_VERIFY_VERIFY_H
 #define RT_VERIFY_VERIFY_H
 
+#include "bench/earlier.h"
 #include "verify/question.h"
 #include "verify/verify_rays.h"
 
@@ -27,7 +28,7 @@ typedef struct RtVerify {
     RtVerifyRays rays; /* for each row */
     /* For journal, tables, manifest and replay files; NULL: replay files alone, to verify-failures. */
     const char *folder;
-    bool resume; /* go on with the journal there */
+    RtStart start; /* what becomes of what is there */
 } RtVerify;
 
 typedef struct RtVerifyProgress {
@@ -43,9 +44,10 @@ typedef struct RtVerifyObserver {
     void *context;
 } RtVerifyObserver;
 
-/* Runs it all. *rows is a new array, of rows as `verify --json` prints them, in the order of scenes and
- * specs; each is shown to the observer, those of an earlier run too. A wrong answer is a result, not an
- * error. */
+/* Runs it all. Each scene is opened once, all of them before the first is verified, and kept until its turn
+ * is over; only then is the folder touched, and no other process writes into it meanwhile. *rows is a new
+ * array, of rows as `verify --json` prints them, in the order of scenes and specs; each is shown to the
+ * observer, those of an earlier run too. A wrong answer is a result, not an error. */
 RtStatus rt_verify_run(const RtVerify *verify, const RtVerifyObserver *observer, json_t **rows,
                        RtError *error);
 

@@ -125,6 +125,7 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
         {"--threads -1", "whole number"},
         {"--wrong", "unrecognized option"},
         {"--resume", "--out DIR"},
+        {"--force", "--out DIR"},
         {"family:kind=silvers", "did you mean 'slivers'"},
         {"family:kind=", "empty|one-sphere|"},
         {"family:kind=slivers,sed=1", "did you mean 'seed'?"},
@@ -157,6 +158,13 @@ static void scenes_of_families_have_the_seed_of_the_rays(void **state) {
     json_decref(json);
 }
 
+/* Verifies whatever an earlier round of this test has left in --out. */
+static void begin_anew(const char *arguments) {
+    char anew[1024];
+    snprintf(anew, sizeof anew, "%s --force", arguments);
+    assert_int_equal(verify(anew), 0);
+}
+
 /* Prints what a run that was not interrupted prints. */
 static void a_run_is_gone_on_with(void **state) {
     (void)state;
@@ -164,8 +172,8 @@ static void a_run_is_gone_on_with(void **state) {
     const char *arguments =
         "random:n=20,shape=mixed tetra:size=1 --accel bvh --accel grid --rays 500 --out '" OUT ".rows'";
     char again[1024];
+    begin_anew(arguments);
     snprintf(again, sizeof again, "%s --resume", arguments);
-    assert_int_equal(verify(arguments), 0);
     strcpy(whole, text_of(OUT ".out"));
     strcpy(table, text_of(OUT ".rows/verify.csv"));
     assert_non_null(
@@ -179,6 +187,29 @@ static void a_run_is_gone_on_with(void **state) {
     assert_non_null(strstr(text_of(OUT ".err"), "another verification, with other seed"));
 }
 
+static void rows_that_are_there_are_not_begun_anew_unasked(void **state) {
+    (void)state;
+    static char rows[65536];
+    const char *arguments = "tetra:size=1 --accel bvh --rays 50 --out '" OUT ".kept'";
+    char other[1024];
+    begin_anew(arguments);
+    strcpy(rows, text_of(OUT ".kept/rows.jsonl"));
+    assert_int_equal(verify(arguments), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), OUT ".kept holds a run that is finished"));
+    assert_string_equal(text_of(OUT ".out"), "");
+    assert_int_equal(remove(OUT ".kept/manifest.json"), 0);
+    assert_int_equal(verify(arguments), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), "was interrupted: go on with --resume"));
+    /* A scene that cannot be opened is found before anything is lost. */
+    snprintf(other, sizeof other, "nothing.nff %s --force", arguments);
+    assert_int_equal(verify(other), 2);
+    assert_string_equal(text_of(OUT ".kept/rows.jsonl"), rows);
+    assert_int_equal(remove(OUT ".kept/rows.jsonl"), 0);
+    snprintf(other, sizeof other, "%s --resume", arguments);
+    assert_int_equal(verify(other), 2);
+    assert_non_null(strstr(text_of(OUT ".err"), "verify.csv, but no rows.jsonl"));
+}
+
 static void write_sphere(const char *path, int radius) {
     FILE *file = fopen(path, "w");
     assert_non_null(file);
@@ -190,9 +221,9 @@ static void a_run_is_not_gone_on_with_where_a_scene_file_was_edited(void **state
     (void)state;
     const char *arguments = "'" OUT ".yaml' --accel bvh --rays 50 --out '" OUT ".edited'";
     char again[1024];
-    snprintf(again, sizeof again, "%s --resume", arguments);
     write_sphere(OUT ".yaml", 1);
-    assert_int_equal(verify(arguments), 0);
+    begin_anew(arguments);
+    snprintf(again, sizeof again, "%s --resume", arguments);
     write_sphere(OUT ".yaml", 2);
     assert_int_equal(verify(again), 2);
     assert_non_null(strstr(text_of(OUT ".err"), "with other fingerprints"));
@@ -203,8 +234,8 @@ static void the_last_line_tells_of_wrong_answers_to_occluded_too(void **state) {
     (void)state;
     const char *arguments = "random:n=20 --accel bvh --accel grid --rays 50 --out '" OUT ".lies'";
     char again[1024];
+    begin_anew(arguments);
     snprintf(again, sizeof again, "%s --resume", arguments);
-    assert_int_equal(verify(arguments), 0);
     assert_int_equal(system("sed -i -e '2s/\"occluded_wrong\": *0/\"occluded_wrong\": 3/' "
                             "-e '2s/\"problem\": *null/\"problem\": \"a lie\"/' '" OUT ".lies/rows.jsonl'"),
                      0);
@@ -258,6 +289,7 @@ RT_TEST_GROUP(cmd_verify) {
         cmocka_unit_test(the_families_are_rays_of_their_own_and_hard_ones),
         cmocka_unit_test(scenes_of_families_have_the_seed_of_the_rays),
         cmocka_unit_test(a_run_is_gone_on_with),
+        cmocka_unit_test(rows_that_are_there_are_not_begun_anew_unasked),
         cmocka_unit_test(a_run_is_not_gone_on_with_where_a_scene_file_was_edited),
         cmocka_unit_test(the_last_line_tells_of_wrong_answers_to_occluded_too),
         cmocka_unit_test(a_replay_says_whether_the_answer_is_still_wrong),

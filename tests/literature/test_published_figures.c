@@ -8,7 +8,8 @@
 static RtStatus run(const Place *place, const char *rows, const char *reasons, bool quick, RtError *error) {
     RtResults results;
     Path out = path_in(place, "out");
-    const RtRunOptions options = {.directory = out.text, .trial = {.threads = 1, .timing = 1}};
+    const RtRunOptions options = {
+        .directory = out.text, .start = RT_START_ANEW, .trial = {.threads = 1, .timing = 1}};
     write_figures(place, rows);
     write_reasons(place, reasons);
     RT_TRY(load_small(place, quick, error));

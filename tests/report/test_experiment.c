@@ -30,14 +30,14 @@ static int make_small(void **state) {
 }
 
 /* Runs the experiment into `directory`; the observer may stop it. */
-static RtStatus run(const Place *place, const char *directory, bool resume, int threads, RtObserver observer,
-                    RtError *error) {
+static RtStatus run(const Place *place, const char *directory, RtStart start, int threads,
+                    RtObserver observer, RtError *error) {
     RtResults results;
     Path path = path_in(place, directory);
     RT_TRY(load_small(place, false, error));
     RT_TRY(rt_results_init(&results, place->experiment, error));
     RtRunOptions options = {.directory = path.text,
-                            .resume = resume,
+                            .start = start,
                             .trial = {.threads = threads, .timing = 1, .observer = observer}};
     RtStatus status = rt_run(&results, &options, error);
     rt_results_clear(&results);
@@ -97,8 +97,8 @@ static void what_is_left_out_of_the_yaml_has_its_default(void **state) {
 
 static void counts_are_the_same_bytes_on_one_thread_and_on_two(void **state) {
     const Place *place = *state;
-    assert_ok(run(place, "one", false, 1, nobody, error));
-    assert_ok(run(place, "two", false, 2, nobody, error));
+    assert_ok(run(place, "one", RT_START_FRESH, 1, nobody, error));
+    assert_ok(run(place, "two", RT_START_FRESH, 2, nobody, error));
     char *one = read_in(place, "one/counts.csv"), *two = read_in(place, "two/counts.csv");
     assert_string_equal(one, two);
     assert_non_null(strstr(one, ",brute,brute,7,"));
@@ -143,22 +143,22 @@ static int count_of(const char *text, const char *part) {
 /* Nothing is lost, nothing is counted twice, and another resumption finds all done. */
 static void an_interrupted_run_resumes_and_loses_no_finished_cell(void **state) {
     const Place *place = *state;
-    assert_ok(run(place, "whole", false, 1, nobody, error));
+    assert_ok(run(place, "whole", RT_START_FRESH, 1, nobody, error));
     char *whole = read_in(place, "whole/counts.csv"), *lines = read_in(place, "whole/cells.jsonl");
     for (int events = 1; events < 60; events += 17) {
         Stopper stopper = {events};
         RtError stopped;
         RtObserver observer = {&stopper, stop_after, NULL};
-        assert_int_equal(run(place, "parts", false, 1, observer, &stopped), RT_IO);
+        assert_int_equal(run(place, "parts", RT_START_ANEW, 1, observer, &stopped), RT_IO);
         cut_last_line(place, "parts/cells.jsonl");
         char *before = read_in(place, "parts/cells.jsonl");
-        assert_ok(run(place, "parts", true, 1, nobody, error));
+        assert_ok(run(place, "parts", RT_START_RESUME, 1, nobody, error));
         char *after = read_in(place, "parts/cells.jsonl"), *counts = read_in(place, "parts/counts.csv");
         assert_kept(before, after);
         assert_string_equal(counts, whole);
         assert_int_equal(count_of(after, "\"counted\":"), count_of(lines, "\"counted\":"));
         stopper = (Stopper){0};
-        assert_ok(run(place, "parts", true, 1, observer, error));
+        assert_ok(run(place, "parts", RT_START_RESUME, 1, observer, error));
         rt_free(before);
         rt_free(after);
         rt_free(counts);
@@ -169,11 +169,11 @@ static void an_interrupted_run_resumes_and_loses_no_finished_cell(void **state) 
 
 static void a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_tables(void **state) {
     const Place *place = *state;
-    assert_ok(run(place, "done", false, 1, nobody, error));
+    assert_ok(run(place, "done", RT_START_FRESH, 1, nobody, error));
     char *counts = read_in(place, "done/counts.csv"), *times = read_in(place, "done/times.csv");
     Stopper stopper = {0}; /* the first event would stop it */
     RtObserver observer = {&stopper, stop_after, NULL};
-    assert_ok(run(place, "done", true, 1, observer, error));
+    assert_ok(run(place, "done", RT_START_RESUME, 1, observer, error));
     char *counts_now = read_in(place, "done/counts.csv"), *times_now = read_in(place, "done/times.csv");
     assert_string_equal(counts, counts_now);
     assert_string_equal(times, times_now);
@@ -185,18 +185,18 @@ static void a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_
 
 static void a_run_of_another_experiment_is_not_resumed(void **state) {
     const Place *place = *state;
-    assert_ok(run(place, "mixed", false, 1, nobody, error));
+    assert_ok(run(place, "mixed", RT_START_FRESH, 1, nobody, error));
     char text[2048];
     snprintf(text, sizeof text, "%sseed: 2\n", small_experiment);
     write_in(place, "small.yaml", text);
     RtError error;
-    assert_int_equal(run(place, "mixed", true, 1, nobody, &error), RT_BAD_INPUT);
+    assert_int_equal(run(place, "mixed", RT_START_RESUME, 1, nobody, &error), RT_BAD_INPUT);
     assert_non_null(strstr(error.message, "another experiment"));
 }
 
 static void the_report_has_the_question_and_nothing_outside_itself(void **state) {
     const Place *place = *state;
-    assert_ok(run(place, "page", false, 1, nobody, error));
+    assert_ok(run(place, "page", RT_START_FRESH, 1, nobody, error));
     char *page = read_in(place, "page/report.html");
     assert_non_null(strstr(page, "Which is cheaper?"));
     assert_non_null(strstr(page, "data:image/png;base64,"));
@@ -211,7 +211,7 @@ static void a_missing_scene_is_an_error_unless_it_is_optional(void **state) {
     for (int optional = 0; optional < 2; optional++) {
         RtError error = {RT_OK, ""};
         write_changed(place, "small.yaml", small_experiment, "\"random:n=50\"", missing[optional]);
-        RtStatus status = run(place, optional ? "skipped" : "refused", false, 1, nobody, &error);
+        RtStatus status = run(place, optional ? "skipped" : "refused", RT_START_FRESH, 1, nobody, &error);
         assert_int_equal(status, optional ? RT_OK : RT_BAD_INPUT);
         if (!optional) assert_non_null(strstr(error.message, "fetch.sh"));
     }

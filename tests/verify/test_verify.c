@@ -34,10 +34,20 @@ static void on_notice(void *context, const char *message) {
     print_message("%s\n", message);
 }
 
+/* Linked so that calls of rt_scene_open come here, to be counted. */
+RtStatus __real_rt_scene_open(const char *spec, RtScene *scene, RtError *error);
+RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error);
+static int scenes_opened;
+
+RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error) {
+    scenes_opened++;
+    return __real_rt_scene_open(spec, scene, error);
+}
+
 static const RtVerifyObserver observer = {on_doing, on_row, on_notice, NULL};
 
 /* Verifies grid and a mutant on both scenes; the rows are the caller's. */
-static json_t *verify(const char *folder, int threads, bool resume) {
+static json_t *verify(const char *folder, int threads, RtStart start) {
     static const RtVerifySpec specs[] = {{"grid", true, {NULL, NULL}},
                                          {"unpadded", true, {build_mutant, &unpadded}}};
     RtVerify work = {.scenes = scenes,
@@ -46,9 +56,9 @@ static json_t *verify(const char *folder, int threads, bool resume) {
                      .spec_count = 2,
                      .rays = {6000, 1, true, threads},
                      .folder = folder,
-                     .resume = resume};
+                     .start = start};
     json_t *rows;
-    rows_seen = scenes_worked_on = 0;
+    rows_seen = scenes_worked_on = scenes_opened = 0;
     assert_ok(rt_verify_run(&work, &observer, &rows, error));
     return rows;
 }
@@ -76,7 +86,7 @@ static const char *replay_of(const json_t *row) {
 
 static void a_failure_can_be_replayed_until_it_is_mended(void **state) {
     (void)state;
-    json_t *rows = verify(OUT "/a", 0, false);
+    json_t *rows = verify(OUT "/a", 0, RT_START_ANEW);
     assert_int_equal(json_array_size(rows), 4);
     assert_false(rt_verify_row_fails(json_array_get(rows, 0)));
     assert_true(rt_verify_row_fails(json_array_get(rows, 1)));
@@ -97,8 +107,8 @@ static void a_failure_can_be_replayed_until_it_is_mended(void **state) {
 
 static void threads_and_interruptions_change_no_byte(void **state) {
     (void)state;
-    json_decref(verify(OUT "/a", 1, false));
-    json_decref(verify(OUT "/b", 2, false));
+    json_decref(verify(OUT "/a", 1, RT_START_ANEW));
+    json_decref(verify(OUT "/b", 2, RT_START_ANEW));
     char *journal = text_of(OUT "/b", "rows.jsonl");
     /* The header, two rows, and a part of the third: as if the power had failed then. */
     char *end = journal;
@@ -106,7 +116,7 @@ static void threads_and_interruptions_change_no_byte(void **state) {
     assert_ok(rt_file_write(OUT "/b/rows.jsonl", journal, (size_t)(end - journal) + 7, error));
     assert_int_equal(unlink(OUT "/b/verify.csv"), 0);
     rt_free(journal);
-    json_decref(verify(OUT "/b", 0, true));
+    json_decref(verify(OUT "/b", 0, RT_START_RESUME));
     assert_int_equal(rows_seen, 4);
     assert_int_equal(scenes_worked_on, 1);
     char *a = text_of(OUT "/a", "verify.csv"), *b = text_of(OUT "/b", "verify.csv");
@@ -116,14 +126,21 @@ static void threads_and_interruptions_change_no_byte(void **state) {
     rt_free(a);
     rt_free(b);
     assert_same_file("0002-family-kind-plane-seed-1-unpadded.json", OUT "/a", OUT "/b");
-    json_decref(verify(OUT "/b", 0, true));
+    json_decref(verify(OUT "/b", 0, RT_START_RESUME));
     assert_int_equal(scenes_worked_on, 0);
+}
+
+static void each_scene_is_opened_once(void **state) {
+    (void)state;
+    json_decref(verify(OUT "/f", 0, RT_START_ANEW));
+    assert_int_equal(scenes_worked_on, 2);
+    assert_int_equal(scenes_opened, 2);
 }
 
 static void another_run_is_not_gone_on_with(void **state) {
     (void)state;
-    json_decref(verify(OUT "/c", 0, false));
-    RtVerify work = {.scenes = scenes, .scene_count = 1, .folder = OUT "/c", .resume = true};
+    json_decref(verify(OUT "/c", 0, RT_START_ANEW));
+    RtVerify work = {.scenes = scenes, .scene_count = 1, .folder = OUT "/c", .start = RT_START_RESUME};
     RtError error;
     json_t *rows;
     assert_int_equal(rt_verify_run(&work, &observer, &rows, &error), RT_BAD_INPUT);
@@ -155,7 +172,8 @@ static void a_failure_that_takes_its_neighbours_is_kept_with_them(void **state) 
                      .specs = &spec,
                      .spec_count = 1,
                      .rays = {4000, 1, false, 0},
-                     .folder = OUT "/d"};
+                     .folder = OUT "/d",
+                     .start = RT_START_ANEW};
     json_t *rows;
     RtReplay replay;
     RtReply reply;
@@ -211,7 +229,7 @@ static void what_is_no_replay_file_is_refused(void **state) {
     const char *const members[] = {"scene",  "fingerprint", "sampling", "accel", "query",
                                    "kernel", "stream",      "rays",     "asked"};
     const char *path = OUT "/broken.json";
-    json_t *rows = verify(OUT "/a", 0, false);
+    json_t *rows = verify(OUT "/a", 0, RT_START_ANEW);
     RtError error;
     RtReplay replay;
     for (size_t i = 0; i < sizeof members / sizeof members[0]; i++) {
@@ -287,6 +305,7 @@ RT_TEST_GROUP(verify) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_failure_can_be_replayed_until_it_is_mended),
         cmocka_unit_test(threads_and_interruptions_change_no_byte),
+        cmocka_unit_test(each_scene_is_opened_once),
         cmocka_unit_test(another_run_is_not_gone_on_with),
         cmocka_unit_test(a_failure_that_takes_its_neighbours_is_kept_with_them),
         cmocka_unit_test(a_replay_file_needs_no_other_file),

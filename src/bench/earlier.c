@@ -1,0 +1,66 @@
+#include "bench/earlier.h"
+
+#include "base/file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const result_files[] = {RT_RUN_JOURNAL, RT_VERIFY_JOURNAL, RT_MANIFEST, "counts.csv",
+                                           "times.csv",    "published.csv",   "least.csv", "published.md",
+                                           "report.html",  "verify.csv",      "verify.md"};
+
+enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
+
+static bool has(const char *directory, const char *name) {
+    char path[RT_MAX_PATH];
+    return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);
+}
+
+static const char *find_result(const char *directory) {
+    for (int i = 0; i < RESULT_FILES; i++) {
+        if (has(directory, result_files[i])) return result_files[i];
+    }
+    return NULL;
+}
+
+RtStatus rt_earlier_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
+                         RtError *error) {
+    const char *result = find_result(directory);
+    bool whole = has(directory, journal), finished = has(directory, RT_MANIFEST);
+    *goes_on = whole && start == RT_START_RESUME;
+    if (!result || *goes_on || start == RT_START_ANEW) return RT_OK;
+    if (whole) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s holds a run that %s: %s with --resume, begin anew and lose it with --force, or give "
+            "another --out",
+            directory, finished ? "is finished" : "was interrupted",
+            finished ? "write its tables again" : "go on");
+    }
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s holds results of another kind, or without their journal (%s, but no %s), which cannot "
+                   "be gone on with: begin anew and lose them with --force, or give another --out",
+                   directory, result, journal);
+}
+
+static void remove_file(void *context, const char *path) {
+    (void)context;
+    remove(path);
+}
+
+static void remove_each(const char *directory, const char *folder, const char *suffix) {
+    char path[RT_MAX_PATH];
+    if (rt_path_join(directory, folder, path, NULL) == RT_OK)
+        rt_directory_each(path, suffix, remove_file, NULL);
+}
+
+void rt_earlier_remove(const char *directory, const char *journal) {
+    if (!find_result(directory)) return;
+    for (int i = 0; i < RESULT_FILES; i++) {
+        char path[RT_MAX_PATH];
+        if (strcmp(result_files[i], journal) == 0) continue;
+        if (rt_path_join(directory, result_files[i], path, NULL) == RT_OK) remove(path);
+    }
+    remove_each(directory, "plots", ".svg");
+    remove_each(directory, "images", ".png");
+}

@@ -1,0 +1,31 @@
+/* What an earlier run has left in a result directory, and what becomes of it: nothing is overwritten unasked.
+ */
+#ifndef RT_BENCH_EARLIER_H
+#define RT_BENCH_EARLIER_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+
+/* How a run or a verification takes a directory with results. */
+typedef enum RtStart {
+    RT_START_FRESH,  /* it is refused */
+    RT_START_RESUME, /* gone on with, if it is the same run by the same build; what is known stays */
+    RT_START_ANEW    /* the results are lost */
+} RtStart;
+
+/* The journals of experiments and of verifications, and what either writes when it has found everything. */
+#define RT_RUN_JOURNAL    "cells.jsonl"
+#define RT_VERIFY_JOURNAL "rows.jsonl"
+#define RT_MANIFEST       "manifest.json"
+
+/* Whether there is the journal that such a start goes on with. Refuses results that are not to be touched:
+ * any at all by a fresh start, any without the journal by one that resumes. */
+RtStatus rt_earlier_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
+                         RtError *error);
+
+/* Removes the results in the directory, where there are any, but for the journal: tables, manifest, report,
+ * pictures, plots, and the journal of the other kind. Scripts, replay files and all else stay. */
+void rt_earlier_remove(const char *directory, const char *journal);
+
+#endif

@@ -1,0 +1,469 @@
+/* A result directory: what is in it is not lost, whoever runs into it, whatever fails, whenever a run is
+ * killed.
+ *
+ * Linked so that calls of the functions wrapped below come here: openings of scenes are counted, and a run
+ * can be killed at any of its calls that change a file. */
+#include "experiment_testing.h"
+
+#include "base/lock.h"
+#include "report/run.h"
+#include "scenes/open.h"
+
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const char small_experiment[] = "name: small\n"
+                                       "question: Which is cheaper?\n"
+                                       "prediction: The hierarchy.\n"
+                                       "scenes:\n"
+                                       "  - {scene: \"balls:size=1\", size: 12x12, depth: 2}\n"
+                                       "  - {scene: \"random:n=50\", label: cloud, size: 8x8, depth: 2}\n"
+                                       "  - {scene: \"balls:size=1\", label: again, size: 8x8, depth: 1}\n"
+                                       "accelerators: [{accel: bvh}, {accel: grid}]\n"
+                                       "rays: [primary, shadow]\n"
+                                       "count_only: yes\n"
+                                       "limit: 100\n"
+                                       "quick: {limit: 50}\n";
+
+static int make_small(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml", small_experiment);
+    return 0;
+}
+
+static RtStatus run(const Place *place, const char *directory, RtStart start, RtError *error) {
+    RtResults results;
+    Path path = path_in(place, directory);
+    RT_TRY(load_small(place, false, error));
+    RT_TRY(rt_results_init(&results, place->experiment, error));
+    RtRunOptions options = {.directory = path.text, .start = start, .trial = {.threads = 1, .timing = 1}};
+    RtStatus status = rt_run(&results, &options, error);
+    rt_results_clear(&results);
+    return status;
+}
+
+static void assert_same_file(const Place *place, const char *name, const char *before) {
+    char *now = read_in(place, name);
+    assert_string_equal(now, before);
+    rt_free(now);
+}
+
+/* raytally must have ended with this exit code and have said this on standard error. */
+static void assert_ended(const Place *place, const char *arguments, int ended, int code, const char *says) {
+    char *message = read_in(place, "message");
+    if (ended != code || !strstr(message, says)) {
+        fail_msg("raytally %s: exit code %d, expected %d with '%s': %s", arguments, ended, code, says,
+                 message);
+    }
+    rt_free(message);
+}
+
+static void assert_ends(const Place *place, const char *arguments, int code, const char *says) {
+    assert_ended(place, arguments, raytally(place, arguments), code, says);
+}
+
+/* ---- calls that come here ---- */
+
+RtStatus __real_rt_scene_open(const char *spec, RtScene *scene, RtError *error);
+RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error);
+int __real_rename(const char *from, const char *to);
+int __wrap_rename(const char *from, const char *to);
+int __real_remove(const char *path);
+int __wrap_remove(const char *path);
+int __real_mkdir(const char *path, mode_t mode);
+int __wrap_mkdir(const char *path, mode_t mode);
+int __wrap_fsync(int file);
+int __wrap_fdatasync(int file);
+FILE *__real_fopen(const char *path, const char *mode);
+FILE *__wrap_fopen(const char *path, const char *mode);
+
+static int scenes_opened;
+static int changes, last_change; /* of files, and the one at which to be killed; 0: never */
+
+/* Whether this is the moment to be killed. */
+static bool is_last_change(void) {
+    return ++changes == last_change;
+}
+
+static void killed_here(void) {
+    if (is_last_change()) kill(getpid(), SIGKILL);
+}
+
+RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error) {
+    scenes_opened++;
+    return __real_rt_scene_open(spec, scene, error);
+}
+
+int __wrap_rename(const char *from, const char *to) {
+    killed_here();
+    return __real_rename(from, to);
+}
+
+int __wrap_remove(const char *path) {
+    killed_here();
+    return __real_remove(path);
+}
+
+int __wrap_mkdir(const char *path, mode_t mode) {
+    killed_here();
+    return __real_mkdir(path, mode);
+}
+
+FILE *__wrap_fopen(const char *path, const char *mode) {
+    killed_here();
+    return __real_fopen(path, mode);
+}
+
+/* What is written outlives the process without it: the disk is spared. */
+int __wrap_fsync(int file) {
+    (void)file;
+    killed_here();
+    return 0;
+}
+
+/* Behind a line of the journal, of which only a part may have got there. */
+int __wrap_fdatasync(int file) {
+    struct stat info;
+    if (is_last_change()) {
+        if (fstat(file, &info) == 0 && info.st_size > 9)
+            assert_int_equal(ftruncate(file, info.st_size - 9), 0);
+        kill(getpid(), SIGKILL);
+    }
+    return 0;
+}
+
+/* ---- whose results they are ---- */
+
+static void results_are_refused_unless_they_are_gone_on_with_or_begun_anew(void **state) {
+    const Place *place = *state;
+    assert_ends(place, "run small.yaml", 0, "");
+    char *journal = read_in(place, "results/small/cells.jsonl"),
+         *page = read_in(place, "results/small/manifest.json");
+    assert_ends(place, "run small.yaml", 2, "is finished: write its tables again with --resume");
+    assert_ends(place, "run small.yaml --out results/small", 2, "with --force");
+    assert_ends(place, "run small.yaml --quick", 2, "without --quick");
+    write_changed(place, "other.yaml", small_experiment, "limit: 100", "limit: 99");
+    assert_ends(place, "run other.yaml", 2, "another version of it ('small')");
+    assert_ends(place, "run other.yaml --resume", 2, "another version of it ('small')");
+    assert_ends(place, "verify tetra:size=1 --accel bvh --rays 10 --out results/small", 2, "of another kind");
+    assert_ends(place, "verify tetra:size=1 --accel bvh --rays 10 --out results/small --resume", 2,
+                "of another kind");
+    assert_same_file(place, "results/small/cells.jsonl", journal);
+    assert_same_file(place, "results/small/manifest.json", page);
+    assert_int_equal(remove(path_in(place, "results/small/manifest.json").text), 0);
+    assert_ends(place, "run small.yaml", 2, "was interrupted: go on with --resume");
+    assert_same_file(place, "results/small/cells.jsonl", journal);
+    assert_ends(place, "run other.yaml --resume --force", 0, "");
+    assert_ends(place, "run other.yaml --force --resume", 0, "nothing was left to measure");
+    rt_free(journal);
+    rt_free(page);
+}
+
+static void a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest(void **state) {
+    const Place *place = *state;
+    assert_ends(place, "run small.yaml --threads 1 --resume", 0, "");
+    char *table = read_in(place, "output"), *manifest = read_in(place, "results/small/manifest.json");
+    assert_non_null(strstr(table, "cloud"));
+    assert_int_equal(remove(path_in(place, "results/small/counts.csv").text), 0);
+    assert_ends(place, "run small.yaml --threads 2 --resume", 0, "nothing was left to measure");
+    assert_same_file(place, "output", table);
+    assert_same_file(place, "results/small/manifest.json", manifest);
+    assert_true(rt_file_exists(path_in(place, "results/small/counts.csv").text));
+    rt_free(table);
+    rt_free(manifest);
+}
+
+static void results_without_their_journal_are_not_gone_on_with(void **state) {
+    const Place *place = *state;
+    assert_ends(place, "run small.yaml", 0, "");
+    char *counts = read_in(place, "results/small/counts.csv");
+    assert_int_equal(remove(path_in(place, "results/small/cells.jsonl").text), 0);
+    assert_ends(place, "run small.yaml --resume", 2, "no cells.jsonl");
+    assert_same_file(place, "results/small/counts.csv", counts);
+    rt_free(counts);
+}
+
+static void what_begins_anew_leaves_nothing_of_what_was_there(void **state) {
+    const Place *place = *state;
+    assert_ends(place, "verify tetra:size=1 --accel bvh --rays 10 --out out", 0, "");
+    assert_ends(place, "run small.yaml --out out --resume", 2, "no cells.jsonl");
+    assert_ends(place, "run small.yaml --out out --force", 0, "");
+    write_in(place, "out/plots/old.svg", "<svg/>");
+    write_in(place, "out/notes.txt", "mine");
+    assert_ends(place, "run small.yaml --out out --force", 0, "");
+    for (int i = 0; i < 3; i++) {
+        const char *const gone[] = {"out/rows.jsonl", "out/verify.csv", "out/plots/old.svg"};
+        assert_false(rt_file_exists(path_in(place, gone[i]).text));
+    }
+    assert_in_file(place, "out/notes.txt", "mine");
+}
+
+/* Each of these fails; with --force, too, no byte of the results that are there has changed then. */
+static void nothing_is_touched_before_all_that_may_fail_was_tried(void **state) {
+    const Place *place = *state;
+    const struct {
+        const char *from, *to;
+    } faults[] = {{"limit: 100\n", "limit: -1\n"},
+                  {"limit: 100\n", "limit: 100\nplots: [nowhere.gp]\n"},
+                  {"limit: 100\n", "limit: 100\npublished: {tables: [nowhere.csv]}\n"},
+                  {"accel: grid", "accel: gird"},
+                  {"accel: grid", "accel: \"grid:density=-1\""},
+                  {"random:n=50", "random:n=-50"},
+                  {"\"random:n=50\"", "nowhere.obj"},
+                  {"\"random:n=50\"", "broken.nff"}};
+    write_in(place, "broken.nff", "s 0 0 0 nan\n");
+    assert_ends(place, "run small.yaml --out out", 0, "");
+    char *journal = read_in(place, "out/cells.jsonl"), *yaml = read_in(place, "out/experiment.yaml"),
+         *manifest = read_in(place, "out/manifest.json");
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+        write_changed(place, "faulty.yaml", small_experiment, faults[i].from, faults[i].to);
+        assert_ends(place, "run faulty.yaml --out out --force", 2, "");
+        assert_same_file(place, "out/cells.jsonl", journal);
+        assert_same_file(place, "out/experiment.yaml", yaml);
+        assert_same_file(place, "out/manifest.json", manifest);
+    }
+    /* A directory that cannot be written, even by root. */
+    assert_int_equal(mkdir(path_in(place, "out/experiment.yaml.tmp").text, 0777), 0);
+    assert_ends(place, "run small.yaml --out out --force", 2, "experiment.yaml.tmp");
+    assert_same_file(place, "out/cells.jsonl", journal);
+    assert_same_file(place, "out/manifest.json", manifest);
+    rt_free(journal);
+    rt_free(yaml);
+    rt_free(manifest);
+}
+
+/* ---- two at a time ---- */
+
+static void a_second_process_is_refused_with_the_number_of_the_first(void **state) {
+    const Place *place = *state;
+    const char *const writing[] = {"run small.yaml --out out --force", "run small.yaml --out out --resume",
+                                   "verify tetra:size=1 --rays 10 --out out --force", "plot out",
+                                   "report out"};
+    char holder[64];
+    RtLock lock;
+    RtError refused;
+    assert_ends(place, "run small.yaml --out out", 0, "");
+    assert_ok(rt_lock_take(&lock, path_in(place, "out").text, error));
+    assert_true(rt_lock_is_held(&lock));
+    snprintf(holder, sizeof holder, "out: process %d is writing", (int)getpid());
+    for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i++) assert_ends(place, writing[i], 2, holder);
+    assert_ends(place, "reproduce out", 0, "");
+    assert_refused(run(place, "out", RT_START_ANEW, &refused), RT_BAD_INPUT, &refused, "is writing");
+    rt_lock_release(&lock);
+    for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i += 3) assert_ends(place, writing[i], 0, "");
+}
+
+static void a_lock_goes_with_the_process_that_was_killed(void **state) {
+    const Place *place = *state;
+    RtLock lock;
+    int status;
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        if (rt_lock_take(&lock, place->folder, NULL) == RT_OK) kill(getpid(), SIGKILL);
+        _exit(1);
+    }
+    assert_true(waitpid(child, &status, 0) == child && WIFSIGNALED(status));
+    assert_ok(rt_lock_take(&lock, place->folder, error));
+    rt_lock_release(&lock);
+}
+
+/* ---- plots ---- */
+
+static void a_script_that_lies_elsewhere_is_copied_into_the_directory(void **state) {
+    const Place *place = *state;
+    assert_ok(rt_directory_create(path_in(place, "here").text, error));
+    assert_ok(rt_directory_create(path_in(place, "there/deep").text, error));
+    write_in(place, "x.gp", "print 1\n");
+    write_in(place, "there/deep/y.gp", "print 2\n");
+    write_changed(place, "here/small.yaml", small_experiment, "limit: 100\n",
+                  "limit: 100\nplots: [../x.gp, ../there/deep/y.gp]\n");
+    assert_ends(place, "run here/small.yaml --out out/deep", 0, "");
+    assert_in_file(place, "out/deep/plots/x.gp", "print 1");
+    assert_in_file(place, "out/deep/plots/y.gp", "print 2");
+    assert_false(rt_file_exists(path_in(place, "out/deep/x.gp").text));
+    assert_ends(place, "plot out/deep", 0, "");
+}
+
+static void two_scripts_of_one_name_are_refused_with_their_line(void **state) {
+    const Place *place = *state;
+    const char *const lists[] = {"[x.gp,\n  ../x.gp]", "[x.gp,\n  names.gp]", "[x.gp,\n  there/]",
+                                 "[x.gp,\n  ..]"};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
+        char plots[64];
+        RtError error = {RT_OK, ""};
+        snprintf(plots, sizeof plots, "limit: 100\nplots: %s\n", lists[i]);
+        write_changed(place, "small.yaml", small_experiment, "limit: 100\n", plots);
+        assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error, "small.yaml:13:3:");
+    }
+}
+
+static void an_experiment_that_is_named_like_a_folder_above_is_refused(void **state) {
+    const Place *place = *state;
+    RtError error = {RT_OK, ""};
+    write_changed(place, "small.yaml", small_experiment, "name: small", "name: ..");
+    assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error, "small.yaml:1:");
+}
+
+/* A gnuplot of our own, in the folder bin of the place. */
+static void make_gnuplot(const Place *place, const char *script) {
+    assert_ok(rt_directory_create(path_in(place, "bin").text, error));
+    write_in(place, "bin/gnuplot", script);
+    assert_int_equal(chmod(path_in(place, "bin/gnuplot").text, 0777), 0);
+}
+
+static void assert_ends_with_path(const Place *place, const char *path, const char *arguments, int code,
+                                  const char *says) {
+    char *kept = strdup(getenv("PATH"));
+    setenv("PATH", path, 1);
+    int ended = raytally(place, arguments);
+    setenv("PATH", kept, 1);
+    free(kept);
+    assert_ended(place, arguments, ended, code, says);
+}
+
+static void gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words(void **state) {
+    const Place *place = *state;
+    Path bin = path_in(place, "bin");
+    write_in(place, "x.gp", "plot nonsense\n");
+    write_changed(place, "small.yaml", small_experiment, "limit: 100\n", "limit: 100\nplots: [x.gp]\n");
+    make_gnuplot(place,
+                 "#!/bin/sh\necho '\"plots/x.gp\" line 1: undefined variable: nonsense' >&2\nexit 1\n");
+    const char *says = "gnuplot failed:\n\"plots/x.gp\" line 1: undefined variable: nonsense";
+    assert_ends_with_path(place, bin.text, "run small.yaml --out out", 1, says);
+    assert_in_file(place, "out/counts.csv", "cloud");
+    assert_in_file(place, "out/report.html", "</html>");
+    assert_ends_with_path(place, bin.text, "plot out", 1, says);
+    assert_ends_with_path(place, bin.text, "run small.yaml --out out --resume", 1, says);
+    make_gnuplot(place, "#!/bin/sh\nexit 3\n");
+    assert_ends_with_path(place, bin.text, "plot out", 1, "it was given plots/names.gp plots/x.gp");
+}
+
+static void where_there_is_no_gnuplot_a_note_says_so(void **state) {
+    const Place *place = *state;
+    write_in(place, "x.gp", "print 1\n");
+    write_changed(place, "small.yaml", small_experiment, "limit: 100\n", "limit: 100\nplots: [x.gp]\n");
+    assert_ends_with_path(place, "/nowhere", "run small.yaml --out out", 0, "gnuplot is not installed");
+    assert_ends_with_path(place, "/nowhere", "plot out", 0, "gnuplot is not installed");
+    assert_ends_with_path(place, "/nowhere", "run small.yaml --out out --resume", 0,
+                          "gnuplot is not installed");
+}
+
+/* ---- scenes ---- */
+
+static void a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left(void **state) {
+    const Place *place = *state;
+    scenes_opened = 0;
+    assert_ok(run(place, "out", RT_START_FRESH, error));
+    assert_int_equal(scenes_opened, 2); /* the first and the last trial are on the same */
+    assert_true(rt_file_exists(path_in(place, "out/images/again.png").text));
+    scenes_opened = 0;
+    assert_ok(run(place, "out", RT_START_RESUME, error));
+    assert_int_equal(scenes_opened, 0);
+    assert_int_equal(remove(path_in(place, "out/images/again.png").text), 0);
+    assert_ok(run(place, "out", RT_START_RESUME, error));
+    assert_int_equal(scenes_opened, 1);
+    assert_true(rt_file_exists(path_in(place, "out/images/again.png").text));
+}
+
+/* ---- the end at any moment ---- */
+
+/* Runs in a process of its own that is killed at this change of a file; whether it was. */
+static bool killed_at(const Place *place, int change, const char *directory, RtStart start) {
+    int status;
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        changes = 0;
+        last_change = change;
+        _exit(run(place, directory, start, NULL) == RT_OK ? 0 : 1);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    if (WIFEXITED(status)) assert_int_equal(WEXITSTATUS(status), 0);
+    return WIFSIGNALED(status);
+}
+
+enum { MOMENTS = 24 };
+
+static void a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts(void **state) {
+    const Place *place = *state;
+    changes = 0;
+    assert_ok(run(place, "whole", RT_START_FRESH, error));
+    int all = changes;
+    assert_true(all > MOMENTS);
+    char *whole = read_in(place, "whole/counts.csv");
+    for (int i = 0; i <= MOMENTS; i++) {
+        char directory[32], counts[64], cells[64];
+        snprintf(directory, sizeof directory, "part-%d", i);
+        snprintf(counts, sizeof counts, "%s/counts.csv", directory);
+        snprintf(cells, sizeof cells, "%s/cells.jsonl", directory);
+        assert_true(killed_at(place, 1 + i * (all - 1) / MOMENTS, directory, RT_START_FRESH));
+        /* And once more while it goes on. */
+        killed_at(place, 1 + 2 * i, directory, RT_START_RESUME);
+        assert_ok(run(place, directory, RT_START_RESUME, error));
+        assert_same_file(place, counts, whole);
+        /* The journal has all of it: nothing is measured once more. */
+        char *journal = read_in(place, cells);
+        assert_ok(run(place, directory, RT_START_RESUME, error));
+        assert_same_file(place, cells, journal);
+        rt_free(journal);
+    }
+    rt_free(whole);
+}
+
+/* Either the old run is whole, but for what follows from its journal, or the new one is begun. */
+static void a_run_that_begins_anew_and_is_killed_loses_the_old_one_only_for_the_new(void **state) {
+    const Place *place = *state;
+    assert_ok(run(place, "old", RT_START_FRESH, error));
+    write_changed(place, "small.yaml", small_experiment, "limit: 100", "limit: 40");
+    assert_ok(run(place, "new", RT_START_FRESH, error));
+    char *other = read_in(place, "small.yaml"), *old = read_in(place, "old/counts.csv"),
+         *new = read_in(place, "new/counts.csv");
+    int gone_on = 0, begun = 0;
+    for (int moment = 1; moment < 60; moment += 2) {
+        RtError refused;
+        write_in(place, "small.yaml", small_experiment);
+        assert_ok(run(place, "out", RT_START_ANEW, error));
+        write_in(place, "small.yaml", other);
+        assert_true(killed_at(place, moment, "out", RT_START_ANEW));
+        if (run(place, "out", RT_START_RESUME, &refused) == RT_OK) {
+            assert_same_file(place, "out/counts.csv", new);
+            begun++;
+            continue;
+        }
+        assert_refused(refused.status, RT_BAD_INPUT, &refused, "another experiment");
+        write_in(place, "small.yaml", small_experiment);
+        assert_ok(run(place, "out", RT_START_RESUME, error));
+        assert_same_file(place, "out/counts.csv", old);
+        gone_on++;
+    }
+    assert_true(gone_on > 3 && begun > 3);
+    rt_free(other);
+    rt_free(old);
+    rt_free(new);
+}
+
+#define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_small, remove_place)
+
+RT_TEST_GROUP(result_directory) {
+    const struct CMUnitTest tests[] = {
+        IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew),
+        IN_PLACE(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest),
+        IN_PLACE(results_without_their_journal_are_not_gone_on_with),
+        IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there),
+        IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried),
+        IN_PLACE(a_second_process_is_refused_with_the_number_of_the_first),
+        IN_PLACE(a_lock_goes_with_the_process_that_was_killed),
+        IN_PLACE(a_script_that_lies_elsewhere_is_copied_into_the_directory),
+        IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line),
+        IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused),
+        IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words),
+        IN_PLACE(where_there_is_no_gnuplot_a_note_says_so),
+        IN_PLACE(a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left),
+        IN_PLACE(a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts),
+        IN_PLACE(a_run_that_begins_anew_and_is_killed_loses_the_old_one_only_for_the_new),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
