@@ -34,7 +34,7 @@ static const struct {
     {"objects: []\n", 1, "at least 1"},
     {"objects:\n", 1, "nothing found where a list"},
     {"objects: &a [*a]\n", 1, "aliases"},
-    {"a: &a [x,x]\nb: &b [*a,*a]\n", 1, "unknown key 'a'"},
+    {"a: &a [x,x]\nb: &b [*a,*a]\n", 2, "b[0]: aliases (*name) are not supported"},
     /* keys */
     {"object:\n  - sphere: {}\n", 1, "did you mean 'objects'?"},
     {SPHERE "camera:\n  from: [1, 1, 1]\n  too: [0, 0, 0]\n", 5, "unknown key 'too'"},
@@ -126,7 +126,7 @@ static const struct {
     {SOLIDS "- {name: c, torus: {center: [0, 0, 0], major: 1, minor: 2}}\n" CSG("a"), 5, "minor < major"},
     {SOLIDS "- {name: c, half_space: {point: [0, 0, 0], normal: [0, 0, 0]}}\n" CSG("a"), 5,
      "the normal not 0"},
-    {SOLIDS "- {name: c, polyhedron: {}}\n" CSG("a"), 5, "give one of the two"},
+    {SOLIDS "- {name: c, polyhedron: {}}\n" CSG("a"), 5, "one of: vertices, planes; it has 0"},
     {SOLIDS "- {name: c, polyhedron: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}}\n" CSG("a"), 5,
      "in one plane"},
     {SOLIDS "- name: c\n  mesh:\n    path: corner.obj\n" CSG("a"), 7, "at least; this one has 1"},
