@@ -64,26 +64,38 @@ RtStatus rt_yaml_place(const RtYaml *yaml, RtStatus status, const RtYamlNode *ma
 
 typedef struct Builder {
     RtYaml *yaml;
+    const char *text; /* all of it */
     yaml_parser_t parser;
     yaml_event_t event;               /* the current one */
     uint32_t open[RT_YAML_MAX_DEPTH]; /* the lists and mappings that it is in */
     uint32_t depth;
 } Builder;
 
+/* Fails at byte `offset` of the text. */
+static RtStatus fail_at_byte(const Builder *b, size_t offset, const char *message) {
+    size_t line = 1, start = 0;
+    for (size_t i = 0; i < offset; i++) {
+        if (b->text[i] != '\n') continue;
+        line++;
+        start = i + 1;
+    }
+    return rt_fail_at(b->yaml->error, b->yaml->path, line, offset - start + 1, "%s", message);
+}
+
 static RtStatus next_event(Builder *b) {
     yaml_event_delete(&b->event);
     yaml_parser_t *parser = &b->parser;
     if (yaml_parser_parse(parser, &b->event)) return RT_OK;
-    RtError *error = b->yaml->error;
-    if (parser->error == YAML_MEMORY_ERROR) return rt_fail_memory(error, "parsing YAML", 0);
+    if (parser->error == YAML_MEMORY_ERROR) return rt_fail_memory(b->yaml->error, "parsing YAML", 0);
     const char *problem = parser->problem ? parser->problem : "unknown fault";
-    if (parser->error == YAML_READER_ERROR) { /* has an offset, no mark */
-        return rt_fail_at(error, b->yaml->path, parser->mark.line + 1, parser->mark.column + 1,
-                          "this is not text in UTF-8 (%s, byte %zu)", problem, parser->problem_offset);
+    if (parser->error == YAML_READER_ERROR) { /* it reads ahead: its mark is not the place */
+        char message[MAX_CHARS];
+        snprintf(message, sizeof message, "this is not text in UTF-8: %s", problem);
+        return fail_at_byte(b, parser->problem_offset, message);
     }
-    return rt_fail_at(error, b->yaml->path, parser->problem_mark.line + 1, parser->problem_mark.column + 1,
-                      "this is not YAML: %s%s%s", problem, parser->context ? " " : "",
-                      parser->context ? parser->context : "");
+    return rt_fail_at(b->yaml->error, b->yaml->path, parser->problem_mark.line + 1,
+                      parser->problem_mark.column + 1, "this is not YAML: %s%s%s", problem,
+                      parser->context ? " " : "", parser->context ? parser->context : "");
 }
 
 /* A node for the current event, below what is open. */
@@ -176,30 +188,23 @@ static RtStatus add_document(Builder *b) {
 
 /* libyaml compares each %TAG with all before it, so a file of them would take its length squared. They stand
  * at the beginning of a line, and lines may end with characters beyond ASCII, too. */
-static RtStatus refuse_directives(const RtYaml *yaml, const char *text, size_t length) {
-    static const char tag[] = "%TAG";
-    const char *at = text, *end = text + length;
-    while ((at = memchr(at, '%', (size_t)(end - at)))) {
-        bool begins = at == text || (unsigned char)at[-1] < ' ' || (unsigned char)at[-1] >= 0x80;
-        if (begins && (size_t)(end - at) >= sizeof tag - 1 && memcmp(at, tag, sizeof tag - 1) == 0) {
-            size_t line = 1;
-            for (const char *c = text; c < at; c++) line += *c == '\n';
-            return rt_fail_at(yaml->error, yaml->path, line, 1,
-                              "%%TAG directives are not supported: leave them and the tags out");
-        }
-        at++;
+static RtStatus refuse_directives(const Builder *b, size_t length) {
+    const char *at = b->text, *end = b->text + length;
+    for (; (at = memmem(at, (size_t)(end - at), "%TAG", 4)); at++) {
+        if (at > b->text && (unsigned char)at[-1] >= ' ' && (unsigned char)at[-1] < 0x80) continue;
+        return fail_at_byte(b, (size_t)(at - b->text), "%TAG is not supported: leave it and the tags out");
     }
     return RT_OK;
 }
 
 RtStatus rt_yaml_parse(RtYaml *yaml, const char *name, const char *text, size_t length, RtError *error) {
     *yaml = (RtYaml){.path = name, .error = error};
-    Builder b = {.yaml = yaml};
+    Builder b = {.yaml = yaml, .text = text};
     if (length > RT_YAML_MAX_BYTES) {
         return rt_fail_at(error, name, 0, 0, "this has %zu bytes, more than the %d there may be", length,
                           RT_YAML_MAX_BYTES);
     }
-    RT_TRY(refuse_directives(yaml, text, length));
+    RT_TRY(refuse_directives(&b, length));
     if (!yaml_parser_initialize(&b.parser)) return rt_fail_memory(error, "parsing YAML", 0);
     yaml_parser_set_encoding(&b.parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&b.parser, (const unsigned char *)text, length);
