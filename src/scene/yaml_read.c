@@ -46,8 +46,6 @@ const RtYamlNamed *rt_yaml_find_name(const RtYamlNames *names, const char *name)
 
 /* ---- materials ---- */
 
-/* X(name): the coefficients of a material, keys of the file and fields of RtMaterial alike. */
-#define COEFFICIENTS(X)   X(ambient) X(diffuse) X(specular) X(shine) X(reflection) X(transmission) X(ior)
 #define OPTIONAL_KEY(key) #key "? "
 
 static RtStatus add_material(RtYamlReader *r, const RtYamlNode *n) {
@@ -56,14 +54,14 @@ static RtStatus add_material(RtYamlReader *r, const RtYamlNode *n) {
     RT_TRY(rt_yaml_copy(&r->yaml, n, "name", sizeof material.name, material.name));
     RT_TRY(rt_yaml_point(&r->yaml, n, "color", &material.color));
 #define READ(name) RT_TRY(rt_yaml_float(&r->yaml, n, #name, &material.name));
-    COEFFICIENTS(READ)
+    RT_YAML_COEFFICIENTS(READ)
 #undef READ
     return rt_yaml_place(&r->yaml, rt_scene_add_material(r->scene, &material, &index, r->error), n, NULL);
 }
 
 static RtStatus add_materials(RtYamlReader *r, const RtYamlNode *list) {
     assert(r->scene->material_count == 0);
-    RT_TRY(rt_yaml_read_names(r, list, "name color? " COEFFICIENTS(OPTIONAL_KEY), RT_MAX_NAME - 1,
+    RT_TRY(rt_yaml_read_names(r, list, "name color? " RT_YAML_COEFFICIENTS(OPTIONAL_KEY), RT_MAX_NAME - 1,
                               "materials", &r->materials));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
         RT_TRY(add_material(r, n));

@@ -1,5 +1,6 @@
-/* What the files that turn YAML into a scene share, private to yaml_read.c and yaml_solids.c. What is wrong
- * with values themselves is found by the functions that add them to the scene; rt_yaml_place says where. */
+/* What the files between YAML and scenes share, private to yaml_read.c, yaml_solids.c and yaml_write.c. What
+ * is wrong with values themselves is found by the functions that add them to the scene; rt_yaml_place says
+ * where. */
 #ifndef RT_SCENE_YAML_READER_H
 #define RT_SCENE_YAML_READER_H
 
@@ -31,6 +32,10 @@ typedef struct RtYamlReader {
     uint32_t solids_known; /* of them, those that are read: a formula sees what stands before it */
     RtError *error;
 } RtYamlReader;
+
+/* X(name): the coefficients of a material, keys of the file and fields of RtMaterial alike. */
+#define RT_YAML_COEFFICIENTS(X)                                                                              \
+    X(ambient) X(diffuse) X(specular) X(shine) X(reflection) X(transmission) X(ior)
 
 /* For a list X(name) of what an entry can be: their keys (rt_yaml_keys). */
 #define RT_YAML_ONE_OF(name) #name "| "

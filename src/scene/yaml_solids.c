@@ -214,8 +214,7 @@ static RtStatus move(RtYamlReader *r, const RtYamlNode *n, RtCsgTerm *term) {
 
 #define SOLIDS(X)                                                                                            \
     X(sphere)                                                                                                \
-    X(ellipsoid) X(box) X(cylinder) X(cone) X(torus) X(half_space) X(polyhedron) X(mesh) X(facets)           \
-        X(standard)
+    X(ellipsoid) X(box) X(cylinder) X(cone) X(torus) X(half_space) X(polyhedron) X(mesh) X(facets) X(standard)
 
 /* Whichever kind it is. */
 static RtStatus add_kind(RtYamlReader *r, const RtYamlNode *entry, RtCsgTerm *term) {

@@ -1,9 +1,8 @@
 /* A scene to YAML, plainly printed. Numbers are written with as many significant digits as give the float32
  * back bit for bit: 9 always do, 6 often. */
 #include "base/memory.h"
-#include "base/yaml.h"
-#include "scene/formula.h"
 #include "scene/yaml.h"
+#include "scene/yaml_reader.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,20 +15,12 @@ typedef struct Writer {
 
 /* ---- values ---- */
 
-static void number(Writer *w, float value) {
+/* As few digits as give the value back, as a float32 or a double. */
+static void number(Writer *w, double value, bool wide) {
     char text[32];
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        if (strtof(text, NULL) == value) break;
-    }
-    fputs(text, w->out);
-}
-
-static void wide_number(Writer *w, double value) {
-    char text[32];
-    for (int digits = 15; digits <= 17; digits++) {
+    for (int digits = wide ? 15 : 6; digits <= (wide ? 17 : 9); digits++) {
         snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value) break;
+        if ((wide ? strtod(text, NULL) : (double)strtof(text, NULL)) == value) break;
     }
     fputs(text, w->out);
 }
@@ -37,7 +28,7 @@ static void wide_number(Writer *w, double value) {
 static void numbers(Writer *w, const float *values, int count) {
     for (int i = 0; i < count; i++) {
         fputs(i ? ", " : "[", w->out);
-        number(w, values[i]);
+        number(w, (double)values[i], false);
     }
     fputc(']', w->out);
 }
@@ -45,7 +36,7 @@ static void numbers(Writer *w, const float *values, int count) {
 static void wide_numbers(Writer *w, const double *values, int count) {
     for (int i = 0; i < count; i++) {
         fputs(i ? ", " : "[", w->out);
-        wide_number(w, values[i]);
+        number(w, values[i], true);
     }
     fputc(']', w->out);
 }
@@ -54,7 +45,7 @@ static void wide_numbers(Writer *w, const double *values, int count) {
 
 static void number_key(Writer *w, const char *key, float value) {
     fputs(key, w->out);
-    number(w, value);
+    number(w, (double)value, false);
 }
 
 static void point_key(Writer *w, const char *key, RtVec3 p) {
@@ -114,13 +105,9 @@ static void write_materials(Writer *w) {
         const RtMaterial *m = &w->scene->materials[i];
         material_name(w, "- {name: ", i);
         point_key(w, ", color: ", m->color);
-        number_key(w, ", ambient: ", m->ambient);
-        number_key(w, ", diffuse: ", m->diffuse);
-        number_key(w, ", specular: ", m->specular);
-        number_key(w, ", shine: ", m->shine);
-        number_key(w, ", reflection: ", m->reflection);
-        number_key(w, ", transmission: ", m->transmission);
-        number_key(w, ", ior: ", m->ior);
+#define WRITE(key) number_key(w, ", " #key ": ", m->key);
+        RT_YAML_COEFFICIENTS(WRITE)
+#undef WRITE
         fputs("}\n", w->out);
     }
 }
@@ -158,7 +145,7 @@ static void write_solids(Writer *w) {
             write_facets(w, set->triangles + solid->first, solid->count);
         } else {
             fprintf(w->out, "standard: {kind: %s, ratio: ", rt_solid_kind_name(solid->kind));
-            wide_number(w, solid->ratio);
+            number(w, solid->ratio, true);
             fputs(", place: ", w->out);
             wide_numbers(w, &solid->place.m[0][0], 12);
         }
