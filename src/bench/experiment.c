@@ -1,7 +1,5 @@
 #include "bench/experiment.h"
 
-#include "render/frame.h"
-
 #include <ctype.h>
 #include <string.h>
 
@@ -85,12 +83,6 @@ static RtStatus fail_twice(const char *label, RtError *error) {
                    label);
 }
 
-static RtStatus check_range(const char *what, uint64_t value, uint64_t lo, uint64_t hi, RtError *error) {
-    if (value >= lo && value <= hi) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s: %llu will not do: it must be %llu..%llu", what,
-                   (unsigned long long)value, (unsigned long long)lo, (unsigned long long)hi);
-}
-
 static RtStatus check_contender(RtExperiment *experiment, uint32_t i, RtError *error) {
     RtContender *contender = &experiment->contenders[i];
     RtSpec spec;
@@ -100,7 +92,6 @@ static RtStatus check_contender(RtExperiment *experiment, uint32_t i, RtError *e
         contender->missing = why.status == RT_NOT_AVAILABLE;
         if (!contender->missing) return rt_fail(error, why.status, "%s", why.message);
     }
-    RT_TRY(check_range("every", contender->every, 1, RT_MAX_RAYS_A_KIND, error));
     const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->trial_count) - 1);
     for (uint32_t k = 0; k < i; k++) {
         const RtContender *other = &experiment->contenders[k];
@@ -112,7 +103,6 @@ static RtStatus check_contender(RtExperiment *experiment, uint32_t i, RtError *e
 
 static RtStatus check_trial(const RtExperiment *experiment, uint32_t i, RtError *error) {
     const RtTrial *trial = &experiment->trials[i];
-    RT_TRY(check_range("depth", trial->depth, 1, RT_MAX_DEPTH, error));
     if (rt_trial_find(experiment, trial->label) < i) return fail_twice(trial->label, error);
     return check_label(trial->label, error);
 }
@@ -147,11 +137,6 @@ static RtStatus check_published(const RtExperiment *experiment, RtError *error) 
     const RtPublishedSetup *published = &experiment->published;
     for (uint32_t i = 0; i < published->table_count; i++) {
         RT_TRY(check_beside(published->tables[i], error));
-    }
-    for (int c = 0; c < RT_COLUMN_COUNT; c++) {
-        if (published->tolerance[c] >= 0) continue;
-        return rt_fail(error, RT_BAD_INPUT, "tolerance: %g will not do: it must be percents, 0 or more",
-                       published->tolerance[c]);
     }
     return check_beside(published->reasons, error);
 }
@@ -197,14 +182,6 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         snprintf(where, RT_MAX_LABEL, "plots[%u]", i);
         RT_TRY(check_plot(experiment, i, error));
     }
-    strcpy(where, "limit");
-    RT_TRY(check_range("limit", experiment->limit, 1, RT_MAX_RAYS_A_KIND, error));
-    strcpy(where, "together");
-    RT_TRY(check_range("together", experiment->together, 1, RT_MAX_RAYS_A_KIND, error));
-    strcpy(where, "rounds");
-    RT_TRY(check_range("rounds", experiment->rounds, 1, RT_MAX_ROUNDS, error));
-    strcpy(where, "milliseconds");
-    RT_TRY(check_range("milliseconds", experiment->milliseconds, 1, 60000, error));
     strcpy(where, "name");
     if (*experiment->name == '.') {
         return rt_fail(error, RT_BAD_INPUT,

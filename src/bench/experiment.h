@@ -118,8 +118,9 @@ const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot);
  * makes `spec` a file, seen from `folder`. */
 RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder, RtError *error);
 
-/* What every experiment must satisfy however it came about; marks contenders that this build lacks. *where
- * gets the path of the fault in the YAML ("accelerators[2].accel"), room for RT_MAX_LABEL. */
+/* Whether the parts of an experiment, each in its range, go together, however it came about; marks contenders
+ * that this build lacks. *where gets the path of the fault in the YAML ("name", "accelerators[2]"), room for
+ * RT_MAX_LABEL. */
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error);
 
 #endif

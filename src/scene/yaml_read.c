@@ -1,20 +1,13 @@
-/* From a file that fits the schema (base/yaml_file.h, yaml_schema.h) to a scene. */
+/* From the nodes of a YAML file (base/yaml.h) to a scene. */
 #include "base/memory.h"
 #include "scene/append.h"
 #include "scene/mesh.h"
 #include "scene/yaml.h"
 #include "scene/yaml_reader.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
-
-RtStatus rt_yaml_place(const RtYamlReader *r, RtStatus status, const char *list, uint32_t i,
-                       const char *below) {
-    if (status == RT_OK) return RT_OK;
-    char where[128];
-    snprintf(where, sizeof where, "%s[%u]%s", list, i, below);
-    return rt_yaml_file_place(r->file, status, where, r->error);
-}
 
 /* ---- names ---- */
 
@@ -22,194 +15,239 @@ static int by_name(const void *a, const void *b) {
     return strcmp(((const RtYamlNamed *)a)->name, ((const RtYamlNamed *)b)->name);
 }
 
-RtStatus rt_yaml_sort_names(const RtYamlReader *r, RtYamlNamed *names, uint32_t count, const char *what,
-                            const char *list) {
-    qsort(names, count, sizeof *names, by_name);
+RtStatus rt_yaml_read_names(RtYamlReader *r, const RtYamlNode *list, const char *keys, size_t most,
+                            const char *what, RtYamlNames *names) {
+    RT_TRY(rt_yaml_list(&r->yaml, list, NULL, 0, UINT32_MAX, what));
+    uint32_t count = rt_yaml_count(list);
+    RtYamlNamed *all = names->all = rt_alloc(count, sizeof *all);
+    if (!all) return rt_fail_memory(r->error, what, count * sizeof *all);
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        RtYamlNamed *named = &all[names->count];
+        RT_TRY(rt_yaml_keys(&r->yaml, n, keys));
+        RT_TRY(rt_yaml_text(&r->yaml, n, "name", most, &named->name));
+        named->node = n;
+        named->index = names->count++;
+    }
+    qsort(all, count, sizeof *all, by_name);
     for (uint32_t i = 1; i < count; i++) {
-        if (strcmp(names[i - 1].name, names[i].name) != 0) continue;
-        uint32_t a = names[i - 1].index, b = names[i].index;
-        RtStatus status =
-            rt_fail(r->error, RT_BAD_INPUT, "there are two %s '%s': rename one", what, names[i].name);
-        return rt_yaml_place(r, status, list, a > b ? a : b, ".name");
+        if (strcmp(all[i - 1].name, all[i].name) != 0) continue;
+        const RtYamlNamed *later = &all[all[i].index > all[i - 1].index ? i : i - 1];
+        return rt_yaml_fail(&r->yaml, rt_yaml_get(&r->yaml, later->node, "name"),
+                            "there are two %s '%s': rename one", what, later->name);
     }
     return RT_OK;
 }
 
-const RtYamlNamed *rt_yaml_find_name(const RtYamlNamed *names, uint32_t count, const char *name) {
-    RtYamlNamed wanted = {name, 0};
-    return bsearch(&wanted, names, count, sizeof *names, by_name);
+const RtYamlNamed *rt_yaml_find_name(const RtYamlNames *names, const char *name) {
+    RtYamlNamed wanted = {.name = name};
+    return bsearch(&wanted, names->all, names->count, sizeof wanted, by_name);
 }
 
 /* ---- materials ---- */
 
-/* The scene is empty before: entry i becomes material i. */
-static RtStatus add_materials(RtYamlReader *r) {
-    uint32_t count = r->yaml->materials_count;
-    for (uint32_t i = 0; i < count; i++) {
-        const RtYamlMaterial *given = &r->yaml->materials[i];
-        RtMaterial material = rt_default_material();
-        memcpy(material.name, given->name, sizeof material.name);
-        if (given->color) material.color = *given->color;
-#define SET(name)                                                                                            \
-    if (given->name) material.name = *given->name;
-        RT_YAML_COEFFICIENTS(SET)
-#undef SET
-        r->materials[i].name = given->name;
-        RtStatus status = rt_scene_add_material(r->scene, &material, &r->materials[i].index, r->error);
-        RT_TRY(rt_yaml_place(r, status, "materials", i, ""));
-    }
-    return rt_yaml_sort_names(r, r->materials, count, "materials", "materials");
+#define OPTIONAL_KEY(key) #key "? "
+
+static RtStatus add_material(RtYamlReader *r, const RtYamlNode *n) {
+    RtMaterial material = rt_default_material();
+    uint32_t index;
+    RT_TRY(rt_yaml_copy(&r->yaml, n, "name", sizeof material.name, material.name));
+    RT_TRY(rt_yaml_point(&r->yaml, n, "color", &material.color));
+#define READ(name) RT_TRY(rt_yaml_float(&r->yaml, n, #name, &material.name));
+    RT_YAML_COEFFICIENTS(READ)
+#undef READ
+    return rt_yaml_place(&r->yaml, rt_scene_add_material(r->scene, &material, &index, r->error), n, NULL);
 }
 
-RtStatus rt_yaml_find_material(RtYamlReader *r, const char *name, uint32_t *index) {
-    rt_yaml_at(r, "material");
-    const RtYamlNamed *found =
-        rt_yaml_find_name(r->materials, r->yaml->materials_count, name[0] ? name : "default");
-    if (found) {
-        *index = found->index;
-        return RT_OK;
+static RtStatus add_materials(RtYamlReader *r, const RtYamlNode *list) {
+    assert(r->scene->material_count == 0);
+    RT_TRY(rt_yaml_read_names(r, list, "name color? " RT_YAML_COEFFICIENTS(OPTIONAL_KEY), RT_MAX_NAME - 1,
+                              "materials", &r->materials));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        RT_TRY(add_material(r, n));
     }
-    if (name[0]) {
-        return rt_fail(r->error, RT_BAD_INPUT, "there is no material '%s': add it to the list of materials",
-                       name);
+    return RT_OK;
+}
+
+RtStatus rt_yaml_find_material(RtYamlReader *r, const RtYamlNode *object, uint32_t *index) {
+    const RtYamlNode *node = rt_yaml_get(&r->yaml, object, "material");
+    const char *name = "default";
+    RT_TRY(rt_yaml_text(&r->yaml, object, "material", RT_MAX_NAME - 1, &name));
+    const RtYamlNamed *found = rt_yaml_find_name(&r->materials, name);
+    if (node && !found) {
+        return rt_yaml_fail(&r->yaml, node, "there is no material '%s': add it to the list of materials",
+                            name);
     }
-    if (r->standard == UINT32_MAX) {
+    if (!found && r->standard == UINT32_MAX) {
         RtMaterial material = rt_default_material();
         RT_TRY(rt_scene_add_material(r->scene, &material, &r->standard, r->error));
     }
-    *index = r->standard;
+    *index = found ? found->index : r->standard;
     return RT_OK;
 }
 
 /* ---- transforms ---- */
 
-static RtStatus add_step(RtTransform *transform, const RtYamlStep *step, RtError *error) {
-    int given = !!step->scale + !!step->stretch + !!step->rotate + !!step->translate;
-    if (given != 1) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "a step is one of scale, stretch, rotate, translate, this one has %d of them: write "
-                       "one step an entry, in the order in which they are to happen",
-                       given);
-    }
-    if (step->scale) {
-        return rt_transform_scale(transform, rt_vec3(*step->scale, *step->scale, *step->scale), error);
-    }
-    if (step->stretch) return rt_transform_scale(transform, *step->stretch, error);
-    if (step->translate) return rt_transform_translate(transform, *step->translate, error);
-    return rt_transform_rotate(transform, step->rotate->axis, (double)step->rotate->degrees, error);
+static RtStatus add_rotation(RtYamlReader *r, const RtYamlNode *n, RtTransform *transform) {
+    RtVec3 axis = {0};
+    float degrees = 0;
+    RT_TRY(rt_yaml_keys(&r->yaml, n, "axis degrees"));
+    RT_TRY(rt_yaml_point(&r->yaml, n, "axis", &axis));
+    RT_TRY(rt_yaml_float(&r->yaml, n, "degrees", &degrees));
+    RtStatus status = rt_transform_rotate(transform, axis, (double)degrees, r->error);
+    return rt_yaml_place(&r->yaml, status, n, NULL);
 }
 
-RtStatus rt_yaml_make_transform(RtYamlReader *r, const RtYamlStep *steps, uint32_t count,
-                                RtTransform *transform) {
+static RtStatus add_step(RtYamlReader *r, const RtYamlNode *step, RtTransform *transform) {
+    const RtYaml *y = &r->yaml;
+    float scale = 1;
+    RtVec3 stretch, move = {0};
+    RT_TRY(rt_yaml_keys(y, step, "scale| stretch| rotate| translate|"));
+    const RtYamlNode *rotate = rt_yaml_get(y, step, "rotate");
+    if (rotate) return add_rotation(r, rotate, transform);
+    RT_TRY(rt_yaml_float(y, step, "scale", &scale));
+    stretch = rt_vec3(scale, scale, scale);
+    RT_TRY(rt_yaml_point(y, step, "stretch", &stretch));
+    RT_TRY(rt_yaml_point(y, step, "translate", &move));
+    RtStatus status = rt_yaml_get(y, step, "translate") ? rt_transform_translate(transform, move, r->error)
+                                                        : rt_transform_scale(transform, stretch, r->error);
+    return rt_yaml_place(y, status, step, NULL);
+}
+
+RtStatus rt_yaml_read_transform(RtYamlReader *r, const RtYamlNode *object, RtTransform *transform,
+                                const RtTransform **given) {
+    const RtYamlNode *steps = rt_yaml_get(&r->yaml, object, "transform");
     *transform = rt_transform_identity();
-    for (uint32_t i = 0; i < count; i++) {
-        snprintf(r->at, sizeof r->at, ".transform[%u]", i);
-        RT_TRY(add_step(transform, &steps[i], r->error));
+    RT_TRY(rt_yaml_list(&r->yaml, steps, NULL, 0, UINT32_MAX, "steps"));
+    for (const RtYamlNode *n = rt_yaml_first(steps); n != rt_yaml_end(steps); n += n->size) {
+        RT_TRY(add_step(r, n, transform));
     }
+    *given = rt_yaml_count(steps) ? transform : NULL;
     return RT_OK;
 }
 
 /* ---- objects: one adder a kind, called add_KIND ---- */
 
-static RtStatus add_sphere(RtYamlReader *r, const RtYamlSphere *sphere) {
+static RtStatus add_sphere(RtYamlReader *r, const RtYamlNode *n) {
+    const RtYaml *y = &r->yaml;
+    RtVec3 center = {0};
+    float radius = 0;
     uint32_t material;
-    RT_TRY(rt_yaml_find_material(r, sphere->material, &material));
-    rt_yaml_at(r, sphere->radius > 0 ? "center" : "radius");
-    return rt_scene_add_sphere(r->scene, material, sphere->center, sphere->radius, r->error);
+    RT_TRY(rt_yaml_keys(y, n, "center radius material?"));
+    RT_TRY(rt_yaml_find_material(r, n, &material));
+    RT_TRY(rt_yaml_point(y, n, "center", &center));
+    RT_TRY(rt_yaml_float(y, n, "radius", &radius));
+    return rt_yaml_place(y, rt_scene_add_sphere(r->scene, material, center, radius, r->error), n,
+                         radius > 0 ? "center" : "radius");
 }
 
-static RtStatus add_polygon(RtYamlReader *r, const RtYamlPolygon *polygon) {
+static RtStatus add_polygon(RtYamlReader *r, const RtYamlNode *n) {
+    float *vertices;
+    uint32_t material, count;
+    RT_TRY(rt_yaml_keys(&r->yaml, n, "vertices material?"));
+    RT_TRY(rt_yaml_find_material(r, n, &material));
+    RT_TRY(rt_yaml_rows(&r->yaml, n, "vertices", 3, 3, &vertices, &count));
+    RtStatus status = rt_scene_add_polygon(r->scene, material, (const RtVec3 *)vertices, count, r->error);
+    rt_free(vertices);
+    return rt_yaml_place(&r->yaml, status, n, "vertices");
+}
+
+static RtStatus read_points(const RtYaml *y, const RtYamlNode *list, RtVec3 points[3]) {
+    RT_TRY(rt_yaml_list(y, list, NULL, 3, 3, "lists of numbers, as in [1, 2, 3]"));
+    for (const RtYamlNode *p = rt_yaml_first(list); p != rt_yaml_end(list); p += p->size) {
+        RT_TRY(rt_yaml_point(y, p, NULL, points++));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_triangle(RtYamlReader *r, const RtYamlNode *n) {
+    const RtYaml *y = &r->yaml;
+    RtVec3 v[3] = {{0}}, at_vertices[3] = {{0}};
     uint32_t material;
-    RT_TRY(rt_yaml_find_material(r, polygon->material, &material));
-    rt_yaml_at(r, "vertices");
-    return rt_scene_add_polygon(r->scene, material, polygon->vertices, polygon->vertices_count, r->error);
+    RT_TRY(rt_yaml_keys(y, n, "vertices normals? material?"));
+    RT_TRY(rt_yaml_find_material(r, n, &material));
+    const RtYamlNode *normals = rt_yaml_get(y, n, "normals");
+    RT_TRY(read_points(y, rt_yaml_get(y, n, "vertices"), v));
+    RT_TRY(read_points(y, normals, at_vertices));
+    RtStatus status = rt_scene_add_triangle(r->scene, material, v, normals ? at_vertices : NULL, r->error);
+    return rt_yaml_place(y, status, n, NULL);
 }
 
-static RtStatus add_triangle(RtYamlReader *r, const RtYamlTriangle *triangle) {
+RtStatus rt_yaml_read_cone(const RtYaml *y, const RtYamlNode *n, bool cylinder, RtCone *cone) {
+    *cone = (RtCone){0};
+    RT_TRY(rt_yaml_keys(
+        y, n, cylinder ? "base apex radius material?" : "base base_radius apex apex_radius material?"));
+    RT_TRY(rt_yaml_point(y, n, "base", &cone->base));
+    RT_TRY(rt_yaml_point(y, n, "apex", &cone->apex));
+    RT_TRY(rt_yaml_float(y, n, cylinder ? "radius" : "base_radius", &cone->base_radius));
+    return rt_yaml_float(y, n, cylinder ? "radius" : "apex_radius", &cone->apex_radius);
+}
+
+static RtStatus add_round(RtYamlReader *r, const RtYamlNode *n, bool cylinder) {
+    RtCone c;
     uint32_t material;
-    RT_TRY(rt_yaml_find_material(r, triangle->material, &material));
-    r->at[0] = '\0';
-    return rt_scene_add_triangle(r->scene, material, triangle->vertices, triangle->normals, r->error);
-}
-
-static RtStatus add_cone(RtYamlReader *r, const RtYamlCone *cone) {
-    uint32_t material;
-    RT_TRY(rt_yaml_find_material(r, cone->material, &material));
-    r->at[0] = '\0';
-    return rt_scene_add_cone(r->scene, material, cone->base, cone->base_radius, cone->apex, cone->apex_radius,
-                             r->error);
-}
-
-static RtStatus add_cylinder(RtYamlReader *r, const RtYamlCylinder *cylinder) {
-    uint32_t material;
-    RT_TRY(rt_yaml_find_material(r, cylinder->material, &material));
-    r->at[0] = '\0';
-    return rt_scene_add_cone(r->scene, material, cylinder->base, cylinder->radius, cylinder->apex,
-                             cylinder->radius, r->error);
-}
-
-RtStatus rt_yaml_path(const RtYamlReader *r, const char *name, char path[RT_MAX_PATH]) {
-    char folder[RT_MAX_PATH];
-    rt_path_folder(r->file->path, folder);
-    return rt_path_join(folder, name, path, r->error);
-}
-
-static RtStatus add_mesh(RtYamlReader *r, const RtYamlMesh *mesh) {
-    uint32_t material;
-    RtTransform transform;
-    RT_TRY(rt_yaml_find_material(r, mesh->material, &material));
-    RT_TRY(rt_yaml_make_transform(r, mesh->transform, mesh->transform_count, &transform));
-    rt_yaml_at(r, "path");
-    char path[RT_MAX_PATH];
-    RT_TRY(rt_yaml_path(r, mesh->path, path));
-    return rt_mesh_append(r->scene, path, material, mesh->transform_count ? &transform : NULL, r->error);
-}
-
-static RtStatus add_csg(RtYamlReader *r, const RtYamlCsg *csg) {
-    return rt_yaml_add_csg(r, csg);
-}
-
-static RtStatus add_builtin(RtYamlReader *r, const RtYamlBuiltin *builtin) {
-    RtTransform transform;
-    RT_TRY(rt_yaml_make_transform(r, builtin->transform, builtin->transform_count, &transform));
-    rt_yaml_at(r, "name");
-    RtScene scene;
-    RT_TRY(r->open_named(builtin->name, &scene, r->error));
-    rt_yaml_at(r, "transform");
+    RT_TRY(rt_yaml_read_cone(&r->yaml, n, cylinder, &c));
+    RT_TRY(rt_yaml_find_material(r, n, &material));
     RtStatus status =
-        rt_scene_append(r->scene, &scene, builtin->transform_count ? &transform : NULL, r->error);
-    rt_scene_clear(&scene);
-    return status;
+        rt_scene_add_cone(r->scene, material, c.base, c.base_radius, c.apex, c.apex_radius, r->error);
+    return rt_yaml_place(&r->yaml, status, n, NULL);
 }
 
-static RtStatus add_object(RtYamlReader *r, uint32_t i) {
-    const RtYamlObject *object = &r->yaml->objects[i];
-    const char *kind = NULL;
-    int given = 0;
-#define COUNT(name, Type)                                                                                    \
-    if (object->name) {                                                                                      \
-        kind = #name;                                                                                        \
-        given++;                                                                                             \
-    }
-    RT_YAML_OBJECTS(COUNT)
-#undef COUNT
-    RtStatus status = RT_OK;
-    if (given != 1) {
-#define LIST(name, Type) " " #name
-        status = rt_fail(r->error, RT_BAD_INPUT,
-                         "an object is one of:" RT_YAML_OBJECTS(LIST) "; this entry has %d of them: write "
-                                                                      "one an entry",
-                         given);
-#undef LIST
-        return rt_yaml_place(r, status, "objects", i, "");
-    }
-#define ADD(name, Type)                                                                                      \
-    if (object->name) status = add_##name(r, object->name);
-    RT_YAML_OBJECTS(ADD)
+static RtStatus add_cone(RtYamlReader *r, const RtYamlNode *n) {
+    return add_round(r, n, false);
+}
+
+static RtStatus add_cylinder(RtYamlReader *r, const RtYamlNode *n) {
+    return add_round(r, n, true);
+}
+
+RtStatus rt_yaml_append_mesh(RtYamlReader *r, const RtYamlNode *object, uint32_t material, RtScene *scene) {
+    RtTransform transform;
+    const RtTransform *given;
+    char folder[RT_MAX_PATH], path[RT_MAX_PATH];
+    const char *name = "";
+    RT_TRY(rt_yaml_read_transform(r, object, &transform, &given));
+    RT_TRY(rt_yaml_text(&r->yaml, object, "path", RT_MAX_PATH - 1, &name));
+    rt_path_folder(r->yaml.path, folder);
+    RtStatus status = rt_path_join(folder, name, path, r->error);
+    if (status == RT_OK) status = rt_mesh_append(scene, path, material, given, r->error);
+    return rt_yaml_place(&r->yaml, status, object, "path");
+}
+
+static RtStatus add_mesh(RtYamlReader *r, const RtYamlNode *n) {
+    uint32_t material;
+    RT_TRY(rt_yaml_keys(&r->yaml, n, "path material? transform?"));
+    RT_TRY(rt_yaml_find_material(r, n, &material));
+    return rt_yaml_append_mesh(r, n, material, r->scene);
+}
+
+static RtStatus add_csg(RtYamlReader *r, const RtYamlNode *n) {
+    return rt_yaml_add_csg(r, n);
+}
+
+static RtStatus add_builtin(RtYamlReader *r, const RtYamlNode *n) {
+    RtTransform transform;
+    const RtTransform *given;
+    const char *name = "";
+    RtScene scene;
+    RT_TRY(rt_yaml_keys(&r->yaml, n, "name transform?"));
+    RT_TRY(rt_yaml_read_transform(r, n, &transform, &given));
+    RT_TRY(rt_yaml_text(&r->yaml, n, "name", RT_MAX_SCENE_NAME - 1, &name));
+    RT_TRY(rt_yaml_place(&r->yaml, r->open_named(name, &scene, r->error), n, "name"));
+    RtStatus status = rt_scene_append(r->scene, &scene, given, r->error);
+    rt_scene_clear(&scene);
+    return rt_yaml_place(&r->yaml, status, n, "transform");
+}
+
+#define OBJECTS(X) X(sphere) X(polygon) X(triangle) X(cone) X(cylinder) X(csg) X(mesh) X(builtin)
+
+static RtStatus add_object(RtYamlReader *r, const RtYamlNode *entry) {
+    const RtYamlNode *n;
+    RT_TRY(rt_yaml_keys(&r->yaml, entry, OBJECTS(RT_YAML_ONE_OF)));
+#define ADD(kind)                                                                                            \
+    if ((n = rt_yaml_get(&r->yaml, entry, #kind))) return add_##kind(r, n);
+    OBJECTS(ADD)
 #undef ADD
-    char below[sizeof r->at + 16];
-    snprintf(below, sizeof below, ".%s%s", kind, r->at);
-    return rt_yaml_place(r, status, "objects", i, below);
+    return RT_OK;
 }
 
 /* ---- camera, light ---- */
@@ -220,10 +258,10 @@ static bool is_far(RtVec3 p) {
 
 /* Tries the camera as rendering will; where it is to be placed later, with a line of sight across `up`. */
 static RtStatus check_camera(const RtCamera *camera, bool placed, const char **key, RtError *error) {
-    *key = "camera.size";
+    *key = "size";
     RtSampling sampling;
     RT_TRY(rt_sampling_init(&sampling, camera->width, camera->height, 1, false, error));
-    *key = is_far(camera->from) ? "camera.from" : "camera.at";
+    *key = is_far(camera->from) ? "from" : "at";
     if (is_far(camera->from) || is_far(camera->at)) {
         return rt_fail(error, RT_BAD_INPUT, "the camera is beyond %g: bring it nearer",
                        (double)RT_MAX_COORDINATE);
@@ -231,50 +269,57 @@ static RtStatus check_camera(const RtCamera *camera, bool placed, const char **k
     RtCamera tried = *camera;
     if (!placed) tried.at.at[(rt_major_axis(camera->up) + 1) % 3] = 1;
     RtVec3 gap = rt_sub(tried.at, tried.from);
-    *key = !(camera->fov > 0 && camera->fov < 180) ? "camera.fov"
-           : !(camera->hither >= 0)                ? "camera.hither"
-           : rt_dot(gap, gap) > 0                  ? "camera.up"
-                                                   : "camera.at";
+    *key = !(camera->fov > 0 && camera->fov < 180) ? "fov"
+           : !(camera->hither >= 0)                ? "hither"
+           : rt_dot(gap, gap) > 0                  ? "up"
+                                                   : "at";
     RtView view;
     return rt_view_init(&view, &tried, sampling, error);
 }
 
-static RtStatus set_camera(RtYamlReader *r, const RtYamlCamera *given) {
+static RtStatus set_camera(RtYamlReader *r, const RtYamlNode *n) {
+    const RtYaml *y = &r->yaml;
     RtCamera *camera = &r->scene->camera;
-    if (!given->from != !given->at) {
-        RtStatus status = rt_fail(r->error, RT_BAD_INPUT,
-                                  "`from` and `at` belong together: give both, or neither for a camera that "
-                                  "sees the whole scene");
-        return rt_yaml_file_place(r->file, status, "camera", r->error);
+    RT_TRY(rt_yaml_keys(y, n, "from? at? up? fov? hither? size?"));
+    bool placed = rt_yaml_get(y, n, "from");
+    if (placed != !!rt_yaml_get(y, n, "at")) {
+        return rt_yaml_fail(y, n,
+                            "`from` and `at` belong together: give both, or neither for a camera that sees "
+                            "the whole scene");
     }
-    if (given->from) camera->from = *given->from;
-    if (given->at) camera->at = *given->at;
-    if (given->up) camera->up = *given->up;
-    if (given->fov) camera->fov = *given->fov;
-    if (given->hither) camera->hither = *given->hither;
-    if (given->size) {
-        camera->width = given->size[0];
-        camera->height = given->size[1];
+    RT_TRY(rt_yaml_point(y, n, "from", &camera->from));
+    RT_TRY(rt_yaml_point(y, n, "at", &camera->at));
+    RT_TRY(rt_yaml_point(y, n, "up", &camera->up));
+    RT_TRY(rt_yaml_float(y, n, "fov", &camera->fov));
+    RT_TRY(rt_yaml_float(y, n, "hither", &camera->hither));
+    RT_TRY(rt_yaml_list(y, n, "size", 2, 2, "numbers, as in [640, 480]"));
+    const RtYamlNode *size = rt_yaml_get(y, n, "size");
+    uint32_t *side = &camera->width;
+    for (const RtYamlNode *s = rt_yaml_first(size); s != rt_yaml_end(size); s += s->size) {
+        RT_TRY(rt_yaml_u32(y, s, NULL, 1, RT_MAX_IMAGE_SIDE, side));
+        side = &camera->height;
     }
     const char *key;
-    RtStatus status = check_camera(camera, given->from != NULL, &key, r->error);
-    return rt_yaml_file_place(r->file, status, key, r->error);
+    RtStatus status = check_camera(camera, placed, &key, r->error);
+    return rt_yaml_place(y, status, n, key);
 }
 
-static RtStatus set_color(RtYamlReader *r, const RtVec3 *given, const char *key, RtVec3 *color) {
-    if (!given) return RT_OK;
-    *color = *given;
-    if (given->x >= 0 && given->y >= 0 && given->z >= 0) return RT_OK;
+static RtStatus set_color(RtYamlReader *r, const RtYamlNode *scene, const char *key, RtVec3 *color) {
+    RT_TRY(rt_yaml_point(&r->yaml, scene, key, color));
+    if (color->x >= 0 && color->y >= 0 && color->z >= 0) return RT_OK;
     RtStatus status = rt_fail(r->error, RT_BAD_INPUT, "a colour has no negative parts: [red, green, blue]");
-    return rt_yaml_file_place(r->file, status, key, r->error);
+    return rt_yaml_place(&r->yaml, status, scene, key);
 }
 
-static RtStatus add_lights(RtYamlReader *r) {
-    for (uint32_t i = 0; i < r->yaml->lights_count; i++) {
-        const RtYamlLight *light = &r->yaml->lights[i];
-        RtVec3 intensity = light->intensity ? *light->intensity : rt_vec3(1, 1, 1);
-        RtStatus status = rt_scene_add_light(r->scene, light->position, intensity, r->error);
-        RT_TRY(rt_yaml_place(r, status, "lights", i, ""));
+static RtStatus add_lights(RtYamlReader *r, const RtYamlNode *list) {
+    const RtYaml *y = &r->yaml;
+    RT_TRY(rt_yaml_list(y, list, NULL, 0, UINT32_MAX, "lights"));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        RtVec3 position = {0}, intensity = rt_vec3(1, 1, 1);
+        RT_TRY(rt_yaml_keys(y, n, "position intensity?"));
+        RT_TRY(rt_yaml_point(y, n, "position", &position));
+        RT_TRY(rt_yaml_point(y, n, "intensity", &intensity));
+        RT_TRY(rt_yaml_place(y, rt_scene_add_light(r->scene, position, intensity, r->error), n, NULL));
     }
     return RT_OK;
 }
@@ -282,54 +327,43 @@ static RtStatus add_lights(RtYamlReader *r) {
 /* ---- the scene ---- */
 
 static RtStatus build(RtYamlReader *r) {
-    if (r->yaml->camera) RT_TRY(set_camera(r, r->yaml->camera));
-    RT_TRY(set_color(r, r->yaml->background, "background", &r->scene->background));
-    RT_TRY(set_color(r, r->yaml->ambient, "ambient", &r->scene->ambient));
-    RT_TRY(add_lights(r));
-    RT_TRY(add_materials(r));
-    RT_TRY(rt_yaml_add_solids(r));
-    for (uint32_t i = 0; i < r->yaml->objects_count; i++) RT_TRY(add_object(r, i));
+    const RtYaml *y = &r->yaml;
+    const RtYamlNode *root = y->nodes;
+    RT_TRY(rt_yaml_keys(y, root, "camera? background? ambient? lights? materials? solids? objects"));
+    const RtYamlNode *camera = rt_yaml_get(y, root, "camera"), *objects = rt_yaml_get(y, root, "objects");
+    if (camera) RT_TRY(set_camera(r, camera));
+    RT_TRY(set_color(r, root, "background", &r->scene->background));
+    RT_TRY(set_color(r, root, "ambient", &r->scene->ambient));
+    RT_TRY(add_lights(r, rt_yaml_get(y, root, "lights")));
+    RT_TRY(add_materials(r, rt_yaml_get(y, root, "materials")));
+    RT_TRY(rt_yaml_add_solids(r, rt_yaml_get(y, root, "solids")));
+    RT_TRY(rt_yaml_list(y, objects, NULL, 1, UINT32_MAX, "objects"));
+    for (const RtYamlNode *n = rt_yaml_first(objects); n != rt_yaml_end(objects); n += n->size) {
+        RT_TRY(add_object(r, n));
+    }
     return RT_OK;
 }
 
-/* Closes the file. */
-static RtStatus load(RtYamlFile *file, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
-    RtYamlReader r = {.file = file,
-                      .yaml = file->data,
-                      .open_named = open_named,
-                      .scene = scene,
-                      .standard = UINT32_MAX,
-                      .error = error};
-    uint32_t materials = r.yaml->materials_count, solids = r.yaml->solids_count;
-    r.materials = rt_alloc(materials, sizeof *r.materials);
-    r.solids = rt_alloc(solids, sizeof *r.solids);
-    r.terms = rt_alloc(solids, sizeof *r.terms);
-    RtStatus status = r.materials && r.solids && r.terms
-                          ? build(&r)
-                          : rt_fail_memory(error, "the names of materials and solids",
-                                           (size_t)materials * sizeof *r.materials +
-                                               (size_t)solids * (sizeof *r.solids + sizeof *r.terms));
-    rt_csg_builder_clear(&r.builder);
-    rt_free(r.materials);
-    rt_free(r.solids);
-    rt_free(r.terms);
-    rt_yaml_file_close(file);
+/* What was opened, to the scene; closes it. */
+static RtStatus load(RtYamlReader *r) {
+    RtStatus status = build(r);
+    rt_csg_builder_clear(&r->builder);
+    rt_free(r->materials.all);
+    rt_free(r->solids.all);
+    rt_free(r->terms);
+    rt_yaml_close(&r->yaml);
     return status;
 }
 
 RtStatus rt_yaml_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
-    RtYamlFile file;
-    RT_TRY(rt_yaml_file_open(&file, path, &rt_yaml_scene_schema, error));
-    return load(&file, open_named, scene, error);
+    RtYamlReader r = {.open_named = open_named, .scene = scene, .standard = UINT32_MAX, .error = error};
+    RT_TRY(rt_yaml_open(&r.yaml, path, error));
+    return load(&r);
 }
 
 RtStatus rt_yaml_load_text(const char *name, const char *text, RtSceneOpener *open_named, RtScene *scene,
                            RtError *error) {
-    RtYamlFile file;
-    size_t length = strlen(text);
-    char *copy = rt_alloc(length + 1, 1);
-    if (!copy) return rt_fail_memory(error, name, length + 1);
-    memcpy(copy, text, length + 1);
-    RT_TRY(rt_yaml_file_take(&file, name, copy, length, &rt_yaml_scene_schema, error));
-    return load(&file, open_named, scene, error);
+    RtYamlReader r = {.open_named = open_named, .scene = scene, .standard = UINT32_MAX, .error = error};
+    RT_TRY(rt_yaml_parse(&r.yaml, name, text, strlen(text), error));
+    return load(&r);
 }

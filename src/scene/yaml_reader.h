@@ -1,64 +1,73 @@
-/* What the files that turn YAML into a scene share, private to yaml_read.c and yaml_solids.c. What is wrong
- * with values themselves is found by the functions that add them to the scene; it gets its place here: each
- * adder leaves in reader->at the key under which it was when it failed. */
+/* What the files between YAML and scenes share, private to yaml_read.c, yaml_solids.c and yaml_write.c. What
+ * is wrong with values themselves is found by the functions that add them to the scene; rt_yaml_place says
+ * where. */
 #ifndef RT_SCENE_YAML_READER_H
 #define RT_SCENE_YAML_READER_H
 
-#include "scene/yaml_schema.h"
+#include "base/file.h"
+#include "base/yaml.h"
+#include "scene/formula.h"
+#include "scene/scene.h"
 
-#include <stdio.h>
-
-/* A name and where its bearer stands. Sorted by name for finding. */
 typedef struct RtYamlNamed {
     const char *name;
-    uint32_t index;
+    const RtYamlNode *node; /* the entry of the list */
+    uint32_t index;         /* its place in the list */
 } RtYamlNamed;
 
+/* The entries of a list, sorted by name for finding. */
+typedef struct RtYamlNames {
+    RtYamlNamed *all; /* owned, [count] */
+    uint32_t count;
+} RtYamlNames;
+
 typedef struct RtYamlReader {
-    const RtYamlFile *file;
-    const RtYamlScene *yaml;
+    RtYaml yaml;
     RtSceneOpener *open_named;
     RtScene *scene;
-    RtYamlNamed *materials; /* [yaml->materials_count], sorted by name */
-    uint32_t standard;      /* index of the default material; UINT32_MAX until an object wants it */
-    RtCsgBuilder builder;   /* holds the solids */
-    RtCsgTerm *terms;       /* [yaml->solids_count] */
-    RtYamlNamed *solids;    /* [yaml->solids_count], sorted by name; index into `terms` */
-    uint32_t solids_known;  /* of them, those that are read: a formula sees what stands before it */
-    char at[64];            /* ".radius", ".transform[2].scale": below the entry, for messages */
+    RtYamlNames materials; /* entry i is material i of the scene */
+    uint32_t standard;     /* index of the default material; UINT32_MAX until an object wants it */
+    RtCsgBuilder builder;  /* holds the solids */
+    RtYamlNames solids;    /* entry i is terms[i] */
+    RtCsgTerm *terms;
+    uint32_t solids_known; /* of them, those that are read: a formula sees what stands before it */
     RtError *error;
 } RtYamlReader;
 
-static inline void rt_yaml_at(RtYamlReader *r, const char *key) {
-    snprintf(r->at, sizeof r->at, ".%s", key);
-}
+/* X(name): the coefficients of a material, keys of the file and fields of RtMaterial alike. */
+#define RT_YAML_COEFFICIENTS(X)                                                                              \
+    X(ambient) X(diffuse) X(specular) X(shine) X(reflection) X(transmission) X(ior)
+
+/* For a list X(name) of what an entry can be: their keys (rt_yaml_keys). */
+#define RT_YAML_ONE_OF(name) #name "| "
 
 /* yaml_read.c */
 
-/* Gives a failure the place of entry `i` of `list`, or of what is below it. */
-RtStatus rt_yaml_place(const RtYamlReader *r, RtStatus status, const char *list, uint32_t i,
-                       const char *below);
+/* Holds the entries of `list` (NULL: none) against `keys`, and fills `names` with theirs, of at most `most`
+ * characters. Refuses two that are the same; `what` they are is for messages. */
+RtStatus rt_yaml_read_names(RtYamlReader *r, const RtYamlNode *list, const char *keys, size_t most,
+                            const char *what, RtYamlNames *names);
+const RtYamlNamed *rt_yaml_find_name(const RtYamlNames *names, const char *name);
 
-/* Sorts names[0..count), and refuses two that are the same: `what` and `list` are for the message. */
-RtStatus rt_yaml_sort_names(const RtYamlReader *r, RtYamlNamed *names, uint32_t count, const char *what,
-                            const char *list);
-const RtYamlNamed *rt_yaml_find_name(const RtYamlNamed *names, uint32_t count, const char *name);
+/* The `material` of an object; the default one, made when first wanted, where it gives none. */
+RtStatus rt_yaml_find_material(RtYamlReader *r, const RtYamlNode *object, uint32_t *index);
 
-/* The material called `name`; "" is the default one, made when first wanted. */
-RtStatus rt_yaml_find_material(RtYamlReader *r, const char *name, uint32_t *index);
+/* The `transform` of an object. *given is `transform`, or NULL where there are no steps. */
+RtStatus rt_yaml_read_transform(RtYamlReader *r, const RtYamlNode *object, RtTransform *transform,
+                                const RtTransform **given);
 
-RtStatus rt_yaml_make_transform(RtYamlReader *r, const RtYamlStep *steps, uint32_t count,
-                                RtTransform *transform);
+/* A cone, or a cylinder: keys and values. */
+RtStatus rt_yaml_read_cone(const RtYaml *yaml, const RtYamlNode *node, bool cylinder, RtCone *cone);
 
-/* The path of a file that the scene names; a relative one starts in the folder of the scene file. */
-RtStatus rt_yaml_path(const RtYamlReader *r, const char *name, char path[RT_MAX_PATH]);
+/* The file at the `path` of an object, moved by its `transform`, its triangles added to `scene`. */
+RtStatus rt_yaml_append_mesh(RtYamlReader *r, const RtYamlNode *object, uint32_t material, RtScene *scene);
 
 /* yaml_solids.c */
 
-/* Reads the list of solids into the builder. */
-RtStatus rt_yaml_add_solids(RtYamlReader *r);
+/* Reads the list of solids (NULL: none) into the builder. */
+RtStatus rt_yaml_add_solids(RtYamlReader *r, const RtYamlNode *list);
 
 /* One object: a tree of them. */
-RtStatus rt_yaml_add_csg(RtYamlReader *r, const RtYamlCsg *csg);
+RtStatus rt_yaml_add_csg(RtYamlReader *r, const RtYamlNode *csg);
 
 #endif

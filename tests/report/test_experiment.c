@@ -53,14 +53,32 @@ static void a_bad_experiment_is_refused_with_its_line(void **state) {
     const struct {
         const char *from, *to, *says;
     } cases[] = {
-        {"limit: 300", "limt: 300", ":13:"},           {"limit: 300", "limit: 0x", ":13:"},
-        {"rounds: 3", "rounds: 1000000", ":14:"},      {"rounds: 3", "rays: [primary, sideways]", ":14:"},
-        {"baseline: bvh", "baseline: octree", ":12:"}, {"baseline: bvh", "baseline: brute", ":12:"},
-        {"accel: bvh", "accel: bhv", ":9:"},           {"density=4", "density=-4", ":10:"},
-        {"label: grid", "label: bvh", ":10:"},         {"label: grid", "label: \"a b\"", ":10:"},
-        {"label: grid", "label: \"null\"", ":10:"},    {"24x24", "24x0", ":5:"},
-        {"depth: 3", "depth: 1000000000", ":5:"},      {"label: cloud", "label: \"balls:size=2\"", ":6:"},
-        {"depth: 2}", "optional: perhaps}", ":6:"},    {"question: Which is cheaper?\n", "", "question"},
+        {"limit: 300", "limt: 300", ":13:"},
+        {"limit: 300", "limit: 0x", ":13:"},
+        {"rounds: 3", "rounds: 1000000", ":14:"},
+        {"rounds: 3", "rays: [primary, sideways]", ":14:"},
+        {"baseline: bvh", "baseline: octree", ":12:"},
+        {"baseline: bvh", "baseline: brute", ":12:"},
+        {"accel: bvh", "accel: bhv", ":9:"},
+        {"density=4", "density=-4", ":10:"},
+        {"label: grid", "label: bvh", ":10:"},
+        {"label: grid", "label: \"a b\"", ":10:"},
+        {"label: grid", "label: \"null\"", ":10:"},
+        {"24x24", "24x0", ":5:"},
+        {"depth: 3", "depth: 1000000000", ":5:"},
+        {"label: cloud", "label: \"balls:size=2\"", ":6:"},
+        {"depth: 2}", "optional: perhaps}", ":6:"},
+        {"question: Which is cheaper?\n", "", "question"},
+        {"rounds: 3", "limit: 5", "given twice"},
+        {"every: 7", "scenes: [nowhere]", ":8:29: accelerators[0].scenes[0]: 'nowhere'"},
+        {"rounds: 3", "count_only: maybe", "yes or no or true or false, not 'maybe'"},
+        {"rounds: 3", "published: {tables: [a.csv], tolerance: {steps: -1}}",
+         "published.tolerance.steps: -1"},
+        {"rounds: 3", "published: {tables: [a.csv], tolerance: {steps: 1e400}}", "not a finite number"},
+        {"rounds: 3", "published: {tables: [a.csv], ours: [bhv]}", "published.ours[0]: 'bhv'"},
+        {"rounds: 3", "published: {tables: [../a.csv]}", ":14:"},
+        {"rounds: 3", "rays: [primary, primary]", "rays[1]: primary rays are given twice"},
+        {"rounds: 3", "quick: {size: 8}", "WIDTHxHEIGHT"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         write_changed(place, "small.yaml", small_experiment, cases[i].from, cases[i].to);
@@ -69,6 +87,64 @@ static void a_bad_experiment_is_refused_with_its_line(void **state) {
         assert_refused(status, RT_BAD_INPUT, &error, cases[i].says);
         assert_non_null(strstr(error.message, "small.yaml"));
     }
+}
+
+static void a_zero_is_taken_where_it_means_something_and_refused_with_the_range_elsewhere(void **state) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", small_experiment, "rounds: 3", "seed: 0");
+    assert_ok(load_small(place, false, error));
+    assert_true(place->experiment->seed == 0);
+    const struct {
+        const char *from, *to, *says;
+    } cases[] = {
+        {"limit: 300", "limit: 0", ":13:8: limit: '0' will not do: it must be a whole number, 1..100000000"},
+        {"rounds: 3", "rounds: 0", ":14:9: rounds: '0' will not do: it must be a whole number, 1..1000"},
+        {"milliseconds: 1", "milliseconds: 0",
+         ":15:15: milliseconds: '0' will not do: it must be a whole number, 1.."},
+        {"rounds: 3", "together: 0", ":14:11: together: '0' will not do: it must be a whole number, 1.."},
+        {"depth: 3", "depth: 0", "scenes[0].depth: '0' will not do: it must be a whole number, 1..64"},
+        {"every: 7", "every: 0", "accelerators[0].every: '0' will not do: it must be a whole number, 1.."},
+        {"rounds: 3", "quick: {rounds: 0}", "quick.rounds: '0' will not do"},
+        {"rounds: 3", "quick: {depth: 0}", "quick.depth: '0' will not do"},
+        {"rounds: 3", "quick: {limit: 0}", "quick.limit: '0' will not do"},
+        {"rounds: 3", "quick: {milliseconds: 0}", "quick.milliseconds: '0' will not do"},
+        {"rounds: 3", "seed: -1", "seed: '-1' will not do: it must be a whole number, 0.."},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        write_changed(place, "small.yaml", small_experiment, cases[i].from, cases[i].to);
+        for (int quick = 0; quick < 2; quick++) {
+            RtError error = {RT_OK, ""};
+            assert_refused(load_small(place, quick, &error), RT_BAD_INPUT, &error, cases[i].says);
+        }
+    }
+}
+
+static void quick_overrides_only_where_it_is_asked_for(void **state) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", small_experiment, "rounds: 3",
+                  "rounds: 3\nquick: {limit: 7, rounds: 2, milliseconds: 9, depth: 1, size: 8x4}");
+    const RtExperiment *e = place->experiment;
+    assert_ok(load_small(place, false, error));
+    assert_true(e->limit == 300 && e->rounds == 3 && e->milliseconds == 1 && e->trials[1].depth == 2);
+    assert_ok(load_small(place, true, error));
+    assert_true(e->limit == 7 && e->rounds == 2 && e->milliseconds == 9 && e->quick);
+    assert_true(e->trials[1].depth == 1 && e->trials[1].width == 8 && e->trials[1].height == 4);
+}
+
+static void whichever_allocation_fails_loading_is_out_of_memory(void **state) {
+    const Place *place = *state;
+    int64_t live = rt_alloc_live();
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status == RT_NO_MEMORY; n++) {
+        RtError error = {RT_OK, ""};
+        rt_alloc_fail_at(n);
+        status = load_small(place, false, &error);
+        rt_alloc_fail_at(0);
+        if (status != RT_OK && status != RT_NO_MEMORY) fail_msg("allocation %d: %s", (int)n, error.message);
+        assert_int_equal(rt_alloc_live(), live);
+        assert_true(n < 1000);
+    }
+    assert_int_equal(status, RT_OK);
 }
 
 static void the_command_refuses_a_bad_experiment_with_exit_code_2(void **state) {
@@ -239,6 +315,9 @@ static void figures_are_about_four_characters(void **state) {
 RT_TEST_GROUP(experiment) {
     const struct CMUnitTest tests[] = {
         IN_PLACE(a_bad_experiment_is_refused_with_its_line),
+        IN_PLACE(a_zero_is_taken_where_it_means_something_and_refused_with_the_range_elsewhere),
+        IN_PLACE(quick_overrides_only_where_it_is_asked_for),
+        IN_PLACE(whichever_allocation_fails_loading_is_out_of_memory),
         IN_PLACE(the_command_refuses_a_bad_experiment_with_exit_code_2),
         IN_PLACE(what_is_left_out_of_the_yaml_has_its_default),
         IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two),

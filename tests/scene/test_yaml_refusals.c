@@ -1,6 +1,20 @@
 /* The YAML scene format: what it refuses, and where; nothing is left of it, whichever allocation fails. */
 #include "yaml_testing.h"
 
+#include "base/clock.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define RT_SANITIZED 1
+#elif defined(__has_feature)
+#define RT_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#else
+#define RT_SANITIZED 0
+#endif
+
 /* ---- what is said of bad input: its line, and a phrase ---- */
 
 #define SPHERE "objects:\n- sphere: {center: [0, 0, 0], radius: 1}\n"
@@ -27,6 +41,11 @@ static const struct {
      "ELF\x02\x01\x01\x03",
      1, "UTF-8"},
     {"a: \xff\xfe\n", 1, "UTF-8"},
+    {"# one\n# two\na: b\xff\n", 3, "UTF-8: invalid leading UTF-8 octet"},
+    {"a: 1\nb: \xe2\x82\n", 2, "UTF-8"},
+    {"a: 1\n\x01: 2\n", 2, "control characters are not allowed"},
+    {"%TAG !a! tag:a,2000:\n--- {}\n", 1, "%TAG is not supported"},
+    {"a: 1\n...\r%TAG !a! tag:a,2000:\n--- {}\n", 2, "%TAG is not supported"},
     {"just words\n", 1, "the keys camera"},
     {"- a\n- b\n", 1, "a list found"},
     {SPHERE "---\n" SPHERE, 3, "second document"},
@@ -34,7 +53,7 @@ static const struct {
     {"objects: []\n", 1, "at least 1"},
     {"objects:\n", 1, "nothing found where a list"},
     {"objects: &a [*a]\n", 1, "aliases"},
-    {"a: &a [x,x]\nb: &b [*a,*a]\n", 1, "unknown key 'a'"},
+    {"a: &a [x,x]\nb: &b [*a,*a]\n", 2, "b[0]: aliases (*name) are not supported"},
     /* keys */
     {"object:\n  - sphere: {}\n", 1, "did you mean 'objects'?"},
     {SPHERE "camera:\n  from: [1, 1, 1]\n  too: [0, 0, 0]\n", 5, "unknown key 'too'"},
@@ -50,6 +69,11 @@ static const struct {
     {"objects:\n- sphere: {center: [0, .inf, 0], radius: 1}\n", 2, "'.inf' is not a finite number"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: 1e39}\n", 2, "fits float32"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: 1m}\n", 2, "'1m' is not"},
+    {"objects:\n- sphere: {center: [0, 1, 0], radius: 1e400}\n", 2, "'1e400' is not a finite number"},
+    {"objects:\n- sphere: {center: [-1e400, 1, 0], radius: 1}\n", 2, "'-1e400' is not a finite number"},
+    {"objects:\n- sphere: {center: [0, 1, 0], radius: -Infinity}\n", 2, "is not a finite number"},
+    {SPHERE "camera: {size: [1e400, 1]}\n", 3, "a whole number, 1..32768"},
+    {SPHERE "camera: {size: [nan, 1]}\n", 3, "a whole number, 1..32768"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: }\n", 2, "is not a finite number"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: \"1\\02\"}\n", 2, "zero byte"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: [1]}\n", 2, "a list found where a number"},
@@ -126,9 +150,11 @@ static const struct {
     {SOLIDS "- {name: c, torus: {center: [0, 0, 0], major: 1, minor: 2}}\n" CSG("a"), 5, "minor < major"},
     {SOLIDS "- {name: c, half_space: {point: [0, 0, 0], normal: [0, 0, 0]}}\n" CSG("a"), 5,
      "the normal not 0"},
-    {SOLIDS "- {name: c, polyhedron: {}}\n" CSG("a"), 5, "give one of the two"},
+    {SOLIDS "- {name: c, polyhedron: {}}\n" CSG("a"), 5, "one of: vertices, planes; it has 0"},
     {SOLIDS "- {name: c, polyhedron: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]}}\n" CSG("a"), 5,
      "in one plane"},
+    {SOLIDS "- {name: c, polyhedron: {planes: [[1, 0, 0, 1e400]]}}\n" CSG("a"), 5, "'1e400' is not a finite"},
+    {SOLIDS "- {name: c, polyhedron: {planes: [[1, 0, nan, 1]]}}\n" CSG("a"), 5, "planes[0][2]: 'nan'"},
     {SOLIDS "- name: c\n  mesh:\n    path: corner.obj\n" CSG("a"), 7, "at least; this one has 1"},
     {SOLIDS "- name: c\n  mesh:\n    path: open.obj\n" CSG("a"), 7, "closed"},
     {SOLIDS CSG("x"), 6, "no solid 'x'"},
@@ -192,12 +218,81 @@ static void files_that_are_none_are_refused(void **state) {
 
 static void deep_nesting_is_refused_without_descending(void **state) {
     (void)state;
+    static const char *const levels[] = {"[", "- ", "{a: ", "? ", "[{a: ", "!t [", "[? "};
     enum { DEPTH = 100000 };
-    static char text[DEPTH + 16] = "objects: ";
-    memset(text + 9, '[', DEPTH);
+    static char text[DEPTH * 8];
+    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
+        size_t length = strlen(levels[i]);
+        for (size_t k = 0; k < DEPTH; k++) memcpy(text + k * length, levels[i], length + 1);
+        RtScene scene;
+        RtError error = {RT_OK, ""};
+        assert_int_equal(load_text(text, &scene, &error), RT_BAD_INPUT);
+        assert_non_null(strstr(error.message, "scene.yaml:1:"));
+        assert_non_null(strstr(error.message, strchr(levels[i], '?') ? "plain word" : "more than 32 deep"));
+    }
+}
+
+/* `head`, then `part` for `bytes` bytes, then `tail`. */
+static RtStatus parse_much(const char *head, const char *part, size_t bytes, const char *tail,
+                           RtError *error) {
+    size_t length = strlen(head), step = strlen(part);
+    char *text = rt_alloc(length + bytes + step + strlen(tail) + 1, 1);
+    assert_non_null(text);
+    memcpy(text, head, length);
+    for (size_t end = length + bytes; length < end; length += step) memcpy(text + length, part, step);
+    strcpy(text + length, tail);
     RtScene scene;
-    RtError error;
-    assert_int_equal(load_text(text, &scene, &error), RT_BAD_INPUT);
+    rt_scene_init(&scene);
+    RtStatus status = rt_yaml_load_text("much", text, rt_builtin_open, &scene, error);
+    rt_scene_clear(&scene);
+    rt_free(text);
+    return status;
+}
+
+/* Most of these would take hours where time grows with the square of the text. */
+static void much_of_anything_is_refused_with_its_place_and_soon(void **state) {
+    (void)state;
+    enum { MB = 1000000 };
+    static const struct {
+        const char *head, *part, *tail, *place, *says;
+        size_t bytes;
+    } cases[] = {
+        {"objects:\n- sphere: {center: [0, 0, 0], radius: ", "1", "}\n", "much:2:39:", "'11111", 100 * MB},
+        {"objects:\n- sphere: {center: [0, 0, 0], radius: '", "x", "'}\n", "much:2:39:", "'xxxxx", 100 * MB},
+        {"materials:\n- name: ", "x", "\nobjects: []\n", "much:2:9:", "must have 1..63", 100 * MB},
+        {"objects:\n- csg: {formula: ", "(", "}\n", "much:2:18:", "character 10000001", 10 * MB},
+        {"'", "x", "': 1\n", "much:1:", "not YAML", MB},
+        {"? ", "x", "\n: 1\n", "much:1:3:", "unknown key 'xxxxx", 100 * MB},
+        {"", "a: 1\n", "", "much:1:1:", "unknown key 'a'", 4 * MB},
+        {"objects:\n", "- &a1 x\n", "- *a1\n", "much:", "aliases", 4 * MB},
+        {"a: &a [x, x]\nb: &b [*a", ", *a", "]\n", "much:2:8:", "b[0]: aliases", 4 * MB},
+        {"", "%TAG !a! tag:a,2000:\n", "--- {}\n", "much:1:1:", "%TAG", 4 * MB},
+        {"objects: [", ",", "", "much:1:11:", "not YAML", MB},
+        {"objects: [", "[], ", "]", "much:1:11:", "objects[0]: a list found where the keys sphere", 4 * MB},
+        {"objects:\n", "\t", "", "much:2:", "not YAML", MB},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        int64_t live = rt_alloc_live();
+        RtError error = {RT_OK, ""};
+        double start = rt_thread_seconds();
+        RtStatus status = parse_much(cases[i].head, cases[i].part, cases[i].bytes, cases[i].tail, &error);
+        if (status != RT_BAD_INPUT || strncmp(error.message, cases[i].place, strlen(cases[i].place)) != 0 ||
+            !strstr(error.message, cases[i].says) || rt_thread_seconds() - start > 120) {
+            fail_msg("%s ...: %.1f s, expected %s and %s, got: %s", cases[i].head,
+                     rt_thread_seconds() - start, cases[i].place, cases[i].says, error.message);
+        }
+        assert_int_equal(rt_alloc_live(), live);
+    }
+}
+
+static void zero_bytes_are_refused_with_their_place(void **state) {
+    (void)state;
+    static const char text[] = "objects:\n- sphere: {center: [0, \0 0, 0], radius: 1}\n";
+    write_bytes(RT_TEST_FOLDER "/scene.yaml", text, sizeof text - 1);
+    RtScene scene;
+    RtError error = {RT_OK, ""};
+    assert_int_equal(load(RT_TEST_FOLDER "/scene.yaml", &scene, &error), RT_BAD_INPUT);
+    assert_non_null(strstr(error.message, "scene.yaml:2:24: this is not text in UTF-8: control characters"));
 }
 
 static void every_prefix_of_a_scene_is_read_or_refused(void **state) {
@@ -233,14 +328,49 @@ static void whichever_allocation_fails_nothing_is_left(void **state) {
     assert_int_equal(status, RT_OK);
 }
 
+/* libyaml's own allocations fail where the address space ends: in a child, which is given little more than it
+ * has. Sanitizers need all of it. */
+static void too_little_memory_for_libyaml_is_out_of_memory(void **state) {
+    (void)state;
+#if RT_SANITIZED
+    skip();
+#else
+    enum { LENGTH = 100000000 };
+    char *text = rt_alloc(LENGTH + 2, 1);
+    assert_non_null(text);
+    memset(text, 'x', LENGTH);
+    pid_t child = fork();
+    if (child == 0) {
+        unsigned long pages = 0;
+        FILE *in = fopen("/proc/self/statm", "r");
+        if (!in || fscanf(in, "%lu", &pages) != 1) _exit(1);
+        rlim_t most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + LENGTH / 2;
+        setrlimit(RLIMIT_AS, &(struct rlimit){most, most});
+        RtScene scene;
+        RtError error = {RT_OK, ""};
+        _exit(rt_yaml_load_text("much", text, NULL, &scene, &error) == RT_NO_MEMORY &&
+                      strstr(error.message, "parsing YAML")
+                  ? 0
+                  : 1);
+    }
+    int result = 1;
+    assert_true(child > 0 && waitpid(child, &result, 0) == child);
+    assert_int_equal(result, 0);
+    rt_free(text);
+#endif
+}
+
 RT_TEST_GROUP(yaml_refusals) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_input_is_refused_with_its_line_and_a_remedy),
         cmocka_unit_test(the_column_is_that_of_the_value),
         cmocka_unit_test(files_that_are_none_are_refused),
         cmocka_unit_test(deep_nesting_is_refused_without_descending),
+        cmocka_unit_test(much_of_anything_is_refused_with_its_place_and_soon),
+        cmocka_unit_test(zero_bytes_are_refused_with_their_place),
         cmocka_unit_test(every_prefix_of_a_scene_is_read_or_refused),
         cmocka_unit_test(whichever_allocation_fails_nothing_is_left),
+        cmocka_unit_test(too_little_memory_for_libyaml_is_out_of_memory),
     };
     return cmocka_run_group_tests(tests, make_folder, NULL);
 }

@@ -71,9 +71,32 @@ static void vertex_normals_survive_saving_bit_for_bit(void **state) {
     rt_scene_clear(&scene);
 }
 
+static void names_of_any_printable_text_survive_saving(void **state) {
+    (void)state;
+    static const char *const names[] = {"it's", "''", "a: b # c",    "- [x]", "\"",
+                                        "\\n",  " ",  "gl\xc3\xa4s", "*a"};
+    enum { COUNT = sizeof names / sizeof names[0] };
+    RtScene scene, again;
+    rt_scene_init(&scene);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        RtMaterial material = rt_default_material();
+        uint32_t index;
+        snprintf(material.name, sizeof material.name, "%s", names[i]);
+        assert_ok(rt_scene_add_material(&scene, &material, &index, error));
+        assert_ok(rt_scene_add_sphere(&scene, index, rt_vec3((float)i, 0, 0), 1, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    save_to(&scene, RT_TEST_FOLDER "/again.yaml");
+    assert_ok(load(RT_TEST_FOLDER "/again.yaml", &again, error));
+    for (uint32_t i = 0; i < COUNT; i++) assert_string_equal(again.materials[i].name, names[i]);
+    rt_scene_clear(&scene);
+    rt_scene_clear(&again);
+}
+
 static void names_that_cannot_be_written_are_replaced_by_numbers(void **state) {
     (void)state;
-    static const char *const pairs[][2] = {{"a", "a"}, {"a", ""}, {"a", "b\n"}, {"a", "\xff"}};
+    static const char *const pairs[][2] = {
+        {"a", "a"}, {"a", ""}, {"a", "b\n"}, {"a", "\xff"}, {"a", "b\xc2\x85\x20"}};
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
         RtScene scene;
         rt_scene_init(&scene);
@@ -89,6 +112,27 @@ static void names_that_cannot_be_written_are_replaced_by_numbers(void **state) {
         assert_survives(&scene);
         rt_scene_clear(&scene);
     }
+}
+
+static void whichever_allocation_fails_saving_is_out_of_memory(void **state) {
+    (void)state;
+    RtScene scene;
+    assert_ok(load_text(everything, &scene, error));
+    FILE *out = fopen("/dev/null", "wb");
+    assert_non_null(out);
+    int64_t live = rt_alloc_live();
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status == RT_NO_MEMORY; n++) {
+        RtError error = {RT_OK, ""};
+        rt_alloc_fail_at(n);
+        status = rt_yaml_save(&scene, out, &error);
+        rt_alloc_fail_at(0);
+        assert_int_equal(rt_alloc_live(), live);
+        assert_true(n < 1000);
+    }
+    assert_int_equal(status, RT_OK);
+    fclose(out);
+    rt_scene_clear(&scene);
 }
 
 static void a_full_disk_is_reported(void **state) {
@@ -109,7 +153,9 @@ RT_TEST_GROUP(yaml_save) {
         cmocka_unit_test(a_scene_saved_and_loaded_keeps_every_bit),
         cmocka_unit_test(solids_without_an_end_survive_saving),
         cmocka_unit_test(vertex_normals_survive_saving_bit_for_bit),
+        cmocka_unit_test(names_of_any_printable_text_survive_saving),
         cmocka_unit_test(names_that_cannot_be_written_are_replaced_by_numbers),
+        cmocka_unit_test(whichever_allocation_fails_saving_is_out_of_memory),
         cmocka_unit_test(a_full_disk_is_reported),
     };
     return cmocka_run_group_tests(tests, make_folder, NULL);
