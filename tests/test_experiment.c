@@ -3,7 +3,7 @@
 #include "experiment_testing.h"
 
 #include "report/run.h"
-#include "report/tables.h"
+#include "base/table.h"
 
 #include <unistd.h>
 
