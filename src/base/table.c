@@ -108,6 +108,7 @@ const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FI
         rt_format_figure(field->low, ends[0]);
         rt_format_figure(field->high, ends[1]);
         rt_format_figure(field->real, room);
+        if (isnan(field->low)) break;
         snprintf(room + strlen(room), RT_MAX_FIELD - strlen(room), " [%s, %s]", ends[0], ends[1]);
         break;
     }

@@ -32,7 +32,7 @@
     X(flag, "yes or no", NULL)                                                                               \
     X(hash, "16 hexadecimal digits", NULL)                                                                   \
     X(json, "JSON", NULL)                                                                                    \
-    X(interval, "value, low, high", NULL)                                                                    \
+    X(interval, "interval: value, low, high", NULL)                                                          \
     X(integer, "integer", "%.9g")                                                                            \
     X(real4, "real", "%.4g")                                                                                 \
     X(real6, "real", "%.6g")                                                                                 \
@@ -159,6 +159,9 @@ typedef struct RtTable {
     const char *(*color)(const void *row); /* HTML: of a dot before the row; or NULL */
     bool ragged;                           /* Markdown: numbers do not stand to the right */
 } RtTable;
+
+/* The first two members of a table of all groups of an array; the others are named. */
+#define RT_GROUPS(array) .groups = array, .group_count = sizeof(array) / sizeof *(array)
 
 void rt_table_csv(const RtTable *table, FILE *out);
 void rt_table_text(const RtTable *table, FILE *out);

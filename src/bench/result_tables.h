@@ -25,13 +25,19 @@ typedef enum RtResultTable {
 /* The row at hand. */
 typedef struct RtResultRow {
     const RtResults *results;
-    uint32_t trial; /* of tables for the eye: which one they show */
+    RtResultTable which;
+    uint32_t trial; /* of tables for the eye, and of bench: the one that they show */
     uint32_t contender;
     RtRayKind kind;
-    RtTotal total; /* of RT_TOTALS */
+    const RtTrial *setup;
+    const RtTrialResult *scene;
+    const RtBuildResult *build;
+    const RtCell *cell;
+    RtTotal all; /* of the cell, or of RT_TOTALS */
 } RtResultRow;
 
-/* `row` stays where it is as long as the table, with its results, and for the eye its trial, filled in. */
+/* `row` stays where it is as long as the table, which alone uses it, with its results, and for the eye its
+ * trial, filled in. */
 RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 
 /* RT_CELLS or RT_TOTALS of each trial that is known. */

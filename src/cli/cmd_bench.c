@@ -169,8 +169,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 /* ---- output ---- */
 
 static void print_json(const RtResults *results) {
-    RtResultRow row = {.results = results};
-    RtTable rows = rt_result_table(RT_BENCH, &row), nulls = rt_result_table(RT_NULL_RUNS, &row);
+    RtResultRow row = {.results = results}, null = row;
+    RtTable rows = rt_result_table(RT_BENCH, &row), nulls = rt_result_table(RT_NULL_RUNS, &null);
     rt_cli_print_json(json_pack("{s:o, s:o, s:o}", "machine", rt_machine_json(), "rows", rt_table_json(&rows),
                                 "null_runs", rt_table_json(&nulls)));
 }

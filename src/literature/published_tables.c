@@ -85,10 +85,10 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
     X(source, "source", text, "", "who published it", r->row->source)                                        \
     X(structure, "structure", text, "", "what the structure is called there", r->row->structure)             \
     X(parameters, "parameters", text, "", "its parameters, as they are called there", r->row->parameters)    \
-    X(accel, "accel", text, "", "label of the accelerator that measures the same", r->accel)                 \
+    X(accel, "accel", text, "", "label of the accelerator that is measured", r->accel)                       \
     X(column, "column", text, "", "what the figure is about", rt_column_name(r->figure->column))             \
     X(per, "per", text, "", "what object tests are divided by: ray, or hit (a ray that hits)", per_of(r))    \
-    X(published, "published", real6, "", "the figure as it was published", r->said)                          \
+    X(published, "published", real6, "", "the published figure", r->said)                                    \
     X(measured, "measured", real6, "", "what was measured here", measured_of(r))                             \
     X(deviation, "deviation", percent, "%", "by how much more that is", r->figure->deviation)                \
     X(tolerance, "tolerance", real9, "%", "how large a deviation may be",                                    \
@@ -97,7 +97,7 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
     X(reason, "reason", text, "", "why the figure is missed", reason_of(r->published, r->figure))            \
     X(measure, "measure", text, "", "what is to be least, a ray of any kind", rt_measure_name(r->measure))   \
     X(published_row, "best published row", text, "", "the row that has the least", name_of(r))               \
-    X(ours, "ours", real6, "", "the least of our accelerators", r->least->ours)                              \
+    X(ours, "ours", real6, "", "what the one of ours needs that needs least", r->least->ours)                \
     X(extent_tests, "extent_tests", real6, "", "extent tests a ray that this one makes besides",             \
       r->least->extent_tests)                                                                                \
     X(ahead, "ahead", flag, "", "whether ours is less than what was published",                              \
@@ -163,51 +163,48 @@ static const void *summary_row(void *context, size_t i) {
     return r->summary.figures ? r : NULL;
 }
 
-static const void *of_rays_row(void *context, size_t i) {
+static const void *trial_row(void *context, size_t i) {
     Row *r = context;
     r->row = &r->published->rows[i];
-    return r->row->trial == r->trial && r->row->of_rays ? r : NULL;
-}
-
-static const void *of_structures_row(void *context, size_t i) {
-    Row *r = context;
-    r->row = &r->published->rows[i];
-    return r->row->trial == r->trial && !r->row->of_rays ? r : NULL;
+    return r->row->trial == r->trial && r->row->of_rays == r->of_rays ? r : NULL;
 }
 
 /* The name of a row, and the columns that any row of the trial has. */
-static void show_columns(Row *r, bool of_rays) {
+static void show_columns(Row *r) {
     bool shown[RT_COLUMN_COUNT];
     size_t count = 0;
     r->shown[count++] = columns[AT_row_name];
-    rt_published_columns(r->published, r->trial, of_rays, shown);
+    rt_published_columns(r->published, r->trial, r->of_rays, shown);
     for (int c = 0; c < RT_COLUMN_COUNT; c++) {
-        const char *name = rt_column_name((RtColumn)c);
+        const char *name = rt_column_name((RtColumn)c), *meaning = "published; measured (deviation)";
         if (shown[c])
-            r->shown[count++] = (RtTableColumn){
-                name, name, RT_FORM_markup, "", "published; measured (deviation)", shown_figure, c};
+            r->shown[count++] = (RtTableColumn){name, name, RT_FORM_markup, "", meaning, shown_figure, c};
     }
     r->shown_group = (RtColumnGroup){NULL, r->shown, count, NULL};
 }
 
 RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor) {
-#define GROUPS(array) array, sizeof(array) / sizeof *(array)
+    static const RtTable tables[RT_PUBLISHED_TABLE_COUNT] = {
+        [RT_FIGURES] = {RT_GROUPS(figures), .row = figures_row},
+        [RT_LEAST] = {RT_GROUPS(least), .row = least_row},
+        [RT_LEAST_FOR_THE_EYE] = {RT_GROUPS(least_for_the_eye), .row = least_eye_row},
+        [RT_SUMMARY] = {RT_GROUPS(summary), .row = summary_row},
+        [RT_ROWS_OF_RAYS] = {.row = trial_row},
+        [RT_ROWS_OF_STRUCTURES] = {.row = trial_row},
+    };
     const RtPublished *p = cursor->published;
     const size_t measures = (size_t)p->experiment->trial_count * RT_MEASURE_COUNT;
-    const RtTable tables[RT_PUBLISHED_TABLE_COUNT] = {
-        [RT_FIGURES] = {GROUPS(figures), p->figure_count, figures_row},
-        [RT_LEAST] = {GROUPS(least), measures, least_row},
-        [RT_LEAST_FOR_THE_EYE] = {GROUPS(least_for_the_eye), measures, least_eye_row},
-        [RT_SUMMARY] = {GROUPS(summary), RT_COLUMN_COUNT, summary_row},
-        [RT_ROWS_OF_RAYS] = {&cursor->shown_group, 1, p->row_count, of_rays_row},
-        [RT_ROWS_OF_STRUCTURES] = {&cursor->shown_group, 1, p->row_count, of_structures_row},
-    };
+    const size_t counts[RT_PUBLISHED_TABLE_COUNT] = {p->figure_count, measures,     measures,
+                                                     RT_COLUMN_COUNT, p->row_count, p->row_count};
     RtTable table = tables[which];
+    table.row_count = counts[which];
     table.context = cursor;
     table.ragged = true;
-    if (which < RT_ROWS_OF_RAYS) return table;
-    show_columns(cursor, which == RT_ROWS_OF_RAYS);
-    if (cursor->shown_group.count == 1) table.group_count = 0;
+    if (table.groups) return table;
+    cursor->of_rays = which == RT_ROWS_OF_RAYS;
+    show_columns(cursor);
+    table.groups = &cursor->shown_group;
+    table.group_count = cursor->shown_group.count > 1;
     return table;
 }
 

@@ -20,6 +20,7 @@ typedef enum RtPublishedTable {
 typedef struct RtPublishedCursor {
     const RtPublished *published;
     uint32_t trial; /* of RT_ROWS...: which one they are of */
+    bool of_rays;
     const RtPublishedRow *row;
     const RtFigure *figure;
     RtMeasure measure;
@@ -32,8 +33,8 @@ typedef struct RtPublishedCursor {
     RtColumnGroup shown_group;
 } RtPublishedCursor;
 
-/* `cursor` stays where it is as long as the table, with `published`, and its trial, filled in. No group:
- * there is nothing to show. */
+/* `cursor` stays where it is as long as the table, which alone uses it, with `published`, and its trial,
+ * filled in. No group: there is nothing to show. */
 RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor);
 
 /* What RT_LEAST_FOR_THE_EYE is headed by. */

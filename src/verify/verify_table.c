@@ -117,7 +117,13 @@ static const RtTableColumn members[] = {
 enum { OF_CSV = 10, AGAINST = 2 };
 
 #define SIDE(CONSTANT, name, meaning)                                                                        \
-    {"exactly_right_" #name, #name, RT_FORM_integer, "", "marginal or wrong: " meaning, get_member, 0},
+    {"exactly_right_" #name,                                                                                 \
+     #name,                                                                                                  \
+     RT_FORM_integer,                                                                                        \
+     "",                                                                                                     \
+     "of the marginal and the wrong: " meaning,                                                              \
+     get_member,                                                                                             \
+     0},
 static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
 
 static const RtTableColumn first_wrong[] = {
@@ -129,9 +135,9 @@ static const RtTableColumn first_wrong[] = {
     MEMBER("kernel", text, "timed or counted"),
     MEMBER("stream", integer, "how many rays were asked at once"),
     MEMBER("org", json, "origin of the ray: three numbers as text, which read back to the same bits"),
-    MEMBER("dir", json, "its direction, as well"),
-    MEMBER("tmin", text, "where it begins, as well"),
-    MEMBER("tmax", text, "where it ends, as well"),
+    MEMBER("dir", json, "its direction, likewise"),
+    MEMBER("tmin", text, "t where it begins, as text"),
+    MEMBER("tmax", text, "t where it ends, as text"),
     MEMBER("expected", json, "the answer of brute: object and t, or true or false"),
     MEMBER("got", json, "the answer of the accelerator"),
 };
