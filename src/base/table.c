@@ -277,8 +277,7 @@ void rt_html_put(FILE *out, const char *text) {
     for (; text && *text; text++) put_character(out, *text);
 }
 
-/* Code and bold as in Markdown. */
-static void put_markup(FILE *out, const char *text) {
+void rt_html_markup(FILE *out, const char *text) {
     bool code = false, bold = false;
     for (; *text; text++) {
         if (*text == '`') {
@@ -317,7 +316,7 @@ static void put_field(const RtTableColumn *column, const RtField *field, FILE *o
     if (is_sortable(column)) put_attribute(out, "data-value", value);
     if (field->note) put_attribute(out, "title", field->note);
     fputc('>', out);
-    (column->form == RT_FORM_markup ? put_markup : rt_html_put)(out, *text ? text : "-");
+    (column->form == RT_FORM_markup ? rt_html_markup : rt_html_put)(out, *text ? text : "-");
     fputs("</td>", out);
 }
 

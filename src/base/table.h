@@ -103,12 +103,12 @@ void rt_format_figure(double value, char *out);
 
 typedef struct RtTableColumn RtTableColumn;
 struct RtTableColumn {
-    const char *id;   /* in CSV */
-    const char *name; /* everywhere else */
-    RtForm form;
+    const char *id;      /* in CSV */
+    const char *name;    /* everywhere else */
     const char *unit;    /* or "" */
     const char *meaning; /* one line */
     RtField (*get)(const void *row, const RtTableColumn *column);
+    RtForm form;
     int key; /* the getter's own */
 };
 
@@ -120,7 +120,7 @@ struct RtTableColumn {
         return rt_field(value);                                                                              \
     }
 #define RT_TABLE_COLUMN(id, name, form, unit, meaning, value)                                                \
-    {#id, name, RT_FORM_##form, unit, meaning, get_##id, 0},
+    {#id, name, unit, meaning, get_##id, RT_FORM_##form, 0},
 #define RT_TABLE_PLACE(id, name, form, unit, meaning, value) AT_##id,
 #define RT_TABLE_COLUMNS(array, LIST)                                                                        \
     LIST(RT_TABLE_GETTER)                                                                                    \
@@ -148,7 +148,7 @@ typedef struct RtColumnGroup {
 
 /* ---- tables ---- */
 
-#define RT_MAX_TABLE_COLUMNS 48
+#define RT_MAX_TABLE_COLUMNS 64
 
 typedef struct RtTable {
     const RtColumnGroup *groups;
@@ -181,5 +181,8 @@ void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out
 
 /* Text as HTML, with what has a meaning there escaped; NULL is "". */
 void rt_html_put(FILE *out, const char *text);
+
+/* The same with `code` and **bold** as in Markdown. */
+void rt_html_markup(FILE *out, const char *text);
 
 #endif

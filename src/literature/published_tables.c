@@ -178,7 +178,7 @@ static void show_columns(Row *r) {
     for (int c = 0; c < RT_COLUMN_COUNT; c++) {
         const char *name = rt_column_name((RtColumn)c), *meaning = "published; measured (deviation)";
         if (shown[c])
-            r->shown[count++] = (RtTableColumn){name, name, RT_FORM_markup, "", meaning, shown_figure, c};
+            r->shown[count++] = (RtTableColumn){name, name, "", meaning, shown_figure, RT_FORM_markup, c};
     }
     r->shown_group = (RtColumnGroup){NULL, r->shown, count, NULL};
 }
@@ -208,41 +208,80 @@ RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor) {
     return table;
 }
 
-/* ---- Markdown ---- */
+/* ---- the page ---- */
 
-static void put_table(const RtPublished *published, uint32_t trial, RtPublishedTable which, FILE *out) {
-    RtPublishedCursor cursor = {.published = published, .trial = trial};
+typedef struct Page {
+    const RtPublished *published;
+    bool html; /* or Markdown */
+    FILE *out;
+} Page;
+
+/* Text with `code`, between what goes around it. */
+static void put(const Page *page, const char *before, const char *text, const char *after) {
+    fputs(before, page->out);
+    if (page->html) {
+        rt_html_markup(page->out, text);
+    } else {
+        fputs(text, page->out);
+    }
+    fputs(after, page->out);
+}
+
+static void put_title(const Page *page, const char *title) {
+    put(page, page->html ? "<h3>" : "\n## ", title, page->html ? "</h3>\n" : "\n");
+}
+
+static void put_paragraph(const Page *page, const char *text) {
+    put(page, page->html ? "<p>" : "\n", text, page->html ? "</p>\n" : "\n");
+}
+
+static void put_table(const Page *page, uint32_t trial, RtPublishedTable which) {
+    RtPublishedCursor cursor = {.published = page->published, .trial = trial};
     RtTable table = rt_published_table(which, &cursor);
     if (!table.group_count) return;
-    fputc('\n', out);
-    rt_table_markdown(&table, out);
+    if (!page->html) fputc('\n', page->out);
+    (page->html ? rt_table_html : rt_table_markdown)(&table, page->out);
 }
 
-static void put_reasons(const RtPublished *published, FILE *out) {
-    fputs("\n## Why figures are missed\n\n", out);
-    for (uint32_t i = 0; i < published->reason_count; i++) {
-        const RtReason *reason = &published->reasons[i];
+static void put_trial(const Page *page, uint32_t t) {
+    const char *label = page->published->experiment->trials[t].label;
+    put(page, page->html ? "<details><summary>" : "\n## ", label, page->html ? "</summary>\n" : "\n");
+    put_table(page, t, RT_ROWS_OF_RAYS);
+    put_table(page, t, RT_ROWS_OF_STRUCTURES);
+    if (page->html) fputs("</details>\n", page->out);
+}
+
+static void put_reasons(const Page *page) {
+    put_title(page, "Why figures are missed");
+    fputs(page->html ? "<ul>\n" : "\n", page->out);
+    for (uint32_t i = 0; i < page->published->reason_count; i++) {
+        const RtReason *reason = &page->published->reasons[i];
+        char text[RT_MAX_REASON + 5 * RT_MAX_LABEL];
         if (!reason->used) continue;
-        fprintf(out, "- `%s` of `%s` on `%s` (%s): %s", reason->column,
-                *reason->accel ? reason->accel : "the rays", reason->scene, reason->source, reason->text);
-        fprintf(out, " [%" PRIu32 "]\n", reason->used);
+        snprintf(text, sizeof text, "`%s` of `%s` on `%s` (%s): %s [%" PRIu32 "]", reason->column,
+                 *reason->accel ? reason->accel : "the rays", reason->scene, reason->source, reason->text,
+                 reason->used);
+        put(page, page->html ? "<li>" : "- ", text, page->html ? "</li>\n" : "\n");
     }
+    if (page->html) fputs("</ul>\n", page->out);
 }
 
-void rt_published_markdown(const RtPublished *published, FILE *out) {
+void rt_published_page(const RtPublished *published, bool html, FILE *out) {
+    const Page page = {published, html, out};
     const RtExperiment *experiment = published->experiment;
-    fprintf(out,
-            "# %s: published, measured\n\nWritten by `raytally run`. A cell is the published figure; the "
-            "measured one and "
-            "its deviation, in bold where it is more than the tolerance.\n",
-            experiment->name);
-    put_table(published, 0, RT_SUMMARY, out);
-    fprintf(out, "\n## %s\n\n%s\n", RT_LEAST_TITLE, RT_LEAST_MEANING);
-    put_table(published, 0, RT_LEAST_FOR_THE_EYE, out);
-    for (uint32_t t = 0; t < experiment->trial_count; t++) {
-        fprintf(out, "\n## %s\n", experiment->trials[t].label);
-        put_table(published, t, RT_ROWS_OF_RAYS, out);
-        put_table(published, t, RT_ROWS_OF_STRUCTURES, out);
+    if (published->row_count == 0 && html) return;
+    if (html) {
+        fputs("<h2>Published figures</h2>\n", out);
+    } else {
+        fprintf(out, "# %s: published, measured\n", experiment->name);
     }
-    put_reasons(published, out);
+    put_paragraph(&page, "Written by `raytally run`. A cell is the published figure; the measured one and "
+                         "its deviation, in bold where it is more than the tolerance.");
+    put_table(&page, 0, RT_SUMMARY);
+    put_title(&page, "Ours against the best published row");
+    put_paragraph(&page, "Per ray of all kinds. A row that counts tests per ray that hits is taken per ray. "
+                         "Extent tests are what ours make besides.");
+    put_table(&page, 0, RT_LEAST_FOR_THE_EYE);
+    for (uint32_t t = 0; t < experiment->trial_count; t++) put_trial(&page, t);
+    put_reasons(&page);
 }

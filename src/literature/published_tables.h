@@ -37,13 +37,8 @@ typedef struct RtPublishedCursor {
  * filled in. No group: there is nothing to show. */
 RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor);
 
-/* What RT_LEAST_FOR_THE_EYE is headed by. */
-#define RT_LEAST_TITLE "Ours against the best published row"
-#define RT_LEAST_MEANING                                                                                     \
-    "Per ray of all kinds. A row that counts tests per ray that hits is taken per ray. Extent tests are "    \
-    "what ours make besides."
-
-/* published.md, for the eye, with all reasons. */
-void rt_published_markdown(const RtPublished *published, FILE *out);
+/* All for the eye, with all reasons: published.md, or a part of report.html, which is empty where nothing was
+ * compared. There figures that are missed show their reasons when pointed at. */
+void rt_published_page(const RtPublished *published, bool html, FILE *out);
 
 #endif

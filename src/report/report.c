@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "bench/result_tables.h"
-#include "report/html.h"
+#include "literature/published_tables.h"
 #include "report/plot.h"
 
 #include <inttypes.h>
@@ -225,7 +225,7 @@ RtStatus rt_report_write(const RtResults *results, const RtPublished *published,
     RT_TRY(rt_output_open(&output, path, error));
     put_head(output.file, results, manifest);
     put_plots(output.file, directory);
-    rt_html_published(published, output.file);
+    rt_published_page(published, true, output.file);
     put_scenes(output.file, results, directory);
     put_tables(output.file, results);
     put_method(output.file, results, manifest);

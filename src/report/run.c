@@ -46,7 +46,7 @@ static void write_least(const RtResults *results, const RtPublished *published, 
 
 static void write_markdown(const RtResults *results, const RtPublished *published, FILE *out) {
     (void)results;
-    rt_published_markdown(published, out);
+    rt_published_page(published, false, out);
 }
 
 const RtExactFile rt_exact_files[RT_EXACT_FILES] = {{"counts.csv", false, write_counts},

@@ -100,7 +100,7 @@ static const void *first_wrong_of(const void *row) {
 }
 
 #define MEMBER(name, form, meaning)                                                                          \
-    { name, name, RT_FORM_##form, "", meaning, get_member, 0 }
+    { name, name, "", meaning, get_member, RT_FORM_##form, 0 }
 static const RtTableColumn members[] = {
     MEMBER("scene", text, "the scene"),
     MEMBER("accel", text, "the accelerator's spec"),
@@ -117,13 +117,7 @@ static const RtTableColumn members[] = {
 enum { OF_CSV = 10, AGAINST = 2 };
 
 #define SIDE(CONSTANT, name, meaning)                                                                        \
-    {"exactly_right_" #name,                                                                                 \
-     #name,                                                                                                  \
-     RT_FORM_integer,                                                                                        \
-     "",                                                                                                     \
-     "of the marginal and the wrong: " meaning,                                                              \
-     get_member,                                                                                             \
-     0},
+    {"exactly_right_" #name, #name, "", "where they differ: " meaning, get_member, RT_FORM_integer, 0},
 static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
 
 static const RtTableColumn first_wrong[] = {
@@ -181,7 +175,7 @@ static RtField get_side(const void *row, const RtTableColumn *column) {
 }
 
 #define SUM_OF_SIDE(CONSTANT, name, meaning)                                                                 \
-    {#name, #name, RT_FORM_integer, "", meaning, get_side, RT_SIDE_##CONSTANT},
+    {#name, #name, "", meaning, get_side, RT_FORM_integer, RT_SIDE_##CONSTANT},
 static const RtTableColumn sum_sides[] = {RT_SIDES(SUM_OF_SIDE)};
 
 static const RtColumnGroup by_accel[] = {RT_ONE(sum_columns, accel), RT_FROM_TO(sum_columns, rows, failed)};
