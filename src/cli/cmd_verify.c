@@ -217,7 +217,7 @@ static void print_header(Show *show) {
     rt_table_widths(&columns, show->widths);
     for (uint32_t i = 0; i < o->scene_count; i++) widen(&show->widths[0], o->scenes[i]);
     for (uint32_t i = 0; i < o->spec_count; i++) widen(&show->widths[1], o->specs[i].spec);
-    for (int i = 2; i < RT_MAX_TABLE_COLUMNS; i++) widen(&show->widths[i], "20000000");
+    for (int i = 2; i < RT_MAX_TABLE_COLUMNS; i++) widen(&show->widths[i], "20000000"); /* the most rays */
     rt_table_line(&columns, show->widths, NULL, stdout);
 }
 
