@@ -1,13 +1,23 @@
 #include "accel/structure_json.h"
 
-#include "base/json.h"
+typedef RtDescription Row;
 
-json_t *rt_json_structure(const RtDescription *d) {
-    json_t *object = json_pack("{s:I, s:I, s:I, s:I, s:I}", "interior", (json_int_t)d->interior, "leaves",
-                               (json_int_t)d->leaves, "empty_leaves", (json_int_t)d->empty_leaves,
-                               "references", (json_int_t)d->references, "depth", (json_int_t)d->depth);
-#define SET_PREDICTION(name, meaning) json_object_set_new(object, #name, rt_json_number(d->name));
-    RT_PREDICTIONS(SET_PREDICTION)
-#undef SET_PREDICTION
-    return object;
+#define STRUCTURE(X)                                                                                         \
+    X(interior, "interior", integer, "", "inner nodes", r->interior)                                         \
+    X(leaves, "leaves", integer, "", "leaves, or voxels", r->leaves)                                         \
+    X(empty_leaves, "empty_leaves", integer, "", "leaves or voxels without an object", r->empty_leaves)      \
+    X(references, "references", integer, "", "entries in all lists of objects", r->references)               \
+    X(structure_depth, "depth", integer, "", "depth of the deepest leaf, the root being 0", r->depth)
+
+#define GETTER(name, meaning) RT_TABLE_GETTER(name, #name, real9, "", meaning, r->name)
+STRUCTURE(RT_TABLE_GETTER)
+RT_PREDICTIONS(GETTER)
+
+#define COLUMN(name, meaning) RT_TABLE_COLUMN(name, #name, real9, "", meaning, r->name)
+const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS] = {STRUCTURE(RT_TABLE_COLUMN)
+                                                                      RT_PREDICTIONS(COLUMN)};
+
+json_t *rt_json_structure(const RtDescription *description) {
+    return rt_row_json(&(RtColumnGroup){NULL, rt_structure_columns, RT_STRUCTURE_COLUMNS, NULL}, 1,
+                       description);
 }

@@ -1,12 +1,17 @@
-/* What a structure looks like, as JSON: one object, the same wherever it is written. */
+/* What a structure looks like, as columns and as JSON: one object, the same wherever it is written. */
 #ifndef RT_ACCEL_STRUCTURE_JSON_H
 #define RT_ACCEL_STRUCTURE_JSON_H
 
 #include "accel/accel.h"
+#include "base/table.h"
 
-#include <jansson.h>
+/* Of an RtDescription: what it says but for its bytes, the predictions last. */
+#define RT_PLUS_ONE(name, meaning) +1
+enum { RT_PREDICTION_COUNT = 0 RT_PREDICTIONS(RT_PLUS_ONE), RT_STRUCTURE_COLUMNS = 5 + RT_PREDICTION_COUNT };
+#undef RT_PLUS_ONE
+extern const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS];
 
-/* What `description` says, but for its bytes: a new reference, NULL where memory is short. */
+/* These columns of one: a new reference, NULL where memory is short. */
 json_t *rt_json_structure(const RtDescription *description);
 
 #endif

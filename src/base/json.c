@@ -1,6 +1,7 @@
 #include "base/json.h"
 
 #include "base/file.h"
+#include "base/table.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -23,11 +24,7 @@ json_t *rt_json_now(void) {
 }
 
 json_t *rt_json_tally(const RtTally *tally) {
-    json_t *object = json_object();
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        json_object_set_new(object, rt_tally_name(i), json_integer((json_int_t)rt_tally_get(tally, i)));
-    }
-    return object;
+    return rt_row_json(&(RtColumnGroup){NULL, rt_tally_columns, RT_TALLY_COUNTER_COUNT, NULL}, 1, tally);
 }
 
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error) {

@@ -1,33 +1,28 @@
-#include "base/tally.h"
+#include "base/table.h"
 
 #include <assert.h>
 
-static const struct {
-    const char *name, *meaning;
-} counters[RT_TALLY_COUNTER_COUNT] = {
-#define ROW(name, meaning) {#name, meaning},
-    RT_TALLY_COUNTERS(ROW)
-#undef ROW
-};
+typedef RtTally Row;
+
+#define GETTER(name, meaning) RT_TABLE_GETTER(name, #name, integer, "", meaning, r->name)
+RT_TALLY_COUNTERS(GETTER)
+
+#define COLUMN(name, meaning) RT_TABLE_COLUMN(name, #name, integer, "", meaning, r->name)
+const RtTableColumn rt_tally_columns[RT_TALLY_COUNTER_COUNT] = {RT_TALLY_COUNTERS(COLUMN)};
 
 const char *rt_tally_name(size_t i) {
     assert(i < RT_TALLY_COUNTER_COUNT);
-    return counters[i].name;
+    return rt_tally_columns[i].name;
 }
 
 const char *rt_tally_meaning(size_t i) {
     assert(i < RT_TALLY_COUNTER_COUNT);
-    return counters[i].meaning;
+    return rt_tally_columns[i].meaning;
 }
 
 uint64_t rt_tally_get(const RtTally *tally, size_t i) {
-    const uint64_t values[RT_TALLY_COUNTER_COUNT] = {
-#define VALUE(name, meaning) tally->name,
-        RT_TALLY_COUNTERS(VALUE)
-#undef VALUE
-    };
     assert(i < RT_TALLY_COUNTER_COUNT);
-    return values[i];
+    return rt_tally_columns[i].get(tally, &rt_tally_columns[i]).integer;
 }
 
 void rt_tally_add(RtTally *sum, const RtTally *part) {

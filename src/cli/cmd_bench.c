@@ -1,17 +1,14 @@
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one trial
  * that leaves no directory behind. */
-#include "accel/structure_json.h"
-#include "base/json.h"
 #include "base/memory.h"
 #include "bench/machine.h"
+#include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "render/frame.h"
-#include "report/tables.h"
 #include "verify/spread.h"
 
 #include <argp.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -171,54 +168,19 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 /* ---- output ---- */
 
-static json_t *row_json(const RtResults *results, uint32_t c, RtRayKind kind) {
-    const RtCell *cell = rt_cell_at(results, 0, c, kind);
-    const RtBuildResult *build = rt_build_at(results, 0, c);
-    bool counted = isfinite(rt_cell_per_ray(results, 0, c, kind, cell->tally.object_tests));
-    double unknown = cell->timed ? 1 : (double)NAN;
-    return json_pack(
-        "{s:s, s:s, s:s, s:I, s:I, s:f, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
-        results->experiment->trials[0].spec, "accel", build->spec, "kind", rt_ray_kind_name(kind), "rays",
-        (json_int_t)cell->tally.rays, "hits", (json_int_t)cell->tally.hits, "build_seconds", build->seconds,
-        "bytes", (json_int_t)build->shape.bytes, "structure", rt_json_structure(&build->shape), "counts",
-        counted ? rt_json_tally(&cell->tally) : json_null(), "mrays_per_s",
-        rt_json_number(unknown * 1e-6 / cell->seconds.median), "ratio",
-        rt_json_number(unknown * cell->ratio.median), "ratio_low", rt_json_number(unknown * cell->ratio.low),
-        "ratio_high", rt_json_number(unknown * cell->ratio.high), "ratio_coverage",
-        cell->timed ? json_real(rt_interval_coverage(cell->rounds)) : json_null());
-}
-
-static json_t *null_json(const RtCell *cell, RtRayKind kind) {
-    return json_pack("{s:s, s:f, s:f, s:f, s:f, s:b}", "kind", rt_ray_kind_name(kind), "ratio",
-                     cell->ratio.median, "ratio_low", cell->ratio.low, "ratio_high", cell->ratio.high,
-                     "ratio_coverage", rt_interval_coverage(cell->rounds), "straddles_1",
-                     cell->ratio.low <= 1 && 1 <= cell->ratio.high);
-}
-
 static void print_json(const RtResults *results) {
-    const RtExperiment *experiment = results->experiment;
-    json_t *rows = json_array(), *nulls = json_array();
-    for (uint32_t k = 0; k < experiment->kind_count; k++) {
-        RtRayKind kind = experiment->kinds[k];
-        const RtCell *null = rt_cell_at(results, 0, experiment->contender_count, kind);
-        for (uint32_t c = 0; c < experiment->contender_count; c++) {
-            if (rt_cell_at(results, 0, c, kind)->counted)
-                json_array_append_new(rows, row_json(results, c, kind));
-        }
-        if (null->timed) json_array_append_new(nulls, null_json(null, kind));
-    }
-    rt_cli_print_json(
-        json_pack("{s:o, s:o, s:o}", "machine", rt_machine_json(), "rows", rows, "null_runs", nulls));
+    RtResultRow row = {.results = results}, null = row;
+    RtTable rows = rt_result_table(RT_BENCH, &row), nulls = rt_result_table(RT_NULL_RUNS, &null);
+    rt_cli_print_json(json_pack("{s:o, s:o, s:o}", "machine", rt_machine_json(), "rows", rt_table_json(&rows),
+                                "null_runs", rt_table_json(&nulls)));
 }
 
 static RtStatus write_csv(const RtResults *results, const Options *o, RtError *error) {
     RtOutput output;
+    RtResultRow row = {.results = results};
+    RtTable table = rt_result_table(o->trial.count_only ? RT_COUNTS : RT_TIMES, &row);
     RT_TRY(rt_output_open(&output, o->csv, error));
-    if (o->trial.count_only) {
-        rt_counts_csv(results, output.file);
-    } else {
-        rt_times_csv(results, output.file);
-    }
+    rt_table_csv(&table, output.file);
     return rt_output_commit(&output, error);
 }
 
@@ -228,7 +190,7 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
         print_json(results);
     } else {
         char sentence[RT_MAX_SENTENCE];
-        rt_print_cells(results, stdout);
+        rt_print_results(results, RT_CELLS, stdout);
         rt_null_sentence(results, sentence);
         if (sentence[0]) printf("\n%s\n", sentence);
     }

@@ -1,6 +1,6 @@
 /* raytally info: what is in a scene. */
+#include "bench/extents_table.h"
 #include "cli/cli.h"
-#include "cli/extents_table.h"
 #include "scenes/open.h"
 
 #include <argp.h>
@@ -166,7 +166,7 @@ static RtStatus show(const RtScene *scene, const Options *o, RtError *error) {
         rt_cli_print_json(info);
     } else {
         print_info(scene, &counts);
-        if (o->extents) rt_extents_table_print(&table);
+        if (o->extents) rt_extents_table_print(&table, stdout);
     }
     return RT_OK;
 }

@@ -1,9 +1,9 @@
 /* raytally run: an experiment, from its YAML to a result directory. */
 #include "base/memory.h"
+#include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "report/run.h"
-#include "report/tables.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -67,7 +67,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     if (status == RT_OK) status = rt_run(&results, &how, error);
     rt_progress_end(&progress);
     if (status == RT_OK) {
-        rt_print_totals(&results, stdout);
+        rt_print_results(&results, RT_TOTALS, stdout);
         rt_null_sentence(&results, sentence);
         printf("\n%s%sReport: %s/report.html\n", sentence, *sentence ? "\n" : "", how.directory);
     }

@@ -188,8 +188,8 @@ static RtStatus choose_specs(Options *o, RtError *error) {
 
 typedef struct Show {
     const Options *options;
-    int scene_width, spec_width; /* of the columns */
-    bool header_printed, failed, terminal;
+    int widths[RT_MAX_TABLE_COLUMNS]; /* of columns; 0: the header is not yet printed */
+    bool failed, terminal;
     double start, drawn; /* wall seconds */
 } Show;
 
@@ -218,16 +218,16 @@ static void widen(int *width, const char *text) {
     if ((int)strlen(text) > *width) *width = (int)strlen(text);
 }
 
+static const RtTable columns = {.groups = rt_verify_text, .group_count = RT_VERIFY_TEXT_GROUPS};
+
 static void print_header(Show *show) {
     const Options *o = show->options;
-    if (show->header_printed) return;
-    show->header_printed = true;
-    show->scene_width = (int)strlen("scene");
-    for (uint32_t i = 0; i < o->scene_count; i++) widen(&show->scene_width, o->scenes[i]);
-    show->spec_width = (int)strlen("accelerator");
-    for (uint32_t i = 0; i < o->spec_count; i++) widen(&show->spec_width, o->specs[i].spec);
-    printf("%-*s %-*s %10s %10s %8s %8s %8s %8s\n", show->scene_width, "scene", show->spec_width,
-           "accelerator", "rays", "equal", "tie", "marginal", "wrong", "occluded");
+    if (show->widths[0]) return;
+    rt_table_widths(&columns, show->widths);
+    for (uint32_t i = 0; i < o->scene_count; i++) widen(&show->widths[0], o->scenes[i]);
+    for (uint32_t i = 0; i < o->spec_count; i++) widen(&show->widths[1], o->specs[i].spec);
+    for (int i = 2; i < RT_MAX_TABLE_COLUMNS; i++) widen(&show->widths[i], "20000000"); /* the most rays */
+    rt_table_line(&columns, show->widths, NULL, stdout);
 }
 
 static const char *text(const json_t *object, const char *key) {
@@ -242,9 +242,7 @@ static long long number(const json_t *row, const char *key) {
 static void print_row(Show *show, const json_t *row) {
     const json_t *wrong = json_object_get(row, "first_wrong");
     print_header(show);
-    printf("%-*s %-*s %10lld %10lld %8lld %8lld %8lld %8lld\n", show->scene_width, text(row, "scene"),
-           show->spec_width, text(row, "accel"), number(row, "rays"), number(row, "equal"),
-           number(row, "tie"), number(row, "marginal"), number(row, "wrong"), number(row, "occluded_wrong"));
+    rt_table_line(&columns, show->widths, row, stdout);
     if (!json_is_null(wrong)) {
         printf("    WRONG: %s\n", text(wrong, "says"));
         const json_t *left = json_object_get(wrong, "objects_left");

@@ -117,10 +117,4 @@ void rt_published_row_name(const RtPublishedRow *row, char *out);
 /* The figure as measured: whole numbers as they are, others in six digits; "" where it is not. */
 void rt_figure_measured(const RtFigure *figure, char out[RT_MAX_FIGURE]);
 
-/* Tables of a result directory, byte-identical wherever they are made: published.csv, a row per figure;
- * least.csv, a row per scene and measure; published.md, both for the eye, with all reasons. */
-void rt_published_csv(const RtPublished *published, FILE *out);
-void rt_least_csv(const RtPublished *published, FILE *out);
-void rt_published_markdown(const RtPublished *published, FILE *out);
-
 #endif

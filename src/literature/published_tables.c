@@ -1,182 +1,287 @@
-#include "base/csv.h"
-#include "literature/published.h"
+#include "literature/published_tables.h"
 
 #include <inttypes.h>
 #include <math.h>
 
-/* ---- CSV ---- */
+typedef RtPublishedCursor Row;
 
-static void put(FILE *out, const char *field) {
-    rt_csv_put(out, field);
-    fputc(',', out);
+/* ---- fields ---- */
+
+static double tolerance_of(const Row *r, RtColumn column) {
+    double tolerance = r->published->experiment->published.tolerance[column];
+    return tolerance > 0 ? tolerance : (double)NAN;
 }
 
-static void put_figure(const RtPublished *published, const RtFigure *figure, FILE *out) {
-    const RtPublishedRow *row = &published->rows[figure->row];
-    const double tolerance = published->experiment->published.tolerance[figure->column];
+static const char *per_of(const Row *r) {
+    if (r->figure->column != RT_COLUMN_object_tests) return NULL;
+    return r->row->per_hit ? "hit" : "ray";
+}
+
+static RtField measured_of(const Row *r) {
     char measured[RT_MAX_FIGURE];
-    rt_figure_measured(figure, measured);
-    put(out, published->experiment->trials[row->trial].label);
-    put(out, row->source);
-    put(out, row->structure);
-    put(out, row->parameters);
-    put(out, row->accel);
-    put(out, rt_column_name(figure->column));
-    put(out, figure->column == RT_COLUMN_object_tests ? (row->per_hit ? "hit" : "ray") : "");
-    put(out, figure->text);
-    put(out, measured);
-    if (!isnan(figure->deviation)) fprintf(out, "%.2f", figure->deviation);
-    fputc(',', out);
-    if (tolerance > 0) fprintf(out, "%.9g", tolerance);
-    fprintf(out, ",%s,",
-            figure->judgement == RT_WITHIN    ? "yes"
-            : figure->judgement == RT_OUTSIDE ? "no"
-                                              : "");
-    rt_csv_put(out, figure->reason == RT_NO_REASON ? "" : published->reasons[figure->reason].text);
-    fputc('\n', out);
+    rt_figure_measured(r->figure, measured);
+    return rt_field_print("%s", measured);
 }
 
-void rt_published_csv(const RtPublished *published, FILE *out) {
-    fputs("scene,source,structure,parameters,accel,column,per,published,measured,deviation,tolerance,within,"
-          "reason\n",
-          out);
-    for (uint32_t i = 0; i < published->figure_count; i++) put_figure(published, &published->figures[i], out);
+static RtField within_of(const Row *r) {
+    if (r->figure->judgement == RT_UNJUDGED) return rt_field_missing();
+    return rt_field_flag(r->figure->judgement == RT_WITHIN);
 }
 
-static void put_known(FILE *out, double value) {
-    if (!isnan(value)) fprintf(out, "%.6g", value);
-    fputc(',', out);
+static const char *reason_of(const RtPublished *published, const RtFigure *figure) {
+    return figure->reason == RT_NO_REASON ? NULL : published->reasons[figure->reason].text;
 }
 
-static void put_least(const RtPublished *published, uint32_t t, RtMeasure measure, FILE *out) {
-    const RtLeast *least = &published->least[t][measure];
+static RtField name_of(const Row *r) {
     char name[RT_MAX_ROW_NAME];
-    if (least->row == RT_NOT_MEASURED) return;
-    rt_published_row_name(&published->rows[least->row], name);
-    put(out, published->experiment->trials[t].label);
-    put(out, rt_measure_name(measure));
-    put(out, name);
-    put_known(out, least->published);
-    put(out,
-        least->contender == RT_NOT_MEASURED ? "" : published->experiment->contenders[least->contender].label);
-    put_known(out, least->ours);
-    put_known(out, least->extent_tests);
-    fprintf(out, "%s\n", rt_least_is_ahead(least) ? "yes" : "no");
+    rt_published_row_name(r->row, name);
+    return rt_field_print("%s", name);
 }
 
-void rt_least_csv(const RtPublished *published, FILE *out) {
-    fputs("scene,measure,published_row,published,accel,ours,extent_tests,ahead\n", out);
-    for (uint32_t t = 0; t < published->experiment->trial_count; t++) {
-        for (int m = 0; m < RT_MEASURE_COUNT; m++) put_least(published, t, (RtMeasure)m, out);
-    }
+static RtField ours_of(const Row *r) {
+    bool ahead = rt_least_is_ahead(r->least);
+    RtField field = rt_field_print("%.4g%s", r->least->ours, ahead ? "" : ", not less");
+    field.missed = !ahead;
+    return field;
 }
 
-/* ---- Markdown ---- */
-
-/* Text of a cell: bars are escaped. */
-static void put_cell(FILE *out, const char *text) {
-    for (; *text; text++) fprintf(out, *text == '|' ? "\\|" : "%c", *text);
+static RtField judged_of(const Row *r) {
+    char tolerance[32] = "";
+    if (tolerance_of(r, r->column) > 0)
+        snprintf(tolerance, sizeof tolerance, ", %.9g %%", tolerance_of(r, r->column));
+    return rt_field_print("%s%s", rt_column_name(r->column), tolerance);
 }
 
-static void put_summary(const RtPublished *published, FILE *out) {
-    fputs("| column | figures | within | outside | not judged |\n| --- | --- | --- | --- | --- |\n", out);
-    for (int c = 0; c < RT_COLUMN_COUNT; c++) {
-        RtColumnSummary summary = rt_column_summary(published, (RtColumn)c);
-        if (summary.figures == 0) continue;
-        const double tolerance = published->experiment->published.tolerance[c];
-        fprintf(out, "| %s", rt_column_name((RtColumn)c));
-        if (tolerance > 0) fprintf(out, ", %.9g %%", tolerance);
-        fprintf(out, " | %" PRIu32 " | %" PRIu32 " | %" PRIu32 " | %" PRIu32 " |\n", summary.figures,
-                summary.judged[RT_WITHIN], summary.judged[RT_OUTSIDE], summary.judged[RT_UNJUDGED]);
-    }
+static RtField outside_of(const Row *r) {
+    RtField field = rt_field_integer(r->summary.judged[RT_OUTSIDE]);
+    field.missed = field.integer > 0;
+    return field;
 }
 
-static void put_least_rows(const RtPublished *published, FILE *out) {
-    fputs("\n## Ours against the best published row\n\nPer ray of all kinds. A row that counts tests per ray "
-          "that hits is "
-          "taken per ray. Extent tests are what ours make besides.\n\n"
-          "| scene | measure | best published row | published | ours | measured | extent tests |\n"
-          "| --- | --- | --- | --- | --- | --- | --- |\n",
-          out);
-    for (uint32_t t = 0; t < published->experiment->trial_count; t++) {
-        for (int m = 0; m < RT_MEASURE_COUNT; m++) {
-            const RtLeast *least = &published->least[t][m];
-            char name[RT_MAX_ROW_NAME];
-            if (least->row == RT_NOT_MEASURED || least->contender == RT_NOT_MEASURED) continue;
-            rt_published_row_name(&published->rows[least->row], name);
-            fputs("| ", out);
-            put_cell(out, published->experiment->trials[t].label);
-            fprintf(out, " | %s | ", rt_measure_name((RtMeasure)m));
-            put_cell(out, name);
-            fprintf(out, " | %.4g | `", least->published);
-            put_cell(out, published->experiment->contenders[least->contender].label);
-            fprintf(out, "` | %.4g%s | %.4g |\n", least->ours, rt_least_is_ahead(least) ? "" : ", not less",
-                    least->extent_tests);
-        }
-    }
-}
-
-static void put_row_cell(const RtPublished *published, const RtPublishedRow *row, RtColumn column,
-                         FILE *out) {
-    const RtFigure *figure = rt_published_figure(published, row, column);
-    char measured[RT_MAX_FIGURE];
-    fputs(" |", out);
-    if (!figure) return;
+/* The published figure; the measured one and its deviation. */
+static RtField shown_figure(const void *row, const RtTableColumn *column) {
+    const Row *r = row;
+    const RtFigure *figure = rt_published_figure(r->published, r->row, (RtColumn)column->key);
+    char measured[RT_MAX_FIGURE], more[64] = "";
+    if (!figure) return rt_field_missing();
     rt_figure_measured(figure, measured);
-    const char *bold = figure->judgement == RT_OUTSIDE ? "**" : "";
-    fprintf(out, " %s", figure->text);
-    if (*measured) fprintf(out, "; %s%s (%+.1f %%)%s", bold, measured, figure->deviation, bold);
-    if (column == RT_COLUMN_object_tests && row->per_hit) fputs(" per hit", out);
+    bool missed = figure->judgement == RT_OUTSIDE;
+    const char *bold = missed ? "**" : "";
+    if (*measured)
+        snprintf(more, sizeof more, "; %s%s (%+.1f %%)%s", bold, measured, figure->deviation, bold);
+    RtField field =
+        rt_field_print("%s%s%s", figure->text, more,
+                       column->key == RT_COLUMN_object_tests && r->row->per_hit ? " per hit" : "");
+    field.missed = missed;
+    field.note = reason_of(r->published, figure);
+    return field;
 }
 
-static void put_rows(const RtPublished *published, uint32_t t, bool of_rays, FILE *out) {
+/* ---- columns ---- */
+
+#define COLUMNS(X)                                                                                           \
+    X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
+      r->published->experiment->trials[r->trial].label)                                                      \
+    X(source, "source", text, "", "who published it", r->row->source)                                        \
+    X(structure, "structure", text, "", "what the structure is called there", r->row->structure)             \
+    X(parameters, "parameters", text, "", "its parameters, as they are called there", r->row->parameters)    \
+    X(accel, "accel", text, "", "label of the accelerator that is measured", r->accel)                       \
+    X(column, "column", text, "", "what the figure is about", rt_column_name(r->figure->column))             \
+    X(per, "per", text, "", "what object tests are divided by: ray, or hit (a ray that hits)", per_of(r))    \
+    X(published, "published", real6, "", "the published figure", r->said)                                    \
+    X(measured, "measured", real6, "", "what was measured here", measured_of(r))                             \
+    X(deviation, "deviation", percent, "%", "by how much more that is", r->figure->deviation)                \
+    X(tolerance, "tolerance", real9, "%", "how large a deviation may be",                                    \
+      tolerance_of(r, r->figure->column))                                                                    \
+    X(within, "within", flag, "", "whether it is no larger; empty: not judged", within_of(r))                \
+    X(reason, "reason", text, "", "why the figure is missed", reason_of(r->published, r->figure))            \
+    X(measure, "measure", text, "", "what is to be least, a ray of any kind", rt_measure_name(r->measure))   \
+    X(published_row, "best published row", text, "", "the row that has the least", name_of(r))               \
+    X(ours, "ours", real6, "", "what the one of ours needs that needs least", r->least->ours)                \
+    X(extent_tests, "extent_tests", real6, "", "extent tests a ray that this one makes besides",             \
+      r->least->extent_tests)                                                                                \
+    X(ahead, "ahead", flag, "", "whether ours is less than what was published",                              \
+      rt_field_flag(rt_least_is_ahead(r->least)))                                                            \
+    X(said4, "published", real4, "", "the least published figure", r->said)                                  \
+    X(our_accel, "ours", markup, "", "our accelerator that needs least", rt_field_print("`%s`", r->accel))   \
+    X(ours4, "measured", real4, "", "what it needs", ours_of(r))                                             \
+    X(extent_tests4, "extent tests", real4, "", "extent tests that it makes besides",                        \
+      r->least->extent_tests)                                                                                \
+    X(judged, "column", text, "", "what figures are about, and how much they may deviate", judged_of(r))     \
+    X(figures, "figures", integer, "", "published figures", r->summary.figures)                              \
+    X(inside, "within", integer, "", "those within the tolerance", r->summary.judged[RT_WITHIN])             \
+    X(outside, "outside", integer, "", "those outside it", outside_of(r))                                    \
+    X(unjudged, "not judged", integer, "", "those that are only shown", r->summary.judged[RT_UNJUDGED])      \
+    X(row_name, "row", text, "", "as it was published", name_of(r))
+
+RT_TABLE_COLUMNS(columns, COLUMNS)
+
+static const RtColumnGroup figures[] = {RT_FROM_TO(columns, scene, reason)};
+static const RtColumnGroup least[] = {RT_ONE(columns, scene), RT_FROM_TO(columns, measure, published_row),
+                                      RT_ONE(columns, published), RT_ONE(columns, accel),
+                                      RT_FROM_TO(columns, ours, ahead)};
+static const RtColumnGroup least_for_the_eye[] = {RT_ONE(columns, scene),
+                                                  RT_FROM_TO(columns, measure, published_row),
+                                                  RT_FROM_TO(columns, said4, extent_tests4)};
+static const RtColumnGroup summary[] = {RT_FROM_TO(columns, judged, unjudged)};
+
+/* ---- rows ---- */
+
+static const void *figures_row(void *context, size_t i) {
+    Row *r = context;
+    r->figure = &r->published->figures[i];
+    r->row = &r->published->rows[r->figure->row];
+    r->trial = r->row->trial;
+    r->accel = r->row->accel;
+    r->said = rt_field_text(r->figure->text);
+    return r;
+}
+
+static const void *least_row(void *context, size_t i) {
+    Row *r = context;
+    r->trial = (uint32_t)(i / RT_MEASURE_COUNT);
+    r->measure = (RtMeasure)(i % RT_MEASURE_COUNT);
+    r->least = &r->published->least[r->trial][r->measure];
+    if (r->least->row == RT_NOT_MEASURED) return NULL;
+    r->row = &r->published->rows[r->least->row];
+    r->accel = r->least->contender == RT_NOT_MEASURED
+                   ? NULL
+                   : r->published->experiment->contenders[r->least->contender].label;
+    r->said = rt_field_real(r->least->published);
+    return r;
+}
+
+static const void *least_eye_row(void *context, size_t i) {
+    const Row *r = least_row(context, i);
+    return r && r->accel ? r : NULL;
+}
+
+static const void *summary_row(void *context, size_t i) {
+    Row *r = context;
+    r->column = (RtColumn)i;
+    r->summary = rt_column_summary(r->published, r->column);
+    return r->summary.figures ? r : NULL;
+}
+
+static const void *trial_row(void *context, size_t i) {
+    Row *r = context;
+    r->row = &r->published->rows[i];
+    return r->row->trial == r->trial && r->row->of_rays == r->of_rays ? r : NULL;
+}
+
+/* The name of a row, and the columns that any row of the trial has. */
+static void show_columns(Row *r) {
     bool shown[RT_COLUMN_COUNT];
-    if (!rt_published_columns(published, t, of_rays, shown)) return;
-    fputs("\n| row", out);
+    size_t count = 0;
+    r->shown[count++] = columns[AT_row_name];
+    rt_published_columns(r->published, r->trial, r->of_rays, shown);
     for (int c = 0; c < RT_COLUMN_COUNT; c++) {
-        if (shown[c]) fprintf(out, " | %s", rt_column_name((RtColumn)c));
+        const char *name = rt_column_name((RtColumn)c), *meaning = "published; measured (deviation)";
+        if (shown[c])
+            r->shown[count++] = (RtTableColumn){name, name, "", meaning, shown_figure, RT_FORM_markup, c};
     }
-    fputs(" |\n| ---", out);
-    for (int c = 0; c < RT_COLUMN_COUNT; c++) fputs(shown[c] ? " | ---" : "", out);
-    fputs(" |\n", out);
-    for (uint32_t r = 0; r < published->row_count; r++) {
-        const RtPublishedRow *row = &published->rows[r];
-        char name[RT_MAX_ROW_NAME];
-        if (row->trial != t || row->of_rays != of_rays) continue;
-        rt_published_row_name(row, name);
-        fputs("| ", out);
-        put_cell(out, name);
-        for (int c = 0; c < RT_COLUMN_COUNT; c++) {
-            if (shown[c]) put_row_cell(published, row, (RtColumn)c, out);
-        }
-        fputs(" |\n", out);
-    }
+    r->shown_group = (RtColumnGroup){NULL, r->shown, count, NULL};
 }
 
-static void put_reasons(const RtPublished *published, FILE *out) {
-    fputs("\n## Why figures are missed\n\n", out);
-    for (uint32_t i = 0; i < published->reason_count; i++) {
-        const RtReason *reason = &published->reasons[i];
+RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor) {
+    static const RtTable tables[RT_PUBLISHED_TABLE_COUNT] = {
+        [RT_FIGURES] = {RT_GROUPS(figures), .row = figures_row},
+        [RT_LEAST] = {RT_GROUPS(least), .row = least_row},
+        [RT_LEAST_FOR_THE_EYE] = {RT_GROUPS(least_for_the_eye), .row = least_eye_row},
+        [RT_SUMMARY] = {RT_GROUPS(summary), .row = summary_row},
+        [RT_ROWS_OF_RAYS] = {.row = trial_row},
+        [RT_ROWS_OF_STRUCTURES] = {.row = trial_row},
+    };
+    const RtPublished *p = cursor->published;
+    const size_t measures = (size_t)p->experiment->trial_count * RT_MEASURE_COUNT;
+    const size_t counts[RT_PUBLISHED_TABLE_COUNT] = {p->figure_count, measures,     measures,
+                                                     RT_COLUMN_COUNT, p->row_count, p->row_count};
+    RtTable table = tables[which];
+    table.row_count = counts[which];
+    table.context = cursor;
+    table.ragged = true;
+    if (table.groups) return table;
+    cursor->of_rays = which == RT_ROWS_OF_RAYS;
+    show_columns(cursor);
+    table.groups = &cursor->shown_group;
+    table.group_count = cursor->shown_group.count > 1;
+    return table;
+}
+
+/* ---- the page ---- */
+
+typedef struct Page {
+    const RtPublished *published;
+    bool html; /* or Markdown */
+    FILE *out;
+} Page;
+
+/* Text with `code`, between what goes around it. */
+static void put(const Page *page, const char *before, const char *text, const char *after) {
+    fputs(before, page->out);
+    if (page->html) {
+        rt_html_markup(page->out, text);
+    } else {
+        fputs(text, page->out);
+    }
+    fputs(after, page->out);
+}
+
+static void put_title(const Page *page, const char *title) {
+    put(page, page->html ? "<h3>" : "\n## ", title, page->html ? "</h3>\n" : "\n");
+}
+
+static void put_paragraph(const Page *page, const char *text) {
+    put(page, page->html ? "<p>" : "\n", text, page->html ? "</p>\n" : "\n");
+}
+
+static void put_table(const Page *page, uint32_t trial, RtPublishedTable which) {
+    RtPublishedCursor cursor = {.published = page->published, .trial = trial};
+    RtTable table = rt_published_table(which, &cursor);
+    if (!table.group_count) return;
+    if (!page->html) fputc('\n', page->out);
+    (page->html ? rt_table_html : rt_table_markdown)(&table, page->out);
+}
+
+static void put_trial(const Page *page, uint32_t t) {
+    const char *label = page->published->experiment->trials[t].label;
+    put(page, page->html ? "<details><summary>" : "\n## ", label, page->html ? "</summary>\n" : "\n");
+    put_table(page, t, RT_ROWS_OF_RAYS);
+    put_table(page, t, RT_ROWS_OF_STRUCTURES);
+    if (page->html) fputs("</details>\n", page->out);
+}
+
+static void put_reasons(const Page *page) {
+    put_title(page, "Why figures are missed");
+    fputs(page->html ? "<ul>\n" : "\n", page->out);
+    for (uint32_t i = 0; i < page->published->reason_count; i++) {
+        const RtReason *reason = &page->published->reasons[i];
+        char text[RT_MAX_REASON + 5 * RT_MAX_LABEL];
         if (!reason->used) continue;
-        fprintf(out, "- `%s` of `%s` on `%s` (%s): %s", reason->column,
-                *reason->accel ? reason->accel : "the rays", reason->scene, reason->source, reason->text);
-        fprintf(out, " [%" PRIu32 "]\n", reason->used);
+        snprintf(text, sizeof text, "`%s` of `%s` on `%s` (%s): %s [%" PRIu32 "]", reason->column,
+                 *reason->accel ? reason->accel : "the rays", reason->scene, reason->source, reason->text,
+                 reason->used);
+        put(page, page->html ? "<li>" : "- ", text, page->html ? "</li>\n" : "\n");
     }
+    if (page->html) fputs("</ul>\n", page->out);
 }
 
-void rt_published_markdown(const RtPublished *published, FILE *out) {
+void rt_published_page(const RtPublished *published, bool html, FILE *out) {
+    const Page page = {published, html, out};
     const RtExperiment *experiment = published->experiment;
-    fprintf(out,
-            "# %s: published, measured\n\nWritten by `raytally run`. A cell is the published figure; the "
-            "measured one and "
-            "its deviation, in bold where it is more than the tolerance.\n\n",
-            experiment->name);
-    put_summary(published, out);
-    put_least_rows(published, out);
-    for (uint32_t t = 0; t < experiment->trial_count; t++) {
-        fprintf(out, "\n## %s\n", experiment->trials[t].label);
-        put_rows(published, t, true, out);
-        put_rows(published, t, false, out);
+    if (published->row_count == 0 && html) return;
+    if (html) {
+        fputs("<h2>Published figures</h2>\n", out);
+    } else {
+        fprintf(out, "# %s: published, measured\n", experiment->name);
     }
-    put_reasons(published, out);
+    put_paragraph(&page, "Written by `raytally run`. A cell is the published figure; the measured one and "
+                         "its deviation, in bold where it is more than the tolerance.");
+    put_table(&page, 0, RT_SUMMARY);
+    put_title(&page, "Ours against the best published row");
+    put_paragraph(&page, "Per ray of all kinds. A row that counts tests per ray that hits is taken per ray. "
+                         "Extent tests are what ours make besides.");
+    put_table(&page, 0, RT_LEAST_FOR_THE_EYE);
+    for (uint32_t t = 0; t < experiment->trial_count; t++) put_trial(&page, t);
+    put_reasons(&page);
 }

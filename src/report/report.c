@@ -3,9 +3,9 @@
 #include "report/report.h"
 
 #include "base/memory.h"
-#include "report/html.h"
+#include "bench/result_tables.h"
+#include "literature/published_tables.h"
 #include "report/plot.h"
-#include "report/tables.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -27,12 +27,12 @@ static const char style[] =
     "figcaption{color:#666;font-size:.85rem;padding:.4rem .2rem 0}"
     "table{border-collapse:collapse;background:#fff;font-size:.9rem;font-variant-numeric:tabular-nums;width:"
     "100%}"
-    "th,td{padding:.28rem .7rem;border-bottom:1px solid #eee;text-align:right;white-space:nowrap}"
-    "th{color:#666;font-weight:600;border-bottom:2px solid "
-    "#ddd}th:first-child,td:first-child{text-align:left}"
+    "th,td{padding:.28rem .7rem;border-bottom:1px solid #eee;text-align:left;white-space:nowrap}"
+    "th{color:#666;font-weight:600;border-bottom:2px solid #ddd}.number,[data-value]{text-align:right}"
     "tbody tr:hover{background:#f4f8ff}.wide{overflow-x:auto}"
-    ".missed{background:#fde8dc}.row{text-align:left}"
-    ".dot{display:inline-block;width:.75em;height:.75em;border-radius:2px;margin-right:.5em}"
+    ".missed{background:#fde8dc}"
+    "tr[style] td:first-child::before{content:'';display:inline-block;width:.75em;height:.75em;"
+    "border-radius:2px;margin-right:.5em;background:var(--dot)}"
     "details{margin:.8rem 0}summary{cursor:pointer;color:#0059b3}"
     "dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1rem;font-size:.9rem}dt{color:#666}"
     "dd{margin:0;overflow-wrap:anywhere}";
@@ -59,20 +59,6 @@ static void put_image(FILE *out, const char *path, const char *type, const char 
     put_base64(out, (const unsigned char *)data, size);
     fputs("\">", out);
     rt_free(data);
-}
-
-static void put_figure(FILE *out, double value) {
-    char text[16];
-    rt_format_figure(value, text);
-    fprintf(out, "<td>%s</td>", text);
-}
-
-static void put_amount(FILE *out, double value) {
-    char text[16];
-    rt_format_amount(value, text);
-    fputs("<td>", out);
-    rt_html_put(out, text);
-    fputs("</td>", out);
 }
 
 /* ---- sections ---- */
@@ -147,80 +133,17 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
     fputs("</div>\n", out);
 }
 
-static void put_label(FILE *out, const RtExperiment *experiment, uint32_t c) {
-    bool null = c == experiment->contender_count;
-    fprintf(out, "<tr><td><span class=\"dot\" style=\"background:%s\"></span>",
-            null ? "#ddd" : rt_contender_color(c));
-    rt_html_put(out, rt_contender_label(experiment, c));
-    if (!null && experiment->contenders[c].every > 1) {
-        fprintf(out, " <span class=\"meta\">every %" PRIu64 "th ray</span>", experiment->contenders[c].every);
-    }
-    fputs("</td>", out);
+static const char *dot_of(const void *row) {
+    const RtResultRow *r = row;
+    bool null = r->contender == r->results->experiment->contender_count;
+    return null ? "#ddd" : rt_contender_color(r->contender);
 }
 
-static void put_totals(FILE *out, const RtResults *results, uint32_t t) {
-    const RtExperiment *experiment = results->experiment;
-    fputs("<div class=\"wide\"><table><thead><tr><th>accelerator</th><th>rays</th><th>object tests / ray</th>"
-          "<th>extent tests / ray</th><th>steps / ray</th><th>ns / ray</th><th>throughput / ",
-          out);
-    rt_html_put(out, experiment->contenders[experiment->baseline].label);
-    fputs("</th><th>build ms</th><th>MB</th></tr></thead><tbody>\n", out);
-    for (uint32_t c = 0; c < experiment->contender_count; c++) {
-        const RtBuildResult *build = rt_build_at(results, t, c);
-        RtTotal total = rt_results_total(results, t, c);
-        if (!build->known) continue;
-        put_label(out, experiment, c);
-        fprintf(out, "<td>%" PRIu64 "</td>", total.rays);
-        put_figure(out, total.object_tests);
-        put_figure(out, total.extent_tests);
-        put_figure(out, total.steps);
-        put_figure(out, 1e9 * total.seconds);
-        put_figure(out, total.ratio);
-        put_amount(out, 1e3 * build->seconds);
-        put_amount(out, 1e-6 * (double)build->shape.bytes);
-        fputs("</tr>\n", out);
-    }
-    fputs("</tbody></table></div>\n", out);
-}
-
-static void put_cell(FILE *out, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
-    const RtCell *cell = rt_cell_at(results, t, c, kind);
-    if (!cell->counted && !cell->timed) return;
-    put_label(out, results->experiment, c);
-    fprintf(out, "<td>%s</td><td>%" PRIu64 "</td>", rt_ray_kind_name(kind), cell->tally.rays);
-    put_figure(out, rt_cell_per_ray(results, t, c, kind, cell->tally.object_tests));
-    put_figure(out, rt_cell_per_ray(results, t, c, kind, cell->tally.extent_tests));
-    put_figure(out, rt_cell_per_ray(results, t, c, kind, cell->tally.steps));
-    if (cell->timed) {
-        char low[16], high[16];
-        put_figure(out, 1e9 * cell->seconds.median);
-        put_figure(out, 1e9 * cell->seconds.least);
-        put_figure(out, cell->ratio.median);
-        rt_format_figure(cell->ratio.low, low);
-        rt_format_figure(cell->ratio.high, high);
-        fprintf(out, "<td>%s &ndash; %s</td>", low, high);
-    } else {
-        fputs("<td>-</td><td>-</td><td>-</td><td>-</td>", out);
-    }
-    fprintf(out, cell->differ ? "<td>%" PRIu64 "</td></tr>\n" : "<td></td></tr>\n", cell->differ);
-}
-
-static void put_cells(FILE *out, const RtResults *results, uint32_t t) {
-    const RtExperiment *experiment = results->experiment;
-    char interval[RT_MAX_INTERVAL_TITLE];
-    fputs(
-        "<details><summary>By ray kind, with intervals</summary><div class=\"wide\"><table><thead><tr>"
-        "<th>accelerator</th><th>kind</th><th>rays</th><th>object tests / ray</th><th>extent tests / ray</th>"
-        "<th>steps / ray</th><th>ns / ray</th><th>least</th><th>ratio</th><th>",
-        out);
-    rt_interval_title(experiment, interval);
-    fprintf(out, "%s</th><th>differ</th></tr></thead><tbody>\n", interval);
-    for (uint32_t k = 0; k < experiment->kind_count; k++) {
-        for (uint32_t c = 0; c <= experiment->contender_count; c++) {
-            put_cell(out, results, t, c, experiment->kinds[k]);
-        }
-    }
-    fputs("</tbody></table></div></details>\n", out);
+static void put_table(FILE *out, const RtResults *results, uint32_t t, RtResultTable which) {
+    RtResultRow row = {.results = results, .trial = t};
+    RtTable table = rt_result_table(which, &row);
+    table.color = dot_of;
+    rt_table_html(&table, out);
 }
 
 static void put_tables(FILE *out, const RtResults *results) {
@@ -230,8 +153,10 @@ static void put_tables(FILE *out, const RtResults *results) {
         fputs("<h3>", out);
         rt_html_put(out, results->experiment->trials[t].label);
         fputs("</h3>\n", out);
-        put_totals(out, results, t);
-        put_cells(out, results, t);
+        put_table(out, results, t, RT_TOTALS);
+        fputs("<details><summary>By ray kind, with intervals</summary>", out);
+        put_table(out, results, t, RT_CELLS_MORE);
+        fputs("</details>\n", out);
     }
 }
 
@@ -300,7 +225,7 @@ RtStatus rt_report_write(const RtResults *results, const RtPublished *published,
     RT_TRY(rt_output_open(&output, path, error));
     put_head(output.file, results, manifest);
     put_plots(output.file, directory);
-    rt_html_published(published, output.file);
+    rt_published_page(published, true, output.file);
     put_scenes(output.file, results, directory);
     put_tables(output.file, results);
     put_method(output.file, results, manifest);

@@ -3,10 +3,11 @@
 #include "base/lock.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
+#include "bench/result_tables.h"
+#include "literature/published_tables.h"
 #include "render/image.h"
 #include "report/plot.h"
 #include "report/report.h"
-#include "report/tables.h"
 #include "scenes/open.h"
 
 #include <string.h>
@@ -27,23 +28,31 @@ typedef struct Run {
 /* ---- what is exact ---- */
 
 static void write_counts(const RtResults *results, const RtPublished *published, FILE *out) {
+    RtResultRow row = {.results = results};
+    RtTable table = rt_result_table(RT_COUNTS, &row);
     (void)published;
-    rt_counts_csv(results, out);
+    rt_table_csv(&table, out);
+}
+
+static void write_published_table(const RtPublished *published, RtPublishedTable which, FILE *out) {
+    RtPublishedCursor cursor = {.published = published};
+    RtTable table = rt_published_table(which, &cursor);
+    rt_table_csv(&table, out);
 }
 
 static void write_published(const RtResults *results, const RtPublished *published, FILE *out) {
     (void)results;
-    rt_published_csv(published, out);
+    write_published_table(published, RT_FIGURES, out);
 }
 
 static void write_least(const RtResults *results, const RtPublished *published, FILE *out) {
     (void)results;
-    rt_least_csv(published, out);
+    write_published_table(published, RT_LEAST, out);
 }
 
 static void write_markdown(const RtResults *results, const RtPublished *published, FILE *out) {
     (void)results;
-    rt_published_markdown(published, out);
+    rt_published_page(published, false, out);
 }
 
 const RtExactFile rt_exact_files[RT_EXACT_FILES] = {{"counts.csv", false, write_counts},
@@ -194,10 +203,12 @@ static RtStatus write_exact(const Run *run, const RtExactFile *file, RtError *er
 static RtStatus write_times(const Run *run, RtError *error) {
     char path[RT_MAX_PATH];
     RtOutput output;
+    RtResultRow row = {.results = run->results};
+    RtTable table = rt_result_table(RT_TIMES, &row);
     if (run->experiment->count_only) return RT_OK;
     RT_TRY(in_directory(run, "times.csv", path, error));
     RT_TRY(rt_output_open(&output, path, error));
-    rt_times_csv(run->results, output.file);
+    rt_table_csv(&table, output.file);
     return rt_output_commit(&output, error);
 }
 

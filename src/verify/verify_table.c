@@ -1,6 +1,5 @@
 #include "verify/verify_table.h"
 
-#include "base/csv.h"
 #include "base/file.h"
 #include "base/memory.h"
 
@@ -84,77 +83,124 @@ RtVerifySum rt_verify_total(const RtVerifySum *sums, uint32_t count) {
     return total;
 }
 
-/* ---- CSV ---- */
+/* ---- rows ---- */
 
-static void put_field(FILE *out, const json_t *value) {
-    if (json_is_integer(value)) fprintf(out, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
-    if (json_is_string(value)) rt_csv_put(out, json_string_value(value));
+static RtField get_member(const void *row, const RtTableColumn *column) {
+    const json_t *value = json_object_get(row, column->name);
+    if (json_is_integer(value)) return rt_field_integer((uint64_t)json_integer_value(value));
+    return rt_field_text(json_string_value(value));
 }
 
-/* A column of its own for each side, called exactly_right_NAME, and last the name of the replay file. */
-static void write_csv(const json_t *rows, FILE *out) {
-    static const char *const columns[] = {"scene", "accel",    "against", "rays",           "equal",
-                                          "tie",   "marginal", "wrong",   "occluded_wrong", "problem"};
-    enum { COLUMNS = sizeof columns / sizeof columns[0] };
-    for (int c = 0; c < COLUMNS; c++) fprintf(out, "%s,", columns[c]);
-    for (int s = 0; s < RT_SIDE_COUNT; s++) fprintf(out, "exactly_right_%s,", rt_side_name((RtSide)s));
-    fputs("replay\n", out);
-    for (size_t i = 0; i < json_array_size(rows); i++) {
-        const json_t *row = json_array_get(rows, i);
-        for (int c = 0; c < COLUMNS; c++) {
-            put_field(out, json_object_get(row, columns[c]));
-            fputc(',', out);
-        }
-        const json_t *sides = json_object_get(row, "exactly_right");
-        for (int s = 0; s < RT_SIDE_COUNT; s++) {
-            put_field(out, json_object_get(sides, rt_side_name((RtSide)s)));
-            fputc(',', out);
-        }
-        put_field(out, json_object_get(json_object_get(row, "first_wrong"), "replay"));
-        fputc('\n', out);
-    }
+static const void *sides_of(const void *row) {
+    return json_object_get(row, "exactly_right");
+}
+
+static const void *first_wrong_of(const void *row) {
+    return json_object_get(row, "first_wrong");
+}
+
+#define MEMBER(name, form, meaning)                                                                          \
+    { name, name, "", meaning, get_member, RT_FORM_##form, 0 }
+static const RtTableColumn members[] = {
+    MEMBER("scene", text, "the scene"),
+    MEMBER("accel", text, "the accelerator's spec"),
+    MEMBER("against", text, "whose answers are right: brute"),
+    MEMBER("rays", integer, "rays that it was asked"),
+    MEMBER("equal", integer, "answers to nearest that are those of brute"),
+    MEMBER("tie", integer, "those that name another object that is met there, too"),
+    MEMBER("marginal", integer, "those that are exactly right, or explained by rounding"),
+    MEMBER("wrong", integer, "all others"),
+    MEMBER("occluded_wrong", integer, "rays whose answer to occluded is wrong"),
+    MEMBER("problem", text, "a broken structure, or too many marginal answers; empty: none"),
+    MEMBER("exact", flag, "whether it must give the bits of brute; if not, it gets verdicts"),
+};
+enum { OF_CSV = 10, AGAINST = 2 };
+
+#define SIDE(CONSTANT, name, meaning)                                                                        \
+    {"exactly_right_" #name, #name, "", "where they differ: " meaning, get_member, RT_FORM_integer, 0},
+static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
+
+static const RtTableColumn first_wrong[] = {
+    MEMBER("replay", text, "file by which to ask for the first wrong answer again"),
+    MEMBER("objects_left", integer, "objects that it takes; empty: asked again, the answer is right"),
+    MEMBER("index", integer, "number of the ray"),
+    MEMBER("says", text, "what was asked, expected and got, in one line"),
+    MEMBER("query", text, "nearest or occluded"),
+    MEMBER("kernel", text, "timed or counted"),
+    MEMBER("stream", integer, "how many rays were asked at once"),
+    MEMBER("org", json, "origin of the ray: three numbers as text, which read back to the same bits"),
+    MEMBER("dir", json, "its direction, likewise"),
+    MEMBER("tmin", text, "t where it begins, as text"),
+    MEMBER("tmax", text, "t where it ends, as text"),
+    MEMBER("expected", json, "the answer of brute: object and t, or true or false"),
+    MEMBER("got", json, "the answer of the accelerator"),
+};
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+const RtColumnGroup rt_verify_csv[RT_VERIFY_GROUPS] = {{NULL, members, OF_CSV, NULL},
+                                                       {NULL, sides, COUNT(sides), sides_of},
+                                                       {NULL, first_wrong, 1, first_wrong_of}};
+const RtColumnGroup rt_verify_json[RT_VERIFY_GROUPS] = {
+    {NULL, members, COUNT(members), NULL},
+    {"exactly_right", sides, COUNT(sides), sides_of},
+    {"first_wrong", first_wrong, COUNT(first_wrong), first_wrong_of}};
+const RtColumnGroup rt_verify_text[RT_VERIFY_TEXT_GROUPS] = {
+    {NULL, members, AGAINST, NULL}, {NULL, members + AGAINST + 1, OF_CSV - AGAINST - 2, NULL}};
+
+static const void *member_of(void *rows, size_t i) {
+    return json_array_get(rows, i);
 }
 
 /* ---- Markdown ---- */
 
+typedef RtVerifySum Row;
+
 /* An accelerator that is not exact is marked by a star. */
-static void write_sums(const RtVerifySum *sums, uint32_t count, const char *of, FILE *out) {
-    fprintf(out,
-            "\n| %s | rows | pairs | equal | tie | marginal | wrong | occluded wrong | rows that fail |\n",
-            of);
-    fputs("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n", out);
-    for (uint32_t i = 0; i < count; i++) {
-        fprintf(out, "| `%s`%s | %u | %" PRIu64, sums[i].name, sums[i].exact ? "" : " *", sums[i].rows,
-                sums[i].pairs);
-        for (int v = 0; v < RT_VERDICT_COUNT; v++) fprintf(out, " | %" PRIu64, sums[i].verdicts[v]);
-        fprintf(out, " | %" PRIu64 " | %u |\n", sums[i].occluded_wrong, sums[i].failed);
-    }
+#define SUMS(X)                                                                                              \
+    X(accel, "accelerator", markup, "", "", rt_field_print("`%s`%s", r->name, r->exact ? "" : " *"))         \
+    X(scene, "scene", markup, "", "", rt_field_print("`%s`", r->name))                                       \
+    X(rows, "rows", integer, "", "", r->rows)                                                                \
+    X(pairs, "pairs", integer, "", "", r->pairs)                                                             \
+    X(equal, "equal", integer, "", "", r->verdicts[RT_EQUAL])                                                \
+    X(tie, "tie", integer, "", "", r->verdicts[RT_TIE])                                                      \
+    X(marginal, "marginal", integer, "", "", r->verdicts[RT_MARGINAL])                                       \
+    X(wrong, "wrong", integer, "", "", r->verdicts[RT_WRONG])                                                \
+    X(occluded_wrong, "occluded wrong", integer, "", "", r->occluded_wrong)                                  \
+    X(failed, "rows that fail", integer, "", "", r->failed)                                                  \
+    X(inexact, "accelerator", markup, "", "", rt_field_print("`%s`", r->name))
+RT_TABLE_COLUMNS(sum_columns, SUMS)
+
+static RtField get_side(const void *row, const RtTableColumn *column) {
+    return rt_field_integer(((const RtVerifySum *)row)->sides[column->key]);
 }
 
-static void write_sides(const RtVerifySum *sums, uint32_t count, FILE *out) {
-    if (rt_verify_total(sums, count).exact) return;
-    fputs(
-        "\n## Who is right\n\n"
-        "Answers to `nearest` that got the verdict marginal or wrong, by which of the two is right in exact\n"
-        "arithmetic: `expected` is that of `brute` alone, `got` that of the accelerator alone.\n\n"
-        "| accelerator |",
-        out);
-    for (int s = 0; s < RT_SIDE_COUNT; s++) fprintf(out, " %s |", rt_side_name((RtSide)s));
-    fputs("\n| --- |", out);
-    for (int s = 0; s < RT_SIDE_COUNT; s++) fputs(" ---: |", out);
-    fputc('\n', out);
-    for (uint32_t i = 0; i < count; i++) {
-        if (sums[i].exact) continue;
-        fprintf(out, "| `%s` |", sums[i].name);
-        for (int s = 0; s < RT_SIDE_COUNT; s++) fprintf(out, " %" PRIu64 " |", sums[i].sides[s]);
-        fputc('\n', out);
-    }
+#define SUM_OF_SIDE(CONSTANT, name, meaning)                                                                 \
+    {#name, #name, "", meaning, get_side, RT_FORM_integer, RT_SIDE_##CONSTANT},
+static const RtTableColumn sum_sides[] = {RT_SIDES(SUM_OF_SIDE)};
+
+static const RtColumnGroup by_accel[] = {RT_ONE(sum_columns, accel), RT_FROM_TO(sum_columns, rows, failed)};
+static const RtColumnGroup by_scene[] = {RT_ONE(sum_columns, scene), RT_FROM_TO(sum_columns, rows, failed)};
+static const RtColumnGroup by_side[] = {RT_ONE(sum_columns, inexact), RT_ALL(sum_sides)};
+
+static const void *sum_at(void *sums, size_t i) {
+    return (const RtVerifySum *)sums + i;
+}
+
+static const void *inexact_at(void *sums, size_t i) {
+    const RtVerifySum *sum = sum_at(sums, i);
+    return sum->exact ? NULL : sum;
 }
 
 typedef struct Sums {
     RtVerifySum *accels, *scenes;
     uint32_t accel_count, scene_count;
 } Sums;
+
+static void write_sums(const RtColumnGroup groups[2], RtVerifySum *sums, uint32_t count,
+                       const void *(*row)(void *, size_t), FILE *out) {
+    fputc('\n', out);
+    rt_table_markdown(&(RtTable){groups, 2, count, row, .context = sums}, out);
+}
 
 static void write_markdown(const Sums *sums, FILE *out) {
     RtVerifySum total = rt_verify_total(sums->accels, sums->accel_count);
@@ -172,10 +218,17 @@ static void write_markdown(const Sums *sums, FILE *out) {
         "it fails where an answer is wrong or verify.csv names a problem. The first table sums up an\n"
         "accelerator over all its parameters.\n",
         out);
-    write_sums(sums->accels, sums->accel_count, "accelerator", out);
-    write_sides(sums->accels, sums->accel_count, out);
+    write_sums(by_accel, sums->accels, sums->accel_count, sum_at, out);
+    if (!total.exact) {
+        fputs("\n## Who is right\n\n"
+              "Answers to `nearest` that got the verdict marginal or wrong, by which of the two is right in "
+              "exact\n"
+              "arithmetic: `expected` is that of `brute` alone, `got` that of the accelerator alone.\n",
+              out);
+        write_sums(by_side, sums->accels, sums->accel_count, inexact_at, out);
+    }
     fputs("\n## By scene\n", out);
-    write_sums(sums->scenes, sums->scene_count, "scene", out);
+    write_sums(by_scene, sums->scenes, sums->scene_count, sum_at, out);
 }
 
 /* ---- files ---- */
@@ -186,17 +239,18 @@ static RtStatus open_in(const char *folder, const char *name, RtOutput *output, 
     return rt_output_open(output, path, error);
 }
 
-static RtStatus write_files(const json_t *rows, const Sums *sums, const char *folder, RtError *error) {
+static RtStatus write_files(json_t *rows, const Sums *sums, const char *folder, RtError *error) {
     RtOutput output;
+    RtTable table = {rt_verify_csv, RT_VERIFY_GROUPS, json_array_size(rows), member_of, .context = rows};
     RT_TRY(open_in(folder, "verify.csv", &output, error));
-    write_csv(rows, output.file);
+    rt_table_csv(&table, output.file);
     RT_TRY(rt_output_commit(&output, error));
     RT_TRY(open_in(folder, "verify.md", &output, error));
     write_markdown(sums, output.file);
     return rt_output_commit(&output, error);
 }
 
-RtStatus rt_verify_write(const json_t *rows, const char *folder, RtError *error) {
+RtStatus rt_verify_write(json_t *rows, const char *folder, RtError *error) {
     Sums sums = {0};
     RtStatus status = rt_verify_sums(rows, RT_BY_ACCEL, &sums.accels, &sums.accel_count, error);
     if (status == RT_OK) status = rt_verify_sums(rows, RT_BY_SCENE, &sums.scenes, &sums.scene_count, error);

@@ -4,10 +4,14 @@
 #define RT_VERIFY_VERIFY_TABLE_H
 
 #include "base/param.h"
+#include "base/table.h"
 #include "exact/referee.h"
 #include "verify/verdict.h"
 
-#include <jansson.h>
+/* Columns over a row: of verify.csv, of verify --json, and of the terminal. */
+enum { RT_VERIFY_GROUPS = 3, RT_VERIFY_TEXT_GROUPS = 2 };
+extern const RtColumnGroup rt_verify_csv[RT_VERIFY_GROUPS], rt_verify_json[RT_VERIFY_GROUPS];
+extern const RtColumnGroup rt_verify_text[RT_VERIFY_TEXT_GROUPS];
 
 /* What rows of one accelerator, whatever its parameters, add up to; or those of one scene. A pair is a ray
  * and an accelerator of certain parameters that was asked it, in all four ways. */
@@ -35,6 +39,6 @@ RtVerifySum rt_verify_total(const RtVerifySum *sums, uint32_t count);
 bool rt_verify_row_fails(const json_t *row);
 
 /* Writes `folder`/verify.csv and verify.md. */
-RtStatus rt_verify_write(const json_t *rows, const char *folder, RtError *error);
+RtStatus rt_verify_write(json_t *rows, const char *folder, RtError *error);
 
 #endif

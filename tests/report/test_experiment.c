@@ -3,7 +3,6 @@
 #include "experiment_testing.h"
 
 #include "report/run.h"
-#include "report/tables.h"
 
 #include <unistd.h>
 
@@ -293,23 +292,6 @@ static void a_missing_scene_is_an_error_unless_it_is_optional(void **state) {
     }
 }
 
-/* ---- tables ---- */
-
-static void figures_are_about_four_characters(void **state) {
-    (void)state;
-    const struct {
-        double value;
-        const char *text;
-    } cases[] = {{0, "0"},        {0.00341, "0.0034"}, {0.341, "0.341"},  {1.239, "1.24"},
-                 {12.39, "12.4"}, {123.9, "124"},      {69666, "69666"},  {0.00012, "1.2e-04"},
-                 {NAN, "-"},      {9.999, "10.0"},     {1.5e8, "1.5e+08"}};
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        char text[16];
-        rt_format_figure(cases[i].value, text);
-        assert_string_equal(text, cases[i].text);
-    }
-}
-
 #define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_small, remove_place)
 
 RT_TEST_GROUP(experiment) {
@@ -326,7 +308,6 @@ RT_TEST_GROUP(experiment) {
         IN_PLACE(a_run_of_another_experiment_is_not_resumed),
         IN_PLACE(the_report_has_the_question_and_nothing_outside_itself),
         IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional),
-        cmocka_unit_test(figures_are_about_four_characters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -105,6 +105,24 @@ static void a_failure_can_be_replayed_until_it_is_mended(void **state) {
     json_decref(rows);
 }
 
+/* What docs/columns.md says of `verify --json`, and of a wrong answer. */
+static void a_row_has_the_members_that_its_columns_name(void **state) {
+    (void)state;
+    json_t *rows = verify(OUT "/a", 0, false), *row = json_array_get(rows, 1);
+    size_t expected = RT_VERIFY_GROUPS - 1; /* objects in the row */
+    for (size_t g = 0; g < RT_VERIFY_GROUPS; g++) {
+        const RtColumnGroup *group = &rt_verify_json[g];
+        const json_t *object = group->name ? json_object_get(row, group->name) : row;
+        expected = (group->name ? 0 : expected) + group->count;
+        assert_int_equal(json_object_size(object), expected);
+        for (size_t i = 0; i < group->count; i++) {
+            if (!json_object_get(object, group->columns[i].name))
+                fail_msg("there is no member %s", group->columns[i].name);
+        }
+    }
+    json_decref(rows);
+}
+
 static void threads_and_interruptions_change_no_byte(void **state) {
     (void)state;
     json_decref(verify(OUT "/a", 1, RT_START_ANEW));
@@ -304,6 +322,7 @@ static int nothing_is_kept(void **state) {
 RT_TEST_GROUP(verify) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_failure_can_be_replayed_until_it_is_mended),
+        cmocka_unit_test(a_row_has_the_members_that_its_columns_name),
         cmocka_unit_test(threads_and_interruptions_change_no_byte),
         cmocka_unit_test(each_scene_is_opened_once),
         cmocka_unit_test(another_run_is_not_gone_on_with),

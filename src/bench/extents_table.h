@@ -1,12 +1,11 @@
 /* The table of `raytally info --extents`: how tight the extents of a scene are, by shape, and what they
  * cost. */
-#ifndef RT_CLI_EXTENTS_TABLE_H
-#define RT_CLI_EXTENTS_TABLE_H
+#ifndef RT_BENCH_EXTENTS_TABLE_H
+#define RT_BENCH_EXTENTS_TABLE_H
 
+#include "base/table.h"
 #include "bench/extent_cost.h"
 #include "scene/scene.h"
-
-#include <jansson.h>
 
 /* Boxes, spheres, oriented boxes, and 3..RT_MAX_SLABS slabs. */
 enum { RT_MAX_EXTENT_CHOICES = RT_EXTENT_KIND_COUNT - 1 + RT_MAX_SLABS - 2 };
@@ -31,7 +30,10 @@ typedef struct RtExtentsTable {
 RtStatus rt_extents_table(RtExtentsTable *table, const RtScene *scene, bool every_slabs, uint64_t lines,
                           uint64_t seed, RtError *error);
 
-void rt_extents_table_print(const RtExtentsTable *table);
+/* The columns of "rows" there: a shape and an extent. */
+extern const RtColumnGroup rt_extents_json[1];
+
+void rt_extents_table_print(const RtExtentsTable *table, FILE *out);
 json_t *rt_extents_table_json(const RtExtentsTable *table);
 
 #endif

@@ -1,0 +1,375 @@
+#include "base/table.h"
+
+#include "base/csv.h"
+#include "base/json.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+static const struct {
+    const char *says, *format;
+} forms[] = {
+#define ROW(form, says, format) {says, format},
+    RT_FORMS(ROW)
+#undef ROW
+};
+
+const char *rt_form_name(RtForm form) {
+    return forms[form].says;
+}
+
+static bool is_number(const RtTableColumn *column) {
+    return column->form >= RT_FORM_integer;
+}
+
+static bool is_sortable(const RtTableColumn *column) {
+    return is_number(column) || column->form == RT_FORM_interval;
+}
+
+/* ---- fields ---- */
+
+RtField rt_field_missing(void) {
+    return (RtField){.is = RT_FIELD_MISSING};
+}
+
+RtField rt_field_text(const char *text) {
+    return (RtField){.is = text ? RT_FIELD_TEXT : RT_FIELD_MISSING, .text = text};
+}
+
+RtField rt_field_flag(bool flag) {
+    return (RtField){.is = RT_FIELD_FLAG, .integer = flag};
+}
+
+RtField rt_field_integer(uint64_t integer) {
+    return (RtField){.is = RT_FIELD_INTEGER, .integer = integer};
+}
+
+RtField rt_field_real(double real) {
+    return (RtField){.is = isfinite(real) ? RT_FIELD_REAL : RT_FIELD_MISSING, .real = real};
+}
+
+RtField rt_field_interval(double value, double low, double high) {
+    return (RtField){.is = RT_FIELD_INTERVAL, .real = value, .low = low, .high = high};
+}
+
+RtField rt_field_same(RtField field) {
+    return field;
+}
+
+RtField rt_field_print(const char *format, ...) {
+    RtField field = {.is = RT_FIELD_TEXT};
+    va_list args;
+    va_start(args, format);
+    vsnprintf(field.room, sizeof field.room, format, args);
+    va_end(args);
+    return field;
+}
+
+void rt_format_figure(double value, char *out) {
+    double size = fabs(value);
+    int digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : size >= 0.0995 ? 3 : 4;
+    if (isnan(value)) {
+        strcpy(out, "-");
+    } else if (value == 0) {
+        strcpy(out, "0");
+    } else if (size < 0.00095 || size >= 1e7) {
+        snprintf(out, 16, "%.1e", value);
+    } else {
+        snprintf(out, 16, "%.*f", digits, value);
+    }
+}
+
+static void show_real(RtForm form, double value, char room[RT_MAX_FIELD]) {
+    if (forms[form].format) {
+        snprintf(room, RT_MAX_FIELD, forms[form].format, value);
+    } else if (form == RT_FORM_amount && value > 0 && value < 0.00095) {
+        strcpy(room, "<0.001");
+    } else {
+        rt_format_figure(value, room);
+    }
+}
+
+const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FIELD]) {
+    char ends[2][16];
+    room[0] = '\0';
+    switch (field->is) {
+    case RT_FIELD_MISSING: break;
+    case RT_FIELD_TEXT: return field->text ? field->text : field->room;
+    case RT_FIELD_FLAG: return field->integer ? "yes" : "no";
+    case RT_FIELD_INTEGER:
+        snprintf(room, RT_MAX_FIELD, form == RT_FORM_hash ? "%016" PRIx64 : "%" PRIu64, field->integer);
+        break;
+    case RT_FIELD_REAL: show_real(form, field->real, room); break;
+    case RT_FIELD_INTERVAL:
+        if (!isfinite(field->real)) break;
+        rt_format_figure(field->low, ends[0]);
+        rt_format_figure(field->high, ends[1]);
+        rt_format_figure(field->real, room);
+        if (isnan(field->low)) break;
+        snprintf(room + strlen(room), RT_MAX_FIELD - strlen(room), " [%s, %s]", ends[0], ends[1]);
+        break;
+    }
+    return room;
+}
+
+static json_t *field_json(RtForm form, const RtField *field) {
+    char room[RT_MAX_FIELD];
+    switch (field->is) {
+    case RT_FIELD_FLAG: return json_boolean(field->integer);
+    case RT_FIELD_INTEGER:
+        if (form != RT_FORM_hash) return json_integer((json_int_t)field->integer);
+        break;
+    case RT_FIELD_REAL: return json_real(field->real);
+    case RT_FIELD_INTERVAL:
+        return json_pack("{s:o, s:o, s:o}", "value", rt_json_number(field->real), "low",
+                         rt_json_number(field->low), "high", rt_json_number(field->high));
+    case RT_FIELD_MISSING: return json_null();
+    case RT_FIELD_TEXT: break;
+    }
+    return json_string(rt_field_show(form, field, room));
+}
+
+/* ---- rows ---- */
+
+/* The fields of a row, in the order of the columns. */
+typedef struct Line {
+    size_t count;
+    const RtTableColumn *columns[RT_MAX_TABLE_COLUMNS];
+    RtField fields[RT_MAX_TABLE_COLUMNS];
+} Line;
+
+static RtField field_of(const RtColumnGroup *group, size_t i, const void *row) {
+    if (row && group->of) row = group->of(row);
+    return row ? group->columns[i].get(row, &group->columns[i]) : rt_field_missing();
+}
+
+/* Without a row the columns alone. */
+static void take(Line *line, const RtTable *table, const void *row) {
+    line->count = 0;
+    for (size_t g = 0; g < table->group_count; g++) {
+        const RtColumnGroup *group = &table->groups[g];
+        for (size_t i = 0; i < group->count; i++) {
+            assert(line->count < RT_MAX_TABLE_COLUMNS);
+            line->columns[line->count] = &group->columns[i];
+            line->fields[line->count++] = field_of(group, i, row);
+        }
+    }
+}
+
+static const char *show(const Line *line, size_t i, char room[RT_MAX_FIELD]) {
+    return rt_field_show(line->columns[i]->form, &line->fields[i], room);
+}
+
+typedef struct Writer Writer;
+struct Writer {
+    const RtTable *table;
+    void (*put)(Writer *writer, const Line *line, const void *row); /* `row` is NULL: the header */
+    FILE *out;
+    int *widths; /* of text */
+};
+
+static void write_row(Writer *w, const void *row) {
+    Line line;
+    take(&line, w->table, row);
+    w->put(w, &line, row);
+}
+
+static void write_all(Writer w) {
+    write_row(&w, NULL);
+    for (size_t i = 0; i < w.table->row_count; i++) {
+        const void *row = w.table->row(w.table->context, i);
+        if (row) write_row(&w, row);
+    }
+}
+
+/* ---- CSV ---- */
+
+static void put_csv(Writer *w, const Line *line, const void *row) {
+    char room[RT_MAX_FIELD];
+    for (size_t i = 0; i < line->count; i++) {
+        if (i) fputc(',', w->out);
+        rt_csv_put(w->out, row ? show(line, i, room) : line->columns[i]->id);
+    }
+    fputc('\n', w->out);
+}
+
+void rt_table_csv(const RtTable *table, FILE *out) {
+    write_all((Writer){.table = table, .put = put_csv, .out = out});
+}
+
+/* ---- text ---- */
+
+static const char *show_text(const Line *line, size_t i, const void *row, char room[RT_MAX_FIELD]) {
+    const char *text = row ? show(line, i, room) : line->columns[i]->name;
+    return *text ? text : "-";
+}
+
+static void widen(Writer *w, const Line *line, const void *row) {
+    char room[RT_MAX_FIELD];
+    for (size_t i = 0; i < line->count; i++) {
+        int width = (int)strlen(show_text(line, i, row, room));
+        if (width > w->widths[i]) w->widths[i] = width;
+    }
+}
+
+static void put_text(Writer *w, const Line *line, const void *row) {
+    char room[RT_MAX_FIELD];
+    for (size_t i = 0; i < line->count; i++) {
+        bool last = i + 1 == line->count, left = !is_number(line->columns[i]);
+        int width = left && last ? 0 : w->widths[i];
+        fprintf(w->out, left ? "%-*s%s" : "%*s%s", width, show_text(line, i, row, room), last ? "\n" : "  ");
+    }
+}
+
+void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]) {
+    memset(widths, 0, RT_MAX_TABLE_COLUMNS * sizeof *widths);
+    write_all((Writer){.table = table, .put = widen, .widths = widths});
+}
+
+void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out) {
+    write_row(&(Writer){table, put_text, out, widths}, row);
+}
+
+void rt_table_text(const RtTable *table, FILE *out) {
+    int widths[RT_MAX_TABLE_COLUMNS];
+    rt_table_widths(table, widths);
+    write_all((Writer){table, put_text, out, widths});
+}
+
+/* ---- Markdown ---- */
+
+static void put_markdown(Writer *w, const Line *line, const void *row) {
+    char room[RT_MAX_FIELD];
+    fputc('|', w->out);
+    for (size_t i = 0; i < line->count; i++) {
+        const char *text = row ? show(line, i, room) : line->columns[i]->name;
+        if (*text) fputc(' ', w->out);
+        for (; *text; text++) fprintf(w->out, *text == '|' ? "\\|" : "%c", *text);
+        fputs(" |", w->out);
+    }
+    fputs(row ? "\n" : "\n|", w->out);
+    for (size_t i = 0; !row && i < line->count; i++) {
+        bool right = is_number(line->columns[i]) && !w->table->ragged;
+        fprintf(w->out, " ---%s |%s", right ? ":" : "", i + 1 < line->count ? "" : "\n");
+    }
+}
+
+void rt_table_markdown(const RtTable *table, FILE *out) {
+    write_all((Writer){.table = table, .put = put_markdown, .out = out});
+}
+
+/* ---- HTML ---- */
+
+static void put_character(FILE *out, char c) {
+    switch (c) {
+    case '<': fputs("&lt;", out); break;
+    case '>': fputs("&gt;", out); break;
+    case '&': fputs("&amp;", out); break;
+    case '"': fputs("&quot;", out); break;
+    default: fputc(c, out);
+    }
+}
+
+void rt_html_put(FILE *out, const char *text) {
+    for (; text && *text; text++) put_character(out, *text);
+}
+
+void rt_html_markup(FILE *out, const char *text) {
+    bool code = false, bold = false;
+    for (; *text; text++) {
+        if (*text == '`') {
+            fputs((code = !code) ? "<code>" : "</code>", out);
+        } else if (text[0] == '*' && text[1] == '*') {
+            fputs((bold = !bold) ? "<b>" : "</b>", out);
+            text++;
+        } else {
+            put_character(out, *text);
+        }
+    }
+}
+
+/* ` NAME="TEXT"` */
+static void put_attribute(FILE *out, const char *name, const char *text) {
+    fprintf(out, " %s=\"", name);
+    rt_html_put(out, text);
+    fputc('"', out);
+}
+
+static void put_header(const RtTableColumn *column, FILE *out) {
+    fputs(is_sortable(column) ? "<th class=\"number\"" : "<th", out);
+    put_attribute(out, "data-id", column->id);
+    put_attribute(out, "title", column->meaning);
+    fputc('>', out);
+    rt_html_put(out, column->name);
+    fputs("</th>", out);
+}
+
+static void put_field(const RtTableColumn *column, const RtField *field, FILE *out) {
+    char room[RT_MAX_FIELD], value[32] = "";
+    const char *text = rt_field_show(column->form, field, room);
+    fputs(field->missed ? "<td class=\"missed\"" : "<td", out);
+    if (field->is == RT_FIELD_INTEGER) snprintf(value, sizeof value, "%" PRIu64, field->integer);
+    if (field->is >= RT_FIELD_REAL && *text) snprintf(value, sizeof value, "%.9g", field->real);
+    if (is_sortable(column)) put_attribute(out, "data-value", value);
+    if (field->note) put_attribute(out, "title", field->note);
+    fputc('>', out);
+    (column->form == RT_FORM_markup ? rt_html_markup : rt_html_put)(out, *text ? text : "-");
+    fputs("</td>", out);
+}
+
+static void put_html(Writer *w, const Line *line, const void *row) {
+    const char *color = row && w->table->color ? w->table->color(row) : NULL;
+    fputs(row ? "<tr" : "<div class=\"wide\"><table><thead><tr", w->out);
+    if (color) fprintf(w->out, " style=\"--dot:%s\"", color);
+    fputc('>', w->out);
+    for (size_t i = 0; i < line->count; i++) {
+        if (row) {
+            put_field(line->columns[i], &line->fields[i], w->out);
+        } else {
+            put_header(line->columns[i], w->out);
+        }
+    }
+    fputs(row ? "</tr>\n" : "</tr></thead><tbody>\n", w->out);
+}
+
+void rt_table_html(const RtTable *table, FILE *out) {
+    write_all((Writer){.table = table, .put = put_html, .out = out});
+    fputs("</tbody></table></div>\n", out);
+}
+
+/* ---- JSON ---- */
+
+static json_t *group_json(const RtColumnGroup *group, const void *row, json_t *object) {
+    for (size_t i = 0; i < group->count; i++) {
+        RtField field = field_of(group, i, row);
+        json_object_set_new(object, group->columns[i].name, field_json(group->columns[i].form, &field));
+    }
+    return object;
+}
+
+json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row) {
+    json_t *object = json_object();
+    for (size_t g = 0; g < count; g++) {
+        const RtColumnGroup *group = &groups[g];
+        if (!group->name) {
+            group_json(group, row, object);
+        } else if (group->of && !group->of(row)) {
+            json_object_set_new(object, group->name, json_null());
+        } else {
+            json_object_set_new(object, group->name, group_json(group, row, json_object()));
+        }
+    }
+    return object;
+}
+
+json_t *rt_table_json(const RtTable *table) {
+    json_t *rows = json_array();
+    for (size_t i = 0; i < table->row_count; i++) {
+        const void *row = table->row(table->context, i);
+        if (row) json_array_append_new(rows, rt_row_json(table->groups, table->group_count, row));
+    }
+    return rows;
+}

@@ -1,0 +1,272 @@
+#include "bench/result_tables.h"
+
+#include "accel/structure_json.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+typedef RtResultRow Row;
+
+/* ---- fields ---- */
+
+/* How often a contender is measured; the null run is the baseline once more. */
+static uint64_t every_of(const Row *r) {
+    const RtExperiment *e = r->results->experiment;
+    return e->contenders[r->contender < e->contender_count ? r->contender : e->baseline].every;
+}
+
+static RtField label_of(const Row *r) {
+    RtField field = rt_field_text(rt_contender_label(r->results->experiment, r->contender));
+    if (every_of(r) > 1) field.note = "measured on a part of the rays";
+    return field;
+}
+
+static RtField ratio_of(const Row *r) {
+    bool ends = r->which != RT_TOTALS;
+    return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN, r->cell->ratio.high);
+}
+
+/* A counter, unless it is not known how often it counted a ray. */
+static RtField known(uint64_t counter, double a_ray) {
+    return isnan(a_ray) ? rt_field_missing() : rt_field_integer(counter);
+}
+
+static const void *tally_of(const void *row) {
+    return &((const Row *)row)->cell->tally;
+}
+
+static const void *known_tally_of(const void *row) {
+    return isnan(((const Row *)row)->all.object_tests) ? NULL : tally_of(row);
+}
+
+static const void *structure_of(const void *row) {
+    return &((const Row *)row)->build->shape;
+}
+
+/* ---- columns ---- */
+
+#define TIMED(figure) (r->cell->timed ? (figure) : (double)NAN)
+
+#define COLUMNS(X)                                                                                           \
+    X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
+    X(scene_spec, "scene", text, "", "the scene as it is opened: a file, or a built-in", r->setup->spec)     \
+    X(objects, "objects", integer, "", "objects in the scene", r->scene->objects)                            \
+    X(scene_hash, "scene_hash", hash, "", "fingerprint of the scene", r->scene->scene)                       \
+    X(width, "width", integer, "pixels", "width of the frame whose rays are recorded", r->scene->width)      \
+    X(height, "height", integer, "pixels", "height of the frame", r->scene->height)                          \
+    X(corners, "corners", flag, "", "samples at pixel corners, not centres", r->setup->corners)              \
+    X(depth, "depth", integer, "", "levels of the ray tree, the primary ray being one", r->setup->depth)     \
+    X(kind, "kind", text, "", "kind of the rays", rt_ray_kind_name(r->kind))                                 \
+    X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
+    X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
+    X(accel, "accelerator", text, "", "the accelerator's label in the experiment; null: a null run",         \
+      label_of(r))                                                                                           \
+    X(spec, "accel", text, "", "the accelerator with every effective parameter", r->build->spec)             \
+    X(every, "every", integer, "", "k, where only each kth ray of the set is measured", every_of(r))         \
+    X(rays, "rays", integer, "", "rays measured", r->all.rays)                                               \
+    X(hits, "hits", integer, "", "of them, those that hit an object", r->cell->tally.hits)                   \
+    X(build_seconds, "build_seconds", real6, "s", "time to build; median of up to 3", r->build->seconds)     \
+    X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->shape.bytes)           \
+    X(threads, "threads", integer, "", "threads of the timing", (uint32_t)r->cell->threads)                  \
+    X(rounds, "rounds", integer, "", "how often it was timed", r->cell->rounds)                              \
+    X(coverage, "ratio_coverage", real6, "", "probability with which intervals hold the median",             \
+      TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
+    X(ns, "ns", real6, "ns", "processor time a ray, by the clock on several threads; median",                \
+      1e9 * r->cell->seconds.median)                                                                         \
+    X(ns_low, "ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->seconds.low)                \
+    X(ns_high, "ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->seconds.high)             \
+    X(ns_least, "ns_least", real6, "ns", "the smallest such time", 1e9 * r->cell->seconds.least)             \
+    X(wall_ns, "wall_ns", real6, "ns", "time a ray by the clock; median", 1e9 * r->cell->wall.median)        \
+    X(wall_ns_low, "wall_ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->wall.low)         \
+    X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
+    X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays a second, by the median", 1e-6 / r->all.seconds) \
+    X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by rounds; median", r->all.ratio)   \
+    X(ratio_low, "ratio_low", real6, "", "lower end of its interval", TIMED(r->cell->ratio.low))             \
+    X(ratio_high, "ratio_high", real6, "", "upper end of its interval", TIMED(r->cell->ratio.high))          \
+    X(straddles_1, "straddles_1", flag, "", "whether 1 is between them, as it should be in a null run",      \
+      rt_field_flag(r->cell->ratio.low <= 1 && 1 <= r->cell->ratio.high))                                    \
+    X(object_tests, "object_tests", integer, "", "object tests counted here; empty: not known",              \
+      known(r->cell->tally.object_tests, r->all.object_tests))                                               \
+    X(extent_tests, "extent_tests", integer, "", "extent tests counted here; empty: not known",              \
+      known(r->cell->tally.extent_tests, r->all.extent_tests))                                               \
+    X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
+      known(r->cell->tally.steps, r->all.steps))                                                             \
+    X(differ, "differ", integer, "", "answers unlike the baseline's; 0 if exact", r->cell->differ)           \
+    X(tests_a_ray, "tests/ray", figure, "", "object tests a ray", r->all.object_tests)                       \
+    X(extents_a_ray, "ext./ray", figure, "", "extent tests a ray", r->all.extent_tests)                      \
+    X(steps_a_ray, "steps/ray", figure, "", "steps a ray", r->all.steps)                                     \
+    X(ns_a_ray, "ns/ray", figure, "ns", "median time a ray", 1e9 * r->all.seconds)                           \
+    X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds)                            \
+    X(interval, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                        \
+    X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
+    X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
+    X(least, "least ns", figure, "ns", "smallest time a ray", TIMED(1e9 * r->cell->seconds.least))
+
+RT_TABLE_COLUMNS(columns, COLUMNS)
+
+enum { SHAPE = RT_STRUCTURE_COLUMNS - RT_PREDICTION_COUNT };
+
+static const RtColumnGroup counts[] = {
+    RT_FROM_TO(columns, scene, rays),
+    {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},
+    {NULL, rt_structure_columns, SHAPE, structure_of},
+    RT_ONE(columns, bytes),
+    {NULL, rt_structure_columns + SHAPE, RT_PREDICTION_COUNT, structure_of},
+};
+
+static const RtColumnGroup times[] = {
+    RT_FROM_TO(columns, scene, rays),
+    RT_FROM_TO(columns, threads, ratio_high),
+    RT_FROM_TO(columns, build_seconds, bytes),
+    RT_FROM_TO(columns, object_tests, differ),
+    {NULL, rt_structure_columns + SHAPE, RT_PREDICTION_COUNT, structure_of},
+};
+
+static const RtColumnGroup bench[] = {
+    RT_ONE(columns, scene_spec),
+    RT_ONE(columns, spec),
+    RT_ONE(columns, kind),
+    RT_FROM_TO(columns, rays, bytes),
+    {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},
+    {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of},
+    RT_FROM_TO(columns, mrays_per_s, ratio_high),
+    RT_ONE(columns, coverage),
+};
+
+static const RtColumnGroup null_runs[] = {RT_ONE(columns, kind), RT_FROM_TO(columns, ratio, straddles_1),
+                                          RT_ONE(columns, coverage)};
+
+/* The last three are for HTML, which has room. */
+static const RtColumnGroup cells[] = {
+    RT_ONE(columns, accel),         RT_ONE(columns, kind),
+    RT_ONE(columns, rays),          RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
+    RT_FROM_TO(columns, mrays, mb), RT_ONE(columns, ns_a_ray),
+    RT_ONE(columns, least),         RT_ONE(columns, differ)};
+
+static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, rays),
+                                       RT_FROM_TO(columns, tests_a_ray, ns_a_ray),
+                                       RT_FROM_TO(columns, interval, mb)};
+
+/* ---- rows ---- */
+
+/* A trial after the other, in each an accelerator after the other, the null run last, in each all kinds; for
+ * the eye and bench, of one trial, a kind after the other. */
+static void find(Row *r, size_t i) {
+    const RtExperiment *e = r->results->experiment;
+    const size_t kinds = e->kind_count, contenders = e->contender_count + 1;
+    bool by_trial = r->which <= RT_TIMES;
+    r->kind = e->kinds[by_trial ? i % kinds : i / contenders];
+    r->contender = (uint32_t)((by_trial ? i / kinds : i) % contenders);
+    if (by_trial) r->trial = (uint32_t)(i / kinds / contenders);
+    r->setup = &e->trials[r->trial];
+    r->scene = &r->results->trials[r->trial];
+    r->build = rt_build_at(r->results, r->trial, r->contender);
+    r->cell = rt_cell_at(r->results, r->trial, r->contender, r->kind);
+}
+
+static double per_ray(const Row *r, uint64_t counter) {
+    return rt_cell_per_ray(r->results, r->trial, r->contender, r->kind, counter);
+}
+
+static RtTotal all_of(const Row *r) {
+    const RtTally *tally = &r->cell->tally;
+    if (r->which == RT_TOTALS) return rt_results_total(r->results, r->trial, r->contender);
+    return (RtTotal){tally->rays,
+                     per_ray(r, tally->object_tests),
+                     per_ray(r, tally->extent_tests),
+                     per_ray(r, tally->steps),
+                     TIMED(r->cell->seconds.median),
+                     TIMED(r->cell->ratio.median)};
+}
+
+static const void *row_at(void *context, size_t i) {
+    Row *r = context;
+    find(r, i);
+    const bool null = r->contender == r->results->experiment->contender_count;
+    const bool counted = r->cell->counted, timed = r->cell->timed;
+    const bool there[RT_RESULT_TABLE_COUNT] = {
+        [RT_COUNTS] = counted && r->build->counts,
+        [RT_TIMES] = timed,
+        [RT_BENCH] = counted && !null,
+        [RT_NULL_RUNS] = timed && null,
+        [RT_CELLS] = counted || timed,
+        [RT_CELLS_MORE] = counted || timed,
+        [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->contender_count,
+    };
+    if (!there[r->which]) return NULL;
+    r->all = all_of(r);
+    return r;
+}
+
+RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
+    static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
+        [RT_COUNTS] = {RT_GROUPS(counts)}, [RT_TIMES] = {RT_GROUPS(times)},
+        [RT_BENCH] = {RT_GROUPS(bench)},   [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},
+        [RT_CELLS] = {RT_GROUPS(cells)},   [RT_CELLS_MORE] = {RT_GROUPS(cells)},
+        [RT_TOTALS] = {RT_GROUPS(totals)},
+    };
+    const RtExperiment *e = row->results->experiment;
+    const size_t trials = which <= RT_TIMES ? e->trial_count : 1;
+    RtTable table = tables[which];
+    if (which == RT_CELLS) table.group_count -= 3;
+    table.row_count = trials * (e->contender_count + 1) * e->kind_count;
+    table.row = row_at;
+    table.context = row;
+    row->which = which;
+    return table;
+}
+
+/* ---- for the eye ---- */
+
+void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]) {
+    double coverage = rt_interval_coverage(experiment->rounds);
+    snprintf(out, RT_MAX_INTERVAL_TITLE, "%.3g %%",
+             experiment->rounds >= RT_FULL_ROUNDS ? 95 : 100 * coverage);
+}
+
+void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char title[RT_MAX_INTERVAL_TITLE];
+    for (uint32_t t = 0; t < experiment->trial_count; t++) {
+        const RtTrialResult *trial = &results->trials[t];
+        RtResultRow row = {.results = results, .trial = t};
+        RtTable table = rt_result_table(which, &row);
+        if (!trial->known) continue;
+        fprintf(out, "\n%s: %" PRIu32 " objects, %" PRIu32 "x%" PRIu32 ", depth %" PRIu32,
+                experiment->trials[t].label, trial->objects, trial->width, trial->height,
+                experiment->trials[t].depth);
+        if (which == RT_CELLS && rt_cell_at(results, t, experiment->baseline, experiment->kinds[0])->timed) {
+            rt_interval_title(experiment, title);
+            fprintf(out, "; intervals of %s", title);
+        }
+        fputc('\n', out);
+        rt_table_text(&table, out);
+    }
+}
+
+void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
+    const size_t room = RT_MAX_SENTENCE;
+    uint32_t runs, straddling;
+    rt_null_verdict(results, &runs, &straddling);
+    out[0] = '\0';
+    if (runs == 0) return;
+    int n =
+        snprintf(out, room, "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " intervals straddle 1",
+                 results->experiment->contenders[results->experiment->baseline].label, straddling, runs);
+    uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
+    double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
+    if (misses == 0) {
+        n += snprintf(out + n, room - (size_t)n, ", as they should.");
+    } else if (misses <= 1 + 2 * chance * runs) {
+        n += snprintf(out + n, room - (size_t)n, "; %.2g %% of all may miss by chance.", 100 * chance);
+    } else {
+        n += snprintf(out + n, room - (size_t)n,
+                      ": this machine was not quiet; take small differences for noise.");
+    }
+    if (rounds >= RT_FULL_ROUNDS) return;
+    snprintf(out + n, room - (size_t)n,
+             " Rounds: %" PRIu32
+             ", too few for 95 %%; an interval is all that was measured and holds the median in "
+             "%.3g %%. Take %d or more.",
+             rounds, 100 * coverage, RT_FULL_ROUNDS);
+}

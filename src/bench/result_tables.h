@@ -1,0 +1,55 @@
+/* Results as tables (base/table.h): those of a result directory, of bench --json, and for the eye. */
+#ifndef RT_BENCH_RESULT_TABLES_H
+#define RT_BENCH_RESULT_TABLES_H
+
+#include "base/table.h"
+#include "bench/results.h"
+
+typedef enum RtResultTable {
+    /* counts.csv: a row per cell of an accelerator whose counts are the same on every machine, with every
+     * effective parameter, all counters, and the figures of the structure. Byte-identical wherever it is
+     * made. */
+    RT_COUNTS,
+    /* times.csv: a row per timed cell, null runs included: times a ray with their intervals, ratios, build
+     * seconds, bytes; and tests and steps as counted here, which for an accelerator that is not in counts.csv
+     * may be others elsewhere. */
+    RT_TIMES,
+    RT_BENCH,      /* "rows" of bench --json: of each cell that was counted */
+    RT_NULL_RUNS,  /* "null_runs" there */
+    RT_CELLS,      /* for the eye: one trial by accelerator and ray kind */
+    RT_CELLS_MORE, /* the same with more columns */
+    RT_TOTALS,     /* one trial by accelerator, all kinds together */
+    RT_RESULT_TABLE_COUNT
+} RtResultTable;
+
+/* The row at hand. */
+typedef struct RtResultRow {
+    const RtResults *results;
+    RtResultTable which;
+    uint32_t trial; /* of tables for the eye, and of bench: the one that they show */
+    uint32_t contender;
+    RtRayKind kind;
+    const RtTrial *setup;
+    const RtTrialResult *scene;
+    const RtBuildResult *build;
+    const RtCell *cell;
+    RtTotal all; /* of the cell, or of RT_TOTALS */
+} RtResultRow;
+
+/* `row` stays where it is as long as the table, which alone uses it, with its results, and for the eye its
+ * trial, filled in. */
+RtTable rt_result_table(RtResultTable which, RtResultRow *row);
+
+/* RT_CELLS or RT_TOTALS of each trial that is known. */
+void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
+
+/* "12 of 12 null runs straddle 1.", and what to think of it otherwise; and where rounds are too few, what
+ * their intervals are worth. "" where none was timed. */
+#define RT_MAX_SENTENCE 384
+void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]);
+
+/* What the intervals cover at least: "95 %", or less where rounds are too few. */
+#define RT_MAX_INTERVAL_TITLE 16
+void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]);
+
+#endif

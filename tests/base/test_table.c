@@ -1,0 +1,172 @@
+/* base/table.h: one small table, with every kind of field, in every form. */
+#include "testing.h"
+
+#include "base/table.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Row {
+    const char *name;
+    uint64_t hits;
+    double seconds;
+    bool exact;
+    const RtTally *tally;
+} Row;
+
+static RtField seconds_of(const Row *r) {
+    RtField field = rt_field_real(r->seconds);
+    field.missed = r->seconds > 1;
+    field.note = field.missed ? "a \"slow\" one" : NULL;
+    return field;
+}
+
+#define COLUMNS(X)                                                                                           \
+    X(name, "name", markup, "", "what it is called", r->name)                                                \
+    X(hits, "hit count", integer, "", "hits", r->hits)                                                       \
+    X(seconds, "seconds", real6, "s", "how long it took", seconds_of(r))                                     \
+    X(exact, "exact", flag, "", "whether it is exact", r->exact)                                             \
+    X(range, "range", interval, "s", "how long it may take",                                                 \
+      rt_field_interval(r->seconds, r->seconds / 2, 2 * r->seconds))
+RT_TABLE_COLUMNS(columns, COLUMNS)
+
+static const void *tally_of(const void *row) {
+    return ((const Row *)row)->tally;
+}
+
+static const RtTally tally = {.rays = 7};
+static const Row things[] = {{"a|b, `c` **d**", 12, 1.5, true, &tally},
+                             {NULL, 0, 0, false, NULL}, /* left out */
+                             {"<x>", 3456, NAN, false, NULL}};
+static const RtColumnGroup groups[] = {RT_ALL(columns), {"tally", rt_tally_columns, 1, tally_of}};
+
+static const void *thing_at(void *context, size_t i) {
+    (void)context;
+    return things[i].name ? &things[i] : NULL;
+}
+
+static const char *red(const void *row) {
+    return row == things ? "red" : NULL;
+}
+
+static const RtTable table = {RT_GROUPS(groups), .row_count = 3, .row = thing_at, .color = red};
+
+static void assert_written(const RtTable *what, void (*write)(const RtTable *, FILE *),
+                           const char *expected) {
+    char *text;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    write(what, out);
+    fclose(out);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void csv_quotes_and_leaves_empty_what_is_missing(void **state) {
+    (void)state;
+    assert_written(&table, rt_table_csv,
+                   "name,hits,seconds,exact,range,rays\n"
+                   "\"a|b, `c` **d**\",12,1.5,yes,\"1.50 [0.750, 3.00]\",7\n"
+                   "<x>,3456,,no,,\n");
+}
+
+static void text_is_aligned_and_has_a_dash_for_what_is_missing(void **state) {
+    (void)state;
+    assert_written(&table, rt_table_text,
+                   "name            hit count  seconds  exact  range               rays\n"
+                   "a|b, `c` **d**         12      1.5  yes    1.50 [0.750, 3.00]     7\n"
+                   "<x>                  3456        -  no     -                      -\n");
+}
+
+static void markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged(void **state) {
+    (void)state;
+    RtTable ragged = table;
+    ragged.ragged = true;
+    ragged.row_count = ragged.group_count = 1;
+    assert_written(&table, rt_table_markdown,
+                   "| name | hit count | seconds | exact | range | rays |\n"
+                   "| --- | ---: | ---: | --- | --- | ---: |\n"
+                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.50 [0.750, 3.00] | 7 |\n"
+                   "| <x> | 3456 | | no | | |\n");
+    assert_written(&ragged, rt_table_markdown,
+                   "| name | hit count | seconds | exact | range |\n| --- | --- | --- | --- | --- |\n"
+                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.50 [0.750, 3.00] |\n");
+}
+
+static void html_escapes_marks_notes_and_keeps_numbers_for_sorting(void **state) {
+    (void)state;
+    RtTable narrow = table;
+    const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
+    narrow.groups = first;
+    narrow.group_count = 1;
+    assert_written(
+        &narrow, rt_table_html,
+        "<div class=\"wide\"><table><thead><tr>"
+        "<th data-id=\"name\" title=\"what it is called\">name</th>"
+        "<th class=\"number\" data-id=\"hits\" title=\"hits\">hit count</th>"
+        "<th class=\"number\" data-id=\"seconds\" title=\"how long it took\">seconds</th>"
+        "</tr></thead><tbody>\n"
+        "<tr style=\"--dot:red\"><td>a|b, <code>c</code> <b>d</b></td><td data-value=\"12\">12</td>"
+        "<td class=\"missed\" data-value=\"1.5\" title=\"a &quot;slow&quot; one\">1.5</td></tr>\n"
+        "<tr><td>&lt;x&gt;</td><td data-value=\"3456\">3456</td><td data-value=\"\">-</td></tr>\n"
+        "</tbody></table></div>\n");
+}
+
+static void json_has_an_object_a_row_and_null_for_what_is_missing(void **state) {
+    (void)state;
+    json_t *rows = rt_table_json(&table);
+    json_t *expected = json_pack(
+        "[{s:s, s:i, s:f, s:b, s:{s:f, s:f, s:f}, s:{s:i}}, {s:s, s:i, s:n, s:b, s:{s:n, s:n, s:n}, s:n}]",
+        "name", "a|b, `c` **d**", "hit count", 12, "seconds", 1.5, "exact", 1, "range", "value", 1.5, "low",
+        0.75, "high", 3.0, "tally", "rays", 7, "name", "<x>", "hit count", 3456, "seconds", "exact", 0,
+        "range", "value", "low", "high", "tally");
+    assert_non_null(expected);
+    assert_true(json_equal(rows, expected));
+    json_decref(rows);
+    json_decref(expected);
+}
+
+static void lines_one_by_one_are_those_of_the_whole_table(void **state) {
+    (void)state;
+    int widths[RT_MAX_TABLE_COLUMNS];
+    char *text;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    rt_table_widths(&table, widths);
+    rt_table_line(&table, widths, NULL, out);
+    rt_table_line(&table, widths, &things[0], out);
+    rt_table_line(&table, widths, &things[2], out);
+    fclose(out);
+    assert_written(&table, rt_table_text, text);
+    free(text);
+}
+
+static void figures_are_about_four_characters(void **state) {
+    (void)state;
+    const struct {
+        double value;
+        const char *text;
+    } cases[] = {{0, "0"},        {0.00341, "0.0034"}, {0.341, "0.341"},  {1.239, "1.24"},
+                 {12.39, "12.4"}, {123.9, "124"},      {69666, "69666"},  {0.00012, "1.2e-04"},
+                 {NAN, "-"},      {9.999, "10.0"},     {1.5e8, "1.5e+08"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[16];
+        rt_format_figure(cases[i].value, text);
+        assert_string_equal(text, cases[i].text);
+    }
+}
+
+RT_TEST_GROUP(table) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(csv_quotes_and_leaves_empty_what_is_missing),
+        cmocka_unit_test(text_is_aligned_and_has_a_dash_for_what_is_missing),
+        cmocka_unit_test(markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged),
+        cmocka_unit_test(html_escapes_marks_notes_and_keeps_numbers_for_sorting),
+        cmocka_unit_test(json_has_an_object_a_row_and_null_for_what_is_missing),
+        cmocka_unit_test(lines_one_by_one_are_those_of_the_whole_table),
+        cmocka_unit_test(figures_are_about_four_characters),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,202 @@
+/* docs/columns.md is what the columns of all tables say of themselves: the test says where the right one is.
+ * And the files and documents that are there have these columns. */
+#include "testing.h"
+
+#include "base/csv.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "bench/extents_table.h"
+#include "bench/result_tables.h"
+#include "literature/published_tables.h"
+#include "verify/verify_table.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what there is ---- */
+
+static RtExperiment experiment; /* of nothing */
+static const RtResults results = {.experiment = &experiment};
+static RtPublished published = {.experiment = &experiment};
+
+static RtTable of_results(RtResultTable which) {
+    static RtResultRow row = {.results = &results};
+    return rt_result_table(which, &row);
+}
+
+static RtTable of_published(RtPublishedTable which) {
+    static RtPublishedCursor cursor = {.published = &published};
+    return rt_published_table(which, &cursor);
+}
+
+typedef struct Section {
+    const char *title;
+    bool csv;
+    const char *example; /* a CSV file that has these columns, or NULL */
+    RtTable table;
+} Section;
+
+enum { SECTIONS = 9 };
+static void list(Section sections[SECTIONS]) {
+    const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
+    const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
+    const RtTable extents = {.groups = rt_extents_json, .group_count = 1};
+    const Section all[SECTIONS] = {
+        {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
+        {"times.csv", true, NULL, of_results(RT_TIMES)},
+        {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},
+        {"least.csv", true, "results/havran-1999/least.csv", of_published(RT_LEAST)},
+        {"verify.csv", true, "results/verify/verify.csv", verify_csv},
+        {"bench --json: rows", false, NULL, of_results(RT_BENCH)},
+        {"bench --json: null_runs", false, NULL, of_results(RT_NULL_RUNS)},
+        {"verify --json: rows", false, NULL, verify_json},
+        {"info --extents --json: extents.rows", false, NULL, extents},
+    };
+    memcpy(sections, all, sizeof all);
+}
+
+/* ---- the document ---- */
+
+/* A column of the table that is described; it is found anew for each row. */
+typedef struct Row {
+    const Section *section;
+    const char *group;
+    const RtTableColumn *column;
+} Row;
+
+static RtField name_of(const Row *r) {
+    const char *name = r->section->csv ? r->column->id : r->column->name;
+    bool in_group = r->group && !r->section->csv;
+    return rt_field_print("`%s%s%s`", in_group ? r->group : "", in_group ? "." : "", name);
+}
+
+#define COLUMNS(X)                                                                                           \
+    X(column, "column", markup, "", "", name_of(r))                                                          \
+    X(form, "form", text, "", "", rt_form_name(r->column->form))                                             \
+    X(unit, "unit", text, "", "", r->column->unit)                                                           \
+    X(meaning, "meaning", text, "", "", r->column->meaning)
+RT_TABLE_COLUMNS(columns, COLUMNS)
+
+static const void *column_at(void *context, size_t i) {
+    Row *r = context;
+    const RtColumnGroup *group = r->section->table.groups;
+    for (; i >= group->count; group++) i -= group->count;
+    r->group = group->name;
+    r->column = &group->columns[i];
+    return r;
+}
+
+static size_t column_count(const RtTable *table) {
+    size_t count = 0;
+    for (size_t g = 0; g < table->group_count; g++) count += table->groups[g].count;
+    return count;
+}
+
+static void print_document(FILE *out) {
+    static const RtColumnGroup groups[] = {RT_ALL(columns)};
+    Section sections[SECTIONS];
+    list(sections);
+    fputs(
+        "# Columns\n\n"
+        "What the columns of CSV files and the members of JSON documents are called, how they are written, "
+        "in\n"
+        "which unit, and what they mean. This page is made from the columns themselves: where it is another\n"
+        "one, `build/release/test_cli columns` fails and leaves the right one to be copied here. What is "
+        "not\n"
+        "known is empty in CSV and null in JSON. In JSON a name with a dot is that of a member of an "
+        "object;\n"
+        "yes is true, no is false, and an interval is an object of its three parts.\n",
+        out);
+    for (size_t i = 0; i < SECTIONS; i++) {
+        Row row = {.section = &sections[i]};
+        const RtTable table = {RT_GROUPS(groups), .row_count = column_count(&sections[i].table),
+                               .row = column_at, .context = &row};
+        fprintf(out, "\n## %s\n\n", sections[i].title);
+        rt_table_markdown(&table, out);
+    }
+}
+
+static void the_document_says_what_the_columns_say(void **state) {
+    (void)state;
+    char *text, *committed;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    print_document(out);
+    fclose(out);
+    assert_ok(rt_file_read(RT_SOURCE_DIR "/docs/columns.md", 1 << 20, &committed, &size, error));
+    if (strcmp(text, committed) != 0) {
+        FILE *right = fopen(RT_BINARY_DIR "/columns.md", "w");
+        assert_non_null(right);
+        fputs(text, right);
+        fclose(right);
+        fail_msg("docs/columns.md is not what the columns say: copy " RT_BINARY_DIR "/columns.md to it");
+    }
+    free(text);
+    rt_free(committed);
+}
+
+static void every_column_has_a_meaning_and_a_name_of_its_own(void **state) {
+    (void)state;
+    Section sections[SECTIONS];
+    list(sections);
+    for (size_t i = 0; i < SECTIONS; i++) {
+        Row row = {.section = &sections[i]}, other = row;
+        size_t count = column_count(&sections[i].table);
+        for (size_t k = 0; k < count; k++) {
+            column_at(&row, k);
+            assert_true(*row.column->meaning);
+            for (size_t earlier = 0; earlier < k; earlier++) {
+                column_at(&other, earlier);
+                if (strcmp(name_of(&row).room, name_of(&other).room) == 0)
+                    fail_msg("%s has two columns %s", sections[i].title, row.column->name);
+            }
+        }
+    }
+}
+
+static void the_files_that_are_kept_have_these_columns(void **state) {
+    (void)state;
+    Section sections[SECTIONS];
+    list(sections);
+    for (size_t i = 0; i < SECTIONS; i++) {
+        Row row = {.section = &sections[i]};
+        RtCsv csv;
+        if (!sections[i].example) continue;
+        assert_ok(rt_csv_read(&csv, sections[i].example, error));
+        assert_int_equal(csv.columns, column_count(&sections[i].table));
+        for (uint32_t c = 0; c < csv.columns; c++) {
+            column_at(&row, c);
+            assert_string_equal(rt_csv_name(&csv, c), row.column->id);
+        }
+        rt_csv_clear(&csv);
+    }
+}
+
+/* A new counter, prediction or side has a column in each of these. */
+static void every_counter_and_prediction_is_in_counts_and_in_bench(void **state) {
+    (void)state;
+    static const RtResultTable both[] = {RT_COUNTS, RT_BENCH};
+    for (size_t i = 0; i < 2; i++) {
+        char *text;
+        size_t size;
+        FILE *out = open_memstream(&text, &size);
+        RtTable table = of_results(both[i]);
+        rt_table_csv(&table, out);
+        fclose(out);
+#define IN_TABLE(name, meaning) assert_non_null(strstr(text, #name));
+        RT_TALLY_COUNTERS(IN_TABLE)
+        RT_PREDICTIONS(IN_TABLE)
+        free(text);
+    }
+}
+
+RT_TEST_GROUP(columns) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_document_says_what_the_columns_say),
+        cmocka_unit_test(every_column_has_a_meaning_and_a_name_of_its_own),
+        cmocka_unit_test(the_files_that_are_kept_have_these_columns),
+        cmocka_unit_test(every_counter_and_prediction_is_in_counts_and_in_bench),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
