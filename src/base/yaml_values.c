@@ -188,7 +188,8 @@ RtStatus rt_yaml_rows(const RtYaml *yaml, const RtYamlNode *node, const char *ke
     RT_TRY(rt_yaml_list(yaml, list, NULL, least, UINT32_MAX, "lists of numbers"));
     if (!list) return RT_OK;
     float *row = rt_alloc(list->count, width * sizeof *row);
-    if (!row) return rt_fail_memory(yaml->error, "lists of numbers", list->count * width * sizeof *row);
+    if (!row)
+        return rt_fail_memory(yaml->error, "lists of numbers", (size_t)list->count * width * sizeof *row);
     *rows = row;
     *count = list->count;
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size, row += width) {

@@ -78,7 +78,7 @@ typedef struct RtExperiment {
     uint64_t limit;        /* rays of one kind at most; a larger set is thinned evenly */
     uint64_t together;     /* neighbouring rays that are kept together where a set is thinned */
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
-    uint32_t milliseconds; /* a short set is repeated within a round until it takes this long */
+    uint32_t milliseconds; /* a short set is repeated within a round until it takes this long; 0: once */
     uint64_t seed;
     char plots[RT_MAX_PLOTS]
               [RT_MAX_LABEL]; /* gnuplot scripts seen from the YAML, run in this order in one go */

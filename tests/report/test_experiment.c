@@ -93,20 +93,21 @@ static void a_zero_is_taken_where_it_means_something_and_refused_with_the_range_
     write_changed(place, "small.yaml", small_experiment, "rounds: 3", "seed: 0");
     assert_ok(load_small(place, false, error));
     assert_true(place->experiment->seed == 0);
+    write_changed(place, "small.yaml", small_experiment, "milliseconds: 1", "milliseconds: 0");
+    assert_ok(load_small(place, false, error));
+    assert_true(place->experiment->milliseconds == 0);
     const struct {
         const char *from, *to, *says;
     } cases[] = {
         {"limit: 300", "limit: 0", ":13:8: limit: '0' will not do: it must be a whole number, 1..100000000"},
         {"rounds: 3", "rounds: 0", ":14:9: rounds: '0' will not do: it must be a whole number, 1..1000"},
-        {"milliseconds: 1", "milliseconds: 0",
-         ":15:15: milliseconds: '0' will not do: it must be a whole number, 1.."},
         {"rounds: 3", "together: 0", ":14:11: together: '0' will not do: it must be a whole number, 1.."},
         {"depth: 3", "depth: 0", "scenes[0].depth: '0' will not do: it must be a whole number, 1..64"},
         {"every: 7", "every: 0", "accelerators[0].every: '0' will not do: it must be a whole number, 1.."},
         {"rounds: 3", "quick: {rounds: 0}", "quick.rounds: '0' will not do"},
         {"rounds: 3", "quick: {depth: 0}", "quick.depth: '0' will not do"},
         {"rounds: 3", "quick: {limit: 0}", "quick.limit: '0' will not do"},
-        {"rounds: 3", "quick: {milliseconds: 0}", "quick.milliseconds: '0' will not do"},
+        {"rounds: 3", "quick: {milliseconds: 60001}", "quick.milliseconds: '60001' will not do"},
         {"rounds: 3", "seed: -1", "seed: '-1' will not do: it must be a whole number, 0.."},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -108,7 +108,7 @@ static void a_failure_can_be_replayed_until_it_is_mended(void **state) {
 /* What docs/columns.md says of `verify --json`, and of a wrong answer. */
 static void a_row_has_the_members_that_its_columns_name(void **state) {
     (void)state;
-    json_t *rows = verify(OUT "/a", 0, false), *row = json_array_get(rows, 1);
+    json_t *rows = verify(OUT "/a", 0, RT_START_ANEW), *row = json_array_get(rows, 1);
     size_t expected = RT_VERIFY_GROUPS - 1; /* objects in the row */
     for (size_t g = 0; g < RT_VERIFY_GROUPS; g++) {
         const RtColumnGroup *group = &rt_verify_json[g];
