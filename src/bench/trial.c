@@ -43,13 +43,6 @@ static bool trial_is_done(const RtTrialState *trial) {
     return true;
 }
 
-RtStatus rt_trial_tell(const RtTrialState *trial, RtEventKind what, uint32_t contender, RtRayKind kind,
-                       RtError *error) {
-    const RtObserver *observer = &trial->options->observer;
-    RtEvent event = {what, trial->index, contender, kind};
-    return observer->event ? observer->event(observer->context, trial->results, &event, error) : RT_OK;
-}
-
 /* ---- scene, rays, structures ---- */
 
 /* Keeps of the recorded sets what the experiment asks for, at most `limit` of each kind. */

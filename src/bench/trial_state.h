@@ -35,8 +35,12 @@ static inline uint64_t rt_trial_every(const RtTrialState *trial, uint32_t conten
 }
 
 /* Tells the observer. */
-RtStatus rt_trial_tell(const RtTrialState *trial, RtEventKind what, uint32_t contender, RtRayKind kind,
-                       RtError *error);
+static inline RtStatus rt_trial_tell(const RtTrialState *trial, RtEventKind what, uint32_t contender,
+                                     RtRayKind kind, RtError *error) {
+    const RtObserver *observer = &trial->options->observer;
+    RtEvent event = {what, trial->index, contender, kind};
+    return observer->event ? observer->event(observer->context, trial->results, &event, error) : RT_OK;
+}
 
 /* Times all contenders on their shares of the rays of one kind. */
 RtStatus rt_trial_time(RtTrialState *trial, RtRayKind kind, RtError *error);

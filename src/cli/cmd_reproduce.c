@@ -5,7 +5,7 @@
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/progress.h"
-#include "report/run.h"
+#include "report/result_directory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

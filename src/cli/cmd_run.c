@@ -3,7 +3,7 @@
 #include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
-#include "report/run.h"
+#include "report/result_directory.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -64,7 +64,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
         .start = o->start,
         .trial = {.threads = o->threads, .timing = o->timing, .observer = rt_progress_observer(&progress)}};
     RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = rt_run(&results, &how, error);
+    if (status == RT_OK) status = rt_run_experiment(&results, &how, error);
     rt_progress_end(&progress);
     if (status == RT_OK) {
         rt_print_results(&results, RT_TOTALS, stdout);

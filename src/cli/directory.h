@@ -2,7 +2,7 @@
 #ifndef RT_CLI_DIRECTORY_H
 #define RT_CLI_DIRECTORY_H
 
-#include "report/run.h"
+#include "report/result_directory.h"
 
 /* What such a command does with the directory once experiment and results are loaded from it. */
 typedef RtStatus RtDirectoryWork(const char *directory, const RtExperiment *experiment, RtResults *results,

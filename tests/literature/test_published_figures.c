@@ -2,7 +2,7 @@
 #include "published_testing.h"
 
 #include "base/csv.h"
-#include "report/run.h"
+#include "report/result_directory.h"
 
 /* Runs the experiment with these rows and reasons into DIR/out, and gives what the check says. */
 static RtStatus run(const Place *place, const char *rows, const char *reasons, bool quick, RtError *error) {
@@ -14,7 +14,7 @@ static RtStatus run(const Place *place, const char *rows, const char *reasons, b
     write_reasons(place, reasons);
     RT_TRY(load_small(place, quick, error));
     RT_TRY(rt_results_init(&results, place->experiment, error));
-    RtStatus status = rt_run(&results, &options, error);
+    RtStatus status = rt_run_experiment(&results, &options, error);
     rt_results_clear(&results);
     return status;
 }

@@ -2,7 +2,7 @@
  * interrupted. */
 #include "experiment_testing.h"
 
-#include "report/run.h"
+#include "report/result_directory.h"
 
 #include <unistd.h>
 
@@ -38,7 +38,7 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, in
     RtRunOptions options = {.directory = path.text,
                             .start = start,
                             .trial = {.threads = threads, .timing = 1, .observer = observer}};
-    RtStatus status = rt_run(&results, &options, error);
+    RtStatus status = rt_run_experiment(&results, &options, error);
     rt_results_clear(&results);
     return status;
 }

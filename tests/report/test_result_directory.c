@@ -6,7 +6,7 @@
 #include "experiment_testing.h"
 
 #include "base/lock.h"
-#include "report/run.h"
+#include "report/result_directory.h"
 #include "scenes/open.h"
 
 #include <signal.h>
@@ -39,7 +39,7 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, Rt
     RT_TRY(load_small(place, false, error));
     RT_TRY(rt_results_init(&results, place->experiment, error));
     RtRunOptions options = {.directory = path.text, .start = start, .trial = {.threads = 1, .timing = 1}};
-    RtStatus status = rt_run(&results, &options, error);
+    RtStatus status = rt_run_experiment(&results, &options, error);
     rt_results_clear(&results);
     return status;
 }

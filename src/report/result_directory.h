@@ -1,27 +1,18 @@
-/* Running an experiment into a result directory, and working on one that is there.
+/* Running an experiment into a result directory, and working on one that is there. Besides what a run keeps
+ * (bench/run.h) it has:
  *
- *   cells.jsonl      the journal: everything found, line by line as it was found
  *   experiment.yaml  a copy of what was run
  *   manifest.json    with what it was run: seed, fingerprints, version, compiler, machine, date
- *   counts.csv       exact columns; byte-identical wherever the same version is run
- *   times.csv        measured columns, where anything is timed
  *   published.csv, least.csv, published.md
  *                    published figures beside measured ones, where the experiment names any; exact, too
  *   published/       or what folder they come from: copies of the published tables
- *   plots/ images/   the scripts and what they drew; a picture of each scene
+ *   plots/           the scripts and what they drew
  *   report.html      all of it in one page */
-#ifndef RT_REPORT_RUN_H
-#define RT_REPORT_RUN_H
+#ifndef RT_REPORT_RESULT_DIRECTORY_H
+#define RT_REPORT_RESULT_DIRECTORY_H
 
-#include "bench/earlier.h"
-#include "bench/trial.h"
+#include "bench/run.h"
 #include "literature/published.h"
-
-typedef struct RtRunOptions {
-    const char *directory; /* created where missing */
-    RtStart start;         /* what becomes of what an earlier run in it has found */
-    RtTrialOptions trial;  /* its observer is told after the journal */
-} RtRunOptions;
 
 /* Runs what is not yet known, and writes everything. `results` is initialised for the experiment, and filled.
  *
@@ -31,7 +22,7 @@ typedef struct RtRunOptions {
  *
  * Without gnuplot there is a notice, and a report without plots. RT_MISMATCH, with everything written, where
  * gnuplot fails, or published figures are missed (rt_published_check). */
-RtStatus rt_run(RtResults *results, const RtRunOptions *options, RtError *error);
+RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error);
 
 /* Loads experiment and results of a result directory. `results` is initialised here: rt_results_clear. */
 RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults *results, RtError *error);

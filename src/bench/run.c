@@ -1,0 +1,185 @@
+#include "bench/run.h"
+
+#include "bench/journal.h"
+#include "bench/manifest.h"
+#include "bench/result_tables.h"
+#include "render/image.h"
+
+#include <string.h>
+
+RtStatus rt_run_path(const RtRun *run, const char *name, char *path, RtError *error) {
+    return rt_path_join(run->options->directory, name, path, error);
+}
+
+void rt_run_notice(const RtRun *run, const char *message) {
+    const RtObserver *observer = &run->options->trial.observer;
+    if (observer->notice) observer->notice(observer->context, message);
+}
+
+RtStatus rt_run_write_table(const RtRun *run, const char *name, const RtTable *table, RtError *error) {
+    char path[RT_MAX_PATH];
+    RtOutput output;
+    RT_TRY(rt_run_path(run, name, path, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    rt_table_csv(table, output.file);
+    return rt_output_commit(&output, error);
+}
+
+/* ---- before ---- */
+
+/* Keeps others away from the directory and looks at what is there, as soon as it is there. */
+static RtStatus take_directory(RtRun *run, RtError *error) {
+    const RtRunOptions *options = run->options;
+    char path[RT_MAX_PATH];
+    if (rt_lock_is_held(&run->lock)) return RT_OK;
+    RT_TRY(rt_lock_take(&run->lock, options->directory, error));
+    RT_TRY(rt_run_path(run, RT_RUN_JOURNAL, path, error));
+    /* A journal tells more of itself than that it is there. */
+    if (options->start != RT_START_ANEW && rt_file_exists(path)) {
+        RT_TRY(rt_journal_load(path, run->results, true, error));
+    }
+    return rt_earlier_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
+}
+
+/* Where a trial's scene is kept: at the first trial of the same scene. */
+static uint32_t slot_of(const RtExperiment *experiment, uint32_t t) {
+    uint32_t slot = 0;
+    while (strcmp(experiment->trials[slot].path, experiment->trials[t].path) != 0) slot++;
+    return slot;
+}
+
+static RtStatus image_path(const RtRun *run, uint32_t t, char *path, RtError *error) {
+    char name[RT_MAX_LABEL + 16];
+    snprintf(name, sizeof name, "images/%s.png", run->experiment->trials[t].label);
+    return rt_run_path(run, name, path, error);
+}
+
+static RtStatus open_scenes(RtRun *run, RtError *error) {
+    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
+        uint32_t slot = slot_of(run->experiment, t);
+        char image[RT_MAX_PATH];
+        RT_TRY(image_path(run, t, image, error));
+        bool drawn = run->resumed && rt_file_exists(image);
+        if (run->opened[slot] || (drawn && rt_trial_is_done(run->results, t, &run->options->trial))) continue;
+        RT_TRY(rt_trial_open(run->results, t, &run->options->trial, &run->scenes[slot], error));
+        run->opened[slot] = !run->results->trials[t].skipped;
+    }
+    return RT_OK;
+}
+
+RtStatus rt_run_open(RtRun *run, RtResults *results, const RtRunOptions *options, RtError *error) {
+    *run = (RtRun){
+        .results = results, .experiment = results->experiment, .options = options, .lock = RT_NO_LOCK};
+    RT_TRY(take_directory(run, error));
+    return open_scenes(run, error);
+}
+
+static RtStatus make_directories(const RtRun *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_run_path(run, "plots", path, error));
+    RT_TRY(rt_directory_create(path, error));
+    RT_TRY(rt_run_path(run, "images", path, error));
+    return rt_directory_create(path, error);
+}
+
+RtStatus rt_run_begin(RtRun *run, RtError *error) {
+    RT_TRY(make_directories(run, error));
+    return take_directory(run, error);
+}
+
+/* ---- measuring ---- */
+
+/* Up to here nothing of an earlier run was lost. */
+static RtStatus open_journal(RtRun *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_run_path(run, RT_RUN_JOURNAL, path, error));
+    if (!run->resumed) rt_earlier_remove(run->options->directory, RT_RUN_JOURNAL);
+    return rt_journal_open(&run->journal, path, run->experiment, run->resumed, error);
+}
+
+static void name_missing(const RtRun *run) {
+    for (uint32_t c = 0; c < run->experiment->contender_count; c++) {
+        char message[RT_MAX_LABEL + 64];
+        if (!run->experiment->contenders[c].missing) continue;
+        snprintf(message, sizeof message, "'%s' is skipped: this build does not have it",
+                 run->experiment->contenders[c].label);
+        rt_run_notice(run, message);
+    }
+}
+
+static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
+    RtRun *run = context;
+    const RtObserver *observer = &run->options->trial.observer;
+    run->measured = true;
+    RT_TRY(rt_journal_append(&run->journal, results, event, error));
+    return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
+}
+
+static void on_notice(void *context, const char *message) {
+    rt_run_notice(context, message);
+}
+
+static RtStatus write_tables(const RtRun *run, RtError *error) {
+    RtResultRow row = {.results = run->results};
+    RtTable counts = rt_result_table(RT_COUNTS, &row);
+    RT_TRY(rt_run_write_table(run, "counts.csv", &counts, error));
+    if (run->experiment->count_only) return RT_OK;
+    RtTable times = rt_result_table(RT_TIMES, &row);
+    return rt_run_write_table(run, "times.csv", &times, error);
+}
+
+static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, const char *path, RtError *error) {
+    RtAccel *accel;
+    RtFrame frame = {0};
+    RtImage image = {0};
+    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH};
+    RT_TRY(rt_scene_sample(scene, trial->width, trial->height, 2, false, error));
+    RT_TRY(rt_accel_open(rt_accel_default(), scene, &accel, error));
+    RtStatus status = rt_frame_trace(&frame, accel, &options, error);
+    if (status == RT_OK) status = rt_image_from_frame(&image, &frame, error);
+    if (status == RT_OK) status = rt_png_write(&image, path, error);
+    rt_image_clear(&image);
+    rt_frame_clear(&frame);
+    rt_accel_destroy(accel);
+    return status;
+}
+
+/* The picture of a trial's scene, unless it is there. */
+static RtStatus write_image(RtRun *run, uint32_t t, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(image_path(run, t, path, error));
+    if (run->results->trials[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
+    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->trials[t], path, error);
+}
+
+/* Frees the scene of trial `t`, unless a later one is on it, too. */
+static void close_scene(RtRun *run, uint32_t t) {
+    uint32_t slot = slot_of(run->experiment, t);
+    for (uint32_t later = t + 1; later < run->experiment->trial_count; later++) {
+        if (slot_of(run->experiment, later) == slot) return;
+    }
+    rt_scene_clear(&run->scenes[slot]);
+}
+
+RtStatus rt_run_measure(RtRun *run, RtError *error) {
+    RtTrialOptions options = run->options->trial;
+    options.observer = (RtObserver){run, on_event, on_notice};
+    RT_TRY(open_journal(run, error));
+    name_missing(run);
+    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
+        RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
+        RT_TRY(rt_trial_measure(run->results, t, &options, scene, error));
+        RT_TRY(write_tables(run, error));
+        RT_TRY(write_image(run, t, error));
+        close_scene(run, t);
+    }
+    if (run->measured || !run->resumed) return RT_OK;
+    rt_run_notice(run, "nothing was left to measure: this run is finished. --force begins it anew");
+    return RT_OK;
+}
+
+void rt_run_close(RtRun *run) {
+    rt_json_lines_close(&run->journal);
+    for (uint32_t t = 0; t < RT_MAX_TRIALS; t++) rt_scene_clear(&run->scenes[t]);
+    rt_lock_release(&run->lock);
+}

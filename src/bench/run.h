@@ -1,0 +1,55 @@
+/* A run of an experiment: what is not yet known is measured, and kept as it is found.
+ *
+ *   cells.jsonl      the journal: everything found, line by line as it was found
+ *   counts.csv       exact columns; byte-identical wherever the same version is run
+ *   times.csv        measured columns, where anything is timed
+ *   images/          a picture of each scene
+ *
+ * rt_run_open looks, rt_run_begin makes the directory and keeps others away, rt_run_measure does the work.
+ * What an earlier run has left is lost only by the last, so all that may be refused is to be looked at
+ * before. Whenever the process ends, however, its journal or the one before it is whole. */
+#ifndef RT_BENCH_RUN_H
+#define RT_BENCH_RUN_H
+
+#include "base/lock.h"
+#include "base/table.h"
+#include "bench/earlier.h"
+#include "bench/json_lines.h"
+#include "bench/trial.h"
+
+typedef struct RtRunOptions {
+    const char *directory; /* created where missing */
+    RtStart start;         /* what becomes of what an earlier run in it has found */
+    RtTrialOptions trial;  /* its observer is told after the journal */
+} RtRunOptions;
+
+typedef struct RtRun {
+    RtResults *results;             /* borrowed, like what follows */
+    const RtExperiment *experiment; /* that of the results */
+    const RtRunOptions *options;
+    RtLock lock;
+    bool resumed;                  /* the directory has the journal that is gone on with */
+    bool measured;                 /* anything that the journal did not know */
+    RtScene scenes[RT_MAX_TRIALS]; /* each until its last trial is over */
+    bool opened[RT_MAX_TRIALS];
+    RtJsonLines journal;
+} RtRun;
+
+/* Takes the directory where it is there, and the journal in it, and opens every scene that is needed, once.
+ * `results` is initialised for the experiment. To be closed by rt_run_close, also after a failure. */
+RtStatus rt_run_open(RtRun *run, RtResults *results, const RtRunOptions *options, RtError *error);
+
+/* Makes the directory with plots/ and images/ in it. */
+RtStatus rt_run_begin(RtRun *run, RtError *error);
+
+/* Fills the results. */
+RtStatus rt_run_measure(RtRun *run, RtError *error);
+
+void rt_run_close(RtRun *run);
+
+/* For those who add to the directory: a path in it, a CSV file in it, and a word to whoever looks on. */
+RtStatus rt_run_path(const RtRun *run, const char *name, char *path, RtError *error);
+RtStatus rt_run_write_table(const RtRun *run, const char *name, const RtTable *table, RtError *error);
+void rt_run_notice(const RtRun *run, const char *message);
+
+#endif
