@@ -29,7 +29,7 @@ typedef struct RtAccelOps RtAccelOps;
 
 /* The first member of every accelerator's own struct. */
 typedef struct RtAccel {
-    const RtAccelOps *ops;
+    const RtAccelOps *ops; /* set by rt_accel_build */
     const RtScene *scene;  /* borrowed */
     struct RtAccel *below; /* owned; NULL for a base. Set by rt_accel_build */
     size_t scratch_room; /* bytes of a query's scratch memory that are this layer's. Set by rt_accel_build */
@@ -127,10 +127,9 @@ struct RtAccelOps {
     RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
 };
 
-/* For `build`: `bytes` for an accelerator's own struct, zeroed but for the RtAccel that it begins with, which
- * is exact and counts; to *out, to be freed with rt_free. */
-RtStatus rt_accel_new(const RtAccelOps *ops, const RtScene *scene, size_t bytes, RtAccel **out,
-                      RtError *error);
+/* For `build`, in accel.c: `bytes` for the own struct of accelerator `name`, zeroed but for the RtAccel that
+ * it begins with, which is exact and counts; to *out, to be freed with rt_free. */
+RtStatus rt_accel_new(const char *name, const RtScene *scene, size_t bytes, RtAccel **out, RtError *error);
 
 /* ---- the registry ---- */
 

@@ -2,6 +2,7 @@
  * and that all lines through a point are of one mind whether it is inside. */
 #include "solids_testing.h"
 
+#include "exact/exact_mesh.h"
 #include "exact/referee.h"
 
 /* ---- meshes of boxes ---- */

@@ -114,8 +114,6 @@ static const RtParam params[PARAM_COUNT] = {
                            .tries = "1|3"},
 };
 
-extern const RtAccelOps rt_bvh_ops;
-
 /* ---- build ---- */
 
 static void destroy(RtAccel *accel) {
@@ -155,7 +153,7 @@ static RtStatus fill(RtHierarchy *hierarchy, const RtGeometry *geometry, const R
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_bvh_ops, scene, sizeof(RtBvh), &accel, error));
+    RT_TRY(rt_accel_new("bvh", scene, sizeof(RtBvh), &accel, error));
     RtHierarchy *hierarchy = &((RtBvh *)accel)->hierarchy;
     *hierarchy = (RtHierarchy){.width = 2,
                                .leaf_limit = (uint32_t)values[PARAM_LEAF].i,

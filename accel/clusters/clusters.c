@@ -17,8 +17,6 @@
 #include "accel/tree/order.h"
 #include "base/memory.h"
 
-extern const RtAccelOps rt_clusters_ops;
-
 typedef enum Method { AGGLOMERATIVE, PLOC, GOLDSMITH_SALMON, RUBIN_WHITTED, SAH } Method;
 
 enum {
@@ -168,7 +166,7 @@ static RtStatus fill(RtClusters *self, const RtValue *values, RtError *error) {
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_clusters_ops, scene, sizeof(RtClusters), &accel, error));
+    RT_TRY(rt_accel_new("clusters", scene, sizeof(RtClusters), &accel, error));
     RtClusters *self = (RtClusters *)accel;
     self->hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
                                     .leaf_limit = (uint32_t)values[PARAM_LEAF].i,

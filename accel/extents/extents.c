@@ -6,8 +6,6 @@
 
 #include "base/memory.h"
 
-extern const RtAccelOps rt_extents_ops;
-
 /* ---- building ---- */
 
 static void destroy(RtAccel *accel) {
@@ -42,7 +40,7 @@ static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     const RtGeometry *geometry = &scene->geometry;
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_extents_ops, scene, sizeof(RtExtents), &accel, error));
+    RT_TRY(rt_accel_new("extents", scene, sizeof(RtExtents), &accel, error));
     RtExtents *self = (RtExtents *)accel;
     RtStatus status = rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_KIND].choice,
                                          (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);

@@ -69,8 +69,6 @@ typedef struct RtGrid {
     RtSurfaceRays served; /* ... and by its margin more before surfaces are */
 } RtGrid;
 
-extern const RtAccelOps rt_grid_ops;
-
 /* resolution.c: into how many voxels along each axis to cut a box with so many objects. */
 void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue *values, uint32_t n[3]);
 

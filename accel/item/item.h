@@ -38,8 +38,6 @@ typedef struct RtItemBuffer {
     double blur;    /* by how much directions, rounded to float32, are off, as a part of 1 */
 } RtItemBuffer;
 
-extern const RtAccelOps rt_item_ops;
-
 static inline size_t rt_item_sample_count(const RtItemBuffer *buffer) {
     return (size_t)buffer->view.sampling.columns * buffer->view.sampling.rows;
 }

@@ -5,7 +5,6 @@
 #include "accel/kd/kd.h"
 
 #include "base/memory.h"
-#include "shape/overlap.h"
 
 #include <float.h>
 #include <string.h>
@@ -132,13 +131,6 @@ static void enter_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf) {
 
 /* ---- nodes ---- */
 
-bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out) {
-    const RtGeometry *g = &kd->base.scene->geometry;
-    if (kd->surfaces) return rt_object_part(g, id, cell, kd->served.margin, out);
-    *out = rt_box_common(g->boxes[id], *cell);
-    return true;
-}
-
 static RtStatus make_leaf(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
     RtKd *kd = b->kd;
     uint64_t room = (uint64_t)kd->id_count + cell->ids.count;
@@ -256,7 +248,7 @@ RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue 
     const RtGeometry *g = &scene->geometry;
     int64_t depth = values[RT_KD_MAX_DEPTH].i;
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_kd_ops, scene, sizeof(RtKd), &accel, error));
+    RT_TRY(rt_accel_new("kd", scene, sizeof(RtKd), &accel, error));
     RtKd *kd = (RtKd *)accel;
     kd->traversal = values[RT_KD_TRAVERSAL].f;
     kd->empty_bonus = values[RT_KD_EMPTY_BONUS].f;

@@ -48,8 +48,6 @@ typedef struct RtLightMemory {
     uint32_t epoch, entry;
 } RtLightMemory;
 
-extern const RtAccelOps rt_light_ops;
-
 /* By how much cells grow in u and w on all sides: more than u can be wrong by where a ray is looked up. */
 #define RT_LIGHT_EDGE 0x1p-20
 

@@ -22,13 +22,6 @@ typedef struct Estimate {
     double sum[RT_OCTREE_DEPTH_LIMIT + 1], squares[RT_OCTREE_DEPTH_LIMIT + 1];
 } Estimate;
 
-RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error) {
-    return rt_fail(error, RT_BAD_INPUT,
-                   "an octree of max_depth=%u, max_objects=%u would take about %.3g GiB or more, more than "
-                   "%.3g GiB: max_depth=%u would fit",
-                   b->tree->max_depth, b->tree->max_objects, bytes / 0x1p30, (double)b->limit / 0x1p30, fits);
-}
-
 static void add(Estimate *estimate, uint32_t from, uint32_t to, double bytes) {
     for (uint32_t depth = from; depth <= to; depth++) {
         estimate->sum[depth] += bytes;

@@ -58,8 +58,6 @@ typedef struct RtOctree {
     double slack, flat; /* how objects' boxes are grown: rt_octree_grown */
 } RtOctree;
 
-extern const RtAccelOps rt_octree_ops;
-
 /* build.c. `limit`: bytes of nodes and lists above which the octree is refused. */
 RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
 RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
@@ -79,7 +77,7 @@ typedef struct RtOctreeBuilder {
     uint32_t next_count, next_capacity;
 } RtOctreeBuilder;
 
-/* Makes a tree without nodes, `b->list` being the objects of `cell`, one of a single node. */
+/* divide.c. Makes a tree without nodes, `b->list` being the objects of `cell`, one of a single node. */
 RtStatus rt_octree_plant(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error);
 
 /* Goes to the next level. */
@@ -100,12 +98,16 @@ bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *
 RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
                           RtError *error);
 
+/* Makes node `index` of the current level a leaf with the list ids[0..count). */
+RtStatus rt_octree_make_leaf(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
+                             RtError *error);
+
+/* Refuses the tree: it would take `bytes`, or more, while it would fit with max_depth = `fits`. */
+RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error);
+
 /* limit.c. Refuses a tree of which the current level, nodes [from, to), is about to be divided, where what it
  * would take in the end is estimated to be certainly more than the limit; else RT_OK. */
 RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error);
-
-/* The refusal: it would take `bytes`, or more, while it would fit with max_depth = `fits`. */
-RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error);
 
 /* survey.c */
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);

@@ -3,9 +3,10 @@
  * are parts with any number of places (exact_mesh.c). Solids join parts, and trees join solids, by the same
  * machine: a stack of such lists, the two on top of which are merged. All lists lie one behind another in one
  * array. */
-#include "exact/exact_hit.h"
+#include "exact/exact_csg.h"
 
 #include "base/memory.h"
+#include "exact/exact_mesh.h"
 
 #include <assert.h>
 

@@ -9,7 +9,7 @@
  * the line and edges through it as to its left. So every triangle is crossed or not, a closed surface is left
  * as often as it is entered, and a triangle seen edge on, which the moved line misses, is not crossed at all:
  * a line in the plane of a face sees the faces beside it. t is that of the line that was not moved. */
-#include "exact/exact_hit.h"
+#include "exact/exact_mesh.h"
 
 #include "base/memory.h"
 
