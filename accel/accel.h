@@ -123,8 +123,12 @@ struct RtAccelOps {
     void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
 
     /* Optional: takes recorded answers for rays[0..count), which stay where they are while the accelerator is
-     * asked about them; only `ideal` does. */
+     * asked about them. */
     RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
+
+    /* Optional: the version of the library that does the work, and what it runs on here, "3.13.5 avx512", to
+     * out[0..room); false, and "", where it cannot be had. */
+    bool (*library)(char *out, size_t room);
 };
 
 /* For `build`, in accel.c: `bytes` for the own struct of accelerator `name`, zeroed but for the RtAccel that
@@ -142,6 +146,9 @@ RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error)
 
 /* The spec that is used where none is asked for: exact, and fast on every scene. */
 const char *rt_accel_default(void);
+
+/* The spec whose answers are right by definition: it tests every object. */
+const char *rt_accel_truth(void);
 
 /* ---- specs ---- */
 

@@ -215,4 +215,5 @@ const RtAccelOps rt_embree_ops = {
     .scratch_bytes = rt_embree_scratch_bytes,
     .describe = describe,
     .validate = validate,
+    .library = rt_embree_library,
 };

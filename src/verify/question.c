@@ -27,7 +27,7 @@ static RtStatus open_session(Session *s, const RtQuestion *question, const RtSce
     if (!s->expected || !s->got || !s->blocked) {
         return rt_fail_memory(error, "answers", count * (2 * sizeof(RtHit) + sizeof(bool)));
     }
-    RT_TRY(rt_accel_open("brute", scene, &s->brute, error));
+    RT_TRY(rt_accel_open(rt_accel_truth(), scene, &s->brute, error));
     RT_TRY(rt_query_init(&s->truth, s->brute, error));
     rt_nearest(&s->truth, question->rays, count, s->expected, NULL);
     RT_TRY(maker.build(maker.context, scene, &s->accel, error));

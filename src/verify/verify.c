@@ -197,7 +197,7 @@ static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVeri
         RT_TRY(status);
     }
     RT_TRY(rt_equivalence_check(&stage->reference, accel, run->verify->rays.threads, &result, error));
-    json_t *row = rt_equivalence_json(&result, stage->name, spec->spec, "brute");
+    json_t *row = rt_equivalence_json(&result, stage->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_boolean(accel->exact));
     json_object_set_new(row, "problem", problem_json(run, &result, broken));
     status = result.any_wrong ? keep_failure(run, stage, spec, &result.first_wrong, row, error) : RT_OK;
@@ -230,7 +230,7 @@ static RtStatus set_stage(Run *run, Stage *stage, RtError *error) {
     doing(run, "recording rays");
     RT_TRY(rt_scene_open(stage->name, &stage->scene, error));
     RT_TRY(rt_verify_sample(&v->rays, &stage->scene, error));
-    RT_TRY(rt_accel_open("brute", &stage->scene, &stage->brute, error));
+    RT_TRY(rt_accel_open(rt_accel_truth(), &stage->scene, &stage->brute, error));
     stage->rays = rt_alloc(v->rays.count, sizeof(RtRay));
     if (!stage->rays) return rt_fail_memory(error, "rays", v->rays.count * sizeof(RtRay));
     RT_TRY(rt_verify_rays(&v->rays, stage->brute, stage->rays, error));
