@@ -6,7 +6,7 @@
 #include "shape/csg.h"
 
 /* Like rt_exact_hit. */
-RtFinding rt_exact_csg_hit(RtSlate *slate, const RtCsgForest *forest, const RtCsg *tree,
+RtFinding rt_exact_csg_hit(RtExactArena *arena, const RtCsgForest *forest, const RtCsg *tree,
                            const RtExactLine *line, RtPlace *t);
 
 #endif

@@ -27,7 +27,7 @@
 
 /* Does the line meet object `id` within [tmin, tmax]? If so *t is the first such place. Undecided: a CSG tree
  * whose crossings memory does not suffice for, and nothing else. */
-RtFinding rt_exact_hit(RtSlate *slate, const RtGeometry *geometry, uint32_t id, const RtExactLine *line,
+RtFinding rt_exact_hit(RtExactArena *arena, const RtGeometry *geometry, uint32_t id, const RtExactLine *line,
                        RtPlace *t);
 
 #endif

@@ -7,8 +7,8 @@
 
 /* Where the whole line, whatever its interval, goes in and out of mesh solid `index`, by turns and in
  * ascending order; places beyond FLT_MAX may be left out. *places is the caller's, who frees it by rt_free;
- * the numbers are on the slate. */
-RtStatus rt_exact_mesh_places(RtSlate *slate, const RtSolidSet *set, uint32_t index, const RtExactLine *line,
-                              RtRational **places, uint32_t *count, RtError *error);
+ * the numbers are in the arena. */
+RtStatus rt_exact_mesh_places(RtExactArena *arena, const RtSolidSet *set, uint32_t index,
+                              const RtExactLine *line, RtRational **places, uint32_t *count, RtError *error);
 
 #endif

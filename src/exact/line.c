@@ -23,19 +23,19 @@ bool rt_line_may_meet(const RtWideRay *line, const RtBox *box, double *soonest) 
     return near <= far;
 }
 
-RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line) {
+RtExactLine rt_exact_line(RtExactArena *arena, const RtWideRay *line) {
     return (RtExactLine){.wide = *line,
-                         .org = rt_exact_vec(slate, line->org),
-                         .dir = rt_exact_vec(slate, line->dir),
-                         .zero = rt_exact_of(slate, 0),
-                         .tmin = rt_exact_of(slate, line->tmin),
-                         .tmax = rt_exact_of(slate, fmin(line->tmax, (double)FLT_MAX))};
+                         .org = rt_exact_vec(arena, line->org),
+                         .dir = rt_exact_vec(arena, line->dir),
+                         .zero = rt_exact_of(arena, 0),
+                         .tmin = rt_exact_of(arena, line->tmin),
+                         .tmax = rt_exact_of(arena, fmin(line->tmax, (double)FLT_MAX))};
 }
 
-bool rt_exact_counts(RtSlate *slate, const RtExactLine *line, const RtPlace *t) {
-    size_t mark = rt_slate_mark(slate);
-    RtPlace first = rt_place_of(slate, line->tmin), last = rt_place_of(slate, line->tmax);
-    bool counts = rt_place_compare(slate, t, &first) >= 0 && rt_place_compare(slate, t, &last) <= 0;
-    rt_slate_wipe(slate, mark);
+bool rt_exact_counts(RtExactArena *arena, const RtExactLine *line, const RtPlace *t) {
+    size_t mark = rt_exact_arena_mark(arena);
+    RtPlace first = rt_place_of(arena, line->tmin), last = rt_place_of(arena, line->tmax);
+    bool counts = rt_place_compare(arena, t, &first) >= 0 && rt_place_compare(arena, t, &last) <= 0;
+    rt_exact_arena_rewind(arena, mark);
     return counts;
 }

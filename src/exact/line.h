@@ -23,17 +23,17 @@ bool rt_line_may_meet(const RtWideRay *line, const RtBox *box, double *soonest);
  * of a few operations in double, and far below what would let many objects in. */
 #define RT_LINE_SLACK 0x1p-40
 
-/* The same on a slate; tmax is at most FLT_MAX, for a hit at infinity is none. */
+/* The same in an arena; tmax is at most FLT_MAX, for a hit at infinity is none. */
 typedef struct RtExactLine {
     RtWideRay wide;
     RtExactVec org, dir;
     RtRational zero, tmin, tmax;
 } RtExactLine;
 
-RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line);
+RtExactLine rt_exact_line(RtExactArena *arena, const RtWideRay *line);
 
 /* Is t within [tmin, tmax]? */
-bool rt_exact_counts(RtSlate *slate, const RtExactLine *line, const RtPlace *t);
+bool rt_exact_counts(RtExactArena *arena, const RtExactLine *line, const RtPlace *t);
 
 /* Of an object: whether the line meets it within [tmin, tmax], so far as that can be said. */
 typedef enum RtFinding { RT_MISSED, RT_HIT, RT_UNDECIDED } RtFinding;
