@@ -6,7 +6,7 @@
 
 #include "accel/kernel.h"
 #include "base/memory.h"
-#include "verify/question.h"
+#include "verify/failure.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -282,10 +282,10 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
                rt_ray_kind_name(set->kind));
         return RT_OK;
     }
-    char witness[512];
-    rt_witness_format(&result.first_wrong, witness, sizeof witness);
+    char says[512];
+    rt_wrong_answer_format(&result.first_wrong, says, sizeof says);
     return rt_fail(error, RT_MISMATCH, "%s differs from brute on %s rays, first on: %s", run->spec,
-                   rt_ray_kind_name(set->kind), witness);
+                   rt_ray_kind_name(set->kind), says);
 }
 
 /* The picture as a whole: what answers alike, stream by stream, must also add up alike. */

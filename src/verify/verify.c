@@ -151,26 +151,26 @@ static RtStatus replay_path(const Run *run, const char *scene, const char *spec,
 }
 
 /* Shrinks the failure, writes it to a replay file, and names that in the row. */
-static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *spec, const RtWitness *witness,
-                             json_t *row, RtError *error) {
+static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *spec,
+                             const RtWrongAnswer *wrong, json_t *row, RtError *error) {
     RtMaker maker = maker_of(spec);
     RtShrinkObserver observer = {on_tried, run};
-    RtQuestion question;
-    RtReply reply;
+    RtFailure failure;
+    RtAnswer answer;
     RtShrunk shrunk = {0};
     char path[RT_MAX_PATH];
     RT_TRY(replay_path(run, stage->name, spec->spec, path, error));
-    RT_TRY(rt_question_of_witness(&stage->reference, witness, maker, &question, &reply, error));
-    RtReplayRecord record = {stage->name, spec->spec, &stage->scene, &question, &reply, NULL};
-    if (reply.wrong) {
+    RT_TRY(rt_failure_of(&stage->reference, wrong, maker, &failure, &answer, error));
+    RtReplayRecord record = {stage->name, spec->spec, &stage->scene, &failure, &answer, NULL};
+    if (answer.wrong) {
         RT_TRY(
-            rt_shrink(&stage->scene, &question, &reply, maker, RT_SHRINK_BUDGET, &observer, &shrunk, error));
+            rt_shrink(&stage->scene, &failure, &answer, maker, RT_SHRINK_BUDGET, &observer, &shrunk, error));
         record.shrunk = &shrunk;
     }
     RtStatus status = rt_replay_save(path, &record, error);
     json_t *first = json_object_get(row, "first_wrong");
     json_object_set_new(first, "replay", json_string(path));
-    json_object_set_new(first, "objects_left", reply.wrong ? json_integer(shrunk.count) : json_null());
+    json_object_set_new(first, "objects_left", answer.wrong ? json_integer(shrunk.count) : json_null());
     rt_free(shrunk.ids);
     return status;
 }

@@ -8,7 +8,7 @@
 #ifndef RT_VERIFY_VERIFY_H
 #define RT_VERIFY_VERIFY_H
 
-#include "verify/question.h"
+#include "verify/failure.h"
 #include "verify/verify_rays.h"
 
 /* One accelerator to verify. One that was not asked for by name may be missing on this machine, or refuse a
