@@ -187,7 +187,7 @@ static uint32_t usual_depth(uint32_t objects) {
 }
 
 /* The root's lists, with room to deal them. */
-static RtStatus plant(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
+static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
     RtKdCell root = {.share = 1, .box = b->kd->box, .ids = {0, g->object_count}};
     uint64_t room = 2 * (uint64_t)g->object_count;
     RT_TRY(rt_reserve(&b->kd->nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
@@ -212,7 +212,7 @@ static RtStatus build_tree(RtKdBuilder *b, const RtGeometry *g, RtError *error) 
     uint32_t asked = b->kd->max_depth;
     b->sides = rt_alloc(g->object_count, 1);
     if (!b->sides) return rt_fail_memory(error, "building a kd-tree", g->object_count);
-    RT_TRY(plant(b, g, error));
+    RT_TRY(make_root(b, g, error));
     while (b->pending_count > 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(divide(b, &cell, error));

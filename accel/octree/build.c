@@ -105,11 +105,11 @@ static RtStatus build_levels(RtOctreeBuilder *b, RtBox root, uint32_t object_cou
         return rt_fail_memory(error, "building an octree", object_count * sizeof(uint32_t));
     }
     for (uint32_t i = 0; i < object_count; i++) b->list[i] = i;
-    RT_TRY(rt_octree_plant(b, root, object_count, error));
+    RT_TRY(rt_octree_begin(b, root, object_count, error));
     for (uint32_t from = 0, to = 1; from < to; from = to, to = tree->node_count) {
-        RT_TRY(rt_octree_foresee(b, from, to, error));
+        RT_TRY(rt_octree_check_limit(b, from, to, error));
         RT_TRY(build_level(b, from, to, error));
-        rt_octree_descend(b);
+        rt_octree_next_level(b);
     }
     return RT_OK;
 }

@@ -107,7 +107,7 @@ static RtStatus make_room(RtOctreeBuilder *b, uint64_t nodes, uint64_t ids, uint
     return rt_reserve(&b->next, &b->next_capacity, next, sizeof(uint32_t), error);
 }
 
-RtStatus rt_octree_plant(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error) {
+RtStatus rt_octree_begin(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error) {
     RT_TRY(make_room(b, 1, 0, 0, error));
     b->tree->nodes[0] = (RtOctreeNode){.first = 0, .count = count};
     b->tree->boxes[0] = cell;
@@ -115,7 +115,7 @@ RtStatus rt_octree_plant(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError
     return RT_OK;
 }
 
-void rt_octree_descend(RtOctreeBuilder *b) {
+void rt_octree_next_level(RtOctreeBuilder *b) {
     rt_free(b->list);
     b->list = b->next;
     b->next = NULL;
@@ -168,7 +168,7 @@ RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *id
     return RT_OK;
 }
 
-void rt_octree_uproot(RtOctreeBuilder *b) {
+void rt_octree_end(RtOctreeBuilder *b) {
     rt_free(b->list);
     rt_free(b->next);
     rt_free(b->tree->nodes);

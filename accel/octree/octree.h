@@ -78,13 +78,13 @@ typedef struct RtOctreeBuilder {
 } RtOctreeBuilder;
 
 /* divide.c. Makes a tree without nodes, `b->list` being the objects of `cell`, one of a single node. */
-RtStatus rt_octree_plant(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error);
+RtStatus rt_octree_begin(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error);
 
 /* Goes to the next level. */
-void rt_octree_descend(RtOctreeBuilder *b);
+void rt_octree_next_level(RtOctreeBuilder *b);
 
 /* Frees the arrays of a tree and its lists, but not the tree. */
-void rt_octree_uproot(RtOctreeBuilder *b);
+void rt_octree_end(RtOctreeBuilder *b);
 
 /* Whether a cell of the current level, with the list ids[0..count), is to be divided. */
 bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count);
@@ -107,7 +107,7 @@ RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits,
 
 /* limit.c. Refuses a tree of which the current level, nodes [from, to), is about to be divided, where what it
  * would take in the end is estimated to be certainly more than the limit; else RT_OK. */
-RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error);
+RtStatus rt_octree_check_limit(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error);
 
 /* survey.c */
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
