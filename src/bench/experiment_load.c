@@ -17,7 +17,7 @@ typedef struct Word {
 
 typedef struct TrialEntry {
     char scene[RT_MAX_SCENE_NAME], label[RT_MAX_LABEL], size[MAX_WORD], corners[MAX_WORD], optional[MAX_WORD];
-    char outward_light[MAX_WORD];
+    char light_from_outside[MAX_WORD];
     uint32_t depth;
 } TrialEntry;
 
@@ -70,7 +70,7 @@ static const cyaml_schema_field_t trial_fields[] = {
     CYAML_FIELD_STRING("label", OPTIONAL, TrialEntry, label, 1),
     CYAML_FIELD_STRING("size", OPTIONAL, TrialEntry, size, 1),
     CYAML_FIELD_STRING("corners", OPTIONAL, TrialEntry, corners, 1),
-    CYAML_FIELD_STRING("outward_light", OPTIONAL, TrialEntry, outward_light, 1),
+    CYAML_FIELD_STRING("light_from_outside", OPTIONAL, TrialEntry, light_from_outside, 1),
     CYAML_FIELD_UINT("depth", OPTIONAL, TrialEntry, depth),
     CYAML_FIELD_STRING("optional", OPTIONAL, TrialEntry, optional, 1),
     CYAML_FIELD_END,
@@ -176,8 +176,8 @@ static RtStatus take_trial(const RtYamlFile *file, uint32_t i, const char *folde
     RT_TRY(
         place(file, parse_size(entry->size, &trial->width, &trial->height, error), "scenes#.size", i, error));
     RT_TRY(place(file, parse_flag(entry->corners, &trial->corners, error), "scenes#.corners", i, error));
-    RT_TRY(place(file, parse_flag(entry->outward_light, &trial->outward_light, error),
-                 "scenes#.outward_light", i, error));
+    RT_TRY(place(file, parse_flag(entry->light_from_outside, &trial->light_from_outside, error),
+                 "scenes#.light_from_outside", i, error));
     RT_TRY(place(file, parse_flag(entry->optional, &trial->optional, error), "scenes#.optional", i, error));
     return RT_OK;
 }
