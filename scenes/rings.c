@@ -91,7 +91,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     const RtVec3d eye = {-1, -spread, 0.5};
     scene->camera.from = rt_narrow(eye);
     scene->camera.at = rt_narrow(rt_vec3d(eye.x, eye.y + 1, eye.z));
-    scene->camera.hither = 1;
+    scene->camera.near = 1;
 
     uint32_t wall;
     RT_TRY(add_materials(scene, &wall, error));

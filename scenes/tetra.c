@@ -59,7 +59,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     scene->camera.from = rt_vec3(1.022846f, -3.177154f, -2.174512f);
     scene->camera.at = rt_vec3(-0.004103f, -0.004103f, 0.216539f);
     scene->camera.up = rt_vec3(-0.816497f, -0.816497f, 0.816497f);
-    scene->camera.hither = 1;
+    scene->camera.near = 1;
     return add_level(scene, rt_vec3d(0, 0, 0), 1, values[0].i, error);
 }
 

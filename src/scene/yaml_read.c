@@ -232,7 +232,7 @@ static RtStatus check_camera(const RtCamera *camera, bool placed, const char **k
     if (!placed) tried.at.at[(rt_major_axis(camera->up) + 1) % 3] = 1;
     RtVec3 gap = rt_sub(tried.at, tried.from);
     *key = !(camera->fov > 0 && camera->fov < 180) ? "camera.fov"
-           : !(camera->hither >= 0)                ? "camera.hither"
+           : !(camera->near >= 0)                  ? "camera.near"
            : rt_dot(gap, gap) > 0                  ? "camera.up"
                                                    : "camera.at";
     RtView view;
@@ -251,7 +251,7 @@ static RtStatus set_camera(RtYamlReader *r, const RtYamlCamera *given) {
     if (given->at) camera->at = *given->at;
     if (given->up) camera->up = *given->up;
     if (given->fov) camera->fov = *given->fov;
-    if (given->hither) camera->hither = *given->hither;
+    if (given->near) camera->near = *given->near;
     if (given->size) {
         camera->width = given->size[0];
         camera->height = given->size[1];

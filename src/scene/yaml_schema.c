@@ -136,7 +136,7 @@ static const cyaml_schema_field_t camera_fields[] = {
     OPTIONAL_POINT(RtYamlCamera, at),
     OPTIONAL_POINT(RtYamlCamera, up),
     OPTIONAL_NUMBER(RtYamlCamera, fov),
-    OPTIONAL_NUMBER(RtYamlCamera, hither),
+    OPTIONAL_NUMBER(RtYamlCamera, near),
     LIST(RtYamlCamera, size, OPTIONAL | POINTER, sizeof(uint32_t), whole, 2),
     CYAML_FIELD_END};
 

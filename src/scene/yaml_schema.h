@@ -162,7 +162,7 @@ typedef struct RtYamlObject {
 
 typedef struct RtYamlCamera {
     RtVec3 *from, *at, *up;
-    float *fov, *hither;
+    float *fov, *near;
     uint32_t *size; /* [2] */
 } RtYamlCamera;
 

@@ -127,7 +127,7 @@ static void write_camera(Writer *w, const RtCamera *camera) {
     point_key(w, "at", camera->at);
     point_key(w, "up", camera->up);
     number_key(w, "fov", camera->fov);
-    number_key(w, "hither", camera->hither);
+    number_key(w, "near", camera->near);
     key(w, "size");
     begin_list(w, YAML_FLOW_SEQUENCE_STYLE);
     snprintf(text, sizeof text, "%u", camera->width);
