@@ -111,7 +111,7 @@ RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValu
 RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
 void rt_grid_destroy(RtAccel *accel);
 
-/* survey.c */
+/* stats.c */
 void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);

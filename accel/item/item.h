@@ -87,7 +87,7 @@ bool rt_item_cross(const RtItemFacet *facet, const RtRay *ray, float near, RtIte
 RtStatus rt_item_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
 void rt_item_destroy(RtAccel *accel);
 
-/* survey.c */
+/* stats.c */
 void rt_item_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_item_validate(const RtAccel *accel, RtError *error);
 

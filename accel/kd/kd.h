@@ -171,7 +171,7 @@ bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out);
 RtStatus rt_kd_deal(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit *split, RtKdCell children[2],
                     uint32_t *above, RtError *error);
 
-/* survey.c */
+/* stats.c */
 void rt_kd_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);

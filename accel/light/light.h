@@ -100,7 +100,7 @@ void rt_light_destroy(RtAccel *accel);
  * number. */
 uint32_t rt_light_order(const RtLightBuffer *buffer, uint32_t light, int face, RtLightEntry *order);
 
-/* survey.c */
+/* stats.c */
 void rt_light_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_light_validate(const RtAccel *accel, RtError *error);
 

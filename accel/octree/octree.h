@@ -109,7 +109,7 @@ RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits,
  * would take in the end is estimated to be certainly more than the limit; else RT_OK. */
 RtStatus rt_octree_check_limit(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error);
 
-/* survey.c */
+/* stats.c */
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
 void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer);
