@@ -29,7 +29,7 @@ typedef struct RtAccelOps RtAccelOps;
 
 /* The first member of every accelerator's own struct. */
 typedef struct RtAccel {
-    const RtAccelOps *ops;
+    const RtAccelOps *ops; /* set by rt_accel_build */
     const RtScene *scene;  /* borrowed */
     struct RtAccel *below; /* owned; NULL for a base. Set by rt_accel_build */
     size_t scratch_room; /* bytes of a query's scratch memory that are this layer's. Set by rt_accel_build */
@@ -123,14 +123,17 @@ struct RtAccelOps {
     void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
 
     /* Optional: takes recorded answers for rays[0..count), which stay where they are while the accelerator is
-     * asked about them; only `ideal` does. */
+     * asked about them. */
     RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
+
+    /* Optional: the version of the library that does the work, and what it runs on here, "3.13.5 avx512", to
+     * out[0..room); false, and "", where it cannot be had. */
+    bool (*library)(char *out, size_t room);
 };
 
-/* For `build`: `bytes` for an accelerator's own struct, zeroed but for the RtAccel that it begins with, which
- * is exact and counts; to *out, to be freed with rt_free. */
-RtStatus rt_accel_new(const RtAccelOps *ops, const RtScene *scene, size_t bytes, RtAccel **out,
-                      RtError *error);
+/* For `build`, in accel.c: `bytes` for the own struct of accelerator `name`, zeroed but for the RtAccel that
+ * it begins with, which is exact and counts; to *out, to be freed with rt_free. */
+RtStatus rt_accel_new(const char *name, const RtScene *scene, size_t bytes, RtAccel **out, RtError *error);
 
 /* ---- the registry ---- */
 
@@ -143,6 +146,9 @@ RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error)
 
 /* The spec that is used where none is asked for: exact, and fast on every scene. */
 const char *rt_accel_default(void);
+
+/* The spec whose answers are right by definition: it tests every object. */
+const char *rt_accel_truth(void);
 
 /* ---- specs ---- */
 

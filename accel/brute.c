@@ -8,11 +8,9 @@ typedef struct Brute {
     RtAccel base;
 } Brute;
 
-extern const RtAccelOps rt_brute_ops;
-
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     (void)values;
-    return rt_accel_new(&rt_brute_ops, scene, sizeof(Brute), out, error);
+    return rt_accel_new("brute", scene, sizeof(Brute), out, error);
 }
 
 static void destroy(RtAccel *accel) {

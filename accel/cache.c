@@ -20,11 +20,9 @@ typedef struct Cache {
     RtAccel base;
 } Cache;
 
-extern const RtAccelOps rt_cache_ops;
-
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     (void)values;
-    return rt_accel_new(&rt_cache_ops, scene, sizeof(Cache), out, error);
+    return rt_accel_new("cache", scene, sizeof(Cache), out, error);
 }
 
 static void destroy(RtAccel *accel) {

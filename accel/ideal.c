@@ -15,11 +15,9 @@ typedef struct Ideal {
     size_t count;
 } Ideal;
 
-extern const RtAccelOps rt_ideal_ops;
-
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     (void)values;
-    return rt_accel_new(&rt_ideal_ops, scene, sizeof(Ideal), out, error);
+    return rt_accel_new("ideal", scene, sizeof(Ideal), out, error);
 }
 
 static void destroy(RtAccel *accel) {

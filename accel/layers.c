@@ -4,15 +4,6 @@
 
 #include "base/memory.h"
 
-RtStatus rt_accel_new(const RtAccelOps *ops, const RtScene *scene, size_t bytes, RtAccel **out,
-                      RtError *error) {
-    RtAccel *accel = rt_alloc(1, bytes);
-    if (!accel) return rt_fail_memory(error, ops->name, bytes);
-    *accel = (RtAccel){.ops = ops, .scene = scene, .exact = true, .counts = true};
-    *out = accel;
-    return RT_OK;
-}
-
 /* Puts `accel`, just built, upon `below`, which may be NULL. */
 static void stack(RtAccel *accel, RtAccel *below) {
     size_t bytes = accel->ops->scratch_bytes ? accel->ops->scratch_bytes(accel) : 0;
@@ -33,6 +24,7 @@ RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out,
             rt_accel_destroy(top);
             return status;
         }
+        accel->ops = spec->layers[i].ops;
         stack(accel, top);
         top = accel;
     }

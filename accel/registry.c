@@ -51,6 +51,10 @@ const char *rt_accel_default(void) {
     return "bvh";
 }
 
+const char *rt_accel_truth(void) {
+    return "brute";
+}
+
 RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error) {
     const char *names[REGISTRY_COUNT];
     for (size_t i = 0; i < REGISTRY_COUNT; i++) {

@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 7,
      .meaning = "levels below the root: (9^(size+1) - 1) / 8 spheres",
      .source = "SPD: 7381 spheres",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 enum { CHILDREN = 9 };
@@ -68,7 +68,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     static const RtVec3 lights[3] = {{4, 3, 2}, {1, -4, 4}, {-3, 1, 5}};
     RT_TRY(rt_spd_add_lights(scene, lights, 3, error));
     scene->camera.from = rt_vec3(2.1f, 1.3f, 1.7f);
-    scene->camera.hither = 0.01f;
+    scene->camera.near = 0.01f;
     RT_TRY(add_floor(scene, error));
 
     Flake flake = {.scene = scene};

@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 100,
      .meaning = "gears along an edge: 146 size^3 + 1 polygons",
      .source = "SPD: 9345 polygons",
-     .tries = "1|2"},
+     .test_values = "1|2"},
 };
 
 enum { TEETH = 36, CORNERS = 4 * TEETH, TOOTH = 3600 / TEETH }; /* TOOTH in tenths of a degree */
@@ -101,7 +101,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     RT_TRY(rt_spd_add_lights(scene, lights, 5, error));
     scene->background = rt_vec3(0, 0, 0);
     scene->camera.from = rt_vec3(-1.1f, -2.1f, 2.6f);
-    scene->camera.hither = 1;
+    scene->camera.near = 1;
     RT_TRY(add_ground(scene, error));
 
     const int64_t size = values[0].i;

@@ -18,7 +18,7 @@ static const RtParam params[] = {
      .hi = 8,
      .meaning = "levels: (8^size - 1) / 7 jacks of 3 cylinders and 6 spheres",
      .source = "SPD: 219 cylinders, 438 spheres",
-     .tries = "1|2"},
+     .test_values = "1|2"},
 };
 
 #define ARM        0.75
@@ -73,7 +73,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     scene->camera.from = rt_vec3(0, 0, -8);
     scene->camera.up = rt_vec3(0, 1, 0);
     scene->camera.fov = 25;
-    scene->camera.hither = 0.001f;
+    scene->camera.near = 0.001f;
     scene->camera.width = scene->camera.height = 256;
     uint32_t material;
     RtMaterial metal = rt_nff_material("jack", rt_vec3(0.737f, 0.561f, 0.561f), 0.7f, 0.7f, 11.1434f, 0, 1);

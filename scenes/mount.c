@@ -18,7 +18,7 @@ static const RtParam params[] = {
      .hi = 9,
      .meaning = "levels: 2 * 4^size triangles",
      .source = "SPD: 8192 triangles",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 /* A corner of a square: its place in the lattice of 2^size by 2^size squares, and its height. */
@@ -122,7 +122,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     static const RtVec3 lights[1] = {{-100, -100, 100}};
     RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
     scene->camera.from = rt_vec3(-1.6f, 1.6f, 1.7f);
-    scene->camera.hither = 0.01f;
+    scene->camera.near = 0.01f;
     RT_TRY(add_spheres(scene, error));
 
     Mount mount = {.scene = scene, .size = (uint32_t)values[0].i};

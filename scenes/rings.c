@@ -18,7 +18,7 @@ static const RtParam params[] = {
      .hi = 200,
      .meaning = "layers: 5 size (size+1) (2 size+1) spheres and as many cylinders",
      .source = "SPD: 4200 spheres and cylinders",
-     .tries = "1|2"},
+     .test_values = "1|2"},
 };
 
 enum { RINGS = 6, CORNERS = 5 };
@@ -91,7 +91,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     const RtVec3d eye = {-1, -spread, 0.5};
     scene->camera.from = rt_narrow(eye);
     scene->camera.at = rt_narrow(rt_vec3d(eye.x, eye.y + 1, eye.z));
-    scene->camera.hither = 1;
+    scene->camera.near = 1;
 
     uint32_t wall;
     RT_TRY(add_materials(scene, &wall, error));

@@ -17,7 +17,7 @@ static const RtParam params[] = {
      .hi = 20,
      .meaning = "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns",
      .source = "SPD: 5761 spheres",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 enum { ARCS = 180 }; /* of 18 degrees, each of 2^size spheres */
@@ -37,7 +37,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
     scene->camera.from = rt_vec3(-6, -60, 35);
     scene->camera.at = rt_vec3(0, 8, -15);
-    scene->camera.hither = 0.5f;
+    scene->camera.near = 0.5f;
     uint32_t material;
     RtMaterial pearl = rt_nff_material("shell", rt_vec3(1, 0.8f, 0.4f), 0.8f, 0.2f, 45.2776f, 0, 1);
     RT_TRY(rt_scene_add_material(scene, &pearl, &material, error));

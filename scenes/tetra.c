@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 9,
      .meaning = "levels: 4^size triangles",
      .source = "SPD: 4096 triangles",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 static uint64_t object_count(const RtValue *values) {
@@ -59,7 +59,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     scene->camera.from = rt_vec3(1.022846f, -3.177154f, -2.174512f);
     scene->camera.at = rt_vec3(-0.004103f, -0.004103f, 0.216539f);
     scene->camera.up = rt_vec3(-0.816497f, -0.816497f, 0.816497f);
-    scene->camera.hither = 1;
+    scene->camera.near = 1;
     return add_level(scene, rt_vec3d(0, 0, 0), 1, values[0].i, error);
 }
 

@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 20,
      .meaning = "levels above the trunk: 2^(size+1) - 1 cones and as many spheres",
      .source = "SPD: 4095 cones and spheres",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 #define TRUNK_RADIUS 0.15
@@ -84,7 +84,7 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     RT_TRY(rt_spd_add_lights(scene, lights, 7, error));
     scene->camera.from = rt_vec3(4.5f, 0.4f, 2);
     scene->camera.at = rt_vec3(0, 0, 1.5f);
-    scene->camera.hither = 1;
+    scene->camera.near = 1;
     RT_TRY(add_field(scene, error));
 
     Tree tree = {.scene = scene, .children = {child_frame(40, 90, 0.65), child_frame(25, 230, 0.7)}};

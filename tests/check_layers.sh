@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# check_layers.sh [TREE]: includes go one way only, and nothing but the registry and its own file or folder names the
-# operations of a concrete accelerator. Prints each violation and fails where there is one.
+# check_layers.sh [TREE]: includes go one way only, and nothing but the registry and its own file or folder knows a
+# concrete accelerator: names its operations, includes from its folder or, outside accel/, opens it by its name; tests
+# may include and open. Prints each violation and fails where there is one.
 set -euo pipefail
+rooms=$(cat "$(dirname "$0")/rooms.txt") # a room may include itself and those before it
 cd "${1:-$(dirname "$0")/..}"
 
 # shellcheck disable=SC2016 # the dollars are awk's
-find src accel scenes tests -name '*.[ch]' | sort | xargs awk '
-    BEGIN { # a room may include itself and those before it
-        split("base shape scene scenes accel render exact bench verify literature report cli tests", list, " ")
+find src accel scenes tests -name '*.[ch]' | sort | xargs awk -v rooms="$rooms" '
+    BEGIN {
+        split(rooms, list, " ")
         for (i = 1; i in list; i++) level[list[i]] = i
     }
     function room_of(path,    part) {
@@ -28,9 +30,22 @@ find src accel scenes tests -name '*.[ch]' | sort | xargs awk '
         split($0, quoted, "\"")
         from = room_of(FILENAME)
         to = quoted[2] ~ /\// ? room_of(quoted[2]) : from
-        if (!(from in level)) report("the room " from "/ is not in the order of check_layers.sh")
+        if (!(from in level)) report("the room " from "/ is not in the order of rooms.txt")
         else if (!(to in level)) report("includes \"" quoted[2] "\", which lies in no room")
+        else if (to == "accel" && from !~ /^(accel|tests)$/ && quoted[2] ~ /\/.*\//)
+            report("includes \"" quoted[2] "\", from the folder of one accelerator")
         else if (level[to] > level[from]) report(from "/ includes \"" quoted[2] "\", a room above it")
+    }
+    FILENAME ~ /^src\// && !/^ \*/ { # "NAME", "NAME:KEY=VALUE" and "OVERLAY+NAME"; parameters and keys can be called like one
+        rest = $0
+        sub(/\/\*.*/, "", rest)
+        while (match(rest, /"[a-z]+[^" ]*"/)) {
+            spec[++specs] = substr(rest, RSTART + 1, RLENGTH - 2)
+            opened[specs] = $0 ~ /rt_(accel_open|accel_find|spec_parse)[(]"/
+            spec_file[specs] = FILENAME
+            spec_line[specs] = FNR
+            rest = substr(rest, RSTART + RLENGTH)
+        }
     }
     { # an accelerator defines rt_NAME_ops in one file; note where it is named
         rest = $0
@@ -48,6 +63,18 @@ find src accel scenes tests -name '*.[ch]' | sort | xargs awk '
             if (!(named[i] in home) || file[i] == "accel/registry.c" || near(file[i], home[named[i]])) continue
             print file[i] ":" line[i] ": names " named[i] ", which belongs to " home[named[i]] " and the registry"
             wrong = 1
+        }
+        split("cache clusters extents item light", list, " ")
+        for (i in list) common["rt_" list[i] "_ops"] = 1
+        for (i = 1; i <= specs; i++) {
+            count = split(spec[i], layers, "+")
+            for (k = 1; k <= count; k++) {
+                ops = "rt_" layers[k] "_ops"
+                sub(/:.*_ops$/, "_ops", ops)
+                if (!(ops in home) || (ops in common && !opened[i])) continue
+                print spec_file[i] ":" spec_line[i] ": knows \"" spec[i] "\": ask the registry for what it can do"
+                wrong = 1
+            }
         }
         exit wrong
     }'

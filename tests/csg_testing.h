@@ -34,9 +34,9 @@ static inline bool same_hits(const Hits *a, const Hits *b) {
     return a->count == b->count && memcmp(a->t, b->t, a->count * sizeof(float)) == 0;
 }
 
-static inline RtCsg plant(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root) {
+static inline RtCsg compile(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root) {
     RtCsg tree;
-    assert_ok(rt_csg_plant(forest, builder, root, true, &tree, error));
+    assert_ok(rt_csg_compile(forest, builder, root, true, &tree, error));
     return tree;
 }
 

@@ -72,7 +72,7 @@ static inline void assert_gives(const RtReference *reference, const char *spec) 
     assert_ok(rt_equivalence_check(reference, accel, 0, &result, error));
     if (result.any_wrong) {
         char text[512];
-        rt_witness_format(&result.first_wrong, text, sizeof text);
+        rt_wrong_answer_format(&result.first_wrong, text, sizeof text);
         fail_msg("%s on %s: %s", spec, reference->scene->name, text);
     }
     rt_accel_destroy(accel);

@@ -57,6 +57,15 @@ for call in 'tan(x)' 'powf(x, 2)' 'log1p(x)' 'fma(x, y, z)'; do
     fresh_tree && echo "double y = 2 * $call;" >>"$tree/scenes/balls.c"
     expect fails check_libm.sh "$call"
 done
+fresh_tree && mkdir "$tree/accel/octree"
+echo '#include "accel/octree/octree.h"' >>"$tree/tests/accel/test_grid.c"
+expect passes check_layers.sh "a test that looks into an accelerator"
+echo '#include "accel/octree/octree.h"' >>"$tree/src/render/frame.c"
+expect fails check_layers.sh "a renderer that looks into an accelerator"
+fresh_tree && echo 'if (strcmp(name, "grid") == 0) return;' >>"$tree/src/render/frame.c"
+expect fails check_layers.sh "a renderer that compares with the name of an accelerator"
+fresh_tree && echo 'rt_accel_open("overlay+grid:density=4", &scene);' >>"$tree/src/render/frame.c"
+expect fails check_layers.sh "a renderer that opens an accelerator by name"
 
 fresh_tree && touch "$tree/accel/octree.c"
 expect fails check_files.sh "a file that is not built"
@@ -83,5 +92,40 @@ said=$(built "$tree/copy") && [[ $said == *"made for $tree/original: configuring
     echo "setup.sh: where the tree is a copy: $said"
     failures=$((failures + 1))
 }
+# object FILE TEXT: a source of that text, compiled to where the build keeps the objects of its library
+export RT_PROGRAM=$tree/build/raytally
+object() {
+    local output=$tree/build/CMakeFiles/raytally_${1%/*}.dir/src/$1.o
+    mkdir -p "$tree/src/${1%/*}" "${output%/*}"
+    echo "$2" >"$tree/src/$1" && "${CC:-cc}" -c "$tree/src/$1" -o "$output"
+}
+objects_in_order() {
+    fresh_tree
+    object base/file.c 'int rt_file(void) { return 1; }'
+    object scene/load.c 'int rt_file(void); int rt_load(void) { return rt_file(); }'
+    object scene/mesh.c 'int rt_load(void); int rt_mesh(void) { return rt_load(); }'
+}
+if command -v nm >/dev/null && command -v "${CC:-cc}" >/dev/null; then
+    objects_in_order
+    expect passes check_circles.sh "a tree in order"
+    object scene/load.c 'int rt_mesh(void); int rt_load(void) { return rt_mesh(); }'
+    expect fails check_circles.sh "two files that call each other"
+    objects_in_order
+    object scene/scene.c 'int rt_mesh(void); int rt_scene(void) { return rt_mesh(); }'
+    object scene/load.c 'extern int rt_scene(void); int (*const rt_load)(void) = rt_scene;'
+    expect fails check_circles.sh "three files in a circle, by a table"
+    objects_in_order
+    object base/file.c 'int rt_frame(void); int rt_file(void) { return rt_frame(); }'
+    object render/frame.c 'int rt_frame(void) { return 1; }'
+    expect fails check_circles.sh "a base file that needs the renderer"
+    rm "$tree/src/render/frame.c"
+    expect passes check_circles.sh "an object of a file that is gone"
+    objects_in_order
+    echo '#include "scene/mesh.h"' >"$tree/src/scene/scene.h" && echo '#include "scene.h"' >"$tree/src/scene/mesh.h"
+    expect fails check_circles.sh "two headers that include each other"
+    rm -r "$tree/build"
+    mkdir -p "$tree/build/CMakeFiles"
+    expect fails check_circles.sh "a build without objects"
+fi
 
 [ "$failures" = 0 ]

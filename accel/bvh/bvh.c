@@ -48,7 +48,7 @@ static const RtParam params[PARAM_COUNT] = {
                     .meaning =
                         "build=binned, spatial: bins along each axis in which split positions are sought",
                     .source = "Wald 2007",
-                    .tries = "2|5|64"},
+                    .test_values = "2|5|64"},
     [PARAM_BITS] = {.name = "bits",
                     .type = RT_PARAM_INT,
                     .standard = "21",
@@ -56,7 +56,7 @@ static const RtParam params[PARAM_COUNT] = {
                     .hi = RT_MAX_MORTON_BITS,
                     .meaning = "build=lbvh, ploc: bits of a Morton code along each axis",
                     .source = "the most that 64 bits hold",
-                    .tries = "1|10"},
+                    .test_values = "1|10"},
     [PARAM_RADIUS] = {.name = "radius",
                       .type = RT_PARAM_INT,
                       .standard = "25",
@@ -64,7 +64,7 @@ static const RtParam params[PARAM_COUNT] = {
                       .hi = 1024,
                       .meaning = "build=ploc: neighbours searched on either side",
                       .source = "Meister & Bittner 2018",
-                      .tries = "1|100"},
+                      .test_values = "1|100"},
     [PARAM_ALPHA] = {.name = "alpha",
                      .type = RT_PARAM_FLOAT,
                      .standard = "1e-05",
@@ -74,7 +74,7 @@ static const RtParam params[PARAM_COUNT] = {
                          "build=spatial: objects may be cut where groups overlap by more than this part "
                          "of the root's area",
                      .source = "Stich et al. 2009",
-                     .tries = "0|0.01"},
+                     .test_values = "0|0.01"},
     [PARAM_BUDGET] = {.name = "budget",
                       .type = RT_PARAM_FLOAT,
                       .standard = "2",
@@ -82,7 +82,7 @@ static const RtParam params[PARAM_COUNT] = {
                       .hi = 16,
                       .meaning = "build=spatial: most references per object, on average",
                       .source = "this program",
-                      .tries = "1|1.1|16"},
+                      .test_values = "1|1.1|16"},
     [PARAM_MAILBOX] = {.name = "mailbox",
                        .type = RT_PARAM_FLAG,
                        .standard = "on",
@@ -95,7 +95,7 @@ static const RtParam params[PARAM_COUNT] = {
                     .hi = 1024,
                     .meaning = "most objects a leaf may hold",
                     .source = "measured: no better beyond",
-                    .tries = "1|2|64"},
+                    .test_values = "1|2|64"},
     [PARAM_TRAVERSAL] = {.name = "traversal",
                          .type = RT_PARAM_FLOAT,
                          .standard = "1",
@@ -103,7 +103,7 @@ static const RtParam params[PARAM_COUNT] = {
                          .hi = 1000,
                          .meaning = "cost of visiting an inner node, in object tests",
                          .source = "MacDonald & Booth 1990",
-                         .tries = "0|0.1|10"},
+                         .test_values = "0|0.1|10"},
     [PARAM_REINSERTION] = {.name = "reinsertion",
                            .type = RT_PARAM_INT,
                            .standard = "0",
@@ -111,10 +111,8 @@ static const RtParam params[PARAM_COUNT] = {
                            .hi = 1000,
                            .meaning = "rounds in which subtrees move to where they cost less",
                            .source = "0: the tree as it is built",
-                           .tries = "1|3"},
+                           .test_values = "1|3"},
 };
-
-extern const RtAccelOps rt_bvh_ops;
 
 /* ---- build ---- */
 
@@ -155,7 +153,7 @@ static RtStatus fill(RtHierarchy *hierarchy, const RtGeometry *geometry, const R
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_bvh_ops, scene, sizeof(RtBvh), &accel, error));
+    RT_TRY(rt_accel_new("bvh", scene, sizeof(RtBvh), &accel, error));
     RtHierarchy *hierarchy = &((RtBvh *)accel)->hierarchy;
     *hierarchy = (RtHierarchy){.width = 2,
                                .leaf_limit = (uint32_t)values[PARAM_LEAF].i,

@@ -17,8 +17,6 @@
 #include "accel/tree/order.h"
 #include "base/memory.h"
 
-extern const RtAccelOps rt_clusters_ops;
-
 typedef enum Method { AGGLOMERATIVE, PLOC, GOLDSMITH_SALMON, RUBIN_WHITTED, SAH } Method;
 
 enum {
@@ -56,7 +54,7 @@ static const RtParam params[PARAM_COUNT] = {
                      .hi = RT_MAX_SLABS,
                      .meaning = "plane sets of extent=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces",
                      .source = "Kay & Kajiya 1986",
-                     .tries = "3|13"},
+                     .test_values = "3|13"},
     [PARAM_WIDTH] = {.name = "width",
                      .type = RT_PARAM_INT,
                      .standard = "2",
@@ -64,7 +62,7 @@ static const RtParam params[PARAM_COUNT] = {
                      .hi = RT_NODE_MAX_WIDTH,
                      .meaning = "most children of a node: the largest are opened into their parents",
                      .source = "clustering makes binary trees",
-                     .tries = "3|4|16"},
+                     .test_values = "3|4|16"},
     [PARAM_LEAF] = {.name = "leaf",
                     .type = RT_PARAM_INT,
                     .standard = "1",
@@ -72,7 +70,7 @@ static const RtParam params[PARAM_COUNT] = {
                     .hi = 1024,
                     .meaning = "most objects of a leaf; several share one where that costs no more by SAH",
                     .source = "an extent about every object",
-                    .tries = "2|8|64"},
+                    .test_values = "2|8|64"},
     [PARAM_TRAVERSAL_ORDER] = {.name = "traversal_order",
                                .type = RT_PARAM_CHOICE,
                                .standard = "nearest",
@@ -86,7 +84,7 @@ static const RtParam params[PARAM_COUNT] = {
                       .hi = 1024,
                       .meaning = "method=ploc: neighbours searched on either side",
                       .source = "Meister & Bittner 2018",
-                      .tries = "1|100"},
+                      .test_values = "1|100"},
     [PARAM_ORDER] = {.name = "order",
                      .type = RT_PARAM_CHOICE,
                      .standard = "random",
@@ -101,7 +99,7 @@ static const RtParam params[PARAM_COUNT] = {
                      .meaning =
                          "method=goldsmith-salmon: orders tried, all but the first random; the best is kept",
                      .source = "Goldsmith & Salmon 1987",
-                     .tries = "3"},
+                     .test_values = "3"},
     [PARAM_SEED] = {.name = "seed",
                     .type = RT_PARAM_INT,
                     .standard = "1",
@@ -109,7 +107,7 @@ static const RtParam params[PARAM_COUNT] = {
                     .hi = 1e9,
                     .meaning = "method=goldsmith-salmon: seed of the random orders",
                     .source = "any",
-                    .tries = "2"},
+                    .test_values = "2"},
 };
 
 /* ---- build ---- */
@@ -168,7 +166,7 @@ static RtStatus fill(RtClusters *self, const RtValue *values, RtError *error) {
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_clusters_ops, scene, sizeof(RtClusters), &accel, error));
+    RT_TRY(rt_accel_new("clusters", scene, sizeof(RtClusters), &accel, error));
     RtClusters *self = (RtClusters *)accel;
     self->hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
                                     .leaf_limit = (uint32_t)values[PARAM_LEAF].i,

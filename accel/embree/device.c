@@ -2,7 +2,6 @@
  * allocates accounted for. Configuration files in the home or the program's folder are ignored, so that a
  * spec says all there is to say. */
 #include "accel/embree/embree.h"
-#include "accel/embree_info.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -77,7 +76,7 @@ void rt_embree_device_close(RtEmbreeDevice *device) {
     device->device = NULL;
 }
 
-bool rt_embree_info(char *out, size_t room) {
+bool rt_embree_library(char *out, size_t room) {
     if (room > 0) out[0] = '\0';
     RtEmbreeDevice device;
     if (rt_embree_device_open(&device, ISA_DEFAULT, NULL) != RT_OK) return false;

@@ -16,8 +16,6 @@
 #include <stdatomic.h>
 #include <string.h>
 
-extern const RtAccelOps rt_embree_ops;
-
 enum { MODE, QUALITY, ISA, ROBUST, QUERY, PARAM_COUNT };
 
 static const RtParam params[PARAM_COUNT] = {
@@ -163,7 +161,7 @@ static void destroy(RtAccel *accel) {
 
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_embree_ops, scene, sizeof(RtEmbree), &accel, error));
+    RT_TRY(rt_accel_new("embree", scene, sizeof(RtEmbree), &accel, error));
     RtEmbree *self = (RtEmbree *)accel;
     self->user = values[MODE].choice == 1;
     self->query = (RtEmbreeQueryKind)values[QUERY].choice;
@@ -217,4 +215,5 @@ const RtAccelOps rt_embree_ops = {
     .scratch_bytes = rt_embree_scratch_bytes,
     .describe = describe,
     .validate = validate,
+    .library = rt_embree_library,
 };

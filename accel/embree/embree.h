@@ -45,6 +45,10 @@ RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, RtError *er
 RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error);
 void rt_embree_device_close(RtEmbreeDevice *device); /* a zeroed one is allowed */
 
+/* RtAccelOps.library: the version at run time and the instruction set that isa=default stands for on this
+ * machine. */
+bool rt_embree_library(char *out, size_t room);
+
 /* ---- the accelerator ---- */
 
 typedef struct RtEmbree RtEmbree;

@@ -6,8 +6,6 @@
 
 #include "base/memory.h"
 
-extern const RtAccelOps rt_extents_ops;
-
 /* ---- building ---- */
 
 static void destroy(RtAccel *accel) {
@@ -32,7 +30,7 @@ static const RtParam params[PARAM_COUNT] = {
      .hi = RT_MAX_SLABS,
      .meaning = "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",
      .source = "Kay & Kajiya 1986",
-     .tries = "3|5|7|13"},
+     .test_values = "3|5|7|13"},
 };
 
 static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
@@ -42,7 +40,7 @@ static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
 static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     const RtGeometry *geometry = &scene->geometry;
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_extents_ops, scene, sizeof(RtExtents), &accel, error));
+    RT_TRY(rt_accel_new("extents", scene, sizeof(RtExtents), &accel, error));
     RtExtents *self = (RtExtents *)accel;
     RtStatus status = rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_KIND].choice,
                                          (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);

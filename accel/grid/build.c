@@ -264,7 +264,7 @@ static RtBox choose_box(const RtGeometry *geometry, double flat, double margin) 
 RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
                               RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_grid_ops, scene, sizeof(RtGrid), &accel, error));
+    RT_TRY(rt_accel_new("grid", scene, sizeof(RtGrid), &accel, error));
     RtGrid *grid = (RtGrid *)accel;
     const Builder builder = {grid, values, limit, error};
     grid->box = scene->geometry.box;

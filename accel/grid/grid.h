@@ -69,8 +69,6 @@ typedef struct RtGrid {
     RtSurfaceRays served; /* ... and by its margin more before surfaces are */
 } RtGrid;
 
-extern const RtAccelOps rt_grid_ops;
-
 /* resolution.c: into how many voxels along each axis to cut a box with so many objects. */
 void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue *values, uint32_t n[3]);
 
@@ -113,7 +111,7 @@ RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValu
 RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
 void rt_grid_destroy(RtAccel *accel);
 
-/* survey.c */
+/* stats.c */
 void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);

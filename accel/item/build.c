@@ -196,7 +196,7 @@ void rt_item_destroy(RtAccel *accel) {
 
 RtStatus rt_item_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_item_ops, scene, sizeof(RtItemBuffer), &accel, error));
+    RT_TRY(rt_accel_new("item", scene, sizeof(RtItemBuffer), &accel, error));
     RtItemBuffer *buffer = (RtItemBuffer *)accel;
     buffer->settle = values[RT_ITEM_SETTLE].flag;
     RtStatus status = fill(buffer, error);

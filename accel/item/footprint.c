@@ -103,7 +103,7 @@ static bool samples_between(double lo, double hi, uint32_t n, bool corners, uint
 
 bool rt_item_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemFootprint *footprint) {
     const RtSampling *s = &buffer->view.sampling;
-    float tmin = (float)buffer->view.hither;
+    float tmin = (float)buffer->view.near;
     double blur = buffer->blur;
     if (!(blur <= MOST_BLUR)) {
         *footprint = (RtItemFootprint){{0, 0}, {s->columns - 1, s->rows - 1}, tmin};

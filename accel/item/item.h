@@ -38,8 +38,6 @@ typedef struct RtItemBuffer {
     double blur;    /* by how much directions, rounded to float32, are off, as a part of 1 */
 } RtItemBuffer;
 
-extern const RtAccelOps rt_item_ops;
-
 static inline size_t rt_item_sample_count(const RtItemBuffer *buffer) {
     return (size_t)buffer->view.sampling.columns * buffer->view.sampling.rows;
 }
@@ -89,7 +87,7 @@ bool rt_item_cross(const RtItemFacet *facet, const RtRay *ray, float near, RtIte
 RtStatus rt_item_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
 void rt_item_destroy(RtAccel *accel);
 
-/* survey.c */
+/* stats.c */
 void rt_item_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_item_validate(const RtAccel *accel, RtError *error);
 

@@ -5,7 +5,6 @@
 #include "accel/kd/kd.h"
 
 #include "base/memory.h"
-#include "shape/overlap.h"
 
 #include <float.h>
 #include <string.h>
@@ -20,7 +19,7 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
                          .hi = 1000,
                          .meaning = "cost of visiting an inner node, in object tests",
                          .source = "measured",
-                         .tries = "0|1|10"},
+                         .test_values = "0|1|10"},
     [RT_KD_EMPTY_BONUS] = {.name = "empty_bonus",
                            .type = RT_PARAM_FLOAT,
                            .standard = "0.2",
@@ -28,7 +27,7 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
                            .hi = 1,
                            .meaning = "part of its cost that a split is forgiven for cutting off empty space",
                            .source = "Wald & Havran 2006",
-                           .tries = "0|0.5|1"},
+                           .test_values = "0|0.5|1"},
     [RT_KD_MAX_OBJECTS] = {.name = "max_objects",
                            .type = RT_PARAM_INT,
                            .standard = "0",
@@ -36,7 +35,7 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
                            .hi = 1e6,
                            .meaning = "a cell with at most so many objects is not divided",
                            .source = "Wald & Havran 2006: the cost alone decides",
-                           .tries = "1|2|1000000"},
+                           .test_values = "1|2|1000000"},
     [RT_KD_MAX_DEPTH] = {.name = "max_depth",
                          .type = RT_PARAM_INT,
                          .standard = "-1",
@@ -45,7 +44,7 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
                          .meaning = "depth at which cells are divided no more, the root's being 0; -1: 8 and "
                                     "1.3 times the binary logarithm of the objects",
                          .source = "Pharr & Humphreys 2004, Physically Based Rendering",
-                         .tries = "0|5|60"},
+                         .test_values = "0|5|60"},
     [RT_KD_FAILURES] = {.name = "failures",
                         .type = RT_PARAM_INT,
                         .standard = "1",
@@ -53,7 +52,7 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
                         .hi = RT_KD_DEPTH_LIMIT,
                         .meaning = "splits on the way to a leaf that need not be expected to save anything",
                         .source = "Havran & Bittner 2002; measured: tests for steps",
-                        .tries = "0|4"},
+                        .test_values = "0|4"},
     [RT_KD_OVERLAP] = {.name = "overlap",
                        .type = RT_PARAM_CHOICE,
                        .standard = "box",
@@ -68,7 +67,7 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
                       .hi = 1,
                       .meaning = "how much wider than the scene's box the root is, as a part of it",
                       .source = "the published scene boxes are a little wider than tight",
-                      .tries = "0.01|1"},
+                      .test_values = "0.01|1"},
     [RT_KD_MAILBOX] = {.name = "mailbox",
                        .type = RT_PARAM_FLAG,
                        .standard = "on",
@@ -132,13 +131,6 @@ static void enter_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf) {
 
 /* ---- nodes ---- */
 
-bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out) {
-    const RtGeometry *g = &kd->base.scene->geometry;
-    if (kd->surfaces) return rt_object_part(g, id, cell, kd->served.margin, out);
-    *out = rt_box_common(g->boxes[id], *cell);
-    return true;
-}
-
 static RtStatus make_leaf(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
     RtKd *kd = b->kd;
     uint64_t room = (uint64_t)kd->id_count + cell->ids.count;
@@ -195,7 +187,7 @@ static uint32_t usual_depth(uint32_t objects) {
 }
 
 /* The root's lists, with room to deal them. */
-static RtStatus plant(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
+static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
     RtKdCell root = {.share = 1, .box = b->kd->box, .ids = {0, g->object_count}};
     uint64_t room = 2 * (uint64_t)g->object_count;
     RT_TRY(rt_reserve(&b->kd->nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
@@ -220,7 +212,7 @@ static RtStatus build_tree(RtKdBuilder *b, const RtGeometry *g, RtError *error) 
     uint32_t asked = b->kd->max_depth;
     b->sides = rt_alloc(g->object_count, 1);
     if (!b->sides) return rt_fail_memory(error, "building a kd-tree", g->object_count);
-    RT_TRY(plant(b, g, error));
+    RT_TRY(make_root(b, g, error));
     while (b->pending_count > 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(divide(b, &cell, error));
@@ -256,7 +248,7 @@ RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue 
     const RtGeometry *g = &scene->geometry;
     int64_t depth = values[RT_KD_MAX_DEPTH].i;
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_kd_ops, scene, sizeof(RtKd), &accel, error));
+    RT_TRY(rt_accel_new("kd", scene, sizeof(RtKd), &accel, error));
     RtKd *kd = (RtKd *)accel;
     kd->traversal = values[RT_KD_TRAVERSAL].f;
     kd->empty_bonus = values[RT_KD_EMPTY_BONUS].f;

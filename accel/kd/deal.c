@@ -9,8 +9,16 @@
 #include "accel/kd/kd.h"
 
 #include "base/memory.h"
+#include "shape/overlap.h"
 
 #include <string.h>
+
+bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out) {
+    const RtGeometry *g = &kd->base.scene->geometry;
+    if (kd->surfaces) return rt_object_part(g, id, cell, kd->served.margin, out);
+    *out = rt_box_common(g->boxes[id], *cell);
+    return true;
+}
 
 /* sides[id]: bit c says that child c gets the object's events as they are, bit 2 + c that it lists it. */
 enum { LOWER = 5, UPPER = 10, BOTH = 15, CUT_LOWER = 4, CUT_UPPER = 8 };

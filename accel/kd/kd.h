@@ -54,8 +54,6 @@ typedef struct RtKd {
     RtSurfaceRays served;
 } RtKd;
 
-extern const RtAccelOps rt_kd_ops;
-
 static inline bool rt_kd_is_leaf(const RtKdNode *node) {
     return (node->link & 3) == RT_KD_LEAF;
 }
@@ -88,10 +86,6 @@ RtStatus rt_kd_build(const RtScene *scene, const RtValue *values, RtAccel **out,
 RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
                             RtError *error);
 void rt_kd_destroy(RtAccel *accel);
-
-/* The part, within `cell`, of an object that has a part on both sides of one of the cell's faces: its box cut
- * off there or, with overlap=exact, a box about its surface there; false where there is none. */
-bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out);
 
 /* ---- while building ---- */
 
@@ -167,13 +161,17 @@ void rt_kd_merge_events(RtKdEvent *events, uint32_t count, const RtKdEvent *more
  * none. */
 RtKdSplit rt_kd_find_split(const RtKdBuilder *b, const RtKdCell *cell);
 
-/* deal.c. Deals the lists of `cell`, the topmost, to its two children: children[0], the lower, and
+/* deal.c. The part, within `cell`, of an object that has a part on both sides of one of the cell's faces: its
+ * box cut off there or, with overlap=exact, a box about its surface there; false where there is none. */
+bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out);
+
+/* Deals the lists of `cell`, the topmost, to its two children: children[0], the lower, and
  * children[1]; but for their nodes, which are set already. Gives, to *above, which of them has its lists on
  * top of the other's. */
 RtStatus rt_kd_deal(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit *split, RtKdCell children[2],
                     uint32_t *above, RtError *error);
 
-/* survey.c */
+/* stats.c */
 void rt_kd_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);

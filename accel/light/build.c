@@ -276,7 +276,7 @@ void rt_light_destroy(RtAccel *accel) {
 
 RtStatus rt_light_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_light_ops, scene, sizeof(RtLightBuffer), &accel, error));
+    RT_TRY(rt_accel_new("light", scene, sizeof(RtLightBuffer), &accel, error));
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
     buffer->n = (uint32_t)values[RT_LIGHT_CELLS].i;
     buffer->full_occlusion = values[RT_LIGHT_FULL_OCCLUSION].flag;

@@ -48,8 +48,6 @@ typedef struct RtLightMemory {
     uint32_t epoch, entry;
 } RtLightMemory;
 
-extern const RtAccelOps rt_light_ops;
-
 /* By how much cells grow in u and w on all sides: more than u can be wrong by where a ray is looked up. */
 #define RT_LIGHT_EDGE 0x1p-20
 
@@ -102,7 +100,7 @@ void rt_light_destroy(RtAccel *accel);
  * number. */
 uint32_t rt_light_order(const RtLightBuffer *buffer, uint32_t light, int face, RtLightEntry *order);
 
-/* survey.c */
+/* stats.c */
 void rt_light_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_light_validate(const RtAccel *accel, RtError *error);
 

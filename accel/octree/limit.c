@@ -22,13 +22,6 @@ typedef struct Estimate {
     double sum[RT_OCTREE_DEPTH_LIMIT + 1], squares[RT_OCTREE_DEPTH_LIMIT + 1];
 } Estimate;
 
-RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error) {
-    return rt_fail(error, RT_BAD_INPUT,
-                   "an octree of max_depth=%u, max_objects=%u would take about %.3g GiB or more, more than "
-                   "%.3g GiB: max_depth=%u would fit",
-                   b->tree->max_depth, b->tree->max_objects, bytes / 0x1p30, (double)b->limit / 0x1p30, fits);
-}
-
 static void add(Estimate *estimate, uint32_t from, uint32_t to, double bytes) {
     for (uint32_t depth = from; depth <= to; depth++) {
         estimate->sum[depth] += bytes;
@@ -72,7 +65,7 @@ static RtStatus walk(RtOctreeBuilder *probe, double weight, RtRandom *random, Es
         RT_TRY(rt_octree_divide(probe, index, probe->list + tree->nodes[index].first, count, error));
         bytes += weight * (8.0 * RT_OCTREE_NODE_BYTES +
                            ((double)probe->next_count - count) * (double)sizeof(uint32_t));
-        rt_octree_descend(probe);
+        rt_octree_next_level(probe);
         add(estimate, probe->depth, probe->depth, bytes);
         index = pick_child(probe, children, random, &weight);
     } while (index != 0);
@@ -89,7 +82,7 @@ static RtStatus start(RtOctreeBuilder *probe, const RtOctreeBuilder *b, uint32_t
     probe->list = rt_alloc(node.count, sizeof(uint32_t));
     if (!probe->list) return rt_fail_memory(error, "a probe", node.count * sizeof(uint32_t));
     memcpy(probe->list, b->list + node.first, node.count * sizeof(uint32_t));
-    return rt_octree_plant(probe, b->tree->boxes[index], node.count, error);
+    return rt_octree_begin(probe, b->tree->boxes[index], node.count, error);
 }
 
 /* Probes start at nodes with long lists, of which there are `candidates`, one in each of as many equal parts
@@ -116,7 +109,7 @@ static double bound(const Estimate *estimate, uint32_t depth, double certain) {
     return mean + certain * sqrt(fmax(variance, 0) / (PROBES - 1));
 }
 
-RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error) {
+RtStatus rt_octree_check_limit(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error) {
     double bytes = bytes_so_far(b, from, to), limit = (double)b->limit;
     uint32_t candidates = 0, max_depth = b->tree->max_depth, fits = b->depth;
     for (uint32_t i = from; i < to; i++) candidates += is_long(b, i);
@@ -131,7 +124,7 @@ RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to,
                      .cut_filled = b->tree->cut_filled};
     RtOctreeBuilder probe = {.tree = &tree, .objects = b->objects, .limit = UINT64_MAX};
     RtStatus status = probe_level(b, &probe, from, candidates, &estimate, error);
-    rt_octree_uproot(&probe);
+    rt_octree_end(&probe);
     RT_TRY(status);
 
     /* A deeper tree takes no less, and what is nearer is known better. */

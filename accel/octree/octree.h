@@ -58,8 +58,6 @@ typedef struct RtOctree {
     double slack, flat; /* how objects' boxes are grown: rt_octree_grown */
 } RtOctree;
 
-extern const RtAccelOps rt_octree_ops;
-
 /* build.c. `limit`: bytes of nodes and lists above which the octree is refused. */
 RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
 RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
@@ -79,14 +77,14 @@ typedef struct RtOctreeBuilder {
     uint32_t next_count, next_capacity;
 } RtOctreeBuilder;
 
-/* Makes a tree without nodes, `b->list` being the objects of `cell`, one of a single node. */
-RtStatus rt_octree_plant(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error);
+/* divide.c. Makes a tree without nodes, `b->list` being the objects of `cell`, one of a single node. */
+RtStatus rt_octree_begin(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error);
 
 /* Goes to the next level. */
-void rt_octree_descend(RtOctreeBuilder *b);
+void rt_octree_next_level(RtOctreeBuilder *b);
 
 /* Frees the arrays of a tree and its lists, but not the tree. */
-void rt_octree_uproot(RtOctreeBuilder *b);
+void rt_octree_end(RtOctreeBuilder *b);
 
 /* Whether a cell of the current level, with the list ids[0..count), is to be divided. */
 bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count);
@@ -100,14 +98,18 @@ bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *
 RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
                           RtError *error);
 
-/* limit.c. Refuses a tree of which the current level, nodes [from, to), is about to be divided, where what it
- * would take in the end is estimated to be certainly more than the limit; else RT_OK. */
-RtStatus rt_octree_foresee(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error);
+/* Makes node `index` of the current level a leaf with the list ids[0..count). */
+RtStatus rt_octree_make_leaf(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
+                             RtError *error);
 
-/* The refusal: it would take `bytes`, or more, while it would fit with max_depth = `fits`. */
+/* Refuses the tree: it would take `bytes`, or more, while it would fit with max_depth = `fits`. */
 RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error);
 
-/* survey.c */
+/* limit.c. Refuses a tree of which the current level, nodes [from, to), is about to be divided, where what it
+ * would take in the end is estimated to be certainly more than the limit; else RT_OK. */
+RtStatus rt_octree_check_limit(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error);
+
+/* stats.c */
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
 void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer);

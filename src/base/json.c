@@ -1,7 +1,6 @@
 #include "base/json.h"
 
 #include "base/file.h"
-#include "base/table.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -21,10 +20,6 @@ json_t *rt_json_now(void) {
     struct tm utc;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     return json_string(date);
-}
-
-json_t *rt_json_tally(const RtTally *tally) {
-    return rt_row_json(&(RtColumnGroup){NULL, rt_tally_columns, RT_TALLY_COUNTER_COUNT, NULL}, 1, tally);
 }
 
 RtStatus rt_json_save(const char *path, json_t *document, RtError *error) {

@@ -1,11 +1,11 @@
-/* JSON that several writers share: figures that may be unknown, tallies, structures, documents as files. */
+/* JSON that several writers share: figures that may be unknown, fingerprints, dates, documents as files. */
 #ifndef RT_BASE_JSON_H
 #define RT_BASE_JSON_H
 
 #include "base/status.h"
-#include "base/tally.h"
 
 #include <jansson.h>
+#include <stdint.h>
 
 /* Each gives a new reference, NULL where memory is short; json_pack then gives NULL, too. */
 
@@ -17,9 +17,6 @@ json_t *rt_json_hex(uint64_t value);
 
 /* Date and time now, UTC: "2001-04-30T12:00:00Z". */
 json_t *rt_json_now(void);
-
-/* Every counter under its name. */
-json_t *rt_json_tally(const RtTally *tally);
 
 /* Writes `document`, indented, to `path`, whole or not at all. NULL counts as short memory. Takes the
  * reference. */

@@ -130,6 +130,9 @@ struct RtTableColumn {
 /* Those of an RtTally. */
 extern const RtTableColumn rt_tally_columns[RT_TALLY_COUNTER_COUNT];
 
+/* Every counter under its name: a new reference, NULL where memory is short. */
+json_t *rt_json_tally(const RtTally *tally);
+
 /* Columns that stand together, over one kind of row. A named group is an object of its own in JSON. */
 typedef struct RtColumnGroup {
     const char *name; /* or NULL */

@@ -30,3 +30,7 @@ void rt_tally_add(RtTally *sum, const RtTally *part) {
     RT_TALLY_COUNTERS(ADD)
 #undef ADD
 }
+
+json_t *rt_json_tally(const RtTally *tally) {
+    return rt_row_json(&(RtColumnGroup){NULL, rt_tally_columns, RT_TALLY_COUNTER_COUNT, NULL}, 1, tally);
+}

@@ -51,6 +51,14 @@ RtStatus(rt_yaml_fail)(const RtYaml *yaml, const RtYamlNode *node, const char *f
     return fail_with(yaml, node, message);
 }
 
+const RtYamlNode *rt_yaml_get(const RtYaml *yaml, const RtYamlNode *mapping, const char *key) {
+    if (mapping->kind != RT_YAML_MAPPING) return NULL;
+    for (const RtYamlNode *k = mapping + 1; k != mapping + mapping->size; k += 1 + k[1].size) {
+        if (strcmp(text_of(yaml, k), key) == 0) return k + 1;
+    }
+    return NULL;
+}
+
 RtStatus rt_yaml_place(const RtYaml *yaml, RtStatus status, const RtYamlNode *mapping, const char *key) {
     if (!yaml->error || status == RT_OK || status == RT_NO_MEMORY) return status;
     const RtYamlNode *node = key ? rt_yaml_get(yaml, mapping, key) : NULL;

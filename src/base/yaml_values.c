@@ -102,14 +102,6 @@ RtStatus rt_yaml_keys(const RtYaml *yaml, const RtYamlNode *node, const char *ke
     return check_choice(yaml, node, &words, seen);
 }
 
-const RtYamlNode *rt_yaml_get(const RtYaml *yaml, const RtYamlNode *mapping, const char *key) {
-    if (mapping->kind != RT_YAML_MAPPING) return NULL;
-    for (const RtYamlNode *k = mapping + 1; k != mapping + mapping->size; k += 1 + k[1].size) {
-        if (strcmp(text_of(yaml, k), key) == 0) return k + 1;
-    }
-    return NULL;
-}
-
 static const RtYamlNode *value_of(const RtYaml *yaml, const RtYamlNode *node, const char *key) {
     return key ? rt_yaml_get(yaml, node, key) : node;
 }

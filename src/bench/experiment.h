@@ -22,7 +22,7 @@ typedef struct RtTrial {
     uint32_t width, height;       /* of the frame whose rays are recorded; 0 x 0: the camera's */
     uint32_t depth;               /* levels of the ray tree */
     bool corners;                 /* samples at pixel corners instead of centres */
-    bool outward_light;           /* shadow rays as in RtFrameOptions */
+    bool light_from_outside;      /* shadow rays as in RtFrameOptions */
     bool file;                    /* path names a file, not a built-in */
     bool optional;                /* a missing file is a notice, not an error */
 } RtTrial;

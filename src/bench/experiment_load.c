@@ -51,7 +51,7 @@ static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit
 static RtStatus read_trial(const RtYaml *y, const RtYamlNode *n, const char *folder, RtTrial *trial,
                            RtError *error) {
     const char *spec = "";
-    RT_TRY(rt_yaml_keys(y, n, "scene label? size? corners? outward_light? depth? optional?"));
+    RT_TRY(rt_yaml_keys(y, n, "scene label? size? corners? light_from_outside? depth? optional?"));
     RT_TRY(rt_yaml_text(y, n, "scene", RT_MAX_SCENE_NAME - 1, &spec));
     RT_TRY(rt_yaml_place(y, rt_trial_set_scene(trial, spec, folder, error), n, "scene"));
     RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, trial->label));
@@ -59,7 +59,7 @@ static RtStatus read_trial(const RtYaml *y, const RtYamlNode *n, const char *fol
     RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &trial->depth));
     RT_TRY(read_size(y, n, &trial->width, &trial->height));
     RT_TRY(read_flag(y, n, "corners", &trial->corners));
-    RT_TRY(read_flag(y, n, "outward_light", &trial->outward_light));
+    RT_TRY(read_flag(y, n, "light_from_outside", &trial->light_from_outside));
     return read_flag(y, n, "optional", &trial->optional);
 }
 

@@ -1,6 +1,6 @@
 #include "bench/machine.h"
 
-#include "accel/embree_info.h"
+#include "accel/accel.h"
 #include "base/parallel.h"
 #include "build_info.h"
 
@@ -41,17 +41,24 @@ static json_t *text_or_null(const char *text) {
 }
 
 json_t *rt_machine_json(void) {
-    char cpu[256], system[256] = "", embree[64];
+    char cpu[256], system[256] = "";
     struct utsname name;
     read_cpu(cpu, sizeof cpu);
     if (uname(&name) == 0) {
         snprintf(system, sizeof system, "%.64s %.64s %.64s", name.sysname, name.release, name.machine);
     }
-    rt_embree_info(embree, sizeof embree);
-    return json_pack("{s:o, s:o, s:i, s:o, s:s, s:s, s:s, s:s, s:b, s:o}", "cpu", text_or_null(cpu), "simd",
-                     text_or_null(simd_level()), "processors", rt_processor_count(), "os",
-                     text_or_null(system), "compiler", RT_COMPILER, "flags", RT_FLAGS, "version", RT_VERSION,
-                     "commit", RT_COMMIT, "dirty", RT_DIRTY, "embree", text_or_null(embree));
+    json_t *machine = json_pack("{s:o, s:o, s:i, s:o, s:s, s:s, s:s, s:s, s:b}", "cpu", text_or_null(cpu),
+                                "simd", text_or_null(simd_level()), "processors", rt_processor_count(), "os",
+                                text_or_null(system), "compiler", RT_COMPILER, "flags", RT_FLAGS, "version",
+                                RT_VERSION, "commit", RT_COMMIT, "dirty", RT_DIRTY);
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        char library[64];
+        if (!ops->library) continue;
+        ops->library(library, sizeof library);
+        json_object_set_new(machine, ops->name, text_or_null(library));
+    }
+    return machine;
 }
 
 const char *rt_build_identity(void) {

@@ -22,7 +22,7 @@ static json_t *scenes_json(const RtResults *results) {
                             trial->skipped, "objects", (json_int_t)trial->objects, "hash",
                             rt_json_hex(trial->scene), "width", (json_int_t)trial->width, "height",
                             (json_int_t)trial->height, "corners", experiment->trials[t].corners,
-                            "outward_light", experiment->trials[t].outward_light, "depth",
+                            "light_from_outside", experiment->trials[t].light_from_outside, "depth",
                             (json_int_t)experiment->trials[t].depth, "rays", sets));
     }
     return list;

@@ -161,7 +161,7 @@ static RtStatus make_random(Recorder *recorder, RtError *error) {
 static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *frame, RtError *error) {
     RtFrameOptions options = {.depth = recorder->recording->depth,
                               .threads = recorder->recording->threads,
-                              .outward_light = recorder->recording->outward_light,
+                              .light_from_outside = recorder->recording->light_from_outside,
                               .sink = record,
                               .sink_context = recorder};
     RT_TRY(rt_frame_trace(frame, accel, &options, error));

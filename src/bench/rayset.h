@@ -18,11 +18,11 @@ typedef struct RtRaySet {
 } RtRaySet;
 
 typedef struct RtRecording {
-    uint32_t depth;     /* levels of the ray tree */
-    uint64_t seed;      /* of diffuse and random rays */
-    uint64_t random;    /* number of random rays */
-    int threads;        /* 0 = all processors; does not change the sets */
-    bool outward_light; /* as in RtFrameOptions */
+    uint32_t depth;          /* levels of the ray tree */
+    uint64_t seed;           /* of diffuse and random rays */
+    uint64_t random;         /* number of random rays */
+    int threads;             /* 0 = all processors; does not change the sets */
+    bool light_from_outside; /* as in RtFrameOptions */
 } RtRecording;
 
 /* Fills sets[RT_RAY_KIND_COUNT], indexed by kind; a kind that the scene does not produce gets an empty set.

@@ -61,7 +61,7 @@ static RtStatus record_rays(RtTrialState *trial, RtError *error) {
                              .seed = trial->experiment->seed,
                              .random = trial->experiment->limit,
                              .threads = trial->options->threads,
-                             .outward_light = setup->outward_light};
+                             .light_from_outside = setup->light_from_outside};
     RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
     RT_TRY(rt_accel_open(rt_accel_default(), trial->scene, &trial->reference, error));
     RtStatus status = rt_rayset_record(recorded, trial->reference, &recording, error);

@@ -105,8 +105,8 @@ static void print_info(const RtScene *scene, const Counts *counts) {
     print_vector("from", camera->from);
     print_vector("at", camera->at);
     print_vector("up", camera->up);
-    printf("  %-13s %.4g degrees, %u x %u pixels, hither %.4g\n", "view", (double)camera->fov, camera->width,
-           camera->height, (double)camera->hither);
+    printf("  %-13s %.4g degrees, %u x %u pixels, near %.4g\n", "view", (double)camera->fov, camera->width,
+           camera->height, (double)camera->near);
     printf("memory: %.1f MB\nfingerprint: %s\n", (double)rt_scene_bytes(scene) / 1e6, counts->fingerprint);
 }
 
@@ -126,7 +126,7 @@ static json_t *material_json(const RtMaterial *m) {
 static json_t *camera_json(const RtCamera *camera) {
     return json_pack("{s:o, s:o, s:o, s:f, s:f, s:I, s:I}", "from", vector_json(camera->from), "at",
                      vector_json(camera->at), "up", vector_json(camera->up), "fov", (double)camera->fov,
-                     "hither", (double)camera->hither, "width", (json_int_t)camera->width, "height",
+                     "near", (double)camera->near, "width", (json_int_t)camera->width, "height",
                      (json_int_t)camera->height);
 }
 

@@ -314,10 +314,10 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
                rt_ray_kind_name(set->kind));
         return RT_OK;
     }
-    char witness[512];
-    rt_witness_format(&result.first_wrong, witness, sizeof witness);
+    char says[512];
+    rt_wrong_answer_format(&result.first_wrong, says, sizeof says);
     return rt_fail(error, RT_MISMATCH, "%s differs from brute on %s rays, first on: %s", run->spec,
-                   rt_ray_kind_name(set->kind), witness);
+                   rt_ray_kind_name(set->kind), says);
 }
 
 /* The picture as a whole: what answers alike, stream by stream, must also add up alike. */
@@ -348,7 +348,7 @@ static RtStatus check_rays(const Run *run, RtError *error) {
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
     RtRecording recording = {.depth = run->options->depth, .threads = run->options->threads};
     RtAccel *brute;
-    RT_TRY(rt_accel_open("brute", &run->scene, &brute, error));
+    RT_TRY(rt_accel_open(rt_accel_truth(), &run->scene, &brute, error));
     RtStatus status = rt_rayset_record(sets, run->accel, &recording, error);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT && status == RT_OK; kind++) {
         if (run->rays[kind] > 0) status = check_kind(run, brute, &sets[kind], error);
@@ -364,7 +364,7 @@ int rt_command_render(int argc, char **argv) {
         "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
         "To begin with: raytally render balls -o balls.png";
     const struct argp argp = {.options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc};
-    Options o = {.accel = "bvh", .samples = 1, .depth = RT_DEFAULT_DEPTH};
+    Options o = {.accel = rt_accel_default(), .samples = 1, .depth = RT_DEFAULT_DEPTH};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error = {RT_OK, ""};
     Run *run = rt_alloc(1, sizeof(Run));

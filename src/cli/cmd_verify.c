@@ -326,18 +326,18 @@ static RtStatus verify(const Options *o, bool *failed, RtError *error) {
 
 /* ---- replaying ---- */
 
-static void print_reply(const char *where, const RtQuestion *question, const RtReply *reply) {
-    RtWitness witness = {.index = question->asked,
-                         .occluded = question->occluded,
-                         .counted = question->counted,
-                         .stream = question->stream,
-                         .ray = question->rays[question->asked],
-                         .expected = reply->expected,
-                         .got = reply->got,
-                         .blocked = reply->blocked};
+static void print_answer(const char *where, const RtFailure *failure, const RtAnswer *answer) {
+    RtWrongAnswer asked = {.index = failure->asked,
+                           .occluded = failure->occluded,
+                           .counted = failure->counted,
+                           .stream = failure->stream,
+                           .ray = failure->rays[failure->asked],
+                           .expected = answer->expected,
+                           .got = answer->got,
+                           .blocked = answer->blocked};
     char says[512];
-    rt_witness_format(&witness, says, sizeof says);
-    printf("%s: %s: %s\n", where, reply->wrong ? "WRONG" : "right", says);
+    rt_wrong_answer_format(&asked, says, sizeof says);
+    printf("%s: %s: %s\n", where, answer->wrong ? "WRONG" : "right", says);
 }
 
 /* The scene as it was, and what was left of it. Where one cannot be asked any more the other will do. */
@@ -348,11 +348,11 @@ static RtStatus replay(const char *path, bool *failed, RtError *error) {
     printf("%s on %s\n", file.accel_spec, file.scene_spec);
     uint32_t asked = 0;
     for (int shrunk = 0; shrunk < 2 && status == RT_OK; shrunk++) {
-        RtReply reply;
-        status = rt_replay_ask(&file, rt_maker_of_spec(file.accel_spec), shrunk, &reply, error);
+        RtAnswer answer;
+        status = rt_replay_ask(&file, rt_maker_of_spec(file.accel_spec), shrunk, &answer, error);
         if (status == RT_OK) {
-            print_reply(shrunk ? "shrunk" : "scene", &file.question, &reply);
-            *failed |= reply.wrong;
+            print_answer(shrunk ? "shrunk" : "scene", &file.failure, &answer);
+            *failed |= answer.wrong;
             asked++;
         } else if ((shrunk ? status == RT_NOT_AVAILABLE && !file.shrunk_yaml : file.shrunk_yaml != NULL) &&
                    status != RT_NO_MEMORY) {

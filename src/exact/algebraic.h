@@ -9,8 +9,8 @@
  * greatest common divisor of their polynomials has a root in both intervals; if not, narrowing parts them. So
  * nothing is estimated, and a tie is a tie.
  *
- * Numbers are on a slate (exact.h). Polynomials that come out of divisions are multiplied by a number above 0
- * that makes their coefficients integers without a common factor: so they stay as short as they can. */
+ * Numbers are in an arena (exact.h). Polynomials that come out of divisions are multiplied by a number above
+ * 0 that makes their coefficients integers without a common factor: so they stay as short as they can. */
 #ifndef RT_EXACT_ALGEBRAIC_H
 #define RT_EXACT_ALGEBRAIC_H
 
@@ -25,10 +25,10 @@ typedef struct RtPolynomial {
 } RtPolynomial;
 
 /* -1, 0, 1 */
-int rt_polynomial_sign(RtSlate *slate, const RtPolynomial *p, RtRational t);
+int rt_polynomial_sign(RtExactArena *arena, const RtPolynomial *p, RtRational t);
 
 /* The greatest common divisor of two that are not both 0. */
-RtPolynomial rt_polynomial_common(RtSlate *slate, const RtPolynomial *p, const RtPolynomial *q);
+RtPolynomial rt_polynomial_common(RtExactArena *arena, const RtPolynomial *p, const RtPolynomial *q);
 
 /* A root of `of`, the only one with lo <= t <= hi; lo and hi are none. No root of `of` is one twice. */
 typedef struct RtAlgebraic {
@@ -39,14 +39,14 @@ typedef struct RtAlgebraic {
 /* The real roots of p, of degree 0 or more, in ascending order; gives their number. A multiple root is given
  * once: it is one that p changes its sign at if p has different signs at lo and hi. Intervals are no wider
  * than 2^-64 of the largest number that a root of p may be. */
-int rt_polynomial_roots(RtSlate *slate, const RtPolynomial *p, RtAlgebraic roots[RT_MAX_DEGREE]);
+int rt_polynomial_roots(RtExactArena *arena, const RtPolynomial *p, RtAlgebraic roots[RT_MAX_DEGREE]);
 
-RtAlgebraic rt_algebraic_of_surd(RtSlate *slate, const RtSurd *surd);
+RtAlgebraic rt_algebraic_of_surd(RtExactArena *arena, const RtSurd *surd);
 
-/* -1, 0, 1: the sign of a - b. Nothing stays on the slate. */
-int rt_algebraic_compare(RtSlate *slate, const RtAlgebraic *a, const RtAlgebraic *b);
+/* -1, 0, 1: the sign of a - b. Nothing stays in the arena. */
+int rt_algebraic_compare(RtExactArena *arena, const RtAlgebraic *a, const RtAlgebraic *b);
 
 /* a - from, with an error below 2^-62 of it. */
-long double rt_algebraic_value(RtSlate *slate, const RtAlgebraic *a, RtRational from);
+long double rt_algebraic_value(RtExactArena *arena, const RtAlgebraic *a, RtRational from);
 
 #endif

@@ -1,67 +1,67 @@
 #include "exact/exact.h"
 
-/* ---- the slate ---- */
+/* ---- the arena ---- */
 
-mpq_ptr rt_slate_number(RtSlate *slate) {
-    if (slate->used == slate->block_count * RT_SLATE_BLOCK) {
+mpq_ptr rt_exact_arena_number(RtExactArena *arena) {
+    if (arena->used == arena->block_count * RT_EXACT_ARENA_BLOCK) {
         void *(*alloc)(size_t);
         void *(*grow)(void *, size_t, size_t);
         mp_get_memory_functions(&alloc, &grow, NULL);
-        size_t old = slate->block_count * sizeof(void *), one = sizeof(void *);
-        slate->blocks = old == 0 ? alloc(one) : grow(slate->blocks, old, old + one);
-        mpq_t *block = alloc(RT_SLATE_BLOCK * sizeof(mpq_t));
-        for (size_t i = 0; i < RT_SLATE_BLOCK; i++) mpq_init(block[i]);
-        slate->blocks[slate->block_count++] = block;
+        size_t old = arena->block_count * sizeof(void *), one = sizeof(void *);
+        arena->blocks = old == 0 ? alloc(one) : grow(arena->blocks, old, old + one);
+        mpq_t *block = alloc(RT_EXACT_ARENA_BLOCK * sizeof(mpq_t));
+        for (size_t i = 0; i < RT_EXACT_ARENA_BLOCK; i++) mpq_init(block[i]);
+        arena->blocks[arena->block_count++] = block;
     }
-    mpq_t *block = slate->blocks[slate->used / RT_SLATE_BLOCK];
-    return block[slate->used++ % RT_SLATE_BLOCK];
+    mpq_t *block = arena->blocks[arena->used / RT_EXACT_ARENA_BLOCK];
+    return block[arena->used++ % RT_EXACT_ARENA_BLOCK];
 }
 
-void rt_slate_clear(RtSlate *slate) {
+void rt_exact_arena_clear(RtExactArena *arena) {
     void (*release)(void *, size_t);
     mp_get_memory_functions(NULL, NULL, &release);
-    for (size_t i = 0; i < slate->block_count; i++) {
-        for (size_t k = 0; k < RT_SLATE_BLOCK; k++) mpq_clear(slate->blocks[i][k]);
-        release(slate->blocks[i], RT_SLATE_BLOCK * sizeof(mpq_t));
+    for (size_t i = 0; i < arena->block_count; i++) {
+        for (size_t k = 0; k < RT_EXACT_ARENA_BLOCK; k++) mpq_clear(arena->blocks[i][k]);
+        release(arena->blocks[i], RT_EXACT_ARENA_BLOCK * sizeof(mpq_t));
     }
-    if (slate->block_count > 0) release(slate->blocks, slate->block_count * sizeof(void *));
-    *slate = (RtSlate){0};
+    if (arena->block_count > 0) release(arena->blocks, arena->block_count * sizeof(void *));
+    *arena = (RtExactArena){0};
 }
 
 /* ---- rationals ---- */
 
-RtRational rt_exact_of(RtSlate *slate, double x) {
-    mpq_ptr out = rt_slate_number(slate);
+RtRational rt_exact_of(RtExactArena *arena, double x) {
+    mpq_ptr out = rt_exact_arena_number(arena);
     mpq_set_d(out, x);
     return out;
 }
 
-RtRational rt_exact_add(RtSlate *slate, RtRational a, RtRational b) {
-    mpq_ptr out = rt_slate_number(slate);
+RtRational rt_exact_add(RtExactArena *arena, RtRational a, RtRational b) {
+    mpq_ptr out = rt_exact_arena_number(arena);
     mpq_add(out, a, b);
     return out;
 }
 
-RtRational rt_exact_sub(RtSlate *slate, RtRational a, RtRational b) {
-    mpq_ptr out = rt_slate_number(slate);
+RtRational rt_exact_sub(RtExactArena *arena, RtRational a, RtRational b) {
+    mpq_ptr out = rt_exact_arena_number(arena);
     mpq_sub(out, a, b);
     return out;
 }
 
-RtRational rt_exact_mul(RtSlate *slate, RtRational a, RtRational b) {
-    mpq_ptr out = rt_slate_number(slate);
+RtRational rt_exact_mul(RtExactArena *arena, RtRational a, RtRational b) {
+    mpq_ptr out = rt_exact_arena_number(arena);
     mpq_mul(out, a, b);
     return out;
 }
 
-RtRational rt_exact_div(RtSlate *slate, RtRational a, RtRational b) {
-    mpq_ptr out = rt_slate_number(slate);
+RtRational rt_exact_div(RtExactArena *arena, RtRational a, RtRational b) {
+    mpq_ptr out = rt_exact_arena_number(arena);
     mpq_div(out, a, b);
     return out;
 }
 
-RtRational rt_exact_neg(RtSlate *slate, RtRational a) {
-    mpq_ptr out = rt_slate_number(slate);
+RtRational rt_exact_neg(RtExactArena *arena, RtRational a) {
+    mpq_ptr out = rt_exact_arena_number(arena);
     mpq_neg(out, a);
     return out;
 }
@@ -91,91 +91,91 @@ long double rt_exact_value(RtRational a) {
     return mpq_sgn(a) < 0 ? -value : value;
 }
 
-RtExactVec rt_exact_vec(RtSlate *slate, RtVec3d v) {
-    return (RtExactVec){{rt_exact_of(slate, v.x), rt_exact_of(slate, v.y), rt_exact_of(slate, v.z)}};
+RtExactVec rt_exact_vec(RtExactArena *arena, RtVec3d v) {
+    return (RtExactVec){{rt_exact_of(arena, v.x), rt_exact_of(arena, v.y), rt_exact_of(arena, v.z)}};
 }
 
-RtExactVec rt_exact_vec_sub(RtSlate *slate, RtExactVec a, RtExactVec b) {
+RtExactVec rt_exact_vec_sub(RtExactArena *arena, RtExactVec a, RtExactVec b) {
     RtExactVec out;
-    for (int i = 0; i < 3; i++) out.at[i] = rt_exact_sub(slate, a.at[i], b.at[i]);
+    for (int i = 0; i < 3; i++) out.at[i] = rt_exact_sub(arena, a.at[i], b.at[i]);
     return out;
 }
 
-RtExactVec rt_exact_vec_add_scaled(RtSlate *slate, RtExactVec a, RtExactVec b, RtRational scale) {
+RtExactVec rt_exact_vec_add_scaled(RtExactArena *arena, RtExactVec a, RtExactVec b, RtRational scale) {
     RtExactVec out;
     for (int i = 0; i < 3; i++) {
-        out.at[i] = rt_exact_add(slate, a.at[i], rt_exact_mul(slate, b.at[i], scale));
+        out.at[i] = rt_exact_add(arena, a.at[i], rt_exact_mul(arena, b.at[i], scale));
     }
     return out;
 }
 
-RtRational rt_exact_dot(RtSlate *slate, RtExactVec a, RtExactVec b) {
-    RtRational sum = rt_exact_mul(slate, a.at[0], b.at[0]);
-    for (int i = 1; i < 3; i++) sum = rt_exact_add(slate, sum, rt_exact_mul(slate, a.at[i], b.at[i]));
+RtRational rt_exact_dot(RtExactArena *arena, RtExactVec a, RtExactVec b) {
+    RtRational sum = rt_exact_mul(arena, a.at[0], b.at[0]);
+    for (int i = 1; i < 3; i++) sum = rt_exact_add(arena, sum, rt_exact_mul(arena, a.at[i], b.at[i]));
     return sum;
 }
 
-RtExactVec rt_exact_cross(RtSlate *slate, RtExactVec a, RtExactVec b) {
+RtExactVec rt_exact_cross(RtExactArena *arena, RtExactVec a, RtExactVec b) {
     RtExactVec out;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
         out.at[i] =
-            rt_exact_sub(slate, rt_exact_mul(slate, a.at[j], b.at[k]), rt_exact_mul(slate, a.at[k], b.at[j]));
+            rt_exact_sub(arena, rt_exact_mul(arena, a.at[j], b.at[k]), rt_exact_mul(arena, a.at[k], b.at[j]));
     }
     return out;
 }
 
 /* ---- surds ---- */
 
-RtSurd rt_surd_of(RtSlate *slate, RtRational p) {
-    RtRational zero = rt_exact_of(slate, 0);
+RtSurd rt_surd_of(RtExactArena *arena, RtRational p) {
+    RtRational zero = rt_exact_of(arena, 0);
     return (RtSurd){p, zero, zero};
 }
 
-RtSurd rt_surd_line(RtSlate *slate, RtRational a, RtRational b, const RtSurd *x) {
-    return (RtSurd){rt_exact_add(slate, a, rt_exact_mul(slate, b, x->p)), rt_exact_mul(slate, b, x->q), x->d};
+RtSurd rt_surd_line(RtExactArena *arena, RtRational a, RtRational b, const RtSurd *x) {
+    return (RtSurd){rt_exact_add(arena, a, rt_exact_mul(arena, b, x->p)), rt_exact_mul(arena, b, x->q), x->d};
 }
 
-static RtRational square(RtSlate *slate, RtRational a) {
-    return rt_exact_mul(slate, a, a);
+static RtRational square(RtExactArena *arena, RtRational a) {
+    return rt_exact_mul(arena, a, a);
 }
 
 /* Of p + q sqrt(d). */
-static int sign_of(RtSlate *slate, RtRational p, RtRational q, RtRational d) {
+static int sign_of(RtExactArena *arena, RtRational p, RtRational q, RtRational d) {
     int first = mpq_sgn(p), second = mpq_sgn(q) * mpq_sgn(d);
     if (first * second >= 0) return first != 0 ? first : second;
-    return first * mpq_cmp(square(slate, p), rt_exact_mul(slate, square(slate, q), d));
+    return first * mpq_cmp(square(arena, p), rt_exact_mul(arena, square(arena, q), d));
 }
 
-int rt_surd_sign(RtSlate *slate, const RtSurd *a) {
-    size_t mark = rt_slate_mark(slate);
-    int sign = sign_of(slate, a->p, a->q, a->d);
-    rt_slate_wipe(slate, mark);
+int rt_surd_sign(RtExactArena *arena, const RtSurd *a) {
+    size_t mark = rt_exact_arena_mark(arena);
+    int sign = sign_of(arena, a->p, a->q, a->d);
+    rt_exact_arena_rewind(arena, mark);
     return (sign > 0) - (sign < 0);
 }
 
 /* (a.p - b.p + a.q sqrt(a.d)) and -b.q sqrt(b.d) are the parts whose squares are compared. */
-int rt_surd_compare(RtSlate *slate, const RtSurd *a, const RtSurd *b) {
-    size_t mark = rt_slate_mark(slate);
-    RtRational p = rt_exact_sub(slate, a->p, b->p);
-    int first = sign_of(slate, p, a->q, a->d), second = -mpq_sgn(b->q) * mpq_sgn(b->d), sign;
+int rt_surd_compare(RtExactArena *arena, const RtSurd *a, const RtSurd *b) {
+    size_t mark = rt_exact_arena_mark(arena);
+    RtRational p = rt_exact_sub(arena, a->p, b->p);
+    int first = sign_of(arena, p, a->q, a->d), second = -mpq_sgn(b->q) * mpq_sgn(b->d), sign;
     first = (first > 0) - (first < 0);
     if (first * second >= 0) {
         sign = first != 0 ? first : second;
     } else {
-        RtRational aa = rt_exact_mul(slate, square(slate, a->q), a->d);
-        RtRational bb = rt_exact_mul(slate, square(slate, b->q), b->d);
-        RtRational plain = rt_exact_sub(slate, rt_exact_add(slate, square(slate, p), aa), bb);
-        RtRational pq = rt_exact_mul(slate, p, a->q);
-        sign = first * sign_of(slate, plain, rt_exact_add(slate, pq, pq), a->d);
+        RtRational aa = rt_exact_mul(arena, square(arena, a->q), a->d);
+        RtRational bb = rt_exact_mul(arena, square(arena, b->q), b->d);
+        RtRational plain = rt_exact_sub(arena, rt_exact_add(arena, square(arena, p), aa), bb);
+        RtRational pq = rt_exact_mul(arena, p, a->q);
+        sign = first * sign_of(arena, plain, rt_exact_add(arena, pq, pq), a->d);
     }
-    rt_slate_wipe(slate, mark);
+    rt_exact_arena_rewind(arena, mark);
     return (sign > 0) - (sign < 0);
 }
 
 /* sqrt(d) rounded down to a multiple of 2^-bits. */
-static RtRational root_below(RtSlate *slate, RtRational d, mp_bitcnt_t bits) {
-    mpq_ptr root = rt_slate_number(slate);
+static RtRational root_below(RtExactArena *arena, RtRational d, mp_bitcnt_t bits) {
+    mpq_ptr root = rt_exact_arena_number(arena);
     mpz_mul_2exp(mpq_numref(root), mpq_numref(d), 2 * bits);
     mpz_tdiv_q(mpq_numref(root), mpq_numref(root), mpq_denref(d));
     mpz_sqrt(mpq_numref(root), mpq_numref(root));
@@ -185,41 +185,41 @@ static RtRational root_below(RtSlate *slate, RtRational d, mp_bitcnt_t bits) {
 }
 
 /* With twice as many bits each time, until q times what the root may be off is below 2^-66 of the number. */
-long double rt_surd_value(RtSlate *slate, const RtSurd *a) {
+long double rt_surd_value(RtExactArena *arena, const RtSurd *a) {
     if (mpq_sgn(a->q) == 0 || mpq_sgn(a->d) == 0) return rt_exact_value(a->p);
-    if (rt_surd_sign(slate, a) == 0) return 0;
-    size_t mark = rt_slate_mark(slate);
+    if (rt_surd_sign(arena, a) == 0) return 0;
+    size_t mark = rt_exact_arena_mark(arena);
     for (mp_bitcnt_t bits = 128;; bits *= 2) {
-        RtRational root = root_below(slate, a->d, bits);
-        RtRational near = rt_exact_add(slate, a->p, rt_exact_mul(slate, a->q, root));
-        mpq_ptr off = rt_slate_number(slate), size = rt_slate_number(slate);
+        RtRational root = root_below(arena, a->d, bits);
+        RtRational near = rt_exact_add(arena, a->p, rt_exact_mul(arena, a->q, root));
+        mpq_ptr off = rt_exact_arena_number(arena), size = rt_exact_arena_number(arena);
         mpq_abs(off, a->q);
         mpq_abs(size, near);
         mpq_div_2exp(off, off, bits - 66);
         bool sure = mpq_cmp(off, size) < 0;
         long double value = sure ? rt_exact_value(near) : 0;
-        rt_slate_wipe(slate, mark);
+        rt_exact_arena_rewind(arena, mark);
         if (sure) return value;
     }
 }
 
-int rt_exact_roots(RtSlate *slate, RtRational a, RtRational half_b, RtRational c, RtSurd roots[2]) {
-    RtRational zero = rt_exact_of(slate, 0);
+int rt_exact_roots(RtExactArena *arena, RtRational a, RtRational half_b, RtRational c, RtSurd roots[2]) {
+    RtRational zero = rt_exact_of(arena, 0);
     if (mpq_sgn(a) == 0) {
         if (mpq_sgn(half_b) == 0) return 0;
         roots[0] =
-            (RtSurd){rt_exact_div(slate, c, rt_exact_mul(slate, rt_exact_of(slate, -2), half_b)), zero, zero};
+            (RtSurd){rt_exact_div(arena, c, rt_exact_mul(arena, rt_exact_of(arena, -2), half_b)), zero, zero};
         return 1;
     }
-    RtRational d = rt_exact_sub(slate, square(slate, half_b), rt_exact_mul(slate, a, c));
+    RtRational d = rt_exact_sub(arena, square(arena, half_b), rt_exact_mul(arena, a, c));
     if (mpq_sgn(d) < 0) return 0;
-    RtRational middle = rt_exact_neg(slate, rt_exact_div(slate, half_b, a));
+    RtRational middle = rt_exact_neg(arena, rt_exact_div(arena, half_b, a));
     if (mpq_sgn(d) == 0) {
         roots[0] = (RtSurd){middle, zero, zero};
         return 1;
     }
-    RtRational up = rt_exact_div(slate, rt_exact_of(slate, mpq_sgn(a)), a);
-    roots[0] = (RtSurd){middle, rt_exact_neg(slate, up), d};
+    RtRational up = rt_exact_div(arena, rt_exact_of(arena, mpq_sgn(a)), a);
+    roots[0] = (RtSurd){middle, rt_exact_neg(arena, up), d};
     roots[1] = (RtSurd){middle, up, d};
     return 2;
 }

@@ -6,7 +6,7 @@
  * of a^2 - b^2 c. Of (p + q sqrt(d)) + r sqrt(e): where the two parts pull opposite ways, that of the
  * difference of their squares, which has one root less. No approximation comes in, so a tie is a tie.
  *
- * Layout. Numbers are written on a slate, one after another, and never changed; wiping the slate back to a
+ * Layout. Numbers are written in an arena, one after another, and never changed; rewinding the arena to a
  * mark forgets the later ones, and their memory serves again. Memory is that of GMP (a number of a ray takes
  * a few hundred bytes), which ends the program with a message where there is none. */
 #ifndef RT_EXACT_EXACT_H
@@ -17,40 +17,40 @@
 #include <gmp.h>
 #include <stddef.h>
 
-/* A number on a slate. */
+/* A number in an arena. */
 typedef mpq_srcptr RtRational;
 
 /* A zeroed struct is empty. One thread uses it at a time. */
-typedef struct RtSlate {
-    mpq_t **blocks; /* [block_count] of RT_SLATE_BLOCK numbers each, all initialised */
+typedef struct RtExactArena {
+    mpq_t **blocks; /* [block_count] of RT_EXACT_ARENA_BLOCK numbers each, all initialised */
     size_t block_count, used;
-} RtSlate;
+} RtExactArena;
 
-#define RT_SLATE_BLOCK 64
+#define RT_EXACT_ARENA_BLOCK 64
 
-void rt_slate_clear(RtSlate *slate);
+void rt_exact_arena_clear(RtExactArena *arena);
 
-static inline size_t rt_slate_mark(const RtSlate *slate) {
-    return slate->used;
+static inline size_t rt_exact_arena_mark(const RtExactArena *arena) {
+    return arena->used;
 }
 
 /* Forgets what was written after the mark was taken. */
-static inline void rt_slate_wipe(RtSlate *slate, size_t mark) {
-    slate->used = mark;
+static inline void rt_exact_arena_rewind(RtExactArena *arena, size_t mark) {
+    arena->used = mark;
 }
 
-/* A number of the slate that is still to be written, once. */
-mpq_ptr rt_slate_number(RtSlate *slate);
+/* A number of the arena that is still to be written, once. */
+mpq_ptr rt_exact_arena_number(RtExactArena *arena);
 
 /* ---- rationals ---- */
 
 /* `x`, which is finite. */
-RtRational rt_exact_of(RtSlate *slate, double x);
-RtRational rt_exact_add(RtSlate *slate, RtRational a, RtRational b);
-RtRational rt_exact_sub(RtSlate *slate, RtRational a, RtRational b);
-RtRational rt_exact_mul(RtSlate *slate, RtRational a, RtRational b);
-RtRational rt_exact_div(RtSlate *slate, RtRational a, RtRational b); /* b is not 0 */
-RtRational rt_exact_neg(RtSlate *slate, RtRational a);
+RtRational rt_exact_of(RtExactArena *arena, double x);
+RtRational rt_exact_add(RtExactArena *arena, RtRational a, RtRational b);
+RtRational rt_exact_sub(RtExactArena *arena, RtRational a, RtRational b);
+RtRational rt_exact_mul(RtExactArena *arena, RtRational a, RtRational b);
+RtRational rt_exact_div(RtExactArena *arena, RtRational a, RtRational b); /* b is not 0 */
+RtRational rt_exact_neg(RtExactArena *arena, RtRational a);
 
 /* -1, 0, 1 */
 static inline int rt_exact_sign(RtRational a) {
@@ -64,11 +64,11 @@ typedef struct RtExactVec {
     RtRational at[3];
 } RtExactVec;
 
-RtExactVec rt_exact_vec(RtSlate *slate, RtVec3d v);
-RtExactVec rt_exact_vec_sub(RtSlate *slate, RtExactVec a, RtExactVec b);
-RtExactVec rt_exact_vec_add_scaled(RtSlate *slate, RtExactVec a, RtExactVec b, RtRational scale);
-RtRational rt_exact_dot(RtSlate *slate, RtExactVec a, RtExactVec b);
-RtExactVec rt_exact_cross(RtSlate *slate, RtExactVec a, RtExactVec b);
+RtExactVec rt_exact_vec(RtExactArena *arena, RtVec3d v);
+RtExactVec rt_exact_vec_sub(RtExactArena *arena, RtExactVec a, RtExactVec b);
+RtExactVec rt_exact_vec_add_scaled(RtExactArena *arena, RtExactVec a, RtExactVec b, RtRational scale);
+RtRational rt_exact_dot(RtExactArena *arena, RtExactVec a, RtExactVec b);
+RtExactVec rt_exact_cross(RtExactArena *arena, RtExactVec a, RtExactVec b);
 
 /* ---- surds ---- */
 
@@ -77,20 +77,20 @@ typedef struct RtSurd {
     RtRational p, q, d;
 } RtSurd;
 
-RtSurd rt_surd_of(RtSlate *slate, RtRational p);
+RtSurd rt_surd_of(RtExactArena *arena, RtRational p);
 
 /* a + b x */
-RtSurd rt_surd_line(RtSlate *slate, RtRational a, RtRational b, const RtSurd *x);
+RtSurd rt_surd_line(RtExactArena *arena, RtRational a, RtRational b, const RtSurd *x);
 
-/* -1, 0, 1: that of the number, and that of a - b. Nothing stays on the slate. */
-int rt_surd_sign(RtSlate *slate, const RtSurd *a);
-int rt_surd_compare(RtSlate *slate, const RtSurd *a, const RtSurd *b);
+/* -1, 0, 1: that of the number, and that of a - b. Nothing stays in the arena. */
+int rt_surd_sign(RtExactArena *arena, const RtSurd *a);
+int rt_surd_compare(RtExactArena *arena, const RtSurd *a, const RtSurd *b);
 
 /* Like rt_exact_value, however much p and q sqrt(d) cancel. */
-long double rt_surd_value(RtSlate *slate, const RtSurd *a);
+long double rt_surd_value(RtExactArena *arena, const RtSurd *a);
 
 /* The real roots of a t^2 + 2 b t + c in ascending order; gives their number. A double root is given once; an
  * equation that holds for no t or for all of them has none. */
-int rt_exact_roots(RtSlate *slate, RtRational a, RtRational half_b, RtRational c, RtSurd roots[2]);
+int rt_exact_roots(RtExactArena *arena, RtRational a, RtRational half_b, RtRational c, RtSurd roots[2]);
 
 #endif

@@ -3,9 +3,10 @@
  * are parts with any number of places (exact_mesh.c). Solids join parts, and trees join solids, by the same
  * machine: a stack of such lists, the two on top of which are merged. All lists lie one behind another in one
  * array. */
-#include "exact/exact_hit.h"
+#include "exact/exact_csg.h"
 
 #include "base/memory.h"
+#include "exact/exact_mesh.h"
 
 #include <assert.h>
 
@@ -19,7 +20,7 @@ typedef struct List {
 #define MOST_LISTS (RT_CSG_MAX_LISTS + 2)
 
 typedef struct Machine {
-    RtSlate *slate;
+    RtExactArena *arena;
     const RtExactLine *line;
     List lists[MOST_LISTS];
     uint32_t depth;
@@ -66,7 +67,7 @@ static RtStatus apply(Machine *m, RtCsgOp op, bool reversed, RtError *error) {
     bool before = joined(op, in_left, in_right), inside = before;
     while (i < left->count || k < right->count) {
         const RtPlace *a = &m->places[left->first + i], *b = &m->places[right->first + k];
-        int order = i == left->count ? 1 : k == right->count ? -1 : rt_place_compare(m->slate, a, b);
+        int order = i == left->count ? 1 : k == right->count ? -1 : rt_place_compare(m->arena, a, b);
         if (order <= 0) in_left = !in_left, i++;
         if (order >= 0) in_right = !in_right, k++;
         if (joined(op, in_left, in_right) == inside) continue;
@@ -84,7 +85,7 @@ static RtStatus apply(Machine *m, RtCsgOp op, bool reversed, RtError *error) {
 /* Where a t^2 + 2 b t + c < 0. A place where it is 0 without a change of sign is none. */
 static RtStatus push_quadric(Machine *m, RtRational a, RtRational half_b, RtRational c, RtError *error) {
     RtSurd roots[2];
-    int count = rt_exact_roots(m->slate, a, half_b, c, roots);
+    int count = rt_exact_roots(m->arena, a, half_b, c, roots);
     if (rt_exact_sign(a) != 0) return push(m, rt_exact_sign(a) < 0, roots, count == 2 ? 2 : 0, error);
     return push(m, count == 1 ? rt_exact_sign(half_b) > 0 : rt_exact_sign(c) < 0, roots, count, error);
 }
@@ -92,7 +93,7 @@ static RtStatus push_quadric(Machine *m, RtRational a, RtRational half_b, RtRati
 /* Where gap - rate t > 0. */
 static RtStatus push_half(Machine *m, RtRational gap, RtRational rate, RtError *error) {
     if (rt_exact_sign(rate) == 0) return push(m, rt_exact_sign(gap) > 0, NULL, 0, error);
-    RtSurd at = rt_surd_of(m->slate, rt_exact_div(m->slate, gap, rate));
+    RtSurd at = rt_surd_of(m->arena, rt_exact_div(m->arena, gap, rate));
     return push(m, rt_exact_sign(rate) > 0, &at, 1, error);
 }
 
@@ -106,90 +107,90 @@ typedef struct Standard {
     RtRational unit;
 } Standard;
 
-static Standard standard(RtSlate *slate, const RtSolid *solid, const RtExactLine *line) {
+static Standard standard(RtExactArena *arena, const RtSolid *solid, const RtExactLine *line) {
     RtExactVec columns[4];
-    for (int i = 0; i < 4; i++) columns[i] = rt_exact_vec(slate, rt_transform_column(&solid->place, i));
-    RtExactVec from = rt_exact_vec_sub(slate, line->org, columns[3]);
+    for (int i = 0; i < 4; i++) columns[i] = rt_exact_vec(arena, rt_transform_column(&solid->place, i));
+    RtExactVec from = rt_exact_vec_sub(arena, line->org, columns[3]);
     Standard out;
     for (int i = 0; i < 3; i++) {
-        RtExactVec row = rt_exact_cross(slate, columns[(i + 1) % 3], columns[(i + 2) % 3]);
-        if (i == 0) out.unit = rt_exact_dot(slate, columns[0], row);
-        out.org.at[i] = rt_exact_dot(slate, row, from);
-        out.dir.at[i] = rt_exact_dot(slate, row, line->dir);
+        RtExactVec row = rt_exact_cross(arena, columns[(i + 1) % 3], columns[(i + 2) % 3]);
+        if (i == 0) out.unit = rt_exact_dot(arena, columns[0], row);
+        out.org.at[i] = rt_exact_dot(arena, row, from);
+        out.dir.at[i] = rt_exact_dot(arena, row, line->dir);
     }
     assert(rt_exact_sign(out.unit) > 0);
     return out;
 }
 
 static RtStatus push_sphere(Machine *m, const RtSolid *solid, RtError *error) {
-    Standard s = standard(m->slate, solid, m->line);
-    RtRational radius = rt_exact_mul(m->slate, s.unit, s.unit);
-    RtRational c = rt_exact_sub(m->slate, rt_exact_dot(m->slate, s.org, s.org), radius);
-    return push_quadric(m, rt_exact_dot(m->slate, s.dir, s.dir), rt_exact_dot(m->slate, s.org, s.dir), c,
+    Standard s = standard(m->arena, solid, m->line);
+    RtRational radius = rt_exact_mul(m->arena, s.unit, s.unit);
+    RtRational c = rt_exact_sub(m->arena, rt_exact_dot(m->arena, s.org, s.org), radius);
+    return push_quadric(m, rt_exact_dot(m->arena, s.dir, s.dir), rt_exact_dot(m->arena, s.org, s.dir), c,
                         error);
 }
 
 /* x^2 + y^2 - R^2 with R = 1 + (ratio - 1) z; where that is below 0 beyond the tip, R is negative, and z is
  * out of 0..1. */
 static RtStatus push_cone(Machine *m, const RtSolid *solid, RtError *error) {
-    RtSlate *slate = m->slate;
-    Standard s = standard(slate, solid, m->line);
+    RtExactArena *arena = m->arena;
+    Standard s = standard(arena, solid, m->line);
     RtRational z = s.org.at[2], dz = s.dir.at[2];
-    RtRational slope = rt_exact_sub(slate, rt_exact_of(slate, solid->ratio), rt_exact_of(slate, 1));
+    RtRational slope = rt_exact_sub(arena, rt_exact_of(arena, solid->ratio), rt_exact_of(arena, 1));
     RtExactVec org = s.org, dir = s.dir;
-    org.at[2] = rt_exact_add(slate, s.unit, rt_exact_mul(slate, slope, z));
-    dir.at[2] = rt_exact_mul(slate, slope, dz);
+    org.at[2] = rt_exact_add(arena, s.unit, rt_exact_mul(arena, slope, z));
+    dir.at[2] = rt_exact_mul(arena, slope, dz);
     RtExactVec mirrored = dir, turned = org;
-    mirrored.at[2] = rt_exact_neg(slate, dir.at[2]);
-    turned.at[2] = rt_exact_neg(slate, org.at[2]);
-    RT_TRY(push_quadric(m, rt_exact_dot(slate, dir, mirrored), rt_exact_dot(slate, org, mirrored),
-                        rt_exact_dot(slate, org, turned), error));
-    RT_TRY(push_half(m, z, rt_exact_neg(slate, dz), error));
+    mirrored.at[2] = rt_exact_neg(arena, dir.at[2]);
+    turned.at[2] = rt_exact_neg(arena, org.at[2]);
+    RT_TRY(push_quadric(m, rt_exact_dot(arena, dir, mirrored), rt_exact_dot(arena, org, mirrored),
+                        rt_exact_dot(arena, org, turned), error));
+    RT_TRY(push_half(m, z, rt_exact_neg(arena, dz), error));
     RT_TRY(apply(m, RT_CSG_INTERSECTION, false, error));
-    RT_TRY(push_half(m, rt_exact_sub(slate, s.unit, z), dz, error));
+    RT_TRY(push_half(m, rt_exact_sub(arena, s.unit, z), dz, error));
     return apply(m, RT_CSG_INTERSECTION, false, error);
 }
 
 /* The square of the distance of org + t dir from the origin, in the first `axes` coordinates, is
  * c[0] + c[1] t + c[2] t^2. */
-static void squared_distance(RtSlate *slate, const Standard *s, int axes, RtRational c[3]) {
-    for (int i = 0; i < 3; i++) c[i] = rt_exact_of(slate, 0);
+static void squared_distance(RtExactArena *arena, const Standard *s, int axes, RtRational c[3]) {
+    for (int i = 0; i < 3; i++) c[i] = rt_exact_of(arena, 0);
     for (int a = 0; a < axes; a++) {
-        RtRational cross = rt_exact_mul(slate, s->org.at[a], s->dir.at[a]);
-        c[0] = rt_exact_add(slate, c[0], rt_exact_mul(slate, s->org.at[a], s->org.at[a]));
-        c[1] = rt_exact_add(slate, c[1], rt_exact_add(slate, cross, cross));
-        c[2] = rt_exact_add(slate, c[2], rt_exact_mul(slate, s->dir.at[a], s->dir.at[a]));
+        RtRational cross = rt_exact_mul(arena, s->org.at[a], s->dir.at[a]);
+        c[0] = rt_exact_add(arena, c[0], rt_exact_mul(arena, s->org.at[a], s->org.at[a]));
+        c[1] = rt_exact_add(arena, c[1], rt_exact_add(arena, cross, cross));
+        c[2] = rt_exact_add(arena, c[2], rt_exact_mul(arena, s->dir.at[a], s->dir.at[a]));
     }
 }
 
 /* Inside is where (x^2 + y^2 + z^2 + 1 - ratio^2)^2 < 4 (x^2 + y^2): see shape/solid_torus.c. */
-static RtPolynomial torus_polynomial(RtSlate *slate, const RtSolid *solid, const Standard *s) {
+static RtPolynomial torus_polynomial(RtExactArena *arena, const RtSolid *solid, const Standard *s) {
     RtPolynomial p = {.degree = 4};
-    RtRational k[3], w[3], one = rt_exact_of(slate, 1), ratio = rt_exact_of(slate, solid->ratio);
-    squared_distance(slate, s, 3, k);
-    squared_distance(slate, s, 2, w);
-    RtRational square = rt_exact_mul(slate, s->unit, s->unit);
-    RtRational rest = rt_exact_sub(slate, one, rt_exact_mul(slate, ratio, ratio));
-    RtRational four = rt_exact_mul(slate, rt_exact_of(slate, -4), square);
-    k[0] = rt_exact_add(slate, k[0], rt_exact_mul(slate, rest, square));
+    RtRational k[3], w[3], one = rt_exact_of(arena, 1), ratio = rt_exact_of(arena, solid->ratio);
+    squared_distance(arena, s, 3, k);
+    squared_distance(arena, s, 2, w);
+    RtRational square = rt_exact_mul(arena, s->unit, s->unit);
+    RtRational rest = rt_exact_sub(arena, one, rt_exact_mul(arena, ratio, ratio));
+    RtRational four = rt_exact_mul(arena, rt_exact_of(arena, -4), square);
+    k[0] = rt_exact_add(arena, k[0], rt_exact_mul(arena, rest, square));
     for (int i = 0; i < 5; i++) {
-        p.at[i] = i < 3 ? rt_exact_mul(slate, four, w[i]) : rt_exact_of(slate, 0);
+        p.at[i] = i < 3 ? rt_exact_mul(arena, four, w[i]) : rt_exact_of(arena, 0);
         for (int n = i < 2 ? 0 : i - 2; n <= i && n < 3; n++)
-            p.at[i] = rt_exact_add(slate, p.at[i], rt_exact_mul(slate, k[n], k[i - n]));
+            p.at[i] = rt_exact_add(arena, p.at[i], rt_exact_mul(arena, k[n], k[i - n]));
     }
     return p;
 }
 
 /* A place where the polynomial is 0 without a change of sign is none. */
 static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
-    Standard s = standard(m->slate, solid, m->line);
-    RtPolynomial p = torus_polynomial(m->slate, solid, &s);
+    Standard s = standard(m->arena, solid, m->line);
+    RtPolynomial p = torus_polynomial(m->arena, solid, &s);
     RtAlgebraic roots[RT_MAX_DEGREE];
-    int count = rt_polynomial_roots(m->slate, &p, roots);
+    int count = rt_polynomial_roots(m->arena, &p, roots);
     RT_TRY(push(m, false, NULL, 0, error));
     for (int i = 0; i < count; i++) {
-        int before = rt_polynomial_sign(m->slate, &p, roots[i].lo);
-        if (before == rt_polynomial_sign(m->slate, &p, roots[i].hi)) continue;
+        int before = rt_polynomial_sign(m->arena, &p, roots[i].lo);
+        if (before == rt_polynomial_sign(m->arena, &p, roots[i].hi)) continue;
         RT_TRY(extend(m, rt_place_of_root(&roots[i]), error));
     }
     return RT_OK;
@@ -197,10 +198,10 @@ static RtStatus push_torus(Machine *m, const RtSolid *solid, RtError *error) {
 
 static RtStatus push_polyhedron(Machine *m, const RtPlane *planes, uint32_t count, RtError *error) {
     for (uint32_t i = 0; i < count; i++) {
-        RtExactVec normal = rt_exact_vec(m->slate, planes[i].normal);
-        RtRational offset = rt_exact_of(m->slate, planes[i].offset);
-        RtRational gap = rt_exact_sub(m->slate, offset, rt_exact_dot(m->slate, normal, m->line->org));
-        RT_TRY(push_half(m, gap, rt_exact_dot(m->slate, normal, m->line->dir), error));
+        RtExactVec normal = rt_exact_vec(m->arena, planes[i].normal);
+        RtRational offset = rt_exact_of(m->arena, planes[i].offset);
+        RtRational gap = rt_exact_sub(m->arena, offset, rt_exact_dot(m->arena, normal, m->line->org));
+        RT_TRY(push_half(m, gap, rt_exact_dot(m->arena, normal, m->line->dir), error));
         if (i > 0) RT_TRY(apply(m, RT_CSG_INTERSECTION, false, error));
     }
     return RT_OK;
@@ -209,10 +210,10 @@ static RtStatus push_polyhedron(Machine *m, const RtPlane *planes, uint32_t coun
 static RtStatus push_mesh(Machine *m, const RtSolidSet *set, uint32_t index, RtError *error) {
     RtRational *places;
     uint32_t count;
-    RT_TRY(rt_exact_mesh_places(m->slate, set, index, m->line, &places, &count, error));
+    RT_TRY(rt_exact_mesh_places(m->arena, set, index, m->line, &places, &count, error));
     RtStatus status = push(m, false, NULL, 0, error);
     for (uint32_t i = 0; i < count && status == RT_OK; i++)
-        status = extend(m, rt_place_of(m->slate, places[i]), error);
+        status = extend(m, rt_place_of(m->arena, places[i]), error);
     rt_free(places);
     return status;
 }
@@ -244,16 +245,16 @@ static RtStatus run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, Rt
     return RT_OK;
 }
 
-RtFinding rt_exact_csg_hit(RtSlate *slate, const RtCsgForest *forest, const RtCsg *tree,
+RtFinding rt_exact_csg_hit(RtExactArena *arena, const RtCsgForest *forest, const RtCsg *tree,
                            const RtExactLine *line, RtPlace *t) {
-    Machine machine = {.slate = slate, .line = line};
+    Machine machine = {.arena = arena, .line = line};
     RtError error;
     RtFinding finding = RT_UNDECIDED;
     if (run(&machine, forest, tree, &error) == RT_OK) {
         finding = RT_MISSED;
         for (uint32_t i = 0; i < machine.lists[0].count && finding == RT_MISSED; i++) {
             *t = machine.places[i];
-            if (rt_exact_counts(slate, line, t)) finding = RT_HIT;
+            if (rt_exact_counts(arena, line, t)) finding = RT_HIT;
         }
     }
     rt_free(machine.places);

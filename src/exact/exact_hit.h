@@ -22,52 +22,12 @@
 #ifndef RT_EXACT_EXACT_HIT_H
 #define RT_EXACT_EXACT_HIT_H
 
-#include "exact/place.h"
+#include "exact/line.h"
 #include "shape/geometry.h"
-
-/* A ray whose origin need not be float32. */
-typedef struct RtWideRay {
-    RtVec3d org, dir;  /* finite; dir, rounded to float32, is not 0 */
-    double tmin, tmax; /* tmin finite */
-} RtWideRay;
-
-RtWideRay rt_wide_ray(const RtRay *ray);
-
-/* May the line meet what lies in `box`, within [tmin, tmax], and how soon at the earliest? In double; rounds
- * towards yes. */
-bool rt_line_may_meet(const RtWideRay *line, const RtBox *box, double *soonest);
-
-/* By how much that is wider than the box, in parts of the numbers it is computed from: far above the rounding
- * of a few operations in double, and far below what would let many objects in. */
-#define RT_LINE_SLACK 0x1p-40
-
-/* The same on a slate; tmax is at most FLT_MAX, for a hit at infinity is none. */
-typedef struct RtExactLine {
-    RtWideRay wide;
-    RtExactVec org, dir;
-    RtRational zero, tmin, tmax;
-} RtExactLine;
-
-RtExactLine rt_exact_line(RtSlate *slate, const RtWideRay *line);
-
-typedef enum RtFinding { RT_MISSED, RT_HIT, RT_UNDECIDED } RtFinding;
 
 /* Does the line meet object `id` within [tmin, tmax]? If so *t is the first such place. Undecided: a CSG tree
  * whose crossings memory does not suffice for, and nothing else. */
-RtFinding rt_exact_hit(RtSlate *slate, const RtGeometry *geometry, uint32_t id, const RtExactLine *line,
+RtFinding rt_exact_hit(RtExactArena *arena, const RtGeometry *geometry, uint32_t id, const RtExactLine *line,
                        RtPlace *t);
-
-/* The part of it that is about trees, in exact_csg.c. */
-RtFinding rt_exact_csg_hit(RtSlate *slate, const RtCsgForest *forest, const RtCsg *tree,
-                           const RtExactLine *line, RtPlace *t);
-
-/* And about meshes, in exact_mesh.c: where the whole line, whatever its interval, goes in and out of mesh
- * solid `index`, by turns and in ascending order; places beyond FLT_MAX may be left out. *places is the
- * caller's, who frees it by rt_free; the numbers are on the slate. */
-RtStatus rt_exact_mesh_places(RtSlate *slate, const RtSolidSet *set, uint32_t index, const RtExactLine *line,
-                              RtRational **places, uint32_t *count, RtError *error);
-
-/* Is t within [tmin, tmax]? */
-bool rt_exact_counts(RtSlate *slate, const RtExactLine *line, const RtPlace *t);
 
 #endif

@@ -9,7 +9,7 @@
  * the line and edges through it as to its left. So every triangle is crossed or not, a closed surface is left
  * as often as it is entered, and a triangle seen edge on, which the moved line misses, is not crossed at all:
  * a line in the plane of a face sees the faces beside it. t is that of the line that was not moved. */
-#include "exact/exact_hit.h"
+#include "exact/exact_mesh.h"
 
 #include "base/memory.h"
 
@@ -31,30 +31,30 @@ typedef struct Seen {
     RtRational x, y;
 } Seen;
 
-static Seen see(RtSlate *slate, const RtExactLine *line, RtVec3 vertex) {
+static Seen see(RtExactArena *arena, const RtExactLine *line, RtVec3 vertex) {
     int kz = rt_major_axis(rt_narrow(line->wide.dir)), kx = (kz + 1) % 3, ky = (kz + 2) % 3;
-    RtExactVec v = rt_exact_vec_sub(slate, rt_exact_vec(slate, rt_widen(vertex)), line->org);
-    RtRational z = rt_exact_neg(slate, rt_exact_div(slate, v.at[kz], line->dir.at[kz]));
-    v = rt_exact_vec_add_scaled(slate, v, line->dir, z);
+    RtExactVec v = rt_exact_vec_sub(arena, rt_exact_vec(arena, rt_widen(vertex)), line->org);
+    RtRational z = rt_exact_neg(arena, rt_exact_div(arena, v.at[kz], line->dir.at[kz]));
+    v = rt_exact_vec_add_scaled(arena, v, line->dir, z);
     return (Seen){v.at[kx], v.at[ky]};
 }
 
 /* Does the edge from `lower` (y < 0) to `upper` (y >= 0) pass to the right of the line? */
-static bool right(RtSlate *slate, const Seen *lower, const Seen *upper) {
-    RtRational from = rt_exact_mul(slate, lower->x, upper->y), to = rt_exact_mul(slate, upper->x, lower->y);
+static bool right(RtExactArena *arena, const Seen *lower, const Seen *upper) {
+    RtRational from = rt_exact_mul(arena, lower->x, upper->y), to = rt_exact_mul(arena, upper->x, lower->y);
     return mpq_cmp(from, to) > 0;
 }
 
 /* The edges to the right of the line that go up, less those that go down: 1, 0 or -1. */
-static int winding(RtSlate *slate, const RtExactLine *line, const RtTriangle *triangle) {
+static int winding(RtExactArena *arena, const RtExactLine *line, const RtTriangle *triangle) {
     Seen v[3];
     int number = 0;
-    for (int i = 0; i < 3; i++) v[i] = see(slate, line, triangle->v[i]);
+    for (int i = 0; i < 3; i++) v[i] = see(arena, line, triangle->v[i]);
     for (int i = 0; i < 3; i++) {
         const Seen *from = &v[i], *to = &v[(i + 1) % 3];
         bool above = rt_exact_sign(from->y) >= 0, next_above = rt_exact_sign(to->y) >= 0;
-        if (!above && next_above) number += right(slate, from, to);
-        if (above && !next_above) number -= right(slate, to, from);
+        if (!above && next_above) number += right(arena, from, to);
+        if (above && !next_above) number -= right(arena, to, from);
     }
     return number;
 }
@@ -68,21 +68,21 @@ static RtStatus insert(List *list, Crossing crossing, RtError *error) {
 }
 
 /* About vertex 0 of the triangle, whose plane the line crosses. */
-static RtStatus cross(RtSlate *slate, const RtExactLine *line, const RtTriangle *triangle, List *list,
+static RtStatus cross(RtExactArena *arena, const RtExactLine *line, const RtTriangle *triangle, List *list,
                       RtError *error) {
     RtExactVec v[3];
-    for (int i = 0; i < 3; i++) v[i] = rt_exact_vec(slate, rt_widen(triangle->v[i]));
+    for (int i = 0; i < 3; i++) v[i] = rt_exact_vec(arena, rt_widen(triangle->v[i]));
     RtExactVec normal =
-        rt_exact_cross(slate, rt_exact_vec_sub(slate, v[1], v[0]), rt_exact_vec_sub(slate, v[2], v[0]));
-    RtRational rate = rt_exact_dot(slate, normal, line->dir);
-    RtRational gap = rt_exact_dot(slate, normal, rt_exact_vec_sub(slate, v[0], line->org));
-    return insert(list, (Crossing){rt_exact_div(slate, gap, rate), -rt_exact_sign(rate)}, error);
+        rt_exact_cross(arena, rt_exact_vec_sub(arena, v[1], v[0]), rt_exact_vec_sub(arena, v[2], v[0]));
+    RtRational rate = rt_exact_dot(arena, normal, line->dir);
+    RtRational gap = rt_exact_dot(arena, normal, rt_exact_vec_sub(arena, v[0], line->org));
+    return insert(list, (Crossing){rt_exact_div(arena, gap, rate), -rt_exact_sign(rate)}, error);
 }
 
 /* ---- all triangles ---- */
 
-static RtStatus collect(RtSlate *slate, const RtSolidSet *set, const RtSolid *solid, const RtExactLine *line,
-                        List *list, RtError *error) {
+static RtStatus collect(RtExactArena *arena, const RtSolidSet *set, const RtSolid *solid,
+                        const RtExactLine *line, List *list, RtError *error) {
     RtWideRay whole = line->wide;
     whole.tmin = -HUGE_VAL;
     whole.tmax = HUGE_VAL;
@@ -91,10 +91,10 @@ static RtStatus collect(RtSlate *slate, const RtSolidSet *set, const RtSolid *so
         RtBox box = rt_triangle_box(triangle);
         double soonest;
         if (!rt_line_may_meet(&whole, &box, &soonest)) continue;
-        size_t mark = rt_slate_mark(slate);
-        int number = winding(slate, line, triangle);
-        rt_slate_wipe(slate, mark);
-        if (number != 0) RT_TRY(cross(slate, line, triangle, list, error));
+        size_t mark = rt_exact_arena_mark(arena);
+        int number = winding(arena, line, triangle);
+        rt_exact_arena_rewind(arena, mark);
+        if (number != 0) RT_TRY(cross(arena, line, triangle, list, error));
     }
     return RT_OK;
 }
@@ -112,11 +112,11 @@ static void thin_out(List *list) {
     list->count = count;
 }
 
-RtStatus rt_exact_mesh_places(RtSlate *slate, const RtSolidSet *set, uint32_t index, const RtExactLine *line,
-                              RtRational **places, uint32_t *count, RtError *error) {
+RtStatus rt_exact_mesh_places(RtExactArena *arena, const RtSolidSet *set, uint32_t index,
+                              const RtExactLine *line, RtRational **places, uint32_t *count, RtError *error) {
     List list = {0};
     *places = NULL;
-    RtStatus status = collect(slate, set, &set->solids[index], line, &list, error);
+    RtStatus status = collect(arena, set, &set->solids[index], line, &list, error);
     if (status == RT_OK) {
         thin_out(&list);
         *places = rt_alloc(list.count, sizeof(RtRational));

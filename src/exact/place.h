@@ -11,13 +11,13 @@ typedef struct RtPlace {
 } RtPlace;
 
 RtPlace rt_place_of_surd(const RtSurd *surd);
-RtPlace rt_place_of(RtSlate *slate, RtRational t);
+RtPlace rt_place_of(RtExactArena *arena, RtRational t);
 RtPlace rt_place_of_root(const RtAlgebraic *root);
 
-/* -1, 0, 1: the sign of a - b. Nothing stays on the slate. */
-int rt_place_compare(RtSlate *slate, const RtPlace *a, const RtPlace *b);
+/* -1, 0, 1: the sign of a - b. Nothing stays in the arena. */
+int rt_place_compare(RtExactArena *arena, const RtPlace *a, const RtPlace *b);
 
 /* place - from, with an error below 2^-62 of it, however near they are; exactly 0 where it is 0. */
-long double rt_place_value(RtSlate *slate, const RtPlace *place, RtRational from);
+long double rt_place_value(RtExactArena *arena, const RtPlace *place, RtRational from);
 
 #endif

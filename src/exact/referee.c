@@ -18,7 +18,7 @@ long double rt_float_ulp(long double x) {
 /* ---- the nearest ---- */
 
 typedef struct Search {
-    RtSlate slate;
+    RtExactArena arena;
     const RtGeometry *geometry;
     RtWideRay line;
     RtExactLine exact;
@@ -32,25 +32,25 @@ static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray)
                   .line = rt_wide_ray(ray),
                   .ruling = {.finding = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
                   .open = HUGE_VAL};
-    s->exact = rt_exact_line(&s->slate, &s->line);
+    s->exact = rt_exact_line(&s->arena, &s->line);
 }
 
 /* Numbers of what is not the nearest are forgotten at once. */
 static void consider(Search *s, uint32_t id, double soonest) {
-    size_t mark = rt_slate_mark(&s->slate);
+    size_t mark = rt_exact_arena_mark(&s->arena);
     RtPlace t;
-    RtFinding finding = rt_exact_hit(&s->slate, s->geometry, id, &s->exact, &t);
+    RtFinding finding = rt_exact_hit(&s->arena, s->geometry, id, &s->exact, &t);
     if (finding == RT_UNDECIDED) s->open = fmin(s->open, soonest);
     int order = -1;
-    if (finding == RT_HIT && s->ruling.together > 0) order = rt_place_compare(&s->slate, &t, &s->best);
+    if (finding == RT_HIT && s->ruling.together > 0) order = rt_place_compare(&s->arena, &t, &s->best);
     if (finding != RT_HIT || order >= 0) {
         if (finding == RT_HIT && order == 0) s->ruling.together++;
-        rt_slate_wipe(&s->slate, mark);
+        rt_exact_arena_rewind(&s->arena, mark);
         return;
     }
     s->best = t;
     s->ruling = (RtRuling){
-        .finding = RT_HIT, .object = id, .together = 1, .t = rt_place_value(&s->slate, &t, s->exact.zero)};
+        .finding = RT_HIT, .object = id, .together = 1, .t = rt_place_value(&s->arena, &t, s->exact.zero)};
 }
 
 static void search(Search *s) {
@@ -67,7 +67,7 @@ RtRuling rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
     Search s;
     search_init(&s, geometry, ray);
     search(&s);
-    rt_slate_clear(&s.slate);
+    rt_exact_arena_clear(&s.arena);
     return s.ruling;
 }
 
@@ -78,7 +78,7 @@ RtFinding rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
         double soonest;
         if (rt_line_may_meet(&s.line, &geometry->boxes[id], &soonest)) consider(&s, id, soonest);
     }
-    rt_slate_clear(&s.slate);
+    rt_exact_arena_clear(&s.arena);
     return s.ruling.finding == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.ruling.finding;
 }
 
@@ -114,43 +114,43 @@ RtRuling rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit ex
 /* ---- one or two objects ---- */
 
 RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
-    RtSlate slate = {0};
-    RtExactLine exact = rt_exact_line(&slate, line);
+    RtExactArena arena = {0};
+    RtExactLine exact = rt_exact_line(&arena, line);
     RtPlace at;
-    RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);
-    if (finding == RT_HIT) *t = rt_place_value(&slate, &at, exact.zero);
-    rt_slate_clear(&slate);
+    RtFinding finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
+    if (finding == RT_HIT) *t = rt_place_value(&arena, &at, exact.zero);
+    rt_exact_arena_clear(&arena);
     return finding;
 }
 
 RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray, int *order,
                            long double *apart) {
-    RtSlate slate = {0};
+    RtExactArena arena = {0};
     RtWideRay line = rt_wide_ray(ray);
-    RtExactLine exact = rt_exact_line(&slate, &line);
+    RtExactLine exact = rt_exact_line(&arena, &line);
     RtPlace at[2];
-    RtFinding finding = rt_exact_hit(&slate, geometry, a, &exact, &at[0]);
-    if (finding == RT_HIT) finding = rt_exact_hit(&slate, geometry, b, &exact, &at[1]);
+    RtFinding finding = rt_exact_hit(&arena, geometry, a, &exact, &at[0]);
+    if (finding == RT_HIT) finding = rt_exact_hit(&arena, geometry, b, &exact, &at[1]);
     if (finding == RT_HIT) {
-        *order = rt_place_compare(&slate, &at[0], &at[1]);
-        long double first = rt_place_value(&slate, &at[0], exact.zero);
-        *apart = *order == 0 ? 0 : fabsl(first - rt_place_value(&slate, &at[1], exact.zero));
+        *order = rt_place_compare(&arena, &at[0], &at[1]);
+        long double first = rt_place_value(&arena, &at[0], exact.zero);
+        *apart = *order == 0 ? 0 : fabsl(first - rt_place_value(&arena, &at[1], exact.zero));
     }
-    rt_slate_clear(&slate);
+    rt_exact_arena_clear(&arena);
     return finding;
 }
 
 RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
                            long double *ulps) {
-    RtSlate slate = {0};
+    RtExactArena arena = {0};
     RtWideRay line = rt_wide_ray(ray);
-    RtExactLine exact = rt_exact_line(&slate, &line);
+    RtExactLine exact = rt_exact_line(&arena, &line);
     RtPlace at;
-    RtFinding finding = rt_exact_hit(&slate, geometry, id, &exact, &at);
+    RtFinding finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
     if (finding == RT_HIT) {
-        long double ulp = rt_float_ulp(rt_place_value(&slate, &at, exact.zero));
-        *ulps = -rt_place_value(&slate, &at, rt_exact_of(&slate, (double)t)) / ulp;
+        long double ulp = rt_float_ulp(rt_place_value(&arena, &at, exact.zero));
+        *ulps = -rt_place_value(&arena, &at, rt_exact_of(&arena, (double)t)) / ulp;
     }
-    rt_slate_clear(&slate);
+    rt_exact_arena_clear(&arena);
     return finding;
 }

@@ -124,7 +124,7 @@ static RtStatus flush_shadows(Worker *worker, RtError *error) {
 /* Light by light, so that neighbours in the stream go to the same place. */
 static RtStatus trace_shadows(Worker *worker, uint32_t surface_count, RtError *error) {
     const RtScene *scene = worker->job->scene;
-    const bool outward = worker->job->options->outward_light;
+    const bool outward = worker->job->options->light_from_outside;
     for (uint32_t light = 0; light < scene->light_count; light++) {
         for (uint32_t i = 0; i < surface_count; i++) {
             uint32_t n = worker->shadow_count;

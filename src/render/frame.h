@@ -25,11 +25,11 @@
 typedef RtStatus RtRaySink(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error);
 
 typedef struct RtFrameOptions {
-    uint32_t depth;     /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
-    int threads;        /* 0 = all processors */
-    bool counted;       /* fill tallies and the count channels; else the timed kernels run */
-    bool outward_light; /* ask for light on the outside of surfaces, whatever side a ray comes from */
-    RtRaySink *sink;    /* or NULL */
+    uint32_t depth;          /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
+    int threads;             /* 0 = all processors */
+    bool counted;            /* fill tallies and the count channels; else the timed kernels run */
+    bool light_from_outside; /* ask for light on the outside of surfaces, whatever side a ray comes from */
+    RtRaySink *sink;         /* or NULL */
     void *sink_context;
     /* Optional: called by one thread at a time as tiles are finished. */
     void (*progress)(void *context, size_t tiles_done, size_t tiles);

@@ -84,7 +84,7 @@ RtStatus rt_draw_structure(RtImage *image, const RtAccel *accel, RtError *error)
     RT_TRY(rt_sampling_init(&sampling, image->width, image->height, 1, false, error));
     RT_TRY(rt_view_init(&drawing.view, camera, sampling, error));
     double distance = rt_lengthd(rt_subd(rt_widen(camera->at), drawing.view.eye));
-    drawing.near = fmax(drawing.view.hither, 1e-3 * distance);
+    drawing.near = fmax(drawing.view.near, 1e-3 * distance);
     for (size_t i = 0; i < (size_t)image->width * image->height * 3; i++) image->rgb[i] /= 3;
     accel->ops->each_box(accel, (RtBoxViewer){draw_box, &drawing});
     return RT_OK;

@@ -41,9 +41,9 @@ RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling,
         return rt_fail(error, RT_BAD_INPUT, "the camera's fov is %g degrees: must be above 0 and below 180",
                        (double)camera->fov);
     }
-    if (!(camera->hither >= 0)) {
-        return rt_fail(error, RT_BAD_INPUT, "the camera's hither distance is %g: must be at least 0",
-                       (double)camera->hither);
+    if (!(camera->near >= 0)) {
+        return rt_fail(error, RT_BAD_INPUT, "the camera's near plane is at %g: must be at least 0",
+                       (double)camera->near);
     }
     RtVec3d axis = rt_subd(rt_widen(camera->at), rt_widen(camera->from));
     if (rt_lengthd(axis) == 0) {
@@ -65,7 +65,7 @@ RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling,
                      .forward = forward,
                      .right = rt_scaled(right, half_width),
                      .down = rt_scaled(down, half_height),
-                     .hither = (double)camera->hither};
+                     .near = (double)camera->near};
     return RT_OK;
 }
 
@@ -79,7 +79,7 @@ RtRay rt_view_ray(const RtView *view, uint32_t column, uint32_t row) {
     RtVec3d dir = rt_add_scaledd(view->forward, view->right, sample_position(column, s->columns, s->corners));
     dir = rt_add_scaledd(dir, view->down, sample_position(row, s->rows, s->corners));
     return (RtRay){.org = rt_narrow(view->eye),
-                   .tmin = (float)view->hither,
+                   .tmin = (float)view->near,
                    .dir = rt_narrow(dir),
                    .tmax = INFINITY,
                    .kind = RT_RAY_PRIMARY,

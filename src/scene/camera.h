@@ -13,7 +13,7 @@
 typedef struct RtCamera {
     RtVec3 from, at, up;
     float fov;              /* full vertical angle, degrees, in (0, 180) */
-    float hither;           /* distance along the axis to the near plane, >= 0: nothing nearer is seen */
+    float near;             /* distance along the axis to the near plane, >= 0: nothing nearer is seen */
     uint32_t width, height; /* pixels, the default image size */
 } RtCamera;
 
@@ -40,14 +40,14 @@ typedef struct RtView {
     RtSampling sampling;
     RtVec3d eye, forward; /* forward: to the centre of the image plane, at distance 1 */
     RtVec3d right, down;  /* half the width and half the height of the image plane at distance 1 */
-    double hither;
+    double near;
 } RtView;
 
 /* Refuses a camera that looks nowhere (from = at), has `up` along its axis, or a fov outside (0, 180). */
 RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling, RtError *error);
 
 /* The primary ray of the sample in `column`, `row`: from the eye, dir not normalised (its component along the
- * axis is 1, so t is depth), tmin at the hither plane, source = row * columns + column. */
+ * axis is 1, so t is depth), tmin at the near plane, source = row * columns + column. */
 RtRay rt_view_ray(const RtView *view, uint32_t column, uint32_t row);
 
 #endif

@@ -169,7 +169,7 @@ static RtStatus read_camera(Reader *r) {
         case AT: RT_TRY(read_vector(r, "at x y z", &camera->at)); break;
         case UP: RT_TRY(read_vector(r, "up x y z", &camera->up)); break;
         case ANGLE: RT_TRY(read_float(r, "angle in degrees", &camera->fov)); break;
-        case HITHER: RT_TRY(read_float(r, "hither", &camera->hither)); break;
+        case HITHER: RT_TRY(read_float(r, "hither", &camera->near)); break;
         case RESOLUTION:
             RT_TRY(read_count(r, "resolution x", 1, RT_MAX_IMAGE_SIDE, &camera->width));
             RT_TRY(read_count(r, "resolution y", 1, RT_MAX_IMAGE_SIDE, &camera->height));
@@ -181,9 +181,9 @@ static RtStatus read_camera(Reader *r) {
         snprintf(wanted, sizeof wanted, "'%s' of the camera (v: from, at, up, angle)", words[i]);
         if (!given[i]) return fail_inside(r, peek(r), wanted);
     }
-    if (camera->hither < 0) {
+    if (camera->near < 0) {
         return rt_fail_at(r->error, r->path, r->statement, 0, "hither is %g: it must be at least 0",
-                          (double)camera->hither);
+                          (double)camera->near);
     }
     return check_camera(r, camera);
 }

@@ -27,7 +27,7 @@ static void save_header(const RtScene *scene, FILE *file) {
     fprintf(file, "\nangle");
     put(file, camera->fov);
     fprintf(file, "\nhither");
-    put(file, camera->hither);
+    put(file, camera->near);
     fprintf(file, "\nresolution %u %u\n", camera->width, camera->height);
     for (uint32_t i = 0; i < scene->light_count; i++) {
         fprintf(file, "l");

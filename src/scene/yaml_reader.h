@@ -41,7 +41,7 @@ typedef struct RtYamlReader {
 /* For a list X(name) of what an entry can be: their keys (rt_yaml_keys). */
 #define RT_YAML_ONE_OF(name) #name "| "
 
-/* yaml_read.c */
+/* yaml_reader.c */
 
 /* Holds the entries of `list` (NULL: none) against `keys`, and fills `names` with theirs, of at most `most`
  * characters. Refuses two that are the same; `what` they are is for messages. */

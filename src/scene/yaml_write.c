@@ -86,7 +86,7 @@ static void write_camera(Writer *w, const RtCamera *camera) {
     point_key(w, ", at: ", camera->at);
     point_key(w, ", up: ", camera->up);
     number_key(w, ", fov: ", camera->fov);
-    number_key(w, ", hither: ", camera->hither);
+    number_key(w, ", near: ", camera->near);
     fprintf(w->out, ", size: [%u, %u]}\n", camera->width, camera->height);
 }
 

@@ -119,12 +119,12 @@ uint64_t rt_csg_forest_bytes(const RtCsgForest *forest);
 /* Fills *out with the tree below `root`, its parts appended to `forest`: each use of a solid becomes a solid
  * of its own, in the order of the text, moved to where it is. Takes memory in proportion to their number.
  * Refuses a tree without end (a half-space that nothing bounds), and then changes nothing. */
-RtStatus rt_csg_plant(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
-                      RtCsg *out, RtError *error);
+RtStatus rt_csg_compile(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
+                        RtCsg *out, RtError *error);
 
 /* The same for a tree of another forest (or this one), moved by `move`, which may be NULL. */
-RtStatus rt_csg_transplant(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *tree,
-                           const RtTransform *move, RtCsg *out, RtError *error);
+RtStatus rt_csg_copy(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *tree, const RtTransform *move,
+                     RtCsg *out, RtError *error);
 
 /* ---- rays ---- */
 

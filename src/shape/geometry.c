@@ -102,7 +102,7 @@ RtStatus rt_geometry_add_csg(RtGeometry *geometry, const RtCsgBuilder *builder, 
                              RtError *error) {
     RtCsg tree;
     RT_TRY(reserve_csg(geometry, error));
-    RT_TRY(rt_csg_plant(&geometry->forest, builder, root, extents, &tree, error));
+    RT_TRY(rt_csg_compile(&geometry->forest, builder, root, extents, &tree, error));
     return append_csg(geometry, &tree, error);
 }
 
@@ -110,7 +110,7 @@ RtStatus rt_geometry_copy_csg(RtGeometry *geometry, const RtGeometry *from, uint
                               const RtTransform *move, RtError *error) {
     RtCsg tree;
     RT_TRY(reserve_csg(geometry, error));
-    RT_TRY(rt_csg_transplant(&geometry->forest, &from->forest, &from->csgs[index], move, &tree, error));
+    RT_TRY(rt_csg_copy(&geometry->forest, &from->forest, &from->csgs[index], move, &tree, error));
     return append_csg(geometry, &tree, error);
 }
 

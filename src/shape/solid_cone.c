@@ -139,7 +139,7 @@ RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *pla
     caps[0] = rt_plane_through(column(&solid, 3), rt_scaled(up, -1));
     caps[1] = rt_plane_through(apex_of(&solid), up);
     rt_solid_cone_to_caps(set, &solid);
-    return rt_solid_finish(set, &solid, index, error);
+    return rt_solid_finish(set, &solid, rt_solid_cone_support, index, error);
 }
 
 RtStatus rt_solid_add_frustum(RtSolidSet *set, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,

@@ -178,5 +178,6 @@ RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_
                      .first = set->triangle_count,
                      .count = count,
                      .place = rt_transform_identity()};
-    return rt_solid_finish(set, &solid, index, error);
+    RT_TRY(rt_solid_mesh_boxes(set, &solid, error));
+    return rt_solid_finish(set, &solid, rt_solid_mesh_support, index, error);
 }

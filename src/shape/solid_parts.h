@@ -16,23 +16,29 @@
 RT_SOLID_KINDS(RT_SOLID_FUNCTIONS)
 #undef RT_SOLID_FUNCTIONS
 
-/* ---- making solids ---- */
+/* ---- making solids: in solid_parts.c, but where another file is named ---- */
 
-/* Adds `solid`, of which all is filled in but `back`, `box` and a mesh's tree, and whose `count` planes or
- * triangles, if it has any, stand ready behind those of the set (room for them: rt_reserve). */
-RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, uint32_t *index, RtError *error);
+/* Largest dot product of `direction` with a point of the solid. */
+typedef double RtSolidSupport(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction);
 
-/* Makes the boxes of a mesh, behind those of the set, and fills in first_box and leaves. */
+/* Adds `solid`, of which all is filled in but `back` and `box`, and whose `count` planes or triangles, if it
+ * has any, and the boxes of a mesh stand ready behind those of the set (room for them: rt_reserve). */
+RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, RtSolidSupport *support, uint32_t *index,
+                         RtError *error);
+
+/* In solid_mesh_make.c: makes the boxes of a mesh, behind those of the set, and fills in first_box and
+ * leaves. */
 RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error);
 
 /* Triangles in a leaf of them. */
 #define RT_SOLID_LEAF 4
 
-/* Draws the place of a cone to its caps, which stand in the set: those across an axis of the world are
- * rounded to float32. The place may become flat, which rt_solid_finish refuses. */
+/* In solid_cone.c: draws the place of a cone to its caps, which stand in the set: those across an axis of the
+ * world are rounded to float32. The place may become flat, which rt_solid_finish refuses. */
 void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid);
 
-/* Refuse planes that leave no inside, or a flat one, and a closed mesh whose volume is not above 0. */
+/* Refuse planes that leave no inside, or a flat one (in solid_polyhedron.c), and a closed mesh whose volume
+ * is not above 0 (in solid_mesh_make.c). */
 RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *error);
 RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtError *error);
 

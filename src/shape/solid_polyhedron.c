@@ -233,7 +233,7 @@ RtStatus rt_solid_add_polyhedron(RtSolidSet *set, const RtPlane *planes, uint32_
                      .first = set->plane_count,
                      .count = count,
                      .place = rt_transform_identity()};
-    return rt_solid_finish(set, &solid, index, error);
+    return rt_solid_finish(set, &solid, rt_solid_polyhedron_support, index, error);
 }
 
 RtStatus rt_solid_add_box(RtSolidSet *set, RtVec3 lo, RtVec3 hi, uint32_t *index, RtError *error) {

@@ -34,7 +34,7 @@ RtBall rt_solid_sphere_ball(const RtSolidSet *set, const RtSolid *solid) {
 
 RtStatus rt_solid_add_sphere(RtSolidSet *set, const RtTransform *place, uint32_t *index, RtError *error) {
     RtSolid solid = {.kind = RT_SOLID_SPHERE, .place = *place};
-    return rt_solid_finish(set, &solid, index, error);
+    return rt_solid_finish(set, &solid, rt_solid_sphere_support, index, error);
 }
 
 RtStatus rt_solid_add_ellipsoid(RtSolidSet *set, RtVec3 center, RtVec3 radii, uint32_t *index,

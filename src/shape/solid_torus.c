@@ -145,7 +145,7 @@ RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *pl
             "the tube of a torus is %g times as wide as its circle: it must be above 0 and below 1", ratio);
     }
     RtSolid solid = {.kind = RT_SOLID_TORUS, .ratio = ratio, .place = *place};
-    return rt_solid_finish(set, &solid, index, error);
+    return rt_solid_finish(set, &solid, rt_solid_torus_support, index, error);
 }
 
 RtStatus rt_solid_add_ring(RtSolidSet *set, RtVec3 center, RtVec3 axis, float major, float minor,

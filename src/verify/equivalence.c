@@ -112,20 +112,20 @@ RtVerdict rt_blocked_verdict(const RtAccel *accel, const RtRay *ray, RtHit expec
     return rt_verdict_occluded(&accel->scene->geometry, ray, blocked, got);
 }
 
-void rt_witness_context(const RtReference *reference, const RtWitness *witness, size_t *first,
-                        size_t *count) {
-    size_t place = witness->index % CHUNK;
-    *first = witness->index - place;
-    size_t end = (place / witness->stream + 1) * witness->stream;
+void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
+                             size_t *count) {
+    size_t place = wrong->index % CHUNK;
+    *first = wrong->index - place;
+    size_t end = (place / wrong->stream + 1) * wrong->stream;
     size_t left = reference->count - *first;
     if (end > CHUNK) end = CHUNK;
     *count = end < left ? end : left;
 }
 
-static void keep_witness(RtEquivalence *part, RtWitness witness) {
+static void keep_wrong_answer(RtEquivalence *part, RtWrongAnswer wrong) {
     if (part->any_wrong) return;
     part->any_wrong = true;
-    part->first_wrong = witness;
+    part->first_wrong = wrong;
 }
 
 /* The verdict of ray `i` of a chunk goes to the chunk's part. */
@@ -140,21 +140,21 @@ static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
     for (int counted = 0; counted < KERNELS; counted++) {
         RtHit got = desk->hits[counted][i];
         bool blocked = desk->blocked[counted][i];
-        RtWitness witness = {.index = index,
-                             .counted = counted,
-                             .stream = stream_of(chunk, counted),
-                             .ray = *ray,
-                             .expected = expected,
-                             .got = got,
-                             .blocked = blocked};
+        RtWrongAnswer asked = {.index = index,
+                               .counted = counted,
+                               .stream = stream_of(chunk, counted),
+                               .ray = *ray,
+                               .expected = expected,
+                               .got = got,
+                               .blocked = blocked};
         RtVerdict verdict = rt_answer_verdict(job->accel, ray, expected, got);
-        if (verdict == RT_WRONG) keep_witness(part, witness);
+        if (verdict == RT_WRONG) keep_wrong_answer(part, asked);
         if (verdict >= RT_MARGINAL) doubtful = &desk->hits[counted][i];
         if (verdict > worst) worst = verdict;
         verdict = rt_blocked_verdict(job->accel, ray, expected, blocked);
         if (verdict == RT_WRONG) {
-            occluded_wrong = witness.occluded = true;
-            keep_witness(part, witness);
+            occluded_wrong = asked.occluded = true;
+            keep_wrong_answer(part, asked);
         } else if (verdict > worst) {
             worst = verdict;
         }
@@ -191,7 +191,7 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
         out->occluded_wrong += job.parts[i].occluded_wrong;
         for (int v = 0; v < RT_VERDICT_COUNT; v++) out->verdicts[v] += job.parts[i].verdicts[v];
         for (int s = 0; s < RT_SIDE_COUNT; s++) out->sides[s] += job.parts[i].sides[s];
-        if (job.parts[i].any_wrong) keep_witness(out, job.parts[i].first_wrong);
+        if (job.parts[i].any_wrong) keep_wrong_answer(out, job.parts[i].first_wrong);
     }
     rt_free(job.parts);
     return status;
@@ -215,11 +215,11 @@ static json_t *hit_json(RtHit hit) {
     return json_pack("{s:o, s:o}", "t", float_json(hit.t), "object", object);
 }
 
-static json_t *witness_json(const RtWitness *w) {
+static json_t *wrong_answer_json(const RtWrongAnswer *w) {
     json_t *expected = w->occluded ? json_boolean(w->expected.object != RT_NO_OBJECT) : hit_json(w->expected);
     json_t *got = w->occluded ? json_boolean(w->blocked) : hit_json(w->got);
     char says[512];
-    rt_witness_format(w, says, sizeof says);
+    rt_wrong_answer_format(w, says, sizeof says);
     return json_pack("{s:I, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "index", (json_int_t)w->index,
                      "says", says, "query", w->occluded ? "occluded" : "nearest", "kernel",
                      w->counted ? "counted" : "timed", "stream", (json_int_t)w->stream, "org",
@@ -242,7 +242,7 @@ json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, cons
     json_object_set_new(row, "exactly_right", sides);
     json_object_set_new(row, "occluded_wrong", json_integer((json_int_t)result->occluded_wrong));
     json_object_set_new(row, "first_wrong",
-                        result->any_wrong ? witness_json(&result->first_wrong) : json_null());
+                        result->any_wrong ? wrong_answer_json(&result->first_wrong) : json_null());
     return row;
 }
 
@@ -254,7 +254,7 @@ static void format_hit(RtHit hit, char *out, size_t room) {
     }
 }
 
-void rt_witness_format(const RtWitness *w, char *out, size_t room) {
+void rt_wrong_answer_format(const RtWrongAnswer *w, char *out, size_t room) {
     char expected[64], got[64];
     format_hit(w->expected, expected, sizeof expected);
     format_hit(w->got, got, sizeof got);

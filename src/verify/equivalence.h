@@ -27,7 +27,7 @@ RtStatus rt_reference_init(RtReference *reference, const RtAccel *oracle, const 
 void rt_reference_clear(RtReference *reference);
 
 /* One wrong answer. */
-typedef struct RtWitness {
+typedef struct RtWrongAnswer {
     size_t index; /* of the ray in the reference */
     bool occluded, counted;
     size_t stream; /* length of the streams in which it was asked */
@@ -35,7 +35,7 @@ typedef struct RtWitness {
     RtHit expected;
     RtHit got;    /* of `nearest` */
     bool blocked; /* of `occluded` */
-} RtWitness;
+} RtWrongAnswer;
 
 typedef struct RtEquivalence {
     uint64_t rays;
@@ -44,7 +44,7 @@ typedef struct RtEquivalence {
     uint64_t sides[RT_SIDE_COUNT];
     uint64_t occluded_wrong; /* rays, whatever their verdict */
     bool any_wrong;
-    RtWitness first_wrong; /* if any_wrong: of the ray with the lowest index */
+    RtWrongAnswer first_wrong; /* if any_wrong: of the ray with the lowest index */
 } RtEquivalence;
 
 /* Compares `accel`, built over the reference's scene. Wrong answers are a result, not an error. An
@@ -57,9 +57,10 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
 RtVerdict rt_answer_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, RtHit got);
 RtVerdict rt_blocked_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, bool got);
 
-/* The rays that were asked together with a witness's, from those that came before it to the end of its
- * stream: `count` of the reference's, from `first` on. */
-void rt_witness_context(const RtReference *reference, const RtWitness *witness, size_t *first, size_t *count);
+/* The rays that were asked together with the ray of a wrong answer, from those that came before it to the end
+ * of its stream: `count` of the reference's, from `first` on. */
+void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
+                             size_t *count);
 
 /* The row of `verify --json`; a new reference, NULL if memory is short. Floats are strings that read back to
  * the same bits ("inf" included). */
@@ -67,6 +68,6 @@ json_t *rt_equivalence_json(const RtEquivalence *result, const char *scene, cons
                             const char *against);
 
 /* One line that says what was asked, expected and got, to out[0..room). */
-void rt_witness_format(const RtWitness *witness, char *out, size_t room);
+void rt_wrong_answer_format(const RtWrongAnswer *wrong, char *out, size_t room);
 
 #endif

@@ -40,8 +40,8 @@ static json_t *hit_json(RtHit hit) {
     return json_pack("{s:I, s:o}", "object", (json_int_t)hit.object, "t", float_json(hit.t));
 }
 
-static json_t *got_json(const RtQuestion *question, const RtReply *reply) {
-    return question->occluded ? json_boolean(reply->blocked) : hit_json(reply->got);
+static json_t *got_json(const RtFailure *failure, const RtAnswer *answer) {
+    return failure->occluded ? json_boolean(answer->blocked) : hit_json(answer->got);
 }
 
 /* The scene as YAML; NULL if memory is short. */
@@ -65,14 +65,14 @@ static json_t *shrunk_json(const RtReplayRecord *r, RtError *error) {
     json_t *ids = json_array();
     for (uint32_t i = 0; i < shrunk->count; i++) json_array_append_new(ids, json_integer(shrunk->ids[i]));
     json_t *object = json_pack("{s:o, s:b, s:o, s:o, s:o}", "objects", ids, "minimal", shrunk->minimal,
-                               "expected", hit_json(shrunk->reply.expected), "got",
-                               got_json(r->question, &shrunk->reply), "yaml", yaml_json(&part));
+                               "expected", hit_json(shrunk->answer.expected), "got",
+                               got_json(r->failure, &shrunk->answer), "yaml", yaml_json(&part));
     rt_scene_clear(&part);
     return object;
 }
 
 static json_t *record_json(const RtReplayRecord *r, RtError *error) {
-    const RtQuestion *q = r->question;
+    const RtFailure *q = r->failure;
     json_t *rays = json_array();
     for (size_t i = 0; i < q->count; i++) json_array_append_new(rays, ray_json(&q->rays[i]));
     bool whole = !rt_builtin_find(r->scene_spec) && r->scene->geometry.object_count <= MOST_OBJECTS;
@@ -82,8 +82,8 @@ static json_t *record_json(const RtReplayRecord *r, RtError *error) {
                      (json_int_t)r->scene->sampling.columns, (json_int_t)r->scene->sampling.rows, "accel",
                      r->accel_spec, "query", q->occluded ? "occluded" : "nearest", "kernel",
                      q->counted ? "counted" : "timed", "stream", (json_int_t)q->stream, "asked",
-                     (json_int_t)q->asked, "rays", rays, "expected", hit_json(r->reply->expected), "got",
-                     got_json(q, r->reply), "shrunk", r->shrunk ? shrunk_json(r, error) : json_null());
+                     (json_int_t)q->asked, "rays", rays, "expected", hit_json(r->answer->expected), "got",
+                     got_json(q, r->answer), "shrunk", r->shrunk ? shrunk_json(r, error) : json_null());
 }
 
 RtStatus rt_replay_save(const char *path, const RtReplayRecord *record, RtError *error) {
@@ -144,7 +144,7 @@ static bool take(RtReplay *r, const char **wrong) {
     r->shrunk_yaml = json_string_value(json_object_get(shrunk, "yaml"));
     r->columns = (uint32_t)json_integer_value(json_array_get(sampling, 0));
     r->rows = (uint32_t)json_integer_value(json_array_get(sampling, 1));
-    RtQuestion *q = &r->question;
+    RtFailure *q = &r->failure;
     q->count = json_array_size(rays);
     if (*wrong = "scene", !r->scene_spec) return false;
     if (*wrong = "accel", !r->accel_spec) return false;
@@ -184,7 +184,7 @@ RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error) {
         wrong ? rt_fail(error, RT_BAD_INPUT,
                         "%s: this is no file to replay: '%s' is missing or not what `raytally verify` writes",
                         path, wrong)
-              : rt_fail_memory(error, "rays", replay->question.count * sizeof(RtRay));
+              : rt_fail_memory(error, "rays", replay->failure.count * sizeof(RtRay));
     rt_replay_clear(replay);
     return status;
 }
@@ -215,12 +215,12 @@ static RtStatus open_scene(const RtReplay *r, bool shrunk, RtScene *scene, RtErr
                    r->scene_spec);
 }
 
-RtStatus rt_replay_ask(const RtReplay *replay, RtMaker maker, bool shrunk, RtReply *reply, RtError *error) {
+RtStatus rt_replay_ask(const RtReplay *replay, RtMaker maker, bool shrunk, RtAnswer *answer, RtError *error) {
     RtScene scene;
     RT_TRY(open_scene(replay, shrunk, &scene, error));
     RtStatus status = rt_scene_sample(&scene, replay->columns, replay->rows, 1, false, error);
     if (status == RT_OK) {
-        status = rt_question_ask(&replay->question, &scene, maker, reply, error);
+        status = rt_failure_ask(&replay->failure, &scene, maker, answer, error);
     }
     rt_scene_clear(&scene);
     return status;

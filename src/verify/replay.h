@@ -19,8 +19,8 @@
 typedef struct RtReplayRecord {
     const char *scene_spec, *accel_spec;
     const RtScene *scene;
-    const RtQuestion *question;
-    const RtReply *reply;
+    const RtFailure *failure;
+    const RtAnswer *answer;
     const RtShrunk *shrunk; /* NULL where the answer could not be repeated */
 } RtReplayRecord;
 
@@ -30,7 +30,7 @@ RtStatus rt_replay_save(const char *path, const RtReplayRecord *record, RtError 
 typedef struct RtReplay {
     json_t *document;
     RtRay *rays;                                              /* owned */
-    RtQuestion question;                                      /* of `rays` */
+    RtFailure failure;                                        /* of `rays` */
     const char *scene_spec, *accel_spec, *yaml, *shrunk_yaml; /* in the document; the last two or NULL */
     uint64_t fingerprint;
     uint32_t columns, rows;
@@ -43,6 +43,6 @@ void rt_replay_clear(RtReplay *replay);
 /* Asks what `maker` builds (as a rule, what the spec says) again over the scene, or with `shrunk` over what
  * was left of it: RT_NOT_AVAILABLE where nothing was shrunk, RT_BAD_INPUT where the scene is no longer what
  * it was: then nothing is said about the answer. */
-RtStatus rt_replay_ask(const RtReplay *replay, RtMaker maker, bool shrunk, RtReply *reply, RtError *error);
+RtStatus rt_replay_ask(const RtReplay *replay, RtMaker maker, bool shrunk, RtAnswer *answer, RtError *error);
 
 #endif

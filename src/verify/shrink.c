@@ -10,7 +10,7 @@
 
 typedef struct Shrinking {
     const RtScene *scene;
-    const RtQuestion *question;
+    const RtFailure *failure;
     RtMaker maker;
     const RtShrinkObserver *observer;
     uint64_t left;  /* of the budget */
@@ -22,20 +22,20 @@ typedef struct Shrinking {
 /* Asks over s->part[0..count); if the answer is still wrong, that is what is left. */
 static RtStatus try_part(Shrinking *s, uint32_t count, bool *shrunk) {
     RtScene scene;
-    RtReply reply = {.wrong = false};
+    RtAnswer answer = {.wrong = false};
     uint64_t cost = (uint64_t)count + TRY_COST;
     *shrunk = false;
     s->left = cost < s->left ? s->left - cost : 0;
     if (s->left == 0) return RT_OK;
     RT_TRY(rt_scene_subset(s->scene, s->part, count, &scene, s->error));
-    RtStatus status = rt_question_ask(s->question, &scene, s->maker, &reply, s->error);
+    RtStatus status = rt_failure_ask(s->failure, &scene, s->maker, &answer, s->error);
     rt_scene_clear(&scene);
     if (status != RT_OK && status != RT_BAD_INPUT) return status;
     s->out->tries++;
-    if (reply.wrong) {
+    if (answer.wrong) {
         memcpy(s->out->ids, s->part, count * sizeof *s->part);
         s->out->count = count;
-        s->out->reply = reply;
+        s->out->answer = answer;
         *shrunk = true;
     }
     if (s->observer) s->observer->tried(s->observer->context, s->out->count, s->out->tries);
@@ -63,8 +63,8 @@ static RtStatus try_pieces(Shrinking *s, uint32_t pieces, bool others, bool *shr
 }
 
 /* Most failures are about the two objects that were named. */
-static RtStatus try_those_named(Shrinking *s, const RtReply *reply) {
-    uint32_t a = reply->expected.object, b = s->question->occluded ? RT_NO_OBJECT : reply->got.object;
+static RtStatus try_those_named(Shrinking *s, const RtAnswer *answer) {
+    uint32_t a = answer->expected.object, b = s->failure->occluded ? RT_NO_OBJECT : answer->got.object;
     uint32_t count = 0, objects = s->out->count;
     bool shrunk;
     if (a > b) {
@@ -76,8 +76,8 @@ static RtStatus try_those_named(Shrinking *s, const RtReply *reply) {
     return count > 0 && count < objects ? try_part(s, count, &shrunk) : RT_OK;
 }
 
-static RtStatus shrink(Shrinking *s, const RtReply *reply) {
-    RT_TRY(try_those_named(s, reply));
+static RtStatus shrink(Shrinking *s, const RtAnswer *answer) {
+    RT_TRY(try_those_named(s, answer));
     uint32_t pieces = 2;
     while (s->out->count > 1 && s->left > 0) {
         bool shrunk;
@@ -101,12 +101,12 @@ static RtStatus shrink(Shrinking *s, const RtReply *reply) {
     return RT_OK;
 }
 
-RtStatus rt_shrink(const RtScene *scene, const RtQuestion *question, const RtReply *reply, RtMaker maker,
+RtStatus rt_shrink(const RtScene *scene, const RtFailure *failure, const RtAnswer *answer, RtMaker maker,
                    uint64_t budget, const RtShrinkObserver *observer, RtShrunk *out, RtError *error) {
     uint32_t count = scene->geometry.object_count;
-    *out = (RtShrunk){.ids = rt_alloc(count, sizeof(uint32_t)), .count = count, .reply = *reply};
+    *out = (RtShrunk){.ids = rt_alloc(count, sizeof(uint32_t)), .count = count, .answer = *answer};
     Shrinking s = {.scene = scene,
-                   .question = question,
+                   .failure = failure,
                    .maker = maker,
                    .observer = observer,
                    .left = budget,
@@ -116,7 +116,7 @@ RtStatus rt_shrink(const RtScene *scene, const RtQuestion *question, const RtRep
     RtStatus status = out->ids && s.part ? RT_OK : rt_fail_memory(error, "ids of objects", 8 * (size_t)count);
     if (status == RT_OK) {
         for (uint32_t i = 0; i < count; i++) out->ids[i] = i;
-        status = shrink(&s, reply);
+        status = shrink(&s, answer);
     }
     rt_free(s.part);
     if (status != RT_OK) {

@@ -1,4 +1,4 @@
-/* Shrinking: which few objects of a scene are enough for an accelerator to answer a question wrong.
+/* Shrinking: which few objects of a scene are enough for an accelerator to answer a ray wrong.
  *
  * Zeller & Hildebrandt 2002, "Simplifying and Isolating Failure-Inducing Input" (IEEE TSE 28(2)): objects are
  * left out in halves, quarters, ... down to single ones, as long as the answer stays wrong; each try builds
@@ -7,7 +7,7 @@
 #ifndef RT_VERIFY_SHRINK_H
 #define RT_VERIFY_SHRINK_H
 
-#include "verify/question.h"
+#include "verify/failure.h"
 
 /* Called after each try with the number of objects left and of tries. */
 typedef struct RtShrinkObserver {
@@ -22,13 +22,13 @@ typedef struct RtShrinkObserver {
 typedef struct RtShrunk {
     uint32_t *ids; /* [count] of the objects left, ascending; owned: rt_free */
     uint32_t count, tries;
-    bool minimal;  /* false: the budget was spent */
-    RtReply reply; /* over the objects left; ids there are places in `ids` */
+    bool minimal;    /* false: the budget was spent */
+    RtAnswer answer; /* over the objects left; ids there are places in `ids` */
 } RtShrunk;
 
-/* Shrinks `scene` for a question that is answered wrong over it, with `reply`. `observer` may be NULL. An
+/* Shrinks `scene` for a failure over it, with `answer`. `observer` may be NULL. An
  * accelerator that cannot be built over a part is taken to answer right there. */
-RtStatus rt_shrink(const RtScene *scene, const RtQuestion *question, const RtReply *reply, RtMaker maker,
+RtStatus rt_shrink(const RtScene *scene, const RtFailure *failure, const RtAnswer *answer, RtMaker maker,
                    uint64_t budget, const RtShrinkObserver *observer, RtShrunk *out, RtError *error);
 
 #endif

@@ -175,26 +175,26 @@ static RtStatus replay_path(const Run *run, const char *scene, const char *spec,
 }
 
 /* Shrinks the failure, writes it to a replay file, and names that in the row. */
-static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *spec, const RtWitness *witness,
-                             json_t *row, RtError *error) {
+static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *spec,
+                             const RtWrongAnswer *wrong, json_t *row, RtError *error) {
     RtMaker maker = maker_of(spec);
     RtShrinkObserver observer = {on_tried, run};
-    RtQuestion question;
-    RtReply reply;
+    RtFailure failure;
+    RtAnswer answer;
     RtShrunk shrunk = {0};
     char path[RT_MAX_PATH];
     RT_TRY(replay_path(run, stage->name, spec->spec, path, error));
-    RT_TRY(rt_question_of_witness(&stage->reference, witness, maker, &question, &reply, error));
-    RtReplayRecord record = {stage->name, spec->spec, stage->scene, &question, &reply, NULL};
-    if (reply.wrong) {
+    RT_TRY(rt_failure_of(&stage->reference, wrong, maker, &failure, &answer, error));
+    RtReplayRecord record = {stage->name, spec->spec, stage->scene, &failure, &answer, NULL};
+    if (answer.wrong) {
         RT_TRY(
-            rt_shrink(stage->scene, &question, &reply, maker, RT_SHRINK_BUDGET, &observer, &shrunk, error));
+            rt_shrink(stage->scene, &failure, &answer, maker, RT_SHRINK_BUDGET, &observer, &shrunk, error));
         record.shrunk = &shrunk;
     }
     RtStatus status = rt_replay_save(path, &record, error);
     json_t *first = json_object_get(row, "first_wrong");
     json_object_set_new(first, "replay", json_string(path));
-    json_object_set_new(first, "objects_left", reply.wrong ? json_integer(shrunk.count) : json_null());
+    json_object_set_new(first, "objects_left", answer.wrong ? json_integer(shrunk.count) : json_null());
     rt_free(shrunk.ids);
     return status;
 }
@@ -221,7 +221,7 @@ static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVeri
         RT_TRY(status);
     }
     RT_TRY(rt_equivalence_check(&stage->reference, accel, run->verify->rays.threads, &result, error));
-    json_t *row = rt_equivalence_json(&result, stage->name, spec->spec, "brute");
+    json_t *row = rt_equivalence_json(&result, stage->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_boolean(accel->exact));
     json_object_set_new(row, "problem", problem_json(run, &result, broken));
     status = result.any_wrong ? keep_failure(run, stage, spec, &result.first_wrong, row, error) : RT_OK;
@@ -253,7 +253,7 @@ static RtStatus set_stage(Run *run, Stage *stage, RtError *error) {
     const RtVerify *v = run->verify;
     doing(run, "recording rays");
     RT_TRY(rt_verify_sample(&v->rays, stage->scene, error));
-    RT_TRY(rt_accel_open("brute", stage->scene, &stage->brute, error));
+    RT_TRY(rt_accel_open(rt_accel_truth(), stage->scene, &stage->brute, error));
     stage->rays = rt_alloc(v->rays.count, sizeof(RtRay));
     if (!stage->rays) return rt_fail_memory(error, "rays", v->rays.count * sizeof(RtRay));
     RT_TRY(rt_verify_rays(&v->rays, stage->brute, stage->rays, error));

@@ -9,7 +9,7 @@
 #define RT_VERIFY_VERIFY_H
 
 #include "bench/earlier.h"
-#include "verify/question.h"
+#include "verify/failure.h"
 #include "verify/verify_rays.h"
 
 /* One accelerator to verify. One that was not asked for by name may be missing on this machine, or refuse a

@@ -1,8 +1,6 @@
 /* accel/embree: no objects, a structure outgrown, memory, and which Embree it is. Skipped without Embree. */
 #include "embree_testing.h"
 
-#include "accel/embree_info.h"
-
 static void an_empty_scene_is_hit_by_nothing(void **state) {
     (void)state;
     static const char *const specs[] = {"embree", "embree:query=16", "embree:query=stream",
@@ -53,10 +51,12 @@ static void building_ten_times_leaks_nothing(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void info_names_a_version_and_an_isa(void **state) {
+static void the_library_names_a_version_and_an_isa(void **state) {
     (void)state;
     char text[64];
-    assert_true(rt_embree_info(text, sizeof text));
+    const RtAccelOps *ops;
+    assert_ok(rt_accel_find("embree", &ops, error));
+    assert_true(ops->library(text, sizeof text));
     int major, minor, patch;
     char isa[16];
     assert_int_equal(sscanf(text, "%d.%d.%d %15s", &major, &minor, &patch, isa), 4);
@@ -68,7 +68,7 @@ RT_TEST_GROUP(embree) {
         cmocka_unit_test(an_empty_scene_is_hit_by_nothing),
         cmocka_unit_test(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode),
         cmocka_unit_test(building_ten_times_leaks_nothing),
-        cmocka_unit_test(info_names_a_version_and_an_isa),
+        cmocka_unit_test(the_library_names_a_version_and_an_isa),
     };
     if (!embree_is_built_in()) return RT_TEST_SKIPPED;
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,7 +3,7 @@
 #include "embree_testing.h"
 
 #include "scenes/open.h"
-#include "verify/question.h"
+#include "verify/failure.h"
 
 static void make_triangles(RtScene *scene, uint32_t count) {
     RtRandom random = rt_random(7, 2);
@@ -108,55 +108,55 @@ static void native_mode_takes_every_valid_ray(void **state) {
 
 /* ---- margins that verify found ---- */
 
-static RtReply ask_native(const char *scene_spec, const char *spec, RtRay ray) {
+static RtAnswer ask_native(const char *scene_spec, const char *spec, RtRay ray) {
     RtScene scene;
-    RtReply reply;
+    RtAnswer answer;
     RtError error;
-    RtQuestion question = {.rays = &ray, .count = 1, .stream = 1};
+    RtFailure failure = {.rays = &ray, .count = 1, .stream = 1};
     assert_int_equal(rt_scene_open(scene_spec, &scene, &error), RT_OK);
-    RtStatus status = rt_question_ask(&question, &scene, rt_maker_of_spec(spec), &reply, &error);
+    RtStatus status = rt_failure_ask(&failure, &scene, rt_maker_of_spec(spec), &answer, &error);
     rt_scene_clear(&scene);
     if (status == RT_NOT_AVAILABLE) skip(); /* no such processor */
     assert_int_equal(status, RT_OK);
-    return reply;
+    return answer;
 }
 
 /* Along faces of boxes of a CSG tree, and off them by a component of 2^-130, which Embree does not see: a
  * margin. */
 static void a_component_that_embree_drops_is_a_margin(void **state) {
     (void)state;
-    RtReply reply = ask_native("family:kind=csg-coincident,seed=1", "embree:mode=native",
-                               (RtRay){.org = {{-0.125f, -0x1.d991ccp-1f, 0.0625f}},
-                                       .dir = {{-0x1p-130f, 1, -0.0f}},
-                                       .tmax = INFINITY,
-                                       .kind = RT_RAY_RANDOM});
-    assert_true(reply.expected.object != reply.got.object);
-    assert_false(reply.wrong);
+    RtAnswer answer = ask_native("family:kind=csg-coincident,seed=1", "embree:mode=native",
+                                 (RtRay){.org = {{-0.125f, -0x1.d991ccp-1f, 0.0625f}},
+                                         .dir = {{-0x1p-130f, 1, -0.0f}},
+                                         .tmax = INFINITY,
+                                         .kind = RT_RAY_RANDOM});
+    assert_true(answer.expected.object != answer.got.object);
+    assert_false(answer.wrong);
 }
 
 /* A needle seen edge on, which Embree without fused operations says is hit where its plane is not. */
 static void a_needle_seen_edge_on_is_a_margin(void **state) {
     (void)state;
-    RtReply reply = ask_native("family:kind=slivers,seed=1", "embree:isa=sse2",
-                               (RtRay){.org = {{-0.709930062f, 0.908542037f, 0.687071741f}},
-                                       .dir = {{2.6491189f, -5.61743689f, 3.32413292f}},
-                                       .tmax = 1,
-                                       .kind = RT_RAY_SHADOW});
-    assert_int_equal(reply.expected.object, RT_NO_OBJECT);
-    assert_false(reply.wrong);
+    RtAnswer answer = ask_native("family:kind=slivers,seed=1", "embree:isa=sse2",
+                                 (RtRay){.org = {{-0.709930062f, 0.908542037f, 0.687071741f}},
+                                         .dir = {{2.6491189f, -5.61743689f, 3.32413292f}},
+                                         .tmax = 1,
+                                         .kind = RT_RAY_SHADOW});
+    assert_int_equal(answer.expected.object, RT_NO_OBJECT);
+    assert_false(answer.wrong);
 }
 
 /* A triangle of 2^39, 2^54 away: the dot product of its corner and its normal, 2^134, is beyond float32. */
 static void where_products_overflow_is_a_margin_and_no_hit_at_infinity(void **state) {
     (void)state;
-    RtReply reply = ask_native("family:kind=slivers-scaled,seed=16", "embree",
-                               (RtRay){.org = {{0x1.d29b58p+53f, -0x1.469a9ap+53f, -0x1.cc3184p+51f}},
-                                       .dir = {{-0x1.9b2646p-1f, 0x1.1fcc8cp-1f, 0x1.95666cp-3f}},
-                                       .tmax = INFINITY,
-                                       .kind = RT_RAY_RANDOM});
-    assert_int_equal(reply.expected.object, 95);
-    assert_int_equal(reply.got.object, RT_NO_OBJECT);
-    assert_false(reply.wrong);
+    RtAnswer answer = ask_native("family:kind=slivers-scaled,seed=16", "embree",
+                                 (RtRay){.org = {{0x1.d29b58p+53f, -0x1.469a9ap+53f, -0x1.cc3184p+51f}},
+                                         .dir = {{-0x1.9b2646p-1f, 0x1.1fcc8cp-1f, 0x1.95666cp-3f}},
+                                         .tmax = INFINITY,
+                                         .kind = RT_RAY_RANDOM});
+    assert_int_equal(answer.expected.object, 95);
+    assert_int_equal(answer.got.object, RT_NO_OBJECT);
+    assert_false(answer.wrong);
 }
 
 RT_TEST_GROUP(embree_native) {

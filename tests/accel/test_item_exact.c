@@ -28,7 +28,7 @@ static void objects_all_around_the_eye_are_drawn_right(void **state) {
         RtScene scene;
         begin_view(&scene);
         scene.camera.fov = k % 3 == 0 ? 170 : k % 3 == 1 ? 60 : 179.9999f;
-        scene.camera.hither = k % 4 == 0 ? 0.25f : 0;
+        scene.camera.near = k % 4 == 0 ? 0.25f : 0;
         scene.camera.up = rt_vec3(0.1f, 0.3f, 1);
         RtVec3 eye = rt_narrow(rt_scaled(rt_random_direction(&random), k % 6 == 5 ? 1000 : 0.5));
         look(&scene, eye, rt_narrow(rt_addd(rt_widen(eye), rt_random_direction(&random))));
@@ -141,7 +141,7 @@ static void touching_and_coincident_spheres_are_told_apart(void **state) {
     check_scene(&scene, 1);
 }
 
-static void the_hither_plane_hides_what_is_before_it(void **state) {
+static void the_near_plane_hides_what_is_before_it(void **state) {
     (void)state;
     const RtVec3 pane[4] = {{{-3, 1, -3}}, {{3, 1, -3}}, {{3, 1, 3}}, {{-3, 1, 3}}};
     const float planes[] = {0.5f, 0x1.fffffep-1f, 1, 0x1.000002p+0f, 4.25f, 5, 100};
@@ -149,7 +149,7 @@ static void the_hither_plane_hides_what_is_before_it(void **state) {
         RtScene scene;
         begin_view(&scene);
         look(&scene, rt_vec3(0, 0, 0), rt_vec3(0, 1, 0));
-        scene.camera.hither = planes[i];
+        scene.camera.near = planes[i];
         assert_ok(rt_scene_add_polygon(&scene, 0, pane, 4, error));
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 5, 0), 1, error)); /* cut open at 4.25 */
         check_scene(&scene, 0.97);
@@ -233,7 +233,7 @@ RT_TEST_GROUP(item_exact) {
         cmocka_unit_test(an_object_smaller_than_a_sample_is_seen_on_one_and_not_between),
         cmocka_unit_test(coincident_and_nearly_coplanar_polygons_are_told_apart),
         cmocka_unit_test(touching_and_coincident_spheres_are_told_apart),
-        cmocka_unit_test(the_hither_plane_hides_what_is_before_it),
+        cmocka_unit_test(the_near_plane_hides_what_is_before_it),
         cmocka_unit_test(concave_polygons_are_not_taken_for_convex_ones),
         cmocka_unit_test(what_is_hit_by_rounding_alone_is_drawn_as_hit),
         cmocka_unit_test(scenes_far_off_tiny_or_huge_are_drawn_right),

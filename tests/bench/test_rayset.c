@@ -80,11 +80,11 @@ static uint64_t count_from_within(const RtRaySet *shadows) {
     return count;
 }
 
-static void outward_light_is_asked_for_outside_of_glass_alone(void **state) {
+static void light_from_outside_is_asked_for_outside_of_glass_alone(void **state) {
     const Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT];
     RtRecording recording = make_recording(1);
-    recording.outward_light = true;
+    recording.light_from_outside = true;
     assert_ok(rt_rayset_record(sets, stage->accel, &recording, error));
     assert_true(count_from_within(&stage->sets[RT_RAY_SHADOW]) > 0);
     assert_int_equal(count_from_within(&sets[RT_RAY_SHADOW]), 0);
@@ -263,7 +263,7 @@ static void a_scene_at_the_end_of_coordinates_is_seen_and_lit(void **state) {
 RT_TEST_GROUP(rayset) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_ray_is_valid_and_of_its_kind),
-        cmocka_unit_test(outward_light_is_asked_for_outside_of_glass_alone),
+        cmocka_unit_test(light_from_outside_is_asked_for_outside_of_glass_alone),
         cmocka_unit_test(sets_are_the_same_on_any_number_of_threads_and_any_accelerator),
         cmocka_unit_test(another_seed_changes_diffuse_and_random_rays_alone),
         cmocka_unit_test(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface),

@@ -12,7 +12,7 @@ static RtPolynomial constant(RtRational a) {
 }
 
 /* p times (t - root) */
-static RtPolynomial times_root(RtSlate *s, const RtPolynomial *p, RtRational root) {
+static RtPolynomial times_root(RtExactArena *s, const RtPolynomial *p, RtRational root) {
     RtPolynomial out = {.degree = p->degree + 1};
     RtRational zero = rt_exact_of(s, 0);
     for (int i = 0; i <= out.degree; i++) {
@@ -22,21 +22,21 @@ static RtPolynomial times_root(RtSlate *s, const RtPolynomial *p, RtRational roo
     return out;
 }
 
-static RtPolynomial with_roots(RtSlate *s, double lead, const RtRational *roots, int count) {
+static RtPolynomial with_roots(RtExactArena *s, double lead, const RtRational *roots, int count) {
     RtPolynomial p = constant(rt_exact_of(s, lead));
     for (int i = 0; i < count; i++) p = times_root(s, &p, roots[i]);
     return p;
 }
 
 /* (t^2 - a) (t^2 - b) */
-static RtPolynomial with_squares(RtSlate *s, double a, double b) {
+static RtPolynomial with_squares(RtExactArena *s, double a, double b) {
     RtPolynomial p = {4, {rt_exact_of(s, a * b), rt_exact_of(s, 0), rt_exact_of(s, -a - b)}};
     p.at[3] = rt_exact_of(s, 0);
     p.at[4] = rt_exact_of(s, 1);
     return p;
 }
 
-static bool is_at(RtSlate *s, const RtAlgebraic *root, RtRational t) {
+static bool is_at(RtExactArena *s, const RtAlgebraic *root, RtRational t) {
     RtPlace a = rt_place_of_root(root), b = rt_place_of(s, t);
     int order = rt_place_compare(s, &a, &b);
     assert_int_equal(rt_place_compare(s, &b, &a), -order);
@@ -49,7 +49,7 @@ static bool is_at(RtSlate *s, const RtAlgebraic *root, RtRational t) {
 static void roots_are_found_at_known_places_and_multiple_ones_once(void **state) {
     (void)state;
     RtRandom random = rt_random(31, 0);
-    RtSlate s = {0};
+    RtExactArena s = {0};
     int doubles = 0;
     for (int round = 0; round < 2000; round++) {
         double known[4];
@@ -83,27 +83,27 @@ static void roots_are_found_at_known_places_and_multiple_ones_once(void **state)
             doubles += next - i > 1;
         }
         assert_int_equal(found, count);
-        rt_slate_wipe(&s, 0);
+        rt_exact_arena_rewind(&s, 0);
     }
     assert_true(doubles > 300);
-    rt_slate_clear(&s);
+    rt_exact_arena_clear(&s);
 }
 
 static void a_polynomial_without_real_roots_has_none(void **state) {
     (void)state;
-    RtSlate s = {0};
+    RtExactArena s = {0};
     RtAlgebraic roots[RT_MAX_DEGREE];
     RtPolynomial p = with_squares(&s, -1, -2), square = with_squares(&s, -2, -2), one = constant(p.at[4]);
     assert_int_equal(rt_polynomial_roots(&s, &p, roots), 0);
     assert_int_equal(rt_polynomial_roots(&s, &square, roots), 0);
     assert_int_equal(rt_polynomial_roots(&s, &one, roots), 0);
-    rt_slate_clear(&s);
+    rt_exact_arena_clear(&s);
 }
 
 /* t^4 - 10 t^2 + 1 is that of sqrt(2) + sqrt(3), and has no factors. */
 static void values_have_all_digits_of_a_long_double(void **state) {
     (void)state;
-    RtSlate s = {0};
+    RtExactArena s = {0};
     RtAlgebraic roots[RT_MAX_DEGREE];
     RtRational zero = rt_exact_of(&s, 0);
     RtPolynomial p = {4, {rt_exact_of(&s, 1), zero, rt_exact_of(&s, -10), zero, rt_exact_of(&s, 1)}};
@@ -116,7 +116,7 @@ static void values_have_all_digits_of_a_long_double(void **state) {
     assert_int_equal(rt_polynomial_roots(&s, &p, roots), 4);
     long double off = rt_algebraic_value(&s, &roots[2], rt_exact_of(&s, 0x1p-20));
     assert_true(fabsl(off - 0x1p-101L) <= 0x1p-160L);
-    rt_slate_clear(&s);
+    rt_exact_arena_clear(&s);
 }
 
 /* ---- equal and nearly so ---- */
@@ -125,7 +125,7 @@ static void values_have_all_digits_of_a_long_double(void **state) {
  * surd. */
 static void equal_roots_of_different_polynomials_are_a_tie(void **state) {
     (void)state;
-    RtSlate s = {0};
+    RtExactArena s = {0};
     RtAlgebraic a[RT_MAX_DEGREE], b[RT_MAX_DEGREE];
     RtPolynomial p = with_squares(&s, 2, 3), q = with_squares(&s, 1.5, 2);
     assert_int_equal(rt_polynomial_roots(&s, &p, a), 4);
@@ -144,13 +144,13 @@ static void equal_roots_of_different_polynomials_are_a_tie(void **state) {
         assert_int_equal(rt_place_compare(&s, &place, &root), 0);
         assert_int_equal(rt_place_compare(&s, &root, &place), 0);
     }
-    rt_slate_clear(&s);
+    rt_exact_arena_clear(&s);
 }
 
 /* t^2 (t^2 - 2) - 2^-n is 0 next to sqrt(2): 2^-n / (4 sqrt(2)) above it, however large n is. */
 static void roots_2_to_the_minus_200_apart_are_told_apart(void **state) {
     (void)state;
-    RtSlate s = {0};
+    RtExactArena s = {0};
     for (int n = 50; n <= 400; n += 50) {
         RtAlgebraic a[RT_MAX_DEGREE], b[RT_MAX_DEGREE];
         RtPolynomial p = with_squares(&s, 0, 2), q = p;
@@ -165,13 +165,13 @@ static void roots_2_to_the_minus_200_apart_are_told_apart(void **state) {
         assert_int_equal(rt_place_compare(&s, &root, &above), -1);
         assert_int_equal(rt_place_compare(&s, &above, &root), 1);
     }
-    rt_slate_clear(&s);
+    rt_exact_arena_clear(&s);
 }
 
 /* Two roots of one polynomial, 2^-n apart, and a third far away. */
 static void near_roots_of_one_polynomial_are_parted(void **state) {
     (void)state;
-    RtSlate s = {0};
+    RtExactArena s = {0};
     for (int n = 10; n <= 500; n += 70) {
         RtRational third = rt_exact_div(&s, rt_exact_of(&s, 1), rt_exact_of(&s, 3));
         RtRational known[3] = {third, rt_exact_add(&s, third, rt_exact_of(&s, ldexp(1, -n))),
@@ -187,7 +187,7 @@ static void near_roots_of_one_polynomial_are_parted(void **state) {
         long double apart = rt_algebraic_value(&s, &roots[1], third), expected = ldexpl(1, -n);
         assert_true(fabsl(apart - expected) <= 0x1p-60L * expected);
     }
-    rt_slate_clear(&s);
+    rt_exact_arena_clear(&s);
 }
 
 RT_TEST_GROUP(algebraic) {

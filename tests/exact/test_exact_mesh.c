@@ -2,6 +2,7 @@
  * and that all lines through a point are of one mind whether it is inside. */
 #include "solids_testing.h"
 
+#include "exact/exact_mesh.h"
 #include "exact/referee.h"
 
 /* ---- meshes of boxes ---- */
@@ -59,16 +60,16 @@ static RtRay lattice_ray(RtRandom *random) {
 
 /* The places, to out[0..MOST); gives their number. */
 static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ray, long double *out) {
-    RtSlate slate = {0};
+    RtExactArena arena = {0};
     RtRational *places;
     uint32_t count;
     RtWideRay wide = rt_wide_ray(ray);
-    RtExactLine line = rt_exact_line(&slate, &wide);
-    assert_ok(rt_exact_mesh_places(&slate, set, index, &line, &places, &count, error));
+    RtExactLine line = rt_exact_line(&arena, &wide);
+    assert_ok(rt_exact_mesh_places(&arena, set, index, &line, &places, &count, error));
     assert_true(count <= MOST && count % 2 == 0);
     for (uint32_t i = 0; i < count; i++) out[i] = rt_exact_value(places[i]);
     rt_free(places);
-    rt_slate_clear(&slate);
+    rt_exact_arena_clear(&arena);
     return count;
 }
 

@@ -109,8 +109,7 @@ static void a_tree_may_be_appended_under_any_transform(void **state) {
         }
         RtCsg moved;
         RtCsgForest forest = {0};
-        assert_ok(
-            rt_csg_transplant(&forest, &from.geometry.forest, from.geometry.csgs, &uneven, &moved, error));
+        assert_ok(rt_csg_copy(&forest, &from.geometry.forest, from.geometry.csgs, &uneven, &moved, error));
         for (uint32_t i = 0; i < 200; i++) {
             RtRay ray = random_ray(&random, i);
             Hits first = hits_of(&g->forest, &g->csgs[0], &ray), wanted = hits_of(&forest, &moved, &ray);

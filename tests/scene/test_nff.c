@@ -58,7 +58,7 @@ static void every_statement_is_read(void **state) {
     assert_int_equal(scene.material_of[2], 0);
     assert_int_equal(scene.material_of[3], 1);
 
-    assert_true(scene.camera.from.y == 2 && scene.camera.fov == 30 && scene.camera.hither == 0.5f);
+    assert_true(scene.camera.from.y == 2 && scene.camera.fov == 30 && scene.camera.near == 0.5f);
     assert_int_equal(scene.camera.width, 64);
     assert_int_equal(scene.camera.height, 48);
     assert_true(scene.background.z == 0.3f);

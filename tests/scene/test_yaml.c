@@ -12,7 +12,7 @@ static void a_scene_is_what_its_file_says(void **state) {
     RtScene s;
     assert_ok(load_text(everything, &s, error));
     const RtGeometry *g = &s.geometry;
-    assert_true(s.camera.from.y == -10 && s.camera.fov == 30 && s.camera.hither == 0.5f);
+    assert_true(s.camera.from.y == -10 && s.camera.fov == 30 && s.camera.near == 0.5f);
     assert_int_equal(s.camera.width, 320);
     assert_true(s.background.z == 0.3f && s.ambient.x == 0.5f);
     assert_int_equal(s.light_count, 2);

@@ -113,7 +113,7 @@ static const struct {
     {SPHERE "camera:\n  from: [0, 0, 3]\n  at: [0, 0, 0]\n  up: [0, 0, 1]\n", 6, "`up`"},
     {SPHERE "camera:\n  up: [0, 0, 0]\n", 4, "`up`"},
     {SPHERE "camera:\n  up: [0, 0, 1]\n  fov: 180\n", 5, "below 180"},
-    {SPHERE "camera:\n  hither: -1\n", 4, "at least 0"},
+    {SPHERE "camera:\n  near: -1\n", 4, "at least 0"},
     {SPHERE "camera:\n  size: [0, 100]\n", 4, "1..32768"},
     {SPHERE "camera:\n  size: [1000000000, 100]\n", 4, "1..32768"},
     {SPHERE "camera:\n  size: [5000000000, 100]\n", 4, "whole number"},

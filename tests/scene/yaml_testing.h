@@ -52,7 +52,7 @@ static inline int make_folder(void **state) {
 
 /* One of everything. */
 static const char everything[] =
-    "camera: {from: [0, -10, 4], at: [0, 0, 1], up: [0, 0, 1], fov: 30, hither: 0.5, size: [320, 200]}\n"
+    "camera: {from: [0, -10, 4], at: [0, 0, 1], up: [0, 0, 1], fov: 30, near: 0.5, size: [320, 200]}\n"
     "background: [0.1, 0.2, 0.3]\n"
     "ambient: [0.5, 0.5, 0.5]\n"
     "lights:\n"

@@ -197,7 +197,7 @@ static void they_are_seen_and_lit_as_the_databases_say(void **state) {
     (void)state;
     static const struct {
         const char *spec, *from_at_up;
-        float fov, hither;
+        float fov, near;
         uint32_t lights;
         const char *first_light, *last_light;
         const char *box;
@@ -222,7 +222,7 @@ static void they_are_seen_and_lit_as_the_databases_say(void **state) {
         RtScene scene = open_scene(cases[i].spec);
         const RtVec3 view[3] = {scene.camera.from, scene.camera.at, scene.camera.up};
         assert_points(view, 3, cases[i].from_at_up);
-        assert_true(scene.camera.fov == cases[i].fov && scene.camera.hither == cases[i].hither);
+        assert_true(scene.camera.fov == cases[i].fov && scene.camera.near == cases[i].near);
         assert_int_equal(scene.light_count, cases[i].lights);
         assert_points(&scene.lights[0].position, 1, cases[i].first_light);
         assert_points(&scene.lights[cases[i].lights - 1].position, 1, cases[i].last_light);

@@ -11,13 +11,13 @@ static void each_operation_keeps_its_part_of_two_boxes(void **state) {
     RtCsgTerm left = box(&b, rt_vec3(0, 0, 0), rt_vec3(2, 1, 1), 0);
     RtCsgTerm right = box(&b, rt_vec3(1, 0, 0), rt_vec3(3, 1, 1), 1);
     RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
-    RtCsg tree = plant(&forest, &b, join(&b, left, right));
+    RtCsg tree = compile(&forest, &b, join(&b, left, right));
     assert_hits(&forest, &tree, ray, 2, (float[]){1, 4});
-    tree = plant(&forest, &b, meet(&b, left, right));
+    tree = compile(&forest, &b, meet(&b, left, right));
     assert_hits(&forest, &tree, ray, 2, (float[]){2, 3});
-    tree = plant(&forest, &b, cut(&b, left, right));
+    tree = compile(&forest, &b, cut(&b, left, right));
     assert_hits(&forest, &tree, ray, 2, (float[]){1, 2});
-    tree = plant(&forest, &b, cut(&b, right, left));
+    tree = compile(&forest, &b, cut(&b, right, left));
     assert_hits(&forest, &tree, ray, 2, (float[]){3, 4});
     clear(&forest, &b);
 }
@@ -28,12 +28,12 @@ static void touching_boxes_are_joined_without_a_wall(void **state) {
     RtCsgForest forest = {0};
     RtCsgTerm left = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0);
     RtCsgTerm right = box(&b, rt_vec3(1, 0, 0), rt_vec3(2, 1, 1), 1);
-    RtCsg joined = plant(&forest, &b, join(&b, left, right));
+    RtCsg joined = compile(&forest, &b, join(&b, left, right));
     assert_hits(&forest, &joined, ray_along(rt_vec3(-1, 0.5f, 0.25f), along_x), 2, (float[]){1, 3});
     assert_hits(&forest, &joined, ray_along(rt_vec3(0.25f, 0.5f, 0.25f), along_x), 1, (float[]){1.75f});
-    RtCsg common = plant(&forest, &b, meet(&b, left, right));
+    RtCsg common = compile(&forest, &b, meet(&b, left, right));
     assert_hits(&forest, &common, ray_along(rt_vec3(-1, 0.5f, 0.25f), along_x), 0, NULL);
-    RtCsg rest = plant(&forest, &b, cut(&b, left, right));
+    RtCsg rest = compile(&forest, &b, cut(&b, left, right));
     assert_hits(&forest, &rest, ray_along(rt_vec3(-1, 0.5f, 0.25f), along_x), 2, (float[]){1, 2});
     clear(&forest, &b);
 }
@@ -43,7 +43,7 @@ static void the_wall_of_a_drilled_hole_looks_into_the_hole(void **state) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtCsgTerm plate = box(&b, rt_vec3(-2, -2, -1), rt_vec3(2, 2, 1), 1);
-    RtCsg tree = plant(&forest, &b, cut(&b, plate, ball(&b, rt_vec3(0, 0, 0), 1, 2)));
+    RtCsg tree = compile(&forest, &b, cut(&b, plate, ball(&b, rt_vec3(0, 0, 0), 1, 2)));
     RtRay ray = ray_along(rt_vec3(-4, 0, 0), along_x);
     assert_hits(&forest, &tree, ray, 4, (float[]){2, 3, 5, 6});
     const double normals[4] = {-1, 1, -1, 1};
@@ -62,7 +62,7 @@ static void what_is_taken_from_what_is_taken_away_looks_outward_again(void **sta
     RtCsgForest forest = {0};
     RtCsgTerm hole = cut(&b, ball(&b, rt_vec3(0, 0, 0), 2, 2), ball(&b, rt_vec3(0, 0, 0), 1, 3));
     RtCsgTerm all = cut(&b, box(&b, rt_vec3(-4, -4, -4), rt_vec3(4, 4, 4), 1), hole);
-    RtCsg tree = plant(&forest, &b, all);
+    RtCsg tree = compile(&forest, &b, all);
     RtRay ray = ray_along(rt_vec3(0, 0, 0), along_x);
     assert_hits(&forest, &tree, ray, 3, (float[]){1, 2, 4});
     const double normals[3] = {1, -1, 1};
@@ -83,7 +83,7 @@ static void the_left_operand_names_a_face_that_both_have(void **state) {
     RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
     for (int op = 0; op < 2; op++) {
         for (int swapped = 0; swapped < 2; swapped++) {
-            RtCsg tree = plant(&forest, &b, combine(&b, (RtCsgOp)op, swapped ? c : a, swapped ? a : c));
+            RtCsg tree = compile(&forest, &b, combine(&b, (RtCsgOp)op, swapped ? c : a, swapped ? a : c));
             RtCsgFacet facet = facet_at(&forest, &tree, &ray, 1);
             assert_int_equal(forest.set.solids[facet.solid].material, swapped ? 2 : 1);
             assert_true(facet.normal.x == -1);
@@ -98,7 +98,7 @@ static void an_empty_result_is_a_point_and_never_hit(void **state) {
     RtCsgForest forest = {0};
     RtCsgTerm near = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0);
     RtCsgTerm far = box(&b, rt_vec3(2, 0, 0), rt_vec3(3, 1, 1), 0);
-    RtCsg tree = plant(&forest, &b, meet(&b, near, far));
+    RtCsg tree = compile(&forest, &b, meet(&b, near, far));
     assert_true(memcmp(&tree.box.lo, &tree.box.hi, sizeof tree.box.lo) == 0);
     RtRay through = ray_along(rt_vec3(tree.box.lo.x - 1, tree.box.lo.y, tree.box.lo.z), along_x);
     assert_hits(&forest, &tree, through, 0, NULL);
@@ -109,7 +109,7 @@ static void a_ray_is_answered_within_its_interval_only(void **state) {
     (void)state;
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
-    RtCsg tree = plant(&forest, &b, box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0));
+    RtCsg tree = compile(&forest, &b, box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0));
     RtRay ray = ray_along(rt_vec3(-1, 0.5f, 0.5f), along_x);
     ray.tmin = 1, ray.tmax = 1;
     assert_hits(&forest, &tree, ray, 1, (float[]){1});
@@ -135,14 +135,14 @@ static void a_tree_without_end_is_refused_and_leaves_nothing_behind(void **state
     RtError error;
     const RtCsgTerm endless[3] = {half, join(&b, unit, half), cut(&b, half, unit)};
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(rt_csg_plant(&forest, &b, endless[i], true, &tree, &error), RT_BAD_INPUT);
+        assert_int_equal(rt_csg_compile(&forest, &b, endless[i], true, &tree, &error), RT_BAD_INPUT);
         assert_non_null(strstr(error.message, "no end"));
         assert_int_equal(forest.set.solid_count + forest.set.plane_count + forest.instruction_count, 0);
     }
-    tree = plant(&forest, &b, meet(&b, unit, half));
+    tree = compile(&forest, &b, meet(&b, unit, half));
     assert_hits(&forest, &tree, ray_along(rt_vec3(0, 0, 3), rt_vec3(0, 0, -1)), 2, (float[]){3, 4});
     assert_true(tree.box.hi.z == 0);
-    tree = plant(&forest, &b, cut(&b, unit, half));
+    tree = compile(&forest, &b, cut(&b, unit, half));
     assert_hits(&forest, &tree, ray_along(rt_vec3(0, 0, 3), rt_vec3(0, 0, -1)), 2, (float[]){2, 3});
     clear(&forest, &b);
 }
@@ -175,8 +175,8 @@ static void check_identity(Side *side, uint64_t seed) {
         RtCsgTerm terms[4];
         for (int i = 0; i < 3; i++) terms[i] = random_term(&b, &random, 6, round % 2);
         terms[3] = box(&b, rt_vec3(-9, -9, -9), rt_vec3(9, 9, 9), 0);
-        RtCsg one = plant(&forest, &b, side(&b, terms, false)),
-              other = plant(&forest, &b, side(&b, terms, true));
+        RtCsg one = compile(&forest, &b, side(&b, terms, false)),
+              other = compile(&forest, &b, side(&b, terms, true));
         for (uint32_t i = 0; i < 400; i++) {
             RtRay ray = random_ray(&random, i);
             Hits expected = hits_of(&forest, &one, &ray), found = hits_of(&forest, &other, &ray);

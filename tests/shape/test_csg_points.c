@@ -112,7 +112,7 @@ static Side side_of_solid(const RtSolidSet *set, uint32_t index, Point p) {
 
 /* ---- trees ---- */
 
-/* The formula of a planted tree: its solids are the uses of solids in the term, in the order of the text. */
+/* The formula of a compiled tree: its solids are the uses of solids in the term, in the order of the text. */
 typedef struct Formula {
     const RtCsgBuilder *builder;
     const RtSolidSet *set;
@@ -218,7 +218,7 @@ static void rays_are_right_about_points(void **state) {
     for (uint32_t round = 0; score.rays < rays; round++) {
         Model m = {.root = 0};
         m.root = random_term(&m.builder, &random, round % 8 == 0 ? 1 : 16, round % 2);
-        m.tree = plant(&m.forest, &m.builder, m.root);
+        m.tree = compile(&m.forest, &m.builder, m.root);
         for (uint32_t i = 0; i < 250; i++) {
             RtRay ray = random_ray(&random, i);
             check_ray(&m, &ray, &score);

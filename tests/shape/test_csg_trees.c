@@ -16,8 +16,8 @@ static void tests_of_inner_nodes_change_no_bit(void **state) {
         RtCsgForest forest = {0};
         RtCsgTerm root = random_term(&b, &random, RT_MAX_RANDOM_TREE, round % 2);
         RtCsg tested, plain;
-        assert_ok(rt_csg_plant(&forest, &b, root, true, &tested, error));
-        assert_ok(rt_csg_plant(&forest, &b, root, false, &plain, error));
+        assert_ok(rt_csg_compile(&forest, &b, root, true, &tested, error));
+        assert_ok(rt_csg_compile(&forest, &b, root, false, &plain, error));
         for (uint32_t i = 0; i < 500; i++) {
             RtRay ray = random_ray(&random, i);
             if (i % 5 == 0) ray.tmin = 0.5f, ray.tmax = 1;
@@ -42,7 +42,7 @@ static void a_tree_lies_within_its_extents(void **state) {
     for (uint32_t round = 0; round < 100; round++) {
         RtCsgBuilder b = {0};
         RtCsgForest forest = {0};
-        RtCsg tree = plant(&forest, &b, random_term(&b, &random, 12, round % 2));
+        RtCsg tree = compile(&forest, &b, random_term(&b, &random, 12, round % 2));
         RtBall about = rt_csg_ball(&forest, &tree);
         RtVec3d direction = rt_random_direction(&random);
         double reach = rt_csg_support(&forest, &tree, direction);
@@ -69,7 +69,7 @@ static void a_tree_without_inside_reaches_into_its_box(void **state) {
         RtCsgBuilder b = {0};
         RtCsgForest forest = {0};
         RtCsgTerm other = ball(&b, rt_vec3(apart[i], apart[i], 0), 0.5f, 0);
-        RtCsg tree = plant(&forest, &b, meet(&b, ball(&b, rt_vec3(0, 0, 0), 1, 0), other));
+        RtCsg tree = compile(&forest, &b, meet(&b, ball(&b, rt_vec3(0, 0, 0), 1, 0), other));
         for (uint32_t k = 0; k < 100; k++) {
             RtVec3d direction = rt_random_direction(&random);
             double least = 0, most = 0, reach = rt_csg_support(&forest, &tree, direction);
@@ -99,7 +99,7 @@ static void the_inner_move_comes_first(void **state) {
         assert_ok(rt_csg_move(&b, term, &turn, &term, error));
         if (joined) term = join(&b, term, ball(&b, rt_vec3(0, -10, 0), 1, 0));
         assert_ok(rt_csg_move(&b, term, &shift, &term, error));
-        RtCsg tree = plant(&forest, &b, term);
+        RtCsg tree = compile(&forest, &b, term);
         assert_hits(&forest, &tree, ray_along(rt_vec3(0, 4, 0), along_x), 2, (float[]){7, 9});
         clear(&forest, &b);
     }
@@ -116,7 +116,7 @@ static void a_tree_moved_by_powers_of_two_is_met_at_the_same_bits(void **state) 
         RtVec3 by = {16, -8, 4};
         assert_ok(rt_transform_translate(&move, by, error));
         assert_ok(rt_csg_move(&b, root, &move, &moved, error));
-        RtCsg here = plant(&forest, &b, root), there = plant(&forest, &b, moved);
+        RtCsg here = compile(&forest, &b, root), there = compile(&forest, &b, moved);
         for (uint32_t i = 0; i < 400; i += 2) {
             RtRay ray = random_ray(&random, i), same = ray;
             same.org = rt_add(ray.org, by);
@@ -141,8 +141,8 @@ static void moving_the_tree_and_moving_the_ray_agree(void **state) {
         assert_ok(rt_transform_rotate(&move, axis, rt_random_betweend(&random, 0, 360), error));
         assert_ok(rt_transform_scale(&move, rt_vec3(1.5f, 0.5f, 2), error));
         assert_ok(rt_transform_translate(&move, rt_vec3(1, 2, 3), error));
-        RtCsg here = plant(&forest, &b, root), there;
-        assert_ok(rt_csg_transplant(&forest, &forest, &here, &move, &there, error));
+        RtCsg here = compile(&forest, &b, root), there;
+        assert_ok(rt_csg_copy(&forest, &forest, &here, &move, &there, error));
         for (uint32_t i = 1; i < 400; i += 2) {
             RtRay ray = random_ray(&random, i), same = ray;
             same.org = rt_transform_point(&move, ray.org);
@@ -162,14 +162,14 @@ static void moving_the_tree_and_moving_the_ray_agree(void **state) {
     assert_true(hits > 1000);
 }
 
-static void a_transplanted_tree_is_the_same_tree(void **state) {
+static void a_copied_tree_is_the_same_tree(void **state) {
     (void)state;
     RtRandom random = rt_random(9, 0);
     for (uint32_t round = 0; round < 50; round++) {
         RtCsgBuilder b = {0};
         RtCsgForest forest = {0}, other = {0};
-        RtCsg tree = plant(&forest, &b, random_term(&b, &random, 30, round % 2)), copy;
-        assert_ok(rt_csg_transplant(&other, &forest, &tree, NULL, &copy, error));
+        RtCsg tree = compile(&forest, &b, random_term(&b, &random, 30, round % 2)), copy;
+        assert_ok(rt_csg_copy(&other, &forest, &tree, NULL, &copy, error));
         assert_int_equal(copy.count, tree.count);
         assert_int_equal(copy.solid_count, tree.solid_count);
         assert_memory_equal(&copy.box, &tree.box, sizeof copy.box);
@@ -218,7 +218,7 @@ static RtCsgTerm deep_tree(RtCsgBuilder *b, DeepShape shape, RtCsgOp op) {
 static void check_deep(DeepShape shape, RtCsgOp op) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
-    RtCsg tree = plant(&forest, &b, deep_tree(&b, shape, op));
+    RtCsg tree = compile(&forest, &b, deep_tree(&b, shape, op));
     assert_true(rt_csg_forest_bytes(&forest) < (uint64_t)DEEP * 2000);
     assert_int_equal(tree.most_crossings, 4 * DEEP);
     /* A line that meets the first two balls, then many that meet one ball, and one that meets all. */
@@ -267,7 +267,7 @@ static int run_deep(void) {
 
 /* ---- memory ---- */
 
-static void planting_fails_cleanly_at_every_allocation(void **state) {
+static void compiling_fails_cleanly_at_every_allocation(void **state) {
     (void)state;
     RtRandom random = rt_random(10, 0);
     RtCsgBuilder b = {0};
@@ -278,7 +278,7 @@ static void planting_fails_cleanly_at_every_allocation(void **state) {
     uint64_t n = 1;
     for (; n < 1000; n++) {
         rt_alloc_fail_at(n);
-        status = rt_csg_plant(&forest, &b, root, true, &tree, NULL);
+        status = rt_csg_compile(&forest, &b, root, true, &tree, NULL);
         rt_alloc_fail_at(0);
         if (status == RT_OK) break;
         assert_int_equal(status, RT_NO_MEMORY);
@@ -296,7 +296,7 @@ static void a_ray_that_lacks_memory_is_counted(void **state) {
     RtCsgForest forest = {0};
     RtCsgTerm term = ball(&b, rt_vec3(0, 0, 0), 1, 0);
     for (int i = 1; i < 200; i++) term = join(&b, ball(&b, rt_vec3(3 * (float)i, 0, 0), 1, 0), term);
-    RtCsg tree = plant(&forest, &b, term);
+    RtCsg tree = compile(&forest, &b, term);
     RtRay ray = ray_along(rt_vec3(-3, 0, 0), along_x);
     RtPreparedRay prepared = rt_ray_prepare(&ray, &tree.box);
     uint64_t before = rt_csg_shortages();
@@ -320,8 +320,8 @@ RT_TEST_GROUP(csg_trees) {
         cmocka_unit_test(the_inner_move_comes_first),
         cmocka_unit_test(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits),
         cmocka_unit_test(moving_the_tree_and_moving_the_ray_agree),
-        cmocka_unit_test(a_transplanted_tree_is_the_same_tree),
-        cmocka_unit_test(planting_fails_cleanly_at_every_allocation),
+        cmocka_unit_test(a_copied_tree_is_the_same_tree),
+        cmocka_unit_test(compiling_fails_cleanly_at_every_allocation),
         cmocka_unit_test(a_ray_that_lacks_memory_is_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) + run_deep();

@@ -6,7 +6,7 @@
 
 #include "accel/kernel.h"
 #include "base/memory.h"
-#include "verify/question.h"
+#include "verify/failure.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -243,7 +243,8 @@ static const RtAccelOps mutant_ops = {
     .name = "mutant", .destroy = destroy_mutant, RT_KERNEL_OPS, .validate = validate_mutant};
 
 static RtStatus build_mutant(const void *context, const RtScene *scene, RtAccel **out, RtError *error) {
-    RT_TRY(rt_accel_new(&mutant_ops, scene, sizeof(Mutant), out, error));
+    RT_TRY(rt_accel_new("mutant", scene, sizeof(Mutant), out, error));
+    (*out)->ops = &mutant_ops;
     ((Mutant *)*out)->recipe = *(const MutantRecipe *)context;
     return RT_OK;
 }

@@ -48,7 +48,7 @@ static bool conforms(const FamilyBench *bench, const char *spec, bool may_refuse
     if (result.any_wrong) {
         char text[512];
         size_t rays_per_family = bench->reference.count / rt_ray_family_count();
-        rt_witness_format(&result.first_wrong, text, sizeof text);
+        rt_wrong_answer_format(&result.first_wrong, text, sizeof text);
         print_error("%s on %s: %llu of %llu wrong, %llu occluded wrong; family %s, %s\n", spec, scene,
                     (unsigned long long)result.verdicts[RT_WRONG], (unsigned long long)result.rays,
                     (unsigned long long)result.occluded_wrong,

@@ -148,12 +148,12 @@ static void the_last_ray_counts_too(void **state) {
     assert_int_equal(e.verdicts[RT_WRONG], 1);
     assert_int_equal(e.first_wrong.index, LAST);
     char text[512];
-    rt_witness_format(&e.first_wrong, text, sizeof text);
+    rt_wrong_answer_format(&e.first_wrong, text, sizeof text);
     assert_non_null(strstr(text, "got no hit"));
     json_t *row = rt_equivalence_json(&e, "s", "a", "brute");
     assert_int_equal(json_integer_value(json_object_get(row, "wrong")), 1);
-    json_t *witness = json_object_get(row, "first_wrong");
-    const char *x = json_string_value(json_array_get(json_object_get(witness, "org"), 0));
+    json_t *wrong = json_object_get(row, "first_wrong");
+    const char *x = json_string_value(json_array_get(json_object_get(wrong, "org"), 0));
     assert_true(strtof(x, NULL) == rays[LAST].org.x);
     json_decref(row);
 }

@@ -24,20 +24,20 @@ static RtEquivalence check(const FamilyBench *bench, RtMaker maker) {
 }
 
 /* The failure shrinks to a few objects, of which none can be spared. */
-static void shrink(const FamilyBench *bench, RtMaker maker, const RtWitness *witness, const char *name) {
-    RtQuestion question;
-    RtReply reply;
+static void shrink(const FamilyBench *bench, RtMaker maker, const RtWrongAnswer *wrong, const char *name) {
+    RtFailure failure;
+    RtAnswer answer;
     RtShrunk shrunk;
     char says[512];
-    assert_ok(rt_question_of_witness(&bench->reference, witness, maker, &question, &reply, error));
-    assert_true(reply.wrong);
-    assert_int_equal(question.count, 1);
-    assert_ok(rt_shrink(&bench->scene, &question, &reply, maker, RT_SHRINK_BUDGET, NULL, &shrunk, error));
-    rt_witness_format(witness, says, sizeof says);
+    assert_ok(rt_failure_of(&bench->reference, wrong, maker, &failure, &answer, error));
+    assert_true(answer.wrong);
+    assert_int_equal(failure.count, 1);
+    assert_ok(rt_shrink(&bench->scene, &failure, &answer, maker, RT_SHRINK_BUDGET, NULL, &shrunk, error));
+    rt_wrong_answer_format(wrong, says, sizeof says);
     print_message("%s: scene %s with %u objects, rays %s, %u objects left after %u tries: %s\n", name,
                   bench->scene.name, bench->scene.geometry.object_count,
-                  rt_ray_family_name(witness->index / RAYS_PER_FAMILY), shrunk.count, shrunk.tries, says);
-    assert_true(shrunk.minimal && shrunk.reply.wrong);
+                  rt_ray_family_name(wrong->index / RAYS_PER_FAMILY), shrunk.count, shrunk.tries, says);
+    assert_true(shrunk.minimal && shrunk.answer.wrong);
     assert_in_range(shrunk.count, 1, MOST_OBJECTS_LEFT);
     rt_free(shrunk.ids);
 }
@@ -69,7 +69,7 @@ static void its_control_is_not_caught(void **state) {
         tear_down_family(&bench);
         if (!result.any_wrong) continue;
         char says[512];
-        rt_witness_format(&result.first_wrong, says, sizeof says);
+        rt_wrong_answer_format(&result.first_wrong, says, sizeof says);
         fail_msg("the control of '%s' fails on %s: %s", names[recipe.kind], rt_family_name(scene), says);
     }
 }
@@ -82,15 +82,15 @@ static void shrinking_ends_with_its_budget(void **state) {
     FamilyBench bench;
     set_up_family(&bench, scene_family("line"), 1, RAYS_PER_FAMILY);
     RtEquivalence result = check(&bench, maker);
-    RtQuestion question;
-    RtReply reply;
-    assert_ok(rt_question_of_witness(&bench.reference, &result.first_wrong, maker, &question, &reply, error));
-    assert_true(reply.wrong);
+    RtFailure failure;
+    RtAnswer answer;
+    assert_ok(rt_failure_of(&bench.reference, &result.first_wrong, maker, &failure, &answer, error));
+    assert_true(answer.wrong);
     for (uint64_t budget = 0; budget <= 2000; budget += 400) {
         RtShrunk shrunk;
-        assert_ok(rt_shrink(&bench.scene, &question, &reply, maker, budget, NULL, &shrunk, error));
+        assert_ok(rt_shrink(&bench.scene, &failure, &answer, maker, budget, NULL, &shrunk, error));
         assert_false(shrunk.minimal);
-        assert_true(shrunk.reply.wrong && shrunk.tries <= budget / 32);
+        assert_true(shrunk.answer.wrong && shrunk.tries <= budget / 32);
         if (budget == 0) assert_int_equal(shrunk.count, bench.scene.geometry.object_count);
         for (uint32_t i = 1; i < shrunk.count; i++) assert_true(shrunk.ids[i - 1] < shrunk.ids[i]);
         rt_free(shrunk.ids);

@@ -95,7 +95,7 @@ static void a_failure_can_be_replayed_until_it_is_mended(void **state) {
     assert_string_equal(replay.scene_spec, scenes[0]);
     assert_string_equal(replay.accel_spec, "unpadded");
     for (int shrunk = 0; shrunk < 2; shrunk++) {
-        RtReply broken, mended;
+        RtAnswer broken, mended;
         assert_ok(rt_replay_ask(&replay, maker_of_mutant(&unpadded), shrunk, &broken, error));
         assert_ok(rt_replay_ask(&replay, maker_of_mutant(&padded), shrunk, &mended, error));
         assert_true(broken.wrong);
@@ -194,14 +194,14 @@ static void a_failure_that_takes_its_neighbours_is_kept_with_them(void **state) 
                      .start = RT_START_ANEW};
     json_t *rows;
     RtReplay replay;
-    RtReply reply;
+    RtAnswer answer;
     assert_ok(rt_verify_run(&work, &observer, &rows, error));
     assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 0)), error));
-    assert_true(replay.question.count > 1 && replay.question.stream > 1);
-    assert_int_equal((replay.question.asked + 1) % replay.question.stream, 0);
+    assert_true(replay.failure.count > 1 && replay.failure.stream > 1);
+    assert_int_equal((replay.failure.asked + 1) % replay.failure.stream, 0);
     for (int shrunk = 0; shrunk < 2; shrunk++) {
-        assert_ok(rt_replay_ask(&replay, spec.maker, shrunk, &reply, error));
-        assert_true(reply.wrong);
+        assert_ok(rt_replay_ask(&replay, spec.maker, shrunk, &answer, error));
+        assert_true(answer.wrong);
     }
     rt_replay_clear(&replay);
     json_decref(rows);
@@ -213,23 +213,23 @@ static void a_replay_file_needs_no_other_file(void **state) {
     const char *path = OUT "/lecture.json";
     RtScene scene;
     uint32_t ids[] = {1};
-    RtReply reply = {.expected = {1, 0}, .got = RT_MISS, .wrong = true}, again;
-    RtShrunk shrunk = {.ids = ids, .count = 1, .reply = reply, .minimal = true};
+    RtAnswer answer = {.expected = {1, 0}, .got = RT_MISS, .wrong = true}, again;
+    RtShrunk shrunk = {.ids = ids, .count = 1, .answer = answer, .minimal = true};
     RtRay ray = {.org = {{0x1.234567p-140f, -0.0f, 0x1.fffffep+9f}},
                  .tmin = 0x1p-149f,
                  .dir = {{-0.0f, 0x1p-149f, -1}},
                  .tmax = INFINITY,
                  .kind = RT_RAY_SHADOW,
                  .source = UINT32_MAX};
-    RtQuestion question = {&ray, 1, 0, 1, true, true};
+    RtFailure failure = {&ray, 1, 0, 1, true, true};
     assert_ok(rt_directory_create(OUT, error));
     assert_ok(rt_scene_open(RT_SOURCE_DIR "/scenes/csg-lecture.yaml", &scene, error));
-    RtReplayRecord record = {"moved-away.yaml", "bvh", &scene, &question, &reply, &shrunk};
+    RtReplayRecord record = {"moved-away.yaml", "bvh", &scene, &failure, &answer, &shrunk};
     assert_ok(rt_replay_save(path, &record, error));
     RtReplay replay;
     assert_ok(rt_replay_load(&replay, path, error));
     assert_memory_equal(&replay.rays[0], &ray, sizeof ray);
-    assert_true(replay.question.occluded && replay.question.counted);
+    assert_true(replay.failure.occluded && replay.failure.counted);
     assert_int_equal(replay.fingerprint, rt_scene_fingerprint(&scene));
     for (int part = 0; part < 2; part++) {
         assert_ok(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), part, &again, error));

@@ -3,16 +3,16 @@
 
 #include "base/memory.h"
 
-typedef struct Survey {
+typedef struct Stats {
     const RtHierarchy *self;
     RtDescription *out;
     /* Visits of nodes and tests of objects expected, times the area of the root. */
     double inner, leaves, tests;
-} Survey;
+} Stats;
 
-static void survey_node(Survey *survey, uint32_t index, uint32_t depth) {
-    const RtNode *node = &survey->self->nodes[index];
-    RtDescription *out = survey->out;
+static void add_node(Stats *stats, uint32_t index, uint32_t depth) {
+    const RtNode *node = &stats->self->nodes[index];
+    RtDescription *out = stats->out;
     uint32_t fanout = rt_node_fanout(node);
     bool leaf = rt_node_is_leaf(node);
     out->interior += !leaf;
@@ -20,22 +20,22 @@ static void survey_node(Survey *survey, uint32_t index, uint32_t depth) {
     out->references += leaf ? fanout : 0;
     if (depth > out->depth) out->depth = depth;
     double area = rt_box_half_area(node->box);
-    *(leaf ? &survey->leaves : &survey->inner) += area;
-    survey->tests += leaf ? area * fanout : 0;
-    for (uint32_t i = 0; i < fanout && !leaf; i++) survey_node(survey, node->first + i, depth + 1);
+    *(leaf ? &stats->leaves : &stats->inner) += area;
+    stats->tests += leaf ? area * fanout : 0;
+    for (uint32_t i = 0; i < fanout && !leaf; i++) add_node(stats, node->first + i, depth + 1);
 }
 
 void rt_hierarchy_describe(const RtHierarchy *self, RtDescription *out) {
     *out = (RtDescription){.bytes = self->node_count * sizeof(RtNode) + self->id_count * sizeof(uint32_t),
                            RT_NO_PREDICTION};
     if (self->node_count == 0) return;
-    Survey survey = {self, out, 0, 0, 0};
-    survey_node(&survey, 0, 0);
+    Stats stats = {self, out, 0, 0, 0};
+    add_node(&stats, 0, 0);
     double area = rt_box_half_area(self->nodes[0].box);
     if (!(area > 0)) return;
-    out->predicted_tests = survey.tests / area;
-    out->predicted_steps = (survey.inner + survey.leaves) / area;
-    out->predicted_cost = (survey.tests + self->traversal_cost * survey.inner) / area;
+    out->predicted_tests = stats.tests / area;
+    out->predicted_steps = (stats.inner + stats.leaves) / area;
+    out->predicted_cost = (stats.tests + self->traversal_cost * stats.inner) / area;
 }
 
 static void show_node(const RtHierarchy *self, uint32_t index, uint32_t depth, RtBoxViewer viewer) {

@@ -40,7 +40,7 @@ typedef struct Frame {
     double tested_area;  /* half, of the nearest box around that is tested */
 } Frame;
 
-typedef struct Planting {
+typedef struct Compiler {
     RtCsgForest *forest;
     const RtCsgBuilder *builder;
     uint32_t first; /* instruction */
@@ -53,18 +53,18 @@ typedef struct Planting {
     uint32_t frame_count, frame_capacity;
     Frame *frames;
     RtError *error;
-} Planting;
+} Compiler;
 
 /* ---- writing out ---- */
 
-static RtStatus push_use(Planting *p, Use use) {
+static RtStatus push_use(Compiler *p, Use use) {
     RT_TRY(rt_reserve(&p->uses, &p->use_capacity, (uint64_t)p->use_count + 1, sizeof(Use), p->error));
     p->uses[p->use_count++] = use;
     return RT_OK;
 }
 
 /* `move`, and then what *index stands for; to *index. */
-static RtStatus add_move(Planting *p, const RtTransform *move, uint32_t *index) {
+static RtStatus add_move(Compiler *p, const RtTransform *move, uint32_t *index) {
     RT_TRY(
         rt_reserve(&p->moves, &p->move_capacity, (uint64_t)p->move_count + 1, sizeof(RtTransform), p->error));
     p->moves[p->move_count] = *index == NONE ? *move : rt_transform_compose(move, &p->moves[*index]);
@@ -72,7 +72,7 @@ static RtStatus add_move(Planting *p, const RtTransform *move, uint32_t *index) 
     return RT_OK;
 }
 
-static RtStatus write_part(Planting *p, Use use) {
+static RtStatus write_part(Compiler *p, Use use) {
     const RtCsgNode *node = &p->builder->nodes[use.term];
     uint32_t at = p->part_count++;
     Part *part = &p->parts[at];
@@ -90,7 +90,7 @@ static RtStatus write_part(Planting *p, Use use) {
     return push_use(p, (Use){node->left, use.move, NONE, use.subtracted});
 }
 
-static RtStatus write_out(Planting *p, RtCsgTerm root) {
+static RtStatus write_out(Compiler *p, RtCsgTerm root) {
     RT_TRY(push_use(p, (Use){root, NONE, NONE, false}));
     while (p->use_count > 0) {
         Use use = p->uses[--p->use_count];
@@ -119,7 +119,7 @@ static uint32_t lists_in_order(const Part *first, const Part *second) {
 }
 
 /* Which operand comes first: see csg.h. */
-static bool is_right_first(const Planting *p, RtCsgOp op, const Part *left, const Part *right) {
+static bool is_right_first(const Compiler *p, RtCsgOp op, const Part *left, const Part *right) {
     const RtCsgNode *nodes = p->builder->nodes;
     bool smaller = nodes[right->term].size < nodes[left->term].size;
     bool right_spares = op == RT_CSG_INTERSECTION && smaller;
@@ -128,7 +128,7 @@ static bool is_right_first(const Planting *p, RtCsgOp op, const Part *left, cons
     return right->lists > left->lists;
 }
 
-static void measure_operation(const Planting *p, Part *part) {
+static void measure_operation(const Compiler *p, Part *part) {
     RtCsgOp op = p->builder->nodes[part->term].op;
     const Part *left = part + 1, *right = &p->parts[part->right];
     part->box = op == RT_CSG_UNION          ? rt_box_union(left->box, right->box)
@@ -143,7 +143,7 @@ static void measure_operation(const Planting *p, Part *part) {
     part->room = max_of(part->room, saturating_sum(part->crossings, part->crossings));
 }
 
-static void measure(const Planting *p) {
+static void measure(const Compiler *p) {
     for (uint32_t i = p->part_count; i-- > 0;) {
         Part *part = &p->parts[i];
         if (p->builder->nodes[part->term].kind == RT_CSG_COMBINE) {
@@ -159,7 +159,7 @@ static void measure(const Planting *p) {
 
 /* ---- instructions ---- */
 
-static RtStatus emit(Planting *p, RtCsgInstruction instruction, uint32_t *at) {
+static RtStatus emit(Compiler *p, RtCsgInstruction instruction, uint32_t *at) {
     RtCsgForest *f = p->forest;
     RT_TRY(rt_reserve(&f->instructions, &f->instruction_capacity, (uint64_t)f->instruction_count + 1,
                       sizeof(RtCsgInstruction), p->error));
@@ -169,13 +169,13 @@ static RtStatus emit(Planting *p, RtCsgInstruction instruction, uint32_t *at) {
 }
 
 /* `box`: of the operation around. */
-static RtStatus push_frame(Planting *p, uint32_t part, RtBox box, double tested_area) {
+static RtStatus push_frame(Compiler *p, uint32_t part, RtBox box, double tested_area) {
     RT_TRY(rt_reserve(&p->frames, &p->frame_capacity, (uint64_t)p->frame_count + 1, sizeof(Frame), p->error));
     p->frames[p->frame_count++] = (Frame){part, 0, NONE, NONE, box, tested_area};
     return RT_OK;
 }
 
-static RtStatus emit_test(Planting *p, Frame *frame) {
+static RtStatus emit_test(Compiler *p, Frame *frame) {
     RtCsgForest *f = p->forest;
     double area = rt_box_half_area(frame->box);
     double spared = (1 - area / frame->tested_area) * p->builder->nodes[p->parts[frame->part].term].size;
@@ -187,7 +187,7 @@ static RtStatus emit_test(Planting *p, Frame *frame) {
 }
 
 /* What comes before the first operand of an operation, between them, or after the second. */
-static RtStatus advance(Planting *p, bool extents) {
+static RtStatus advance(Compiler *p, bool extents) {
     Frame *frame = &p->frames[p->frame_count - 1];
     const Part *part = &p->parts[frame->part];
     const RtCsgNode *node = &p->builder->nodes[part->term];
@@ -217,7 +217,7 @@ static RtStatus advance(Planting *p, bool extents) {
     return RT_OK;
 }
 
-static RtStatus write_program(Planting *p, bool extents) {
+static RtStatus write_program(Compiler *p, bool extents) {
     RtBox box = p->parts[0].box;
     RT_TRY(push_frame(p, 0, box, rt_box_half_area(box)));
     while (p->frame_count > 0) RT_TRY(advance(p, extents));
@@ -257,7 +257,7 @@ static RtStatus check_end(RtBox box, RtError *error) {
                    "bounded solid, or make one polyhedron of its half-spaces");
 }
 
-static RtStatus plant(Planting *p, RtCsgTerm root, bool extents, RtCsg *out) {
+static RtStatus compile(Compiler *p, RtCsgTerm root, bool extents, RtCsg *out) {
     RtCsgForest *f = p->forest;
     RtCsg tree = {.first = f->instruction_count, .first_solid = f->set.solid_count, .extents = extents};
     p->first = tree.first;
@@ -282,12 +282,12 @@ static RtStatus plant(Planting *p, RtCsgTerm root, bool extents, RtCsg *out) {
     return RT_OK;
 }
 
-RtStatus rt_csg_plant(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
-                      RtCsg *out, RtError *error) {
+RtStatus rt_csg_compile(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
+                        RtCsg *out, RtError *error) {
     assert(root < builder->node_count);
     const RtCsgForest before = *forest;
-    Planting p = {.forest = forest, .builder = builder, .error = error};
-    RtStatus status = plant(&p, root, extents, out);
+    Compiler p = {.forest = forest, .builder = builder, .error = error};
+    RtStatus status = compile(&p, root, extents, out);
     if (status != RT_OK) {
         forest->set.solid_count = before.set.solid_count;
         forest->set.plane_count = before.set.plane_count;
@@ -305,8 +305,8 @@ RtStatus rt_csg_plant(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTer
 /* ---- moving trees ---- */
 
 /* The terms that `tree` was made from. */
-static RtStatus dig_out(RtCsgBuilder *builder, const RtCsgForest *from, const RtCsg *tree, RtCsgTerm *root,
-                        RtError *error) {
+static RtStatus recover_terms(RtCsgBuilder *builder, const RtCsgForest *from, const RtCsg *tree,
+                              RtCsgTerm *root, RtError *error) {
     RtCsgTerm terms[RT_CSG_MAX_LISTS];
     uint32_t count = 0, solid;
     for (uint32_t i = 0; i < tree->count; i++) {
@@ -328,13 +328,13 @@ static RtStatus dig_out(RtCsgBuilder *builder, const RtCsgForest *from, const Rt
     return RT_OK;
 }
 
-RtStatus rt_csg_transplant(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *tree,
-                           const RtTransform *move, RtCsg *out, RtError *error) {
+RtStatus rt_csg_copy(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *tree, const RtTransform *move,
+                     RtCsg *out, RtError *error) {
     RtCsgBuilder builder = {0};
     RtCsgTerm root = 0;
-    RtStatus status = dig_out(&builder, from, tree, &root, error);
+    RtStatus status = recover_terms(&builder, from, tree, &root, error);
     if (status == RT_OK && move) status = rt_csg_move(&builder, root, move, &root, error);
-    if (status == RT_OK) status = rt_csg_plant(forest, &builder, root, tree->extents, out, error);
+    if (status == RT_OK) status = rt_csg_compile(forest, &builder, root, tree->extents, out, error);
     rt_csg_builder_clear(&builder);
     return status;
 }

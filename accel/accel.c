@@ -1,0 +1,12 @@
+/* The struct that every accelerator begins with, as its `build` gets it. */
+#include "accel/accel.h"
+
+#include "base/memory.h"
+
+RtStatus rt_accel_new(const char *name, const RtScene *scene, size_t bytes, RtAccel **out, RtError *error) {
+    RtAccel *accel = rt_alloc(1, bytes);
+    if (!accel) return rt_fail_memory(error, name, bytes);
+    *accel = (RtAccel){.scene = scene, .exact = true, .counts = true};
+    *out = accel;
+    return RT_OK;
+}

@@ -1,0 +1,12 @@
+/* CSG trees in exact arithmetic: what one is, exactly, says exact_hit.h. */
+#ifndef RT_EXACT_EXACT_CSG_H
+#define RT_EXACT_EXACT_CSG_H
+
+#include "exact/line.h"
+#include "shape/csg.h"
+
+/* Like rt_exact_hit. */
+RtFinding rt_exact_csg_hit(RtExactArena *arena, const RtCsgForest *forest, const RtCsg *tree,
+                           const RtExactLine *line, RtPlace *t);
+
+#endif
