@@ -143,6 +143,7 @@ static void every_column_has_a_meaning_and_a_name_of_its_own(void **state) {
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.section = &sections[i]}, other = row;
         size_t count = column_count(&sections[i].table);
+        assert_true(count <= RT_MAX_TABLE_COLUMNS);
         for (size_t k = 0; k < count; k++) {
             column_at(&row, k);
             assert_true(*row.column->meaning);
