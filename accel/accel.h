@@ -86,6 +86,13 @@ typedef struct RtBoxViewer {
     void *context;
 } RtBoxViewer;
 
+/* What an accelerator is built from. */
+typedef struct RtBuild {
+    const RtScene *scene;  /* finished; it may hold no object at all */
+    const RtValue *values; /* [param_count], in range */
+    int threads;           /* 0 = all processors; does not change the structure */
+} RtBuild;
+
 /* One accelerator, as a const table in its own file. Optional members may be NULL. */
 struct RtAccelOps {
     const char *name;    /* as in a spec */
@@ -95,10 +102,9 @@ struct RtAccelOps {
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
 
-    /* Builds over `scene`, which is finished and may hold no object at all. values[param_count] are in range.
-     * On failure nothing is left behind. *out is owned by the caller: `destroy`, which leaves what lies below
+    /* On failure nothing is left behind. *out is owned by the caller: `destroy`, which leaves what lies below
      * alone. An overlay is built without regard to what it will lie on. */
-    RtStatus (*build)(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+    RtStatus (*build)(const RtBuild *build, RtAccel **out, RtError *error);
     void (*destroy)(RtAccel *accel);
 
     RtNearestKernel *nearest;
@@ -168,8 +174,9 @@ void rt_spec_format(const RtSpec *spec, char *out);
 
 /* ---- using an accelerator ---- */
 
-/* Builds what the spec says over `scene`. Destroy with rt_accel_destroy. */
-RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out, RtError *error);
+/* Builds what the spec says over `scene`, on `threads` threads (0 = all processors), which does not change
+ * the structure; rt_accel_open on all processors. Destroy with rt_accel_destroy. */
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
 void rt_accel_destroy(RtAccel *accel); /* with all below it; NULL is allowed */
 

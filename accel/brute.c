@@ -10,9 +10,8 @@ typedef struct Brute {
 
 extern const RtAccelOps rt_brute_ops;
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    (void)values;
-    return rt_accel_new(&rt_brute_ops, scene, sizeof(Brute), out, error);
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    return rt_accel_new(&rt_brute_ops, what->scene, sizeof(Brute), out, error);
 }
 
 static void destroy(RtAccel *accel) {

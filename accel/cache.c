@@ -22,9 +22,8 @@ typedef struct Cache {
 
 extern const RtAccelOps rt_cache_ops;
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    (void)values;
-    return rt_accel_new(&rt_cache_ops, scene, sizeof(Cache), out, error);
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    return rt_accel_new(&rt_cache_ops, what->scene, sizeof(Cache), out, error);
 }
 
 static void destroy(RtAccel *accel) {

@@ -17,9 +17,8 @@ typedef struct Ideal {
 
 extern const RtAccelOps rt_ideal_ops;
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    (void)values;
-    return rt_accel_new(&rt_ideal_ops, scene, sizeof(Ideal), out, error);
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    return rt_accel_new(&rt_ideal_ops, what->scene, sizeof(Ideal), out, error);
 }
 
 static void destroy(RtAccel *accel) {

@@ -23,12 +23,14 @@ static void stack(RtAccel *accel, RtAccel *below) {
     accel->counts = accel->counts && below->counts;
 }
 
-RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                        RtError *error) {
     RtAccel *top = NULL;
     *out = NULL;
     for (uint32_t i = spec->layer_count; i-- > 0;) {
         RtAccel *accel = NULL;
-        RtStatus status = spec->layers[i].ops->build(scene, spec->layers[i].values, &accel, error);
+        const RtBuild what = {scene, spec->layers[i].values, threads};
+        RtStatus status = spec->layers[i].ops->build(&what, &accel, error);
         if (status != RT_OK) {
             rt_accel_destroy(top);
             return status;
@@ -44,7 +46,7 @@ RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, Rt
     RtSpec parsed;
     *out = NULL;
     RT_TRY(rt_spec_parse(spec, &parsed, error));
-    return rt_accel_build(&parsed, scene, out, error);
+    return rt_accel_build(&parsed, scene, 0, out, error);
 }
 
 void rt_accel_destroy(RtAccel *accel) {

@@ -143,13 +143,16 @@ static RtStatus write_times(const Run *run, RtError *error) {
     return rt_output_commit(&output, error);
 }
 
-static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, const char *path, RtError *error) {
+static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, int threads, const char *path,
+                           RtError *error) {
+    RtSpec spec;
     RtAccel *accel;
     RtFrame frame = {0};
     RtImage image = {0};
-    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH};
+    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
     RT_TRY(rt_scene_sample(scene, trial->width, trial->height, 2, false, error));
-    RT_TRY(rt_accel_open(rt_accel_default(), scene, &accel, error));
+    RT_TRY(rt_spec_parse(rt_accel_default(), &spec, error));
+    RT_TRY(rt_accel_build(&spec, scene, threads, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
     if (status == RT_OK) status = rt_image_from_frame(&image, &frame, error);
     if (status == RT_OK) status = rt_png_write(&image, path, error);
@@ -167,7 +170,8 @@ static RtStatus write_image(const Run *run, uint32_t t, RtError *error) {
     RT_TRY(in_directory(run, name, path, error));
     if (run->results->trials[t].skipped || (run->options->resume && rt_file_exists(path))) return RT_OK;
     RT_TRY(rt_hard_scene_open(run->experiment->trials[t].path, &scene, error));
-    RtStatus status = draw_scene(&scene, &run->results->trials[t], path, error);
+    const int threads = run->options->trial.threads;
+    RtStatus status = draw_scene(&scene, &run->results->trials[t], threads, path, error);
     rt_scene_clear(&scene);
     return status;
 }

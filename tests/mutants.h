@@ -242,7 +242,9 @@ static RtStatus validate_mutant(const RtAccel *accel, RtError *error) {
 static const RtAccelOps mutant_ops = {
     .name = "mutant", .destroy = destroy_mutant, RT_KERNEL_OPS, .validate = validate_mutant};
 
-static RtStatus build_mutant(const void *context, const RtScene *scene, RtAccel **out, RtError *error) {
+static RtStatus build_mutant(const void *context, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
+    (void)threads;
     RT_TRY(rt_accel_new(&mutant_ops, scene, sizeof(Mutant), out, error));
     ((Mutant *)*out)->recipe = *(const MutantRecipe *)context;
     return RT_OK;
@@ -250,7 +252,7 @@ static RtStatus build_mutant(const void *context, const RtScene *scene, RtAccel 
 
 /* `recipe` stays the caller's. */
 static inline RtMaker maker_of_mutant(const MutantRecipe *recipe) {
-    return (RtMaker){build_mutant, recipe};
+    return (RtMaker){build_mutant, recipe, 1};
 }
 
 #endif

@@ -37,9 +37,10 @@ typedef struct RtEmbreeDevice {
 /* The choices of the parameter `isa`, in order, "default" first. */
 #define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
 
-/* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS; RT_NOT_AVAILABLE where the
- * processor lacks it. `device` must stay where it is until it is closed. */
-RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, RtError *error);
+/* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS and builds on `threads` threads (0
+ * = all processors); RT_NOT_AVAILABLE where the processor lacks it. `device` must stay where it is until it
+ * is closed. */
+RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error);
 
 /* RT_OK, or the first error that the device reported. */
 RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error);

@@ -194,11 +194,11 @@ void rt_item_destroy(RtAccel *accel) {
     rt_free(buffer);
 }
 
-RtStatus rt_item_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new(&rt_item_ops, scene, sizeof(RtItemBuffer), &accel, error));
+    RT_TRY(rt_accel_new(&rt_item_ops, what->scene, sizeof(RtItemBuffer), &accel, error));
     RtItemBuffer *buffer = (RtItemBuffer *)accel;
-    buffer->settle = values[RT_ITEM_SETTLE].flag;
+    buffer->settle = what->values[RT_ITEM_SETTLE].flag;
     RtStatus status = fill(buffer, error);
     if (status != RT_OK) {
         rt_item_destroy(&buffer->base);

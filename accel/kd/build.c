@@ -281,6 +281,6 @@ RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue 
     return RT_OK;
 }
 
-RtStatus rt_kd_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    return rt_kd_build_within(RT_ACCEL_MAX_BYTES, scene, values, out, error);
+RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
+    return rt_kd_build_within(RT_ACCEL_MAX_BYTES, what->scene, what->values, out, error);
 }

@@ -321,6 +321,6 @@ RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtVa
     return RT_OK;
 }
 
-RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    return rt_octree_build_within(RT_ACCEL_MAX_BYTES, scene, values, out, error);
+RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error) {
+    return rt_octree_build_within(RT_ACCEL_MAX_BYTES, what->scene, what->values, out, error);
 }

@@ -61,7 +61,7 @@ typedef struct RtOctree {
 extern const RtAccelOps rt_octree_ops;
 
 /* build.c. `limit`: bytes of nodes and lists above which the octree is refused. */
-RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error);
 RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
                                 RtError *error);
 void rt_octree_destroy(RtAccel *accel);

@@ -21,8 +21,9 @@ static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "The result directory (results/NAME)", 0},
     {"resume", OPT_RESUME, 0, 0, "Go on where an interrupted run stopped; what it measured is kept", 0},
     {"threads", 't', "N", 0,
-     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and counting on all; on "
-     "several, wall time is compared",
+     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
+     "counting on "
+     "all; on several, wall time is compared",
      0},
     {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
     {0}};
