@@ -10,7 +10,8 @@
  * count in.
  *
  * An accelerator is built over a scene that must outlive it, and is read only from then on. What a traversal
- * writes to (mailboxes) lies in an RtQuery, one per thread.
+ * writes to (mailboxes, the room of hit functions) lies in an RtQuery, one per thread, and is all there
+ * before the first ray: kernels allocate nothing and cannot fail.
  *
  * Overlays. An overlay answers rays of some kinds (RtAccelOps.kinds) and hands the others, and those that it
  * cannot decide with certainty, to the accelerator below it, which may be an overlay in turn; a base, which
@@ -65,20 +66,26 @@ typedef struct RtDescription {
 /* An accelerator that would take more bytes than this, as far as its own folder counts them, is refused. */
 #define RT_ACCEL_MAX_BYTES (UINT64_C(4) << 30)
 
-/* The four kernels. rays[0..count) are valid (rt_ray_is_valid); `scratch` is the layer's part of the query's;
- * answers go to hits[0..count) and blockers[0..count); tallies[RT_RAY_KIND_COUNT] are added to, by the kind
- * of each ray. A blocker is any object that lies on the ray, RT_NO_OBJECT where none does, or
- * RT_UNNAMED_OBJECT from those who know only that there is one. */
+/* What the kernels of a layer may write to. */
+typedef struct RtScratch {
+    void *own;        /* scratch_bytes of it; NULL where no layer asks for any */
+    RtCrossing *room; /* for hit functions (rt_hit_ray) */
+} RtScratch;
+
+/* The four kernels. rays[0..count) are valid (rt_ray_is_valid); scratch[0] is the layer's, and those of the
+ * layers below follow; answers go to hits[0..count) and blockers[0..count); tallies[RT_RAY_KIND_COUNT] are
+ * added to, by the kind of each ray. A blocker is any object that lies on the ray, RT_NO_OBJECT where none
+ * does, or RT_UNNAMED_OBJECT from those who know only that there is one. */
 #define RT_UNNAMED_OBJECT (UINT32_MAX - 1)
 
-typedef void RtNearestKernel(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+typedef void RtNearestKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                              RtHit *hits);
-typedef void RtOccludedKernel(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+typedef void RtOccludedKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                               uint32_t *blockers);
-typedef void RtNearestCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+typedef void RtNearestCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                               RtHit *hits, RtTally *tallies);
-typedef void RtOccludedCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                               uint32_t *blockers, RtTally *tallies);
+typedef void RtOccludedCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                               size_t count, uint32_t *blockers, RtTally *tallies);
 
 /* Who looks at the boxes of a structure: one call of `show` each, with its depth below the root. */
 typedef struct RtBoxViewer {
@@ -196,11 +203,16 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 /* The state of one thread's queries. */
 typedef struct RtQuery {
     const RtAccel *accel;
-    void *scratch;
+    RtScratch scratch[RT_MAX_LAYERS]; /* of each layer, topmost first. The first owns all there is */
 } RtQuery;
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);
 void rt_query_clear(RtQuery *query);
+
+/* The room of hit functions that a query has, for whoever asks them on the same thread. */
+static inline RtCrossing *rt_query_room(const RtQuery *query) {
+    return query->scratch[0].room;
+}
 
 /* Forgets what the rays before have left behind (the last occluders of a shadow cache), so that the counts of
  * the rays that follow depend on them alone. To be called where a piece of work begins that is the same at

@@ -94,26 +94,34 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 /* ---- queries ---- */
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
-    *query = (RtQuery){accel, NULL};
+    *query = (RtQuery){.accel = accel};
     size_t bytes = 0;
     for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
-    if (bytes == 0) return RT_OK;
-    query->scratch = rt_alloc(bytes, 1);
-    if (!query->scratch) return rt_fail_memory(error, "the scratch memory of a query", bytes);
-    rt_query_begin(query);
+    RtScratch scratch = {NULL, NULL};
+    RT_TRY(rt_hit_room(&accel->scene->geometry, &scratch.room, error));
+    if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
+        rt_free(scratch.room);
+        return rt_fail_memory(error, "the scratch memory of a query", bytes);
+    }
+    uint32_t layers = 0;
+    for (const RtAccel *layer = accel; layer; layer = layer->below) {
+        query->scratch[layers++] = scratch;
+        if (scratch.own) scratch.own = (char *)scratch.own + layer->scratch_room;
+    }
+    if (bytes > 0) rt_query_begin(query);
     return RT_OK;
 }
 
 void rt_query_clear(RtQuery *query) {
-    rt_free(query->scratch);
-    *query = (RtQuery){NULL, NULL};
+    rt_free(query->scratch[0].own);
+    rt_free(query->scratch[0].room);
+    *query = (RtQuery){0};
 }
 
 void rt_query_begin(RtQuery *query) {
-    char *scratch = query->scratch;
-    for (const RtAccel *layer = query->accel; layer; layer = layer->below) {
-        if (layer->ops->begin) layer->ops->begin(layer, scratch);
-        if (scratch) scratch += layer->scratch_room;
+    const RtScratch *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer; layer = layer->below, scratch++) {
+        if (layer->ops->begin) layer->ops->begin(layer, scratch->own);
     }
 }
 

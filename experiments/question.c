@@ -63,8 +63,8 @@ static RtReply ask(Session *s, const RtQuestion *question) {
     const RtRay *ray = &question->rays[i];
     RtReply reply = {.expected = s->expected[i], .got = s->got[i], .blocked = s->blocked[i]};
     reply.wrong =
-        RT_WRONG == (question->occluded ? rt_blocked_verdict(s->accel, ray, reply.expected, reply.blocked)
-                                        : rt_answer_verdict(s->accel, ray, reply.expected, reply.got));
+        RT_WRONG == (question->occluded ? rt_blocked_verdict(&s->query, ray, reply.expected, reply.blocked)
+                                        : rt_answer_verdict(&s->query, ray, reply.expected, reply.got));
     return reply;
 }
 

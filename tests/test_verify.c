@@ -156,7 +156,8 @@ static void another_run_is_not_gone_on_with(void **state) {
 }
 
 /* Loses the last ray of every stream but the shortest. */
-static void lose_last(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits) {
+static void lose_last(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                      RtHit *hits) {
     nearest_timed(accel, scratch, rays, count, hits);
     if (count > 1) hits[count - 1] = RT_MISS;
 }
