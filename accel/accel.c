@@ -3,10 +3,10 @@
 
 #include "base/memory.h"
 
-RtStatus rt_accel_new(const char *name, const RtScene *scene, size_t bytes, RtAccel **out, RtError *error) {
+RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error) {
     RtAccel *accel = rt_alloc(1, bytes);
-    if (!accel) return rt_fail_memory(error, name, bytes);
-    *accel = (RtAccel){.scene = scene, .exact = true, .counts = true};
+    if (!accel) return rt_fail_memory(error, what->ops->name, bytes);
+    *accel = (RtAccel){.ops = what->ops, .scene = what->scene, .exact = true, .counts = true};
     *out = accel;
     return RT_OK;
 }

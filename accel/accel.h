@@ -10,7 +10,8 @@
  * count in.
  *
  * An accelerator is built over a scene that must outlive it, and is read only from then on. What a traversal
- * writes to (mailboxes) lies in an RtQuery, one per thread.
+ * writes to (mailboxes, the room of hit functions) lies in an RtQuery, one per thread, and is all there
+ * before the first ray: kernels allocate nothing and cannot fail.
  *
  * Overlays. An overlay answers rays of some kinds (RtAccelOps.kinds) and hands the others, and those that it
  * cannot decide with certainty, to the accelerator below it, which may be an overlay in turn; a base, which
@@ -62,29 +63,44 @@ typedef struct RtDescription {
 /* Initialises the predictions of an RtDescription as unknown. */
 #define RT_NO_PREDICTION .predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN
 
-/* An accelerator that would take more bytes than this, as far as its own folder counts them, is refused. */
+/* The limit of rt_accel_build. */
 #define RT_ACCEL_MAX_BYTES (UINT64_C(4) << 30)
 
-/* The four kernels. rays[0..count) are valid (rt_ray_is_valid); `scratch` is the layer's part of the query's;
- * answers go to hits[0..count) and blockers[0..count); tallies[RT_RAY_KIND_COUNT] are added to, by the kind
- * of each ray. A blocker is any object that lies on the ray, RT_NO_OBJECT where none does, or
- * RT_UNNAMED_OBJECT from those who know only that there is one. */
+/* What the kernels of a layer may write to. */
+typedef struct RtScratch {
+    void *own;        /* scratch_bytes of it; NULL where no layer asks for any */
+    RtCrossing *room; /* for hit functions (rt_hit_ray) */
+} RtScratch;
+
+/* The four kernels. rays[0..count) are valid (rt_ray_is_valid); scratch[0] is the layer's, and those of the
+ * layers below follow; answers go to hits[0..count) and blockers[0..count); tallies[RT_RAY_KIND_COUNT] are
+ * added to, by the kind of each ray. A blocker is any object that lies on the ray, RT_NO_OBJECT where none
+ * does, or RT_UNNAMED_OBJECT from those who know only that there is one. */
 #define RT_UNNAMED_OBJECT (UINT32_MAX - 1)
 
-typedef void RtNearestKernel(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+typedef void RtNearestKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                              RtHit *hits);
-typedef void RtOccludedKernel(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+typedef void RtOccludedKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                               uint32_t *blockers);
-typedef void RtNearestCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+typedef void RtNearestCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                               RtHit *hits, RtTally *tallies);
-typedef void RtOccludedCounted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                               uint32_t *blockers, RtTally *tallies);
+typedef void RtOccludedCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                               size_t count, uint32_t *blockers, RtTally *tallies);
 
 /* Who looks at the boxes of a structure: one call of `show` each, with its depth below the root. */
 typedef struct RtBoxViewer {
     void (*show)(void *context, const RtBox *box, uint32_t depth);
     void *context;
 } RtBoxViewer;
+
+/* What an accelerator is built from. */
+typedef struct RtBuild {
+    const RtAccelOps *ops; /* of the accelerator itself */
+    const RtScene *scene;  /* finished; it may hold no object at all */
+    const RtValue *values; /* [param_count], in range */
+    int threads;           /* 0 = all processors; does not change the structure */
+    uint64_t limit;        /* one that would take more bytes, as far as its own folder counts, is refused */
+} RtBuild;
 
 /* One accelerator, as a const table in its own file. Optional members may be NULL. */
 struct RtAccelOps {
@@ -95,10 +111,9 @@ struct RtAccelOps {
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
 
-    /* Builds over `scene`, which is finished and may hold no object at all. values[param_count] are in range.
-     * On failure nothing is left behind. *out is owned by the caller: `destroy`, which leaves what lies below
+    /* On failure nothing is left behind. *out is owned by the caller: `destroy`, which leaves what lies below
      * alone. An overlay is built without regard to what it will lie on. */
-    RtStatus (*build)(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+    RtStatus (*build)(const RtBuild *build, RtAccel **out, RtError *error);
     void (*destroy)(RtAccel *accel);
 
     RtNearestKernel *nearest;
@@ -131,9 +146,9 @@ struct RtAccelOps {
     bool (*library)(char *out, size_t room);
 };
 
-/* For `build`, in accel.c: `bytes` for the own struct of accelerator `name`, zeroed but for the RtAccel that
- * it begins with, which is exact and counts; to *out, to be freed with rt_free. */
-RtStatus rt_accel_new(const char *name, const RtScene *scene, size_t bytes, RtAccel **out, RtError *error);
+/* For `build`, in accel.c: `bytes` for the own struct of the accelerator, zeroed but for the RtAccel that it
+ * begins with, which is exact and counts; to *out, to be freed with rt_free. */
+RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error);
 
 /* ---- the registry ---- */
 
@@ -174,8 +189,9 @@ void rt_spec_format(const RtSpec *spec, char *out);
 
 /* ---- using an accelerator ---- */
 
-/* Builds what the spec says over `scene`. Destroy with rt_accel_destroy. */
-RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out, RtError *error);
+/* Builds what the spec says over `scene`, on `threads` threads (0 = all processors), which does not change
+ * the structure; rt_accel_open on all processors. Destroy with rt_accel_destroy. */
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
 void rt_accel_destroy(RtAccel *accel); /* with all below it; NULL is allowed */
 
@@ -195,11 +211,16 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 /* The state of one thread's queries. */
 typedef struct RtQuery {
     const RtAccel *accel;
-    void *scratch;
+    RtScratch scratch[RT_MAX_LAYERS]; /* of each layer, topmost first. The first owns all there is */
 } RtQuery;
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error);
 void rt_query_clear(RtQuery *query);
+
+/* The room of hit functions that a query has, for whoever asks them on the same thread. */
+static inline RtCrossing *rt_query_room(const RtQuery *query) {
+    return query->scratch[0].room;
+}
 
 /* Forgets what the rays before have left behind (the last occluders of a shadow cache), so that the counts of
  * the rays that follow depend on them alone. To be called where a piece of work begins that is the same at

@@ -8,9 +8,8 @@ typedef struct Brute {
     RtAccel base;
 } Brute;
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    (void)values;
-    return rt_accel_new("brute", scene, sizeof(Brute), out, error);
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    return rt_accel_new(what, sizeof(Brute), out, error);
 }
 
 static void destroy(RtAccel *accel) {

@@ -20,9 +20,8 @@ typedef struct Cache {
     RtAccel base;
 } Cache;
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    (void)values;
-    return rt_accel_new("cache", scene, sizeof(Cache), out, error);
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    return rt_accel_new(what, sizeof(Cache), out, error);
 }
 
 static void destroy(RtAccel *accel) {
@@ -40,14 +39,15 @@ static void begin(const RtAccel *accel, void *scratch) {
 
 /* ---- queries ---- */
 
-RT_KERNEL uint32_t shade(const Cache *self, void *scratch, const RtRay *ray, RtTally *tallies) {
+RT_KERNEL uint32_t shade(const Cache *self, const RtScratch *scratch, const RtRay *ray, RtTally *tallies) {
     const RtScene *scene = self->base.scene;
     RtTally *tally = tallies ? &tallies[RT_RAY_SHADOW] : NULL;
     if (ray->source >= scene->light_count) return rt_pass_on_occluded(&self->base, scratch, ray, tallies);
 
-    uint32_t *last = (uint32_t *)scratch + ray->source;
+    uint32_t *last = (uint32_t *)scratch->own + ray->source;
     if (*last != RT_NO_OBJECT) {
-        RtPreparedRay prepared = rt_ray_prepare(ray, &scene->geometry.box);
+        RtPreparedRay prepared;
+        rt_hit_ray(&prepared, &scene->geometry, ray, scratch->room);
         RtHit hit = RT_MISS;
         RT_COUNT(tally, steps, 1);
         if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally)) {

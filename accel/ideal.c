@@ -15,9 +15,8 @@ typedef struct Ideal {
     size_t count;
 } Ideal;
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    (void)values;
-    return rt_accel_new("ideal", scene, sizeof(Ideal), out, error);
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    return rt_accel_new(what, sizeof(Ideal), out, error);
 }
 
 static void destroy(RtAccel *accel) {

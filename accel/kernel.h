@@ -52,33 +52,34 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
 
 /* The search for one ray, and the bookkeeping common to all. */
 #define RT_DEFINE_KERNELS(Type, search)                                                                      \
-    RT_KERNEL RtHit search_one(const RtAccel *accel, void *scratch, const RtRay *ray, bool any,              \
+    RT_KERNEL RtHit search_one(const RtAccel *accel, const RtScratch *scratch, const RtRay *ray, bool any,   \
                                RtTally *tally) {                                                             \
-        RtPreparedRay prepared = rt_ray_prepare(ray, &accel->scene->geometry.box);                           \
+        RtPreparedRay prepared;                                                                              \
+        rt_hit_ray(&prepared, &accel->scene->geometry, ray, scratch->room);                                  \
         RtHit best = RT_MISS;                                                                                \
-        search((const Type *)accel, scratch, &prepared, any, &best, tally);                                  \
+        search((const Type *)accel, scratch->own, &prepared, any, &best, tally);                             \
         RT_COUNT(tally, rays, 1);                                                                            \
         RT_COUNT(tally, hits, best.object != RT_NO_OBJECT);                                                  \
         return best;                                                                                         \
     }                                                                                                        \
-    static void nearest_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,          \
-                              RtHit *hits) {                                                                 \
+    static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,             \
+                              size_t count, RtHit *hits) {                                                   \
         for (size_t i = 0; i < count; i++) hits[i] = search_one(accel, scratch, &rays[i], false, NULL);      \
     }                                                                                                        \
-    static void nearest_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,        \
-                                RtHit *hits, RtTally *tallies) {                                             \
+    static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
+                                size_t count, RtHit *hits, RtTally *tallies) {                               \
         for (size_t i = 0; i < count; i++) {                                                                 \
             hits[i] = search_one(accel, scratch, &rays[i], false, &tallies[rays[i].kind]);                   \
         }                                                                                                    \
     }                                                                                                        \
-    static void occluded_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,         \
-                               uint32_t *blockers) {                                                         \
+    static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
+                               size_t count, uint32_t *blockers) {                                           \
         for (size_t i = 0; i < count; i++) {                                                                 \
             blockers[i] = search_one(accel, scratch, &rays[i], true, NULL).object;                           \
         }                                                                                                    \
     }                                                                                                        \
-    static void occluded_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,       \
-                                 uint32_t *blockers, RtTally *tallies) {                                     \
+    static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
+                                 size_t count, uint32_t *blockers, RtTally *tallies) {                       \
         for (size_t i = 0; i < count; i++) {                                                                 \
             RtTally *tally = &tallies[rays[i].kind];                                                         \
             blockers[i] = search_one(accel, scratch, &rays[i], true, tally).object;                          \
@@ -87,26 +88,23 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
 
 /* ---- overlays ---- */
 
-static inline void *rt_scratch_below(const RtAccel *accel, void *scratch) {
-    return (char *)scratch + accel->scratch_room;
-}
-
 /* What an overlay does with rays of one question, `nearest` or `occluded`, whose answers are of type Answer;
  * `tallies` may be NULL.
  *   rt_hand_down_...  rays that are none of its business
  *   rt_pass_on_...    a ray that it ought to answer and cannot */
 #define RT_DEFINE_HAND_DOWN(question, Answer)                                                                \
-    RT_KERNEL void rt_hand_down_##question(const RtAccel *accel, void *scratch, const RtRay *rays,           \
-                                           size_t count, Answer *answers, RtTally *tallies) {                \
+    RT_KERNEL void rt_hand_down_##question(const RtAccel *accel, const RtScratch *scratch,                   \
+                                           const RtRay *rays, size_t count, Answer *answers,                 \
+                                           RtTally *tallies) {                                               \
         const RtAccel *below = accel->below;                                                                 \
-        scratch = rt_scratch_below(accel, scratch);                                                          \
+        scratch++; /* of the layer below */                                                                  \
         if (tallies) {                                                                                       \
             below->ops->question##_counted(below, scratch, rays, count, answers, tallies);                   \
         } else {                                                                                             \
             below->ops->question(below, scratch, rays, count, answers);                                      \
         }                                                                                                    \
     }                                                                                                        \
-    RT_KERNEL Answer rt_pass_on_##question(const RtAccel *accel, void *scratch, const RtRay *ray,            \
+    RT_KERNEL Answer rt_pass_on_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *ray, \
                                            RtTally *tallies) {                                               \
         Answer answer;                                                                                       \
         if (tallies) tallies[ray->kind].passed_on++;                                                         \
@@ -132,8 +130,8 @@ RT_KERNEL uint32_t rt_answer_occluded(uint32_t blocker, RtTally *tally) {
 /* The two kernels of a question that an overlay answers for rays of `own_kind`, one by one; runs of others
  * are handed down in streams. */
 #define RT_ANSWER_QUESTION(Type, question, Answer, own_kind, answer_one)                                     \
-    RT_KERNEL void question##_all(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,      \
-                                  Answer *answers, RtTally *tallies) {                                       \
+    RT_KERNEL void question##_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,         \
+                                  size_t count, Answer *answers, RtTally *tallies) {                         \
         for (size_t i = 0, next; i < count; i = next) {                                                      \
             for (next = i; next < count && rays[next].kind != (own_kind); next++) {                          \
             }                                                                                                \
@@ -150,23 +148,23 @@ RT_KERNEL uint32_t rt_answer_occluded(uint32_t blocker, RtTally *tally) {
 
 /* Expands `all` into the timed and the counted kernel. */
 #define RT_DEFINE_BOTH(question, Answer, all)                                                                \
-    static void question##_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,       \
-                                 Answer *answers) {                                                          \
+    static void question##_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
+                                 size_t count, Answer *answers) {                                            \
         all(accel, scratch, rays, count, answers, NULL);                                                     \
     }                                                                                                        \
-    static void question##_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,     \
-                                   Answer *answers, RtTally *tallies) {                                      \
+    static void question##_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,        \
+                                   size_t count, Answer *answers, RtTally *tallies) {                        \
         all(accel, scratch, rays, count, answers, tallies);                                                  \
     }
 
 /* The kernels of an overlay for shadow rays, from
  *
- *     uint32_t shade(const Type *self, void *scratch, const RtRay *ray, RtTally *tallies);
+ *     uint32_t shade(const Type *self, const RtScratch *scratch, const RtRay *ray, RtTally *tallies);
  *
  * which gives the blocker of one shadow ray, through rt_answer_occluded or rt_pass_on_occluded; and those of
  * an overlay for primary rays, from
  *
- *     RtHit see(const Type *self, void *scratch, const RtRay *ray, RtTally *tallies);
+ *     RtHit see(const Type *self, const RtScratch *scratch, const RtRay *ray, RtTally *tallies);
  *
  * which gives the nearest hit of one, through rt_answer_nearest or rt_pass_on_nearest. All else is handed
  * down. */

@@ -14,17 +14,19 @@ static void stack(RtAccel *accel, RtAccel *below) {
     accel->counts = accel->counts && below->counts;
 }
 
-RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                        RtError *error) {
     RtAccel *top = NULL;
     *out = NULL;
     for (uint32_t i = spec->layer_count; i-- > 0;) {
         RtAccel *accel = NULL;
-        RtStatus status = spec->layers[i].ops->build(scene, spec->layers[i].values, &accel, error);
+        const RtBuild what = {spec->layers[i].ops, scene, spec->layers[i].values, threads,
+                              RT_ACCEL_MAX_BYTES};
+        RtStatus status = what.ops->build(&what, &accel, error);
         if (status != RT_OK) {
             rt_accel_destroy(top);
             return status;
         }
-        accel->ops = spec->layers[i].ops;
         stack(accel, top);
         top = accel;
     }
@@ -36,7 +38,7 @@ RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, Rt
     RtSpec parsed;
     *out = NULL;
     RT_TRY(rt_spec_parse(spec, &parsed, error));
-    return rt_accel_build(&parsed, scene, out, error);
+    return rt_accel_build(&parsed, scene, 0, out, error);
 }
 
 void rt_accel_destroy(RtAccel *accel) {
@@ -84,26 +86,34 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 /* ---- queries ---- */
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
-    *query = (RtQuery){accel, NULL};
+    *query = (RtQuery){.accel = accel};
     size_t bytes = 0;
     for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
-    if (bytes == 0) return RT_OK;
-    query->scratch = rt_alloc(bytes, 1);
-    if (!query->scratch) return rt_fail_memory(error, "the scratch memory of a query", bytes);
-    rt_query_begin(query);
+    RtScratch scratch = {NULL, NULL};
+    RT_TRY(rt_hit_room(&accel->scene->geometry, &scratch.room, error));
+    if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
+        rt_free(scratch.room);
+        return rt_fail_memory(error, "the scratch memory of a query", bytes);
+    }
+    uint32_t layers = 0;
+    for (const RtAccel *layer = accel; layer; layer = layer->below) {
+        query->scratch[layers++] = scratch;
+        if (scratch.own) scratch.own = (char *)scratch.own + layer->scratch_room;
+    }
+    if (bytes > 0) rt_query_begin(query);
     return RT_OK;
 }
 
 void rt_query_clear(RtQuery *query) {
-    rt_free(query->scratch);
-    *query = (RtQuery){NULL, NULL};
+    rt_free(query->scratch[0].own);
+    rt_free(query->scratch[0].room);
+    *query = (RtQuery){0};
 }
 
 void rt_query_begin(RtQuery *query) {
-    char *scratch = query->scratch;
-    for (const RtAccel *layer = query->accel; layer; layer = layer->below) {
-        if (layer->ops->begin) layer->ops->begin(layer, scratch);
-        if (scratch) scratch += layer->scratch_room;
+    const RtScratch *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer; layer = layer->below, scratch++) {
+        if (layer->ops->begin) layer->ops->begin(layer, scratch->own);
     }
 }
 

@@ -17,6 +17,14 @@ static inline void assert_broken(const RtAccel *accel, const char *phrase) {
     if (!strstr(error.message, phrase)) fail_msg("'%s' does not say '%s'", error.message, phrase);
 }
 
+/* Builds one layer that is refused above `limit` bytes. */
+static inline RtStatus build_within(const char *name, uint64_t limit, const RtScene *scene,
+                                    const RtValue *values, RtAccel **out, RtError *problem) {
+    const RtAccelOps *ops;
+    assert_ok(rt_accel_find(name, &ops, error));
+    return ops->build(&(RtBuild){ops, scene, values, 1, limit}, out, problem);
+}
+
 /* A scene without objects, and a grey material, which is number 0. */
 static inline void begin_scene(RtScene *scene) {
     uint32_t material;

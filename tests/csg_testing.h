@@ -2,6 +2,7 @@
 #ifndef RT_TESTS_CSG_TESTING_H
 #define RT_TESTS_CSG_TESTING_H
 
+#include "room_testing.h"
 #include "testing.h"
 
 #include "bench/rayset.h"
@@ -19,13 +20,19 @@ typedef struct Hits {
     float t[MAX_HITS];
 } Hits;
 
+static inline RtPreparedRay prepare(const RtRay *ray, const RtCsg *tree) {
+    RtPreparedRay prepared = rt_ray_prepare(ray, &tree->box);
+    prepared.room = room_of_tests();
+    return prepared;
+}
+
 static inline Hits hits_of(const RtCsgForest *forest, const RtCsg *tree, const RtRay *ray) {
     Hits hits = {.count = 0};
     RtRay rest = *ray;
-    RtPreparedRay prepared = rt_ray_prepare(&rest, &tree->box);
+    RtPreparedRay prepared = prepare(&rest, tree);
     while (hits.count < MAX_HITS && rt_csg_hit(forest, tree, &prepared, &hits.t[hits.count], NULL)) {
         rest.tmin = nextafterf(hits.t[hits.count++], INFINITY);
-        prepared = rt_ray_prepare(&rest, &tree->box);
+        prepared = prepare(&rest, tree);
     }
     return hits;
 }
@@ -125,7 +132,7 @@ static inline void assert_hits(const RtCsgForest *forest, const RtCsg *tree, RtR
 }
 
 static inline RtCsgFacet facet_at(const RtCsgForest *forest, const RtCsg *tree, const RtRay *ray, float t) {
-    RtPreparedRay prepared = rt_ray_prepare(ray, &tree->box);
+    RtPreparedRay prepared = prepare(ray, tree);
     return rt_csg_facet(forest, tree, &prepared, t);
 }
 

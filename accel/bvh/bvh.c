@@ -121,7 +121,9 @@ static void destroy(RtAccel *accel) {
     rt_free(accel);
 }
 
-static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValue *values, RtError *error) {
+static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
+    const RtGeometry *geometry = &what->scene->geometry;
+    const RtValue *values = what->values;
     const RtBox *boxes = geometry->boxes;
     uint32_t count = geometry->object_count, bits = (uint32_t)values[PARAM_BITS].i;
     RtSpatial how = {.bins = (int)values[PARAM_BINS].i,
@@ -129,7 +131,7 @@ static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValu
                      .budget = values[PARAM_BUDGET].f,
                      .leaf = (uint32_t)values[PARAM_LEAF].i,
                      .traversal = values[PARAM_TRAVERSAL].f,
-                     .limit = RT_ACCEL_MAX_BYTES};
+                     .limit = what->limit};
     switch ((Build)values[PARAM_BUILD].choice) {
     case BINNED: break;
     case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
@@ -140,26 +142,28 @@ static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValu
     return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, error);
 }
 
-static RtStatus fill(RtHierarchy *hierarchy, const RtGeometry *geometry, const RtValue *values,
-                     RtError *error) {
+static RtStatus fill(RtHierarchy *hierarchy, const RtBuild *what, RtError *error) {
+    const RtGeometry *geometry = &what->scene->geometry;
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(make_tree(&tree, geometry, values, error));
-    RtStatus status = rt_tree_reinsert(&tree, (uint32_t)values[PARAM_REINSERTION].i, 0, error);
+    RT_TRY(make_tree(&tree, what, error));
+    uint32_t rounds = (uint32_t)what->values[PARAM_REINSERTION].i;
+    RtStatus status = rt_tree_reinsert(&tree, rounds, what->threads, error);
     if (status == RT_OK) status = rt_hierarchy_lay_out(hierarchy, &tree, error);
     rt_tree_clear(&tree);
     return status;
 }
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtValue *values = what->values;
     RtAccel *accel;
-    RT_TRY(rt_accel_new("bvh", scene, sizeof(RtBvh), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtBvh), &accel, error));
     RtHierarchy *hierarchy = &((RtBvh *)accel)->hierarchy;
     *hierarchy = (RtHierarchy){.width = 2,
                                .leaf_limit = (uint32_t)values[PARAM_LEAF].i,
                                .traversal_cost = values[PARAM_TRAVERSAL].f};
     ((RtBvh *)accel)->mailbox = values[PARAM_MAILBOX].flag;
-    RtStatus status = fill(hierarchy, &scene->geometry, values, error);
+    RtStatus status = fill(hierarchy, what, error);
     if (status == RT_OK)
         *out = accel;
     else

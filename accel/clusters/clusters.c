@@ -164,9 +164,10 @@ static RtStatus fill(RtClusters *self, const RtValue *values, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtValue *values = what->values;
     RtAccel *accel;
-    RT_TRY(rt_accel_new("clusters", scene, sizeof(RtClusters), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtClusters), &accel, error));
     RtClusters *self = (RtClusters *)accel;
     self->hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
                                     .leaf_limit = (uint32_t)values[PARAM_LEAF].i,

@@ -51,11 +51,13 @@ DEFINE_SEARCHES(timed, false)
 DEFINE_SEARCHES(counted, true)
 #undef DEFINE_SEARCHES
 
-void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches) {
+void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches,
+                          RtCrossing *room) {
     rt_embree_init_context(&trace->context, coherent);
     trace->intersect = counted ? intersect_counted : intersect_timed;
     trace->occluded = counted ? occluded_counted : occluded_timed;
     trace->searches = searches;
+    trace->room = room;
 }
 
 void rt_embree_user_intersect(const struct RTCIntersectFunctionNArguments *arguments) {
@@ -68,15 +70,17 @@ void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *argumen
 
 /* ---- native mode: Embree's rays, for the shapes it has no geometry of its own for ---- */
 
-static bool lane_hit(const RtGeometry *geometry, uint32_t id, RtEmbreeWord *rays, unsigned lanes, unsigned i,
-                     float *t) {
+static bool lane_hit(const RtGeometry *geometry, uint32_t id, const void *context, RtEmbreeWord *rays,
+                     unsigned lanes, unsigned i, float *t) {
+    const RtEmbreeTrace *trace = context;
     RtRay ray = {.tmin = rt_embree_word(rays, lanes, RT_EMBREE_TNEAR, i)->f,
                  .tmax = rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f};
     for (unsigned a = 0; a < 3; a++) {
         ray.org.at[a] = rt_embree_word(rays, lanes, RT_EMBREE_ORG + a, i)->f;
         ray.dir.at[a] = rt_embree_word(rays, lanes, RT_EMBREE_DIR + a, i)->f;
     }
-    RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, geometry, &ray, trace->room);
     return rt_object_hit(geometry, id, &prepared, t, NULL);
 }
 
@@ -85,10 +89,11 @@ void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arg
     const RtGeometry *geometry = &slot->self->base.scene->geometry;
     RtEmbreeWord *rays = (RtEmbreeWord *)arguments->rayhit;
     unsigned lanes = arguments->N;
+    uint32_t id = slot->ids[arguments->primID];
     for (unsigned i = 0; i < lanes; i++) {
         float t;
         if (!arguments->valid[i]) continue;
-        if (!lane_hit(geometry, slot->ids[arguments->primID], rays, lanes, i, &t)) continue;
+        if (!lane_hit(geometry, id, arguments->context, rays, lanes, i, &t)) continue;
         rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f = t;
         for (unsigned field = RT_EMBREE_NG; field <= RT_EMBREE_V; field++)
             rt_embree_word(rays, lanes, field, i)->f = 0;
@@ -103,10 +108,11 @@ void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *argum
     const RtGeometry *geometry = &slot->self->base.scene->geometry;
     RtEmbreeWord *rays = (RtEmbreeWord *)arguments->ray;
     unsigned lanes = arguments->N;
+    uint32_t id = slot->ids[arguments->primID];
     for (unsigned i = 0; i < lanes; i++) {
         float t;
         if (!arguments->valid[i]) continue;
-        if (!lane_hit(geometry, slot->ids[arguments->primID], rays, lanes, i, &t)) continue;
+        if (!lane_hit(geometry, id, arguments->context, rays, lanes, i, &t)) continue;
         rt_embree_word(rays, lanes, RT_EMBREE_TFAR, i)->f = -INFINITY;
     }
 }

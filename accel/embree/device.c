@@ -50,15 +50,16 @@ static RtStatus fail(enum RTCError code, const char *message, RtError *error) {
     return rt_fail(error, status, "Embree reports error %d: %s", (int)code, message);
 }
 
-RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, RtError *error) {
+RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error) {
     if (!processor_has(isa)) {
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "accelerator embree: this processor has no %s; choose a smaller isa, or isa=default",
                        isa_names[isa]);
     }
-    char config[64] = "ignore_config_files=1";
+    char config[64];
+    int length = snprintf(config, sizeof config, "ignore_config_files=1,threads=%d", threads);
     if (isa != ISA_DEFAULT) {
-        snprintf(config, sizeof config, "ignore_config_files=1,isa=%s", isa_names[isa]);
+        snprintf(config + length, sizeof config - (size_t)length, ",isa=%s", isa_names[isa]);
     }
     *device = (RtEmbreeDevice){.device = rtcNewDevice(config)};
     if (!device->device) return fail(rtcGetDeviceError(NULL), "no device can be opened", error);
@@ -79,7 +80,7 @@ void rt_embree_device_close(RtEmbreeDevice *device) {
 bool rt_embree_library(char *out, size_t room) {
     if (room > 0) out[0] = '\0';
     RtEmbreeDevice device;
-    if (rt_embree_device_open(&device, ISA_DEFAULT, NULL) != RT_OK) return false;
+    if (rt_embree_device_open(&device, ISA_DEFAULT, 0, NULL) != RT_OK) return false;
     long version = (long)rtcGetDeviceProperty(device.device, RTC_DEVICE_PROPERTY_VERSION);
     uint32_t isa = ISA_COUNT - 1;
     while (isa > ISA_DEFAULT && !processor_has(isa)) isa--;

@@ -133,7 +133,8 @@ static RtStatus attach_all(RtEmbree *self, enum RTCBuildQuality quality, RtError
     return RT_OK;
 }
 
-static RtStatus build_into(RtEmbree *self, const RtValue *values, RtError *error) {
+static RtStatus build_into(RtEmbree *self, const RtBuild *what, RtError *error) {
+    const RtValue *values = what->values;
     static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
                                                      RTC_BUILD_QUALITY_HIGH};
     enum RTCBuildQuality quality = qualities[values[QUALITY].choice];
@@ -141,7 +142,7 @@ static RtStatus build_into(RtEmbree *self, const RtValue *values, RtError *error
         return rt_fail(error, RT_NOT_AVAILABLE,
                        "accelerator embree: Embree 4 has no streams; choose query=1, 8 or 16");
     }
-    RT_TRY(rt_embree_device_open(&self->device, values[ISA].choice, error));
+    RT_TRY(rt_embree_device_open(&self->device, values[ISA].choice, what->threads, error));
     set_reach(self);
     self->scene = rtcNewScene(self->device.device);
     rtcSetSceneFlags(self->scene, values[ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
@@ -159,15 +160,16 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtValue *values = what->values;
     RtAccel *accel;
-    RT_TRY(rt_accel_new("embree", scene, sizeof(RtEmbree), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtEmbree), &accel, error));
     RtEmbree *self = (RtEmbree *)accel;
     self->user = values[MODE].choice == 1;
     self->query = (RtEmbreeQueryKind)values[QUERY].choice;
     accel->exact = self->user;
     accel->counts = false;
-    RtStatus status = build_into(self, values, error);
+    RtStatus status = build_into(self, what, error);
     if (status != RT_OK) {
         destroy(accel);
         return status;

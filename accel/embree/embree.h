@@ -37,9 +37,10 @@ typedef struct RtEmbreeDevice {
 /* The choices of the parameter `isa`, in order, "default" first. */
 #define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
 
-/* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS; RT_NOT_AVAILABLE where the
- * processor lacks it. `device` must stay where it is until it is closed. */
-RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, RtError *error);
+/* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS and builds on `threads` threads (0
+ * = all processors); RT_NOT_AVAILABLE where the processor lacks it. `device` must stay where it is until it
+ * is closed. */
+RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error);
 
 /* RT_OK, or the first error that the device reported. */
 RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error);
@@ -91,13 +92,14 @@ typedef struct RtEmbreeSearch {
     RtTally *tally; /* NULL in the timed kernels */
 } RtEmbreeSearch;
 
-/* Embree's context of one call, extended by what the callbacks of user mode need. They are reached through
+/* Embree's context of one call, extended by what the callbacks need. Those of user mode are reached through
  * it, so that one structure serves the timed and the counted kernels. */
 typedef struct RtEmbreeTrace {
     RtEmbreeContext context; /* first: callbacks get a pointer to it */
     RTCIntersectFunctionN intersect;
     RTCOccludedFunctionN occluded;
     RtEmbreeSearch *searches; /* by ray id */
+    RtCrossing *room;         /* of hit functions */
 } RtEmbreeTrace;
 
 /* tfar for Embree where only hits up to t matter: a little above it. */
@@ -106,15 +108,16 @@ static inline float rt_embree_limit(float t, double shrink) {
 }
 
 /* Callbacks of user geometry: the box of a primitive, grown; candidates of user mode, by way of the context;
- * and those of native mode, with nothing but what Embree hands over. */
+ * and those of native mode, with no more of ours than the room of hit functions. */
 void rt_embree_bounds(const struct RTCBoundsFunctionArguments *arguments);
 void rt_embree_user_intersect(const struct RTCIntersectFunctionNArguments *arguments);
 void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *arguments);
 void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments);
 void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *arguments);
 
-/* A context for one chunk of rays of user mode. */
-void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches);
+/* A context for one chunk of rays. */
+void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches,
+                          RtCrossing *room);
 
 /* The kernels of the table of operations, and their scratch memory. */
 RtNearestKernel rt_embree_nearest_timed;

@@ -115,11 +115,11 @@ RT_KERNEL bool may_ask(const RtEmbree *self, const RtRay *ray, double shrink) {
 
 /* A ray that Embree may not be asked about is answered here and now, and sent along as an inactive one. */
 RT_KERNEL void put_search(const RtEmbree *self, Batch *batch, unsigned lanes, size_t i, const RtRay *ray,
-                          bool any, RtTally *tally) {
+                          RtCrossing *room, bool any, RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
     double stretch = stretch_of(ray->dir);
     RtEmbreeSearch *search = &batch->searches[i];
-    search->ray = rt_ray_prepare(ray, &geometry->box);
+    rt_hit_ray(&search->ray, geometry, ray, room);
     search->shrink = 1 / stretch;
     search->best = RT_MISS;
     search->tally = tally;
@@ -179,23 +179,26 @@ RT_KERNEL bool is_coherent(const RtRay *ray) {
 }
 
 /* Nearest hits to `hits`, or where that is NULL blockers to `blockers`. */
-RT_KERNEL void answer(const RtEmbree *self, Batch *batch, const RtRay *rays, size_t count, RtHit *hits,
-                      uint32_t *blockers, RtTally *tallies, bool user, unsigned lanes, bool stream) {
+RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
+                      RtHit *hits, uint32_t *blockers, RtTally *tallies, bool user, unsigned lanes,
+                      bool stream) {
     const size_t chunk = stream ? RT_EMBREE_STREAM_RAYS : RT_EMBREE_PACKET_RAYS;
     const bool any = !hits;
+    Batch *batch = scratch->own;
     for (size_t begin = 0; begin < count; begin += chunk) {
         const RtRay *ray = rays + begin;
         size_t n = count - begin < chunk ? count - begin : chunk;
         for (size_t i = 0; i < n; i++) {
             if (user) {
-                put_search(self, batch, lanes, i, &ray[i], any, tallies ? &tallies[ray[i].kind] : NULL);
+                RtTally *tally = tallies ? &tallies[ray[i].kind] : NULL;
+                put_search(self, batch, lanes, i, &ray[i], scratch->room, any, tally);
             } else {
                 put_native(batch, lanes, i, &ray[i]);
             }
         }
         RtEmbreeTrace trace;
         bool coherent = is_coherent(ray);
-        rt_embree_trace_init(&trace, coherent, tallies != NULL, batch->searches);
+        rt_embree_trace_init(&trace, coherent, tallies != NULL, batch->searches, scratch->room);
         unsigned before = user ? 0 : denormals_off();
         trace_chunk(self, batch, &trace.context, coherent, n, any, lanes, stream);
         if (!user) denormals_restore(before);
@@ -218,18 +221,20 @@ RT_KERNEL void answer(const RtEmbree *self, Batch *batch, const RtRay *rays, siz
     }
 }
 
-RT_KERNEL void answer_mode(const RtEmbree *self, Batch *batch, const RtRay *rays, size_t count, RtHit *hits,
-                           uint32_t *blockers, RtTally *tallies, bool user) {
+RT_KERNEL void answer_mode(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
+                           RtHit *hits, uint32_t *blockers, RtTally *tallies, bool user) {
     switch (self->query) {
-    case RT_EMBREE_ONE: answer(self, batch, rays, count, hits, blockers, tallies, user, 1, false); break;
-    case RT_EMBREE_EIGHT: answer(self, batch, rays, count, hits, blockers, tallies, user, 8, false); break;
-    case RT_EMBREE_SIXTEEN: answer(self, batch, rays, count, hits, blockers, tallies, user, 16, false); break;
-    case RT_EMBREE_STREAM: answer(self, batch, rays, count, hits, blockers, tallies, user, 1, true); break;
+    case RT_EMBREE_ONE: answer(self, scratch, rays, count, hits, blockers, tallies, user, 1, false); break;
+    case RT_EMBREE_EIGHT: answer(self, scratch, rays, count, hits, blockers, tallies, user, 8, false); break;
+    case RT_EMBREE_SIXTEEN:
+        answer(self, scratch, rays, count, hits, blockers, tallies, user, 16, false);
+        break;
+    case RT_EMBREE_STREAM: answer(self, scratch, rays, count, hits, blockers, tallies, user, 1, true); break;
     }
 }
 
-RT_KERNEL void answer_all(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits,
-                          uint32_t *blockers, RtTally *tallies) {
+RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                          RtHit *hits, uint32_t *blockers, RtTally *tallies) {
     const RtEmbree *self = (const RtEmbree *)accel;
     if (self->user) {
         answer_mode(self, scratch, rays, count, hits, blockers, tallies, true);
@@ -238,22 +243,22 @@ RT_KERNEL void answer_all(const RtAccel *accel, void *scratch, const RtRay *rays
     }
 }
 
-void rt_embree_nearest_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+void rt_embree_nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                              RtHit *hits) {
     answer_all(accel, scratch, rays, count, hits, NULL, NULL);
 }
 
-void rt_embree_nearest_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                               RtHit *hits, RtTally *tallies) {
+void rt_embree_nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                               size_t count, RtHit *hits, RtTally *tallies) {
     answer_all(accel, scratch, rays, count, hits, NULL, tallies);
 }
 
-void rt_embree_occluded_timed(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
+void rt_embree_occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                               uint32_t *blockers) {
     answer_all(accel, scratch, rays, count, NULL, blockers, NULL);
 }
 
-void rt_embree_occluded_counted(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count,
-                                uint32_t *blockers, RtTally *tallies) {
+void rt_embree_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                                size_t count, uint32_t *blockers, RtTally *tallies) {
     answer_all(accel, scratch, rays, count, NULL, blockers, tallies);
 }

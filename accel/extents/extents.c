@@ -37,10 +37,11 @@ static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
     return (RtGroup){geometry, id, 1, geometry->boxes[*id]};
 }
 
-static RtStatus build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    const RtGeometry *geometry = &scene->geometry;
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtGeometry *geometry = &what->scene->geometry;
+    const RtValue *values = what->values;
     RtAccel *accel;
-    RT_TRY(rt_accel_new("extents", scene, sizeof(RtExtents), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtExtents), &accel, error));
     RtExtents *self = (RtExtents *)accel;
     RtStatus status = rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_KIND].choice,
                                          (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);

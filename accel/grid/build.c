@@ -261,12 +261,13 @@ static RtBox choose_box(const RtGeometry *geometry, double flat, double margin) 
     return rt_box_widened(box, margin);
 }
 
-RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
-                              RtError *error) {
+RtStatus rt_grid_build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtScene *scene = what->scene;
+    const RtValue *values = what->values;
     RtAccel *accel;
-    RT_TRY(rt_accel_new("grid", scene, sizeof(RtGrid), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtGrid), &accel, error));
     RtGrid *grid = (RtGrid *)accel;
-    const Builder builder = {grid, values, limit, error};
+    const Builder builder = {grid, values, what->limit, error};
     grid->box = scene->geometry.box;
     grid->mailbox = values[RT_GRID_MAILBOX].flag;
     grid->surfaces = values[RT_GRID_OVERLAP].choice == RT_GRID_EXACT;
@@ -282,8 +283,4 @@ RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValu
     }
     *out = accel;
     return RT_OK;
-}
-
-RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    return rt_grid_build_within(RT_ACCEL_MAX_BYTES, scene, values, out, error);
 }

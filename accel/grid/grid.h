@@ -105,10 +105,8 @@ double rt_grid_estimate(const RtGrid *grid, const RtBox *box, const uint32_t n[3
 RtStatus rt_grid_refuse(const RtGrid *grid, const uint32_t n[3], const uint32_t *ids, uint32_t count,
                         uint64_t limit, RtError *error);
 
-/* build.c; _within refuses above another limit than the usual one, for tests. */
-RtStatus rt_grid_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
-                              RtError *error);
-RtStatus rt_grid_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+/* build.c */
+RtStatus rt_grid_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_grid_destroy(RtAccel *accel);
 
 /* stats.c */

@@ -29,6 +29,7 @@ typedef struct Entry {
 typedef struct Builder {
     RtItemBuffer *buffer;
     RtItemSpan *spans; /* [samples] of the object that the sample names */
+    RtCrossing *room;  /* of hit functions */
 } Builder;
 
 /* ---- one sample ---- */
@@ -41,7 +42,8 @@ static bool is_exact(const RtItemSpan *span) {
 static bool ask(const Builder *b, uint32_t id, const RtRay *ray, RtItemSpan *span) {
     RtAccel *base = &b->buffer->base;
     if (is_exact(span)) return true;
-    RtPreparedRay prepared = rt_ray_prepare(ray, &base->scene->geometry.box);
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, &base->scene->geometry, ray, b->room);
     RtHit hit = RT_MISS;
     rt_test_object(&base->scene->geometry, id, &prepared, false, &hit, &base->build_tally);
     *span = (RtItemSpan){hit.t, hit.t, true};
@@ -174,7 +176,7 @@ static RtStatus fill(RtItemBuffer *buffer, RtError *error) {
     RT_TRY(refuse_size(buffer, error));
     rt_item_aim(buffer);
     size_t count = rt_item_sample_count(buffer);
-    Builder b = {buffer, rt_alloc(count, sizeof(RtItemSpan))};
+    Builder b = {buffer, rt_alloc(count, sizeof(RtItemSpan)), NULL};
     buffer->samples = rt_alloc(count, sizeof(RtItemSample));
     RtStatus status = b.spans && buffer->samples ? RT_OK
                                                  : rt_fail_memory(error, "the samples of an item buffer",
@@ -182,9 +184,11 @@ static RtStatus fill(RtItemBuffer *buffer, RtError *error) {
     for (size_t i = 0; status == RT_OK && i < count; i++) {
         buffer->samples[i] = (RtItemSample){RT_NO_OBJECT, INFINITY};
     }
+    if (status == RT_OK) status = rt_hit_room(&buffer->base.scene->geometry, &b.room, error);
     if (status == RT_OK) status = draw_all(&b, error);
     if (status == RT_OK) mark_undecided(&b);
     rt_free(b.spans);
+    rt_free(b.room);
     return status;
 }
 
@@ -194,11 +198,11 @@ void rt_item_destroy(RtAccel *accel) {
     rt_free(buffer);
 }
 
-RtStatus rt_item_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtAccel *accel;
-    RT_TRY(rt_accel_new("item", scene, sizeof(RtItemBuffer), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtItemBuffer), &accel, error));
     RtItemBuffer *buffer = (RtItemBuffer *)accel;
-    buffer->settle = values[RT_ITEM_SETTLE].flag;
+    buffer->settle = what->values[RT_ITEM_SETTLE].flag;
     RtStatus status = fill(buffer, error);
     if (status != RT_OK) {
         rt_item_destroy(&buffer->base);

@@ -19,7 +19,7 @@ RT_KERNEL bool is_of_sample(const RtItemBuffer *self, const RtRay *ray) {
     return same;
 }
 
-RT_KERNEL RtHit see(const RtItemBuffer *self, void *scratch, const RtRay *ray, RtTally *tallies) {
+RT_KERNEL RtHit see(const RtItemBuffer *self, const RtScratch *scratch, const RtRay *ray, RtTally *tallies) {
     RtTally *tally = tallies ? &tallies[RT_RAY_PRIMARY] : NULL;
     const RtGeometry *g = &self->base.scene->geometry;
     if (!is_of_sample(self, ray)) return rt_pass_on_nearest(&self->base, scratch, ray, tallies);
@@ -29,7 +29,8 @@ RT_KERNEL RtHit see(const RtItemBuffer *self, void *scratch, const RtRay *ray, R
     RT_COUNT(tally, steps, 1);
     if (sample.id == RT_NO_OBJECT) return rt_answer_nearest(hit, tally);
     if (sample.id != RT_ITEM_UNDECIDED) {
-        RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
+        RtPreparedRay prepared;
+        rt_hit_ray(&prepared, g, ray, scratch->room);
         rt_test_object(g, sample.id, &prepared, false, &hit, tally);
         if (hit.object == RT_NO_OBJECT ? sample.other == INFINITY : hit.t < sample.other) {
             return rt_answer_nearest(hit, tally);

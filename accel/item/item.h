@@ -84,7 +84,7 @@ typedef struct RtItemSpan {
 bool rt_item_cross(const RtItemFacet *facet, const RtRay *ray, float near, RtItemSpan *span);
 
 /* build.c */
-RtStatus rt_item_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_item_destroy(RtAccel *accel);
 
 /* stats.c */

@@ -1,6 +1,8 @@
 /* What an item buffer looks like, and whether its invariants hold. */
 #include "accel/item/item.h"
 
+#include "base/memory.h"
+
 /* Validating asks hit functions at most about this often. */
 #define MOST_TESTS (UINT64_C(1) << 24)
 
@@ -15,11 +17,13 @@ void rt_item_describe(const RtAccel *accel, RtDescription *out) {
 }
 
 /* No object but the sample's own is nearer than it says. */
-static RtStatus check_other(const RtItemBuffer *buffer, uint32_t column, uint32_t row, RtError *error) {
+static RtStatus check_other(const RtItemBuffer *buffer, uint32_t column, uint32_t row, RtCrossing *room,
+                            RtError *error) {
     const RtGeometry *g = &buffer->base.scene->geometry;
     RtRay ray = rt_view_ray(&buffer->view, column, row);
     RtItemSample sample = buffer->samples[ray.source];
-    RtPreparedRay prepared = rt_ray_prepare(&ray, &g->box);
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, g, &ray, room);
     float own = INFINITY, t;
     if (sample.id < g->object_count && !rt_object_hit(g, sample.id, &prepared, &own, NULL)) own = INFINITY;
     for (uint32_t id = 0; id < g->object_count; id++) {
@@ -47,8 +51,12 @@ RtStatus rt_item_validate(const RtAccel *accel, RtError *error) {
                        (uint32_t)(i % columns), (uint32_t)(i / columns), s.id, (double)s.other);
     }
     uint64_t every = (uint64_t)samples * objects / MOST_TESTS + 1;
-    for (size_t i = 0; i < samples; i += every) {
-        RT_TRY(check_other(buffer, (uint32_t)(i % columns), (uint32_t)(i / columns), error));
+    RtCrossing *room;
+    RT_TRY(rt_hit_room(&accel->scene->geometry, &room, error));
+    RtStatus status = RT_OK;
+    for (size_t i = 0; i < samples && status == RT_OK; i += every) {
+        status = check_other(buffer, (uint32_t)(i % columns), (uint32_t)(i / columns), room, error);
     }
-    return RT_OK;
+    rt_free(room);
+    return status;
 }

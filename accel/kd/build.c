@@ -243,12 +243,12 @@ void rt_kd_destroy(RtAccel *accel) {
     rt_free(kd);
 }
 
-RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
-                            RtError *error) {
-    const RtGeometry *g = &scene->geometry;
+RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtValue *values = what->values;
+    const RtGeometry *g = &what->scene->geometry;
     int64_t depth = values[RT_KD_MAX_DEPTH].i;
     RtAccel *accel;
-    RT_TRY(rt_accel_new("kd", scene, sizeof(RtKd), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtKd), &accel, error));
     RtKd *kd = (RtKd *)accel;
     kd->traversal = values[RT_KD_TRAVERSAL].f;
     kd->empty_bonus = values[RT_KD_EMPTY_BONUS].f;
@@ -258,7 +258,7 @@ RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue 
     kd->mailbox = values[RT_KD_MAILBOX].flag;
     kd->surfaces = values[RT_KD_OVERLAP].choice == OVERLAP_EXACT;
     if (g->object_count > 0) {
-        RtKdLedger ledger = {.limit = limit};
+        RtKdLedger ledger = {.limit = what->limit};
         RtKdBuilder builder = {.kd = kd, .ledger = &ledger};
         kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
         kd->served = rt_surface_rays(&g->box, &kd->box);
@@ -271,8 +271,4 @@ RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue 
     }
     *out = accel;
     return RT_OK;
-}
-
-RtStatus rt_kd_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    return rt_kd_build_within(RT_ACCEL_MAX_BYTES, scene, values, out, error);
 }

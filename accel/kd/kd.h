@@ -81,10 +81,8 @@ static inline RtBox rt_kd_half(RtBox cell, uint32_t axis, float split, uint32_t 
     return cell;
 }
 
-/* build.c. `limit`: bytes of nodes and lists above which the tree is refused. */
-RtStatus rt_kd_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
-RtStatus rt_kd_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
-                            RtError *error);
+/* build.c */
+RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_kd_destroy(RtAccel *accel);
 
 /* ---- while building ---- */

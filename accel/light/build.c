@@ -274,15 +274,16 @@ void rt_light_destroy(RtAccel *accel) {
     rt_free(buffer);
 }
 
-RtStatus rt_light_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
+RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtValue *values = what->values;
     RtAccel *accel;
-    RT_TRY(rt_accel_new("light", scene, sizeof(RtLightBuffer), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtLightBuffer), &accel, error));
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
     buffer->n = (uint32_t)values[RT_LIGHT_CELLS].i;
     buffer->full_occlusion = values[RT_LIGHT_FULL_OCCLUSION].flag;
     buffer->extents = values[RT_LIGHT_EXTENTS].flag;
     buffer->cache = values[RT_LIGHT_CACHE].flag;
-    uint32_t objects = scene->geometry.object_count;
+    uint32_t objects = what->scene->geometry.object_count;
     RtLightEntry *order = rt_alloc(objects, sizeof *order);
     RtStatus status = order ? RT_OK : rt_fail_memory(error, "a light buffer", objects * sizeof *order);
     if (status == RT_OK) status = make_margins(buffer, error);

@@ -101,11 +101,13 @@ RT_KERNEL uint32_t search_cell(const RtLightBuffer *self, RtLightMemory *memory,
     return RT_NO_OBJECT;
 }
 
-RT_KERNEL uint32_t shade(const RtLightBuffer *self, void *scratch, const RtRay *ray, RtTally *tallies) {
+RT_KERNEL uint32_t shade(const RtLightBuffer *self, const RtScratch *scratch, const RtRay *ray,
+                         RtTally *tallies) {
     RtTally *tally = tallies ? &tallies[RT_RAY_SHADOW] : NULL;
     if (!is_to_light(self, ray)) return rt_pass_on_occluded(&self->base, scratch, ray, tallies);
 
-    RtPreparedRay prepared = rt_ray_prepare(ray, &self->base.scene->geometry.box);
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, &self->base.scene->geometry, ray, scratch->room);
     float depth;
     size_t cell = find_cell(self, ray, &depth);
     if (self->covers && depth > self->covers[cell].depth) {
@@ -114,7 +116,7 @@ RT_KERNEL uint32_t shade(const RtLightBuffer *self, void *scratch, const RtRay *
         if (try_object(self, id, &prepared, &hit, tally)) return rt_answer_occluded(id, tally);
         return rt_pass_on_occluded(&self->base, scratch, ray, tallies);
     }
-    return rt_answer_occluded(search_cell(self, scratch, cell, depth, &prepared, tally), tally);
+    return rt_answer_occluded(search_cell(self, scratch->own, cell, depth, &prepared, tally), tally);
 }
 
 RT_DEFINE_SHADOW_KERNELS(RtLightBuffer, shade)

@@ -93,7 +93,7 @@ bool rt_light_covers(const RtLightBuffer *buffer, uint32_t light, int face, uint
                      uint32_t row, float *depth);
 
 /* build.c */
-RtStatus rt_light_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
+RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_light_destroy(RtAccel *accel);
 
 /* Objects that have a footprint on a face, ascending by (depth, id), to order[0..object_count); gives their

@@ -122,12 +122,12 @@ void rt_octree_destroy(RtAccel *accel) {
     rt_free(tree);
 }
 
-RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
-                                RtError *error) {
-    const RtGeometry *g = &scene->geometry;
+RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtValue *values = what->values;
+    const RtGeometry *g = &what->scene->geometry;
     int64_t depth = values[RT_OCTREE_MAX_DEPTH].i;
     RtAccel *accel;
-    RT_TRY(rt_accel_new("octree", scene, sizeof(RtOctree), &accel, error));
+    RT_TRY(rt_accel_new(what, sizeof(RtOctree), &accel, error));
     RtOctree *tree = (RtOctree *)accel;
     tree->max_objects = (uint32_t)values[RT_OCTREE_MAX_OBJECTS].i;
     tree->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
@@ -137,7 +137,7 @@ RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtVa
     tree->flat = values[RT_OCTREE_FLAT].f;
     tree->cut_filled = values[RT_OCTREE_CUT_FILLED].flag;
     tree->mailbox = values[RT_OCTREE_MAILBOX].flag;
-    RtOctreeBuilder builder = {.tree = tree, .objects = g->boxes, .limit = limit};
+    RtOctreeBuilder builder = {.tree = tree, .objects = g->boxes, .limit = what->limit};
     RtStatus status = RT_OK;
     if (g->object_count > 0) {
         RtBox root = g->box;
@@ -155,8 +155,4 @@ RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtVa
     }
     *out = accel;
     return RT_OK;
-}
-
-RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error) {
-    return rt_octree_build_within(RT_ACCEL_MAX_BYTES, scene, values, out, error);
 }

@@ -58,10 +58,8 @@ typedef struct RtOctree {
     double slack, flat; /* how objects' boxes are grown: rt_octree_grown */
 } RtOctree;
 
-/* build.c. `limit`: bytes of nodes and lists above which the octree is refused. */
-RtStatus rt_octree_build(const RtScene *scene, const RtValue *values, RtAccel **out, RtError *error);
-RtStatus rt_octree_build_within(uint64_t limit, const RtScene *scene, const RtValue *values, RtAccel **out,
-                                RtError *error);
+/* build.c */
+RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_octree_destroy(RtAccel *accel);
 
 /* A tree that is being built. Until it is turned into a leaf or divided, a node's list is at `first` of the

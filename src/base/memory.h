@@ -1,6 +1,5 @@
 /* Memory: one allocator for everything, so that a test can count allocations and make the nth one fail.
- * Blocks are 64-byte aligned (a cache line, an AVX-512 register). No allocation happens while tracing, but
- * for the longest lists of CSG trees (shape/csg.h). */
+ * Blocks are 64-byte aligned (a cache line, an AVX-512 register). No allocation happens while tracing. */
 #ifndef RT_BASE_MEMORY_H
 #define RT_BASE_MEMORY_H
 

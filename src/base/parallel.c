@@ -61,6 +61,7 @@ static void *run_worker(void *argument) {
 
 RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, RtError *error) {
     int count = rt_thread_count(threads);
+    if ((size_t)count > items) count = items > 0 ? (int)items : 1;
     Pool pool = {.work = work, .context = context, .items = items, .status = RT_OK};
     Worker *workers = rt_alloc((size_t)count, sizeof(Worker));
     pthread_t *handles = rt_alloc((size_t)count, sizeof(pthread_t));

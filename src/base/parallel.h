@@ -10,13 +10,13 @@
 /* Processors this process may run on, at least 1. */
 int rt_processor_count(void);
 
-/* Calls work(context, item, thread) for each item in 0..items-1, on `threads` threads (0 = all processors) of
- * which the caller is one; thread is 0..threads-1. A status other than RT_OK stops the handing out; the
- * status and message of the lowest item that failed are returned. */
+/* Calls work(context, item, thread) for each item in 0..items-1, on `threads` threads (0 = all processors),
+ * but no more than there are items; the caller is one of them. thread is 0..threads-1. A status other than
+ * RT_OK stops the handing out; the status and message of the lowest item that failed are returned. */
 typedef RtStatus (*RtWork)(void *context, size_t item, int thread, RtError *error);
 RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, RtError *error);
 
-/* The number of threads that rt_parallel_for will use for `threads` (0 = all processors). */
+/* The number of threads that rt_parallel_for uses at most for `threads` (0 = all processors). */
 int rt_thread_count(int threads);
 
 #endif

@@ -79,7 +79,8 @@ typedef struct RtHit {
 
 /* A ray with what box and triangle tests need, computed once. Arrays are indexed by axis. */
 typedef struct RtPreparedRay {
-    const RtRay *original; /* what it was made from */
+    const RtRay *original;   /* what it was made from */
+    struct RtCrossing *room; /* what hit functions write to (rt_hit_ray); NULL: for boxes alone */
     RtVec3 org, dir;
     float tmin, tmax;              /* tmax finite: a hit at infinity is none */
     float inv[3];                  /* 1 / dir, possibly infinite */
@@ -133,25 +134,33 @@ static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
     rt_ray_set_thickness(ray, rt_thickness(ray->org, around));
 }
 
-/* `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness. */
+/* To *p. `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness.
+ * `room` is for hit functions, and may be NULL where none are asked (rt_hit_ray in shape/geometry.h). */
+static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
+                                     struct RtCrossing *room) {
+    const float *dir = ray->dir.at;
+    p->original = ray;
+    p->room = room;
+    p->org = ray->org;
+    p->dir = ray->dir;
+    for (int a = 0; a < 3; a++) {
+        p->inv[a] = 1 / dir[a];
+        p->negative[a] = signbit(dir[a]) ? 1 : 0;
+    }
+    rt_ray_thicken(p, scene_box);
+    p->tmin = ray->tmin;
+    p->tmax = rt_minf(ray->tmax, FLT_MAX);
+    p->kz = rt_major_axis(ray->dir);
+    p->kx = p->kz == 2 ? 0 : p->kz + 1;
+    p->ky = p->kx == 2 ? 0 : p->kx + 1;
+    p->shear_x = p->dir.at[p->kx] * p->inv[p->kz];
+    p->shear_y = p->dir.at[p->ky] * p->inv[p->kz];
+}
+
+/* The same for tests of boxes alone. */
 static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_box) {
     RtPreparedRay p;
-    const float *dir = ray->dir.at;
-    p.original = ray;
-    p.org = ray->org;
-    p.dir = ray->dir;
-    for (int a = 0; a < 3; a++) {
-        p.inv[a] = 1 / dir[a];
-        p.negative[a] = signbit(dir[a]) ? 1 : 0;
-    }
-    rt_ray_thicken(&p, scene_box);
-    p.tmin = ray->tmin;
-    p.tmax = rt_minf(ray->tmax, FLT_MAX);
-    p.kz = rt_major_axis(ray->dir);
-    p.kx = p.kz == 2 ? 0 : p.kz + 1;
-    p.ky = p.kx == 2 ? 0 : p.kx + 1;
-    p.shear_x = p.dir.at[p.kx] * p.inv[p.kz];
-    p.shear_y = p.dir.at[p.ky] * p.inv[p.kz];
+    rt_ray_prepare_in(&p, ray, scene_box, NULL);
     return p;
 }
 

@@ -25,6 +25,7 @@ typedef struct Bench {
     uint32_t met[SAMPLE]; /* the extents that the last line met: what a search would go on with */
     PreparedRays lines;   /* through the scene */
     PreparedRays chords;  /* that meet the box of their object */
+    RtCrossing *room;     /* of hit functions */
 } Bench;
 
 /* The extents of one choice. */
@@ -72,9 +73,10 @@ static RtStatus run_objects(void *context, RtError *error) {
 
 /* ---- preparing it ---- */
 
-static void add_ray(PreparedRays *to, const RtGeometry *geometry, const RtRay *ray, uint32_t id) {
+static void add_ray(PreparedRays *to, const RtGeometry *geometry, const RtRay *ray, RtCrossing *room,
+                    uint32_t id) {
     to->rays[to->count] = *ray;
-    to->prepared[to->count] = rt_ray_prepare(&to->rays[to->count], &geometry->box);
+    rt_hit_ray(&to->prepared[to->count], geometry, &to->rays[to->count], room);
     to->ids[to->count++] = id;
 }
 
@@ -96,11 +98,11 @@ static void fill_bench(Bench *bench, const RtPopulation *population, uint64_t se
         RtPreparedRay prepared = rt_ray_prepare(&ray, &geometry->box);
         float enter;
         bool met = rt_box_hit(&geometry->boxes[id], &prepared, prepared.tmax, &enter);
-        if (met) add_ray(&bench->chords, geometry, &ray, id);
+        if (met) add_ray(&bench->chords, geometry, &ray, bench->room, id);
     }
     for (uint32_t k = 0; k < LINES; k++) {
         RtRay ray = rt_random_chord(&geometry->box, &random);
-        add_ray(&bench->lines, geometry, &ray, RT_NO_OBJECT);
+        add_ray(&bench->lines, geometry, &ray, bench->room, RT_NO_OBJECT);
     }
 }
 
@@ -174,6 +176,7 @@ RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoic
     if (!bench || !extents || !times.seconds) {
         status = rt_fail_memory(error, "timing extents", sizeof(Bench));
     }
+    if (status == RT_OK) status = rt_hit_room(population->geometry, &bench->room, error);
     if (status == RT_OK) fill_bench(bench, population, rounds->seed);
     for (size_t c = 0; status == RT_OK && c < count; c++) {
         status = fit_extents(&extents[c], bench, choices[c], error);
@@ -188,6 +191,7 @@ RtStatus rt_extent_cost_time(const RtPopulation *population, const RtExtentChoic
     for (size_t c = 0; extents && c < count; c++) rt_extent_set_clear(&extents[c].set);
     rt_free(times.seconds);
     rt_free(extents);
+    if (bench) rt_free(bench->room);
     rt_free(bench);
     return status;
 }

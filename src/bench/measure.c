@@ -72,14 +72,12 @@ static RtStatus trace_chunk(void *context, size_t item, int thread, RtError *err
 
 /* Chunk by chunk also on a single thread: counts may depend on where chunks begin. */
 static RtStatus run_pass(Pass *pass, RtError *error) {
-    uint64_t shortages = rt_csg_shortages();
     size_t chunks = (pass->set->count + CHUNK - 1) / CHUNK;
     if (pass->threads == 1) {
         for (size_t chunk = 0; chunk < chunks; chunk++) RT_TRY(trace_chunk(pass, chunk, 0, error));
-    } else {
-        RT_TRY(rt_parallel_for(chunks, pass->threads, trace_chunk, pass, error));
+        return RT_OK;
     }
-    return rt_csg_check(shortages, error);
+    return rt_parallel_for(chunks, pass->threads, trace_chunk, pass, error);
 }
 
 /* ---- counting ---- */

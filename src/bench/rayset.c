@@ -81,10 +81,10 @@ static RtStatus join(Recorder *recorder, RtRayKind kind, RtError *error) {
 /* ---- diffuse rays ---- */
 
 /* The ray that bounces where `primary` hit, off the side it came from. */
-static RtRay bounce(const Recorder *recorder, const RtRay *primary) {
+static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtCrossing *room) {
     uint32_t sample = primary->source;
     RtHit hit = {recorder->frame->depth[sample], recorder->frame->object[sample]};
-    RtSurface surface = rt_surface(recorder->scene, primary, hit);
+    RtSurface surface = rt_surface(recorder->scene, primary, hit, room);
     RtRandom random = rt_random(recorder->recording->seed, stream_of(RT_RAY_DIFFUSE, sample));
     return (RtRay){.org = rt_narrow(rt_add_scaledd(surface.point, surface.side, surface.offset)),
                    .dir = rt_narrow(rt_random_cosine(&random, surface.side)),
@@ -99,13 +99,15 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     RtRaySet *set = &recorder->sets[RT_RAY_DIFFUSE];
     RT_TRY(set_init(set, RT_RAY_DIFFUSE, primary->count, error));
     set->count = 0;
-    uint64_t shortages = rt_csg_shortages();
+    RtCrossing *room;
+    RT_TRY(rt_hit_room(&recorder->scene->geometry, &room, error));
     for (uint64_t i = 0; i < primary->count; i++) {
         if (recorder->frame->object[primary->rays[i].source] == RT_NO_OBJECT) continue;
-        RtRay ray = bounce(recorder, &primary->rays[i]);
+        RtRay ray = bounce(recorder, &primary->rays[i], room);
         if (rt_ray_is_valid(&ray)) set->rays[set->count++] = ray;
     }
-    return rt_csg_check(shortages, error);
+    rt_free(room);
+    return RT_OK;
 }
 
 /* ---- random rays ---- */

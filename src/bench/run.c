@@ -128,13 +128,16 @@ static RtStatus write_tables(const RtRun *run, RtError *error) {
     return rt_run_write_table(run, "times.csv", &times, error);
 }
 
-static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, const char *path, RtError *error) {
+static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, int threads, const char *path,
+                           RtError *error) {
+    RtSpec spec;
     RtAccel *accel;
     RtFrame frame = {0};
     RtImage image = {0};
-    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH};
+    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
     RT_TRY(rt_scene_sample(scene, trial->width, trial->height, 2, false, error));
-    RT_TRY(rt_accel_open(rt_accel_default(), scene, &accel, error));
+    RT_TRY(rt_spec_parse(rt_accel_default(), &spec, error));
+    RT_TRY(rt_accel_build(&spec, scene, threads, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
     if (status == RT_OK) status = rt_image_from_frame(&image, &frame, error);
     if (status == RT_OK) status = rt_png_write(&image, path, error);
@@ -149,7 +152,8 @@ static RtStatus write_image(RtRun *run, uint32_t t, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(image_path(run, t, path, error));
     if (run->results->trials[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
-    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->trials[t], path, error);
+    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->trials[t],
+                      run->options->trial.threads, path, error);
 }
 
 /* Frees the scene of trial `t`, unless a later one is on it, too. */

@@ -67,6 +67,7 @@ typedef struct Survey {
     Room *rooms;       /* [count] */
     RtExtentSet *sets; /* [count] */
     RtTightness *out;  /* [count] */
+    RtCrossing *room;  /* of hit functions */
 } Survey;
 
 /* A random line that meets the sphere, as a ray from so far behind it that nothing is turned away for lying
@@ -87,7 +88,8 @@ static void count_lines(const Survey *survey, uint32_t index, uint64_t lines) {
     }
     for (uint64_t k = 0; k < lines; k++) {
         RtRay through = random_line(&survey->spheres[index], &random);
-        RtPreparedRay ray = rt_ray_prepare(&through, &geometry->box);
+        RtPreparedRay ray;
+        rt_hit_ray(&ray, geometry, &through, survey->room);
         RtHit hit = RT_MISS;
         bool met = rt_test_object(geometry, id, &ray, true, &hit, NULL);
         for (size_t c = 0; c < survey->count; c++) {
@@ -136,14 +138,13 @@ static void estimate(RtTightness *out) {
 
 RtStatus rt_tightness_count(const RtPopulation *population, const RtExtentChoice *choices, size_t count,
                             uint64_t lines, uint64_t seed, RtTightness *out, RtError *error) {
-    Survey survey = {population, choices, count, seed, NULL, NULL, NULL, out};
+    Survey survey = {population, choices, count, seed, NULL, NULL, NULL, out, NULL};
     for (size_t c = 0; c < count; c++) out[c] = (RtTightness){0};
     survey.spheres = rt_alloc(population->count, sizeof(RtBall));
     survey.rooms = rt_alloc(count, sizeof(Room));
     survey.sets = rt_alloc(count, sizeof(RtExtentSet));
-    RtStatus status = RT_OK;
-    uint64_t shortages = rt_csg_shortages();
-    if (survey.spheres && survey.rooms && survey.sets) {
+    RtStatus status = rt_hit_room(population->geometry, &survey.room, error);
+    if (status == RT_OK && survey.spheres && survey.rooms && survey.sets) {
         double whole = deal_lines(&survey, lines);
         RtBall scene = rt_bounding_sphere(&population->geometry->box);
         double lines_of_scene = (double)lines * (scene.radius * scene.radius / whole);
@@ -151,12 +152,12 @@ RtStatus rt_tightness_count(const RtPopulation *population, const RtExtentChoice
             estimate(&out[c]);
             out[c].met = whole > 0 ? (double)out[c].extent_hits / lines_of_scene : 0;
         }
-        status = rt_csg_check(shortages, error);
-    } else {
+    } else if (status == RT_OK) {
         status = rt_fail_memory(error, "the tightness of extents", population->count * sizeof(RtBall));
     }
     rt_free(survey.spheres);
     rt_free(survey.rooms);
     rt_free(survey.sets);
+    rt_free(survey.room);
     return status;
 }

@@ -63,7 +63,9 @@ static RtStatus record_rays(RtTrialState *trial, RtError *error) {
                              .threads = trial->options->threads,
                              .light_from_outside = setup->light_from_outside};
     RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
-    RT_TRY(rt_accel_open(rt_accel_default(), trial->scene, &trial->reference, error));
+    RtSpec spec;
+    RT_TRY(rt_spec_parse(rt_accel_default(), &spec, error));
+    RT_TRY(rt_accel_build(&spec, trial->scene, recording.threads, &trial->reference, error));
     RtStatus status = rt_rayset_record(recorded, trial->reference, &recording, error);
     if (status == RT_OK) status = keep_sets(trial, recorded, error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
@@ -111,7 +113,7 @@ static RtStatus build_one(RtTrialState *trial, const RtSpec *spec, RtAccel **out
         rt_accel_destroy(*out);
         *out = NULL;
         double start = rt_wall_seconds();
-        RT_TRY(rt_accel_build(spec, trial->scene, out, error));
+        RT_TRY(rt_accel_build(spec, trial->scene, trial->options->threads, out, error));
         seconds[builds] = rt_wall_seconds() - start;
         sum += seconds[builds++];
     } while (builds < MOST_BUILDS && sum < CHEAP_BUILD);

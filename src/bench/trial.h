@@ -28,7 +28,7 @@ typedef struct RtObserver {
 } RtObserver;
 
 typedef struct RtTrialOptions {
-    int threads;     /* of recording and counting: 0 = all processors; changes no count */
+    int threads;     /* of recording, building and counting: 0 = all processors; changes no count */
     int timing;      /* threads of the timing, 1 as a rule */
     bool count_only; /* no timing */
     RtObserver observer;

@@ -52,8 +52,9 @@ static const struct argp_option options[] = {
      "Times each is timed, in an order drawn anew (10); 6 at least for intervals of 95 %", 0},
     {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays and of orders (1)", 0},
     {"threads", OPT_THREADS, "N", 0,
-     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and counting on all; on "
-     "several, wall time is compared",
+     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
+     "counting on "
+     "all; on several, wall time is compared",
      0},
     {"size", OPT_SIZE, "WxH", 0, "Size of the frame whose rays are recorded (the camera's)", 0},
     {"corners", OPT_CORNERS, 0, 0, "Sample pixel corners, (W+1) x (H+1) rays", 0},

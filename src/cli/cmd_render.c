@@ -215,7 +215,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
     double start = rt_wall_seconds();
-    RT_TRY(rt_accel_build(&spec, &run->scene, &run->accel, error));
+    RT_TRY(rt_accel_build(&spec, &run->scene, o->threads, &run->accel, error));
     run->build_seconds = rt_wall_seconds() - start;
     return RT_OK;
 }

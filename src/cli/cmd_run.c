@@ -28,8 +28,9 @@ static const struct argp_option options[] = {
     {"force", OPT_FORCE, 0, 0,
      "Begin anew: the results in DIR are lost. Of --resume and --force the last one counts", 0},
     {"threads", 't', "N", 0,
-     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and counting on all; on "
-     "several, wall time is compared",
+     "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
+     "counting on "
+     "all; on several, wall time is compared",
      0},
     {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
     {0}};

@@ -341,15 +341,17 @@ static void print_answer(const char *where, const RtFailure *failure, const RtAn
 }
 
 /* The scene as it was, and what was left of it. Where one cannot be asked any more the other will do. */
-static RtStatus replay(const char *path, bool *failed, RtError *error) {
+static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     RtReplay file;
     RtStatus status = RT_OK;
-    RT_TRY(rt_replay_load(&file, path, error));
+    RT_TRY(rt_replay_load(&file, o->replay, error));
+    RtMaker maker = rt_maker_of_spec(file.accel_spec);
+    maker.threads = o->threads;
     printf("%s on %s\n", file.accel_spec, file.scene_spec);
     uint32_t asked = 0;
     for (int shrunk = 0; shrunk < 2 && status == RT_OK; shrunk++) {
         RtAnswer answer;
-        status = rt_replay_ask(&file, rt_maker_of_spec(file.accel_spec), shrunk, &answer, error);
+        status = rt_replay_ask(&file, maker, shrunk, &answer, error);
         if (status == RT_OK) {
             print_answer(shrunk ? "shrunk" : "scene", &file.failure, &answer);
             *failed |= answer.wrong;
@@ -362,7 +364,7 @@ static RtStatus replay(const char *path, bool *failed, RtError *error) {
     }
     rt_replay_clear(&file);
     if (status != RT_OK || asked > 0) return status;
-    return rt_fail(error, RT_BAD_INPUT, "%s: nothing of it can be asked again", path);
+    return rt_fail(error, RT_BAD_INPUT, "%s: nothing of it can be asked again", o->replay);
 }
 
 int rt_command_verify(int argc, char **argv) {
@@ -384,7 +386,7 @@ int rt_command_verify(int argc, char **argv) {
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
     bool failed = false;
-    RtStatus status = o.replay ? replay(o.replay, &failed, &error) : choose_specs(&o, &error);
+    RtStatus status = o.replay ? replay(&o, &failed, &error) : choose_specs(&o, &error);
     if (status == RT_OK && !o.replay) status = verify(&o, &failed, &error);
     if (status != RT_OK) return rt_cli_fail(&error);
     return failed ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;

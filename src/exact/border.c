@@ -18,8 +18,9 @@ static bool same_place(const RtGeometry *g, uint32_t id, const RtWideRay *line, 
     return off <= 0x1p-8 * size + 2 * rt_border_unit(g, id, line);
 }
 
-RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray) {
-    RtPreparedRay prepared = rt_ray_prepare(ray, &geometry->box);
+RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtCrossing *room) {
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, geometry, ray, room);
     RtDecision decision = {.t = INFINITY};
     decision.hit = rt_object_hit(geometry, id, &prepared, &decision.t, NULL);
     return decision;

@@ -18,8 +18,8 @@ typedef struct RtDecision {
 /* The unit for object `id`. */
 double rt_border_unit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line);
 
-/* What our hit function says. */
-RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray);
+/* What our hit function says; `room` is of rt_hit_room. */
+RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *ray, RtCrossing *room);
 
 /* Is it what exact arithmetic decides? A hit on an object that a line can meet more than once has to be the
  * same one: t and the exact t are no farther apart than 2^-8 of the size of the box and two units.

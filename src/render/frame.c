@@ -150,7 +150,7 @@ static uint32_t find_surfaces(Worker *worker, const RtRay *rays, const Path *pat
             continue;
         }
         RtSurface *surface = &worker->surfaces[surface_count];
-        *surface = rt_surface(scene, &rays[i], worker->hits[i]);
+        *surface = rt_surface(scene, &rays[i], worker->hits[i], rt_query_room(&worker->query));
         worker->surface_paths[surface_count++] = paths[i];
         add_light(worker, paths[i], rt_ambient_light(scene, surface));
     }
@@ -301,14 +301,12 @@ static RtStatus run(Job *job, const RtAccel *accel, int threads, RtError *error)
     job->workers = rt_alloc((size_t)threads, sizeof(Worker));
     if (!job->workers) return rt_fail_memory(error, "workers", (size_t)threads * sizeof(Worker));
     RtStatus status = RT_OK;
-    uint64_t shortages = rt_csg_shortages();
     for (int i = 0; i < threads && status == RT_OK; i++) {
         status = init_worker(&job->workers[i], job, accel, error);
     }
     double start = rt_wall_seconds();
     if (status == RT_OK) status = rt_parallel_for(job->tiles, threads, trace_tile, job, error);
     job->frame->seconds = rt_wall_seconds() - start;
-    if (status == RT_OK) status = rt_csg_check(shortages, error);
     for (int i = 0; i < threads; i++) {
         for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
             rt_tally_add(&job->frame->tallies[kind], &job->workers[i].tallies[kind]);

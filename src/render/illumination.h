@@ -39,8 +39,8 @@ typedef struct RtSurface {
     bool entering;    /* the ray came from outside: against the object's own geometric normal */
 } RtSurface;
 
-/* `hit` is a hit of `ray`, not a miss. */
-RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit);
+/* `hit` is a hit of `ray`, not a miss; `room` is of rt_hit_room. */
+RtSurface rt_surface(const RtScene *scene, const RtRay *ray, RtHit hit, RtCrossing *room);
 
 /* The surface as it is from outside: normals on the side of the object's own geometric normal. For programs
  * that ask for light there whatever side a ray comes from, so that what is seen within glass is lit from

@@ -1,64 +1,31 @@
 /* Rays and trees: the machine that runs a tree's program (csg.h). Its stack of lists lies in one array of
- * crossings, list after list; that array is on the C stack until a ray needs more. Two lists are merged to
- * behind them, and the result moved down to where they began. */
+ * crossings, list after list: the ray's room. Two lists are merged to behind them, and the result moved down
+ * to where they began. */
 #include "shape/csg.h"
 
-#include "base/memory.h"
-
 #include <assert.h>
-#include <stdatomic.h>
 #include <string.h>
 
 #define INLINE static inline __attribute__((always_inline))
-
-/* Crossings on the C stack: 4 KB of them. */
-#define ROOM 256
 
 typedef struct Machine {
     RtCrossing *crossings;
     uint32_t capacity;
     uint32_t depth;                        /* lists on the stack */
     uint32_t starts[RT_CSG_MAX_LISTS + 1]; /* list i: crossings [starts[i], starts[i + 1]) */
-    RtCrossing *heap;                      /* NULL while the crossings are on the C stack */
-    RtCrossing room[ROOM];
 } Machine;
 
-static atomic_uint_fast64_t shortages;
-
-uint64_t rt_csg_shortages(void) {
-    return atomic_load(&shortages);
-}
-
-RtStatus rt_csg_check(uint64_t before, RtError *error) {
-    return rt_csg_shortages() == before ? RT_OK : rt_fail_memory(error, "a ray through a CSG tree", 0);
-}
-
-static void start(Machine *m) {
-    m->crossings = m->room;
-    m->capacity = ROOM;
+static inline void start(Machine *m, const RtCsg *tree, const RtPreparedRay *ray) {
+    assert(ray->room);
+    m->crossings = ray->room;
+    m->capacity = tree->most_crossings;
     m->depth = 0;
     m->starts[0] = 0;
-    m->heap = NULL;
 }
 
-static bool grow(Machine *m, uint64_t needed) {
-    uint64_t capacity = needed > 2 * (uint64_t)m->capacity ? needed : 2 * (uint64_t)m->capacity;
-    RtCrossing *heap = capacity <= UINT32_MAX ? rt_alloc(capacity, sizeof(RtCrossing)) : NULL;
-    if (!heap) {
-        atomic_fetch_add(&shortages, 1);
-        return false;
-    }
-    memcpy(heap, m->crossings, m->starts[m->depth] * sizeof(RtCrossing));
-    rt_free(m->heap);
-    m->crossings = m->heap = heap;
-    m->capacity = (uint32_t)capacity;
-    return true;
-}
-
-/* Room for `more` crossings behind all lists. */
-static inline bool reserve(Machine *m, uint32_t more) {
-    uint64_t needed = (uint64_t)m->starts[m->depth] + more;
-    return needed <= m->capacity || grow(m, needed);
+/* Is there room for `more` crossings behind all lists? */
+static inline bool has_room(const Machine *m, uint32_t more) {
+    return (uint64_t)m->starts[m->depth] + more <= m->capacity;
 }
 
 static inline void push(Machine *m, uint32_t count) {
@@ -100,7 +67,7 @@ static uint32_t merge(RtCsgOp op, const RtCrossing *left, const RtCrossing *left
     return count;
 }
 
-static bool apply(Machine *m, RtCsgOp op, bool reversed) {
+static void apply(Machine *m, RtCsgOp op, bool reversed) {
     assert(m->depth > 1);
     uint32_t lower = m->starts[m->depth - 2], top = m->starts[m->depth - 1], end = m->starts[m->depth];
     bool left_empty = reversed ? top == end : lower == top;
@@ -109,38 +76,36 @@ static bool apply(Machine *m, RtCsgOp op, bool reversed) {
     if (left_empty || right_empty) {
         bool stays = op == RT_CSG_UNION || (op == RT_CSG_DIFFERENCE && right_empty);
         m->starts[m->depth] = stays ? end : lower;
-        return true;
+        return;
     }
     m->starts[m->depth] = end;
-    if (!reserve(m, end - lower)) return false;
+    assert(has_room(m, end - lower));
     const RtCrossing *begin = m->crossings + lower, *middle = m->crossings + top;
     RtCrossing *behind = m->crossings + end;
     uint32_t count = reversed ? merge(op, middle, behind, begin, middle, behind)
                               : merge(op, begin, middle, middle, behind, behind);
     memmove(m->crossings + lower, behind, count * sizeof(RtCrossing));
     m->starts[m->depth] = lower + count;
-    return true;
 }
 
 /* ---- running a program ---- */
 
-INLINE bool push_solid(Machine *m, const RtSolidSet *set, uint32_t index, const RtSolidRay *ray,
+INLINE void push_solid(Machine *m, const RtSolidSet *set, uint32_t index, const RtSolidRay *ray,
                        RtTally *tally) {
     float near = -INFINITY, far = INFINITY;
     RT_COUNT(tally, extent_tests, 1);
     rt_box_cut(&set->solids[index].box, &ray->thick, &near, &far);
     if (!(near <= far && near <= ray->thick.tmax && far >= ray->thick.tmin)) {
         push(m, 0);
-        return true;
+        return;
     }
-    if (!reserve(m, rt_solid_most_crossings(&set->solids[index]))) return false;
+    assert(has_room(m, rt_solid_most_crossings(&set->solids[index])));
     RT_COUNT(tally, csg_tests, 1);
     push(m, rt_solid_crossings(set, index, ray, near, far, m->crossings + m->starts[m->depth]));
-    return true;
 }
 
-/* Leaves one list on the stack; false where memory is short. */
-INLINE bool run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const RtSolidRay *ray,
+/* Leaves one list on the stack. */
+INLINE void run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const RtSolidRay *ray,
                 RtTally *tally) {
     const RtCsgInstruction *program = forest->instructions + tree->first;
     float enter;
@@ -153,19 +118,14 @@ INLINE bool run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const 
             push(m, 0);
             i = instruction.to - 1;
             break;
-        case RT_CSG_PUSH:
-            if (!push_solid(m, &forest->set, instruction.operand, ray, tally)) return false;
-            break;
+        case RT_CSG_PUSH: push_solid(m, &forest->set, instruction.operand, ray, tally); break;
         case RT_CSG_SKIP_IF_EMPTY:
             assert(m->depth > 0);
             if (m->starts[m->depth - 1] == m->starts[m->depth]) i = instruction.to - 1;
             break;
-        case RT_CSG_APPLY:
-            if (!apply(m, (RtCsgOp)instruction.operand, instruction.reversed)) return false;
-            break;
+        case RT_CSG_APPLY: apply(m, (RtCsgOp)instruction.operand, instruction.reversed); break;
         }
     }
-    return true;
 }
 
 static inline RtSolidRay solid_ray(const RtCsg *tree, const RtPreparedRay *ray) {
@@ -186,14 +146,13 @@ INLINE bool search(const RtCsgForest *forest, const RtCsg *tree, const RtPrepare
     if (!comes_near(tree, ray)) return false;
     RtSolidRay solid = solid_ray(tree, ray);
     Machine m;
-    start(&m);
+    start(&m, tree, ray);
+    run(&m, forest, tree, &solid, tally);
     bool found = false;
-    uint32_t count = run(&m, forest, tree, &solid, tally) ? m.starts[1] : 0;
-    for (uint32_t i = 0; i < count && !found; i++) {
+    for (uint32_t i = 0; i < m.starts[1] && !found; i++) {
         *t = m.crossings[i].t + 0.0f; /* of two faces one may be met at -0, the other at 0 */
         found = *t >= ray->tmin && *t <= ray->tmax && rt_box_admit(&tree->box, ray, t);
     }
-    rt_free(m.heap);
     return found;
 }
 
@@ -215,11 +174,11 @@ RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPr
     RtCsgFacet facet = {{0, 0, 0}, tree->first_solid};
     RtSolidRay solid = solid_ray(tree, ray);
     Machine m;
-    start(&m);
-    uint32_t count = run(&m, forest, tree, &solid, NULL) ? m.starts[1] : 0;
+    start(&m, tree, ray);
+    run(&m, forest, tree, &solid, NULL);
     const RtCrossing *best = NULL;
     float least = INFINITY;
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < m.starts[1]; i++) {
         float at = m.crossings[i].t; /* as rt_csg_hit would say it */
         (void)rt_box_admit(&tree->box, ray, &at);
         if (!(fabsf(at - t) < least)) continue;
@@ -227,6 +186,5 @@ RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPr
         best = &m.crossings[i];
     }
     if (best) facet = facet_of(forest, ray, best);
-    rt_free(m.heap);
     return facet;
 }

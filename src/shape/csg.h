@@ -97,8 +97,9 @@ typedef struct RtCsgInstruction {
 typedef struct RtCsg {
     uint32_t first, count;             /* instructions */
     uint32_t first_solid, solid_count; /* in the set: a tree's solids lie together */
-    uint32_t most_crossings; /* room that a ray may need, in crossings, over all lists on the stack */
-    bool extents;            /* made with tests of inner nodes */
+    uint32_t most_crossings;           /* room that a ray may need, in crossings, over all lists on the stack;
+                                          UINT32_MAX stands for more, too */
+    bool extents;                      /* made with tests of inner nodes */
     RtBox box;   /* of the result; a point where the result is certainly empty; then nothing hits it */
     RtBall ball; /* about the result: rt_csg_ball */
     RtBox reach; /* about the boxes of all solids, infinite sides left out: sets the thickness */
@@ -130,19 +131,13 @@ RtStatus rt_csg_copy(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *
 
 /* The first crossing of the tree with t in [tmin, tmax] and within its box; false if there is none.
  * `tally` may be NULL: csg_tests counts the solids tested, extent_tests their boxes and those of inner nodes.
- * Lists of more than a few hundred crossings take memory from the heap, for the time of the call. Where it
- * cannot be had the ray misses, and rt_csg_shortages goes up. */
+ * ray->room has tree->most_crossings crossings at least: nothing is allocated. */
 bool rt_csg_hit(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float *t,
                 RtTally *tally);
 
-/* How many rt_csg_hit of this process have lacked memory so far. Whoever traces rays asks before and after:
- * rt_csg_check fails with RT_NO_MEMORY if there have been more than `before`. */
-uint64_t rt_csg_shortages(void);
-RtStatus rt_csg_check(uint64_t before, RtError *error);
-
-/* What the ray meets at `t`, one of its hits: unit normal out of the tree, and the solid. At a `t` that is
- * none it is the nearest place of the ray's line; where there is no such place at all the normal is 0, the
- * solid the tree's first. */
+/* What the ray, with as much room, meets at `t`, one of its hits: unit normal out of the tree, and the solid.
+ * At a `t` that is none it is the nearest place of the ray's line; where there is no such place at all the
+ * normal is 0, the solid the tree's first. */
 typedef struct RtCsgFacet {
     RtVec3d normal;
     uint32_t solid; /* index in the set */

@@ -217,6 +217,19 @@ void rt_geometry_clear(RtGeometry *geometry) {
     *geometry = (RtGeometry){0};
 }
 
+/* ---- room for hit functions ---- */
+
+RtStatus rt_hit_room(const RtGeometry *geometry, RtCrossing **room, RtError *error) {
+    uint32_t most = 0;
+    *room = NULL;
+    for (uint32_t i = 0; i < geometry->csg_count; i++) {
+        if (geometry->csgs[i].most_crossings > most) most = geometry->csgs[i].most_crossings;
+    }
+    if (geometry->csg_count > 0 && most < UINT32_MAX) *room = rt_alloc(most, sizeof(RtCrossing));
+    if (geometry->csg_count == 0 || *room) return RT_OK;
+    return rt_fail_memory(error, "the crossings of a ray with a CSG tree", most * sizeof(RtCrossing));
+}
+
 /* ---- normals and extents ---- */
 
 static RtVec3d interpolated_normal(const RtGeometry *g, uint32_t index, RtVec3d point, RtVec3d geometric) {
@@ -230,13 +243,16 @@ static RtVec3d interpolated_normal(const RtGeometry *g, uint32_t index, RtVec3d 
     return rt_lengthd(sum) > 0 ? rt_normalized(sum) : geometric;
 }
 
-static RtNormals csg_normals(const RtGeometry *g, uint32_t index, const RtRay *ray, float t) {
-    RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
+static RtNormals csg_normals(const RtGeometry *g, uint32_t index, const RtRay *ray, float t,
+                             RtCrossing *room) {
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, g, ray, room);
     RtCsgFacet facet = rt_csg_facet(&g->forest, &g->csgs[index], &prepared, t);
     return (RtNormals){facet.normal, facet.normal, facet.solid};
 }
 
-RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t) {
+RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                            RtCrossing *room) {
     uint32_t index = rt_ref_index(geometry->objects[id]);
     RtVec3d point = rt_ray_point(ray, t), normal = {0, 0, 0};
     switch (rt_ref_shape(geometry->objects[id])) {
@@ -246,7 +262,7 @@ RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay
     case RT_SHAPE_TRIANGLE:
         normal = rt_triangle_normal(&geometry->triangles[index]);
         return (RtNormals){normal, interpolated_normal(geometry, index, point, normal), RT_NO_SOLID};
-    case RT_SHAPE_CSG: return csg_normals(geometry, index, ray, t);
+    case RT_SHAPE_CSG: return csg_normals(geometry, index, ray, t, room);
     case RT_SHAPE_COUNT: break;
     }
     return (RtNormals){normal, normal, RT_NO_SOLID};

@@ -116,15 +116,28 @@ void rt_geometry_clear(RtGeometry *geometry);
 
 #define RT_NO_SOLID UINT32_MAX
 
+/* Room for what hit functions write down while they work, the crossings of a ray with the largest CSG tree:
+ * to *room, to be freed with rt_free, and NULL where there is no tree. It serves one thread at a time.
+ * Whoever asks for hits has it made beforehand, so that nothing is allocated while tracing. */
+RtStatus rt_hit_room(const RtGeometry *geometry, RtCrossing **room, RtError *error);
+
+/* The ray, prepared for tests of boxes and for hit functions of this geometry, to *prepared; `room` is
+ * borrowed. Traversals are many per cent slower where it is returned and copied. */
+static inline void rt_hit_ray(RtPreparedRay *prepared, const RtGeometry *geometry, const RtRay *ray,
+                              RtCrossing *room) {
+    rt_ray_prepare_in(prepared, ray, &geometry->box, room);
+}
+
 /* What `ray` meets at `t`, one of its hits on object `id`: normals, both unit, the geometric one by the
  * shape's own orientation, the shading one interpolated where a triangle has vertex normals and equal to the
  * geometric one elsewhere; and for a CSG tree the solid that was met (of geometry->forest), else
- * RT_NO_SOLID. */
+ * RT_NO_SOLID. `room` is of rt_hit_room. */
 typedef struct RtNormals {
     RtVec3d geometric, shading;
     uint32_t solid;
 } RtNormals;
-RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t);
+RtNormals rt_object_normals(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                            RtCrossing *room);
 
 /* Extents of object `id` besides geometry->boxes[id]: a ball, and the largest dot product with `direction`
  * (the support function: what slabs and oriented boxes are made from). */
@@ -135,9 +148,9 @@ double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direct
  * normal; those of its largest solid for a CSG tree. */
 void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]);
 
-/* The hit function of every object: true if the ray meets object `id` at some t in [tmin, tmax], the first of
- * which goes to *t. The same bits of t for the same ray and object, whatever was found before. `tally` may be
- * NULL; it counts what is tested inside of CSG trees. */
+/* The hit function of every object: true if the ray (of rt_hit_ray) meets object `id` at some t in [tmin,
+ * tmax], the first of which goes to *t. The same bits of t for the same ray and object, whatever was found
+ * before. `tally` may be NULL; it counts what is tested inside of CSG trees. */
 static inline bool rt_object_hit(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, float *t,
                                  RtTally *tally) {
     RtRef ref = geometry->objects[id];

@@ -42,12 +42,10 @@ static RtStatus run(Job *job, RtWork work, RtError *error) {
     job->desks = rt_alloc((size_t)job->threads, sizeof(Desk));
     if (!job->desks) return rt_fail_memory(error, "answers", (size_t)job->threads * sizeof(Desk));
     RtStatus status = RT_OK;
-    uint64_t shortages = rt_csg_shortages();
     for (int i = 0; i < job->threads && status == RT_OK; i++) {
         status = rt_query_init(&job->desks[i].query, job->accel, error);
     }
     if (status == RT_OK) status = rt_parallel_for(job->chunks, job->threads, work, job, error);
-    if (status == RT_OK) status = rt_csg_check(shortages, error);
     for (int i = 0; i < job->threads; i++) rt_query_clear(&job->desks[i].query);
     rt_free(job->desks);
     return status;
@@ -99,17 +97,17 @@ static void ask(Desk *desk, const RtRay *rays, size_t count, size_t chunk) {
     }
 }
 
-RtVerdict rt_answer_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, RtHit got) {
+RtVerdict rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got) {
     if (memcmp(&expected, &got, sizeof got) == 0) return RT_EQUAL;
-    if (accel->exact) return RT_WRONG;
-    return rt_verdict_nearest(&accel->scene->geometry, ray, expected, got);
+    if (query->accel->exact) return RT_WRONG;
+    return rt_verdict_nearest(&query->accel->scene->geometry, ray, expected, got, rt_query_room(query));
 }
 
-RtVerdict rt_blocked_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, bool got) {
+RtVerdict rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got) {
     bool blocked = expected.object != RT_NO_OBJECT;
     if (blocked == got) return RT_EQUAL;
-    if (accel->exact) return RT_WRONG;
-    return rt_verdict_occluded(&accel->scene->geometry, ray, blocked, got);
+    if (query->accel->exact) return RT_WRONG;
+    return rt_verdict_occluded(&query->accel->scene->geometry, ray, blocked, got, rt_query_room(query));
 }
 
 void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
@@ -147,11 +145,11 @@ static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
                                .expected = expected,
                                .got = got,
                                .blocked = blocked};
-        RtVerdict verdict = rt_answer_verdict(job->accel, ray, expected, got);
+        RtVerdict verdict = rt_answer_verdict(&desk->query, ray, expected, got);
         if (verdict == RT_WRONG) keep_wrong_answer(part, asked);
         if (verdict >= RT_MARGINAL) doubtful = &desk->hits[counted][i];
         if (verdict > worst) worst = verdict;
-        verdict = rt_blocked_verdict(job->accel, ray, expected, blocked);
+        verdict = rt_blocked_verdict(&desk->query, ray, expected, blocked);
         if (verdict == RT_WRONG) {
             occluded_wrong = asked.occluded = true;
             keep_wrong_answer(part, asked);

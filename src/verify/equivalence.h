@@ -54,8 +54,8 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
 
 /* The verdict on an answer of `accel` to `nearest`, or to `occluded`, where brute's nearest hit is
  * `expected`: RT_EQUAL or RT_WRONG if it is exact. */
-RtVerdict rt_answer_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, RtHit got);
-RtVerdict rt_blocked_verdict(const RtAccel *accel, const RtRay *ray, RtHit expected, bool got);
+RtVerdict rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got);
+RtVerdict rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got);
 
 /* The rays that were asked together with the ray of a wrong answer, from those that came before it to the end
  * of its stream: `count` of the reference's, from `first` on. */

@@ -2,12 +2,19 @@
 
 #include "base/memory.h"
 
-static RtStatus build_spec(const void *context, const RtScene *scene, RtAccel **out, RtError *error) {
-    return rt_accel_open(context, scene, out, error);
+static RtStatus build_spec(const void *context, const RtScene *scene, int threads, RtAccel **out,
+                           RtError *error) {
+    RtSpec spec;
+    RT_TRY(rt_spec_parse(context, &spec, error));
+    return rt_accel_build(&spec, scene, threads, out, error);
 }
 
 RtMaker rt_maker_of_spec(const char *spec) {
-    return (RtMaker){build_spec, spec};
+    return (RtMaker){build_spec, spec, 0};
+}
+
+RtStatus rt_maker_build(const RtMaker *maker, const RtScene *scene, RtAccel **out, RtError *error) {
+    return maker->build(maker->context, scene, maker->threads, out, error);
 }
 
 /* What is asked of, and room for the answers. */
@@ -30,7 +37,7 @@ static RtStatus open_session(Session *s, const RtFailure *failure, const RtScene
     RT_TRY(rt_accel_open(rt_accel_truth(), scene, &s->brute, error));
     RT_TRY(rt_query_init(&s->truth, s->brute, error));
     rt_nearest(&s->truth, failure->rays, count, s->expected, NULL);
-    RT_TRY(maker.build(maker.context, scene, &s->accel, error));
+    RT_TRY(rt_maker_build(&maker, scene, &s->accel, error));
     RT_TRY(rt_accel_learn(s->accel, failure->rays, s->expected, count, error));
     return rt_query_init(&s->query, s->accel, error);
 }
@@ -56,8 +63,8 @@ static RtAnswer ask(Session *s, const RtFailure *failure) {
     const RtRay *ray = &failure->rays[i];
     RtAnswer answer = {.expected = s->expected[i], .got = s->got[i], .blocked = s->blocked[i]};
     answer.wrong =
-        RT_WRONG == (failure->occluded ? rt_blocked_verdict(s->accel, ray, answer.expected, answer.blocked)
-                                       : rt_answer_verdict(s->accel, ray, answer.expected, answer.got));
+        RT_WRONG == (failure->occluded ? rt_blocked_verdict(&s->query, ray, answer.expected, answer.blocked)
+                                       : rt_answer_verdict(&s->query, ray, answer.expected, answer.got));
     return answer;
 }
 

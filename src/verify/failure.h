@@ -11,12 +11,14 @@
 
 /* How the accelerator in question is built over a scene. */
 typedef struct RtMaker {
-    RtStatus (*build)(const void *context, const RtScene *scene, RtAccel **out, RtError *error);
+    RtStatus (*build)(const void *context, const RtScene *scene, int threads, RtAccel **out, RtError *error);
     const void *context; /* borrowed */
+    int threads;         /* 0 = all processors; does not change the structure */
 } RtMaker;
 
 /* By a spec, which stays the caller's. */
 RtMaker rt_maker_of_spec(const char *spec);
+RtStatus rt_maker_build(const RtMaker *maker, const RtScene *scene, RtAccel **out, RtError *error);
 
 typedef struct RtFailure {
     const RtRay *rays; /* [count] borrowed, valid */

@@ -19,6 +19,10 @@ static uint32_t below(Maker *m, uint32_t n) {
     return rt_random_below(&m->random, n);
 }
 
+static RtVec3d point_of_object(Maker *m, RtWhere where, uint32_t *id) {
+    return rt_point_of_object(m->geometry, where, &m->random, rt_query_room(m->query), id);
+}
+
 static RtRay ray_along(RtVec3d from, RtVec3d dir) {
     return (RtRay){.org = rt_narrow(from), .dir = rt_narrow(dir), .tmax = INFINITY, .kind = RT_RAY_RANDOM};
 }
@@ -67,7 +71,7 @@ static RtRay on_fractions(Maker *m) {
 
 static RtRay from_surface(Maker *m) {
     uint32_t id;
-    RtVec3d p = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id);
+    RtVec3d p = point_of_object(m, RT_ON_SURFACE, &id);
     return ray_along(p, rt_random_direction(&m->random));
 }
 
@@ -90,22 +94,22 @@ static RtRay from_inside(Maker *m) {
 
 static RtRay at_vertex(Maker *m) {
     uint32_t id;
-    return ray_through(m, rt_point_of_object(m->geometry, RT_AT_VERTEX, &m->random, &id));
+    return ray_through(m, point_of_object(m, RT_AT_VERTEX, &id));
 }
 
 static RtRay at_edge(Maker *m) {
     uint32_t id;
-    return ray_through(m, rt_point_of_object(m->geometry, RT_ON_EDGE, &m->random, &id));
+    return ray_through(m, point_of_object(m, RT_ON_EDGE, &id));
 }
 
 /* Touches an object: in the plane of a flat one, along the silhouette of a round one. */
 static RtRay tangent(Maker *m) {
     uint32_t id;
-    RtVec3d p = rt_point_of_object(m->geometry, below(m, 2) ? RT_ON_SURFACE : RT_AT_VERTEX, &m->random, &id);
+    RtVec3d p = point_of_object(m, below(m, 2) ? RT_ON_SURFACE : RT_AT_VERTEX, &id);
     RtVec3d dir = rt_random_direction(&m->random);
     if (id != RT_NO_OBJECT) {
         RtRay at = ray_along(p, dir);
-        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0).geometric;
+        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_room(m->query)).geometric;
         dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
     }
     return ray_along(rt_add_scaledd(p, dir, -m->size), dir);
@@ -117,8 +121,8 @@ static RtRay from_afar(Maker *m) {
     double distance = m->size * sizes[below(m, 5)];
     RtVec3d from = rt_add_scaledd(m->center, rt_random_direction(&m->random), distance);
     uint32_t id;
-    RtVec3d to = below(m, 2) ? rt_point_in_scene(m->geometry, &m->random)
-                             : rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id);
+    RtVec3d to =
+        below(m, 2) ? rt_point_in_scene(m->geometry, &m->random) : point_of_object(m, RT_ON_SURFACE, &id);
     return ray_along(from, rt_normalized(rt_subd(to, from)));
 }
 
@@ -216,11 +220,10 @@ static RtRay along_edge(Maker *m) {
 static RtRay grazing(Maker *m) {
     static const double angles[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
     uint32_t id;
-    RtVec3d p = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id),
-            dir = rt_random_direction(&m->random);
+    RtVec3d p = point_of_object(m, RT_ON_SURFACE, &id), dir = rt_random_direction(&m->random);
     if (id != RT_NO_OBJECT) {
         RtRay at = ray_along(p, dir);
-        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0).geometric;
+        RtVec3d normal = rt_object_normals(m->geometry, id, &at, 0, rt_query_room(m->query)).geometric;
         dir = rt_add_scaledd(dir, normal, -rt_dotd(dir, normal));
         double angle = angles[below(m, 7)];
         dir = rt_add_scaledd(rt_normalized(dir), normal, below(m, 2) ? angle : -angle);
@@ -235,7 +238,7 @@ static RtRay denormal(Maker *m) {
     uint32_t id;
     RtRay ray = along_axis(m);
     if (below(m, 2)) {
-        RtVec3d from = rt_point_of_object(m->geometry, RT_AT_VERTEX, &m->random, &id);
+        RtVec3d from = point_of_object(m, RT_AT_VERTEX, &id);
         ray = ray_along(from, free_direction(m));
     }
     int whole = (int)below(m, 3);
@@ -254,8 +257,8 @@ static RtRay to_light(Maker *m) {
     uint32_t id, light = below(m, m->scene->light_count);
     RtVec3d to = rt_widen(m->scene->lights[light].position), from;
     switch (below(m, 4)) {
-    case 0: from = rt_point_of_object(m->geometry, RT_ON_SURFACE, &m->random, &id); break;
-    case 1: from = rt_point_of_object(m->geometry, RT_ON_EDGE, &m->random, &id); break;
+    case 0: from = point_of_object(m, RT_ON_SURFACE, &id); break;
+    case 1: from = point_of_object(m, RT_ON_EDGE, &id); break;
     case 2: from = rt_point_in_scene(m->geometry, &m->random); break;
     default: from = rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
     }

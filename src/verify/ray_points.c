@@ -50,11 +50,13 @@ static RtVec3d point_of_sphere(const RtSphere *sphere, RtWhere where, RtRandom *
 
 /* Of a tree: a corner of the box of one of its solids, a point of an edge of such a box, or where a random
  * line meets the tree. */
-static RtVec3d point_of_csg(const RtGeometry *g, uint32_t id, RtWhere where, RtRandom *random) {
+static RtVec3d point_of_csg(const RtGeometry *g, uint32_t id, RtWhere where, RtRandom *random,
+                            RtCrossing *room) {
     const RtCsg *tree = &g->csgs[rt_ref_index(g->objects[id])];
     if (where == RT_ON_SURFACE) {
         RtRay ray = rt_random_chord(&tree->box, random);
         RtPreparedRay prepared = rt_ray_prepare(&ray, &tree->box);
+        prepared.room = room;
         float t;
         if (rt_object_hit(g, id, &prepared, &t, NULL)) return rt_ray_point(&ray, t);
     }
@@ -69,7 +71,8 @@ static RtVec3d point_of_csg(const RtGeometry *g, uint32_t id, RtWhere where, RtR
     return p;
 }
 
-RtVec3d rt_point_of_object(const RtGeometry *g, RtWhere where, RtRandom *random, uint32_t *id) {
+RtVec3d rt_point_of_object(const RtGeometry *g, RtWhere where, RtRandom *random, RtCrossing *room,
+                           uint32_t *id) {
     *id = RT_NO_OBJECT;
     if (g->object_count == 0) return rt_point_in_scene(g, random);
     *id = rt_random_below(random, g->object_count);
@@ -82,7 +85,7 @@ RtVec3d rt_point_of_object(const RtGeometry *g, RtWhere where, RtRandom *random,
         return point_of_vertices(g->polygon_vertices + polygon->first, polygon->count, where, random);
     }
     case RT_SHAPE_CONE: return point_of_cone(&g->cones[index], where != RT_ON_SURFACE, random);
-    case RT_SHAPE_CSG: return point_of_csg(g, *id, where, random);
+    case RT_SHAPE_CSG: return point_of_csg(g, *id, where, random, room);
     case RT_SHAPE_COUNT: break;
     }
     return rt_point_in_scene(g, random);

@@ -13,8 +13,9 @@ typedef enum RtWhere { RT_AT_VERTEX, RT_ON_EDGE, RT_ON_SURFACE } RtWhere;
 RtVec3d rt_point_in_box(const RtBox *box, RtRandom *random);
 RtVec3d rt_point_in_scene(const RtGeometry *geometry, RtRandom *random);
 
-/* A point of an object, and the object's id, RT_NO_OBJECT where there is none. */
-RtVec3d rt_point_of_object(const RtGeometry *geometry, RtWhere where, RtRandom *random, uint32_t *id);
+/* A point of an object, and the object's id, RT_NO_OBJECT where there is none; `room` is of rt_hit_room. */
+RtVec3d rt_point_of_object(const RtGeometry *geometry, RtWhere where, RtRandom *random, RtCrossing *room,
+                           uint32_t *id);
 
 /* The box of some object, or that of the scene. */
 const RtBox *rt_some_box(const RtGeometry *geometry, RtRandom *random);

@@ -60,7 +60,7 @@ static RtVec3 straightened(RtVec3 dir) {
     return dir;
 }
 
-static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray) {
+static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray, RtCrossing *room) {
     p->shift = SHIFT * largest_coordinate(g, ray);
     p->error = ERROR * largest_coordinate(g, ray);
     p->tolerance = tolerance_of(g, ray);
@@ -76,10 +76,10 @@ static void make_probes(Probes *p, const RtGeometry *g, const RtRay *ray) {
         moved.org = rt_narrow(rt_add_scaledd(rt_widen(ray->org), to, p->shift));
         moved.tmin = (float)fmax(tmin - p->tolerance, 0);
         moved.tmax = (float)(tmax + p->tolerance);
-        p->wide[i] = rt_ray_prepare(&moved, &g->box);
+        rt_hit_ray(&p->wide[i], g, &moved, room);
         moved.tmin = (float)(tmin + p->tolerance);
         moved.tmax = (float)(tmax - p->tolerance);
-        p->narrow[i] = rt_ray_prepare(&moved, &g->box);
+        rt_hit_ray(&p->narrow[i], g, &moved, room);
     }
 }
 
@@ -97,7 +97,7 @@ static bool in_reach(const RtGeometry *g, uint32_t id, const Probes *p) {
 /* Does the ray meet the object's front, seen along its normal, or its back? */
 static int side_met(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, float t) {
     RtRay again = {.org = ray->org, .tmin = ray->tmin, .dir = ray->dir, .tmax = ray->tmax};
-    return rt_dotd(rt_object_normals(g, id, &again, t).geometric, rt_widen(ray->dir)) > 0;
+    return rt_dotd(rt_object_normals(g, id, &again, t, ray->room).geometric, rt_widen(ray->dir)) > 0;
 }
 
 /* Shapes that only our hit functions know: what the probes say. */
@@ -213,9 +213,9 @@ static bool in_margin(const Margin *m, double t, double tolerance) {
 
 /* ---- verdicts ---- */
 
-static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer) {
+static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer, RtCrossing *room) {
     Probes probes;
-    make_probes(&probes, g, ray);
+    make_probes(&probes, g, ray, room);
     double nearest_certain = HUGE_VAL;
     bool named = answer.object == RT_NO_OBJECT;
     for (uint32_t id = 0; id < g->object_count; id++) {
@@ -229,11 +229,13 @@ static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer) {
 
 /* Does the ray meet both objects, exactly, at t's within the tolerance? Our hit function, which is quick, is
  * asked first. */
-static bool is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, double tolerance) {
+static bool is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, double tolerance,
+                   RtCrossing *room) {
     float t;
     int order;
     long double apart;
-    RtPreparedRay prepared = rt_ray_prepare(ray, &g->box);
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, g, ray, room);
     if (!within((double)answer.t, (double)expected.t, tolerance)) return false;
     if (!rt_object_hit(g, answer.object, &prepared, &t, NULL)) return false;
     if (!within((double)t, (double)expected.t, tolerance)) return false;
@@ -245,7 +247,8 @@ RtSide rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expec
     return rt_referee_judge(geometry, ray, expected, answer, tolerance_of(geometry, ray)).side;
 }
 
-RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer) {
+RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
+                             RtCrossing *room) {
     double tolerance = tolerance_of(geometry, ray);
     if (answer.object == RT_NO_OBJECT) {
         if (expected.object == RT_NO_OBJECT) return RT_EQUAL;
@@ -253,19 +256,20 @@ RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit
         if (answer.object >= geometry->object_count) return RT_WRONG;
         bool near = within((double)answer.t, (double)expected.t, tolerance);
         if (answer.object == expected.object && near) return RT_EQUAL;
-        if (expected.object != RT_NO_OBJECT && is_tie(geometry, ray, expected, answer, tolerance))
+        if (expected.object != RT_NO_OBJECT && is_tie(geometry, ray, expected, answer, tolerance, room))
             return RT_TIE;
     }
     RtSide side = rt_verdict_side(geometry, ray, expected, answer);
     bool right = side == RT_SIDE_GOT || side == RT_SIDE_BOTH;
-    return right || is_marginal(geometry, ray, answer) ? RT_MARGINAL : RT_WRONG;
+    return right || is_marginal(geometry, ray, answer, room) ? RT_MARGINAL : RT_WRONG;
 }
 
-RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer) {
+RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
+                              RtCrossing *room) {
     if (answer == expected) return RT_EQUAL;
     if (rt_referee_occluded(geometry, ray) == (answer ? RT_HIT : RT_MISSED)) return RT_MARGINAL;
     Probes probes;
-    make_probes(&probes, geometry, ray);
+    make_probes(&probes, geometry, ray, room);
     bool possible = false, certain = false;
     for (uint32_t id = 0; id < geometry->object_count; id++) {
         Margin m = margin_of(geometry, id, ray, &probes);

@@ -39,13 +39,15 @@ typedef enum RtVerdict {
 /* "equal", "tie", "marginal", "wrong" */
 const char *rt_verdict_name(RtVerdict verdict);
 
-/* Judges the nearest hit `answer` of a valid ray; `expected` is brute's. */
-RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer);
+/* Judges the nearest hit `answer` of a valid ray; `expected` is brute's, `room` of rt_hit_room. */
+RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
+                             RtCrossing *room);
 
 /* Whose answer to `nearest` is the exact one, within that tolerance? */
 RtSide rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer);
 
 /* Judges an answer to `occluded`: equal, marginal or wrong. */
-RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer);
+RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
+                              RtCrossing *room);
 
 #endif

@@ -40,8 +40,10 @@ typedef struct Stage {
     RtReference reference;
 } Stage;
 
-static RtMaker maker_of(const RtVerifySpec *spec) {
-    return spec->maker.build ? spec->maker : rt_maker_of_spec(spec->spec);
+static RtMaker maker_of(const Run *run, const RtVerifySpec *spec) {
+    RtMaker maker = spec->maker.build ? spec->maker : rt_maker_of_spec(spec->spec);
+    maker.threads = run->verify->rays.threads;
+    return maker;
 }
 
 static void doing(Run *run, const char *what) {
@@ -177,7 +179,7 @@ static RtStatus replay_path(const Run *run, const char *scene, const char *spec,
 /* Shrinks the failure, writes it to a replay file, and names that in the row. */
 static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *spec,
                              const RtWrongAnswer *wrong, json_t *row, RtError *error) {
-    RtMaker maker = maker_of(spec);
+    RtMaker maker = maker_of(run, spec);
     RtShrinkObserver observer = {on_tried, run};
     RtFailure failure;
     RtAnswer answer;
@@ -232,9 +234,9 @@ static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVeri
 
 static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *spec, RtError *error) {
     RtAccel *accel;
-    RtMaker maker = maker_of(spec);
+    RtMaker maker = maker_of(run, spec);
     doing(run, spec->spec);
-    RtStatus status = maker.build(maker.context, stage->scene, &accel, error);
+    RtStatus status = rt_maker_build(&maker, stage->scene, &accel, error);
     if ((status == RT_NOT_AVAILABLE || status == RT_BAD_INPUT) && !spec->named) {
         char notice[sizeof error->message + RT_MAX_SPEC_CHARS + RT_MAX_SCENE_NAME];
         snprintf(notice, sizeof notice, "%s on %s is skipped: %s", spec->spec, stage->name, error->message);

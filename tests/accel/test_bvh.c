@@ -1,7 +1,9 @@
 /* accel/bvh from the inside: its invariants, broken on purpose, and its depth. */
 #include "accel_testing.h"
+#include "clock_testing.h"
 
 #include "accel/bvh/bvh.h"
+#include "base/random.h"
 
 #include <stdio.h>
 
@@ -151,12 +153,44 @@ static void the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand(void *
     rt_scene_clear(&scene);
 }
 
+static void a_build_stays_on_its_threads_and_does_not_depend_on_them(void **state) {
+    (void)state;
+    RtScene scene;
+    RtSpec spec;
+    RtAccel *first = NULL;
+    begin_scene(&scene);
+    RtRandom random = rt_random(1, 1);
+    for (int i = 0; i < 30000; i++) {
+        assert_ok(rt_scene_add_sphere(&scene, 0, rt_random_point(&random, 10), 0.1f, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_spec_parse("bvh:build=lbvh,reinsertion=3", &spec, error));
+    for (int threads = 1; threads <= 3; threads++) {
+        RtAccel *accel;
+        Labour before = labour_so_far();
+        assert_ok(rt_accel_build(&spec, &scene, threads, &accel, error));
+        if (threads == 1) {
+            Labour labour = labour_since(before);
+            assert_true(labour.others < 0.05 * labour.own);
+            first = accel;
+            continue;
+        }
+        const RtHierarchy *a = &((const RtBvh *)first)->hierarchy, *b = &((const RtBvh *)accel)->hierarchy;
+        assert_int_equal(a->node_count, b->node_count);
+        assert_memory_equal(a->nodes, b->nodes, a->node_count * sizeof(RtNode));
+        rt_accel_destroy(accel);
+    }
+    rt_accel_destroy(first);
+    rt_scene_clear(&scene);
+}
+
 RT_TEST_GROUP(bvh) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(validate_names_each_invariant_that_is_broken),
         cmocka_unit_test(validate_names_a_node_that_is_too_deep),
         cmocka_unit_test(coincident_objects_are_halved_within_the_depth_limit),
         cmocka_unit_test(a_chain_of_growing_distances_stays_within_the_depth_limit),
+        cmocka_unit_test(a_build_stays_on_its_threads_and_does_not_depend_on_them),
         cmocka_unit_test(the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

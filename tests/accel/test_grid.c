@@ -126,18 +126,18 @@ static void a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit(voi
         RtValue values[RT_GRID_PARAM_COUNT];
         uint32_t *n = values[RT_GRID_RESOLUTION].resolution;
         assert_ok(rt_params_parse(rt_grid_params, RT_GRID_PARAM_COUNT, specs[i], "grid", values, error));
-        assert_int_equal(rt_grid_build_within(LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+        assert_int_equal(build_within("grid", LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
         const char *remedy = strstr(refusal.message, ": resolution=");
         assert_non_null(remedy);
         assert_int_equal(sscanf(remedy, ": resolution=%ux%ux%u", &n[0], &n[1], &n[2]), 3);
-        assert_ok(rt_grid_build_within(LIMIT, &scene, values, &accel, error));
+        assert_ok(build_within("grid", LIMIT, &scene, values, &accel, error));
         RtDescription description;
         rt_grid_describe(accel, &description);
         assert_true((description.leaves + description.references + 1) * sizeof(uint32_t) <= LIMIT);
         rt_grid_destroy(accel);
         uint32_t longest = n[0];
         for (int a = 0; a < 3; a++) n[a] += n[a] == longest;
-        assert_int_equal(rt_grid_build_within(LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+        assert_int_equal(build_within("grid", LIMIT, &scene, values, &accel, &refusal), RT_BAD_INPUT);
     }
     rt_scene_clear(&scene);
 }

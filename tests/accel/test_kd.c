@@ -208,7 +208,7 @@ static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t lim
     RtAccel *accel = NULL;
     RtError refusal;
     values[RT_KD_MAX_DEPTH].i = depth;
-    bool built = rt_kd_build_within(limit, scene, values, &accel, &refusal) == RT_OK;
+    bool built = build_within("kd", limit, scene, values, &accel, &refusal) == RT_OK;
     if (built) rt_kd_destroy(accel);
     return built;
 }
@@ -229,7 +229,7 @@ static void a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(voi
         assert_ok(rt_scene_open(scenes[i % 3], &scene, error));
         assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, specs[i / 3], "kd", values, error));
         int64_t live = rt_alloc_live();
-        assert_int_equal(rt_kd_build_within(limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+        assert_int_equal(build_within("kd", limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
         assert_int_equal(rt_alloc_live(), live);
         const char *about = strstr(refusal.message, "about "), *remedy = strstr(refusal.message, ": max_");
         assert_true(about && remedy);

@@ -139,7 +139,7 @@ static void a_cell_remembers_what_blocked_its_last_ray(void **state) {
         check_tally(i, &tallies[RT_RAY_SHADOW], &rows[i].expected);
     }
     /* Where epochs have been used up, what an old one has left behind is not mistaken for new. */
-    RtLightMemory *memory = query.scratch;
+    RtLightMemory *memory = query.scratch[0].own;
     memory[0].epoch = UINT32_MAX;
     memory[1].epoch = 1;
     rt_query_begin(&query);

@@ -178,7 +178,7 @@ static void nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_t
     assert_ok(rt_params_parse(rt_grid_params, RT_GRID_PARAM_COUNT, "depth=8,nest=1", "grid", values, error));
     int64_t live = rt_alloc_live();
     for (uint64_t limit = 100000; limit <= 10000000; limit *= 10) {
-        assert_int_equal(rt_grid_build_within(limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
+        assert_int_equal(build_within("grid", limit, &scene, values, &accel, &refusal), RT_BAD_INPUT);
         assert_int_equal(rt_alloc_live(), live);
         const char *remedy = strstr(refusal.message, ": depth=");
         uint32_t depth;
@@ -186,7 +186,7 @@ static void nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_t
         assert_int_equal(sscanf(remedy, ": depth=%u would fit", &depth), 1);
         assert_in_range(depth, 1, 7);
         values[RT_GRID_DEPTH].i = depth;
-        assert_ok(rt_grid_build_within(limit, &scene, values, &accel, error));
+        assert_ok(build_within("grid", limit, &scene, values, &accel, error));
         RtDescription description;
         rt_grid_describe(accel, &description);
         assert_true(description.bytes <= limit);

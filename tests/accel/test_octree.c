@@ -161,7 +161,7 @@ static double refuse(const RtScene *scene, const char *parameters, uint64_t limi
     double gib;
     assert_ok(rt_params_parse(rt_octree_params, RT_OCTREE_PARAM_COUNT, parameters, "octree", values, error));
     int64_t live = rt_alloc_live();
-    assert_int_equal(rt_octree_build_within(limit, scene, values, &accel, &refusal), RT_BAD_INPUT);
+    assert_int_equal(build_within("octree", limit, scene, values, &accel, &refusal), RT_BAD_INPUT);
     assert_int_equal(rt_alloc_live(), live);
     const char *about = strstr(refusal.message, "about "), *remedy = strstr(refusal.message, ": max_depth=");
     assert_true(about && remedy);
@@ -174,7 +174,7 @@ static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t lim
     RtAccel *accel = NULL;
     RtError refusal;
     values[RT_OCTREE_MAX_DEPTH].i = depth;
-    bool built = rt_octree_build_within(limit, scene, values, &accel, &refusal) == RT_OK;
+    bool built = build_within("octree", limit, scene, values, &accel, &refusal) == RT_OK;
     if (built) rt_octree_destroy(accel);
     return built;
 }
@@ -227,7 +227,7 @@ static void the_estimate_is_near_what_a_build_takes(void **state) {
         RtDescription description;
         long depth;
         double estimate = refuse(&scene, specs[i], 1 << 20, values, &depth);
-        assert_ok(rt_octree_build_within(1 << 28, &scene, values, &accel, error));
+        assert_ok(build_within("octree", 1 << 28, &scene, values, &accel, error));
         rt_octree_describe(accel, &description);
         rt_octree_destroy(accel);
         double ratio = estimate / (double)description.bytes;

@@ -298,7 +298,8 @@ static void symmetric_rays_do_not_leak_from_a_cube_of_polygons(void **state) {
         RtVec3 dir = {(float)(code % 3 - 1), (float)(code / 3 % 3 - 1), (float)(code / 9 - 1)};
         RtRay ray = {.dir = dir, .tmin = 0, .tmax = INFINITY};
         if (code == 13) continue;
-        RtPreparedRay prepared = rt_ray_prepare(&ray, &g.box);
+        RtPreparedRay prepared;
+        rt_hit_ray(&prepared, &g, &ray, NULL);
         int hits = 0, faces = abs(code % 3 - 1) + abs(code / 3 % 3 - 1) + abs(code / 9 - 1);
         for (uint32_t id = 0; id < 6; id++) {
             float t;

@@ -36,6 +36,21 @@ static void no_items_are_no_work(void **state) {
     assert_ok(rt_parallel_for(0, 2, visit, &count, error));
 }
 
+/* Seen by what is asked for: a thread takes memory before it starts. */
+static void more_threads_than_items_are_not_started(void **state) {
+    (void)state;
+    Count count = {.threads = 1, .fails_from = ITEMS};
+    RtError one, many;
+    for (size_t items = 0; items <= 1; items++) {
+        rt_alloc_fail_at(1);
+        assert_int_equal(rt_parallel_for(items, 1, visit, &count, &one), RT_NO_MEMORY);
+        rt_alloc_fail_at(1);
+        assert_int_equal(rt_parallel_for(items, 64, visit, &count, &many), RT_NO_MEMORY);
+        assert_string_equal(many.message, one.message);
+    }
+    assert_ok(rt_parallel_for(1, 64, visit, &count, error));
+}
+
 static void zero_threads_stand_for_all_processors(void **state) {
     (void)state;
     assert_int_equal(rt_thread_count(0), rt_processor_count());
@@ -72,6 +87,7 @@ RT_TEST_GROUP(parallel) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_item_is_worked_on_once_by_any_number_of_threads),
         cmocka_unit_test(no_items_are_no_work),
+        cmocka_unit_test(more_threads_than_items_are_not_started),
         cmocka_unit_test(zero_threads_stand_for_all_processors),
         cmocka_unit_test(the_lowest_item_that_fails_is_the_one_reported),
         cmocka_unit_test(memory_that_cannot_be_had_is_a_status),

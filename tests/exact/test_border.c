@@ -20,7 +20,7 @@ static RtRay ray_at_triangle(RtRandom *random, const RtVec3 v[3], int i) {
 typedef RtDecision HitFunction(const RtGeometry *g, const RtRay *ray);
 
 static RtDecision ours(const RtGeometry *g, const RtRay *ray) {
-    return rt_decision_of(g, 0, ray);
+    return rt_decision_of(g, 0, ray, NULL);
 }
 
 /* The well-known mistake: what counts as parallel does not depend on how large the triangle is. */
@@ -99,8 +99,8 @@ static void the_referee_decides_against_us_too(void **state) {
         if (decision.hit != (ruling.finding == RT_HIT)) {
             against++;
             assert_int_equal(rt_verdict_side(&g, &ray, expected, right), RT_SIDE_GOT);
-            assert_int_equal(rt_verdict_nearest(&g, &ray, expected, right), RT_MARGINAL);
-            assert_int_equal(rt_verdict_occluded(&g, &ray, decision.hit, !decision.hit), RT_MARGINAL);
+            assert_int_equal(rt_verdict_nearest(&g, &ray, expected, right, NULL), RT_MARGINAL);
+            assert_int_equal(rt_verdict_occluded(&g, &ray, decision.hit, !decision.hit, NULL), RT_MARGINAL);
         }
         rt_geometry_clear(&g);
     }

@@ -1,6 +1,7 @@
 /* Trees in exact arithmetic: tori, their tangents and ties, and that every ray at the trees of the families
  * is decided, as our hit functions do but for rays that pass a border within rounding. */
 #include "equivalence_testing.h"
+#include "room_testing.h"
 #include "solids_testing.h"
 
 #include "exact/border.h"
@@ -184,7 +185,7 @@ static void judge(const RtGeometry *g, const RtRay *ray, int *hits) {
     if (ray->tmin == ray->tmax) return;
     RtWideRay line = rt_wide_ray(ray);
     for (uint32_t id = 0; id < g->object_count; id++) {
-        RtDecision ours = rt_decision_of(g, id, ray);
+        RtDecision ours = rt_decision_of(g, id, ray, room_of_tests());
         if (!ours.hit && id != ruling.object) continue;
         if (rt_decision_check(g, id, &line, ours) == RT_HIT) continue;
         double border = rt_border_distance(g, id, ray, ours);

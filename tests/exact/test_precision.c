@@ -163,7 +163,8 @@ static void t_of_a_needle_is_that_of_its_plane(void **state) {
         RtGeometry g = {0};
         assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
         assert_ok(rt_geometry_finish(&g, error));
-        RtPreparedRay prepared = rt_ray_prepare(&ray, &g.box);
+        RtPreparedRay prepared;
+        rt_hit_ray(&prepared, &g, &ray, NULL);
         float t;
         if (rt_object_hit(&g, 0, &prepared, &t, NULL)) {
             hits++;

@@ -42,7 +42,7 @@ static inline RtFrame trace(const RtScene *scene, const RtFrameOptions *options)
 /* The surface that a ray towards the only object of `scene` meets. */
 static inline RtSurface surface_of(const RtScene *scene, RtVec3 org, RtVec3 dir, float t) {
     RtRay ray = {.org = org, .dir = dir, .tmax = INFINITY};
-    return rt_surface(scene, &ray, (RtHit){t, 0});
+    return rt_surface(scene, &ray, (RtHit){t, 0}, NULL);
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* experiments/: from a YAML to a result directory, whatever the number of threads, and whatever was
  * interrupted. */
+#include "clock_testing.h"
 #include "experiment_testing.h"
 
 #include "report/result_directory.h"
@@ -44,6 +45,18 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, in
 }
 
 static const RtObserver nobody = {NULL, NULL, NULL};
+
+/* Recording, building, counting, timing and drawing. */
+static void a_run_on_one_thread_starts_no_other(void **state) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", small_experiment,
+                  "n=50\", label: cloud, size: 16x16, depth: 2}\naccelerators:\n  - {accel: brute, every: 7}",
+                  "n=20000\", size: 192x192}\naccelerators:\n  - {accel: \"bvh:reinsertion=2\"}");
+    Labour before = labour_so_far();
+    assert_ok(run(place, "out", false, 1, nobody, error));
+    Labour labour = labour_since(before);
+    assert_true(labour.others < 0.05 * labour.own);
+}
 
 /* ---- the YAML ---- */
 
@@ -302,6 +315,7 @@ RT_TEST_GROUP(experiment) {
         IN_PLACE(quick_overrides_only_where_it_is_asked_for),
         IN_PLACE(whichever_allocation_fails_loading_is_out_of_memory),
         IN_PLACE(the_command_refuses_a_bad_experiment_with_exit_code_2),
+        IN_PLACE(a_run_on_one_thread_starts_no_other),
         IN_PLACE(what_is_left_out_of_the_yaml_has_its_default),
         IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two),
         IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell),

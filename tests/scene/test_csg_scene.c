@@ -1,5 +1,5 @@
 /* CSG trees as objects of a scene: materials of solids, refraction within a tree, copies of scenes, the
- * fingerprint, counting, and lack of memory while a frame is traced. */
+ * fingerprint, counting, and lack of memory while one is added. */
 #include "csg_testing.h"
 
 #include "base/memory.h"
@@ -34,7 +34,7 @@ static void make_bubble(RtScene *scene) {
 }
 
 static RtSurface surface_at(const RtScene *scene, const RtRay *ray, float t) {
-    return rt_surface(scene, ray, (RtHit){t, 0});
+    return rt_surface(scene, ray, (RtHit){t, 0}, room_of_tests());
 }
 
 /* A random tree as the only object. */
@@ -208,44 +208,6 @@ static void a_node_that_is_missed_costs_one_test(void **state) {
 
 /* ---- memory ---- */
 
-/* Rays along a row of 200 balls take more crossings than the C stack holds. */
-static void a_frame_that_lacks_memory_says_so(void **state) {
-    (void)state;
-    RtScene scene;
-    RtCsgBuilder b = {0};
-    rt_scene_init(&scene);
-    add_glass(&scene, "glass", 1);
-    RtCsgTerm row = ball(&b, rt_vec3(0, 0, 0), 1, 0);
-    for (int i = 1; i < 200; i++) row = join(&b, row, ball(&b, rt_vec3(3 * (float)i, 0, 0), 1, 0));
-    add_tree(&scene, &b, row);
-    scene.camera.from = rt_vec3(-50, 0, 0);
-    scene.camera.at = rt_vec3(0, 0, 0);
-    scene.camera.fov = 2;
-    scene.camera.width = scene.camera.height = 8;
-    assert_ok(rt_scene_finish(&scene, error));
-    RtAccel *brute;
-    assert_ok(rt_accel_open("brute", &scene, &brute, error));
-    int64_t live = rt_alloc_live();
-    RtFrameOptions options = {.depth = 1, .threads = 1};
-    bool traced = false;
-    RtStatus status = RT_NO_MEMORY;
-    for (uint64_t n = 1; status != RT_OK && n < 1000; n++) {
-        RtFrame frame;
-        RtError error = {RT_OK, ""};
-        rt_alloc_fail_at(n);
-        status = rt_frame_trace(&frame, brute, &options, &error);
-        rt_alloc_fail_at(0);
-        traced |= strstr(error.message, "a ray through a CSG tree") != NULL;
-        if (status == RT_OK) rt_frame_clear(&frame);
-        assert_true(status == RT_OK || status == RT_NO_MEMORY);
-        assert_true(rt_alloc_live() == live);
-    }
-    assert_int_equal(status, RT_OK);
-    assert_true(traced);
-    rt_accel_destroy(brute);
-    rt_scene_clear(&scene);
-}
-
 static void adding_a_tree_fails_cleanly_at_every_allocation(void **state) {
     (void)state;
     RtRandom random = rt_random(33, 0);
@@ -280,7 +242,6 @@ RT_TEST_GROUP(csg_scene) {
         cmocka_unit_test(the_fingerprint_sees_trees_but_not_their_extents),
         cmocka_unit_test(solids_and_boxes_are_counted_as_they_are_tested),
         cmocka_unit_test(a_node_that_is_missed_costs_one_test),
-        cmocka_unit_test(a_frame_that_lacks_memory_says_so),
         cmocka_unit_test(adding_a_tree_fails_cleanly_at_every_allocation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

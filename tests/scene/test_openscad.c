@@ -8,6 +8,7 @@
 #include "accel/accel.h"
 #include "base/random.h"
 #include "bench/rayset.h"
+#include "room_testing.h"
 #include "scenes/open.h"
 #include "testing.h"
 
@@ -67,7 +68,8 @@ static void compare_ray(const RtScene *scene, const Model *model, RtQuery *mesh,
         nearest = rt_minf(hits[i].t, nearest);
         farthest = rt_maxf(hits[i].t, farthest);
     }
-    RtPreparedRay prepared = rt_ray_prepare(ray, &scene->geometry.box);
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, &scene->geometry, ray, room_of_tests());
     bool hit = rt_object_hit(&scene->geometry, model->object, &prepared, &t, NULL);
     float slack = (float)(model->error / rt_lengthd(rt_widen(ray->dir)));
     sum->hits += hit;

@@ -21,7 +21,7 @@ static void tests_of_inner_nodes_change_no_bit(void **state) {
         for (uint32_t i = 0; i < 500; i++) {
             RtRay ray = random_ray(&random, i);
             if (i % 5 == 0) ray.tmin = 0.5f, ray.tmax = 1;
-            RtPreparedRay prepared = rt_ray_prepare(&ray, &tested.box);
+            RtPreparedRay prepared = prepare(&ray, &tested);
             float t = 0, expected = 0;
             bool hit = rt_csg_hit(&forest, &tested, &prepared, &t, &with);
             assert_int_equal(hit, rt_csg_hit(&forest, &plain, &prepared, &expected, &without));
@@ -290,28 +290,6 @@ static void compiling_fails_cleanly_at_every_allocation(void **state) {
     assert_int_equal(rt_alloc_live(), 0);
 }
 
-static void a_ray_that_lacks_memory_is_counted(void **state) {
-    (void)state;
-    RtCsgBuilder b = {0};
-    RtCsgForest forest = {0};
-    RtCsgTerm term = ball(&b, rt_vec3(0, 0, 0), 1, 0);
-    for (int i = 1; i < 200; i++) term = join(&b, ball(&b, rt_vec3(3 * (float)i, 0, 0), 1, 0), term);
-    RtCsg tree = compile(&forest, &b, term);
-    RtRay ray = ray_along(rt_vec3(-3, 0, 0), along_x);
-    RtPreparedRay prepared = rt_ray_prepare(&ray, &tree.box);
-    uint64_t before = rt_csg_shortages();
-    float t;
-    rt_alloc_fail_at(1);
-    assert_false(rt_csg_hit(&forest, &tree, &prepared, &t, NULL));
-    rt_alloc_fail_at(0);
-    RtError error;
-    assert_int_equal(rt_csg_check(before, &error), RT_NO_MEMORY);
-    before = rt_csg_shortages();
-    assert_true(rt_csg_hit(&forest, &tree, &prepared, &t, NULL));
-    assert_int_equal(rt_csg_check(before, &error), RT_OK);
-    clear(&forest, &b);
-}
-
 RT_TEST_GROUP(csg_trees) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tests_of_inner_nodes_change_no_bit),
@@ -322,7 +300,6 @@ RT_TEST_GROUP(csg_trees) {
         cmocka_unit_test(moving_the_tree_and_moving_the_ray_agree),
         cmocka_unit_test(a_copied_tree_is_the_same_tree),
         cmocka_unit_test(compiling_fails_cleanly_at_every_allocation),
-        cmocka_unit_test(a_ray_that_lacks_memory_is_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) + run_deep();
 }

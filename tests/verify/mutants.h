@@ -242,16 +242,17 @@ static RtStatus validate_mutant(const RtAccel *accel, RtError *error) {
 static const RtAccelOps mutant_ops = {
     .name = "mutant", .destroy = destroy_mutant, RT_KERNEL_OPS, .validate = validate_mutant};
 
-static RtStatus build_mutant(const void *context, const RtScene *scene, RtAccel **out, RtError *error) {
-    RT_TRY(rt_accel_new("mutant", scene, sizeof(Mutant), out, error));
-    (*out)->ops = &mutant_ops;
+static RtStatus build_mutant(const void *context, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
+    (void)threads;
+    RT_TRY(rt_accel_new(&(RtBuild){.ops = &mutant_ops, .scene = scene}, sizeof(Mutant), out, error));
     ((Mutant *)*out)->recipe = *(const MutantRecipe *)context;
     return RT_OK;
 }
 
 /* `recipe` stays the caller's. */
 static inline RtMaker maker_of_mutant(const MutantRecipe *recipe) {
-    return (RtMaker){build_mutant, recipe};
+    return (RtMaker){build_mutant, recipe, 1};
 }
 
 #endif

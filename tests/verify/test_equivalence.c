@@ -19,7 +19,8 @@ enum { RAYS = 5000, LAST = RAYS - 1 };
 static RtRay rays[RAYS];
 static RtAccelOps liar_ops;
 
-static void lie_nearest(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count, RtHit *hits) {
+static void lie_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked, size_t count,
+                        RtHit *hits) {
     (void)scratch;
     const Liar *liar = (const Liar *)accel;
     RtQuery query = liar->truth;
@@ -30,8 +31,8 @@ static void lie_nearest(const RtAccel *accel, void *scratch, const RtRay *asked,
     }
 }
 
-static void lie_nearest_counted(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count,
-                                RtHit *hits, RtTally *tallies) {
+static void lie_nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked,
+                                size_t count, RtHit *hits, RtTally *tallies) {
     (void)scratch, (void)tallies;
     const Liar *liar = (const Liar *)accel;
     RtQuery query = liar->truth;
@@ -41,7 +42,7 @@ static void lie_nearest_counted(const RtAccel *accel, void *scratch, const RtRay
     }
 }
 
-static void lie_occluded(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count,
+static void lie_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked, size_t count,
                          uint32_t *blockers) {
     (void)scratch;
     const Liar *liar = (const Liar *)accel;
@@ -51,8 +52,8 @@ static void lie_occluded(const RtAccel *accel, void *scratch, const RtRay *asked
     }
 }
 
-static void lie_occluded_counted(const RtAccel *accel, void *scratch, const RtRay *asked, size_t count,
-                                 uint32_t *blockers, RtTally *tallies) {
+static void lie_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked,
+                                 size_t count, uint32_t *blockers, RtTally *tallies) {
     (void)scratch, (void)tallies;
     const RtQuery *truth = &((const Liar *)accel)->truth;
     truth->accel->ops->occluded(truth->accel, truth->scratch, asked, count, blockers);
@@ -227,7 +228,7 @@ static void verdicts_tell_ties_and_margins_from_errors(void **state) {
     size_t wrong = 0;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const Case *c = &cases[i];
-        RtVerdict got = rt_verdict_nearest(&g, &c->ray, c->expected, c->answer);
+        RtVerdict got = rt_verdict_nearest(&g, &c->ray, c->expected, c->answer, NULL);
         if (got == c->verdict) continue;
         print_error("%s: %s instead of %s\n", c->what, rt_verdict_name(got), rt_verdict_name(c->verdict));
         wrong++;
@@ -243,10 +244,10 @@ static void occlusion_is_marginal_only_where_a_hit_is(void **state) {
     RtRay up = down_from(0.5f, 0, -2), ends_before = up, ends_at = up;
     ends_before.tmax = 2.9f;
     ends_at.tmax = 3;
-    assert_int_equal(rt_verdict_occluded(&g, &up, true, true), RT_EQUAL);
-    assert_int_equal(rt_verdict_occluded(&g, &up, true, false), RT_WRONG);
-    assert_int_equal(rt_verdict_occluded(&g, &ends_before, false, true), RT_WRONG);
-    assert_int_equal(rt_verdict_occluded(&g, &ends_at, true, false), RT_MARGINAL);
+    assert_int_equal(rt_verdict_occluded(&g, &up, true, true, NULL), RT_EQUAL);
+    assert_int_equal(rt_verdict_occluded(&g, &up, true, false, NULL), RT_WRONG);
+    assert_int_equal(rt_verdict_occluded(&g, &ends_before, false, true, NULL), RT_WRONG);
+    assert_int_equal(rt_verdict_occluded(&g, &ends_at, true, false, NULL), RT_MARGINAL);
     rt_geometry_clear(&g);
 }
 

@@ -17,7 +17,7 @@ static const char *const names[] = {
 static RtEquivalence check(const FamilyBench *bench, RtMaker maker) {
     RtEquivalence result;
     RtAccel *accel;
-    assert_ok(maker.build(maker.context, &bench->scene, &accel, error));
+    assert_ok(rt_maker_build(&maker, &bench->scene, &accel, error));
     assert_ok(rt_equivalence_check(&bench->reference, accel, 0, &result, error));
     rt_accel_destroy(accel);
     return result;

@@ -48,8 +48,8 @@ static const RtVerifyObserver observer = {on_doing, on_row, on_notice, NULL};
 
 /* Verifies grid and a mutant on both scenes; the rows are the caller's. */
 static json_t *verify(const char *folder, int threads, RtStart start) {
-    static const RtVerifySpec specs[] = {{"grid", true, {NULL, NULL}},
-                                         {"unpadded", true, {build_mutant, &unpadded}}};
+    static const RtVerifySpec specs[] = {{"grid", true, {NULL, NULL, 0}},
+                                         {"unpadded", true, {build_mutant, &unpadded, 0}}};
     RtVerify work = {.scenes = scenes,
                      .scene_count = 2,
                      .specs = specs,
@@ -155,6 +155,30 @@ static void each_scene_is_opened_once(void **state) {
     assert_int_equal(scenes_opened, 2);
 }
 
+static int threads_of_build;
+
+static RtStatus build_noting_threads(const void *context, const RtScene *scene, int threads, RtAccel **out,
+                                     RtError *error) {
+    threads_of_build = threads;
+    return build_mutant(context, scene, threads, out, error);
+}
+
+static void accelerators_are_built_on_the_threads_of_the_run(void **state) {
+    (void)state;
+    const RtVerifySpec spec = {"noting", true, {build_noting_threads, &padded, 0}};
+    for (int threads = 1; threads <= 3; threads += 2) {
+        RtVerify work = {.scenes = scenes,
+                         .scene_count = 1,
+                         .specs = &spec,
+                         .spec_count = 1,
+                         .rays = {100, 1, false, threads}};
+        json_t *rows;
+        assert_ok(rt_verify_run(&work, &observer, &rows, error));
+        assert_int_equal(threads_of_build, threads);
+        json_decref(rows);
+    }
+}
+
 static void another_run_is_not_gone_on_with(void **state) {
     (void)state;
     json_decref(verify(OUT "/c", 0, RT_START_ANEW));
@@ -167,24 +191,26 @@ static void another_run_is_not_gone_on_with(void **state) {
 }
 
 /* Loses the last ray of every stream but the shortest. */
-static void lose_last(const RtAccel *accel, void *scratch, const RtRay *rays, size_t count, RtHit *hits) {
+static void lose_last(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                      RtHit *hits) {
     nearest_timed(accel, scratch, rays, count, hits);
     if (count > 1) hits[count - 1] = RT_MISS;
 }
 
 static RtAccelOps losing_ops;
 
-static RtStatus build_losing(const void *context, const RtScene *scene, RtAccel **out, RtError *error) {
+static RtStatus build_losing(const void *context, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
     losing_ops = mutant_ops;
     losing_ops.nearest = lose_last;
-    RT_TRY(build_mutant(context, scene, out, error));
+    RT_TRY(build_mutant(context, scene, threads, out, error));
     (*out)->ops = &losing_ops;
     return RT_OK;
 }
 
 static void a_failure_that_takes_its_neighbours_is_kept_with_them(void **state) {
     (void)state;
-    const RtVerifySpec spec = {"losing", true, {build_losing, &padded}};
+    const RtVerifySpec spec = {"losing", true, {build_losing, &padded, 1}};
     RtVerify work = {.scenes = scenes,
                      .scene_count = 1,
                      .specs = &spec,
@@ -325,6 +351,7 @@ RT_TEST_GROUP(verify) {
         cmocka_unit_test(a_row_has_the_members_that_its_columns_name),
         cmocka_unit_test(threads_and_interruptions_change_no_byte),
         cmocka_unit_test(each_scene_is_opened_once),
+        cmocka_unit_test(accelerators_are_built_on_the_threads_of_the_run),
         cmocka_unit_test(another_run_is_not_gone_on_with),
         cmocka_unit_test(a_failure_that_takes_its_neighbours_is_kept_with_them),
         cmocka_unit_test(a_replay_file_needs_no_other_file),

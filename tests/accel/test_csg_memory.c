@@ -1,0 +1,198 @@
+/* CSG trees that take much room for their crossings: all of it is had before the first ray, and where it
+ * cannot be had there is a status, never a miss. */
+#include "csg_testing.h"
+#include "item_testing.h"
+
+#include "verify/failure.h"
+#include "verify/spread.h"
+
+/* A row of balls, and rays along it. */
+enum { BALLS = 200, RAYS = 8 };
+
+typedef struct Row {
+    RtScene scene;
+    RtRay rays[RAYS];
+} Row;
+
+static void make_row(Row *row) {
+    RtScene *scene = &row->scene;
+    RtCsgBuilder b = {0};
+    begin_scene(scene);
+    RtCsgTerm balls = ball(&b, rt_vec3(0, 0, 0), 1, 0);
+    for (int i = 1; i < BALLS; i++) balls = join(&b, balls, ball(&b, rt_vec3(3 * (float)i, 0, 0), 1, 0));
+    assert_ok(rt_scene_add_csg(scene, &b, balls, true, error));
+    rt_csg_builder_clear(&b);
+    assert_ok(rt_scene_add_light(scene, rt_vec3(0, 0, 9), rt_vec3(1, 1, 1), error));
+    look(scene, rt_vec3(-50, 0, 0), rt_vec3(0, 0, 0));
+    scene->camera.fov = 1;
+    scene->camera.width = scene->camera.height = RAYS;
+    assert_ok(rt_scene_finish(scene, error));
+    assert_int_equal(scene->geometry.csgs[0].most_crossings, 4 * BALLS);
+    for (int i = 0; i < RAYS; i++) {
+        row->rays[i] = ray_along(rt_vec3(-50, 0, 0.25f * (float)i), along_x);
+        row->rays[i].kind = RT_RAY_RANDOM;
+    }
+}
+
+static bool meets(const RtScene *scene, const RtRay *ray, float *t) {
+    RtPreparedRay prepared;
+    rt_hit_ray(&prepared, &scene->geometry, ray, room_of_tests());
+    return rt_object_hit(&scene->geometry, 0, &prepared, t, NULL);
+}
+
+/* ---- room ---- */
+
+static void the_room_for_hits_is_had_or_it_is_a_status(void **state) {
+    (void)state;
+    Row row;
+    RtError failure;
+    RtGeometry empty = {0};
+    RtCrossing *room = room_of_tests();
+    assert_ok(rt_hit_room(&empty, &room, error));
+    assert_null(room);
+    make_row(&row);
+    rt_alloc_fail_at(1);
+    assert_int_equal(rt_hit_room(&row.scene.geometry, &room, &failure), RT_NO_MEMORY);
+    assert_null(room);
+    /* So many that it is not known how many. */
+    row.scene.geometry.csgs[0].most_crossings = UINT32_MAX;
+    assert_int_equal(rt_hit_room(&row.scene.geometry, &room, &failure), RT_NO_MEMORY);
+    assert_null(room);
+    rt_scene_clear(&row.scene);
+}
+
+/* Asks all four kernels, and for a normal, while not one allocation may be made. */
+static void trace_without_memory(const char *spec, Row *row, const RtHit *expected) {
+    RtAccel *accel;
+    RtQuery query;
+    RtError unavailable;
+    RtHit hits[2][RAYS];
+    bool blocked[2][RAYS];
+    RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+    if (rt_accel_open(spec, &row->scene, &accel, &unavailable) == RT_NOT_AVAILABLE) return;
+    assert_ok(rt_accel_learn(accel, row->rays, expected, RAYS, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    rt_alloc_fail_at(1);
+    for (int counted = 0; counted < 2; counted++) {
+        rt_query_begin(&query);
+        rt_nearest(&query, row->rays, RAYS, hits[counted], counted ? tallies : NULL);
+        rt_occluded(&query, row->rays, RAYS, blocked[counted], counted ? tallies : NULL);
+    }
+    RtCrossing *room = rt_query_room(&query);
+    RtNormals normals = rt_object_normals(&row->scene.geometry, 0, &row->rays[0], expected[0].t, room);
+    assert_null(rt_alloc(1, 1)); /* the first one asked for */
+    assert_true(normals.geometric.x == -1);
+    for (int i = 0; i < RAYS; i++) {
+        for (int counted = 0; counted < 2; counted++) {
+            bool same = hits[counted][i].object == expected[i].object && hits[counted][i].t == expected[i].t;
+            if (!same) fail_msg("%s: ray %d", spec, i);
+            assert_int_equal(blocked[counted][i], expected[i].object != RT_NO_OBJECT);
+        }
+    }
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+}
+
+static void nothing_is_allocated_while_tracing(void **state) {
+    (void)state;
+    Row row;
+    RtHit expected[RAYS];
+    make_row(&row);
+    for (int i = 0; i < RAYS; i++) {
+        expected[i] = RT_MISS;
+        if (meets(&row.scene, &row.rays[i], &expected[i].t)) expected[i].object = 0;
+        assert_int_equal(expected[i].object == 0, i < 4);
+    }
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        assert_true(rt_spread_spec(rt_accel_at(i), 0, spec));
+        trace_without_memory(spec, &row, expected);
+    }
+    rt_scene_clear(&row.scene);
+}
+
+/* ---- every allocation that fails ---- */
+
+/* Each gives what it does, after a failure nothing. */
+typedef RtStatus Work(const Row *row, RtError *error);
+
+/* Nothing but RT_NO_MEMORY until all memory is there; the room for crossings is asked for. */
+static void assert_every_shortage_is_a_status(Work *work, const Row *row) {
+    int64_t live = rt_alloc_live();
+    bool crossings = false;
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status != RT_OK && n < 10000; n++) {
+        RtError error = {RT_OK, ""};
+        rt_alloc_fail_at(n);
+        status = work(row, &error);
+        rt_alloc_fail_at(0);
+        crossings |= strstr(error.message, "the crossings of a ray") != NULL;
+        assert_true(status == RT_OK || status == RT_NO_MEMORY);
+        assert_true(rt_alloc_live() == live);
+    }
+    assert_int_equal(status, RT_OK);
+    assert_true(crossings);
+}
+
+static RtStatus trace_frame(const Row *row, RtError *error) {
+    RtAccel *brute;
+    RtFrame frame;
+    RtFrameOptions options = {.depth = 1, .threads = 1};
+    RT_TRY(rt_accel_open("brute", &row->scene, &brute, error));
+    RtStatus status = rt_frame_trace(&frame, brute, &options, error);
+    for (size_t i = 0; status == RT_OK && i < (size_t)RAYS * RAYS; i++) {
+        assert_int_equal(frame.object[i], 0);
+    }
+    if (status == RT_OK) rt_frame_clear(&frame);
+    rt_accel_destroy(brute);
+    return status;
+}
+
+static RtStatus build_item(const Row *row, RtError *error) {
+    RtAccel *accel;
+    RT_TRY(rt_accel_open("item+brute", &row->scene, &accel, error));
+    const RtItemBuffer *buffer = (const RtItemBuffer *)accel;
+    for (size_t i = 0; i < rt_item_sample_count(buffer); i++) assert_int_equal(buffer->samples[i].id, 0);
+    RtStatus status = accel->ops->validate(accel, error);
+    rt_accel_destroy(accel);
+    return status;
+}
+
+static RtStatus ask(const Row *row, RtError *error) {
+    RtAnswer answer;
+    RtFailure failure = {.rays = row->rays, .count = RAYS, .stream = RAYS};
+    RT_TRY(rt_failure_ask(&failure, &row->scene, rt_maker_of_spec("item+grid"), &answer, error));
+    assert_int_equal(answer.expected.object, 0);
+    assert_false(answer.wrong);
+    return RT_OK;
+}
+
+static RtStatus stack_of_overlays(const Row *row, RtError *error) {
+    RtAccel *accel;
+    RtQuery query;
+    RT_TRY(rt_accel_open("cache+light+bvh", &row->scene, &accel, error));
+    RtStatus status = rt_query_init(&query, accel, error);
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    return status;
+}
+
+static void no_shortage_of_memory_becomes_a_miss(void **state) {
+    (void)state;
+    Row row;
+    make_row(&row);
+    assert_every_shortage_is_a_status(trace_frame, &row);
+    assert_every_shortage_is_a_status(build_item, &row);
+    assert_every_shortage_is_a_status(ask, &row);
+    assert_every_shortage_is_a_status(stack_of_overlays, &row);
+    rt_scene_clear(&row.scene);
+}
+
+RT_TEST_GROUP(csg_memory) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_room_for_hits_is_had_or_it_is_a_status),
+        cmocka_unit_test(nothing_is_allocated_while_tracing),
+        cmocka_unit_test(no_shortage_of_memory_becomes_a_miss),
+    };
+    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
+}

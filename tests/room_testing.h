@@ -1,0 +1,12 @@
+/* Room for the hit functions of tests that ask them directly, one thread at a time. */
+#ifndef RT_TESTS_ROOM_TESTING_H
+#define RT_TESTS_ROOM_TESTING_H
+
+#include "shape/csg.h"
+
+static inline RtCrossing *room_of_tests(void) {
+    static RtCrossing room[1 << 16];
+    return room;
+}
+
+#endif
