@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 7,
      .meaning = "levels below the root: (9^(size+1) - 1) / 8 spheres",
      .source = "SPD: 7381 spheres",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 enum { CHILDREN = 9 };

@@ -13,7 +13,7 @@
 #define RT_BUILTIN_SEED                                                                                      \
     {                                                                                                        \
         .name = "seed", .type = RT_PARAM_INT, .standard = "1", .lo = 0, .hi = 1e15,                          \
-        .meaning = "of the random numbers", .source = "any", .tries = "1"                                    \
+        .meaning = "of the random numbers", .source = "any", .test_values = "1"                              \
     }
 
 typedef struct RtBuiltin {

@@ -18,7 +18,7 @@ static const RtParam params[] = {
               .hi = 150,
               .meaning = "blocks along each edge of the city, of about 600 objects each",
               .source = "tens of thousands of objects",
-              .tries = "1|3"},
+              .test_values = "1|3"},
     [SEED] = RT_BUILTIN_SEED,
 };
 

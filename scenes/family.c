@@ -323,7 +323,7 @@ static const RtParam params[] = {
      .choices = RECIPES(AS_CHOICE) + 1, /* without the first bar */
      .meaning = "what is hard about it",
      .source = "any",
-     .tries = "mixed"},
+     .test_values = "mixed"},
 };
 enum { SEED, KIND, PARAM_COUNT };
 

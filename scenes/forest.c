@@ -20,7 +20,7 @@ static const RtParam params[] = {
            .hi = 1e6,
            .meaning = "trees, of about 1020 triangles each",
            .source = "a million triangles",
-           .tries = "1|5"},
+           .test_values = "1|5"},
     [SEED] = RT_BUILTIN_SEED,
 };
 

@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 100,
      .meaning = "gears along an edge: 146 size^3 + 1 polygons",
      .source = "SPD: 9345 polygons",
-     .tries = "1|2"},
+     .test_values = "1|2"},
 };
 
 enum { TEETH = 36, CORNERS = 4 * TEETH, TOOTH = 3600 / TEETH }; /* TOOTH in tenths of a degree */

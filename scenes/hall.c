@@ -18,7 +18,7 @@ static const RtParam params[] = {
      .hi = 100,
      .meaning = "how fine round things are: a vase has 6 size x 5 size cells",
      .source = "about 280,000 triangles, like the halls that papers use",
-     .tries = "1|2"},
+     .test_values = "1|2"},
 };
 
 enum { PLASTER, LIGHT_MARBLE, DARK_MARBLE, STONE, COFFERS, GOLD, CHINA, TERRACOTTA, GLAZE, SKY, MATERIALS };

@@ -18,7 +18,7 @@ static const RtParam params[] = {
      .hi = 8,
      .meaning = "levels: (8^size - 1) / 7 jacks of 3 cylinders and 6 spheres",
      .source = "SPD: 219 cylinders, 438 spheres",
-     .tries = "1|2"},
+     .test_values = "1|2"},
 };
 
 #define ARM        0.75

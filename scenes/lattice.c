@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 400,
      .meaning = "cells along an edge: (size+1)^3 spheres, 3 size (size+1)^2 cylinders",
      .source = "SPD: 2197 spheres, 6084 cylinders",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 enum { JOINT, RODS = JOINT + 1, MATERIALS = RODS + 3 };

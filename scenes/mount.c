@@ -18,7 +18,7 @@ static const RtParam params[] = {
      .hi = 9,
      .meaning = "levels: 2 * 4^size triangles",
      .source = "SPD: 8192 triangles",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 /* A corner of a square: its place in the lattice of 2^size by 2^size squares, and its height. */

@@ -18,7 +18,7 @@ static const RtParam params[] = {
      .hi = 200,
      .meaning = "layers: 5 size (size+1) (2 size+1) spheres and as many cylinders",
      .source = "SPD: 4200 spheres and cylinders",
-     .tries = "1|2"},
+     .test_values = "1|2"},
 };
 
 enum { RINGS = 6, CORNERS = 5 };

@@ -17,7 +17,7 @@ static const RtParam params[] = {
      .hi = 20,
      .meaning = "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns",
      .source = "SPD: 5761 spheres",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 enum { ARCS = 180 }; /* of 18 degrees, each of 2^size spheres */

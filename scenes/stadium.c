@@ -17,7 +17,7 @@ static const RtParam params[] = {
               .hi = RT_TEAPOT_MAX_SIZE,
               .meaning = "cells along each edge of a patch of the teapot: 64 size^2 - 8 size triangles",
               .source = "as in the scene teapot",
-              .tries = "1|6"},
+              .test_values = "1|6"},
     [RATIO] = {.name = "ratio",
                .type = RT_PARAM_FLOAT,
                .standard = "1000",
@@ -25,7 +25,7 @@ static const RtParam params[] = {
                .hi = 1e6,
                .meaning = "the stadium is this many times as long as the teapot",
                .source = "a teapot of 25 cm in a stadium of 250 m",
-               .tries = "50|100000"},
+               .test_values = "50|100000"},
 };
 
 enum {

@@ -15,7 +15,7 @@ static const RtParam params[] = {
      .hi = RT_TEAPOT_MAX_SIZE,
      .meaning = "cells along each edge of a patch, and squares along the board: 65 size^2 - 8 size objects",
      .source = "the published tables: 9264 objects",
-     .tries = "1|6"},
+     .test_values = "1|6"},
 };
 
 enum { CHINA, LIGHT_SQUARES, DARK_SQUARES };

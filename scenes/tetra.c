@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 9,
      .meaning = "levels: 4^size triangles",
      .source = "SPD: 4096 triangles",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 static uint64_t object_count(const RtValue *values) {

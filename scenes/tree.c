@@ -16,7 +16,7 @@ static const RtParam params[] = {
      .hi = 20,
      .meaning = "levels above the trunk: 2^(size+1) - 1 cones and as many spheres",
      .source = "SPD: 4095 cones and spheres",
-     .tries = "1|3"},
+     .test_values = "1|3"},
 };
 
 #define TRUNK_RADIUS 0.15

@@ -54,7 +54,7 @@ static const RtParam params[PARAM_COUNT] = {
                      .hi = RT_MAX_SLABS,
                      .meaning = "plane sets of extent=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces",
                      .source = "Kay & Kajiya 1986",
-                     .tries = "3|13"},
+                     .test_values = "3|13"},
     [PARAM_WIDTH] = {.name = "width",
                      .type = RT_PARAM_INT,
                      .standard = "2",
@@ -62,7 +62,7 @@ static const RtParam params[PARAM_COUNT] = {
                      .hi = RT_NODE_MAX_WIDTH,
                      .meaning = "most children of a node: the largest are opened into their parents",
                      .source = "clustering makes binary trees",
-                     .tries = "3|4|16"},
+                     .test_values = "3|4|16"},
     [PARAM_LEAF] = {.name = "leaf",
                     .type = RT_PARAM_INT,
                     .standard = "1",
@@ -70,7 +70,7 @@ static const RtParam params[PARAM_COUNT] = {
                     .hi = 1024,
                     .meaning = "most objects of a leaf; several share one where that costs no more by SAH",
                     .source = "an extent about every object",
-                    .tries = "2|8|64"},
+                    .test_values = "2|8|64"},
     [PARAM_TRAVERSAL_ORDER] = {.name = "traversal_order",
                                .type = RT_PARAM_CHOICE,
                                .standard = "nearest",
@@ -84,7 +84,7 @@ static const RtParam params[PARAM_COUNT] = {
                       .hi = 1024,
                       .meaning = "method=ploc: neighbours searched on either side",
                       .source = "Meister & Bittner 2018",
-                      .tries = "1|100"},
+                      .test_values = "1|100"},
     [PARAM_ORDER] = {.name = "order",
                      .type = RT_PARAM_CHOICE,
                      .standard = "random",
@@ -99,7 +99,7 @@ static const RtParam params[PARAM_COUNT] = {
                      .meaning =
                          "method=goldsmith-salmon: orders tried, all but the first random; the best is kept",
                      .source = "Goldsmith & Salmon 1987",
-                     .tries = "3"},
+                     .test_values = "3"},
     [PARAM_SEED] = {.name = "seed",
                     .type = RT_PARAM_INT,
                     .standard = "1",
@@ -107,7 +107,7 @@ static const RtParam params[PARAM_COUNT] = {
                     .hi = 1e9,
                     .meaning = "method=goldsmith-salmon: seed of the random orders",
                     .source = "any",
-                    .tries = "2"},
+                    .test_values = "2"},
 };
 
 /* ---- build ---- */

@@ -30,7 +30,7 @@ static const RtParam params[PARAM_COUNT] = {
      .hi = RT_MAX_SLABS,
      .meaning = "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",
      .source = "Kay & Kajiya 1986",
-     .tries = "3|5|7|13"},
+     .test_values = "3|5|7|13"},
 };
 
 static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {

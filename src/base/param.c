@@ -69,9 +69,9 @@ void rt_param_range(const RtParam *param, char *out, size_t room) {
 }
 
 bool rt_param_try(const RtParam *param, size_t n, char *out, size_t room) {
-    const char *list = param->type == RT_PARAM_FLAG && !param->tries     ? "on|off"
-                       : param->type == RT_PARAM_CHOICE && !param->tries ? param->choices
-                                                                         : param->tries;
+    const char *list = param->type == RT_PARAM_FLAG && !param->test_values     ? "on|off"
+                       : param->type == RT_PARAM_CHOICE && !param->test_values ? param->choices
+                                                                               : param->test_values;
     size_t length;
     const char *text = piece(list, n, &length);
     if (text) snprintf(out, room, "%.*s", (int)length, text);

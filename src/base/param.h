@@ -26,12 +26,12 @@ typedef enum RtParamType {
 typedef struct RtParam {
     const char *name;
     RtParamType type;
-    const char *standard; /* the default, as text */
-    double lo, hi;        /* range of a number, inclusive */
-    const char *choices;  /* "box|sphere|obb" for RT_PARAM_CHOICE, else NULL */
-    const char *meaning;  /* one line; units where there are any */
-    const char *source;   /* where the default comes from */
-    const char *tries;    /* values worth testing, "1|4|20"; NULL for choices and flags: all of them */
+    const char *standard;    /* the default, as text */
+    double lo, hi;           /* range of a number, inclusive */
+    const char *choices;     /* "box|sphere|obb" for RT_PARAM_CHOICE, else NULL */
+    const char *meaning;     /* one line; units where there are any */
+    const char *source;      /* where the default comes from */
+    const char *test_values; /* values worth testing, "1|4|20"; NULL for choices and flags: all of them */
 } RtParam;
 
 typedef union RtValue {
@@ -57,7 +57,7 @@ void rt_param_format(const RtParam *param, RtValue value, char *out, size_t room
 /* The range or the choices as text: "1..4096", "box|sphere", "on|off", "auto | NxNxN". */
 void rt_param_range(const RtParam *param, char *out, size_t room);
 
-/* The `n`th value worth testing, as text, from `tries` or all choices; false when there are no more. */
+/* The `n`th value worth testing, as text, from `test_values` or all choices; false when there are no more. */
 bool rt_param_try(const RtParam *param, size_t n, char *out, size_t room);
 
 #endif
