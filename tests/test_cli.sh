@@ -167,8 +167,8 @@ refuses "'grd': did you mean 'grid'" render balls:size=1 --accel grd -o x.png
 refuses "densty.*density" render balls:size=1 --accel grid:densty=4 -o x.png
 refuses "density=1e9.*\.\." render balls:size=1 --accel grid:density=1e9 -o x.png
 refuses "density.*twice" render balls:size=1 --accel grid:density=2,density=3 -o x.png
-refuses "leaf=1000000000.*1\.\." render balls:size=1 --accel bvh:leaf=1000000000 -o x.png
-refuses "leaf=" render balls:size=1 --accel bvh:leaf= -o x.png
+refuses "max_leaf_size=1000000000.*1\.\." render balls:size=1 --accel bvh:max_leaf_size=1000000000 -o x.png
+refuses "max_leaf_size=" render balls:size=1 --accel bvh:max_leaf_size= -o x.png
 refuses "NAME\[:KEY=VALUE" render balls:size=1 --accel '' -o x.png
 
 # ---- sizes, numbers, outputs ----

@@ -26,8 +26,8 @@ enum {
     PARAM_ALPHA,
     PARAM_BUDGET,
     PARAM_MAILBOX,
-    PARAM_LEAF,
-    PARAM_TRAVERSAL,
+    PARAM_MAX_LEAF_SIZE,
+    PARAM_TRAVERSAL_COST,
     PARAM_REINSERTION,
     PARAM_COUNT
 };
@@ -88,22 +88,22 @@ static const RtParam params[PARAM_COUNT] = {
                        .standard = "on",
                        .meaning = "build=spatial: do not test an object twice for one ray",
                        .source = "Kirk & Arvo 1991"},
-    [PARAM_LEAF] = {.name = "leaf",
-                    .type = RT_PARAM_INT,
-                    .standard = "8",
-                    .lo = 1,
-                    .hi = 1024,
-                    .meaning = "most objects a leaf may hold",
-                    .source = "measured: no better beyond",
-                    .test_values = "1|2|64"},
-    [PARAM_TRAVERSAL] = {.name = "traversal",
-                         .type = RT_PARAM_FLOAT,
-                         .standard = "1",
-                         .lo = 0,
-                         .hi = 1000,
-                         .meaning = "cost of visiting an inner node, in object tests",
-                         .source = "MacDonald & Booth 1990",
-                         .test_values = "0|0.1|10"},
+    [PARAM_MAX_LEAF_SIZE] = {.name = "max_leaf_size",
+                             .type = RT_PARAM_INT,
+                             .standard = "8",
+                             .lo = 1,
+                             .hi = 1024,
+                             .meaning = "most objects a leaf may hold",
+                             .source = "measured: no better beyond",
+                             .test_values = "1|2|64"},
+    [PARAM_TRAVERSAL_COST] = {.name = "traversal_cost",
+                              .type = RT_PARAM_FLOAT,
+                              .standard = "1",
+                              .lo = 0,
+                              .hi = 1000,
+                              .meaning = "cost of visiting an inner node, in object tests",
+                              .source = "MacDonald & Booth 1990",
+                              .test_values = "0|0.1|10"},
     [PARAM_REINSERTION] = {.name = "reinsertion",
                            .type = RT_PARAM_INT,
                            .standard = "0",
@@ -129,8 +129,8 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     RtSpatial how = {.bins = (int)values[PARAM_BINS].i,
                      .alpha = values[PARAM_ALPHA].f,
                      .budget = values[PARAM_BUDGET].f,
-                     .leaf = (uint32_t)values[PARAM_LEAF].i,
-                     .traversal = values[PARAM_TRAVERSAL].f,
+                     .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                     .traversal = values[PARAM_TRAVERSAL_COST].f,
                      .limit = what->limit};
     switch ((Build)values[PARAM_BUILD].choice) {
     case BINNED: break;
@@ -160,8 +160,8 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     RT_TRY(rt_accel_new(what, sizeof(RtBvh), &accel, error));
     RtHierarchy *hierarchy = &((RtBvh *)accel)->hierarchy;
     *hierarchy = (RtHierarchy){.width = 2,
-                               .leaf_limit = (uint32_t)values[PARAM_LEAF].i,
-                               .traversal_cost = values[PARAM_TRAVERSAL].f};
+                               .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                               .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
     ((RtBvh *)accel)->mailbox = values[PARAM_MAILBOX].flag;
     RtStatus status = fill(hierarchy, what, error);
     if (status == RT_OK)

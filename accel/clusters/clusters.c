@@ -24,11 +24,11 @@ enum {
     PARAM_EXTENT,
     PARAM_SLABS,
     PARAM_WIDTH,
-    PARAM_LEAF,
+    PARAM_MAX_LEAF_SIZE,
     PARAM_TRAVERSAL_ORDER,
     PARAM_RADIUS,
     PARAM_ORDER,
-    PARAM_TRIES,
+    PARAM_PERMUTATIONS,
     PARAM_SEED,
     PARAM_COUNT
 };
@@ -63,14 +63,15 @@ static const RtParam params[PARAM_COUNT] = {
                      .meaning = "most children of a node: the largest are opened into their parents",
                      .source = "clustering makes binary trees",
                      .test_values = "3|4|16"},
-    [PARAM_LEAF] = {.name = "leaf",
-                    .type = RT_PARAM_INT,
-                    .standard = "1",
-                    .lo = 1,
-                    .hi = 1024,
-                    .meaning = "most objects of a leaf; several share one where that costs no more by SAH",
-                    .source = "an extent about every object",
-                    .test_values = "2|8|64"},
+    [PARAM_MAX_LEAF_SIZE] = {.name = "max_leaf_size",
+                             .type = RT_PARAM_INT,
+                             .standard = "1",
+                             .lo = 1,
+                             .hi = 1024,
+                             .meaning =
+                                 "most objects of a leaf; several share one where that costs no more by SAH",
+                             .source = "an extent about every object",
+                             .test_values = "2|8|64"},
     [PARAM_TRAVERSAL_ORDER] = {.name = "traversal_order",
                                .type = RT_PARAM_CHOICE,
                                .standard = "nearest",
@@ -91,15 +92,15 @@ static const RtParam params[PARAM_COUNT] = {
                      .choices = "given|random",
                      .meaning = "method=goldsmith-salmon: order of insertion, that of ids or a random one",
                      .source = "Goldsmith & Salmon 1987"},
-    [PARAM_TRIES] = {.name = "tries",
-                     .type = RT_PARAM_INT,
-                     .standard = "1",
-                     .lo = 1,
-                     .hi = 1000,
-                     .meaning =
-                         "method=goldsmith-salmon: orders tried, all but the first random; the best is kept",
-                     .source = "Goldsmith & Salmon 1987",
-                     .test_values = "3"},
+    [PARAM_PERMUTATIONS] =
+        {.name = "permutations",
+         .type = RT_PARAM_INT,
+         .standard = "1",
+         .lo = 1,
+         .hi = 1000,
+         .meaning = "method=goldsmith-salmon: orders tried, all but the first random; the best is kept",
+         .source = "Goldsmith & Salmon 1987",
+         .test_values = "3"},
     [PARAM_SEED] = {.name = "seed",
                     .type = RT_PARAM_INT,
                     .standard = "1",
@@ -122,7 +123,7 @@ static void destroy(RtAccel *accel) {
 static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValue *values, RtError *error) {
     const RtBox *boxes = geometry->boxes;
     uint32_t count = geometry->object_count;
-    const RtInsertionOrder order = {values[PARAM_ORDER].choice == 1, (uint32_t)values[PARAM_TRIES].i,
+    const RtInsertionOrder order = {values[PARAM_ORDER].choice == 1, (uint32_t)values[PARAM_PERMUTATIONS].i,
                                     (uint64_t)values[PARAM_SEED].i};
     switch ((Method)values[PARAM_METHOD].choice) {
     case AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
@@ -170,7 +171,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     RT_TRY(rt_accel_new(what, sizeof(RtClusters), &accel, error));
     RtClusters *self = (RtClusters *)accel;
     self->hierarchy = (RtHierarchy){.width = (uint32_t)values[PARAM_WIDTH].i,
-                                    .leaf_limit = (uint32_t)values[PARAM_LEAF].i,
+                                    .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                     .traversal_cost = 1};
     self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
     RtStatus status = fill(self, values, error);

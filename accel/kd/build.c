@@ -12,14 +12,14 @@
 enum { OVERLAP_BOX, OVERLAP_EXACT };
 
 const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
-    [RT_KD_TRAVERSAL] = {.name = "traversal",
-                         .type = RT_PARAM_FLOAT,
-                         .standard = "0.3",
-                         .lo = 0,
-                         .hi = 1000,
-                         .meaning = "cost of visiting an inner node, in object tests",
-                         .source = "measured",
-                         .test_values = "0|1|10"},
+    [RT_KD_TRAVERSAL_COST] = {.name = "traversal_cost",
+                              .type = RT_PARAM_FLOAT,
+                              .standard = "0.3",
+                              .lo = 0,
+                              .hi = 1000,
+                              .meaning = "cost of visiting an inner node, in object tests",
+                              .source = "measured",
+                              .test_values = "0|1|10"},
     [RT_KD_EMPTY_BONUS] = {.name = "empty_bonus",
                            .type = RT_PARAM_FLOAT,
                            .standard = "0.2",
@@ -28,14 +28,14 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
                            .meaning = "part of its cost that a split is forgiven for cutting off empty space",
                            .source = "Wald & Havran 2006",
                            .test_values = "0|0.5|1"},
-    [RT_KD_MAX_OBJECTS] = {.name = "max_objects",
-                           .type = RT_PARAM_INT,
-                           .standard = "0",
-                           .lo = 0,
-                           .hi = 1e6,
-                           .meaning = "a cell with at most so many objects is not divided",
-                           .source = "Wald & Havran 2006: the cost alone decides",
-                           .test_values = "1|2|1000000"},
+    [RT_KD_MAX_LEAF_SIZE] = {.name = "max_leaf_size",
+                             .type = RT_PARAM_INT,
+                             .standard = "0",
+                             .lo = 0,
+                             .hi = 1e6,
+                             .meaning = "a cell with at most so many objects is not divided",
+                             .source = "Wald & Havran 2006: the cost alone decides",
+                             .test_values = "1|2|1000000"},
     [RT_KD_MAX_DEPTH] = {.name = "max_depth",
                          .type = RT_PARAM_INT,
                          .standard = "-1",
@@ -170,7 +170,8 @@ static RtStatus make_inner(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit
 static RtStatus divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
     const RtKd *kd = b->kd;
     if (cell->depth > kd->max_depth) return RT_OK; /* for it has been lowered */
-    if (cell->ids.count <= kd->max_objects || cell->depth == kd->max_depth) return make_leaf(b, cell, error);
+    if (cell->ids.count <= kd->max_leaf_size || cell->depth == kd->max_depth)
+        return make_leaf(b, cell, error);
     RtKdSplit split = rt_kd_find_split(b, cell);
     bool saves = split.cost < cell->ids.count * rt_box_half_area(cell->box);
     if (!saves && (split.cost == INFINITY || cell->failures == kd->failures))
@@ -250,9 +251,9 @@ RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtKd), &accel, error));
     RtKd *kd = (RtKd *)accel;
-    kd->traversal = values[RT_KD_TRAVERSAL].f;
+    kd->traversal_cost = values[RT_KD_TRAVERSAL_COST].f;
     kd->empty_bonus = values[RT_KD_EMPTY_BONUS].f;
-    kd->max_objects = (uint32_t)values[RT_KD_MAX_OBJECTS].i;
+    kd->max_leaf_size = (uint32_t)values[RT_KD_MAX_LEAF_SIZE].i;
     kd->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
     kd->failures = (uint32_t)values[RT_KD_FAILURES].i;
     kd->mailbox = values[RT_KD_MAILBOX].flag;

@@ -16,9 +16,9 @@
 #include "accel/surface.h"
 
 enum {
-    RT_KD_TRAVERSAL,
+    RT_KD_TRAVERSAL_COST,
     RT_KD_EMPTY_BONUS,
-    RT_KD_MAX_OBJECTS,
+    RT_KD_MAX_LEAF_SIZE,
     RT_KD_MAX_DEPTH,
     RT_KD_FAILURES,
     RT_KD_OVERLAP,
@@ -47,8 +47,8 @@ typedef struct RtKd {
     uint32_t *ids;   /* [id_count] */
     uint32_t node_count, id_count;
     RtBox box; /* the cell of the root */
-    double traversal, empty_bonus;
-    uint32_t max_objects, max_depth, failures;
+    double traversal_cost, empty_bonus;
+    uint32_t max_leaf_size, max_depth, failures;
     bool mailbox;
     bool surfaces; /* overlap=exact */
     RtSurfaceRays served;

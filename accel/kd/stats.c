@@ -67,7 +67,7 @@ void rt_kd_describe(const RtAccel *accel, RtDescription *out) {
     if (kd->node_count == 0 || !(area > 0)) return;
     out->predicted_tests = sums.tests / area;
     out->predicted_steps = (sums.inner + sums.leaves) / area;
-    out->predicted_cost = (sums.tests + kd->traversal * sums.inner) / area;
+    out->predicted_cost = (sums.tests + kd->traversal_cost * sums.inner) / area;
 }
 
 /* ---- validate ---- */

@@ -66,7 +66,7 @@ static void sweep(Sweep *s, const RtKdEvent *events, uint32_t count, uint32_t ob
 
 RtKdSplit rt_kd_find_split(const RtKdBuilder *b, const RtKdCell *cell) {
     RtVec3d size = rt_subd(rt_widen(cell->box.hi), rt_widen(cell->box.lo));
-    Sweep s = {.visit = b->kd->traversal * rt_box_half_area(cell->box),
+    Sweep s = {.visit = b->kd->traversal_cost * rt_box_half_area(cell->box),
                .emptied = 1 - b->kd->empty_bonus,
                .best = {.cost = INFINITY}};
     for (uint32_t a = 0; a < 3; a++) {

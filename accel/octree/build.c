@@ -5,14 +5,14 @@
 #include "base/memory.h"
 
 const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {
-    [RT_OCTREE_MAX_OBJECTS] = {.name = "max_objects",
-                               .type = RT_PARAM_INT,
-                               .standard = "1",
-                               .lo = 1,
-                               .hi = 1e6,
-                               .meaning = "a cell with at most so many objects is not divided",
-                               .source = "Havran 1999, RTN 12(2)",
-                               .test_values = "2|1000000"},
+    [RT_OCTREE_MAX_LEAF_SIZE] = {.name = "max_leaf_size",
+                                 .type = RT_PARAM_INT,
+                                 .standard = "1",
+                                 .lo = 1,
+                                 .hi = 1e6,
+                                 .meaning = "a cell with at most so many objects is not divided",
+                                 .source = "Havran 1999, RTN 12(2)",
+                                 .test_values = "2|1000000"},
     [RT_OCTREE_MAX_DEPTH] = {.name = "max_depth",
                              .type = RT_PARAM_INT,
                              .standard = "-1",
@@ -129,7 +129,7 @@ RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtOctree), &accel, error));
     RtOctree *tree = (RtOctree *)accel;
-    tree->max_objects = (uint32_t)values[RT_OCTREE_MAX_OBJECTS].i;
+    tree->max_leaf_size = (uint32_t)values[RT_OCTREE_MAX_LEAF_SIZE].i;
     tree->max_depth = depth < 0 ? usual_depth(g->object_count) : (uint32_t)depth;
     tree->split = values[RT_OCTREE_SPLIT].choice;
     tree->traversal = values[RT_OCTREE_TRAVERSAL].choice;

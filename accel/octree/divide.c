@@ -80,7 +80,7 @@ bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *
 }
 
 bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count) {
-    return count > b->tree->max_objects && b->depth < b->tree->max_depth &&
+    return count > b->tree->max_leaf_size && b->depth < b->tree->max_depth &&
            rt_octree_divisible(b->tree, b->objects, cell, ids, count);
 }
 
@@ -88,9 +88,10 @@ bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32
 
 RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error) {
     return rt_fail(error, RT_BAD_INPUT,
-                   "an octree of max_depth=%u, max_objects=%u would take about %.3g GiB or more, more than "
+                   "an octree of max_depth=%u, max_leaf_size=%u would take about %.3g GiB or more, more than "
                    "%.3g GiB: max_depth=%u would fit",
-                   b->tree->max_depth, b->tree->max_objects, bytes / 0x1p30, (double)b->limit / 0x1p30, fits);
+                   b->tree->max_depth, b->tree->max_leaf_size, bytes / 0x1p30, (double)b->limit / 0x1p30,
+                   fits);
 }
 
 /* Makes room for `nodes` more nodes, `ids` more entries of leaves and `next` more of the next level. */

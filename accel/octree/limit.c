@@ -30,7 +30,7 @@ static void add(Estimate *estimate, uint32_t from, uint32_t to, double bytes) {
 }
 
 static bool is_long(const RtOctreeBuilder *b, uint32_t index) {
-    return b->tree->nodes[index].count > b->tree->max_objects;
+    return b->tree->nodes[index].count > b->tree->max_leaf_size;
 }
 
 /* Bytes of the tree that is cut off at the current level, nodes [from, to). */
@@ -116,7 +116,7 @@ RtStatus rt_octree_check_limit(const RtOctreeBuilder *b, uint32_t from, uint32_t
     if (b->depth == max_depth || candidates < PROBES || bytes < CHEAP * limit) return RT_OK;
 
     Estimate estimate = {{0}, {0}};
-    RtOctree tree = {.max_objects = b->tree->max_objects,
+    RtOctree tree = {.max_leaf_size = b->tree->max_leaf_size,
                      .max_depth = max_depth,
                      .split = b->tree->split,
                      .slack = b->tree->slack,

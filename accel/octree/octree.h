@@ -15,7 +15,7 @@
 #include "accel/accel.h"
 
 enum {
-    RT_OCTREE_MAX_OBJECTS,
+    RT_OCTREE_MAX_LEAF_SIZE,
     RT_OCTREE_MAX_DEPTH,
     RT_OCTREE_SPLIT,
     RT_OCTREE_MARGIN,
@@ -53,7 +53,7 @@ typedef struct RtOctree {
     RtBox *boxes;        /* [node_count] their cells */
     uint32_t *ids;       /* [id_count] */
     uint32_t node_count, id_count;
-    uint32_t max_objects, max_depth, split, traversal;
+    uint32_t max_leaf_size, max_depth, split, traversal;
     bool mailbox, cut_filled;
     double slack, flat; /* how objects' boxes are grown: rt_octree_grown */
 } RtOctree;

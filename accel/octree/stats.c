@@ -141,7 +141,7 @@ static RtStatus check_list(const Check *check, uint32_t index) {
         }
         check->listed[ids[i]]++;
     }
-    if (leaf->count > tree->max_objects && depth_of(tree, index) < tree->max_depth &&
+    if (leaf->count > tree->max_leaf_size && depth_of(tree, index) < tree->max_depth &&
         rt_octree_divisible(tree, g->boxes, &tree->boxes[index], ids, leaf->count)) {
         return rt_fail(check->error, RT_MISMATCH, "octree: leaf %u holds %u objects and could be divided",
                        index, leaf->count);

@@ -92,7 +92,7 @@ static void build_all(RtTree *tree, RtTree *spare, Insertion *insertion, const R
     insertion->tree = tree;
     build_once(insertion, order, 0);
     double best = rt_tree_cost(tree);
-    for (uint32_t attempt = 1; attempt < order->tries; attempt++) {
+    for (uint32_t attempt = 1; attempt < order->permutations; attempt++) {
         insertion->tree = spare;
         build_once(insertion, order, attempt);
         double cost = rt_tree_cost(spare);
@@ -107,7 +107,7 @@ static void build_all(RtTree *tree, RtTree *spare, Insertion *insertion, const R
 static RtStatus complete(RtTree *tree, const RtBox *boxes, uint32_t count, const RtInsertionOrder *order,
                          RtError *error) {
     RtTree spare = {.nodes = NULL};
-    if (order->tries > 1) RT_TRY(rt_tree_init_leaves(&spare, boxes, count, error));
+    if (order->permutations > 1) RT_TRY(rt_tree_init_leaves(&spare, boxes, count, error));
     Insertion insertion = {NULL, rt_alloc(tree->capacity, sizeof(uint32_t)),
                            rt_alloc(count, sizeof(uint32_t)), count};
     bool enough = insertion.parent && insertion.order;

@@ -92,8 +92,8 @@ RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t
 RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, RtError *error);
 
 typedef struct RtInsertionOrder {
-    bool random;    /* the first try, too, is a random permutation; else it is the order of ids */
-    uint32_t tries; /* permutations tried; the cheapest tree is kept */
+    bool random;           /* the first try, too, is a random permutation; else it is the order of ids */
+    uint32_t permutations; /* tried; the cheapest tree is kept */
     uint64_t seed;
 } RtInsertionOrder;
 

@@ -33,7 +33,7 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     (void)state;
     RtScene scene;
     make_row(&scene, 16, 3);
-    RtBvh *bvh = make_bvh(&scene, "bvh:leaf=1");
+    RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1");
     RtHierarchy *hierarchy = &bvh->hierarchy;
 
     RtNode root = hierarchy->nodes[0];
@@ -59,7 +59,7 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     rt_scene_clear(&scene);
 
     make_row(&scene, 2, 0);
-    bvh = make_bvh(&scene, "bvh:leaf=2");
+    bvh = make_bvh(&scene, "bvh:max_leaf_size=2");
     hierarchy = &bvh->hierarchy;
     uint32_t *ids = hierarchy->ids;
     ids[1] = ids[0];
@@ -81,7 +81,7 @@ static void validate_names_a_node_that_is_too_deep(void **state) {
     (void)state;
     RtScene scene;
     make_row(&scene, RT_TREE_MAX_DEPTH + 3, 0);
-    RtBvh *bvh = make_bvh(&scene, "bvh:leaf=1");
+    RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1");
     RtNode *nodes = bvh->hierarchy.nodes;
     RtBox box = nodes[0].box;
     for (uint32_t i = 0; i + 1 < scene.geometry.object_count; i++) {
@@ -102,7 +102,7 @@ static void coincident_objects_are_halved_within_the_depth_limit(void **state) {
     make_row(&scene, 1000, 0);
     for (int b = 0; b < BUILD_COUNT; b++) {
         char spec[64];
-        snprintf(spec, sizeof spec, "bvh:leaf=1,build=%s", builds[b]);
+        snprintf(spec, sizeof spec, "bvh:max_leaf_size=1,build=%s", builds[b]);
         RtBvh *bvh = make_bvh(&scene, spec);
         RtDescription description = described(bvh);
         assert_int_equal(description.leaves, 1000);
@@ -127,7 +127,7 @@ static void a_chain_of_growing_distances_stays_within_the_depth_limit(void **sta
     assert_ok(rt_scene_finish(&scene, error));
     for (int b = 0; b < BUILD_COUNT; b++) {
         char spec[64];
-        snprintf(spec, sizeof spec, "bvh:leaf=1,build=%s", builds[b]);
+        snprintf(spec, sizeof spec, "bvh:max_leaf_size=1,build=%s", builds[b]);
         RtBvh *bvh = make_bvh(&scene, spec);
         RtDescription description = described(bvh);
         if (b < 2 || b == 4) assert_true(description.depth > 34); /* or the test would show nothing */
@@ -141,7 +141,7 @@ static void the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand(void *
     (void)state;
     RtScene scene;
     make_row(&scene, 2, 8);
-    RtBvh *bvh = make_bvh(&scene, "bvh:leaf=1,traversal=0.5");
+    RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1,traversal_cost=0.5");
     RtDescription description = described(bvh);
     /* Root 10 x 2 x 2: half area 44; each leaf 2 x 2 x 2: 12. 0.5 + 12 / 44 + 12 / 44. */
     assert_true(fabs(description.predicted_cost - (0.5 + 24.0 / 44.0)) < 1e-12);

@@ -118,9 +118,9 @@ static void the_budget_is_kept_and_used(void **state) {
     const struct {
         const char *spec;
         uint64_t least, most;
-    } rows[] = {{"bvh:build=spatial,leaf=1,budget=1", 2000, 2000},
-                {"bvh:build=spatial,leaf=1,budget=1.1", 2050, 2200},
-                {"bvh:build=spatial,leaf=1,budget=3", 2500, 6000}};
+    } rows[] = {{"bvh:build=spatial,max_leaf_size=1,budget=1", 2000, 2000},
+                {"bvh:build=spatial,max_leaf_size=1,budget=1.1", 2050, 2200},
+                {"bvh:build=spatial,max_leaf_size=1,budget=3", 2500, 6000}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         RtBvh *bvh = make_bvh(&scene, rows[i].spec);
         rt_accel_describe(&bvh->base, &description);
@@ -153,7 +153,7 @@ static void without_budget_or_overlap_it_is_the_binned_tree(void **state) {
 static void validate_misses_a_part_of_a_divided_object(void **state) {
     (void)state;
     RtScene scene = make_slivers(200, 3, 1, 0);
-    RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial,leaf=4");
+    RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial,max_leaf_size=4");
     RtHierarchy *hierarchy = &bvh->hierarchy;
     assert_true(hierarchy->divided);
     uint32_t tried = 0;
@@ -246,7 +246,8 @@ static void assert_like_brute(const RtScene *scene, const char *spec, uint64_t s
 
 static void hostile_rays_hit_like_brute(void **state) {
     (void)state;
-    const char *specs[] = {"bvh:build=spatial", "bvh:build=spatial,alpha=0,budget=16,leaf=1,traversal=0",
+    const char *specs[] = {"bvh:build=spatial",
+                           "bvh:build=spatial,alpha=0,budget=16,max_leaf_size=1,traversal_cost=0",
                            "bvh:build=spatial,reinsertion=2,mailbox=off,budget=4"};
     const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
     for (uint64_t round = 0; round < 18; round++) {

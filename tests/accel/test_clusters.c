@@ -16,7 +16,7 @@ enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
  * time. */
 static void every_combination_answers_like_brute(void **state) {
     (void)state;
-    static const char *const shapes[] = {"width=2", "width=5,leaf=4", "width=16,leaf=32"};
+    static const char *const shapes[] = {"width=2", "width=5,max_leaf_size=4", "width=16,max_leaf_size=32"};
     static const char *const kinds[] = {"box", "sphere", "obb", "slabs"};
     static const char *const families[] = {"mixed", "duplicates", "huge-beside-tiny", "mixed-far"};
     for (size_t f = 0; f < 4; f++) {
@@ -82,7 +82,7 @@ static void widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_it
 static void objects_share_a_leaf_where_that_costs_no_more(void **state) {
     (void)state;
     RtScene apart = make_row(2);
-    RtClusters *self = make_clusters(&apart, "clusters:leaf=2");
+    RtClusters *self = make_clusters(&apart, "clusters:max_leaf_size=2");
     assert_int_equal(self->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
     rt_accel_destroy(&self->base);
     rt_scene_clear(&apart);
@@ -90,7 +90,7 @@ static void objects_share_a_leaf_where_that_costs_no_more(void **state) {
     begin_scene(&scene);
     for (int i = 0; i < 2; i++) assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1, 0, 0), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    self = make_clusters(&scene, "clusters:leaf=2");
+    self = make_clusters(&scene, "clusters:max_leaf_size=2");
     assert_int_equal(self->hierarchy.node_count, 1);
     rt_accel_destroy(&self->base);
     rt_scene_clear(&scene);
@@ -195,7 +195,7 @@ static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(v
     rt_scene_clear(&scene);
 
     RtScene three = make_row(3);
-    self = make_clusters(&three, "clusters:method=rubin-whitted,leaf=3");
+    self = make_clusters(&three, "clusters:method=rubin-whitted,max_leaf_size=3");
     RtNode root = self->hierarchy.nodes[0];
     assert_int_equal(self->hierarchy.node_count, 5);
     self->hierarchy.nodes[0] = (RtNode){root.box, 0, RT_NODE_LEAF | 3};

@@ -46,28 +46,40 @@ static const Row rows[] = {
     {"item+brute", THROUGH, false, {HITS(2)}},
     {"item+brute", BESIDE, true, {.rays = 1, .object_tests = 2}},
 
-    /* bvh: an extent test per box, the root's included; a step per node visited. With leaf=1 a root and two
-     * leaves, of which leaf_steps counts the visited ones: THROUGH visits the root and the near leaf, and
-     * drops the far one, which begins at t = 4. */
-    {"bvh:leaf=1", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:leaf=1", THROUGH, true, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:leaf=1",
+    /* bvh: an extent test per box, the root's included; a step per node visited. With max_leaf_size=1 a root
+     * and two leaves, of which leaf_steps counts the visited ones: THROUGH visits the root and the near leaf,
+     * and drops the far one, which begins at t = 4. */
+    {"bvh:max_leaf_size=1", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
+    {"bvh:max_leaf_size=1", THROUGH, true, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
+    {"bvh:max_leaf_size=1",
      BETWEEN,
      false,
      {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3, .leaf_steps = 2}},
-    {"bvh:leaf=1",
+    {"bvh:max_leaf_size=1",
      BETWEEN,
      true,
      {.rays = 1, .object_tests = 2, .extent_tests = 3, .steps = 3, .leaf_steps = 2}},
-    {"bvh:leaf=1", BESIDE, false, {.rays = 1, .extent_tests = 1}},
+    {"bvh:max_leaf_size=1", BESIDE, false, {.rays = 1, .extent_tests = 1}},
     /* A visit that costs ten object tests never pays here: the root is a leaf of two. */
-    {"bvh:traversal=10", THROUGH, false, {HITS(2), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
-    {"bvh:traversal=10", THROUGH, true, {HITS(1), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
+    {"bvh:traversal_cost=10", THROUGH, false, {HITS(2), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
+    {"bvh:traversal_cost=10", THROUGH, true, {HITS(1), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
     /* However a root and two leaves are built. */
-    {"bvh:leaf=1,build=sweep", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:leaf=1,build=lbvh", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:leaf=1,build=spatial", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
-    {"bvh:leaf=1,build=ploc", THROUGH, false, {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
+    {"bvh:max_leaf_size=1,build=sweep",
+     THROUGH,
+     false,
+     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
+    {"bvh:max_leaf_size=1,build=lbvh",
+     THROUGH,
+     false,
+     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
+    {"bvh:max_leaf_size=1,build=spatial",
+     THROUGH,
+     false,
+     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
+    {"bvh:max_leaf_size=1,build=ploc",
+     THROUGH,
+     false,
+     {HITS(1), .extent_tests = 3, .steps = 2, .leaf_steps = 1}},
 
     /* clusters: a step per node visited. A root and two leaves, as of bvh; with traversal_order=fixed an
      * extent is tested when its turn comes, so `occluded` has never asked for the second leaf's. BETWEEN
@@ -206,14 +218,17 @@ static const Row rows[] = {
      BETWEEN,
      true,
      {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 5, .leaf_steps = 3, .empty_steps = 1}},
-    {"kd:max_objects=1",
+    {"kd:max_leaf_size=1",
      BETWEEN,
      false,
      {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 2}},
     /* A visit that costs ten object tests saves nothing here: the root is a leaf of two, or its children are
      * leaves if one split need not. */
-    {"kd:traversal=10,failures=0", THROUGH, false, {HITS(2), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
-    {"kd:traversal=10,failures=1",
+    {"kd:traversal_cost=10,failures=0",
+     THROUGH,
+     false,
+     {HITS(2), .extent_tests = 1, .steps = 1, .leaf_steps = 1}},
+    {"kd:traversal_cost=10,failures=1",
      BETWEEN,
      true,
      {.rays = 1, .object_tests = 2, .extent_tests = 1, .steps = 3, .leaf_steps = 2}},

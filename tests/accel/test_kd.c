@@ -51,7 +51,7 @@ static void two_spheres_are_split_as_by_hand(void **state) {
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3.5f, 0.5f, 0.5f), 0.5f, error));
     assert_ok(rt_scene_finish(&scene, error));
-    RtKd *kd = make_kd(&scene, "kd:failures=0,traversal=0.3,empty_bonus=0.2,max_objects=0");
+    RtKd *kd = make_kd(&scene, "kd:failures=0,traversal_cost=0.3,empty_bonus=0.2,max_leaf_size=0");
     assert_split(kd, 0, 0, 1);
     assert_lists(kd, 1, 1, 0);
     assert_split(kd, 2, 0, 3);
@@ -68,8 +68,8 @@ static void two_spheres_are_split_as_by_hand(void **state) {
     assert_true(fabs(d.predicted_steps - (9 + 7 + 3 + 5 + 3) / 9.0) < 1e-12);
     assert_true(fabs(d.predicted_cost - (6 + 0.3 * 16) / 9) < 1e-12);
 
-    assert_int_equal(description_of(&scene, "kd:traversal=10,failures=0").leaves, 1);
-    assert_int_equal(description_of(&scene, "kd:traversal=10,failures=1").leaves, 2);
+    assert_int_equal(description_of(&scene, "kd:traversal_cost=10,failures=0").leaves, 1);
+    assert_int_equal(description_of(&scene, "kd:traversal_cost=10,failures=1").leaves, 2);
     assert_int_equal(description_of(&scene, "kd:max_depth=1").leaves, 2);
     rt_scene_clear(&scene);
 }
@@ -83,7 +83,7 @@ static void polygons_in_a_plane_go_to_one_side_of_it(void **state) {
     add_floor(&scene, 0, 0, 0, 10);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(5, 5, 1.5f), 1, error));
     assert_ok(rt_scene_finish(&scene, error));
-    RtKd *kd = make_kd(&scene, "kd:failures=0,traversal=0.3");
+    RtKd *kd = make_kd(&scene, "kd:failures=0,traversal_cost=0.3");
     assert_split(kd, 0, 2, 0);
     assert_lists(kd, 1, 1, 0);
     assert_int_equal(kd->id_count, 2);
@@ -93,7 +93,7 @@ static void polygons_in_a_plane_go_to_one_side_of_it(void **state) {
     begin_scene(&scene);
     for (int z = 0; z < 3; z++) add_floor(&scene, 0, 0, (float)z, 10);
     assert_ok(rt_scene_finish(&scene, error));
-    kd = make_kd(&scene, "kd:traversal=0");
+    kd = make_kd(&scene, "kd:traversal_cost=0");
     assert_int_equal(kd->id_count, 3);
     rt_kd_destroy(&kd->base);
     rt_scene_clear(&scene);
@@ -127,8 +127,8 @@ static void coincident_objects_stay_in_one_leaf(void **state) {
         assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
     }
     assert_ok(rt_scene_finish(&scene, error));
-    assert_int_equal(description_of(&scene, "kd:traversal=0,failures=60,max_depth=60").leaves, 1);
-    RtDescription d = description_of(&scene, "kd:traversal=0,margin=0.5");
+    assert_int_equal(description_of(&scene, "kd:traversal_cost=0,failures=60,max_depth=60").leaves, 1);
+    RtDescription d = description_of(&scene, "kd:traversal_cost=0,margin=0.5");
     assert_int_equal(d.references, 30);
     assert_int_equal(d.empty_leaves, 6); /* one at each face */
     rt_scene_clear(&scene);
@@ -160,7 +160,7 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     (void)state;
     RtScene scene;
     make_lattice(&scene, 4, 4, 4);
-    RtKd *kd = make_kd(&scene, "kd:max_objects=4,margin=0.1");
+    RtKd *kd = make_kd(&scene, "kd:max_leaf_size=4,margin=0.1");
     RtBox box = kd->box;
     kd->box.hi.z = 1;
     assert_broken(&kd->base, "root does not contain");
@@ -216,8 +216,8 @@ static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t lim
 static void a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
     (void)state;
     static const char *const scenes[] = {"balls", "random:n=3000,radius=2", "random:n=3000,shape=mixed"};
-    static const char *const specs[] = {"traversal=0,failures=60,max_depth=40", "",
-                                        "traversal=0,failures=60,overlap=exact,empty_bonus=1"};
+    static const char *const specs[] = {"traversal_cost=0,failures=60,max_depth=40", "",
+                                        "traversal_cost=0,failures=60,overlap=exact,empty_bonus=1"};
     for (size_t i = 0; i < 9; i++) {
         const uint64_t limit = 1 << 15;
         RtScene scene;
@@ -246,9 +246,10 @@ static void a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(voi
 /* Together what the spread of the conformance test leaves at its default. */
 static void every_structure_answers_like_brute(void **state) {
     (void)state;
-    static const char *const specs[] = {
-        "kd:overlap=exact,traversal=0,failures=4", "kd:overlap=exact,max_objects=3,margin=0.3,mailbox=off",
-        "kd:traversal=0,failures=9,empty_bonus=1", "kd:overlap=exact,max_depth=4,failures=60"};
+    static const char *const specs[] = {"kd:overlap=exact,traversal_cost=0,failures=4",
+                                        "kd:overlap=exact,max_leaf_size=3,margin=0.3,mailbox=off",
+                                        "kd:traversal_cost=0,failures=9,empty_bonus=1",
+                                        "kd:overlap=exact,max_depth=4,failures=60"};
     for (size_t s = 0; s < rt_family_count(); s++) {
         FamilyBench bench;
         set_up_family(&bench, s, 7, 32);

@@ -199,7 +199,7 @@ static void far_too_deep_an_octree_is_refused_by_an_estimate(void **state) {
     static const char *const scenes[] = {"balls", "tetra", "random:n=20000,radius=1",
                                          "random:n=5000,distribution=stadium"};
     static const char *const specs[] = {"max_depth=20", "max_depth=20,split=cost",
-                                        "max_depth=20,max_objects=3,margin=0.01"};
+                                        "max_depth=20,max_leaf_size=3,margin=0.01"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
         RtScene scene;
         assert_ok(rt_scene_open(scenes[i], &scene, error));
@@ -218,7 +218,8 @@ static void far_too_deep_an_octree_is_refused_by_an_estimate(void **state) {
 
 static void the_estimate_is_near_what_a_build_takes(void **state) {
     (void)state;
-    static const char *const specs[] = {"max_depth=9", "max_depth=8,split=cost", "max_depth=9,max_objects=3"};
+    static const char *const specs[] = {"max_depth=9", "max_depth=8,split=cost",
+                                        "max_depth=9,max_leaf_size=3"};
     RtScene scene;
     assert_ok(rt_scene_open("balls", &scene, error));
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
@@ -240,7 +241,7 @@ static void the_estimate_is_near_what_a_build_takes(void **state) {
 static void every_traversal_answers_like_brute_in_every_structure(void **state) {
     (void)state;
     static const char *const traversals[] = {"points", "neighbours", "parametric"};
-    static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_objects=3",
+    static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_leaf_size=3",
                                            "max_depth=0", "max_depth=6,mailbox=off"};
     for (size_t s = 0; s < rt_family_count(); s++) {
         FamilyBench bench;

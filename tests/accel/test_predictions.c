@@ -40,7 +40,7 @@ static const struct {
     bool tests;
 } rows[] = {
     {"bvh", false},
-    {"bvh:leaf=1,traversal=0", false},
+    {"bvh:max_leaf_size=1,traversal_cost=0", false},
     {"clusters", false},
     {"clusters:method=rubin-whitted,width=8", false},
     {"grid:mailbox=off", true},
@@ -52,8 +52,8 @@ static const struct {
     {"octree:traversal=neighbours,mailbox=off", true},
     {"octree:split=cost,traversal=neighbours,mailbox=off", true},
     {"kd:mailbox=off", false},
-    {"kd:mailbox=off,overlap=exact,traversal=3,failures=9", false},
-    {"kd:mailbox=off,max_objects=6", true},
+    {"kd:mailbox=off,overlap=exact,traversal_cost=3,failures=9", false},
+    {"kd:mailbox=off,max_leaf_size=6", true},
     {"brute", true},
 };
 

@@ -11,7 +11,7 @@ enum { METHOD_COUNT = 7 }; /* of make_tree */
 /* ---- trees of boxes ---- */
 
 static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
-    const RtInsertionOrder order = {.random = true, .tries = 1, .seed = 1};
+    const RtInsertionOrder order = {.random = true, .permutations = 1, .seed = 1};
     RtTree tree;
     switch (method) {
     case 0: assert_ok(rt_tree_agglomerative(&tree, boxes, count, error)); break;
@@ -129,7 +129,7 @@ static void more_orders_of_insertion_never_cost_more(void **state) {
     RtBox *boxes = make_boxes(COUNT, 4);
     double before = INFINITY, first = 0;
     for (uint32_t tries = 1; tries <= 8; tries++) {
-        const RtInsertionOrder order = {.random = true, .tries = tries, .seed = 7};
+        const RtInsertionOrder order = {.random = true, .permutations = tries, .seed = 7};
         RtTree tree;
         assert_ok(rt_tree_insertion(&tree, boxes, COUNT, &order, error));
         assert_tree(&tree);
@@ -151,7 +151,7 @@ static void an_object_is_inserted_where_areas_grow_least(void **state) {
                       {{100, 0, 0}, {101, 1, 1}},
                       {{102, 0, 0}, {103, 1, 1}},
                       {{103.5f, 0, 0}, {104, 1, 1}}};
-    const RtInsertionOrder order = {.random = false, .tries = 1};
+    const RtInsertionOrder order = {.random = false, .permutations = 1};
     RtTree tree;
     assert_ok(rt_tree_insertion(&tree, boxes, 5, &order, error));
     assert_int_equal(assert_tree(&tree), 3);

@@ -72,7 +72,7 @@ static void the_spread_tries_each_value_of_each_parameter(void **state) {
     for (size_t i = 0; i < json_array_size(rows); i++) {
         const char *accel = json_string_value(json_object_get(json_array_get(rows, i), "accel"));
         assert_true(strncmp(accel, "bvh", 3) == 0);
-        leaf |= strcmp(accel, "bvh:leaf=1") == 0;
+        leaf |= strcmp(accel, "bvh:max_leaf_size=1") == 0;
     }
     assert_true(leaf && json_array_size(rows) > 5);
     json_decref(json);
@@ -119,7 +119,7 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
         {"ball", "balls"},
         {"tetra:size=1 nothing.yaml", "nothing.yaml"},
         {"balls --accel gird", "did you mean 'grid'"},
-        {"balls --accel bvh:leaf=0", "1..1024"},
+        {"balls --accel bvh:max_leaf_size=0", "1..1024"},
         {"--rays 0", "whole number 1.."},
         {"--rays 1e6", "whole number"},
         {"--threads -1", "whole number"},

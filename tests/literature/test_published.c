@@ -19,7 +19,7 @@ typedef struct Row {
 } Row;
 
 #define GRID(resolution, margin) "grid:resolution=" resolution ",margin=" margin ",mailbox=off"
-#define OCTREE(depth, rest)      "octree:max_depth=" depth ",max_objects=1,mailbox=off,cut_filled=on" rest
+#define OCTREE(depth, rest)      "octree:max_depth=" depth ",max_leaf_size=1,mailbox=off,cut_filled=on" rest
 #define POINTS                   ",traversal=points"
 #define TREE                     ",flat=0.0165,slack=0.00115"
 

@@ -272,7 +272,7 @@ static void the_root_box_is_drawn_where_the_camera_sees_it(void **state) {
     RtImage image;
     RtError refusal;
     open_scene(&scene);
-    assert_ok(rt_accel_open("bvh:leaf=64", &scene, &accel, error));
+    assert_ok(rt_accel_open("bvh:max_leaf_size=64", &scene, &accel, error));
     assert_ok(rt_image_init(&image, 200, 200, error));
     assert_ok(rt_draw_structure(&image, accel, error));
     /* The near face of the box is x, y in -3..3 at z = 1, 9 in front of the eye. */
