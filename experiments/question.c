@@ -73,6 +73,7 @@ RtStatus rt_question_ask(const RtQuestion *question, const RtScene *scene, RtMak
     Session session = {0};
     RtStatus status = open_session(&session, question, scene, maker, error);
     if (status == RT_OK) *reply = ask(&session, question);
+    if (status == RT_OK) status = rt_accel_check(session.accel, error);
     close_session(&session);
     return status;
 }
