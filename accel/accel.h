@@ -137,6 +137,10 @@ struct RtAccelOps {
     /* Optional: shows the boxes of the structure, for pictures. */
     void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
 
+    /* Optional: RT_OK, or what went wrong while rays were traced, which kernels cannot say. To be asked where
+     * no thread traces. */
+    RtStatus (*check)(const RtAccel *accel, RtError *error);
+
     /* Optional: takes recorded answers for rays[0..count), which stay where they are while the accelerator is
      * asked about them. */
     RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
@@ -204,6 +208,9 @@ void rt_accel_describe(const RtAccel *accel, RtDescription *out);
 
 /* Of every layer. */
 RtStatus rt_accel_validate(const RtAccel *accel, RtError *error);
+
+/* To be asked after tracing: RT_OK, or why the answers of some layer are not to be believed. */
+RtStatus rt_accel_check(const RtAccel *accel, RtError *error);
 
 /* Hands recorded answers to the layers that take them: see `learn` above. */
 RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);

@@ -76,6 +76,13 @@ RtStatus rt_accel_validate(const RtAccel *accel, RtError *error) {
     return RT_OK;
 }
 
+RtStatus rt_accel_check(const RtAccel *accel, RtError *error) {
+    for (; accel; accel = accel->below) {
+        if (accel->ops->check) RT_TRY(accel->ops->check(accel, error));
+    }
+    return RT_OK;
+}
+
 RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error) {
     for (; accel; accel = accel->below) {
         if (accel->ops->learn) RT_TRY(accel->ops->learn(accel, rays, hits, count, error));

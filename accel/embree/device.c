@@ -31,8 +31,8 @@ static bool processor_has(uint32_t isa) {
 
 static void note_error(void *device, enum RTCError code, const char *message) {
     RtEmbreeDevice *d = device;
-    if (d->code != RTC_ERROR_NONE) return;
-    d->code = code;
+    int none = RTC_ERROR_NONE;
+    if (!atomic_compare_exchange_strong(&d->code, &none, (int)code)) return;
     snprintf(d->message, sizeof d->message, "%s", message ? message : "no message");
 }
 
@@ -43,11 +43,11 @@ static bool note_memory(void *device, ssize_t bytes, bool done) {
     return true;
 }
 
-static RtStatus fail(enum RTCError code, const char *message, RtError *error) {
+static RtStatus fail(int code, const char *message, RtError *error) {
     RtStatus status = code == RTC_ERROR_OUT_OF_MEMORY     ? RT_NO_MEMORY
                       : code == RTC_ERROR_UNSUPPORTED_CPU ? RT_NOT_AVAILABLE
                                                           : RT_MISMATCH;
-    return rt_fail(error, status, "Embree reports error %d: %s", (int)code, message);
+    return rt_fail(error, status, "Embree reports error %d: %s", code, message);
 }
 
 RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error) {
@@ -62,14 +62,15 @@ RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads
         snprintf(config + length, sizeof config - (size_t)length, ",isa=%s", isa_names[isa]);
     }
     *device = (RtEmbreeDevice){.device = rtcNewDevice(config)};
-    if (!device->device) return fail(rtcGetDeviceError(NULL), "no device can be opened", error);
+    if (!device->device) return fail((int)rtcGetDeviceError(NULL), "no device can be opened", error);
     rtcSetDeviceErrorFunction(device->device, note_error, device);
     rtcSetDeviceMemoryMonitorFunction(device->device, note_memory, device);
     return RT_OK;
 }
 
 RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error) {
-    return device->code == RTC_ERROR_NONE ? RT_OK : fail(device->code, device->message, error);
+    int code = atomic_load(&device->code);
+    return code == RTC_ERROR_NONE ? RT_OK : fail(code, device->message, error);
 }
 
 void rt_embree_device_close(RtEmbreeDevice *device) {

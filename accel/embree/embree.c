@@ -180,18 +180,24 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
 
 /* ---- describe, validate ---- */
 
-/* Bytes: what Embree has allocated. Not the vertices, which are the scene's, nor the list of their indices,
- * which is how Embree wants to be told of them. */
+static RtStatus check(const RtAccel *accel, RtError *error) {
+    return rt_embree_device_check(&((const RtEmbree *)accel)->device, error);
+}
+
+/* Bytes: what Embree has allocated, and our list of indices, without which it cannot trace; not the vertices,
+ * which are the scene's. */
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtEmbree *self = (const RtEmbree *)accel;
-    *out = (RtDescription){.references = accel->scene->geometry.object_count,
-                           .bytes = sizeof(RtEmbree) + (uint64_t)atomic_load(&self->device.bytes),
+    const RtGeometry *g = &accel->scene->geometry;
+    uint64_t indices = self->indices ? (uint64_t)g->triangle_count * 3 * sizeof(uint32_t) : 0;
+    *out = (RtDescription){.references = g->object_count,
+                           .bytes = (uint64_t)atomic_load(&self->device.bytes) + indices,
                            RT_NO_PREDICTION};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
     const RtEmbree *self = (const RtEmbree *)accel;
-    RT_TRY(rt_embree_device_check(&self->device, error));
+    RT_TRY(check(accel, error));
     if (!self->user || accel->scene->geometry.object_count == 0) return RT_OK;
     struct RTCBounds bounds;
     rtcGetSceneBounds(self->scene, &bounds);
@@ -218,4 +224,5 @@ const RtAccelOps rt_embree_ops = {
     .describe = describe,
     .validate = validate,
     .library = rt_embree_library,
+    .check = check,
 };

@@ -29,9 +29,8 @@
 typedef struct RtEmbreeDevice {
     RTCDevice device;
     _Atomic int64_t bytes; /* allocated and not freed */
-    RTCErrorFunction on_error;
-    enum RTCError code; /* the first error */
-    char message[256];
+    _Atomic int code;      /* RTCError: the first one, on whatever thread */
+    char message[256];     /* of that one; to be read where no thread builds or traces */
 } RtEmbreeDevice;
 
 /* The choices of the parameter `isa`, in order, "default" first. */
@@ -42,7 +41,7 @@ typedef struct RtEmbreeDevice {
  * is closed. */
 RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error);
 
-/* RT_OK, or the first error that the device reported. */
+/* RT_OK, or the first error that the device reported, while building or tracing. */
 RtStatus rt_embree_device_check(const RtEmbreeDevice *device, RtError *error);
 void rt_embree_device_close(RtEmbreeDevice *device); /* a zeroed one is allowed */
 

@@ -75,9 +75,10 @@ static RtStatus run_pass(Pass *pass, RtError *error) {
     size_t chunks = (pass->set->count + CHUNK - 1) / CHUNK;
     if (pass->threads == 1) {
         for (size_t chunk = 0; chunk < chunks; chunk++) RT_TRY(trace_chunk(pass, chunk, 0, error));
-        return RT_OK;
+    } else {
+        RT_TRY(rt_parallel_for(chunks, pass->threads, trace_chunk, pass, error));
     }
-    return rt_parallel_for(chunks, pass->threads, trace_chunk, pass, error);
+    return rt_accel_check(pass->queries[0].accel, error);
 }
 
 /* ---- counting ---- */

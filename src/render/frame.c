@@ -307,6 +307,7 @@ static RtStatus run(Job *job, const RtAccel *accel, int threads, RtError *error)
     double start = rt_wall_seconds();
     if (status == RT_OK) status = rt_parallel_for(job->tiles, threads, trace_tile, job, error);
     job->frame->seconds = rt_wall_seconds() - start;
+    if (status == RT_OK) status = rt_accel_check(accel, error);
     for (int i = 0; i < threads; i++) {
         for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
             rt_tally_add(&job->frame->tallies[kind], &job->workers[i].tallies[kind]);

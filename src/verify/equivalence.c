@@ -46,6 +46,7 @@ static RtStatus run(Job *job, RtWork work, RtError *error) {
         status = rt_query_init(&job->desks[i].query, job->accel, error);
     }
     if (status == RT_OK) status = rt_parallel_for(job->chunks, job->threads, work, job, error);
+    if (status == RT_OK) status = rt_accel_check(job->accel, error);
     for (int i = 0; i < job->threads; i++) rt_query_clear(&job->desks[i].query);
     rt_free(job->desks);
     return status;

@@ -73,6 +73,7 @@ RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtMaker 
     Session session = {0};
     RtStatus status = open_session(&session, failure, scene, maker, error);
     if (status == RT_OK) *answer = ask(&session, failure);
+    if (status == RT_OK) status = rt_accel_check(session.accel, error);
     close_session(&session);
     return status;
 }

@@ -62,5 +62,5 @@ RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay
         rt_ray_family_fill((size_t)f, &query, wanted->seed, 0, (size_t)(end - first), rays + count + first);
     }
     rt_query_clear(&query);
-    return RT_OK;
+    return rt_accel_check(oracle, error);
 }

@@ -1,6 +1,10 @@
 /* accel/embree: no objects, a structure outgrown, memory, and which Embree it is. Skipped without Embree. */
 #include "embree_testing.h"
 
+#ifdef RT_WITH_EMBREE
+#include "accel/embree/embree.h"
+#endif
+
 static void an_empty_scene_is_hit_by_nothing(void **state) {
     (void)state;
     static const char *const specs[] = {"embree", "embree:query=16", "embree:query=stream",
@@ -51,6 +55,49 @@ static void building_ten_times_leaks_nothing(void **state) {
     rt_scene_clear(&scene);
 }
 
+#ifdef RT_WITH_EMBREE
+
+static void an_error_of_the_device_is_known_after_tracing(void **state) {
+    (void)state;
+    RtScene scene;
+    RtAccel *accel;
+    RtError failure;
+    make_soup(&scene, 40, 1, 10);
+    assert_ok(rt_accel_open("cache+embree", &scene, &accel, error));
+    assert_ok(rt_accel_check(accel, error));
+    RTCDevice device = ((const RtEmbree *)accel->below)->device.device;
+    rtcSetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION, 1);
+    assert_int_equal(rt_accel_check(accel, &failure), RT_MISMATCH);
+    assert_non_null(strstr(failure.message, "Embree reports error 2"));
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+/* What its memory monitor has counted, and our indices of triangles where it has triangles. */
+static void its_bytes_are_what_it_has_allocated_and_our_arrays(void **state) {
+    (void)state;
+    static const char *const specs[] = {"embree", "embree:mode=user"};
+    RtScene scene;
+    make_soup(&scene, 60, 1, 10);
+    assert_int_equal(scene.geometry.triangle_count, 12);
+    for (int i = 0; i < 2; i++) {
+        RtAccel *accel;
+        RtDescription description;
+        assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
+        rt_accel_describe(accel, &description);
+        uint64_t counted = (uint64_t)((const RtEmbree *)accel)->device.bytes;
+        assert_true(counted > 1000);
+        assert_int_equal(description.bytes, counted + (i == 0 ? 12 * 3 * sizeof(uint32_t) : 0));
+        rt_accel_destroy(accel);
+    }
+    rt_scene_clear(&scene);
+}
+
+#define WITH_EMBREE(test) cmocka_unit_test(test),
+#else
+#define WITH_EMBREE(test)
+#endif
+
 static void the_library_names_a_version_and_an_isa(void **state) {
     (void)state;
     char text[64];
@@ -67,7 +114,9 @@ RT_TEST_GROUP(embree) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_empty_scene_is_hit_by_nothing),
         cmocka_unit_test(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode),
-        cmocka_unit_test(building_ten_times_leaks_nothing),
+        WITH_EMBREE(an_error_of_the_device_is_known_after_tracing)
+            WITH_EMBREE(its_bytes_are_what_it_has_allocated_and_our_arrays)
+                cmocka_unit_test(building_ten_times_leaks_nothing),
         cmocka_unit_test(the_library_names_a_version_and_an_isa),
     };
     if (!embree_is_built_in()) return RT_TEST_SKIPPED;

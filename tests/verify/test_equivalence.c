@@ -2,6 +2,11 @@
  * ties are told from errors. */
 #include "equivalence_testing.h"
 
+#include "bench/measure.h"
+#include "render/frame.h"
+#include "verify/failure.h"
+#include "verify/verify_rays.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -169,6 +174,63 @@ static void an_accelerator_that_is_not_exact_is_judged_by_verdicts(void **state)
     stage->liar.base.exact = true;
 }
 
+/* ---- what goes wrong beneath the kernels ---- */
+
+static RtStatus check_of_liar(const RtAccel *accel, RtError *error) {
+    (void)accel;
+    return rt_fail(error, RT_NO_MEMORY, "went wrong while tracing");
+}
+
+/* An accelerator that answers like brute, and then says that this was luck. */
+static RtStatus build_unlucky(const void *context, const RtScene *scene, int threads, RtAccel **out,
+                              RtError *error) {
+    static RtAccelOps ops;
+    (void)context;
+    RtSpec spec;
+    RT_TRY(rt_spec_parse("brute", &spec, error));
+    RT_TRY(rt_accel_build(&spec, scene, threads, out, error));
+    ops = *(*out)->ops;
+    ops.check = check_of_liar;
+    (*out)->ops = &ops;
+    return RT_OK;
+}
+
+static void assert_went_wrong(RtStatus status, const RtError *error) {
+    assert_int_equal(status, RT_NO_MEMORY);
+    assert_string_equal(error->message, "went wrong while tracing");
+}
+
+static void what_goes_wrong_while_tracing_is_a_status_of_all_who_trace(void **state) {
+    Stage *stage = *state;
+    RtAccel *accel;
+    RtError failure = {RT_OK, ""};
+    RtEquivalence equivalence;
+    RtReference reference;
+    RtAnswer reply;
+    RtFrame frame;
+    RtCount count;
+    static RtHit hits[RAYS];
+    static RtRay more[64];
+    const RtMaker maker = {build_unlucky, NULL, 0};
+    const RtRaySet set = {.kind = RT_RAY_RANDOM, .count = RAYS, .rays = rays};
+    const RtFailure question = {.rays = rays, .count = 1, .stream = 1};
+    const RtVerifyRays wanted = {.count = 64, .seed = 1, .threads = 1};
+    const RtFrameOptions options = {.depth = 1, .threads = 1};
+    double seconds, wall;
+    assert_ok(rt_maker_build(&maker, &stage->scene, &accel, error));
+    const RtTimed timed = {accel, &set, &seconds, &wall};
+    const RtTiming timing = {.rounds = 1, .threads = 1};
+    assert_went_wrong(rt_equivalence_check(&stage->reference, accel, 1, &equivalence, &failure), &failure);
+    assert_went_wrong(rt_reference_init(&reference, accel, rays, RAYS, 1, &failure), &failure);
+    assert_went_wrong(rt_failure_ask(&question, &stage->scene, maker, &reply, &failure), &failure);
+    assert_went_wrong(rt_frame_trace(&frame, accel, &options, &failure), &failure);
+    assert_went_wrong(rt_measure_answers(accel, &set, 1, hits, &failure), &failure);
+    assert_went_wrong(rt_measure_count(accel, &set, stage->reference.hits, 1, &count, &failure), &failure);
+    assert_went_wrong(rt_measure_time(&timed, 1, &timing, &failure), &failure);
+    assert_went_wrong(rt_verify_rays(&wanted, accel, more, &failure), &failure);
+    rt_accel_destroy(accel);
+}
+
 /* ---- verdicts ---- */
 
 /* 0, 1: coincident unit spheres about the origin; 2, 3: the halves of the square |x|, |y| <= 1 at z = -5, cut
@@ -259,6 +321,7 @@ RT_TEST_GROUP(equivalence) {
         cmocka_unit_test(a_lie_in_streams_of_one_length_alone_is_found),
         cmocka_unit_test(the_last_ray_counts_too),
         cmocka_unit_test(an_accelerator_that_is_not_exact_is_judged_by_verdicts),
+        cmocka_unit_test(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace),
         cmocka_unit_test(verdicts_tell_ties_and_margins_from_errors),
         cmocka_unit_test(occlusion_is_marginal_only_where_a_hit_is),
     };
