@@ -199,15 +199,15 @@ refuses 'primary.*twice' $bench --accel bvh --rays primary,primary
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 1000000000
 refuses 'limit.*1\.\.' $bench --accel bvh --limit 0
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 0
-refuses 'together.*1\.\.' $bench --accel bvh --together 0
+refuses 'coherent-run.*1\.\.' $bench --accel bvh --coherent-run 0
 refuses 'depth.*1\.\.64' $bench --accel bvh --depth 0
-refuses 'every.*1\.\.' $bench --accel bvh --every 0
+refuses 'ray-stride.*1\.\.' $bench --accel bvh --ray-stride 0
 refuses 'depth.*1\.\.64' render balls:size=1 --depth 0 -o x.png
 does $bench --accel bvh --seed 0 --count-only
-refuses '--every stands behind' $bench --every 2 --accel bvh
+refuses '--ray-stride stands behind' $bench --ray-stride 2 --accel bvh
 refuses 'missing/x\.csv.*No such file' $bench --accel bvh --csv missing/x.csv
 does $bench --accel all --json
-does $bench --accel brute --every 3 --accel bvh --baseline bvh --count-only
+does $bench --accel brute --ray-stride 3 --accel bvh --baseline bvh --count-only
 
 refuses 'EXPERIMENT is missing' run
 refuses 'nope\.yaml: .*No such file' run nope.yaml

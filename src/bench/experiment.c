@@ -6,7 +6,7 @@
 void rt_experiment_init(RtExperiment *experiment) {
     memset(experiment, 0, sizeof *experiment);
     experiment->limit = 100000;
-    experiment->together = 1;
+    experiment->coherent_run = 1;
     experiment->rounds = 10;
     experiment->milliseconds = 20;
     experiment->seed = 1;
@@ -19,41 +19,41 @@ static bool may_name(char c) {
     return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
 }
 
-RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder, RtError *error) {
-    if (strlen(spec) >= sizeof trial->spec) {
+RtStatus rt_workload_set_scene(RtWorkload *workload, const char *spec, const char *folder, RtError *error) {
+    if (strlen(spec) >= sizeof workload->spec) {
         return rt_fail(error, RT_BAD_INPUT, "%.40s...: a scene has at most %zu characters", spec,
-                       sizeof trial->spec - 1);
+                       sizeof workload->spec - 1);
     }
-    strcpy(trial->spec, spec);
-    trial->file = strcspn(spec, "./") < strcspn(spec, ":");
-    const char *slash = trial->file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
-    size_t length = trial->file ? strcspn(start, ".") : strlen(start);
-    snprintf(trial->label, RT_MAX_LABEL, "%.*s", (int)length, start);
-    for (char *c = trial->label; *c; c++) {
+    strcpy(workload->spec, spec);
+    workload->file = strcspn(spec, "./") < strcspn(spec, ":");
+    const char *slash = workload->file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
+    size_t length = workload->file ? strcspn(start, ".") : strlen(start);
+    snprintf(workload->label, RT_MAX_LABEL, "%.*s", (int)length, start);
+    for (char *c = workload->label; *c; c++) {
         if (!may_name(*c)) *c = '_';
     }
-    return rt_path_join(trial->file ? folder : "", spec, trial->path, error);
+    return rt_path_join(workload->file ? folder : "", spec, workload->path, error);
 }
 
 /* ---- who is where ---- */
 
-bool rt_contender_runs(const RtExperiment *experiment, uint32_t c, uint32_t t) {
-    if (c == experiment->contender_count) return true;
-    return !experiment->contenders[c].missing && !(experiment->contenders[c].left_out >> t & 1);
+bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t) {
+    if (c == experiment->candidate_count) return true;
+    return !experiment->candidates[c].missing && !(experiment->candidates[c].left_out >> t & 1);
 }
 
-uint32_t rt_contender_find(const RtExperiment *experiment, const char *label, uint32_t t) {
-    if (strcmp(label, "null") == 0) return experiment->contender_count;
-    for (uint32_t c = 0; c < experiment->contender_count; c++) {
-        const RtContender *contender = &experiment->contenders[c];
-        if (strcmp(contender->label, label) == 0 && !(contender->left_out >> t & 1)) return c;
+uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, uint32_t t) {
+    if (strcmp(label, experiment->again) == 0) return experiment->candidate_count;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
+        if (strcmp(candidate->label, label) == 0 && !(candidate->left_out >> t & 1)) return c;
     }
-    return experiment->contender_count + 1;
+    return experiment->candidate_count + 1;
 }
 
-uint32_t rt_trial_find(const RtExperiment *experiment, const char *label) {
+uint32_t rt_workload_find(const RtExperiment *experiment, const char *label) {
     uint32_t t = 0;
-    while (t < experiment->trial_count && strcmp(experiment->trials[t].label, label) != 0) t++;
+    while (t < experiment->workload_count && strcmp(experiment->workloads[t].label, label) != 0) t++;
     return t;
 }
 
@@ -65,9 +65,6 @@ const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
 /* ---- checks ---- */
 
 static RtStatus check_label(const char *label, RtError *error) {
-    if (strcmp(label, "null") == 0) {
-        return rt_fail(error, RT_BAD_INPUT, "the label 'null' is taken by the baseline's second measurement");
-    }
     for (const char *c = label; *c; c++) {
         if (may_name(*c)) continue;
         return rt_fail(error, RT_BAD_INPUT,
@@ -83,43 +80,43 @@ static RtStatus fail_twice(const char *label, RtError *error) {
                    label);
 }
 
-static RtStatus check_contender(RtExperiment *experiment, uint32_t i, RtError *error) {
-    RtContender *contender = &experiment->contenders[i];
+static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *error) {
+    RtCandidate *candidate = &experiment->candidates[i];
     RtSpec spec;
     RtError why = {RT_OK, ""};
-    contender->missing = false;
-    if (rt_spec_parse(contender->spec, &spec, &why) != RT_OK) {
-        contender->missing = why.status == RT_NOT_AVAILABLE;
-        if (!contender->missing) return rt_fail(error, why.status, "%s", why.message);
+    candidate->missing = false;
+    if (rt_spec_parse(candidate->spec, &spec, &why) != RT_OK) {
+        candidate->missing = why.status == RT_NOT_AVAILABLE;
+        if (!candidate->missing) return rt_fail(error, why.status, "%s", why.message);
     }
-    const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->trial_count) - 1);
+    const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->workload_count) - 1);
     for (uint32_t k = 0; k < i; k++) {
-        const RtContender *other = &experiment->contenders[k];
-        bool meet = ~(contender->left_out | other->left_out) & all;
-        if (meet && strcmp(contender->label, other->label) == 0) return fail_twice(contender->label, error);
+        const RtCandidate *other = &experiment->candidates[k];
+        bool meet = ~(candidate->left_out | other->left_out) & all;
+        if (meet && strcmp(candidate->label, other->label) == 0) return fail_twice(candidate->label, error);
     }
-    return check_label(contender->label, error);
+    return check_label(candidate->label, error);
 }
 
-static RtStatus check_trial(const RtExperiment *experiment, uint32_t i, RtError *error) {
-    const RtTrial *trial = &experiment->trials[i];
-    if (rt_trial_find(experiment, trial->label) < i) return fail_twice(trial->label, error);
-    return check_label(trial->label, error);
+static RtStatus check_workload(const RtExperiment *experiment, uint32_t i, RtError *error) {
+    const RtWorkload *workload = &experiment->workloads[i];
+    if (rt_workload_find(experiment, workload->label) < i) return fail_twice(workload->label, error);
+    return check_label(workload->label, error);
 }
 
 static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
-    if (experiment->baseline >= experiment->contender_count) {
+    if (experiment->baseline >= experiment->candidate_count) {
         return rt_fail(error, RT_BAD_INPUT, "this is not the label of one of the accelerators");
     }
-    const RtContender *baseline = &experiment->contenders[experiment->baseline];
+    const RtCandidate *baseline = &experiment->candidates[experiment->baseline];
     if (baseline->missing) {
         return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",
                        baseline->label);
     }
-    if (baseline->every == 1 && !baseline->left_out) return RT_OK;
+    if (baseline->ray_stride == 1 && !baseline->left_out) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "the baseline '%s' has to be measured on every ray of every scene: choose another, or "
-                   "leave its `every` and `scenes` out",
+                   "leave its `ray_stride` and `scenes` out",
                    baseline->label);
 }
 
@@ -158,13 +155,13 @@ static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *
 }
 
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
-    for (uint32_t i = 0; i < experiment->trial_count; i++) {
+    for (uint32_t i = 0; i < experiment->workload_count; i++) {
         snprintf(where, RT_MAX_LABEL, "scenes[%u]", i);
-        RT_TRY(check_trial(experiment, i, error));
+        RT_TRY(check_workload(experiment, i, error));
     }
-    for (uint32_t i = 0; i < experiment->contender_count; i++) {
+    for (uint32_t i = 0; i < experiment->candidate_count; i++) {
         snprintf(where, RT_MAX_LABEL, "accelerators[%u]", i);
-        RT_TRY(check_contender(experiment, i, error));
+        RT_TRY(check_candidate(experiment, i, error));
     }
     for (uint32_t i = 0; i < experiment->kind_count; i++) {
         snprintf(where, RT_MAX_LABEL, "rays[%u]", i);
@@ -176,6 +173,8 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     }
     strcpy(where, "baseline");
     RT_TRY(check_baseline(experiment, error));
+    snprintf(experiment->again, sizeof experiment->again, "%s (again)",
+             experiment->candidates[experiment->baseline].label);
     strcpy(where, "published");
     RT_TRY(check_published(experiment, error));
     for (uint32_t i = 0; i < experiment->plot_count; i++) {

@@ -9,13 +9,13 @@
 
 #define RT_MAX_LABEL       48
 #define RT_MAX_TEXT        4096
-#define RT_MAX_TRIALS      32
-#define RT_MAX_CONTENDERS  256
+#define RT_MAX_WORKLOADS   32
+#define RT_MAX_CANDIDATES  256
 #define RT_MAX_PLOTS       8
 #define RT_MAX_RAYS_A_KIND UINT64_C(100000000)
 
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
-typedef struct RtTrial {
+typedef struct RtWorkload {
     char label[RT_MAX_LABEL];
     char spec[RT_MAX_SCENE_NAME]; /* as written */
     char path[RT_MAX_PATH];       /* for rt_scene_open: a built-in, or the file seen from the YAML's folder */
@@ -25,19 +25,19 @@ typedef struct RtTrial {
     bool light_from_outside;      /* shadow rays as in RtFrameOptions */
     bool file;                    /* path names a file, not a built-in */
     bool optional;                /* a missing file is a notice, not an error */
-} RtTrial;
+} RtWorkload;
 
 /* One accelerator of an experiment. No two on the same scene have the same label. */
-typedef struct RtContender {
+typedef struct RtCandidate {
     char label[RT_MAX_LABEL];
     char spec[RT_MAX_SPEC_CHARS]; /* as written */
-    uint64_t every;    /* measured on every `every`th ray of a set, so that slow ones finish; >= 1 */
-    uint32_t left_out; /* bit t: it is not measured on trials[t] */
-    bool missing;      /* this build does not have it: skipped with a notice */
-    bool ours;         /* one of those that are to need less than every published row */
-} RtContender;
+    uint64_t ray_stride;          /* k: measured on each kth ray of a set, so that slow ones finish; >= 1 */
+    uint32_t left_out;            /* bit t: it is not measured on workloads[t] */
+    bool missing;                 /* this build does not have it: skipped with a notice */
+    bool ours;                    /* one of those that are to need less than every published row */
+} RtCandidate;
 
-_Static_assert(RT_MAX_TRIALS <= 32, "a bit of left_out for every trial");
+_Static_assert(RT_MAX_WORKLOADS <= 32, "a bit of left_out for every workload");
 
 /* What published tables may have a figure for. Of structures: as in RtDescription. Per ray of all kinds of
  * the experiment together: as in RtTally. Of the rays themselves: how many there are, and how many of them
@@ -68,15 +68,17 @@ typedef struct RtPublishedSetup {
 typedef struct RtExperiment {
     char name[RT_MAX_LABEL];
     char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
-    RtTrial trials[RT_MAX_TRIALS];
-    uint32_t trial_count;
-    RtContender contenders[RT_MAX_CONTENDERS];
-    uint32_t contender_count;
-    uint32_t baseline; /* index of the contender that ratios refer to; it is not thinned */
+    RtWorkload workloads[RT_MAX_WORKLOADS];
+    uint32_t workload_count;
+    RtCandidate candidates[RT_MAX_CANDIDATES];
+    uint32_t candidate_count;
+    char again[RT_MAX_LABEL +
+               8];     /* label of the null run, the baseline's with " (again)": rt_experiment_check */
+    uint32_t baseline; /* index of the candidate that ratios refer to; it is not thinned */
     RtRayKind kinds[RT_RAY_KIND_COUNT];
     uint32_t kind_count;
     uint64_t limit;        /* rays of one kind at most; a larger set is thinned evenly */
-    uint64_t together;     /* neighbouring rays that are kept together where a set is thinned */
+    uint64_t coherent_run; /* neighbouring rays that are kept together where a set is thinned */
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
     uint32_t milliseconds; /* a short set is repeated within a round until it takes this long; 0: once */
     uint64_t seed;
@@ -91,23 +93,23 @@ typedef struct RtExperiment {
     uint64_t fingerprint;     /* of the YAML's bytes */
 } RtExperiment;
 
-/* No scenes, no contenders, all ray kinds, and the defaults: limit 100000, rays kept singly, 10 rounds, 20
+/* No scenes, no candidates, all ray kinds, and the defaults: limit 100000, rays kept singly, 10 rounds, 20
  * milliseconds. */
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Whatever is wrong (unknown keys, specs that do not parse, labels used twice, a
- * baseline that is no contender) is told with its line. `quick` applies the overrides under `quick:`. */
+ * baseline that is no candidate) is told with its line. `quick` applies the overrides under `quick:`. */
 RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error);
 
-/* Whether contender `c`, which may be the null run (contender_count), is measured on trial `t`. */
-bool rt_contender_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
+/* Whether candidate `c`, which may be the null run (candidate_count), is measured on workload `t`. */
+bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
 
-/* The contender of that label on trial `t`; contender_count + 1 where there is none. "null" is the null
+/* The candidate of that label on workload `t`; candidate_count + 1 where there is none. `again` is the null
  * run. */
-uint32_t rt_contender_find(const RtExperiment *experiment, const char *label, uint32_t t);
+uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, uint32_t t);
 
-/* The trial of that label; trial_count where there is none. */
-uint32_t rt_trial_find(const RtExperiment *experiment, const char *label);
+/* The workload of that label; workload_count where there is none. */
+uint32_t rt_workload_find(const RtExperiment *experiment, const char *label);
 
 /* Under which name a script is copied into the result directory: without the folders it lies in. No two have
  * the same. */
@@ -116,9 +118,9 @@ const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot);
 /* Sets spec, path, file and a label made from them: the file's name without folder and extension, or the
  * built-in as it is written, with _ for what a label may not have. A dot or a slash before the first colon
  * makes `spec` a file, seen from `folder`. */
-RtStatus rt_trial_set_scene(RtTrial *trial, const char *spec, const char *folder, RtError *error);
+RtStatus rt_workload_set_scene(RtWorkload *workload, const char *spec, const char *folder, RtError *error);
 
-/* Whether the parts of an experiment, each in its range, go together, however it came about; marks contenders
+/* Whether the parts of an experiment, each in its range, go together, however it came about; marks candidates
  * that this build lacks. *where gets the path of the fault in the YAML ("name", "accelerators[2]"), room for
  * RT_MAX_LABEL. */
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error);

@@ -48,50 +48,50 @@ static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit
 
 /* ---- parts ---- */
 
-static RtStatus read_trial(const RtYaml *y, const RtYamlNode *n, const char *folder, RtTrial *trial,
-                           RtError *error) {
+static RtStatus read_workload(const RtYaml *y, const RtYamlNode *n, const char *folder, RtWorkload *workload,
+                              RtError *error) {
     const char *spec = "";
     RT_TRY(rt_yaml_keys(y, n, "scene label? size? corners? light_from_outside? depth? optional?"));
     RT_TRY(rt_yaml_text(y, n, "scene", RT_MAX_SCENE_NAME - 1, &spec));
-    RT_TRY(rt_yaml_place(y, rt_trial_set_scene(trial, spec, folder, error), n, "scene"));
-    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, trial->label));
-    trial->depth = RT_DEFAULT_DEPTH;
-    RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &trial->depth));
-    RT_TRY(read_size(y, n, &trial->width, &trial->height));
-    RT_TRY(read_flag(y, n, "corners", &trial->corners));
-    RT_TRY(read_flag(y, n, "light_from_outside", &trial->light_from_outside));
-    return read_flag(y, n, "optional", &trial->optional);
+    RT_TRY(rt_yaml_place(y, rt_workload_set_scene(workload, spec, folder, error), n, "scene"));
+    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, workload->label));
+    workload->depth = RT_DEFAULT_DEPTH;
+    RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &workload->depth));
+    RT_TRY(read_size(y, n, &workload->width, &workload->height));
+    RT_TRY(read_flag(y, n, "corners", &workload->corners));
+    RT_TRY(read_flag(y, n, "light_from_outside", &workload->light_from_outside));
+    return read_flag(y, n, "optional", &workload->optional);
 }
 
-/* Leaves the contender out on all trials that its `scenes` do not name; none named: on none. */
+/* Leaves the candidate out on all workloads that its `scenes` do not name; none named: on none. */
 static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExperiment *experiment,
-                            RtContender *contender) {
+                            RtCandidate *candidate) {
     uint32_t on = 0;
-    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_TRIALS, "labels"));
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_WORKLOADS, "labels"));
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
         const char *label = "";
         RT_TRY(rt_yaml_text(y, n, NULL, RT_MAX_LABEL - 1, &label));
-        uint32_t trial = rt_trial_find(experiment, label);
-        if (trial == experiment->trial_count) {
+        uint32_t workload = rt_workload_find(experiment, label);
+        if (workload == experiment->workload_count) {
             return rt_yaml_fail(y, n, "'%s' is not the label of one of the scenes", label);
         }
-        on |= UINT32_C(1) << trial;
+        on |= UINT32_C(1) << workload;
     }
-    contender->left_out = list ? ~on : 0;
+    candidate->left_out = list ? ~on : 0;
     return RT_OK;
 }
 
-static RtStatus read_contender(const RtYaml *y, const RtYamlNode *n, const RtExperiment *experiment,
-                               RtContender *contender) {
+static RtStatus read_candidate(const RtYaml *y, const RtYamlNode *n, const RtExperiment *experiment,
+                               RtCandidate *candidate) {
     const char *spec = "";
-    RT_TRY(rt_yaml_keys(y, n, "accel label? every? scenes?"));
+    RT_TRY(rt_yaml_keys(y, n, "accel label? ray_stride? scenes?"));
     RT_TRY(rt_yaml_text(y, n, "accel", RT_MAX_SPEC_CHARS - 1, &spec));
-    snprintf(contender->spec, RT_MAX_SPEC_CHARS, "%s", spec);
-    snprintf(contender->label, RT_MAX_LABEL, "%s", spec);
-    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, contender->label));
-    contender->every = 1;
-    RT_TRY(rt_yaml_u64(y, n, "every", 1, RT_MAX_RAYS_A_KIND, &contender->every));
-    return read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, contender);
+    snprintf(candidate->spec, RT_MAX_SPEC_CHARS, "%s", spec);
+    snprintf(candidate->label, RT_MAX_LABEL, "%s", spec);
+    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, candidate->label));
+    candidate->ray_stride = 1;
+    RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &candidate->ray_stride));
+    return read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, candidate);
 }
 
 static RtStatus read_tolerances(const RtYaml *y, const RtYamlNode *n, double tolerance[RT_COLUMN_COUNT]) {
@@ -108,7 +108,7 @@ static RtStatus read_tolerances(const RtYaml *y, const RtYamlNode *n, double tol
     return RT_OK;
 }
 
-/* A label may belong to several contenders, each on other scenes: all of them are ours. */
+/* A label may belong to several candidates, each on other scenes: all of them are ours. */
 static RtStatus read_published(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
     RtPublishedSetup *published = &experiment->published;
     RT_TRY(rt_yaml_keys(y, n, "tables reasons? tolerance? ours?"));
@@ -116,14 +116,14 @@ static RtStatus read_published(const RtYaml *y, const RtYamlNode *n, RtExperimen
     RT_TRY(rt_yaml_copy(y, n, "reasons", RT_MAX_LABEL, published->reasons));
     const RtYamlNode *tolerance = rt_yaml_get(y, n, "tolerance"), *ours = rt_yaml_get(y, n, "ours");
     if (tolerance) RT_TRY(read_tolerances(y, tolerance, published->tolerance));
-    RT_TRY(rt_yaml_list(y, ours, NULL, 1, RT_MAX_CONTENDERS, "labels"));
+    RT_TRY(rt_yaml_list(y, ours, NULL, 1, RT_MAX_CANDIDATES, "labels"));
     for (const RtYamlNode *e = rt_yaml_first(ours); e != rt_yaml_end(ours); e += e->size) {
         const char *label = "";
         bool found = false;
         RT_TRY(rt_yaml_text(y, e, NULL, RT_MAX_LABEL - 1, &label));
-        for (uint32_t c = 0; c < experiment->contender_count; c++) {
-            if (strcmp(experiment->contenders[c].label, label) != 0) continue;
-            experiment->contenders[c].ours = found = true;
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            if (strcmp(experiment->candidates[c].label, label) != 0) continue;
+            experiment->candidates[c].ours = found = true;
         }
         if (!found) return rt_yaml_fail(y, e, "'%s' is not the label of one of the accelerators", label);
     }
@@ -144,10 +144,10 @@ static RtStatus read_rays(const RtYaml *y, const RtYamlNode *list, RtExperiment 
 
 /* A label that is none leaves an index that rt_experiment_check refuses. */
 static RtStatus read_baseline(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
-    const char *label = experiment->contenders[0].label;
+    const char *label = experiment->candidates[0].label;
     RT_TRY(rt_yaml_text(y, n, "baseline", RT_MAX_LABEL - 1, &label));
     uint32_t c = 0;
-    while (c < experiment->contender_count && strcmp(experiment->contenders[c].label, label) != 0) c++;
+    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
     experiment->baseline = c;
     return RT_OK;
 }
@@ -165,12 +165,12 @@ static RtStatus read_quick(const RtYaml *y, const RtYamlNode *n, bool quick, RtE
     experiment->limit = limit;
     experiment->rounds = rounds;
     experiment->milliseconds = milliseconds;
-    for (uint32_t i = 0; i < experiment->trial_count; i++) {
-        RtTrial *trial = &experiment->trials[i];
-        if (depth) trial->depth = depth;
+    for (uint32_t i = 0; i < experiment->workload_count; i++) {
+        RtWorkload *workload = &experiment->workloads[i];
+        if (depth) workload->depth = depth;
         if (!width) continue;
-        trial->width = width;
-        trial->height = height;
+        workload->width = width;
+        workload->height = height;
     }
     return RT_OK;
 }
@@ -179,14 +179,14 @@ static RtStatus read_quick(const RtYaml *y, const RtYamlNode *n, bool quick, RtE
 
 static RtStatus read_lists(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment, RtError *error) {
     const RtYamlNode *scenes = rt_yaml_get(y, n, "scenes"), *accels = rt_yaml_get(y, n, "accelerators");
-    RT_TRY(rt_yaml_list(y, scenes, NULL, 1, RT_MAX_TRIALS, "scenes"));
+    RT_TRY(rt_yaml_list(y, scenes, NULL, 1, RT_MAX_WORKLOADS, "scenes"));
     for (const RtYamlNode *e = rt_yaml_first(scenes); e != rt_yaml_end(scenes); e += e->size) {
-        RtTrial *trial = &experiment->trials[experiment->trial_count++];
-        RT_TRY(read_trial(y, e, experiment->folder, trial, error));
+        RtWorkload *workload = &experiment->workloads[experiment->workload_count++];
+        RT_TRY(read_workload(y, e, experiment->folder, workload, error));
     }
-    RT_TRY(rt_yaml_list(y, accels, NULL, 1, RT_MAX_CONTENDERS, "accelerators"));
+    RT_TRY(rt_yaml_list(y, accels, NULL, 1, RT_MAX_CANDIDATES, "accelerators"));
     for (const RtYamlNode *e = rt_yaml_first(accels); e != rt_yaml_end(accels); e += e->size) {
-        RT_TRY(read_contender(y, e, experiment, &experiment->contenders[experiment->contender_count++]));
+        RT_TRY(read_candidate(y, e, experiment, &experiment->candidates[experiment->candidate_count++]));
     }
     RT_TRY(read_rays(y, rt_yaml_get(y, n, "rays"), experiment, error));
     return read_labels(y, n, "plots", RT_MAX_PLOTS, experiment->plots, &experiment->plot_count);
@@ -205,15 +205,15 @@ static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
 
 static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *experiment, RtError *error) {
     const RtYamlNode *n = y->nodes;
-    RT_TRY(
-        rt_yaml_keys(y, n,
-                     "name question prediction scenes accelerators baseline? rays? limit? together? rounds? "
-                     "milliseconds? seed? count_only? published? quick? plots?"));
+    RT_TRY(rt_yaml_keys(
+        y, n,
+        "name question prediction scenes accelerators baseline? rays? limit? coherent_run? rounds? "
+        "milliseconds? seed? count_only? published? quick? plots?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
     RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));
     RT_TRY(read_scale(y, n, &experiment->limit, &experiment->rounds, &experiment->milliseconds));
-    RT_TRY(rt_yaml_u64(y, n, "together", 1, RT_MAX_RAYS_A_KIND, &experiment->together));
+    RT_TRY(rt_yaml_u64(y, n, "coherent_run", 1, RT_MAX_RAYS_A_KIND, &experiment->coherent_run));
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
     RT_TRY(read_lists(y, n, experiment, error));

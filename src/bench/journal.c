@@ -16,16 +16,16 @@ static json_t *header_json(const RtExperiment *experiment) {
                      rt_build_identity());
 }
 
-static json_t *trial_json(const RtTrialResult *trial) {
+static json_t *workload_json(const RtWorkloadResult *workload) {
     json_t *sets = json_object();
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         json_object_set_new(sets, rt_ray_kind_name((RtRayKind)k),
-                            json_pack("{s:I, s:o}", "rays", (json_int_t)trial->rays[k], "hash",
-                                      rt_json_hex(trial->ray_fingerprints[k])));
+                            json_pack("{s:I, s:o}", "rays", (json_int_t)workload->rays[k], "hash",
+                                      rt_json_hex(workload->ray_fingerprints[k])));
     }
-    return json_pack("{s:I, s:I, s:I, s:o, s:o}", "objects", (json_int_t)trial->objects, "width",
-                     (json_int_t)trial->width, "height", (json_int_t)trial->height, "hash",
-                     rt_json_hex(trial->scene), "sets", sets);
+    return json_pack("{s:I, s:I, s:I, s:o, s:o}", "objects", (json_int_t)workload->objects, "width",
+                     (json_int_t)workload->width, "height", (json_int_t)workload->height, "hash",
+                     rt_json_hex(workload->scene), "sets", sets);
 }
 
 static json_t *build_json(const RtBuildResult *build) {
@@ -56,16 +56,17 @@ static json_t *time_json(const RtCell *cell) {
 
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
     const RtExperiment *experiment = results->experiment;
-    const RtCell *cell = rt_cell_at(results, event->trial, event->contender, event->kind);
-    const char *scene = experiment->trials[event->trial].label;
-    const char *accel = rt_contender_label(experiment, event->contender);
+    const RtCell *cell = rt_cell_at(results, event->workload, event->candidate, event->kind);
+    const char *scene = experiment->workloads[event->workload].label;
+    const char *accel = rt_candidate_label(experiment, event->candidate);
     const char *kind = rt_ray_kind_name(event->kind);
     switch (event->what) {
-    case RT_EVENT_TRIAL:
-        return json_pack("{s:s, s:o}", "scene", scene, "trial", trial_json(&results->trials[event->trial]));
+    case RT_EVENT_WORKLOAD:
+        return json_pack("{s:s, s:o}", "scene", scene, "workload",
+                         workload_json(&results->workloads[event->workload]));
     case RT_EVENT_BUILD:
         return json_pack("{s:s, s:s, s:o}", "scene", scene, "accel", accel, "built",
-                         build_json(rt_build_at(results, event->trial, event->contender)));
+                         build_json(rt_build_at(results, event->workload, event->candidate)));
     case RT_EVENT_COUNT:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "counted",
                          count_json(cell));
@@ -117,17 +118,17 @@ static RtEstimate get_estimate(const json_t *object, const char *key) {
         json_number_value(json_array_get(list, 2)), json_number_value(json_array_get(list, 3))};
 }
 
-static void take_trial(RtTrialResult *trial, const json_t *object) {
+static void take_workload(RtWorkloadResult *workload, const json_t *object) {
     const json_t *sets = json_object_get(object, "sets");
-    trial->known = true;
-    trial->objects = (uint32_t)get_integer(object, "objects");
-    trial->width = (uint32_t)get_integer(object, "width");
-    trial->height = (uint32_t)get_integer(object, "height");
-    trial->scene = get_hex(object, "hash");
+    workload->known = true;
+    workload->objects = (uint32_t)get_integer(object, "objects");
+    workload->width = (uint32_t)get_integer(object, "width");
+    workload->height = (uint32_t)get_integer(object, "height");
+    workload->scene = get_hex(object, "hash");
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const json_t *set = json_object_get(sets, rt_ray_kind_name((RtRayKind)k));
-        trial->rays[k] = get_integer(set, "rays");
-        trial->ray_fingerprints[k] = get_hex(set, "hash");
+        workload->rays[k] = get_integer(set, "rays");
+        workload->ray_fingerprints[k] = get_hex(set, "hash");
     }
 }
 
@@ -175,15 +176,16 @@ static void take_line(RtResults *results, const json_t *line) {
     const char *kind_name = json_string_value(json_object_get(line, "kind"));
     const json_t *object;
     RtRayKind kind = RT_RAY_PRIMARY;
-    uint32_t trial = scene ? rt_trial_find(experiment, scene) : experiment->trial_count;
-    if (trial == experiment->trial_count) return;
-    if ((object = json_object_get(line, "trial"))) take_trial(&results->trials[trial], object);
+    uint32_t workload = scene ? rt_workload_find(experiment, scene) : experiment->workload_count;
+    if (workload == experiment->workload_count) return;
+    if ((object = json_object_get(line, "workload"))) take_workload(&results->workloads[workload], object);
     if (!accel) return;
-    uint32_t contender = rt_contender_find(experiment, accel, trial);
-    if (contender > experiment->contender_count) return;
-    if ((object = json_object_get(line, "built"))) take_build(rt_build_at(results, trial, contender), object);
+    uint32_t candidate = rt_candidate_find(experiment, accel, workload);
+    if (candidate > experiment->candidate_count) return;
+    if ((object = json_object_get(line, "built")))
+        take_build(rt_build_at(results, workload, candidate), object);
     if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;
-    RtCell *cell = rt_cell_at(results, trial, contender, kind);
+    RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
     if ((object = json_object_get(line, "timed"))) take_time(cell, object);
 }

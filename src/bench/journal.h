@@ -7,7 +7,7 @@
 #define RT_BENCH_JOURNAL_H
 
 #include "bench/json_lines.h"
-#include "bench/trial.h"
+#include "bench/workload.h"
 
 /* Opens the journal at `path` for appending: with `resume` the one that is there, else a new one that takes
  * its place. Close with rt_json_lines_close, also after a failure. */

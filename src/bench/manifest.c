@@ -7,58 +7,59 @@
 static json_t *scenes_json(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
     json_t *list = json_array();
-    for (uint32_t t = 0; t < experiment->trial_count; t++) {
-        const RtTrialResult *trial = &results->trials[t];
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        const RtWorkloadResult *workload = &results->workloads[t];
         json_t *sets = json_object();
-        for (uint32_t k = 0; trial->known && k < experiment->kind_count; k++) {
+        for (uint32_t k = 0; workload->known && k < experiment->kind_count; k++) {
             RtRayKind kind = experiment->kinds[k];
             json_object_set_new(sets, rt_ray_kind_name(kind),
-                                json_pack("{s:I, s:o}", "rays", (json_int_t)trial->rays[kind], "hash",
-                                          rt_json_hex(trial->ray_fingerprints[kind])));
+                                json_pack("{s:I, s:o}", "rays", (json_int_t)workload->rays[kind], "hash",
+                                          rt_json_hex(workload->ray_fingerprints[kind])));
         }
         json_array_append_new(
             list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o}", "label",
-                            experiment->trials[t].label, "scene", experiment->trials[t].spec, "skipped",
-                            trial->skipped, "objects", (json_int_t)trial->objects, "hash",
-                            rt_json_hex(trial->scene), "width", (json_int_t)trial->width, "height",
-                            (json_int_t)trial->height, "corners", experiment->trials[t].corners,
-                            "light_from_outside", experiment->trials[t].light_from_outside, "depth",
-                            (json_int_t)experiment->trials[t].depth, "rays", sets));
+                            experiment->workloads[t].label, "scene", experiment->workloads[t].spec, "skipped",
+                            workload->skipped, "objects", (json_int_t)workload->objects, "hash",
+                            rt_json_hex(workload->scene), "width", (json_int_t)workload->width, "height",
+                            (json_int_t)workload->height, "corners", experiment->workloads[t].corners,
+                            "light_from_outside", experiment->workloads[t].light_from_outside, "depth",
+                            (json_int_t)experiment->workloads[t].depth, "rays", sets));
     }
     return list;
 }
 
-static json_t *contenders_json(const RtExperiment *experiment) {
+static json_t *candidates_json(const RtExperiment *experiment) {
     json_t *list = json_array();
-    for (uint32_t c = 0; c < experiment->contender_count; c++) {
-        const RtContender *contender = &experiment->contenders[c];
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
         json_t *scenes = json_array();
-        for (uint32_t t = 0; t < experiment->trial_count; t++) {
-            if (contender->left_out >> t & 1) continue;
-            json_array_append_new(scenes, json_string(experiment->trials[t].label));
+        for (uint32_t t = 0; t < experiment->workload_count; t++) {
+            if (candidate->left_out >> t & 1) continue;
+            json_array_append_new(scenes, json_string(experiment->workloads[t].label));
         }
-        json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:b, s:o}", "label", contender->label, "accel",
-                                              contender->spec, "every", (json_int_t)contender->every,
-                                              "missing", contender->missing, "scenes", scenes));
+        json_array_append_new(list,
+                              json_pack("{s:s, s:s, s:I, s:b, s:o}", "label", candidate->label, "accel",
+                                        candidate->spec, "ray_stride", (json_int_t)candidate->ray_stride,
+                                        "missing", candidate->missing, "scenes", scenes));
     }
     return list;
 }
 
-static json_t *manifest_json(const RtResults *results, const RtTrialOptions *options) {
+static json_t *manifest_json(const RtResults *results, const RtWorkloadOptions *options) {
     const RtExperiment *experiment = results->experiment;
     return json_pack(
         "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:i, s:i, s:o, s:o, s:o}",
         "experiment", experiment->name, "file", experiment->path, "hash",
         rt_json_hex(experiment->fingerprint), "question", experiment->question, "prediction",
         experiment->prediction, "quick", experiment->quick, "seed", (json_int_t)experiment->seed, "limit",
-        (json_int_t)experiment->limit, "together", (json_int_t)experiment->together, "rounds",
+        (json_int_t)experiment->limit, "coherent_run", (json_int_t)experiment->coherent_run, "rounds",
         (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
-        experiment->contenders[experiment->baseline].label, "date", rt_json_now(), "threads_counting",
+        experiment->candidates[experiment->baseline].label, "date", rt_json_now(), "threads_counting",
         rt_thread_count(options->threads), "threads_timing", rt_thread_count(options->timing), "scenes",
-        scenes_json(results), "accelerators", contenders_json(experiment), "machine", rt_machine_json());
+        scenes_json(results), "accelerators", candidates_json(experiment), "machine", rt_machine_json());
 }
 
-RtStatus rt_manifest_write(const RtResults *results, const RtTrialOptions *options, const char *directory,
+RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *options, const char *directory,
                            RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(directory, "manifest.json", path, error));

@@ -2,12 +2,12 @@
 #ifndef RT_BENCH_MANIFEST_H
 #define RT_BENCH_MANIFEST_H
 
-#include "bench/trial.h"
+#include "bench/workload.h"
 
 #include <jansson.h>
 
 /* Writes `directory`/manifest.json, dated now. */
-RtStatus rt_manifest_write(const RtResults *results, const RtTrialOptions *options, const char *directory,
+RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *options, const char *directory,
                            RtError *error);
 
 /* Reads it back; the caller owns the reference. */

@@ -202,32 +202,31 @@ RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecordin
 
 /* ---- thinning ---- */
 
-RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t every, RtRaySet *to, RtError *error) {
-    assert(every > 0);
-    RT_TRY(set_init(to, from->kind, (from->count + every - 1) / every, error));
-    for (uint64_t i = 0; i < to->count; i++) to->rays[i] = from->rays[i * every];
+RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtError *error) {
+    assert(stride > 0);
+    RT_TRY(set_init(to, from->kind, (from->count + stride - 1) / stride, error));
+    for (uint64_t i = 0; i < to->count; i++) to->rays[i] = from->rays[i * stride];
     seal(to);
     return RT_OK;
 }
 
 /* Where the run of a group of `every` runs starts, in runs from the start of the group. At random, for a
  * constant would pick columns of the image where `every` divides the runs of a row. */
-static uint64_t pick(uint64_t group, uint64_t every) {
+static uint64_t pick(uint64_t group, uint64_t stride) {
     RtRandom random = rt_random(0, group);
-    return (uint64_t)rt_random_bits(&random) * every >> 32;
+    return (uint64_t)rt_random_bits(&random) * stride >> 32;
 }
 
-RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t together, RtRaySet *to,
-                         RtError *error) {
-    assert(limit > 0 && together > 0);
-    uint64_t every = (from->count + limit - 1) / limit;
-    if (together > limit / 64) together = limit / 64;
-    if (every <= 1 || together <= 1) return rt_rayset_thin(from, every ? every : 1, to, error);
+RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error) {
+    assert(limit > 0 && run > 0);
+    uint64_t stride = (from->count + limit - 1) / limit;
+    if (run > limit / 64) run = limit / 64;
+    if (stride <= 1 || run <= 1) return rt_rayset_thin(from, stride ? stride : 1, to, error);
     RT_TRY(set_init(to, from->kind, limit, error));
     to->count = 0;
-    for (uint64_t group = 0; group * every * together < from->count; group++) {
-        uint64_t first = (group * every + pick(group, every)) * together;
-        for (uint64_t i = first; i < first + together && i < from->count && to->count < limit; i++) {
+    for (uint64_t group = 0; group * stride * run < from->count; group++) {
+        uint64_t first = (group * stride + pick(group, stride)) * run;
+        for (uint64_t i = first; i < first + run && i < from->count && to->count < limit; i++) {
             to->rays[to->count++] = from->rays[i];
         }
     }

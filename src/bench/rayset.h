@@ -30,15 +30,14 @@ typedef struct RtRecording {
  * rt_rayset_clear. */
 RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording, RtError *error);
 
-/* Keeps every `every`th ray, starting with the first; 1 keeps all. */
-RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t every, RtRaySet *to, RtError *error);
+/* Keeps each `stride`th ray, starting with the first; 1 keeps all. */
+RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtError *error);
 
-/* At most `limit` rays, evenly spread, in runs of `together` neighbours: of every ceil(count / limit) runs
+/* At most `limit` rays, evenly spread, in runs of `run` neighbours: of every ceil(count / limit) runs
  * one is kept. Runs of 1 thin the set as above: the widest spread, for counting. Longer ones, up to a
  * 64th of `limit`, are picked at random within their group and keep the coherence that packets and caches
  * live on, for timing. */
-RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t together, RtRaySet *to,
-                         RtError *error);
+RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error);
 
 void rt_rayset_clear(RtRaySet *set);
 

@@ -9,15 +9,15 @@ typedef RtResultRow Row;
 
 /* ---- fields ---- */
 
-/* How often a contender is measured; the null run is the baseline once more. */
-static uint64_t every_of(const Row *r) {
+/* How often a candidate is measured; the null run is the baseline once more. */
+static uint64_t ray_stride_of(const Row *r) {
     const RtExperiment *e = r->results->experiment;
-    return e->contenders[r->contender < e->contender_count ? r->contender : e->baseline].every;
+    return e->candidates[r->candidate < e->candidate_count ? r->candidate : e->baseline].ray_stride;
 }
 
 static RtField label_of(const Row *r) {
-    RtField field = rt_field_text(rt_contender_label(r->results->experiment, r->contender));
-    if (every_of(r) > 1) field.note = "measured on a part of the rays";
+    RtField field = rt_field_text(rt_candidate_label(r->results->experiment, r->candidate));
+    if (ray_stride_of(r) > 1) field.note = "measured on a part of the rays";
     return field;
 }
 
@@ -59,10 +59,11 @@ static const void *structure_of(const void *row) {
     X(kind, "kind", text, "", "kind of the rays", rt_ray_kind_name(r->kind))                                 \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
-    X(accel, "accelerator", text, "", "the accelerator's label in the experiment; null: a null run",         \
+    X(accel, "accelerator", text, "", "the accelerator's label in the experiment; (again): a null run",      \
       label_of(r))                                                                                           \
     X(spec, "accel", text, "", "the accelerator with every effective parameter", r->build->spec)             \
-    X(every, "every", integer, "", "k, where only each kth ray of the set is measured", every_of(r))         \
+    X(ray_stride, "ray_stride", integer, "", "k, where only each kth ray of the set is measured",            \
+      ray_stride_of(r))                                                                                      \
     X(rays, "rays", integer, "", "rays measured", r->all.rays)                                               \
     X(hits, "hits", integer, "", "of them, those that hit an object", r->cell->tally.hits)                   \
     X(build_seconds, "build_seconds", real6, "s", "time to build; median of up to 3", r->build->seconds)     \
@@ -75,7 +76,7 @@ static const void *structure_of(const void *row) {
       1e9 * r->cell->seconds.median)                                                                         \
     X(ns_low, "ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->seconds.low)                \
     X(ns_high, "ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->seconds.high)             \
-    X(ns_least, "ns_least", real6, "ns", "the smallest such time", 1e9 * r->cell->seconds.least)             \
+    X(ns_min, "ns_min", real6, "ns", "the smallest such time", 1e9 * r->cell->seconds.least)                 \
     X(wall_ns, "wall_ns", real6, "ns", "time a ray by the clock; median", 1e9 * r->cell->wall.median)        \
     X(wall_ns_low, "wall_ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->wall.low)         \
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
@@ -100,7 +101,7 @@ static const void *structure_of(const void *row) {
     X(interval, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                        \
     X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
     X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
-    X(least, "least ns", figure, "ns", "smallest time a ray", TIMED(1e9 * r->cell->seconds.least))
+    X(min_ns, "min ns", figure, "ns", "smallest time a ray", TIMED(1e9 * r->cell->seconds.least))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -141,7 +142,7 @@ static const RtColumnGroup cells[] = {
     RT_ONE(columns, accel),         RT_ONE(columns, kind),
     RT_ONE(columns, rays),          RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
     RT_FROM_TO(columns, mrays, mb), RT_ONE(columns, ns_a_ray),
-    RT_ONE(columns, least),         RT_ONE(columns, differ)};
+    RT_ONE(columns, min_ns),        RT_ONE(columns, differ)};
 
 static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, rays),
                                        RT_FROM_TO(columns, tests_a_ray, ns_a_ray),
@@ -149,28 +150,28 @@ static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, r
 
 /* ---- rows ---- */
 
-/* A trial after the other, in each an accelerator after the other, the null run last, in each all kinds; for
- * the eye and bench, of one trial, a kind after the other. */
+/* A workload after the other, in each an accelerator after the other, the null run last, in each all kinds;
+ * for the eye and bench, of one workload, a kind after the other. */
 static void find(Row *r, size_t i) {
     const RtExperiment *e = r->results->experiment;
-    const size_t kinds = e->kind_count, contenders = e->contender_count + 1;
-    bool by_trial = r->which <= RT_TIMES;
-    r->kind = e->kinds[by_trial ? i % kinds : i / contenders];
-    r->contender = (uint32_t)((by_trial ? i / kinds : i) % contenders);
-    if (by_trial) r->trial = (uint32_t)(i / kinds / contenders);
-    r->setup = &e->trials[r->trial];
-    r->scene = &r->results->trials[r->trial];
-    r->build = rt_build_at(r->results, r->trial, r->contender);
-    r->cell = rt_cell_at(r->results, r->trial, r->contender, r->kind);
+    const size_t kinds = e->kind_count, candidates = e->candidate_count + 1;
+    bool by_workload = r->which <= RT_TIMES;
+    r->kind = e->kinds[by_workload ? i % kinds : i / candidates];
+    r->candidate = (uint32_t)((by_workload ? i / kinds : i) % candidates);
+    if (by_workload) r->workload = (uint32_t)(i / kinds / candidates);
+    r->setup = &e->workloads[r->workload];
+    r->scene = &r->results->workloads[r->workload];
+    r->build = rt_build_at(r->results, r->workload, r->candidate);
+    r->cell = rt_cell_at(r->results, r->workload, r->candidate, r->kind);
 }
 
 static double per_ray(const Row *r, uint64_t counter) {
-    return rt_cell_per_ray(r->results, r->trial, r->contender, r->kind, counter);
+    return rt_cell_per_ray(r->results, r->workload, r->candidate, r->kind, counter);
 }
 
 static RtTotal all_of(const Row *r) {
     const RtTally *tally = &r->cell->tally;
-    if (r->which == RT_TOTALS) return rt_results_total(r->results, r->trial, r->contender);
+    if (r->which == RT_TOTALS) return rt_results_total(r->results, r->workload, r->candidate);
     return (RtTotal){tally->rays,
                      per_ray(r, tally->object_tests),
                      per_ray(r, tally->extent_tests),
@@ -182,7 +183,7 @@ static RtTotal all_of(const Row *r) {
 static const void *row_at(void *context, size_t i) {
     Row *r = context;
     find(r, i);
-    const bool null = r->contender == r->results->experiment->contender_count;
+    const bool null = r->candidate == r->results->experiment->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
     const bool there[RT_RESULT_TABLE_COUNT] = {
         [RT_COUNTS] = counted && r->build->counts,
@@ -191,7 +192,7 @@ static const void *row_at(void *context, size_t i) {
         [RT_NULL_RUNS] = timed && null,
         [RT_CELLS] = counted || timed,
         [RT_CELLS_MORE] = counted || timed,
-        [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->contender_count,
+        [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->candidate_count,
     };
     if (!there[r->which]) return NULL;
     r->all = all_of(r);
@@ -206,10 +207,10 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
         [RT_TOTALS] = {RT_GROUPS(totals)},
     };
     const RtExperiment *e = row->results->experiment;
-    const size_t trials = which <= RT_TIMES ? e->trial_count : 1;
+    const size_t workloads = which <= RT_TIMES ? e->workload_count : 1;
     RtTable table = tables[which];
     if (which == RT_CELLS) table.group_count -= 3;
-    table.row_count = trials * (e->contender_count + 1) * e->kind_count;
+    table.row_count = workloads * (e->candidate_count + 1) * e->kind_count;
     table.row = row_at;
     table.context = row;
     row->which = which;
@@ -227,14 +228,14 @@ void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char title[RT_MAX_INTERVAL_TITLE];
-    for (uint32_t t = 0; t < experiment->trial_count; t++) {
-        const RtTrialResult *trial = &results->trials[t];
-        RtResultRow row = {.results = results, .trial = t};
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        const RtWorkloadResult *workload = &results->workloads[t];
+        RtResultRow row = {.results = results, .workload = t};
         RtTable table = rt_result_table(which, &row);
-        if (!trial->known) continue;
+        if (!workload->known) continue;
         fprintf(out, "\n%s: %" PRIu32 " objects, %" PRIu32 "x%" PRIu32 ", depth %" PRIu32,
-                experiment->trials[t].label, trial->objects, trial->width, trial->height,
-                experiment->trials[t].depth);
+                experiment->workloads[t].label, workload->objects, workload->width, workload->height,
+                experiment->workloads[t].depth);
         if (which == RT_CELLS && rt_cell_at(results, t, experiment->baseline, experiment->kinds[0])->timed) {
             rt_interval_title(experiment, title);
             fprintf(out, "; intervals of %s", title);
@@ -252,7 +253,7 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     if (runs == 0) return;
     int n =
         snprintf(out, room, "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " intervals straddle 1",
-                 results->experiment->contenders[results->experiment->baseline].label, straddling, runs);
+                 results->experiment->candidates[results->experiment->baseline].label, straddling, runs);
     uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
     double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
     if (misses == 0) {

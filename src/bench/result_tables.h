@@ -16,9 +16,9 @@ typedef enum RtResultTable {
     RT_TIMES,
     RT_BENCH,      /* "rows" of bench --json: of each cell that was counted */
     RT_NULL_RUNS,  /* "null_runs" there */
-    RT_CELLS,      /* for the eye: one trial by accelerator and ray kind */
+    RT_CELLS,      /* for the eye: one workload by accelerator and ray kind */
     RT_CELLS_MORE, /* the same with more columns */
-    RT_TOTALS,     /* one trial by accelerator, all kinds together */
+    RT_TOTALS,     /* one workload by accelerator, all kinds together */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;
 
@@ -26,21 +26,21 @@ typedef enum RtResultTable {
 typedef struct RtResultRow {
     const RtResults *results;
     RtResultTable which;
-    uint32_t trial; /* of tables for the eye, and of bench: the one that they show */
-    uint32_t contender;
+    uint32_t workload; /* of tables for the eye, and of bench: the one that they show */
+    uint32_t candidate;
     RtRayKind kind;
-    const RtTrial *setup;
-    const RtTrialResult *scene;
+    const RtWorkload *setup;
+    const RtWorkloadResult *scene;
     const RtBuildResult *build;
     const RtCell *cell;
     RtTotal all; /* of the cell, or of RT_TOTALS */
 } RtResultRow;
 
 /* `row` stays where it is as long as the table, which alone uses it, with its results, and for the eye its
- * trial, filled in. */
+ * workload, filled in. */
 RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 
-/* RT_CELLS or RT_TOTALS of each trial that is known. */
+/* RT_CELLS or RT_TOTALS of each workload that is known. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
 
 /* "12 of 12 null runs straddle 1.", and what to think of it otherwise; and where rounds are too few, what

@@ -5,53 +5,54 @@
 #include <math.h>
 
 RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error) {
-    size_t trials = experiment->trial_count, builds = trials * (experiment->contender_count + 1);
+    size_t workloads = experiment->workload_count, builds = workloads * (experiment->candidate_count + 1);
     *results = (RtResults){.experiment = experiment};
-    results->trials = rt_alloc(trials, sizeof(RtTrialResult));
+    results->workloads = rt_alloc(workloads, sizeof(RtWorkloadResult));
     results->builds = rt_alloc(builds, sizeof(RtBuildResult));
     results->cells = rt_alloc(builds * RT_RAY_KIND_COUNT, sizeof(RtCell));
-    if (results->trials && results->builds && results->cells) return RT_OK;
+    if (results->workloads && results->builds && results->cells) return RT_OK;
     return rt_fail_memory(error, "the results", builds * RT_RAY_KIND_COUNT * sizeof(RtCell));
 }
 
 void rt_results_clear(RtResults *results) {
-    rt_free(results->trials);
+    rt_free(results->workloads);
     rt_free(results->builds);
     rt_free(results->cells);
     *results = (RtResults){0};
 }
 
-static size_t build_index(const RtResults *results, uint32_t trial, uint32_t contender) {
-    return (size_t)trial * (results->experiment->contender_count + 1) + contender;
+static size_t build_index(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return (size_t)workload * (results->experiment->candidate_count + 1) + candidate;
 }
 
-RtBuildResult *rt_build_at(const RtResults *results, uint32_t trial, uint32_t contender) {
-    return &results->builds[build_index(results, trial, contender)];
+RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    return &results->builds[build_index(results, workload, candidate)];
 }
 
-RtCell *rt_cell_at(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind) {
-    return &results->cells[build_index(results, trial, contender) * RT_RAY_KIND_COUNT + (size_t)kind];
+RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    return &results->cells[build_index(results, workload, candidate) * RT_RAY_KIND_COUNT + (size_t)kind];
 }
 
-const char *rt_contender_label(const RtExperiment *experiment, uint32_t contender) {
-    return contender < experiment->contender_count ? experiment->contenders[contender].label : "null";
+const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate) {
+    return candidate < experiment->candidate_count ? experiment->candidates[candidate].label
+                                                   : experiment->again;
 }
 
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling) {
     *runs = *straddling = 0;
-    for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-            const RtCell *cell = rt_cell_at(results, t, results->experiment->contender_count, (RtRayKind)k);
+            const RtCell *cell = rt_cell_at(results, t, results->experiment->candidate_count, (RtRayKind)k);
             *runs += cell->timed;
             *straddling += cell->timed && cell->ratio.low <= 1 && 1 <= cell->ratio.high;
         }
     }
 }
 
-double rt_cell_per_ray(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind,
+double rt_cell_per_ray(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind,
                        uint64_t counter) {
-    const RtCell *cell = rt_cell_at(results, trial, contender, kind);
-    bool known = cell->counted && (counter || rt_build_at(results, trial, contender)->counts);
+    const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
+    bool known = cell->counted && (counter || rt_build_at(results, workload, candidate)->counts);
     return known ? (double)counter / (double)cell->tally.rays : (double)NAN;
 }
 
@@ -66,18 +67,18 @@ static void add(Mean *mean, double value, double weight) {
     mean->weight += weight;
 }
 
-RtTotal rt_results_total(const RtResults *results, uint32_t trial, uint32_t contender) {
+RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate) {
     Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0}, baseline = {0};
     uint64_t rays = 0;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         RtRayKind kind = (RtRayKind)k;
-        const RtCell *cell = rt_cell_at(results, trial, contender, kind);
+        const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
         const RtTally *tally = &cell->tally;
-        double weight = (double)results->trials[trial].rays[k];
+        double weight = (double)results->workloads[workload].rays[k];
         rays += tally->rays;
-        add(&object_tests, rt_cell_per_ray(results, trial, contender, kind, tally->object_tests), weight);
-        add(&extent_tests, rt_cell_per_ray(results, trial, contender, kind, tally->extent_tests), weight);
-        add(&steps, rt_cell_per_ray(results, trial, contender, kind, tally->steps), weight);
+        add(&object_tests, rt_cell_per_ray(results, workload, candidate, kind, tally->object_tests), weight);
+        add(&extent_tests, rt_cell_per_ray(results, workload, candidate, kind, tally->extent_tests), weight);
+        add(&steps, rt_cell_per_ray(results, workload, candidate, kind, tally->steps), weight);
         if (!cell->timed) continue;
         add(&seconds, cell->seconds.median, weight);
         add(&baseline, cell->ratio.median * cell->seconds.median, weight);

@@ -1,13 +1,13 @@
-/* What an experiment found, in memory: dense arrays over trial x contender x ray kind, filled cell by cell.
- * Behind the contenders stands one more, the null run: the baseline built and measured a second time, whose
- * ratio to the baseline must straddle 1. */
+/* What an experiment found, in memory: dense arrays over workload x candidate x ray kind, filled cell by
+ * cell. Behind the candidates stands one more, the null run: the baseline built and measured a second time,
+ * whose ratio to the baseline must straddle 1. */
 #ifndef RT_BENCH_RESULTS_H
 #define RT_BENCH_RESULTS_H
 
 #include "bench/experiment.h"
 #include "bench/statistics.h"
 
-typedef struct RtTrialResult {
+typedef struct RtWorkloadResult {
     bool known;   /* the scene was opened and its rays recorded */
     bool skipped; /* optional, and its file is missing */
     uint32_t objects;
@@ -15,7 +15,7 @@ typedef struct RtTrialResult {
     uint64_t scene;                               /* rt_scene_fingerprint */
     uint64_t rays[RT_RAY_KIND_COUNT];             /* in the set, after the limit */
     uint64_t ray_fingerprints[RT_RAY_KIND_COUNT]; /* of the set */
-} RtTrialResult;
+} RtWorkloadResult;
 
 typedef struct RtBuildResult {
     bool known, exact, counts;    /* as in RtAccel */
@@ -37,7 +37,7 @@ typedef struct RtCell {
 
 typedef struct RtResults {
     const RtExperiment *experiment; /* borrowed */
-    RtTrialResult *trials;          /* [trial_count] */
+    RtWorkloadResult *workloads;    /* [workload_count] */
     RtBuildResult *builds;          /* see rt_build_at */
     RtCell *cells;                  /* see rt_cell_at */
 } RtResults;
@@ -46,17 +46,17 @@ typedef struct RtResults {
 RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error);
 void rt_results_clear(RtResults *results);
 
-/* Places in the arrays; contender = contender_count is the null run. */
-RtBuildResult *rt_build_at(const RtResults *results, uint32_t trial, uint32_t contender);
-RtCell *rt_cell_at(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind);
+/* Places in the arrays; candidate = candidate_count is the null run. */
+RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t candidate);
+RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
-/* The contender's label, "null" for the null run. */
-const char *rt_contender_label(const RtExperiment *experiment, uint32_t contender);
+/* The candidate's label, that of the baseline and " (again)" for the null run. */
+const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
 
 /* How many of the null runs there are, and how many of them have an interval with 1 inside. */
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
 
-/* What a contender's cells of one trial add up to. Per ray means per ray of all kinds together, each kind
+/* What a candidate's cells of one workload add up to. Per ray means per ray of all kinds together, each kind
  * with the weight of its unthinned set, so that thinned and full measurements compare. NAN where unknown. */
 typedef struct RtTotal {
     uint64_t rays;                            /* measured */
@@ -65,11 +65,11 @@ typedef struct RtTotal {
     double ratio;                             /* of throughput to the baseline's on the same rays */
 } RtTotal;
 
-RtTotal rt_results_total(const RtResults *results, uint32_t trial, uint32_t contender);
+RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate);
 
 /* How often a counter counted for a ray of the cell; NAN where that is not known: nothing was counted, or the
  * counter stayed at 0 in an accelerator that does not count everything (Embree its own boxes). */
-double rt_cell_per_ray(const RtResults *results, uint32_t trial, uint32_t contender, RtRayKind kind,
+double rt_cell_per_ray(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind,
                        uint64_t counter);
 
 #endif

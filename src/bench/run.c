@@ -12,7 +12,7 @@ RtStatus rt_run_path(const RtRun *run, const char *name, char *path, RtError *er
 }
 
 void rt_run_notice(const RtRun *run, const char *message) {
-    const RtObserver *observer = &run->options->trial.observer;
+    const RtObserver *observer = &run->options->workload.observer;
     if (observer->notice) observer->notice(observer->context, message);
 }
 
@@ -41,28 +41,29 @@ static RtStatus take_directory(RtRun *run, RtError *error) {
     return rt_earlier_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
 
-/* Where a trial's scene is kept: at the first trial of the same scene. */
+/* Where a workload's scene is kept: at the first workload of the same scene. */
 static uint32_t slot_of(const RtExperiment *experiment, uint32_t t) {
     uint32_t slot = 0;
-    while (strcmp(experiment->trials[slot].path, experiment->trials[t].path) != 0) slot++;
+    while (strcmp(experiment->workloads[slot].path, experiment->workloads[t].path) != 0) slot++;
     return slot;
 }
 
 static RtStatus image_path(const RtRun *run, uint32_t t, char *path, RtError *error) {
     char name[RT_MAX_LABEL + 16];
-    snprintf(name, sizeof name, "images/%s.png", run->experiment->trials[t].label);
+    snprintf(name, sizeof name, "images/%s.png", run->experiment->workloads[t].label);
     return rt_run_path(run, name, path, error);
 }
 
 static RtStatus open_scenes(RtRun *run, RtError *error) {
-    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
+    for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
         uint32_t slot = slot_of(run->experiment, t);
         char image[RT_MAX_PATH];
         RT_TRY(image_path(run, t, image, error));
         bool drawn = run->resumed && rt_file_exists(image);
-        if (run->opened[slot] || (drawn && rt_trial_is_done(run->results, t, &run->options->trial))) continue;
-        RT_TRY(rt_trial_open(run->results, t, &run->options->trial, &run->scenes[slot], error));
-        run->opened[slot] = !run->results->trials[t].skipped;
+        if (run->opened[slot] || (drawn && rt_workload_is_done(run->results, t, &run->options->workload)))
+            continue;
+        RT_TRY(rt_workload_open(run->results, t, &run->options->workload, &run->scenes[slot], error));
+        run->opened[slot] = !run->results->workloads[t].skipped;
     }
     return RT_OK;
 }
@@ -98,18 +99,18 @@ static RtStatus open_journal(RtRun *run, RtError *error) {
 }
 
 static void name_missing(const RtRun *run) {
-    for (uint32_t c = 0; c < run->experiment->contender_count; c++) {
+    for (uint32_t c = 0; c < run->experiment->candidate_count; c++) {
         char message[RT_MAX_LABEL + 64];
-        if (!run->experiment->contenders[c].missing) continue;
+        if (!run->experiment->candidates[c].missing) continue;
         snprintf(message, sizeof message, "'%s' is skipped: this build does not have it",
-                 run->experiment->contenders[c].label);
+                 run->experiment->candidates[c].label);
         rt_run_notice(run, message);
     }
 }
 
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
     RtRun *run = context;
-    const RtObserver *observer = &run->options->trial.observer;
+    const RtObserver *observer = &run->options->workload.observer;
     run->measured = true;
     RT_TRY(rt_journal_append(&run->journal, results, event, error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
@@ -128,14 +129,14 @@ static RtStatus write_tables(const RtRun *run, RtError *error) {
     return rt_run_write_table(run, "times.csv", &times, error);
 }
 
-static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, int threads, const char *path,
+static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,
                            RtError *error) {
     RtSpec spec;
     RtAccel *accel;
     RtFrame frame = {0};
     RtImage image = {0};
     RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
-    RT_TRY(rt_scene_sample(scene, trial->width, trial->height, 2, false, error));
+    RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
     RT_TRY(rt_spec_parse(rt_accel_default(), &spec, error));
     RT_TRY(rt_accel_build(&spec, scene, threads, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
@@ -147,32 +148,32 @@ static RtStatus draw_scene(RtScene *scene, const RtTrialResult *trial, int threa
     return status;
 }
 
-/* The picture of a trial's scene, unless it is there. */
+/* The picture of a workload's scene, unless it is there. */
 static RtStatus write_image(RtRun *run, uint32_t t, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(image_path(run, t, path, error));
-    if (run->results->trials[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
-    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->trials[t],
-                      run->options->trial.threads, path, error);
+    if (run->results->workloads[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
+    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->workloads[t],
+                      run->options->workload.threads, path, error);
 }
 
-/* Frees the scene of trial `t`, unless a later one is on it, too. */
+/* Frees the scene of workload `t`, unless a later one is on it, too. */
 static void close_scene(RtRun *run, uint32_t t) {
     uint32_t slot = slot_of(run->experiment, t);
-    for (uint32_t later = t + 1; later < run->experiment->trial_count; later++) {
+    for (uint32_t later = t + 1; later < run->experiment->workload_count; later++) {
         if (slot_of(run->experiment, later) == slot) return;
     }
     rt_scene_clear(&run->scenes[slot]);
 }
 
 RtStatus rt_run_measure(RtRun *run, RtError *error) {
-    RtTrialOptions options = run->options->trial;
+    RtWorkloadOptions options = run->options->workload;
     options.observer = (RtObserver){run, on_event, on_notice};
     RT_TRY(open_journal(run, error));
     name_missing(run);
-    for (uint32_t t = 0; t < run->experiment->trial_count; t++) {
+    for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
         RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
-        RT_TRY(rt_trial_measure(run->results, t, &options, scene, error));
+        RT_TRY(rt_workload_measure(run->results, t, &options, scene, error));
         RT_TRY(write_tables(run, error));
         RT_TRY(write_image(run, t, error));
         close_scene(run, t);
@@ -184,6 +185,6 @@ RtStatus rt_run_measure(RtRun *run, RtError *error) {
 
 void rt_run_close(RtRun *run) {
     rt_json_lines_close(&run->journal);
-    for (uint32_t t = 0; t < RT_MAX_TRIALS; t++) rt_scene_clear(&run->scenes[t]);
+    for (uint32_t t = 0; t < RT_MAX_WORKLOADS; t++) rt_scene_clear(&run->scenes[t]);
     rt_lock_release(&run->lock);
 }

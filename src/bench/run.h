@@ -15,12 +15,12 @@
 #include "base/table.h"
 #include "bench/earlier.h"
 #include "bench/json_lines.h"
-#include "bench/trial.h"
+#include "bench/workload.h"
 
 typedef struct RtRunOptions {
-    const char *directory; /* created where missing */
-    RtStart start;         /* what becomes of what an earlier run in it has found */
-    RtTrialOptions trial;  /* its observer is told after the journal */
+    const char *directory;      /* created where missing */
+    RtStart start;              /* what becomes of what an earlier run in it has found */
+    RtWorkloadOptions workload; /* its observer is told after the journal */
 } RtRunOptions;
 
 typedef struct RtRun {
@@ -28,10 +28,10 @@ typedef struct RtRun {
     const RtExperiment *experiment; /* that of the results */
     const RtRunOptions *options;
     RtLock lock;
-    bool resumed;                  /* the directory has the journal that is gone on with */
-    bool measured;                 /* anything that the journal did not know */
-    RtScene scenes[RT_MAX_TRIALS]; /* each until its last trial is over */
-    bool opened[RT_MAX_TRIALS];
+    bool resumed;                     /* the directory has the journal that is gone on with */
+    bool measured;                    /* anything that the journal did not know */
+    RtScene scenes[RT_MAX_WORKLOADS]; /* each until its last workload is over */
+    bool opened[RT_MAX_WORKLOADS];
     RtJsonLines journal;
 } RtRun;
 

@@ -1,5 +1,5 @@
-/* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one trial
- * that leaves no directory behind. */
+/* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
+ * workload that leaves no directory behind. */
 #include "base/memory.h"
 #include "bench/machine.h"
 #include "bench/result_tables.h"
@@ -25,14 +25,14 @@ enum {
     OPT_JSON,
     OPT_SEED,
     OPT_LIMIT,
-    OPT_TOGETHER,
-    OPT_EVERY
+    OPT_COHERENT_RUN,
+    OPT_RAY_STRIDE
 };
 
 typedef struct Options {
     RtExperiment *experiment;
     const char *scene, *baseline, *csv;
-    RtTrialOptions trial;
+    RtWorkloadOptions workload;
     bool json;
 } Options;
 
@@ -41,11 +41,12 @@ static const struct argp_option options[] = {
      "An accelerator, NAME[:KEY=VALUE,...]; once per accelerator. `all`: every one, at "
      "its defaults",
      0},
-    {"every", OPT_EVERY, "K", 0, "Measure the --accel before this on every Kth ray only: for slow ones", 0},
+    {"ray-stride", OPT_RAY_STRIDE, "K", 0,
+     "Measure the --accel before this on every Kth ray only: for slow ones", 0},
     {"rays", OPT_RAYS, "KIND,...", 0,
      "Ray kinds: primary, shadow, reflection, transmission, diffuse, random (all)", 0},
     {"limit", OPT_LIMIT, "N", 0, "Rays of a kind at most; a larger set is thinned evenly (100000)", 0},
-    {"together", OPT_TOGETHER, "N", 0,
+    {"coherent-run", OPT_COHERENT_RUN, "N", 0,
      "Neighbouring rays that are kept together where a set is thinned, for packets and caches (256)", 0},
     {"baseline", OPT_BASELINE, "SPEC", 0, "The accelerator that ratios refer to (the first)", 0},
     {"rounds", OPT_ROUNDS, "N", 0,
@@ -70,20 +71,20 @@ static const struct argp_option options[] = {
 /* ---- options ---- */
 
 static void add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    if (experiment->contender_count == RT_MAX_CONTENDERS) {
-        argp_error(state, "--accel: there may be %d at most", RT_MAX_CONTENDERS);
+    if (experiment->candidate_count == RT_MAX_CANDIDATES) {
+        argp_error(state, "--accel: there may be %d at most", RT_MAX_CANDIDATES);
     }
     if (strlen(text) >= RT_MAX_SPEC_CHARS) {
         argp_error(state, "--accel: a spec has at most %d characters", RT_MAX_SPEC_CHARS - 1);
     }
-    RtContender *contender = &experiment->contenders[experiment->contender_count++];
-    contender->every = 1;
-    strcpy(contender->spec, text);
+    RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
+    candidate->ray_stride = 1;
+    strcpy(candidate->spec, text);
     if (strlen(text) < RT_MAX_LABEL) {
-        strcpy(contender->label, text);
+        strcpy(candidate->label, text);
     } else {
-        snprintf(contender->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, text,
-                 experiment->contender_count);
+        snprintf(candidate->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, text,
+                 experiment->candidate_count);
     }
 }
 
@@ -118,17 +119,18 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     RtExperiment *e = o->experiment;
     switch (key) {
     case 'a': add_accels(e, argument, state); return 0;
-    case OPT_EVERY:
-        if (!e->contender_count) argp_error(state, "--every stands behind the --accel that it is for");
-        e->contenders[e->contender_count - 1].every =
-            (uint64_t)rt_cli_integer(state, "--every", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
+    case OPT_RAY_STRIDE:
+        if (!e->candidate_count) argp_error(state, "--ray-stride stands behind the --accel that it is for");
+        e->candidates[e->candidate_count - 1].ray_stride =
+            (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
         return 0;
     case OPT_RAYS: parse_kinds(e, argument, state); return 0;
     case OPT_LIMIT:
         e->limit = (uint64_t)rt_cli_integer(state, "--limit", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
         return 0;
-    case OPT_TOGETHER:
-        e->together = (uint64_t)rt_cli_integer(state, "--together", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
+    case OPT_COHERENT_RUN:
+        e->coherent_run =
+            (uint64_t)rt_cli_integer(state, "--coherent-run", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
         return 0;
     case OPT_BASELINE: o->baseline = argument; return 0;
     case OPT_ROUNDS:
@@ -136,14 +138,14 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         return 0;
     case OPT_SEED: e->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
     case OPT_THREADS:
-        o->trial.threads = o->trial.timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
+        o->workload.threads = o->workload.timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
         return 0;
-    case OPT_SIZE: rt_cli_size(state, argument, &e->trials[0].width, &e->trials[0].height); return 0;
-    case OPT_CORNERS: e->trials[0].corners = true; return 0;
+    case OPT_SIZE: rt_cli_size(state, argument, &e->workloads[0].width, &e->workloads[0].height); return 0;
+    case OPT_CORNERS: e->workloads[0].corners = true; return 0;
     case OPT_DEPTH:
-        e->trials[0].depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH);
+        e->workloads[0].depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH);
         return 0;
-    case OPT_COUNT_ONLY: o->trial.count_only = true; return 0;
+    case OPT_COUNT_ONLY: o->workload.count_only = true; return 0;
     case OPT_CSV: o->csv = argument; return 0;
     case OPT_JSON: o->json = true; return 0;
     case ARGP_KEY_ARG:
@@ -153,14 +155,14 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case ARGP_KEY_END:
         if (!o->scene)
             argp_error(state, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists");
-        if (!e->contender_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
+        if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
         if (o->baseline) {
             e->baseline = 0;
-            while (e->baseline < e->contender_count &&
-                   strcmp(e->contenders[e->baseline].spec, o->baseline) != 0) {
+            while (e->baseline < e->candidate_count &&
+                   strcmp(e->candidates[e->baseline].spec, o->baseline) != 0) {
                 e->baseline++;
             }
-            if (e->baseline == e->contender_count) add_accel(e, o->baseline, state);
+            if (e->baseline == e->candidate_count) add_accel(e, o->baseline, state);
         }
         return 0;
     default: return ARGP_ERR_UNKNOWN;
@@ -179,7 +181,7 @@ static void print_json(const RtResults *results) {
 static RtStatus write_csv(const RtResults *results, const Options *o, RtError *error) {
     RtOutput output;
     RtResultRow row = {.results = results};
-    RtTable table = rt_result_table(o->trial.count_only ? RT_COUNTS : RT_TIMES, &row);
+    RtTable table = rt_result_table(o->workload.count_only ? RT_COUNTS : RT_TIMES, &row);
     RT_TRY(rt_output_open(&output, o->csv, error));
     rt_table_csv(&table, output.file);
     return rt_output_commit(&output, error);
@@ -203,14 +205,14 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
 static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
     RtExperiment *experiment = o->experiment;
-    RT_TRY(rt_trial_set_scene(&experiment->trials[0], o->scene, "", error));
+    RT_TRY(rt_workload_set_scene(&experiment->workloads[0], o->scene, "", error));
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    RtProgress progress = rt_progress_begin(experiment, o->trial.count_only ? 1 : 2);
-    o->trial.observer = rt_progress_observer(&progress);
+    RtProgress progress = rt_progress_begin(experiment, o->workload.count_only ? 1 : 2);
+    o->workload.observer = rt_progress_observer(&progress);
     RtResults results;
     RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = rt_trial_run(&results, 0, &o->trial, error);
+    if (status == RT_OK) status = rt_workload_run(&results, 0, &o->workload, error);
     rt_progress_end(&progress);
     if (status == RT_OK) status = report(&results, o, error);
     rt_results_clear(&results);
@@ -218,16 +220,16 @@ static RtStatus bench(Options *o, RtError *error) {
 }
 
 int rt_command_bench(int argc, char **argv) {
-    Options o = {.experiment = rt_alloc(1, sizeof(RtExperiment)), .trial = {.timing = 1}};
+    Options o = {.experiment = rt_alloc(1, sizeof(RtExperiment)), .workload = {.timing = 1}};
     RtError error;
     if (!o.experiment) {
         rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
         return rt_cli_fail(&error);
     }
     rt_experiment_init(o.experiment);
-    o.experiment->trial_count = 1;
-    o.experiment->together = 256;
-    o.experiment->trials[0].depth = RT_DEFAULT_DEPTH;
+    o.experiment->workload_count = 1;
+    o.experiment->coherent_run = 256;
+    o.experiment->workloads[0].depth = RT_DEFAULT_DEPTH;
     const struct argp argp = {
         .options = options,
         .parser = parse_option,
@@ -235,7 +237,7 @@ int rt_command_bench(int argc, char **argv) {
         .doc = "Count and time accelerators on the rays of one scene, and compare them."
                "\vSCENE is a file or a built-in, as in balls:size=3. Every accelerator gets the "
                "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
-               "  raytally bench balls --accel bvh --accel grid --accel brute --every 100"};
+               "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100"};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtStatus status = bench(&o, &error);
     rt_free(o.experiment);

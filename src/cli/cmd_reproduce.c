@@ -15,10 +15,11 @@ enum { MOST_CSV_BYTES = 1 << 28 };
 
 static RtStatus count_again(RtResults *results, RtError *error) {
     RtProgress progress = rt_progress_begin(results->experiment, 1);
-    RtTrialOptions options = {.timing = 1, .count_only = true, .observer = rt_progress_observer(&progress)};
+    RtWorkloadOptions options = {
+        .timing = 1, .count_only = true, .observer = rt_progress_observer(&progress)};
     RtStatus status = RT_OK;
-    for (uint32_t t = 0; status == RT_OK && t < results->experiment->trial_count; t++) {
-        status = rt_trial_run(results, t, &options, error);
+    for (uint32_t t = 0; status == RT_OK && t < results->experiment->workload_count; t++) {
+        status = rt_workload_run(results, t, &options, error);
     }
     rt_progress_end(&progress);
     return status;

@@ -60,10 +60,11 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     RT_TRY(rt_experiment_load(experiment, o->path, o->quick, error));
     snprintf(directory, sizeof directory, "results/%s", experiment->name);
     RtProgress progress = rt_progress_begin(experiment, experiment->count_only ? 1 : 2);
-    RtRunOptions how = {
-        .directory = o->out ? o->out : directory,
-        .start = o->start,
-        .trial = {.threads = o->threads, .timing = o->timing, .observer = rt_progress_observer(&progress)}};
+    RtRunOptions how = {.directory = o->out ? o->out : directory,
+                        .start = o->start,
+                        .workload = {.threads = o->threads,
+                                     .timing = o->timing,
+                                     .observer = rt_progress_observer(&progress)}};
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = rt_run_experiment(&results, &how, error);
     rt_progress_end(&progress);

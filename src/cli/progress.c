@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 RtProgress rt_progress_begin(const RtExperiment *experiment, uint32_t parts) {
-    uint32_t contenders = 0; /* on each scene */
-    for (uint32_t t = 0; t < experiment->trial_count; t++) {
-        for (uint32_t c = 0; c < experiment->contender_count; c++)
-            contenders += rt_contender_runs(experiment, c, t);
+    uint32_t candidates = 0; /* on each scene */
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        for (uint32_t c = 0; c < experiment->candidate_count; c++)
+            candidates += rt_candidate_runs(experiment, c, t);
     }
     return (RtProgress){.terminal = isatty(STDERR_FILENO) == 1,
-                        .all = experiment->kind_count * contenders * parts,
+                        .all = experiment->kind_count * candidates * parts,
                         .start = rt_wall_seconds()};
 }
 
@@ -20,21 +20,21 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     (void)error;
     RtProgress *progress = context;
     const RtExperiment *experiment = results->experiment;
-    bool null = event->contender == experiment->contender_count;
+    bool null = event->candidate == experiment->candidate_count;
     bool cell = event->what == RT_EVENT_COUNT || event->what == RT_EVENT_TIME;
     progress->done += cell && !null;
     if (!progress->terminal) return RT_OK;
     double passed = rt_wall_seconds() - progress->start;
     double left = progress->done ? passed / progress->done * (progress->all - progress->done) : 0;
     fprintf(stderr, "\r\033[K[%u/%u] %s", progress->done, progress->all,
-            experiment->trials[event->trial].label);
-    if (event->what != RT_EVENT_TRIAL)
-        fprintf(stderr, " %s", rt_contender_label(experiment, event->contender));
+            experiment->workloads[event->workload].label);
+    if (event->what != RT_EVENT_WORKLOAD)
+        fprintf(stderr, " %s", rt_candidate_label(experiment, event->candidate));
     if (cell) fprintf(stderr, " %s", rt_ray_kind_name(event->kind));
-    fprintf(stderr, event->what == RT_EVENT_TRIAL   ? ": rays recorded"
-                    : event->what == RT_EVENT_BUILD ? ": built"
-                    : event->what == RT_EVENT_COUNT ? ": counted"
-                                                    : ": timed");
+    fprintf(stderr, event->what == RT_EVENT_WORKLOAD ? ": rays recorded"
+                    : event->what == RT_EVENT_BUILD  ? ": built"
+                    : event->what == RT_EVENT_COUNT  ? ": counted"
+                                                     : ": timed");
     if (progress->done) fprintf(stderr, ", about %.0f s left", left);
     fflush(stderr);
     return RT_OK;

@@ -2,7 +2,7 @@
 #ifndef RT_CLI_PROGRESS_H
 #define RT_CLI_PROGRESS_H
 
-#include "bench/trial.h"
+#include "bench/workload.h"
 
 typedef struct RtProgress {
     bool terminal;
@@ -13,7 +13,7 @@ typedef struct RtProgress {
 /* `parts`: measurements a cell, 1 when only counting, else 2. */
 RtProgress rt_progress_begin(const RtExperiment *experiment, uint32_t parts);
 
-/* What a trial tells its progress to; notices get a line of their own, on a terminal or not. */
+/* What a workload tells its progress to; notices get a line of their own, on a terminal or not. */
 RtObserver rt_progress_observer(RtProgress *progress);
 
 /* Takes the line away. */

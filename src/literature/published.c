@@ -37,14 +37,14 @@ RtColumnSummary rt_column_summary(const RtPublished *published, RtColumn column)
     return summary;
 }
 
-bool rt_published_columns(const RtPublished *published, uint32_t trial, bool of_rays,
+bool rt_published_columns(const RtPublished *published, uint32_t workload, bool of_rays,
                           bool shown[RT_COLUMN_COUNT]) {
     bool any = false;
     for (int c = 0; c < RT_COLUMN_COUNT; c++) shown[c] = false;
     for (uint32_t i = 0; i < published->figure_count; i++) {
         const RtFigure *figure = &published->figures[i];
         const RtPublishedRow *row = &published->rows[figure->row];
-        if (row->trial == trial && row->of_rays == of_rays) any = shown[figure->column] = true;
+        if (row->workload == workload && row->of_rays == of_rays) any = shown[figure->column] = true;
     }
     return any;
 }
@@ -52,20 +52,20 @@ bool rt_published_columns(const RtPublished *published, uint32_t trial, bool of_
 /* ---- what was measured ---- */
 
 /* Of all ray kinds together; no rays where nothing was counted. */
-static RtTally tally_of(const RtResults *results, uint32_t trial, uint32_t contender) {
+static RtTally tally_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
     RtTally sum = {0};
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        const RtCell *cell = rt_cell_at(results, trial, contender, (RtRayKind)k);
+        const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
         if (cell->counted) rt_tally_add(&sum, &cell->tally);
     }
     return sum;
 }
 
 /* Rays of the baseline, which is measured on all of them. */
-static double count_rays(const RtResults *results, uint32_t trial, RtColumn column) {
+static double count_rays(const RtResults *results, uint32_t workload, RtColumn column) {
     RtTally tally[RT_RAY_KIND_COUNT];
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        tally[k] = rt_cell_at(results, trial, results->experiment->baseline, (RtRayKind)k)->tally;
+        tally[k] = rt_cell_at(results, workload, results->experiment->baseline, (RtRayKind)k)->tally;
     }
     RtTally secondary = tally[RT_RAY_REFLECTION];
     rt_tally_add(&secondary, &tally[RT_RAY_TRANSMISSION]);
@@ -80,8 +80,8 @@ static double count_rays(const RtResults *results, uint32_t trial, RtColumn colu
 }
 
 static double measure_row(const RtResults *results, const RtPublishedRow *row, RtColumn column) {
-    const RtDescription *shape = &rt_build_at(results, row->trial, row->contender)->shape;
-    RtTally tally = tally_of(results, row->trial, row->contender);
+    const RtDescription *shape = &rt_build_at(results, row->workload, row->candidate)->shape;
+    RtTally tally = tally_of(results, row->workload, row->candidate);
     double rays = (double)tally.rays; /* 0: what is a ray then is NAN */
     switch (column) {
     case RT_COLUMN_interior: return (double)shape->interior;
@@ -98,10 +98,10 @@ static double measure_row(const RtResults *results, const RtPublishedRow *row, R
 
 /* NAN where it was not measured. */
 static double measure(const RtResults *results, const RtPublishedRow *row, RtColumn column) {
-    if (!results->trials[row->trial].known) return (double)NAN;
-    if (row->of_rays) return count_rays(results, row->trial, column);
-    if (row->contender == RT_NOT_MEASURED) return (double)NAN;
-    if (!rt_build_at(results, row->trial, row->contender)->known) return (double)NAN;
+    if (!results->workloads[row->workload].known) return (double)NAN;
+    if (row->of_rays) return count_rays(results, row->workload, column);
+    if (row->candidate == RT_NOT_MEASURED) return (double)NAN;
+    if (!rt_build_at(results, row->workload, row->candidate)->known) return (double)NAN;
     return measure_row(results, row, column);
 }
 
@@ -121,7 +121,7 @@ static bool fits(const char *pattern, const char *text) {
 
 static uint32_t find_reason(const RtPublished *published, const RtFigure *figure) {
     const RtPublishedRow *row = &published->rows[figure->row];
-    const char *scene = published->experiment->trials[row->trial].label;
+    const char *scene = published->experiment->workloads[row->workload].label;
     for (uint32_t i = 0; i < published->reason_count; i++) {
         const RtReason *reason = &published->reasons[i];
         if (fits(reason->scene, scene) && fits(reason->source, row->source) &&
@@ -147,39 +147,39 @@ static bool is_less(double value, double than) {
     return isnan(than) ? !isnan(value) : value < than;
 }
 
-static RtLeast find_least(const RtPublished *published, const RtResults *results, uint32_t trial,
-                          RtMeasure measure) {
+static RtBest find_best(const RtPublished *published, const RtResults *results, uint32_t workload,
+                        RtMeasure measure) {
     const RtExperiment *experiment = published->experiment;
-    RtLeast least = {RT_NOT_MEASURED, RT_NOT_MEASURED, (double)NAN, (double)NAN, (double)NAN};
-    RtTally rays = tally_of(results, trial, experiment->baseline);
-    bool steps = measure == RT_LEAST_TESTS_AND_STEPS;
+    RtBest best = {RT_NOT_MEASURED, RT_NOT_MEASURED, (double)NAN, (double)NAN, (double)NAN};
+    RtTally rays = tally_of(results, workload, experiment->baseline);
+    bool steps = measure == RT_BEST_TESTS_AND_STEPS;
     for (uint32_t r = 0; r < published->row_count; r++) {
         const RtPublishedRow *row = &published->rows[r];
-        if (row->trial != trial || row->of_rays) continue;
+        if (row->workload != workload || row->of_rays) continue;
         double value = per_ray(published, row, RT_COLUMN_object_tests, &rays);
         if (steps) value += per_ray(published, row, RT_COLUMN_steps, &rays);
-        if (!is_less(value, least.published)) continue;
-        least.published = value;
-        least.row = r;
+        if (!is_less(value, best.published)) continue;
+        best.published = value;
+        best.row = r;
     }
-    for (uint32_t c = 0; c < experiment->contender_count; c++) {
-        if (!experiment->contenders[c].ours || !rt_build_at(results, trial, c)->known) continue;
-        RtTotal total = rt_results_total(results, trial, c);
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        if (!experiment->candidates[c].ours || !rt_build_at(results, workload, c)->known) continue;
+        RtTotal total = rt_results_total(results, workload, c);
         double value = total.object_tests + (steps ? total.steps : 0);
-        if (!is_less(value, least.ours)) continue;
-        least.ours = value;
-        least.extent_tests = total.extent_tests;
-        least.contender = c;
+        if (!is_less(value, best.ours)) continue;
+        best.ours = value;
+        best.extent_tests = total.extent_tests;
+        best.candidate = c;
     }
-    return least;
+    return best;
 }
 
 const char *rt_measure_name(RtMeasure measure) {
-    return measure == RT_LEAST_TESTS ? "object_tests" : "object_tests+steps";
+    return measure == RT_BEST_TESTS ? "object_tests" : "object_tests+steps";
 }
 
-bool rt_least_is_ahead(const RtLeast *least) {
-    return least->ours < least->published;
+bool rt_best_is_ahead(const RtBest *best) {
+    return best->ours < best->published;
 }
 
 void rt_published_compare(RtPublished *published, const RtResults *results) {
@@ -194,9 +194,9 @@ void rt_published_compare(RtPublished *published, const RtResults *results) {
         figure->reason = figure->judgement == RT_OUTSIDE ? find_reason(published, figure) : RT_NO_REASON;
         if (figure->reason != RT_NO_REASON) published->reasons[figure->reason].used++;
     }
-    for (uint32_t t = 0; t < published->experiment->trial_count; t++) {
+    for (uint32_t t = 0; t < published->experiment->workload_count; t++) {
         for (int m = 0; m < RT_MEASURE_COUNT; m++)
-            published->least[t][m] = find_least(published, results, t, (RtMeasure)m);
+            published->best[t][m] = find_best(published, results, t, (RtMeasure)m);
     }
 }
 
@@ -212,7 +212,7 @@ static RtStatus fail_outside(const RtPublished *published, const RtFigure *figur
         error, RT_MISMATCH,
         "%u published figures are missed by more than their tolerance, and nobody says why; the first: %s of "
         "%s on %s is %s, published is %s",
-        count, rt_column_name(figure->column), name, published->experiment->trials[row->trial].label,
+        count, rt_column_name(figure->column), name, published->experiment->workloads[row->workload].label,
         measured, figure->text);
 }
 
@@ -239,19 +239,19 @@ static RtStatus check_reasons(const RtPublished *published, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus check_least(const RtPublished *published, RtError *error) {
+static RtStatus check_best(const RtPublished *published, RtError *error) {
     const RtExperiment *experiment = published->experiment;
     bool any = false;
-    for (uint32_t c = 0; c < experiment->contender_count; c++) any |= experiment->contenders[c].ours;
-    for (uint32_t t = 0; any && t < experiment->trial_count; t++) {
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) any |= experiment->candidates[c].ours;
+    for (uint32_t t = 0; any && t < experiment->workload_count; t++) {
         for (int m = 0; m < RT_MEASURE_COUNT; m++) {
-            const RtLeast *least = &published->least[t][m];
-            if (least->row == RT_NOT_MEASURED || rt_least_is_ahead(least)) continue;
+            const RtBest *best = &published->best[t][m];
+            if (best->row == RT_NOT_MEASURED || rt_best_is_ahead(best)) continue;
             return rt_fail(error, RT_MISMATCH,
                            "on %s none of ours needs less than the best published row: %s are %.4g a ray, "
                            "published %.4g",
-                           experiment->trials[t].label, rt_measure_name((RtMeasure)m), least->ours,
-                           least->published);
+                           experiment->workloads[t].label, rt_measure_name((RtMeasure)m), best->ours,
+                           best->published);
         }
     }
     return RT_OK;
@@ -267,5 +267,5 @@ RtStatus rt_published_check(const RtPublished *published, RtError *error) {
     RT_TRY(check_figures(published, error));
     if (published->experiment->quick) return RT_OK;
     RT_TRY(as_mismatch(check_reasons(published, error), error));
-    return check_least(published, error);
+    return check_best(published, error);
 }

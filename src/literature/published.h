@@ -1,19 +1,19 @@
 /* Published figures beside measured ones.
  *
  * A table is a CSV file with a row per published row. Columns: scene and source; then accel, the label of the
- * contender that measures the same (empty: nothing does), structure and parameters, how the row is called,
+ * candidate that measures the same (empty: nothing does), structure and parameters, how the row is called,
  * and tests_per, what its object tests are divided by: ray or hit (a ray that hits); then any of RtColumn.
  * Figures stand as they were printed, and agree where they differ by no more than the tolerance and, of those
  * that are not whole numbers, half a unit of the last digit. build_seconds and trace_seconds may be there,
  * too; other machines' times are not compared.
  *
- * Figures of structures and per-ray figures are those of the row's contender, over all ray kinds of the
+ * Figures of structures and per-ray figures are those of the row's candidate, over all ray kinds of the
  * experiment together; those of rays are of the ray sets.
  *
  * A figure outside its tolerance must have a reason: a row of a CSV file with the columns scene, source,
  * accel, column and reason, the first four being patterns as in file names (* is anything). The first reason
  * that fits counts. A reason that no figure needs is stale; both fail the check. So does a scene on which
- * none of the contenders that the experiment calls `ours` needs fewer object tests per ray than every
+ * none of the candidates that the experiment calls `ours` needs fewer object tests per ray than every
  * published row, and fewer tests and steps. */
 #ifndef RT_LITERATURE_PUBLISHED_H
 #define RT_LITERATURE_PUBLISHED_H
@@ -29,8 +29,8 @@
 
 typedef struct RtPublishedRow {
     char source[RT_MAX_LABEL], structure[RT_MAX_LABEL], parameters[RT_MAX_LABEL], accel[RT_MAX_LABEL];
-    uint32_t trial;
-    uint32_t contender;    /* or RT_NOT_MEASURED */
+    uint32_t workload;
+    uint32_t candidate;    /* or RT_NOT_MEASURED */
     bool of_rays;          /* of a table without structures */
     bool per_hit;          /* object tests are divided by rays that hit */
     uint32_t first, count; /* its figures */
@@ -57,13 +57,13 @@ typedef struct RtReason {
 
 /* What is least: object tests a ray, or object tests and steps a ray. Rows per hit are taken per ray of
  * ours. */
-typedef enum RtMeasure { RT_LEAST_TESTS, RT_LEAST_TESTS_AND_STEPS, RT_MEASURE_COUNT } RtMeasure;
+typedef enum RtMeasure { RT_BEST_TESTS, RT_BEST_TESTS_AND_STEPS, RT_MEASURE_COUNT } RtMeasure;
 
-typedef struct RtLeast {
-    uint32_t row, contender; /* RT_NOT_MEASURED where there is none */
+typedef struct RtBest {
+    uint32_t row, candidate; /* RT_NOT_MEASURED where there is none */
     double published, ours;  /* NAN where there is none */
-    double extent_tests;     /* a ray, which that contender makes besides */
-} RtLeast;
+    double extent_tests;     /* a ray, which that candidate makes besides */
+} RtBest;
 
 typedef struct RtPublished {
     const RtExperiment *experiment; /* borrowed */
@@ -72,7 +72,7 @@ typedef struct RtPublished {
     RtReason *reasons;
     uint32_t row_count, figure_count, reason_count;
     char reasons_path[RT_MAX_PATH];
-    RtLeast least[RT_MAX_TRIALS][RT_MEASURE_COUNT];
+    RtBest best[RT_MAX_WORKLOADS][RT_MEASURE_COUNT];
 } RtPublished;
 
 /* Loads what the experiment names; nothing where it names nothing. Unknown scenes, accelerators and columns
@@ -99,15 +99,15 @@ RtColumnSummary rt_column_summary(const RtPublished *published, RtColumn column)
 /* The row's figure in that column, NULL where it has none. */
 const RtFigure *rt_published_figure(const RtPublished *published, const RtPublishedRow *row, RtColumn column);
 
-/* Which columns the rows of a trial have that are, or are not, of rays; false: none. */
-bool rt_published_columns(const RtPublished *published, uint32_t trial, bool of_rays,
+/* Which columns the rows of a workload have that are, or are not, of rays; false: none. */
+bool rt_published_columns(const RtPublished *published, uint32_t workload, bool of_rays,
                           bool shown[RT_COLUMN_COUNT]);
 
 const char *rt_column_name(RtColumn column);
 const char *rt_measure_name(RtMeasure measure);
 
 /* Whether ours is less than what is published; false where either is not known. */
-bool rt_least_is_ahead(const RtLeast *least);
+bool rt_best_is_ahead(const RtBest *best);
 
 /* "Octree84-C depth=4", or the source of a row of rays; room for RT_MAX_ROW_NAME. */
 #define RT_MAX_ROW_NAME 96

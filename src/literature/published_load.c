@@ -103,16 +103,16 @@ static RtStatus take_figure(RtPublished *published, const RtCsv *csv, uint32_t r
     return RT_OK;
 }
 
-/* The contender of the row: one that is measured on its scene, and on every ray. */
-static RtStatus find_contender(const RtExperiment *experiment, RtPublishedRow *row, const char *path,
+/* The candidate of the row: one that is measured on its scene, and on every ray. */
+static RtStatus find_candidate(const RtExperiment *experiment, RtPublishedRow *row, const char *path,
                                uint32_t line, RtError *error) {
     if (!*row->accel) return RT_OK;
-    row->contender = rt_contender_find(experiment, row->accel, row->trial);
-    if (row->contender >= experiment->contender_count) {
+    row->candidate = rt_candidate_find(experiment, row->accel, row->workload);
+    if (row->candidate >= experiment->candidate_count) {
         return rt_fail_at(error, path, line, 0, "%s has no accelerator with the label '%s' on the scene %s",
-                          experiment->name, row->accel, experiment->trials[row->trial].label);
+                          experiment->name, row->accel, experiment->workloads[row->workload].label);
     }
-    if (experiment->contenders[row->contender].every == 1) return RT_OK;
+    if (experiment->candidates[row->candidate].ray_stride == 1) return RT_OK;
     return rt_fail_at(error, path, line, 0, "'%s' is not measured on every ray, as published figures are",
                       row->accel);
 }
@@ -122,7 +122,7 @@ static RtStatus take_row(RtPublished *published, const RtCsv *csv, uint32_t r, R
     RtPublishedRow *row = &published->rows[published->row_count];
     char scene[RT_MAX_LABEL], per[RT_MAX_LABEL];
     uint32_t line = csv->lines[r];
-    *row = (RtPublishedRow){.contender = RT_NOT_MEASURED, .first = published->figure_count};
+    *row = (RtPublishedRow){.candidate = RT_NOT_MEASURED, .first = published->figure_count};
     RT_TRY(copy_field(csv, r, "scene", scene, sizeof scene, error));
     RT_TRY(copy_field(csv, r, "source", row->source, sizeof row->source, error));
     RT_TRY(copy_field(csv, r, "accel", row->accel, sizeof row->accel, error));
@@ -131,12 +131,12 @@ static RtStatus take_row(RtPublished *published, const RtCsv *csv, uint32_t r, R
     RT_TRY(copy_field(csv, r, "tests_per", per, sizeof per, error));
     row->of_rays = rt_csv_find(csv, "accel") == csv->columns;
     row->per_hit = strcmp(per, "hit") == 0;
-    row->trial = rt_trial_find(experiment, scene);
-    if (row->trial == experiment->trial_count) {
+    row->workload = rt_workload_find(experiment, scene);
+    if (row->workload == experiment->workload_count) {
         return rt_fail_at(error, csv->path, line, 0, "%s has no scene with the label '%s'", experiment->name,
                           scene);
     }
-    RT_TRY(find_contender(experiment, row, csv->path, line, error));
+    RT_TRY(find_candidate(experiment, row, csv->path, line, error));
     if (!row->per_hit && strcmp(per, "ray") != 0 &&
         *rt_csv_field(csv, r, rt_csv_find(csv, rt_column_name(RT_COLUMN_object_tests)))) {
         return rt_fail_at(error, csv->path, line, 0,

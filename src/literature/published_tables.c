@@ -39,8 +39,8 @@ static RtField name_of(const Row *r) {
 }
 
 static RtField ours_of(const Row *r) {
-    bool ahead = rt_least_is_ahead(r->least);
-    RtField field = rt_field_print("%.4g%s", r->least->ours, ahead ? "" : ", not less");
+    bool ahead = rt_best_is_ahead(r->best);
+    RtField field = rt_field_print("%.4g%s", r->best->ours, ahead ? "" : ", not less");
     field.missed = !ahead;
     return field;
 }
@@ -81,7 +81,7 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
-      r->published->experiment->trials[r->trial].label)                                                      \
+      r->published->experiment->workloads[r->workload].label)                                                \
     X(source, "source", text, "", "who published it", r->row->source)                                        \
     X(structure, "structure", text, "", "what the structure is called there", r->row->structure)             \
     X(parameters, "parameters", text, "", "its parameters, as they are called there", r->row->parameters)    \
@@ -97,16 +97,15 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
     X(reason, "reason", text, "", "why the figure is missed", reason_of(r->published, r->figure))            \
     X(measure, "measure", text, "", "what is to be least, a ray of any kind", rt_measure_name(r->measure))   \
     X(published_row, "best published row", text, "", "the row that has the least", name_of(r))               \
-    X(ours, "ours", real6, "", "what the one of ours needs that needs least", r->least->ours)                \
+    X(ours, "ours", real6, "", "what the one of ours needs that needs least", r->best->ours)                 \
     X(extent_tests, "extent_tests", real6, "", "extent tests a ray that this one makes besides",             \
-      r->least->extent_tests)                                                                                \
+      r->best->extent_tests)                                                                                 \
     X(ahead, "ahead", flag, "", "whether ours is less than what was published",                              \
-      rt_field_flag(rt_least_is_ahead(r->least)))                                                            \
+      rt_field_flag(rt_best_is_ahead(r->best)))                                                              \
     X(said4, "published", real4, "", "the least published figure", r->said)                                  \
     X(our_accel, "ours", markup, "", "our accelerator that needs least", rt_field_print("`%s`", r->accel))   \
     X(ours4, "measured", real4, "", "what it needs", ours_of(r))                                             \
-    X(extent_tests4, "extent tests", real4, "", "extent tests that it makes besides",                        \
-      r->least->extent_tests)                                                                                \
+    X(extent_tests4, "extent tests", real4, "", "extent tests that it makes besides", r->best->extent_tests) \
     X(judged, "column", text, "", "what figures are about, and how much they may deviate", judged_of(r))     \
     X(figures, "figures", integer, "", "published figures", r->summary.figures)                              \
     X(inside, "within", integer, "", "those within the tolerance", r->summary.judged[RT_WITHIN])             \
@@ -117,12 +116,12 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
 static const RtColumnGroup figures[] = {RT_FROM_TO(columns, scene, reason)};
-static const RtColumnGroup least[] = {RT_ONE(columns, scene), RT_FROM_TO(columns, measure, published_row),
-                                      RT_ONE(columns, published), RT_ONE(columns, accel),
-                                      RT_FROM_TO(columns, ours, ahead)};
-static const RtColumnGroup least_for_the_eye[] = {RT_ONE(columns, scene),
-                                                  RT_FROM_TO(columns, measure, published_row),
-                                                  RT_FROM_TO(columns, said4, extent_tests4)};
+static const RtColumnGroup best[] = {RT_ONE(columns, scene), RT_FROM_TO(columns, measure, published_row),
+                                     RT_ONE(columns, published), RT_ONE(columns, accel),
+                                     RT_FROM_TO(columns, ours, ahead)};
+static const RtColumnGroup best_for_the_eye[] = {RT_ONE(columns, scene),
+                                                 RT_FROM_TO(columns, measure, published_row),
+                                                 RT_FROM_TO(columns, said4, extent_tests4)};
 static const RtColumnGroup summary[] = {RT_FROM_TO(columns, judged, unjudged)};
 
 /* ---- rows ---- */
@@ -131,28 +130,28 @@ static const void *figures_row(void *context, size_t i) {
     Row *r = context;
     r->figure = &r->published->figures[i];
     r->row = &r->published->rows[r->figure->row];
-    r->trial = r->row->trial;
+    r->workload = r->row->workload;
     r->accel = r->row->accel;
     r->said = rt_field_text(r->figure->text);
     return r;
 }
 
-static const void *least_row(void *context, size_t i) {
+static const void *best_row(void *context, size_t i) {
     Row *r = context;
-    r->trial = (uint32_t)(i / RT_MEASURE_COUNT);
+    r->workload = (uint32_t)(i / RT_MEASURE_COUNT);
     r->measure = (RtMeasure)(i % RT_MEASURE_COUNT);
-    r->least = &r->published->least[r->trial][r->measure];
-    if (r->least->row == RT_NOT_MEASURED) return NULL;
-    r->row = &r->published->rows[r->least->row];
-    r->accel = r->least->contender == RT_NOT_MEASURED
+    r->best = &r->published->best[r->workload][r->measure];
+    if (r->best->row == RT_NOT_MEASURED) return NULL;
+    r->row = &r->published->rows[r->best->row];
+    r->accel = r->best->candidate == RT_NOT_MEASURED
                    ? NULL
-                   : r->published->experiment->contenders[r->least->contender].label;
-    r->said = rt_field_real(r->least->published);
+                   : r->published->experiment->candidates[r->best->candidate].label;
+    r->said = rt_field_real(r->best->published);
     return r;
 }
 
-static const void *least_eye_row(void *context, size_t i) {
-    const Row *r = least_row(context, i);
+static const void *best_eye_row(void *context, size_t i) {
+    const Row *r = best_row(context, i);
     return r && r->accel ? r : NULL;
 }
 
@@ -163,18 +162,18 @@ static const void *summary_row(void *context, size_t i) {
     return r->summary.figures ? r : NULL;
 }
 
-static const void *trial_row(void *context, size_t i) {
+static const void *workload_row(void *context, size_t i) {
     Row *r = context;
     r->row = &r->published->rows[i];
-    return r->row->trial == r->trial && r->row->of_rays == r->of_rays ? r : NULL;
+    return r->row->workload == r->workload && r->row->of_rays == r->of_rays ? r : NULL;
 }
 
-/* The name of a row, and the columns that any row of the trial has. */
+/* The name of a row, and the columns that any row of the workload has. */
 static void show_columns(Row *r) {
     bool shown[RT_COLUMN_COUNT];
     size_t count = 0;
     r->shown[count++] = columns[AT_row_name];
-    rt_published_columns(r->published, r->trial, r->of_rays, shown);
+    rt_published_columns(r->published, r->workload, r->of_rays, shown);
     for (int c = 0; c < RT_COLUMN_COUNT; c++) {
         const char *name = rt_column_name((RtColumn)c), *meaning = "published; measured (deviation)";
         if (shown[c])
@@ -186,14 +185,14 @@ static void show_columns(Row *r) {
 RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor) {
     static const RtTable tables[RT_PUBLISHED_TABLE_COUNT] = {
         [RT_FIGURES] = {RT_GROUPS(figures), .row = figures_row},
-        [RT_LEAST] = {RT_GROUPS(least), .row = least_row},
-        [RT_LEAST_FOR_THE_EYE] = {RT_GROUPS(least_for_the_eye), .row = least_eye_row},
+        [RT_BEST] = {RT_GROUPS(best), .row = best_row},
+        [RT_BEST_FOR_THE_EYE] = {RT_GROUPS(best_for_the_eye), .row = best_eye_row},
         [RT_SUMMARY] = {RT_GROUPS(summary), .row = summary_row},
-        [RT_ROWS_OF_RAYS] = {.row = trial_row},
-        [RT_ROWS_OF_STRUCTURES] = {.row = trial_row},
+        [RT_ROWS_OF_RAYS] = {.row = workload_row},
+        [RT_ROWS_OF_STRUCTURES] = {.row = workload_row},
     };
     const RtPublished *p = cursor->published;
-    const size_t measures = (size_t)p->experiment->trial_count * RT_MEASURE_COUNT;
+    const size_t measures = (size_t)p->experiment->workload_count * RT_MEASURE_COUNT;
     const size_t counts[RT_PUBLISHED_TABLE_COUNT] = {p->figure_count, measures,     measures,
                                                      RT_COLUMN_COUNT, p->row_count, p->row_count};
     RtTable table = tables[which];
@@ -235,16 +234,16 @@ static void put_paragraph(const Page *page, const char *text) {
     put(page, page->html ? "<p>" : "\n", text, page->html ? "</p>\n" : "\n");
 }
 
-static void put_table(const Page *page, uint32_t trial, RtPublishedTable which) {
-    RtPublishedCursor cursor = {.published = page->published, .trial = trial};
+static void put_table(const Page *page, uint32_t workload, RtPublishedTable which) {
+    RtPublishedCursor cursor = {.published = page->published, .workload = workload};
     RtTable table = rt_published_table(which, &cursor);
     if (!table.group_count) return;
     if (!page->html) fputc('\n', page->out);
     (page->html ? rt_table_html : rt_table_markdown)(&table, page->out);
 }
 
-static void put_trial(const Page *page, uint32_t t) {
-    const char *label = page->published->experiment->trials[t].label;
+static void put_workload(const Page *page, uint32_t t) {
+    const char *label = page->published->experiment->workloads[t].label;
     put(page, page->html ? "<details><summary>" : "\n## ", label, page->html ? "</summary>\n" : "\n");
     put_table(page, t, RT_ROWS_OF_RAYS);
     put_table(page, t, RT_ROWS_OF_STRUCTURES);
@@ -281,7 +280,7 @@ void rt_published_page(const RtPublished *published, bool html, FILE *out) {
     put_title(&page, "Ours against the best published row");
     put_paragraph(&page, "Per ray of all kinds. A row that counts tests per ray that hits is taken per ray. "
                          "Extent tests are what ours make besides.");
-    put_table(&page, 0, RT_LEAST_FOR_THE_EYE);
-    for (uint32_t t = 0; t < experiment->trial_count; t++) put_trial(&page, t);
+    put_table(&page, 0, RT_BEST_FOR_THE_EYE);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) put_workload(&page, t);
     put_reasons(&page);
 }

@@ -7,11 +7,11 @@
 #include "literature/published.h"
 
 typedef enum RtPublishedTable {
-    RT_FIGURES,           /* published.csv: a row per figure */
-    RT_LEAST,             /* least.csv: a row per scene and measure */
-    RT_LEAST_FOR_THE_EYE, /* of it, what both sides have */
-    RT_SUMMARY,           /* a row per column that has figures: how they were judged */
-    RT_ROWS_OF_RAYS,      /* of one trial: its rows as they were published, with what was measured */
+    RT_FIGURES,          /* published.csv: a row per figure */
+    RT_BEST,             /* best.csv: a row per scene and measure */
+    RT_BEST_FOR_THE_EYE, /* of it, what both sides have */
+    RT_SUMMARY,          /* a row per column that has figures: how they were judged */
+    RT_ROWS_OF_RAYS,     /* of one workload: its rows as they were published, with what was measured */
     RT_ROWS_OF_STRUCTURES,
     RT_PUBLISHED_TABLE_COUNT
 } RtPublishedTable;
@@ -19,12 +19,12 @@ typedef enum RtPublishedTable {
 /* The row at hand. */
 typedef struct RtPublishedCursor {
     const RtPublished *published;
-    uint32_t trial; /* of RT_ROWS...: which one they are of */
+    uint32_t workload; /* of RT_ROWS...: which one they are of */
     bool of_rays;
     const RtPublishedRow *row;
     const RtFigure *figure;
     RtMeasure measure;
-    const RtLeast *least;
+    const RtBest *best;
     RtColumn column;
     RtColumnSummary summary;
     const char *accel;                        /* label of who measures, NULL where nobody does */
@@ -33,7 +33,7 @@ typedef struct RtPublishedCursor {
     RtColumnGroup shown_group;
 } RtPublishedCursor;
 
-/* `cursor` stays where it is as long as the table, which alone uses it, with `published`, and its trial,
+/* `cursor` stays where it is as long as the table, which alone uses it, with `published`, and its workload,
  * filled in. No group: there is nothing to show. */
 RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor);
 

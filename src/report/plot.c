@@ -12,12 +12,12 @@
 
 enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 3 };
 
-const char *rt_contender_color(uint32_t contender) {
+const char *rt_candidate_color(uint32_t candidate) {
     /* The eight of Okabe & Ito (2008), told apart by colour-blind readers too, led by grey; then four
      * more. */
     static const char *const colors[] = {"#8c8c8c", "#e69f00", "#009e73", "#0072b2", "#56b4e9", "#d55e00",
                                          "#cc79a7", "#5b4a9f", "#a6761d", "#66a61e", "#b2182b", "#17becf"};
-    return colors[contender % (sizeof colors / sizeof colors[0])];
+    return colors[candidate % (sizeof colors / sizeof colors[0])];
 }
 
 /* ---- scripts ---- */
@@ -49,15 +49,15 @@ RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory,
     return RT_OK;
 }
 
-/* Whether the CSV files have rows of the contender, and it is the first of its label. */
-static bool has_rows(const RtResults *results, uint32_t contender) {
-    const RtContender *contenders = results->experiment->contenders;
-    for (uint32_t c = 0; c < contender; c++) {
-        if (strcmp(contenders[c].label, contenders[contender].label) == 0) return false;
+/* Whether the CSV files have rows of the candidate, and it is the first of its label. */
+static bool has_rows(const RtResults *results, uint32_t candidate) {
+    const RtCandidate *candidates = results->experiment->candidates;
+    for (uint32_t c = 0; c < candidate; c++) {
+        if (strcmp(candidates[c].label, candidates[candidate].label) == 0) return false;
     }
-    for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-            const RtCell *cell = rt_cell_at(results, t, contender, (RtRayKind)k);
+            const RtCell *cell = rt_cell_at(results, t, candidate, (RtRayKind)k);
             if (cell->counted || cell->timed) return true;
         }
     }
@@ -65,8 +65,8 @@ static bool has_rows(const RtResults *results, uint32_t contender) {
 }
 
 static bool has_rays(const RtResults *results, RtRayKind kind) {
-    for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
-        if (results->trials[t].rays[kind]) return true;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        if (results->workloads[t].rays[kind]) return true;
     }
     return false;
 }
@@ -83,16 +83,16 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
             "# What counts.csv and times.csv have rows of, in the order of the experiment.\n"
             "experiment = \"%s\"\nscenes = \"",
             experiment->name);
-    for (uint32_t t = 0; t < experiment->trial_count; t++) {
-        if (results->trials[t].known) fprintf(out, "%s ", experiment->trials[t].label);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (results->workloads[t].known) fprintf(out, "%s ", experiment->workloads[t].label);
     }
     fprintf(out, "\"\naccels = \"");
-    for (uint32_t c = 0; c < experiment->contender_count; c++) {
-        if (has_rows(results, c)) fprintf(out, "%s ", experiment->contenders[c].label);
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        if (has_rows(results, c)) fprintf(out, "%s ", experiment->candidates[c].label);
     }
     fprintf(out, "\"\ncolors = \"");
-    for (uint32_t c = 0; c < experiment->contender_count; c++) {
-        if (has_rows(results, c)) fprintf(out, "%s ", rt_contender_color(c));
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        if (has_rows(results, c)) fprintf(out, "%s ", rt_candidate_color(c));
     }
     fprintf(out, "\"\nkinds = \"");
     for (uint32_t k = 0; k < experiment->kind_count; k++) {

@@ -114,12 +114,12 @@ static void put_plots(FILE *out, const char *directory) {
 
 static void put_scenes(FILE *out, const RtResults *results, const char *directory) {
     fputs("<h2>Scenes</h2>\n<div class=\"scenes\">", out);
-    for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
-        const RtTrial *setup = &results->experiment->trials[t];
-        const RtTrialResult *trial = &results->trials[t];
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        const RtWorkload *setup = &results->experiment->workloads[t];
+        const RtWorkloadResult *workload = &results->workloads[t];
         char name[RT_MAX_LABEL + 16], path[RT_MAX_PATH];
         snprintf(name, sizeof name, "images/%s.png", setup->label);
-        if (!trial->known || rt_path_join(directory, name, path, NULL) != RT_OK) continue;
+        if (!workload->known || rt_path_join(directory, name, path, NULL) != RT_OK) continue;
         fputs("<figure>", out);
         put_image(out, path, "image/png", setup->label);
         fputs("<figcaption><strong>", out);
@@ -127,7 +127,7 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
         fprintf(out,
                 "</strong>: %" PRIu32 " objects; rays of a frame of %" PRIu32 " &times; %" PRIu32
                 " pixel %s, depth %" PRIu32 "</figcaption></figure>\n",
-                trial->objects, trial->width, trial->height, setup->corners ? "corners" : "centres",
+                workload->objects, workload->width, workload->height, setup->corners ? "corners" : "centres",
                 setup->depth);
     }
     fputs("</div>\n", out);
@@ -135,12 +135,12 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
 
 static const char *dot_of(const void *row) {
     const RtResultRow *r = row;
-    bool null = r->contender == r->results->experiment->contender_count;
-    return null ? "#ddd" : rt_contender_color(r->contender);
+    bool null = r->candidate == r->results->experiment->candidate_count;
+    return null ? "#ddd" : rt_candidate_color(r->candidate);
 }
 
 static void put_table(FILE *out, const RtResults *results, uint32_t t, RtResultTable which) {
-    RtResultRow row = {.results = results, .trial = t};
+    RtResultRow row = {.results = results, .workload = t};
     RtTable table = rt_result_table(which, &row);
     table.color = dot_of;
     rt_table_html(&table, out);
@@ -148,10 +148,10 @@ static void put_table(FILE *out, const RtResults *results, uint32_t t, RtResultT
 
 static void put_tables(FILE *out, const RtResults *results) {
     fputs("<h2>Tables</h2>\n", out);
-    for (uint32_t t = 0; t < results->experiment->trial_count; t++) {
-        if (!results->trials[t].known) continue;
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
         fputs("<h3>", out);
-        rt_html_put(out, results->experiment->trials[t].label);
+        rt_html_put(out, results->experiment->workloads[t].label);
         fputs("</h3>\n", out);
         put_table(out, results, t, RT_TOTALS);
         fputs("<details><summary>By ray kind, with intervals</summary>", out);

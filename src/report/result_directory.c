@@ -33,9 +33,9 @@ static void write_published(const RtResults *results, const RtPublished *publish
     write_published_table(published, RT_FIGURES, out);
 }
 
-static void write_least(const RtResults *results, const RtPublished *published, FILE *out) {
+static void write_best(const RtResults *results, const RtPublished *published, FILE *out) {
     (void)results;
-    write_published_table(published, RT_LEAST, out);
+    write_published_table(published, RT_BEST, out);
 }
 
 static void write_markdown(const RtResults *results, const RtPublished *published, FILE *out) {
@@ -45,7 +45,7 @@ static void write_markdown(const RtResults *results, const RtPublished *publishe
 
 const RtExactFile rt_exact_files[RT_EXACT_FILES] = {{"counts.csv", false, write_counts},
                                                     {"published.csv", true, write_published},
-                                                    {"least.csv", true, write_least},
+                                                    {"best.csv", true, write_best},
                                                     {"published.md", true, write_markdown}};
 
 /* A table that lies in a folder beside the YAML gets to one of the same name, where the copy of the YAML
@@ -103,7 +103,7 @@ static RtStatus write_manifest(const RtRun *run, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_run_path(run, RT_MANIFEST, path, error));
     if (!run->measured && rt_file_exists(path)) return RT_OK;
-    return rt_manifest_write(run->results, &run->options->trial, run->options->directory, error);
+    return rt_manifest_write(run->results, &run->options->workload, run->options->directory, error);
 }
 
 static RtStatus write_report(const Work *work, RtError *error) {

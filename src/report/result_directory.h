@@ -3,7 +3,7 @@
  *
  *   experiment.yaml  a copy of what was run
  *   manifest.json    with what it was run: seed, fingerprints, version, compiler, machine, date
- *   published.csv, least.csv, published.md
+ *   published.csv, best.csv, published.md
  *                    published figures beside measured ones, where the experiment names any; exact, too
  *   published/       or what folder they come from: copies of the published tables
  *   plots/           the scripts and what they drew
@@ -18,7 +18,7 @@
  *
  * No other process writes into the directory meanwhile. What an earlier run has left there is touched only
  * once all that may be refused has been looked at, every scene been opened: each once, to be kept until its
- * trial is over. Whenever the process ends, however, its journal or the one before it is whole.
+ * workload is over. Whenever the process ends, however, its journal or the one before it is whole.
  *
  * Without gnuplot there is a notice, and a report without plots. RT_MISMATCH, with everything written, where
  * gnuplot fails, or published figures are missed (rt_published_check). */

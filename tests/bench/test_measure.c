@@ -1,10 +1,10 @@
-/* bench/measure.h and trial.h: what is counted is the sum over threads and is compared with right
- * answers; thinned contenders are timed against the baseline on their own rays. */
+/* bench/measure.h and workload.h: what is counted is the sum over threads and is compared with right
+ * answers; thinned candidates are timed against the baseline on their own rays. */
 #include "testing.h"
 
 #include "base/memory.h"
 #include "bench/measure.h"
-#include "bench/trial.h"
+#include "bench/workload.h"
 #include "scenes/open.h"
 
 #include <string.h>
@@ -45,7 +45,7 @@ static void a_count_is_the_sum_over_threads_and_finds_wrong_answers(void **state
  * 16 wide those are the rays of the leftmost column, which pass by everything. */
 static RtCell time_thinned(const char *baseline, const char *spec) {
     RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
-    RtTrialOptions options = {.threads = 1, .timing = 1};
+    RtWorkloadOptions options = {.threads = 1, .timing = 1};
     RtResults results;
     char where[RT_MAX_LABEL];
     assert_non_null(e);
@@ -53,18 +53,18 @@ static RtCell time_thinned(const char *baseline, const char *spec) {
     strcpy(e->name, "thinned");
     e->milliseconds = 1;
     e->kind_count = 1;
-    e->trial_count = 1;
-    e->trials[0].depth = 1;
-    e->trials[0].width = e->trials[0].height = 16;
-    e->contender_count = 2;
-    e->contenders[0] = (RtContender){.label = "all", .every = 1};
-    e->contenders[1] = (RtContender){.label = "some", .every = 16};
-    strcpy(e->contenders[0].spec, baseline);
-    strcpy(e->contenders[1].spec, spec);
-    assert_ok(rt_trial_set_scene(&e->trials[0], "random:n=300", "", error));
+    e->workload_count = 1;
+    e->workloads[0].depth = 1;
+    e->workloads[0].width = e->workloads[0].height = 16;
+    e->candidate_count = 2;
+    e->candidates[0] = (RtCandidate){.label = "all", .ray_stride = 1};
+    e->candidates[1] = (RtCandidate){.label = "some", .ray_stride = 16};
+    strcpy(e->candidates[0].spec, baseline);
+    strcpy(e->candidates[1].spec, spec);
+    assert_ok(rt_workload_set_scene(&e->workloads[0], "random:n=300", "", error));
     assert_ok(rt_experiment_check(e, where, error));
     assert_ok(rt_results_init(&results, e, error));
-    assert_ok(rt_trial_run(&results, 0, &options, error));
+    assert_ok(rt_workload_run(&results, 0, &options, error));
     RtCell cell = *rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
     assert_true(fabs(rt_results_total(&results, 0, 1).ratio / cell.ratio.median - 1) < 1e-9);
     rt_results_clear(&results);
@@ -74,7 +74,7 @@ static RtCell time_thinned(const char *baseline, const char *spec) {
 
 /* The hierarchy needs 1 extent test for each of these rays and 10 for one of all: on all rays the ratio would
  * be 4 and more. */
-static void a_thinned_contender_is_compared_with_the_baseline_on_its_own_rays(void **state) {
+static void a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays(void **state) {
     (void)state;
     RtCell cell = time_thinned("bvh", "bvh");
     assert_int_equal(cell.tally.rays, 16);
@@ -83,7 +83,7 @@ static void a_thinned_contender_is_compared_with_the_baseline_on_its_own_rays(vo
 }
 
 /* ideal knows rays by their addresses; a ray that it does not know costs it 300 tests. */
-static void a_baseline_that_learns_knows_the_rays_of_thinned_contenders(void **state) {
+static void a_baseline_that_learns_knows_the_rays_of_thinned_candidates(void **state) {
     (void)state;
     RtCell cell = time_thinned("ideal", "ideal");
     assert_int_equal(cell.tally.object_tests, cell.tally.hits);
@@ -93,8 +93,8 @@ static void a_baseline_that_learns_knows_the_rays_of_thinned_contenders(void **s
 RT_TEST_GROUP(measure) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_count_is_the_sum_over_threads_and_finds_wrong_answers),
-        cmocka_unit_test(a_thinned_contender_is_compared_with_the_baseline_on_its_own_rays),
-        cmocka_unit_test(a_baseline_that_learns_knows_the_rays_of_thinned_contenders),
+        cmocka_unit_test(a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays),
+        cmocka_unit_test(a_baseline_that_learns_knows_the_rays_of_thinned_candidates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -196,19 +196,18 @@ static void thinning_keeps_every_nth_ray_and_a_limit_holds(void **state) {
     rt_rayset_clear(&thin);
 }
 
-/* Asserts that `limit` keeps runs of `together` rays, one of every `every` runs, somewhere in its group. */
-static void assert_runs(const RtRaySet *set, uint64_t limit, uint64_t asked, uint64_t together,
-                        uint64_t every) {
+/* Asserts that `limit` keeps runs of `run` rays, one of every `every` runs, somewhere in its group. */
+static void assert_runs(const RtRaySet *set, uint64_t limit, uint64_t asked, uint64_t run, uint64_t stride) {
     RtRaySet kept;
     bool moved = false;
     assert_ok(rt_rayset_limit(set, limit, asked, &kept, error));
-    assert_true(kept.count <= limit && kept.count + 2 * together >= set->count / every);
+    assert_true(kept.count <= limit && kept.count + 2 * run >= set->count / stride);
     for (uint64_t i = 0, from = 0; i < kept.count; i++, from++) {
         while (from < set->count && memcmp(&kept.rays[i], &set->rays[from], sizeof(RtRay)) != 0) from++;
         assert_true(from < set->count);
-        assert_int_equal(from % together, i % together);
-        assert_int_equal(from / (together * every), i / together);
-        moved |= from % (together * every) >= together;
+        assert_int_equal(from % run, i % run);
+        assert_int_equal(from / (run * stride), i / run);
+        moved |= from % (run * stride) >= run;
     }
     assert_true(moved);
     rt_rayset_clear(&kept);

@@ -58,15 +58,15 @@ static void from_six_rounds_on_an_interval_covers_95_percent(void **state) {
     }
 }
 
-/* Times have a long tail: 1 / (1 - u) for u uniform, with median 2. 4000 trials have a standard error of at
- * most 0.8 %. */
+/* Times have a long tail: 1 / (1 - u) for u uniform, with median 2. 4000 workloads have a standard error of
+ * at most 0.8 %. */
 static void intervals_hold_the_true_median_as_often_as_they_say(void **state) {
     (void)state;
     const uint32_t counts[] = {1, 3, 5, 6, 7, 10, 11, 30};
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
         int inside = 0;
-        for (uint64_t trial = 0; trial < 4000; trial++) {
-            RtRandom random = rt_random(11, trial);
+        for (uint64_t workload = 0; workload < 4000; workload++) {
+            RtRandom random = rt_random(11, workload);
             double values[30];
             for (uint32_t i = 0; i < counts[c]; i++) values[i] = 1 / (1 - (double)rt_random_unit(&random));
             RtEstimate e = rt_estimate(values, counts[c]);

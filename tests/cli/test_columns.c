@@ -46,7 +46,7 @@ static void list(Section sections[SECTIONS]) {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
         {"times.csv", true, NULL, of_results(RT_TIMES)},
         {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},
-        {"least.csv", true, "results/havran-1999/least.csv", of_published(RT_LEAST)},
+        {"best.csv", true, "results/havran-1999/best.csv", of_published(RT_BEST)},
         {"verify.csv", true, "results/verify/verify.csv", verify_csv},
         {"bench --json: rows", false, NULL, of_results(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, of_results(RT_NULL_RUNS)},

@@ -9,7 +9,7 @@ static RtStatus run(const Place *place, const char *rows, const char *reasons, b
     RtResults results;
     Path out = path_in(place, "out");
     const RtRunOptions options = {
-        .directory = out.text, .start = RT_START_ANEW, .trial = {.threads = 1, .timing = 1}};
+        .directory = out.text, .start = RT_START_ANEW, .workload = {.threads = 1, .timing = 1}};
     write_figures(place, rows);
     write_reasons(place, reasons);
     RT_TRY(load_small(place, quick, error));
@@ -109,8 +109,8 @@ static void ours_must_need_less_than_every_published_row(void **state) {
     change_experiment(place, "  reasons:", "  ours: [all]\n  reasons:");
     const char *ahead = "balls,s,Tree,deep,,ray,,12.0,3.5\nballs,s,Tree,flat,,ray,,13.0,1.5\n";
     assert_agrees(place, ahead, "");
-    assert_in_file(place, "out/least.csv", "balls,object_tests,Tree deep,12,all,11,");
-    assert_in_file(place, "out/least.csv", "balls,object_tests+steps,Tree flat,14.5,all,");
+    assert_in_file(place, "out/best.csv", "balls,object_tests,Tree deep,12,all,11,");
+    assert_in_file(place, "out/best.csv", "balls,object_tests+steps,Tree flat,14.5,all,");
     /* A bar in a name is none of the table's. */
     assert_agrees(place, "balls,s,Tree|deep,,,ray,,12.0,3.5\n", "");
     assert_in_file(place, "out/published.md", "| balls | object_tests | Tree\\|deep | 12 | `all` |");

@@ -113,7 +113,7 @@ static void reproduce_compares_published_figures_and_checks_them(void **state) {
     assert_int_equal(raytally(place, "run small.yaml --out out --force"), 2);
 }
 
-static void a_contender_is_counted_on_its_scenes_alone_and_one_label_serves_on_several(void **state) {
+static void a_candidate_is_counted_on_its_scenes_alone_and_one_label_serves_on_several(void **state) {
     const Place *place = *state;
     write_figures(place, "");
     assert_int_equal(raytally(place, "run small.yaml --out out"), 0);
@@ -137,7 +137,7 @@ RT_TEST_GROUP(published_tables) {
         IN_PLACE(what_the_experiment_says_wrongly_about_published_figures_is_told_with_its_line),
         IN_PLACE(a_published_table_that_does_not_fit_into_memory_is_refused),
         IN_PLACE(reproduce_compares_published_figures_and_checks_them),
-        IN_PLACE(a_contender_is_counted_on_its_scenes_alone_and_one_label_serves_on_several),
+        IN_PLACE(a_candidate_is_counted_on_its_scenes_alone_and_one_label_serves_on_several),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

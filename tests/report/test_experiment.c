@@ -14,7 +14,7 @@ static const char small_experiment[] = "name: small\n"
                                        "  - {scene: \"balls:size=2\", size: 24x24, depth: 3}\n"
                                        "  - {scene: \"random:n=50\", label: cloud, size: 16x16, depth: 2}\n"
                                        "accelerators:\n"
-                                       "  - {accel: brute, every: 7}\n"
+                                       "  - {accel: brute, ray_stride: 7}\n"
                                        "  - {accel: bvh}\n"
                                        "  - {accel: \"grid:density=4\", label: grid}\n"
                                        "  - {accel: ideal}\n"
@@ -38,7 +38,7 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, in
     RT_TRY(rt_results_init(&results, place->experiment, error));
     RtRunOptions options = {.directory = path.text,
                             .start = start,
-                            .trial = {.threads = threads, .timing = 1, .observer = observer}};
+                            .workload = {.threads = threads, .timing = 1, .observer = observer}};
     RtStatus status = rt_run_experiment(&results, &options, error);
     rt_results_clear(&results);
     return status;
@@ -49,9 +49,10 @@ static const RtObserver nobody = {NULL, NULL, NULL};
 /* Recording, building, counting, timing and drawing. */
 static void a_run_on_one_thread_starts_no_other(void **state) {
     const Place *place = *state;
-    write_changed(place, "small.yaml", small_experiment,
-                  "n=50\", label: cloud, size: 16x16, depth: 2}\naccelerators:\n  - {accel: brute, every: 7}",
-                  "n=20000\", size: 192x192}\naccelerators:\n  - {accel: \"bvh:reinsertion=2\"}");
+    write_changed(
+        place, "small.yaml", small_experiment,
+        "n=50\", label: cloud, size: 16x16, depth: 2}\naccelerators:\n  - {accel: brute, ray_stride: 7}",
+        "n=20000\", size: 192x192}\naccelerators:\n  - {accel: \"bvh:reinsertion=2\"}");
     Labour before = labour_so_far();
     assert_ok(run(place, "out", false, 1, nobody, error));
     Labour labour = labour_since(before);
@@ -75,14 +76,14 @@ static void a_bad_experiment_is_refused_with_its_line(void **state) {
         {"density=4", "density=-4", ":10:"},
         {"label: grid", "label: bvh", ":10:"},
         {"label: grid", "label: \"a b\"", ":10:"},
-        {"label: grid", "label: \"null\"", ":10:"},
+        {"label: grid", "label: \"bvh (again)\"", ":10:"},
         {"24x24", "24x0", ":5:"},
         {"depth: 3", "depth: 1000000000", ":5:"},
         {"label: cloud", "label: \"balls:size=2\"", ":6:"},
         {"depth: 2}", "optional: perhaps}", ":6:"},
         {"question: Which is cheaper?\n", "", "question"},
         {"rounds: 3", "limit: 5", "given twice"},
-        {"every: 7", "scenes: [nowhere]", ":8:29: accelerators[0].scenes[0]: 'nowhere'"},
+        {"ray_stride: 7", "scenes: [nowhere]", ":8:29: accelerators[0].scenes[0]: 'nowhere'"},
         {"rounds: 3", "count_only: maybe", "yes or no or true or false, not 'maybe'"},
         {"rounds: 3", "published: {tables: [a.csv], tolerance: {steps: -1}}",
          "published.tolerance.steps: -1"},
@@ -114,9 +115,11 @@ static void a_zero_is_taken_where_it_means_something_and_refused_with_the_range_
     } cases[] = {
         {"limit: 300", "limit: 0", ":13:8: limit: '0' will not do: it must be a whole number, 1..100000000"},
         {"rounds: 3", "rounds: 0", ":14:9: rounds: '0' will not do: it must be a whole number, 1..1000"},
-        {"rounds: 3", "together: 0", ":14:11: together: '0' will not do: it must be a whole number, 1.."},
+        {"rounds: 3", "coherent_run: 0",
+         ":14:15: coherent_run: '0' will not do: it must be a whole number, 1.."},
         {"depth: 3", "depth: 0", "scenes[0].depth: '0' will not do: it must be a whole number, 1..64"},
-        {"every: 7", "every: 0", "accelerators[0].every: '0' will not do: it must be a whole number, 1.."},
+        {"ray_stride: 7", "ray_stride: 0",
+         "accelerators[0].ray_stride: '0' will not do: it must be a whole number, 1.."},
         {"rounds: 3", "quick: {rounds: 0}", "quick.rounds: '0' will not do"},
         {"rounds: 3", "quick: {depth: 0}", "quick.depth: '0' will not do"},
         {"rounds: 3", "quick: {limit: 0}", "quick.limit: '0' will not do"},
@@ -138,10 +141,10 @@ static void quick_overrides_only_where_it_is_asked_for(void **state) {
                   "rounds: 3\nquick: {limit: 7, rounds: 2, milliseconds: 9, depth: 1, size: 8x4}");
     const RtExperiment *e = place->experiment;
     assert_ok(load_small(place, false, error));
-    assert_true(e->limit == 300 && e->rounds == 3 && e->milliseconds == 1 && e->trials[1].depth == 2);
+    assert_true(e->limit == 300 && e->rounds == 3 && e->milliseconds == 1 && e->workloads[1].depth == 2);
     assert_ok(load_small(place, true, error));
     assert_true(e->limit == 7 && e->rounds == 2 && e->milliseconds == 9 && e->quick);
-    assert_true(e->trials[1].depth == 1 && e->trials[1].width == 8 && e->trials[1].height == 4);
+    assert_true(e->workloads[1].depth == 1 && e->workloads[1].width == 8 && e->workloads[1].height == 4);
 }
 
 static void whichever_allocation_fails_loading_is_out_of_memory(void **state) {
@@ -175,11 +178,11 @@ static void what_is_left_out_of_the_yaml_has_its_default(void **state) {
              "accelerators: [{accel: brute}]\n");
     assert_ok(load_small(place, false, error));
     const RtExperiment *e = place->experiment;
-    assert_string_equal(e->trials[0].label, "bunny");
-    assert_true(e->trials[0].file && e->trials[0].depth == 5 && e->trials[0].width == 0);
+    assert_string_equal(e->workloads[0].label, "bunny");
+    assert_true(e->workloads[0].file && e->workloads[0].depth == 5 && e->workloads[0].width == 0);
     assert_true(e->kind_count == RT_RAY_KIND_COUNT && e->limit == 100000 && e->rounds == 10 &&
                 e->baseline == 0);
-    assert_non_null(strstr(e->trials[0].path, "/../x/bunny.obj")); /* seen from the folder of the YAML */
+    assert_non_null(strstr(e->workloads[0].path, "/../x/bunny.obj")); /* seen from the folder of the YAML */
 }
 
 /* ---- runs ---- */

@@ -38,7 +38,7 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, Rt
     Path path = path_in(place, directory);
     RT_TRY(load_small(place, false, error));
     RT_TRY(rt_results_init(&results, place->experiment, error));
-    RtRunOptions options = {.directory = path.text, .start = start, .trial = {.threads = 1, .timing = 1}};
+    RtRunOptions options = {.directory = path.text, .start = start, .workload = {.threads = 1, .timing = 1}};
     RtStatus status = rt_run_experiment(&results, &options, error);
     rt_results_clear(&results);
     return status;
@@ -357,7 +357,7 @@ static void a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left(
     const Place *place = *state;
     scenes_opened = 0;
     assert_ok(run(place, "out", RT_START_FRESH, error));
-    assert_int_equal(scenes_opened, 2); /* the first and the last trial are on the same */
+    assert_int_equal(scenes_opened, 2); /* the first and the last workload are on the same */
     assert_true(rt_file_exists(path_in(place, "out/images/again.png").text));
     scenes_opened = 0;
     assert_ok(run(place, "out", RT_START_RESUME, error));

@@ -1,0 +1,320 @@
+/* A workload in order: the rays of its scene are recorded by the default accelerator, which also gives
+ * the answers that all others are held against; every candidate is built; then, ray kind by ray kind, each is
+ * counted, and all are timed against each other. */
+#include "bench/workload_state.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "scenes/open.h"
+
+#include <string.h>
+
+/* Builds are repeated while that is cheap. */
+enum { MOST_BUILDS = 3 };
+static const double CHEAP_BUILD = 0.25; /* seconds */
+
+/* ---- what is left to do ---- */
+
+static bool runs(const RtWorkloadState *workload, uint32_t candidate) {
+    return rt_candidate_runs(workload->experiment, candidate, workload->index);
+}
+
+static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        bool null = c == workload->experiment->candidate_count;
+        if (!runs(workload, c)) continue;
+        if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
+    }
+    return true;
+}
+
+static bool workload_is_done(const RtWorkloadState *workload) {
+    const RtWorkloadResult *result = &workload->results->workloads[workload->index];
+    if (!result->known) return result->skipped;
+    for (uint32_t c = 0; c < workload->count; c++) {
+        if (runs(workload, c) && !rt_build_at(workload->results, workload->index, c)->known) return false;
+    }
+    for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
+        RtRayKind kind = workload->experiment->kinds[k];
+        if (result->rays[kind] && !kind_is_done(workload, kind)) return false;
+    }
+    return true;
+}
+
+/* ---- scene, rays, structures ---- */
+
+/* Keeps of the recorded sets what the experiment asks for, at most `limit` of each kind. */
+static RtStatus keep_sets(RtWorkloadState *workload, const RtRaySet *recorded, RtError *error) {
+    for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
+        RtRayKind kind = workload->experiment->kinds[k];
+        RT_TRY(rt_rayset_limit(&recorded[kind], workload->experiment->limit,
+                               workload->experiment->coherent_run, &workload->sets[kind], error));
+    }
+    return RT_OK;
+}
+
+static RtStatus record_rays(RtWorkloadState *workload, RtError *error) {
+    const RtWorkload *setup = &workload->experiment->workloads[workload->index];
+    RtRecording recording = {.depth = setup->depth,
+                             .seed = workload->experiment->seed,
+                             .random = workload->experiment->limit,
+                             .threads = workload->options->threads,
+                             .light_from_outside = setup->light_from_outside};
+    RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
+    RtSpec spec;
+    RT_TRY(rt_spec_parse(rt_accel_default(), &spec, error));
+    RT_TRY(rt_accel_build(&spec, workload->scene, recording.threads, &workload->reference, error));
+    RtStatus status = rt_rayset_record(recorded, workload->reference, &recording, error);
+    if (status == RT_OK) status = keep_sets(workload, recorded, error);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
+    return status;
+}
+
+/* Fills the workload's part of the results, or holds it against what an earlier run found. */
+static RtStatus describe_workload(RtWorkloadState *workload, RtError *error) {
+    RtWorkloadResult *result = &workload->results->workloads[workload->index];
+    RtWorkloadResult now = {.known = true,
+                            .objects = workload->scene->geometry.object_count,
+                            .width = workload->scene->sampling.width,
+                            .height = workload->scene->sampling.height,
+                            .scene = rt_scene_fingerprint(workload->scene)};
+    bool same = now.scene == result->scene;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        now.rays[k] = workload->sets[k].count;
+        now.ray_fingerprints[k] = workload->sets[k].fingerprint;
+        same &= now.ray_fingerprints[k] == result->ray_fingerprints[k];
+    }
+    if (result->known && !same) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s' has changed since this run was interrupted: begin anew, with --force",
+                       workload->experiment->workloads[workload->index].label);
+    }
+    if (result->known) return RT_OK;
+    *result = now;
+    return rt_workload_tell(workload, RT_EVENT_WORKLOAD, 0, RT_RAY_PRIMARY, error);
+}
+
+static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
+    const RtWorkload *setup = &workload->experiment->workloads[workload->index];
+    RT_TRY(rt_scene_sample(workload->scene, setup->width, setup->height, 1, setup->corners, error));
+    RT_TRY(record_rays(workload, error));
+    return describe_workload(workload, error);
+}
+
+/* Builds one candidate up to MOST_BUILDS times, keeps the last, and gives the median of the seconds. */
+static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel **out, double *median,
+                          RtError *error) {
+    double seconds[MOST_BUILDS], sum = 0;
+    uint32_t builds = 0;
+    *out = NULL;
+    do {
+        rt_accel_destroy(*out);
+        *out = NULL;
+        double start = rt_wall_seconds();
+        RT_TRY(rt_accel_build(spec, workload->scene, workload->options->threads, out, error));
+        seconds[builds] = rt_wall_seconds() - start;
+        sum += seconds[builds++];
+    } while (builds < MOST_BUILDS && sum < CHEAP_BUILD);
+    *median = rt_median(seconds, builds);
+    return RT_OK;
+}
+
+static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        RtSpec spec;
+        double seconds;
+        RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
+        if (!runs(workload, c)) continue;
+        RT_TRY(rt_spec_parse(workload->experiment->candidates[rt_workload_origin(workload, c)].spec, &spec,
+                             error));
+        RT_TRY(build_one(workload, &spec, &workload->accels[c], &seconds, error));
+        if (result->known) continue;
+        const RtAccel *accel = workload->accels[c];
+        *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
+        result->seconds = seconds;
+        rt_spec_format(&spec, result->spec);
+        rt_accel_describe(accel, &result->shape);
+        RT_TRY(rt_workload_tell(workload, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
+    }
+    return RT_OK;
+}
+
+/* ---- the rays of one kind ---- */
+
+/* Rays in a set that is thinned by `every`. */
+static uint64_t thinned_count(const RtRaySet *set, uint64_t stride) {
+    return (set->count + stride - 1) / stride;
+}
+
+/* Rays of the set and of all shares that are thinned. */
+static uint64_t count_with_shares(const RtWorkloadState *workload, const RtRaySet *set) {
+    uint64_t count = set->count;
+    for (uint32_t c = 0; c < workload->count; c++) {
+        if (workload->accels[c] && rt_workload_ray_stride(workload, c) > 1)
+            count += thinned_count(set, rt_workload_ray_stride(workload, c));
+    }
+    return count;
+}
+
+/* Picks the rays and answers of a share, to lie from `first` on. */
+static void thin_share(const RtWorkloadState *workload, const RtRaySet *set, uint64_t stride, uint64_t first,
+                       RtWorkloadShare *share) {
+    share->set.rays = set->rays + first;
+    share->set.count = thinned_count(set, stride);
+    share->expected = workload->answers + first;
+    for (uint64_t i = 0; i < share->set.count; i++) {
+        share->set.rays[i] = set->rays[i * stride];
+        workload->answers[first + i] = workload->answers[i * stride];
+    }
+}
+
+/* Gives every candidate its share of the set, and the answers to those that learn. Thinned shares are copies
+ * behind the set, in the same array: the baseline, which may be one that learns and knows rays by their
+ * places, is timed on all of them. */
+static RtStatus deal_shares(RtWorkloadState *workload, RtRaySet *set, RtError *error) {
+    uint64_t all = count_with_shares(workload, set), used = set->count;
+    uint32_t capacity = (uint32_t)set->count;
+    RT_TRY(rt_reserve(&set->rays, &capacity, all, sizeof(RtRay), error));
+    workload->answers = rt_alloc(all, sizeof(RtHit));
+    if (!workload->answers) return rt_fail_memory(error, "answers", all * sizeof(RtHit));
+    RT_TRY(
+        rt_measure_answers(workload->reference, set, workload->options->threads, workload->answers, error));
+    for (uint32_t c = 0; c < workload->count; c++) {
+        uint64_t stride = rt_workload_ray_stride(workload, c);
+        if (!workload->accels[c]) continue;
+        workload->shares[c] = (RtWorkloadShare){.set = *set, .expected = workload->answers};
+        if (stride == 1) continue;
+        thin_share(workload, set, stride, used, &workload->shares[c]);
+        used += workload->shares[c].set.count;
+    }
+    for (uint32_t c = 0; c < workload->count; c++) {
+        if (workload->accels[c])
+            RT_TRY(rt_accel_learn(workload->accels[c], set->rays, workload->answers, all, error));
+    }
+    return RT_OK;
+}
+
+/* The invariants of Havran & Sixta 1999: equal for every correct accelerator are the rays, the rays that hit,
+ * and, stronger, each answer. */
+static RtStatus check_answers(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind,
+                              const RtCount *count, RtError *error) {
+    const RtWorkloadShare *share = &workload->shares[candidate];
+    const char *scene = workload->experiment->workloads[workload->index].label;
+    const char *accel = rt_candidate_label(workload->experiment, candidate);
+    uint64_t hits = 0;
+    for (uint64_t i = 0; i < share->set.count; i++) hits += share->expected[i].object != RT_NO_OBJECT;
+    if (count->differ) {
+        return rt_fail(error, RT_MISMATCH,
+                       "%s on %s answers %llu of %llu %s rays unlike %s, the first of them ray %llu; "
+                       "`raytally verify` shows what is wrong",
+                       accel, scene, (unsigned long long)count->differ, (unsigned long long)share->set.count,
+                       rt_ray_kind_name(kind), rt_accel_default(), (unsigned long long)count->first);
+    }
+    if (count->tally.rays == share->set.count && count->tally.hits == hits) return RT_OK;
+    return rt_fail(error, RT_MISMATCH,
+                   "%s on %s counts %llu %s rays with %llu hits, where there are %llu with %llu", accel,
+                   scene, (unsigned long long)count->tally.rays, rt_ray_kind_name(kind),
+                   (unsigned long long)count->tally.hits, (unsigned long long)share->set.count,
+                   (unsigned long long)hits);
+}
+
+static RtStatus count_kind(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        const RtWorkloadShare *share = &workload->shares[c];
+        RtCount count;
+        if (!workload->accels[c] || cell->counted) continue;
+        RT_TRY(rt_measure_count(workload->accels[c], &share->set, share->expected, workload->options->threads,
+                                &count, error));
+        if (workload->accels[c]->exact) RT_TRY(check_answers(workload, c, kind, &count, error));
+        cell->counted = true;
+        cell->tally = count.tally;
+        cell->differ = count.differ;
+        RT_TRY(rt_workload_tell(workload, RT_EVENT_COUNT, c, kind, error));
+    }
+    return RT_OK;
+}
+
+/* ---- all of it ---- */
+
+static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    if (workload->sets[kind].count == 0 || kind_is_done(workload, kind)) return RT_OK;
+    RtStatus status = deal_shares(workload, &workload->sets[kind], error);
+    if (status == RT_OK) status = count_kind(workload, kind, error);
+    if (status == RT_OK && !workload->count_only) status = rt_workload_time(workload, kind, error);
+    rt_free(workload->answers);
+    workload->answers = NULL;
+    return status;
+}
+
+static RtStatus measure(RtWorkloadState *workload, RtError *error) {
+    RT_TRY(prepare(workload, error));
+    RT_TRY(build_all(workload, error));
+    for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
+        RT_TRY(measure_kind(workload, workload->experiment->kinds[k], error));
+    }
+    return RT_OK;
+}
+
+static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWorkloadOptions *options) {
+    RtWorkloadState workload = {
+        .results = results, .experiment = results->experiment, .options = options, .index = index};
+    workload.count_only = options->count_only || workload.experiment->count_only;
+    workload.count = workload.experiment->candidate_count + !workload.count_only;
+    return workload;
+}
+
+bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options) {
+    RtWorkloadState workload = state_of(results, index, options);
+    return workload_is_done(&workload);
+}
+
+RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
+                          RtScene *scene, RtError *error) {
+    const RtWorkload *setup = &results->experiment->workloads[index];
+    const RtObserver *observer = &options->observer;
+    char message[RT_MAX_PATH + 128];
+    *scene = (RtScene){0};
+    if (!setup->file || rt_file_exists(setup->path)) return rt_scene_open(setup->path, scene, error);
+    if (!setup->optional) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", setup->path);
+    }
+    snprintf(message, sizeof message,
+             "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
+             setup->label);
+    if (observer->notice) observer->notice(observer->context, message);
+    results->workloads[index].skipped = true;
+    return RT_OK;
+}
+
+RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
+                             RtScene *scene, RtError *error) {
+    RtWorkloadState workload = state_of(results, index, options);
+    workload.scene = scene;
+    if (workload_is_done(&workload)) return RT_OK;
+    workload.accels = rt_alloc(workload.count, sizeof(RtAccel *));
+    workload.shares = rt_alloc(workload.count, sizeof(RtWorkloadShare));
+    RtStatus status = RT_OK;
+    if (!workload.accels || !workload.shares)
+        status = rt_fail_memory(error, "a workload", workload.count * sizeof(RtWorkloadShare));
+    if (status == RT_OK) status = measure(&workload, error);
+    for (uint32_t c = 0; workload.accels && c < workload.count; c++) rt_accel_destroy(workload.accels[c]);
+    rt_accel_destroy(workload.reference);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&workload.sets[k]);
+    rt_free(workload.accels);
+    rt_free(workload.shares);
+    return status;
+}
+
+RtStatus rt_workload_run(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
+                         RtError *error) {
+    RtScene scene;
+    if (rt_workload_is_done(results, index, options)) return RT_OK;
+    RT_TRY(rt_workload_open(results, index, options, &scene, error));
+    RtStatus status = rt_workload_measure(results, index, options, &scene, error);
+    rt_scene_clear(&scene);
+    return status;
+}

@@ -1,0 +1,49 @@
+/* A workload while it runs: what the files share that make one up (workload.c, workload_time.c). */
+#ifndef RT_BENCH_WORKLOAD_STATE_H
+#define RT_BENCH_WORKLOAD_STATE_H
+
+#include "bench/measure.h"
+#include "bench/workload.h"
+
+/* The rays that one candidate gets of one kind, and the answers to them; views into what the workload owns.
+ */
+typedef struct RtWorkloadShare {
+    RtRaySet set;
+    const RtHit *expected;
+} RtWorkloadShare;
+
+typedef struct RtWorkloadState {
+    RtResults *results;
+    const RtExperiment *experiment;
+    const RtWorkloadOptions *options;
+    uint32_t index, count; /* count: candidates and, where times are taken, the null run */
+    bool count_only;
+    RtScene *scene;
+    RtAccel *reference;               /* answers */
+    RtAccel **accels;                 /* [count], NULL for one that does not run here */
+    RtRaySet sets[RT_RAY_KIND_COUNT]; /* behind the `count` rays of one at hand lie its thinned shares */
+    RtWorkloadShare *shares;          /* [count], of the kind at hand */
+    RtHit *answers;                   /* to the set of the kind at hand and the shares behind it */
+} RtWorkloadState;
+
+/* The candidate that number `c` is built from: itself, or the baseline for the null run. */
+static inline uint32_t rt_workload_origin(const RtWorkloadState *workload, uint32_t candidate) {
+    return candidate < workload->experiment->candidate_count ? candidate : workload->experiment->baseline;
+}
+
+static inline uint64_t rt_workload_ray_stride(const RtWorkloadState *workload, uint32_t candidate) {
+    return workload->experiment->candidates[rt_workload_origin(workload, candidate)].ray_stride;
+}
+
+/* Tells the observer. */
+static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
+                                        RtRayKind kind, RtError *error) {
+    const RtObserver *observer = &workload->options->observer;
+    RtEvent event = {what, workload->index, candidate, kind};
+    return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
+}
+
+/* Times all candidates on their shares of the rays of one kind. */
+RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error);
+
+#endif

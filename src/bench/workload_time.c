@@ -1,0 +1,85 @@
+/* The timing of one kind of rays in a workload. */
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "bench/workload_state.h"
+
+/* All that is timed against each other: each candidate on its share, and the baseline on every share that is
+ * thinned, so that a ratio compares times on the same rays. */
+typedef struct Contest {
+    uint32_t count, rounds;
+    RtTimed *timed;  /* [count] */
+    double *seconds; /* [count][2][rounds], where they go */
+    uint32_t *place; /* [workload->count] of a candidate among them */
+    uint32_t *rival; /* [workload->count] of the baseline on its rays */
+} Contest;
+
+static uint32_t enter(Contest *contest, const RtAccel *accel, const RtRaySet *set) {
+    double *place = contest->seconds + 2 * (size_t)contest->count * contest->rounds;
+    contest->timed[contest->count] = (RtTimed){accel, set, place, place + contest->rounds};
+    return contest->count++;
+}
+
+/* Clear it also after a failure. */
+static RtStatus contest_init(Contest *contest, const RtWorkloadState *workload, RtError *error) {
+    const uint32_t baseline = workload->experiment->baseline;
+    size_t most = 2 * (size_t)workload->count, doubles = 2 * most * workload->experiment->rounds;
+    *contest = (Contest){.rounds = workload->experiment->rounds,
+                         .timed = rt_alloc(most, sizeof(RtTimed)),
+                         .seconds = rt_alloc(doubles, sizeof(double)),
+                         .place = rt_alloc(workload->count, sizeof(uint32_t)),
+                         .rival = rt_alloc(workload->count, sizeof(uint32_t))};
+    if (!contest->timed || !contest->seconds || !contest->place || !contest->rival) {
+        return rt_fail_memory(error, "times", doubles * sizeof(double));
+    }
+    for (uint32_t c = 0; c < workload->count; c++) {
+        if (workload->accels[c])
+            contest->place[c] = enter(contest, workload->accels[c], &workload->shares[c].set);
+    }
+    for (uint32_t c = 0; c < workload->count; c++) {
+        contest->rival[c] = contest->place[baseline];
+        if (!workload->accels[c] || rt_workload_ray_stride(workload, c) == 1) continue;
+        contest->rival[c] = enter(contest, workload->accels[baseline], &workload->shares[c].set);
+    }
+    return RT_OK;
+}
+
+static void contest_clear(Contest *contest) {
+    rt_free(contest->timed);
+    rt_free(contest->seconds);
+    rt_free(contest->place);
+    rt_free(contest->rival);
+}
+
+/* Takes what was timed into the cells. */
+static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Contest *contest,
+                           RtError *error) {
+    uint32_t rounds = contest->rounds;
+    for (uint32_t c = 0; c < workload->count; c++) {
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        const RtTimed *own = &contest->timed[contest->place[c]], *rival = &contest->timed[contest->rival[c]];
+        if (!workload->accels[c] || cell->timed) continue;
+        cell->timed = true;
+        cell->rounds = rounds;
+        cell->threads = rt_thread_count(workload->options->timing);
+        cell->tally.rays = own->set->count;
+        cell->seconds = rt_estimate(own->seconds, rounds);
+        cell->wall = rt_estimate(own->wall, rounds);
+        cell->ratio = rt_estimate_ratio(rival->seconds, own->seconds, rounds);
+        RT_TRY(rt_workload_tell(workload, RT_EVENT_TIME, c, kind, error));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    const RtExperiment *experiment = workload->experiment;
+    RtTiming timing = {.rounds = experiment->rounds,
+                       .least = 1e-3 * experiment->milliseconds,
+                       .threads = workload->options->timing,
+                       .seed = experiment->seed + (uint64_t)kind};
+    Contest contest;
+    RtStatus status = contest_init(&contest, workload, error);
+    if (status == RT_OK) status = rt_measure_time(contest.timed, contest.count, &timing, error);
+    if (status == RT_OK) status = keep_times(workload, kind, &contest, error);
+    contest_clear(&contest);
+    return status;
+}
