@@ -36,6 +36,7 @@ json_t *rt_json_structure(const RtDescription *d) {
 #define SET_PREDICTION(name, meaning) json_object_set_new(object, #name, rt_json_number(d->name));
     RT_PREDICTIONS(SET_PREDICTION)
 #undef SET_PREDICTION
+    json_object_set_new(object, "build", rt_json_tally(&d->build));
     return object;
 }
 

@@ -59,6 +59,17 @@ static void a_run_on_one_thread_starts_no_other(void **state) {
     assert_true(labour.others < 0.05 * labour.own);
 }
 
+static void the_work_of_a_build_is_in_the_journal(void **state) {
+    const Place *place = *state;
+    RtResults results;
+    write_changed(place, "small.yaml", small_experiment, "accel: ideal", "accel: item+bvh");
+    assert_ok(run(place, "out", false, 1, nobody, error));
+    assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
+    assert_int_equal(rt_build_at(&results, 0, 1)->shape.build.object_tests, 0);
+    assert_true(rt_build_at(&results, 0, 3)->shape.build.object_tests > 0);
+    rt_results_clear(&results);
+}
+
 /* ---- the YAML ---- */
 
 static void a_bad_experiment_is_refused_with_its_line(void **state) {
@@ -254,6 +265,7 @@ int main(void) {
         IN_PLACE(a_bad_experiment_is_refused_with_its_line),
         IN_PLACE(the_command_refuses_a_bad_experiment_with_exit_code_2),
         IN_PLACE(a_run_on_one_thread_starts_no_other),
+        IN_PLACE(the_work_of_a_build_is_in_the_journal),
         IN_PLACE(what_is_left_out_of_the_yaml_has_its_default),
         IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two),
         IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell),
