@@ -192,13 +192,11 @@ static void put_cell(FILE *out, const RtResults *results, uint32_t t, uint32_t c
     put_figure(out, rt_cell_per_ray(results, t, c, kind, cell->tally.extent_tests));
     put_figure(out, rt_cell_per_ray(results, t, c, kind, cell->tally.steps));
     if (cell->timed) {
-        char low[16], high[16];
+        RtRatioText ratio;
+        rt_format_ratio(&cell->ratio, &ratio);
         put_figure(out, 1e9 * cell->seconds.median);
         put_figure(out, 1e9 * cell->seconds.least);
-        put_figure(out, cell->ratio.median);
-        rt_format_figure(cell->ratio.low, low);
-        rt_format_figure(cell->ratio.high, high);
-        fprintf(out, "<td>%s &ndash; %s</td>", low, high);
+        fprintf(out, "<td>%s</td><td>%s &ndash; %s</td>", ratio.median, ratio.low, ratio.high);
     } else {
         fputs("<td>-</td><td>-</td><td>-</td><td>-</td>", out);
     }

@@ -4,6 +4,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- CSV ---- */
@@ -85,6 +86,16 @@ static void put_estimate(FILE *out, const RtEstimate *e, double scale) {
     fprintf(out, ",%.6g,%.6g,%.6g", scale * e->median, scale * e->low, scale * e->high);
 }
 
+/* An end of a ratio's interval is not shown as 1 if it is not 1. */
+static void put_ratio_end(FILE *out, double end) {
+    char text[32];
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, end);
+        if (end == 1 || strtod(text, NULL) != 1) break;
+    }
+    fprintf(out, ",%s", text);
+}
+
 /* A counter, or nothing where it is not known. */
 static void put_known(FILE *out, const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind,
                       uint64_t counter) {
@@ -102,7 +113,9 @@ static void put_times(FILE *out, const RtResults *results, uint32_t t, uint32_t 
     fprintf(out, ",%.6g", 1e9 * cell->seconds.least);
     put_estimate(out, &cell->wall, 1e9);
     fprintf(out, ",%.6g", 1e-6 / cell->seconds.median);
-    put_estimate(out, &cell->ratio, 1);
+    fprintf(out, ",%.6g", cell->ratio.median);
+    put_ratio_end(out, cell->ratio.low);
+    put_ratio_end(out, cell->ratio.high);
     fprintf(out, ",%.6g,%" PRIu64, build->seconds, build->shape.bytes);
     put_known(out, results, t, c, kind, cell->tally.object_tests);
     put_known(out, results, t, c, kind, cell->tally.extent_tests);
@@ -144,6 +157,20 @@ void rt_format_amount(double value, char *out) {
     }
 }
 
+void rt_format_ratio(const RtEstimate *ratio, RtRatioText *out) {
+    rt_format_figure(ratio->median, out->median);
+    rt_format_figure(ratio->low, out->low);
+    rt_format_figure(ratio->high, out->high);
+    if (rt_estimate_holds(ratio, 1)) return;
+    /* The end that is nearer to 1 says how many decimals all three get. */
+    const char *nearer = ratio->low > 1 ? out->low : out->high;
+    for (int decimals = 3; decimals <= 17 && strtod(nearer, NULL) == 1; decimals++) {
+        snprintf(out->median, sizeof out->median, "%.*f", decimals, ratio->median);
+        snprintf(out->low, sizeof out->low, "%.*f", decimals, ratio->low);
+        snprintf(out->high, sizeof out->high, "%.*f", decimals, ratio->high);
+    }
+}
+
 static void print_figure(FILE *out, int width, double value) {
     char text[16];
     rt_format_figure(value, text);
@@ -182,13 +209,12 @@ static void print_cell(FILE *out, const RtResults *results, uint32_t t, uint32_t
     print_figure(out, 9, rt_cell_per_ray(results, t, c, kind, cell->tally.extent_tests));
     print_figure(out, 9, rt_cell_per_ray(results, t, c, kind, cell->tally.steps));
     if (cell->timed) {
-        char ratio[16], low[16], high[16], interval[40];
-        rt_format_figure(cell->ratio.median, ratio);
-        rt_format_figure(cell->ratio.low, low);
-        rt_format_figure(cell->ratio.high, high);
-        snprintf(interval, sizeof interval, "[%s, %s]", low, high);
+        RtRatioText ratio;
+        char interval[sizeof ratio];
+        rt_format_ratio(&cell->ratio, &ratio);
+        snprintf(interval, sizeof interval, "[%s, %s]", ratio.low, ratio.high);
         print_figure(out, 8, 1e-6 / cell->seconds.median);
-        fprintf(out, " %7s %-16s", ratio, interval);
+        fprintf(out, " %7s %-16s", ratio.median, interval);
     } else {
         fprintf(out, " %8s %7s %-16s", "-", "-", "");
     }

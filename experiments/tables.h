@@ -33,4 +33,11 @@ void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_
 void rt_format_figure(double value, char *out);
 void rt_format_amount(double value, char *out);
 
+/* A ratio and its interval as figures, or in as many digits as it takes to see that the interval does not
+ * hold 1. */
+typedef struct RtRatioText {
+    char median[32], low[32], high[32];
+} RtRatioText;
+void rt_format_ratio(const RtEstimate *ratio, RtRatioText *out);
+
 #endif

@@ -3,9 +3,11 @@
 #include "clock_testing.h"
 #include "experiment_testing.h"
 
+#include "experiments/json.h"
 #include "experiments/run.h"
 #include "experiments/tables.h"
 
+#include <math.h>
 #include <unistd.h>
 
 static const char small_experiment[] = "name: small\n"
@@ -258,6 +260,68 @@ static void figures_are_about_four_characters(void **state) {
     }
 }
 
+static bool text_holds_1(const char *low, const char *high) {
+    return strtod(low, NULL) <= 1 && 1 <= strtod(high, NULL);
+}
+
+static void nine_digits(double end, char *out) {
+    json_t *number = rt_json_ratio_end(end);
+    out[json_dumpb(number, out, 31, JSON_ENCODE_ANY | JSON_REAL_PRECISION(9))] = '\0';
+    json_decref(number);
+}
+
+static void an_interval_is_seen_not_to_hold_1_if_it_does_not(void **state) {
+    (void)state;
+    static const double ends[] = {0.5,         0.98,     0.9951, 0.9994, 0.9996, 1 - 1e-7, 1 - 0x1p-53, 1,
+                                  1 + 0x1p-52, 1 + 1e-7, 1.0004, 1.0031, 1.0049, 1.02,     2.5};
+    enum { ENDS = sizeof ends / sizeof ends[0] };
+    for (int i = 0; i < ENDS; i++) {
+        for (int k = i; k < ENDS; k++) {
+            const RtEstimate e = {.low = ends[i], .high = ends[k], .median = 0.5 * (ends[i] + ends[k])};
+            RtRatioText text;
+            rt_format_ratio(&e, &text);
+            assert_int_equal(text_holds_1(text.low, text.high), rt_estimate_holds(&e, 1));
+            assert_true(strtod(text.low, NULL) <= strtod(text.median, NULL));
+            assert_true(strtod(text.median, NULL) <= strtod(text.high, NULL));
+            char low[32], high[32];
+            nine_digits(e.low, low);
+            nine_digits(e.high, high);
+            assert_int_equal(text_holds_1(low, high), rt_estimate_holds(&e, 1));
+        }
+    }
+    const RtEstimate usual = {1.0134, 1.0061, 1.0279, 1}, close = {1.0041, 1.0031, 1.0279, 1};
+    RtRatioText text;
+    rt_format_ratio(&usual, &text);
+    assert_string_equal(text.low, "1.01");
+    rt_format_ratio(&close, &text);
+    assert_string_equal(text.low, "1.003");
+    assert_string_equal(text.median, "1.004");
+    assert_string_equal(text.high, "1.028");
+}
+
+/* The null run's interval begins just above 1: in every table, and in the verdict. */
+static void the_verdict_on_null_runs_is_what_the_tables_show(void **state) {
+    const Place *place = *state;
+    RtResults results;
+    char sentence[RT_MAX_SENTENCE];
+    assert_ok(load_small(place, false, error));
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    results.trials[0].known = true;
+    RtCell *null = rt_cell_at(&results, 0, place->experiment->contender_count, RT_RAY_PRIMARY);
+    null->timed = true;
+    null->ratio = (RtEstimate){.median = 1.000002, .low = 1.0000003, .high = 1.0004};
+    rt_null_sentence(&results, sentence);
+    assert_non_null(strstr(sentence, "0 of 1 intervals straddle 1"));
+    FILE *file = fopen(path_in(place, "tables").text, "w");
+    assert_non_null(file);
+    rt_times_csv(&results, file);
+    rt_print_cells(&results, file);
+    fclose(file);
+    assert_in_file(place, "tables", ",1,1.0000003,1.0004,");
+    assert_in_file(place, "tables", " 1.0000020 [1.0000003, 1.0004000]");
+    rt_results_clear(&results);
+}
+
 #define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_small, remove_place)
 
 int main(void) {
@@ -273,6 +337,8 @@ int main(void) {
         IN_PLACE(a_run_of_another_experiment_is_not_resumed),
         IN_PLACE(the_report_has_the_question_and_nothing_outside_itself),
         IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional),
+        cmocka_unit_test(an_interval_is_seen_not_to_hold_1_if_it_does_not),
+        IN_PLACE(the_verdict_on_null_runs_is_what_the_tables_show),
         cmocka_unit_test(figures_are_about_four_characters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -176,23 +176,24 @@ static json_t *row_json(const RtResults *results, uint32_t c, RtRayKind kind) {
     const RtBuildResult *build = rt_build_at(results, 0, c);
     bool counted = isfinite(rt_cell_per_ray(results, 0, c, kind, cell->tally.object_tests));
     double unknown = cell->timed ? 1 : (double)NAN;
-    return json_pack(
-        "{s:s, s:s, s:s, s:I, s:I, s:f, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
-        results->experiment->trials[0].spec, "accel", build->spec, "kind", rt_ray_kind_name(kind), "rays",
-        (json_int_t)cell->tally.rays, "hits", (json_int_t)cell->tally.hits, "build_seconds", build->seconds,
-        "bytes", (json_int_t)build->shape.bytes, "structure", rt_json_structure(&build->shape), "counts",
-        counted ? rt_json_tally(&cell->tally) : json_null(), "mrays_per_s",
-        rt_json_number(unknown * 1e-6 / cell->seconds.median), "ratio",
-        rt_json_number(unknown * cell->ratio.median), "ratio_low", rt_json_number(unknown * cell->ratio.low),
-        "ratio_high", rt_json_number(unknown * cell->ratio.high), "ratio_coverage",
-        cell->timed ? json_real(rt_interval_coverage(cell->rounds)) : json_null());
+    return json_pack("{s:s, s:s, s:s, s:I, s:I, s:f, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+                     results->experiment->trials[0].spec, "accel", build->spec, "kind",
+                     rt_ray_kind_name(kind), "rays", (json_int_t)cell->tally.rays, "hits",
+                     (json_int_t)cell->tally.hits, "build_seconds", build->seconds, "bytes",
+                     (json_int_t)build->shape.bytes, "structure", rt_json_structure(&build->shape), "counts",
+                     counted ? rt_json_tally(&cell->tally) : json_null(), "mrays_per_s",
+                     rt_json_number(unknown * 1e-6 / cell->seconds.median), "ratio",
+                     rt_json_number(unknown * cell->ratio.median), "ratio_low",
+                     rt_json_ratio_end(unknown * cell->ratio.low), "ratio_high",
+                     rt_json_ratio_end(unknown * cell->ratio.high), "ratio_coverage",
+                     cell->timed ? json_real(rt_interval_coverage(cell->rounds)) : json_null());
 }
 
 static json_t *null_json(const RtCell *cell, RtRayKind kind) {
-    return json_pack("{s:s, s:f, s:f, s:f, s:f, s:b}", "kind", rt_ray_kind_name(kind), "ratio",
-                     cell->ratio.median, "ratio_low", cell->ratio.low, "ratio_high", cell->ratio.high,
-                     "ratio_coverage", rt_interval_coverage(cell->rounds), "straddles_1",
-                     cell->ratio.low <= 1 && 1 <= cell->ratio.high);
+    return json_pack("{s:s, s:f, s:o, s:o, s:f, s:b}", "kind", rt_ray_kind_name(kind), "ratio",
+                     cell->ratio.median, "ratio_low", rt_json_ratio_end(cell->ratio.low), "ratio_high",
+                     rt_json_ratio_end(cell->ratio.high), "ratio_coverage",
+                     rt_interval_coverage(cell->rounds), "straddles_1", rt_estimate_holds(&cell->ratio, 1));
 }
 
 static void print_json(const RtResults *results) {
