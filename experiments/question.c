@@ -52,7 +52,7 @@ static void close_session(Session *s) {
     rt_free(s->blocked);
 }
 
-static RtReply ask(Session *s, const RtQuestion *question) {
+static RtStatus ask(Session *s, const RtQuestion *question, RtReply *reply, RtError *error) {
     RtTally tallies[RT_RAY_KIND_COUNT] = {0}, *counted = question->counted ? tallies : NULL;
     for (size_t first = 0; first < question->count; first += question->stream) {
         size_t left = question->count - first, n = left < question->stream ? left : question->stream;
@@ -61,18 +61,20 @@ static RtReply ask(Session *s, const RtQuestion *question) {
     }
     size_t i = question->asked;
     const RtRay *ray = &question->rays[i];
-    RtReply reply = {.expected = s->expected[i], .got = s->got[i], .blocked = s->blocked[i]};
-    reply.wrong =
-        RT_WRONG == (question->occluded ? rt_blocked_verdict(&s->query, ray, reply.expected, reply.blocked)
-                                        : rt_answer_verdict(&s->query, ray, reply.expected, reply.got));
-    return reply;
+    RtVerdict verdict;
+    *reply = (RtReply){.expected = s->expected[i], .got = s->got[i], .blocked = s->blocked[i]};
+    RT_TRY(question->occluded
+               ? rt_blocked_verdict(&s->query, ray, reply->expected, reply->blocked, &verdict, error)
+               : rt_answer_verdict(&s->query, ray, reply->expected, reply->got, &verdict, error));
+    reply->wrong = verdict == RT_WRONG;
+    return RT_OK;
 }
 
 RtStatus rt_question_ask(const RtQuestion *question, const RtScene *scene, RtMaker maker, RtReply *reply,
                          RtError *error) {
     Session session = {0};
     RtStatus status = open_session(&session, question, scene, maker, error);
-    if (status == RT_OK) *reply = ask(&session, question);
+    if (status == RT_OK) status = ask(&session, question, reply, error);
     if (status == RT_OK) status = rt_accel_check(session.accel, error);
     close_session(&session);
     return status;
