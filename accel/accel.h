@@ -36,7 +36,7 @@ typedef struct RtAccel {
     size_t scratch_room; /* bytes of a query's scratch memory that are this layer's. Set by rt_accel_build */
     bool exact;          /* bit for bit like brute; false: judged by verdicts */
     bool counts;         /* its counts are the same on every machine and belong into counts.csv */
-    RtTally build_tally; /* tests made while building */
+    RtTally build_tally; /* what hit functions were asked while building; kept apart from tracing */
 } RtAccel;
 
 /* Expectations of a random line through the box of a structure, if nothing stopped it and no mailbox knew
@@ -55,6 +55,7 @@ typedef struct RtDescription {
     uint64_t references;   /* entries in all lists of objects */
     uint64_t depth;        /* of the deepest leaf, the root being 0 */
     uint64_t bytes;        /* of its arrays: without the scene, and without what is one per accelerator */
+    RtTally build;         /* the build_tally. Set by rt_accel_describe */
 #define RT_PREDICTION_FIELD(name, meaning) double name;
     RT_PREDICTIONS(RT_PREDICTION_FIELD)
 #undef RT_PREDICTION_FIELD

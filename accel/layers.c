@@ -56,6 +56,7 @@ const RtAccel *rt_accel_base(const RtAccel *accel) {
 
 void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
     accel->ops->describe(accel, out);
+    out->build = accel->build_tally;
     while ((accel = accel->below)) {
         RtDescription own;
         accel->ops->describe(accel, &own);
@@ -64,6 +65,7 @@ void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
         out->empty_leaves += own.empty_leaves;
         out->references += own.references;
         out->bytes += own.bytes;
+        rt_tally_add(&out->build, &accel->build_tally);
         if (own.depth > out->depth) out->depth = own.depth;
 #define COPY_PREDICTION(name, meaning) out->name = own.name;
         RT_PREDICTIONS(COPY_PREDICTION)

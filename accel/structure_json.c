@@ -17,7 +17,12 @@ RT_PREDICTIONS(GETTER)
 const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS] = {STRUCTURE(RT_TABLE_COLUMN)
                                                                       RT_PREDICTIONS(COLUMN)};
 
+static const void *build_of(const void *row) {
+    return &((const Row *)row)->build;
+}
+
 json_t *rt_json_structure(const RtDescription *description) {
-    return rt_row_json(&(RtColumnGroup){NULL, rt_structure_columns, RT_STRUCTURE_COLUMNS, NULL}, 1,
-                       description);
+    static const RtColumnGroup groups[] = {{NULL, rt_structure_columns, RT_STRUCTURE_COLUMNS, NULL},
+                                           {"build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of}};
+    return rt_row_json(groups, 2, description);
 }

@@ -11,7 +11,8 @@ enum { RT_PREDICTION_COUNT = 0 RT_PREDICTIONS(RT_PLUS_ONE), RT_STRUCTURE_COLUMNS
 #undef RT_PLUS_ONE
 extern const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS];
 
-/* These columns of one: a new reference, NULL where memory is short. */
+/* These columns of one, and the counters of its build under "build": a new reference, NULL where memory is
+ * short. */
 json_t *rt_json_structure(const RtDescription *description);
 
 #endif

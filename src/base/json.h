@@ -15,6 +15,9 @@ json_t *rt_json_number(double value);
 /* A fingerprint: 16 hexadecimal digits. */
 json_t *rt_json_hex(uint64_t value);
 
+/* The end of a ratio's interval, which nine digits do not show as 1 if it is not 1. */
+json_t *rt_json_ratio_end(double value);
+
 /* Date and time now, UTC: "2001-04-30T12:00:00Z". */
 json_t *rt_json_now(void);
 

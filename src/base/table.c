@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const struct {
@@ -82,8 +83,39 @@ void rt_format_figure(double value, char *out) {
     }
 }
 
+/* Is it 1, or was it only printed so? */
+static bool reads_as_1(const char *text) {
+    return strtod(text, NULL) == 1;
+}
+
+static void show_end(double value, char room[RT_MAX_FIELD]) {
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(room, RT_MAX_FIELD, "%.*g", digits, value);
+        if (value == 1 || !reads_as_1(room)) break;
+    }
+}
+
+/* As figures; where the interval does not hold 1, the end that is nearer to it says how many decimals there
+ * are. */
+static void show_interval(const RtField *field, char room[RT_MAX_FIELD]) {
+    char value[32], low[32], high[32];
+    rt_format_figure(field->real, value);
+    rt_format_figure(field->low, low);
+    rt_format_figure(field->high, high);
+    bool holds_1 = field->low <= 1 && 1 <= field->high;
+    const char *nearer = field->low > 1 ? low : high;
+    for (int decimals = 3; !holds_1 && decimals <= 17 && reads_as_1(nearer); decimals++) {
+        snprintf(value, sizeof value, "%.*f", decimals, field->real);
+        snprintf(low, sizeof low, "%.*f", decimals, field->low);
+        snprintf(high, sizeof high, "%.*f", decimals, field->high);
+    }
+    snprintf(room, RT_MAX_FIELD, isnan(field->low) ? "%s" : "%s [%s, %s]", value, low, high);
+}
+
 static void show_real(RtForm form, double value, char room[RT_MAX_FIELD]) {
-    if (forms[form].format) {
+    if (form == RT_FORM_end) {
+        show_end(value, room);
+    } else if (forms[form].format) {
         snprintf(room, RT_MAX_FIELD, forms[form].format, value);
     } else if (form == RT_FORM_amount && value > 0 && value < 0.00095) {
         strcpy(room, "<0.001");
@@ -93,7 +125,6 @@ static void show_real(RtForm form, double value, char room[RT_MAX_FIELD]) {
 }
 
 const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FIELD]) {
-    char ends[2][16];
     room[0] = '\0';
     switch (field->is) {
     case RT_FIELD_MISSING: break;
@@ -104,15 +135,16 @@ const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FI
         break;
     case RT_FIELD_REAL: show_real(form, field->real, room); break;
     case RT_FIELD_INTERVAL:
-        if (!isfinite(field->real)) break;
-        rt_format_figure(field->low, ends[0]);
-        rt_format_figure(field->high, ends[1]);
-        rt_format_figure(field->real, room);
-        if (isnan(field->low)) break;
-        snprintf(room + strlen(room), RT_MAX_FIELD - strlen(room), " [%s, %s]", ends[0], ends[1]);
+        if (isfinite(field->real)) show_interval(field, room);
         break;
     }
     return room;
+}
+
+/* What nine digits do not show as 1 if it is not 1. */
+static double not_quite_1(double value) {
+    if (value > 1 && value < 1 + 1e-8) return 1 + 1e-8;
+    return value < 1 && value > 1 - 1e-9 ? 1 - 1e-9 : value;
 }
 
 static json_t *field_json(RtForm form, const RtField *field) {
@@ -122,7 +154,7 @@ static json_t *field_json(RtForm form, const RtField *field) {
     case RT_FIELD_INTEGER:
         if (form != RT_FORM_hash) return json_integer((json_int_t)field->integer);
         break;
-    case RT_FIELD_REAL: return json_real(field->real);
+    case RT_FIELD_REAL: return json_real(form == RT_FORM_end ? not_quite_1(field->real) : field->real);
     case RT_FIELD_INTERVAL:
         return json_pack("{s:o, s:o, s:o}", "value", rt_json_number(field->real), "low",
                          rt_json_number(field->low), "high", rt_json_number(field->high));
@@ -354,12 +386,15 @@ json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row) 
     json_t *object = json_object();
     for (size_t g = 0; g < count; g++) {
         const RtColumnGroup *group = &groups[g];
-        if (!group->name) {
-            group_json(group, row, object);
+        json_t *into = object;
+        const char *name = group->name, *dot = name ? strchr(name, '.') : NULL;
+        if (dot) into = json_object_getn(object, name, (size_t)(dot - name)), name = dot + 1;
+        if (!name) {
+            group_json(group, row, into);
         } else if (group->of && !group->of(row)) {
-            json_object_set_new(object, group->name, json_null());
+            json_object_set_new(into, name, json_null());
         } else {
-            json_object_set_new(object, group->name, group_json(group, row, json_object()));
+            json_object_set_new(into, name, group_json(group, row, json_object()));
         }
     }
     return object;

@@ -24,8 +24,10 @@
 #include <stdio.h>
 
 /* X(form, what docs call it, printf format of a real number): how fields are written. Numbers stand to the
- * right. A figure takes about four characters; so does an amount, but for what is less than 0.001; markup is
- * text with Markdown's `code` and **bold**; json is what no table has a cell for. */
+ * right. An end is that of a ratio's interval: six digits, or as many as show that it is not 1; an interval
+ * that does not hold 1 is seen not to, too. A figure takes about four characters; so does an amount, but for
+ * what is less than 0.001; markup is text with Markdown's `code` and **bold**; json is what no table has a
+ * cell for. */
 #define RT_FORMS(X)                                                                                          \
     X(text, "text", NULL)                                                                                    \
     X(markup, "text", NULL)                                                                                  \
@@ -37,6 +39,7 @@
     X(real4, "real", "%.4g")                                                                                 \
     X(real6, "real", "%.6g")                                                                                 \
     X(real9, "real", "%.9g")                                                                                 \
+    X(end, "real", NULL)                                                                                     \
     X(percent, "real", "%.2f")                                                                               \
     X(figure, "real", NULL)                                                                                  \
     X(amount, "real", NULL)
@@ -133,7 +136,8 @@ extern const RtTableColumn rt_tally_columns[RT_TALLY_COUNTER_COUNT];
 /* Every counter under its name: a new reference, NULL where memory is short. */
 json_t *rt_json_tally(const RtTally *tally);
 
-/* Columns that stand together, over one kind of row. A named group is an object of its own in JSON. */
+/* Columns that stand together, over one kind of row. A named group is an object of its own in JSON, and one
+ * named "GROUP.NAME" a member of the object of the group before it. */
 typedef struct RtColumnGroup {
     const char *name; /* or NULL */
     const RtTableColumn *columns;

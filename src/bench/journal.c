@@ -132,6 +132,12 @@ static void take_workload(RtWorkloadResult *workload, const json_t *object) {
     }
 }
 
+static void take_tally(RtTally *tally, const json_t *object) {
+#define TAKE(name, meaning) tally->name = get_integer(object, #name);
+    RT_TALLY_COUNTERS(TAKE)
+#undef TAKE
+}
+
 static void take_build(RtBuildResult *build, const json_t *object) {
     const char *spec = json_string_value(json_object_get(object, "spec"));
     build->known = true;
@@ -148,14 +154,13 @@ static void take_build(RtBuildResult *build, const json_t *object) {
 #define TAKE_PREDICTION(name, meaning) build->shape.name = get_number(object, #name);
     RT_PREDICTIONS(TAKE_PREDICTION)
 #undef TAKE_PREDICTION
+    take_tally(&build->shape.build, json_object_get(object, "build"));
 }
 
 static void take_count(RtCell *cell, const json_t *object) {
     cell->counted = true;
     cell->differ = get_integer(object, "differ");
-#define TAKE(name, meaning) cell->tally.name = get_integer(object, #name);
-    RT_TALLY_COUNTERS(TAKE)
-#undef TAKE
+    take_tally(&cell->tally, object);
 }
 
 static void take_time(RtCell *cell, const json_t *object) {

@@ -43,6 +43,10 @@ static const void *structure_of(const void *row) {
     return &((const Row *)row)->build->shape;
 }
 
+static const void *build_of(const void *row) {
+    return &((const Row *)row)->build->shape.build;
+}
+
 /* ---- columns ---- */
 
 #define TIMED(figure) (r->cell->timed ? (figure) : (double)NAN)
@@ -82,10 +86,10 @@ static const void *structure_of(const void *row) {
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays a second, by the median", 1e-6 / r->all.seconds) \
     X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by rounds; median", r->all.ratio)   \
-    X(ratio_low, "ratio_low", real6, "", "lower end of its interval", TIMED(r->cell->ratio.low))             \
-    X(ratio_high, "ratio_high", real6, "", "upper end of its interval", TIMED(r->cell->ratio.high))          \
+    X(ratio_low, "ratio_low", end, "", "lower end of its interval", TIMED(r->cell->ratio.low))               \
+    X(ratio_high, "ratio_high", end, "", "upper end of its interval", TIMED(r->cell->ratio.high))            \
     X(straddles_1, "straddles_1", flag, "", "whether 1 is between them, as it should be in a null run",      \
-      rt_field_flag(r->cell->ratio.low <= 1 && 1 <= r->cell->ratio.high))                                    \
+      rt_field_flag(rt_estimate_holds(&r->cell->ratio, 1)))                                                  \
     X(object_tests, "object_tests", integer, "", "object tests counted here; empty: not known",              \
       known(r->cell->tally.object_tests, r->all.object_tests))                                               \
     X(extent_tests, "extent_tests", integer, "", "extent tests counted here; empty: not known",              \
@@ -129,6 +133,7 @@ static const RtColumnGroup bench[] = {
     RT_ONE(columns, kind),
     RT_FROM_TO(columns, rays, bytes),
     {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},
+    {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},
     {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of},
     RT_FROM_TO(columns, mrays_per_s, ratio_high),
     RT_ONE(columns, coverage),

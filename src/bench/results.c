@@ -44,7 +44,7 @@ void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddl
         for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
             const RtCell *cell = rt_cell_at(results, t, results->experiment->candidate_count, (RtRayKind)k);
             *runs += cell->timed;
-            *straddling += cell->timed && cell->ratio.low <= 1 && 1 <= cell->ratio.high;
+            *straddling += cell->timed && rt_estimate_holds(&cell->ratio, 1);
         }
     }
 }

@@ -58,6 +58,10 @@ RtEstimate rt_estimate(const double *values, uint32_t count) {
                         .least = sorted[0]};
 }
 
+bool rt_estimate_holds(const RtEstimate *estimate, double value) {
+    return estimate->low <= value && value <= estimate->high;
+}
+
 RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t count) {
     double ratios[RT_MAX_ROUNDS];
     assert(count >= 1 && count <= RT_MAX_ROUNDS);

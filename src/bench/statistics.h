@@ -19,12 +19,17 @@
 
 #include "bench/rounds.h"
 
+#include <stdbool.h>
+
 #define RT_FULL_ROUNDS 6 /* from here on intervals cover 95 % at least */
 
 typedef struct RtEstimate {
     double median, low, high; /* low..high: the interval of the median */
     double least;             /* the smallest measurement */
 } RtEstimate;
+
+/* Is `value` within the interval? Of the numbers as they are, however many digits of them are shown. */
+bool rt_estimate_holds(const RtEstimate *estimate, double value);
 
 /* The middle of values[0..count), 1 <= count <= RT_MAX_ROUNDS; the mean of the middle two if count is
  * even. */

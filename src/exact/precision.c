@@ -251,18 +251,23 @@ static double off_surface(const Range *r, uint32_t id, const RtRay *ray, float t
 }
 
 /* `errors` has room for one more at out->hits. */
-static void measure_ray(const Range *r, uint32_t id, const RtRay *ray, double *errors, RtPrecision *out) {
+static RtStatus measure_ray(const Range *r, uint32_t id, const RtRay *ray, double *errors, RtPrecision *out,
+                            RtError *error) {
     const RtGeometry *g = r->geometry;
     RtDecision ours = rt_decision_of(g, id, ray, r->room);
     long double ulps;
     RtFinding exact = rt_referee_error(g, id, ray, ours.hit ? ours.t : 0, &ulps);
     RtWideRay line = rt_wide_ray(ray);
-    if (exact == RT_UNDECIDED || rt_decision_check(g, id, &line, ours) == RT_HIT) {
-        if (exact != RT_HIT) return;
+    RtFinding same = rt_decision_check(g, id, &line, ours);
+    if (exact == RT_UNDECIDED || same == RT_UNDECIDED) {
+        return rt_fail_memory(error, "exact arithmetic on a CSG tree", 0);
+    }
+    if (same == RT_HIT) {
+        if (exact != RT_HIT) return RT_OK;
         double size = (double)(ulps * rt_float_ulp((long double)ours.t));
         out->off = fmax(out->off, off_surface(r, id, ray, ours.t, size));
         errors[out->hits++] = (double)fabsl(ulps);
-        return;
+        return RT_OK;
     }
     if (!ours.hit) {
         out->missed++;
@@ -272,6 +277,7 @@ static void measure_ray(const Range *r, uint32_t id, const RtRay *ray, double *e
         out->elsewhere++;
     }
     out->border = fmax(out->border, rt_border_distance(g, id, ray, ours));
+    return RT_OK;
 }
 
 RtStatus rt_precision_measure(RtSubject subject, size_t index, uint64_t rays, RtPrecision *out,
@@ -292,7 +298,7 @@ RtStatus rt_precision_measure(RtSubject subject, size_t index, uint64_t rays, Rt
     for (uint64_t i = 0; i < rays && status == RT_OK; i++) {
         uint32_t id = (uint32_t)(i % geometry.object_count);
         RtRay ray = next_ray(&range, id);
-        measure_ray(&range, id, &ray, errors, out);
+        status = measure_ray(&range, id, &ray, errors, out, error);
     }
     qsort(errors, out->hits, sizeof(double), by_size);
     if (out->hits > 0) {

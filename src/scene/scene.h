@@ -94,7 +94,7 @@ RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32
                          RtError *error);
 
 /* A hash of everything that can change an answer or a picture (geometry, materials, lights, camera; not the
- * sampling). */
+ * sampling). It takes no memory, so that it cannot fail. */
 uint64_t rt_scene_fingerprint(const RtScene *scene);
 
 /* Bytes of memory that the scene holds. */

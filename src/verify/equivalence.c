@@ -98,17 +98,21 @@ static void ask(Desk *desk, const RtRay *rays, size_t count, size_t chunk) {
     }
 }
 
-RtVerdict rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got) {
-    if (memcmp(&expected, &got, sizeof got) == 0) return RT_EQUAL;
-    if (query->accel->exact) return RT_WRONG;
-    return rt_verdict_nearest(&query->accel->scene->geometry, ray, expected, got, rt_query_room(query));
+RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
+                           RtVerdict *verdict, RtError *error) {
+    *verdict = memcmp(&expected, &got, sizeof got) == 0 ? RT_EQUAL : RT_WRONG;
+    if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
+    return rt_verdict_nearest(&query->accel->scene->geometry, ray, expected, got, rt_query_room(query),
+                              verdict, error);
 }
 
-RtVerdict rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got) {
+RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,
+                            RtVerdict *verdict, RtError *error) {
     bool blocked = expected.object != RT_NO_OBJECT;
-    if (blocked == got) return RT_EQUAL;
-    if (query->accel->exact) return RT_WRONG;
-    return rt_verdict_occluded(&query->accel->scene->geometry, ray, blocked, got, rt_query_room(query));
+    *verdict = blocked == got ? RT_EQUAL : RT_WRONG;
+    if (*verdict == RT_EQUAL || query->accel->exact) return RT_OK;
+    return rt_verdict_occluded(&query->accel->scene->geometry, ray, blocked, got, rt_query_room(query),
+                               verdict, error);
 }
 
 void rt_wrong_answer_context(const RtReference *reference, const RtWrongAnswer *wrong, size_t *first,
@@ -128,7 +132,7 @@ static void keep_wrong_answer(RtEquivalence *part, RtWrongAnswer wrong) {
 }
 
 /* The verdict of ray `i` of a chunk goes to the chunk's part. */
-static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
+static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, RtError *error) {
     RtEquivalence *part = &job->parts[chunk];
     size_t index = chunk * CHUNK + i;
     const RtRay *ray = &job->reference->rays[index];
@@ -146,11 +150,12 @@ static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
                                .expected = expected,
                                .got = got,
                                .blocked = blocked};
-        RtVerdict verdict = rt_answer_verdict(&desk->query, ray, expected, got);
+        RtVerdict verdict;
+        RT_TRY(rt_answer_verdict(&desk->query, ray, expected, got, &verdict, error));
         if (verdict == RT_WRONG) keep_wrong_answer(part, asked);
         if (verdict >= RT_MARGINAL) doubtful = &desk->hits[counted][i];
         if (verdict > worst) worst = verdict;
-        verdict = rt_blocked_verdict(&desk->query, ray, expected, blocked);
+        RT_TRY(rt_blocked_verdict(&desk->query, ray, expected, blocked, &verdict, error));
         if (verdict == RT_WRONG) {
             occluded_wrong = asked.occluded = true;
             keep_wrong_answer(part, asked);
@@ -161,18 +166,20 @@ static void judge(const Job *job, const Desk *desk, size_t chunk, size_t i) {
     part->rays++;
     part->verdicts[worst]++;
     if (doubtful && !job->accel->exact) {
-        part->sides[rt_verdict_side(&job->reference->scene->geometry, ray, expected, *doubtful)]++;
+        RtSide side;
+        RT_TRY(rt_verdict_side(&job->reference->scene->geometry, ray, expected, *doubtful, &side, error));
+        part->sides[side]++;
     }
     part->occluded_wrong += occluded_wrong;
+    return RT_OK;
 }
 
 static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *error) {
-    (void)error;
     Job *job = context;
     Desk *desk = &job->desks[thread];
     size_t count = chunk_count(job, chunk);
     ask(desk, job->reference->rays + chunk * CHUNK, count, chunk);
-    for (size_t i = 0; i < count; i++) judge(job, desk, chunk, i);
+    for (size_t i = 0; i < count; i++) RT_TRY(judge(job, desk, chunk, i, error));
     return RT_OK;
 }
 

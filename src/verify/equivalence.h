@@ -52,10 +52,12 @@ typedef struct RtEquivalence {
 RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int threads, RtEquivalence *out,
                               RtError *error);
 
-/* The verdict on an answer of `accel` to `nearest`, or to `occluded`, where brute's nearest hit is
- * `expected`: RT_EQUAL or RT_WRONG if it is exact. */
-RtVerdict rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got);
-RtVerdict rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got);
+/* The verdict on an answer of the query's accelerator to `nearest`, or to `occluded`, where brute's nearest
+ * hit is `expected`: RT_EQUAL or RT_WRONG if it is exact. RT_NO_MEMORY as in experiments/verdict.h. */
+RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
+                           RtVerdict *verdict, RtError *error);
+RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,
+                            RtVerdict *verdict, RtError *error);
 
 /* The rays that were asked together with the ray of a wrong answer, from those that came before it to the end
  * of its stream: `count` of the reference's, from `first` on. */

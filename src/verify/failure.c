@@ -52,7 +52,7 @@ static void close_session(Session *s) {
     rt_free(s->blocked);
 }
 
-static RtAnswer ask(Session *s, const RtFailure *failure) {
+static RtStatus ask(Session *s, const RtFailure *failure, RtAnswer *answer, RtError *error) {
     RtTally tallies[RT_RAY_KIND_COUNT] = {0}, *counted = failure->counted ? tallies : NULL;
     for (size_t first = 0; first < failure->count; first += failure->stream) {
         size_t left = failure->count - first, n = left < failure->stream ? left : failure->stream;
@@ -61,18 +61,20 @@ static RtAnswer ask(Session *s, const RtFailure *failure) {
     }
     size_t i = failure->asked;
     const RtRay *ray = &failure->rays[i];
-    RtAnswer answer = {.expected = s->expected[i], .got = s->got[i], .blocked = s->blocked[i]};
-    answer.wrong =
-        RT_WRONG == (failure->occluded ? rt_blocked_verdict(&s->query, ray, answer.expected, answer.blocked)
-                                       : rt_answer_verdict(&s->query, ray, answer.expected, answer.got));
-    return answer;
+    RtVerdict verdict;
+    *answer = (RtAnswer){.expected = s->expected[i], .got = s->got[i], .blocked = s->blocked[i]};
+    RT_TRY(failure->occluded
+               ? rt_blocked_verdict(&s->query, ray, answer->expected, answer->blocked, &verdict, error)
+               : rt_answer_verdict(&s->query, ray, answer->expected, answer->got, &verdict, error));
+    answer->wrong = verdict == RT_WRONG;
+    return RT_OK;
 }
 
 RtStatus rt_failure_ask(const RtFailure *failure, const RtScene *scene, RtMaker maker, RtAnswer *answer,
                         RtError *error) {
     Session session = {0};
     RtStatus status = open_session(&session, failure, scene, maker, error);
-    if (status == RT_OK) *answer = ask(&session, failure);
+    if (status == RT_OK) status = ask(&session, failure, answer, error);
     if (status == RT_OK) status = rt_accel_check(session.accel, error);
     close_session(&session);
     return status;

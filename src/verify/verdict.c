@@ -227,47 +227,67 @@ static bool is_marginal(const RtGeometry *g, const RtRay *ray, RtHit answer, RtC
     return named && (double)answer.t <= nearest_certain + probes.tolerance;
 }
 
+static RtStatus lack_memory(RtError *error) {
+    return rt_fail_memory(error, "exact arithmetic on a CSG tree", 0);
+}
+
 /* Does the ray meet both objects, exactly, at t's within the tolerance? Our hit function, which is quick, is
  * asked first. */
-static bool is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, double tolerance,
-                   RtCrossing *room) {
+static RtStatus is_tie(const RtGeometry *g, const RtRay *ray, RtHit expected, RtHit answer, RtCrossing *room,
+                       bool *tie, RtError *error) {
     float t;
     int order;
     long double apart;
+    double tolerance = tolerance_of(g, ray);
+    *tie = false;
     RtPreparedRay prepared;
     rt_hit_ray(&prepared, g, ray, room);
-    if (!within((double)answer.t, (double)expected.t, tolerance)) return false;
-    if (!rt_object_hit(g, answer.object, &prepared, &t, NULL)) return false;
-    if (!within((double)t, (double)expected.t, tolerance)) return false;
+    if (!within((double)answer.t, (double)expected.t, tolerance)) return RT_OK;
+    if (!rt_object_hit(g, answer.object, &prepared, &t, NULL)) return RT_OK;
+    if (!within((double)t, (double)expected.t, tolerance)) return RT_OK;
     RtFinding finding = rt_referee_order(g, expected.object, answer.object, ray, &order, &apart);
-    return finding == RT_UNDECIDED || (finding == RT_HIT && apart <= (long double)tolerance);
+    if (finding == RT_UNDECIDED) return lack_memory(error);
+    *tie = finding == RT_HIT && apart <= (long double)tolerance;
+    return RT_OK;
 }
 
-RtSide rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer) {
-    return rt_referee_judge(geometry, ray, expected, answer, tolerance_of(geometry, ray)).side;
+RtStatus rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
+                         RtSide *side, RtError *error) {
+    *side = rt_referee_judge(geometry, ray, expected, answer, tolerance_of(geometry, ray)).side;
+    return *side == RT_SIDE_UNDECIDED ? lack_memory(error) : RT_OK;
 }
 
-RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
-                             RtCrossing *room) {
-    double tolerance = tolerance_of(geometry, ray);
+RtStatus rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
+                            RtCrossing *room, RtVerdict *verdict, RtError *error) {
+    RtSide side;
+    *verdict = RT_EQUAL;
     if (answer.object == RT_NO_OBJECT) {
-        if (expected.object == RT_NO_OBJECT) return RT_EQUAL;
+        if (expected.object == RT_NO_OBJECT) return RT_OK;
     } else {
-        if (answer.object >= geometry->object_count) return RT_WRONG;
-        bool near = within((double)answer.t, (double)expected.t, tolerance);
-        if (answer.object == expected.object && near) return RT_EQUAL;
-        if (expected.object != RT_NO_OBJECT && is_tie(geometry, ray, expected, answer, tolerance, room))
-            return RT_TIE;
+        bool near = within((double)answer.t, (double)expected.t, tolerance_of(geometry, ray)), tie = false;
+        if (answer.object == expected.object && near) return RT_OK;
+        *verdict = RT_WRONG;
+        if (answer.object >= geometry->object_count) return RT_OK;
+        if (expected.object != RT_NO_OBJECT) {
+            RT_TRY(is_tie(geometry, ray, expected, answer, room, &tie, error));
+        }
+        *verdict = RT_TIE;
+        if (tie) return RT_OK;
     }
-    RtSide side = rt_verdict_side(geometry, ray, expected, answer);
+    RT_TRY(rt_verdict_side(geometry, ray, expected, answer, &side, error));
     bool right = side == RT_SIDE_GOT || side == RT_SIDE_BOTH;
-    return right || is_marginal(geometry, ray, answer, room) ? RT_MARGINAL : RT_WRONG;
+    *verdict = right || is_marginal(geometry, ray, answer, room) ? RT_MARGINAL : RT_WRONG;
+    return RT_OK;
 }
 
-RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
-                              RtCrossing *room) {
-    if (answer == expected) return RT_EQUAL;
-    if (rt_referee_occluded(geometry, ray) == (answer ? RT_HIT : RT_MISSED)) return RT_MARGINAL;
+RtStatus rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
+                             RtCrossing *room, RtVerdict *verdict, RtError *error) {
+    *verdict = RT_EQUAL;
+    if (answer == expected) return RT_OK;
+    RtFinding exact = rt_referee_occluded(geometry, ray);
+    if (exact == RT_UNDECIDED) return lack_memory(error);
+    *verdict = RT_MARGINAL;
+    if (exact == (answer ? RT_HIT : RT_MISSED)) return RT_OK;
     Probes probes;
     make_probes(&probes, geometry, ray, room);
     bool possible = false, certain = false;
@@ -276,5 +296,6 @@ RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool
         possible |= m.possible;
         certain |= m.certain;
     }
-    return (answer ? possible : !certain) ? RT_MARGINAL : RT_WRONG;
+    *verdict = (answer ? possible : !certain) ? RT_MARGINAL : RT_WRONG;
+    return RT_OK;
 }

@@ -39,15 +39,18 @@ typedef enum RtVerdict {
 /* "equal", "tie", "marginal", "wrong" */
 const char *rt_verdict_name(RtVerdict verdict);
 
+/* All three fail with RT_NO_MEMORY where the referee lacks memory, and then say nothing. */
+
 /* Judges the nearest hit `answer` of a valid ray; `expected` is brute's, `room` of rt_hit_room. */
-RtVerdict rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
-                             RtCrossing *room);
+RtStatus rt_verdict_nearest(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
+                            RtCrossing *room, RtVerdict *verdict, RtError *error);
 
 /* Whose answer to `nearest` is the exact one, within that tolerance? */
-RtSide rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer);
+RtStatus rt_verdict_side(const RtGeometry *geometry, const RtRay *ray, RtHit expected, RtHit answer,
+                         RtSide *side, RtError *error);
 
 /* Judges an answer to `occluded`: equal, marginal or wrong. */
-RtVerdict rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
-                              RtCrossing *room);
+RtStatus rt_verdict_occluded(const RtGeometry *geometry, const RtRay *ray, bool expected, bool answer,
+                             RtCrossing *room, RtVerdict *verdict, RtError *error);
 
 #endif

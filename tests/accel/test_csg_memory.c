@@ -3,6 +3,7 @@
 #include "csg_testing.h"
 #include "item_testing.h"
 
+#include "exact/precision.h"
 #include "verify/failure.h"
 #include "verify/spread.h"
 
@@ -116,22 +117,22 @@ static void nothing_is_allocated_while_tracing(void **state) {
 /* Each gives what it does, after a failure nothing. */
 typedef RtStatus Work(const Row *row, RtError *error);
 
-/* Nothing but RT_NO_MEMORY until all memory is there; the room for crossings is asked for. */
-static void assert_every_shortage_is_a_status(Work *work, const Row *row) {
+/* Nothing but RT_NO_MEMORY until all memory is there; once it is short of `what`. */
+static void assert_every_shortage_is_a_status(Work *work, const Row *row, const char *what) {
     int64_t live = rt_alloc_live();
-    bool crossings = false;
+    bool named = false;
     RtStatus status = RT_NO_MEMORY;
     for (uint64_t n = 1; status != RT_OK && n < 10000; n++) {
         RtError error = {RT_OK, ""};
         rt_alloc_fail_at(n);
         status = work(row, &error);
         rt_alloc_fail_at(0);
-        crossings |= strstr(error.message, "the crossings of a ray") != NULL;
+        named |= strstr(error.message, what) != NULL;
         assert_true(status == RT_OK || status == RT_NO_MEMORY);
         assert_true(rt_alloc_live() == live);
     }
     assert_int_equal(status, RT_OK);
-    assert_true(crossings);
+    assert_true(named);
 }
 
 static RtStatus trace_frame(const Row *row, RtError *error) {
@@ -177,14 +178,51 @@ static RtStatus stack_of_overlays(const Row *row, RtError *error) {
     return status;
 }
 
-static void no_shortage_of_memory_becomes_a_miss(void **state) {
+/* Of answers that are not brute's, by the referee: the one is right, the other wrong. */
+static RtStatus judge(const Row *row, RtError *error) {
+    const RtGeometry *g = &row->scene.geometry;
+    const RtRay *ray = &row->rays[0];
+    const RtHit hit = {49, 0};
+    RtCrossing *room = room_of_tests();
+    RtVerdict verdict;
+    RtSide side;
+    RT_TRY(rt_verdict_nearest(g, ray, RT_MISS, hit, room, &verdict, error));
+    assert_int_equal(verdict, RT_MARGINAL);
+    RT_TRY(rt_verdict_nearest(g, ray, hit, RT_MISS, room, &verdict, error));
+    assert_int_equal(verdict, RT_WRONG);
+    RT_TRY(rt_verdict_side(g, ray, RT_MISS, hit, &side, error));
+    assert_int_equal(side, RT_SIDE_GOT);
+    RT_TRY(rt_verdict_occluded(g, ray, true, false, room, &verdict, error));
+    assert_int_equal(verdict, RT_WRONG);
+    return RT_OK;
+}
+
+static RtStatus measure_precision(const Row *row, RtError *error) {
+    RtPrecision precision;
+    (void)row;
+    RT_TRY(rt_precision_measure(RT_SUBJECT_MESH, 0, 2, &precision, error));
+    assert_int_equal(precision.missed + precision.invented + precision.elsewhere, 0);
+    return RT_OK;
+}
+
+static void no_shortage_of_memory_becomes_a_verdict(void **state) {
     (void)state;
     Row row;
     make_row(&row);
-    assert_every_shortage_is_a_status(trace_frame, &row);
-    assert_every_shortage_is_a_status(build_item, &row);
-    assert_every_shortage_is_a_status(ask, &row);
-    assert_every_shortage_is_a_status(stack_of_overlays, &row);
+    assert_every_shortage_is_a_status(judge, &row, "exact arithmetic");
+    assert_every_shortage_is_a_status(measure_precision, &row, "exact arithmetic");
+    rt_scene_clear(&row.scene);
+}
+
+static void no_shortage_of_memory_becomes_a_miss(void **state) {
+    (void)state;
+    static const char crossings[] = "the crossings of a ray";
+    Row row;
+    make_row(&row);
+    assert_every_shortage_is_a_status(trace_frame, &row, crossings);
+    assert_every_shortage_is_a_status(build_item, &row, crossings);
+    assert_every_shortage_is_a_status(ask, &row, crossings);
+    assert_every_shortage_is_a_status(stack_of_overlays, &row, crossings);
     rt_scene_clear(&row.scene);
 }
 
@@ -193,6 +231,7 @@ RT_TEST_GROUP(csg_memory) {
         cmocka_unit_test(the_room_for_hits_is_had_or_it_is_a_status),
         cmocka_unit_test(nothing_is_allocated_while_tracing),
         cmocka_unit_test(no_shortage_of_memory_becomes_a_miss),
+        cmocka_unit_test(no_shortage_of_memory_becomes_a_verdict),
     };
     return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
 }

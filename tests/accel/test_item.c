@@ -98,6 +98,29 @@ static void a_scene_without_objects_is_nothing_everywhere(void **state) {
     check_finished(&scene, 1);
 }
 
+/* One ball: whoever settles asks for it once for each sample that it may be in, and finds it where it is. */
+static void what_is_asked_while_building_is_tallied_apart(void **state) {
+    (void)state;
+    static const char *const specs[] = {"item:settle=off+brute", "item+brute", "cache+item+brute"};
+    RtScene scene;
+    begin_view(&scene);
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    for (int i = 0; i < 3; i++) {
+        RtDescription d;
+        RtAccel *accel;
+        assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
+        rt_accel_describe(accel, &d);
+        uint64_t named = d.references - 1; /* the other reference is brute's */
+        assert_int_equal(named > 0, i > 0);
+        assert_int_equal(d.build.object_hits, named);
+        assert_true(d.build.object_tests >= d.build.object_hits && d.build.object_tests < 48 * 36);
+        assert_int_equal(d.build.rays, 0);
+        rt_accel_destroy(accel);
+    }
+    rt_scene_clear(&scene);
+}
+
 /* ---- what is passed on ---- */
 
 static void rays_that_are_not_of_a_sample_are_passed_on(void **state) {
@@ -228,6 +251,7 @@ RT_TEST_GROUP(item) {
         cmocka_unit_test(nearly_all_primary_rays_of_every_builtin_scene_are_decided),
         cmocka_unit_test(a_decided_ray_makes_at_most_one_object_test),
         cmocka_unit_test(every_way_to_sample_an_image_is_answered_like_brute),
+        cmocka_unit_test(what_is_asked_while_building_is_tallied_apart),
         cmocka_unit_test(a_scene_without_objects_is_nothing_everywhere),
         cmocka_unit_test(rays_that_are_not_of_a_sample_are_passed_on),
         cmocka_unit_test(a_frame_of_another_sampling_is_passed_on_whole_and_right),

@@ -158,6 +158,52 @@ static void figures_are_about_four_characters(void **state) {
     }
 }
 
+static double ratio_end;
+
+static RtField get_ratio_end(const void *row, const RtTableColumn *column) {
+    (void)row, (void)column;
+    return rt_field_real(ratio_end);
+}
+
+/* The end of a ratio's interval as JSON has it, in nine digits. */
+static double nine_digits(double end) {
+    static const RtTableColumn column = {"end", "end", "", "an end", get_ratio_end, RT_FORM_end, 0};
+    char text[64];
+    ratio_end = end;
+    json_t *object = rt_row_json(&(RtColumnGroup){NULL, &column, 1, NULL}, 1, &ratio_end);
+    size_t length = json_dumpb(json_object_get(object, "end"), text, sizeof text - 1,
+                               JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
+    text[length] = '\0';
+    json_decref(object);
+    return strtod(text, NULL);
+}
+
+static void an_interval_is_seen_not_to_hold_1_if_it_does_not(void **state) {
+    (void)state;
+    static const double ends[] = {0.5,         0.98,     0.9951, 0.9994, 0.9996, 1 - 1e-7, 1 - 0x1p-53, 1,
+                                  1 + 0x1p-52, 1 + 1e-7, 1.0004, 1.0031, 1.0049, 1.02,     2.5};
+    enum { ENDS = sizeof ends / sizeof ends[0] };
+    char room[RT_MAX_FIELD];
+    for (int i = 0; i < ENDS; i++) {
+        const RtField end = rt_field_real(ends[i]);
+        assert_int_equal(strtod(rt_field_show(RT_FORM_end, &end, room), NULL) == 1, ends[i] == 1);
+        for (int k = i; k < ENDS; k++) {
+            const RtField field = rt_field_interval(0.5 * (ends[i] + ends[k]), ends[i], ends[k]);
+            const bool holds = ends[i] <= 1 && 1 <= ends[k];
+            double value, low, high;
+            const char *text = rt_field_show(RT_FORM_interval, &field, room);
+            assert_int_equal(sscanf(text, "%lf [%lf, %lf]", &value, &low, &high), 3);
+            assert_int_equal(low <= 1 && 1 <= high, holds);
+            assert_true(low <= value && value <= high);
+            assert_int_equal(nine_digits(ends[i]) <= 1 && 1 <= nine_digits(ends[k]), holds);
+        }
+    }
+    const RtField usual = rt_field_interval(1.0134, 1.0061, 1.0279),
+                  close = rt_field_interval(1.0041, 1.0031, 1.0279);
+    assert_string_equal(rt_field_show(RT_FORM_interval, &usual, room), "1.01 [1.01, 1.03]");
+    assert_string_equal(rt_field_show(RT_FORM_interval, &close, room), "1.004 [1.003, 1.028]");
+}
+
 RT_TEST_GROUP(table) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(csv_quotes_and_leaves_empty_what_is_missing),
@@ -167,6 +213,7 @@ RT_TEST_GROUP(table) {
         cmocka_unit_test(json_has_an_object_a_row_and_null_for_what_is_missing),
         cmocka_unit_test(lines_one_by_one_are_those_of_the_whole_table),
         cmocka_unit_test(figures_are_about_four_characters),
+        cmocka_unit_test(an_interval_is_seen_not_to_hold_1_if_it_does_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

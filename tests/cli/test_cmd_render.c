@@ -145,6 +145,21 @@ static void a_check_compares_every_ray_with_brute(void **state) {
     assert_says("the frame is brute's, bit for bit");
 }
 
+static void work_of_the_build_is_reported_apart_from_tracing(void **state) {
+    (void)state;
+    static const char *const specs[] = {"brute", "item+brute"};
+    for (int i = 0; i < 2; i++) {
+        char arguments[128];
+        snprintf(arguments, sizeof arguments, "balls:size=1 --size 32x32 --accel %s", specs[i]);
+        json_t *stats = stats_of(arguments);
+        const json_t *build = json_object_get(json_object_get(stats, "structure"), "build");
+        assert_true(json_is_object(build));
+        assert_true((json_integer_value(json_object_get(build, "object_tests")) > 0) == (i == 1));
+        assert_int_equal(counter(stats, "primary", "object_tests") < 32 * 32 * 2, i == 1);
+        json_decref(stats);
+    }
+}
+
 static void wrong_usage_exits_with_2_and_says_what_would_be_right(void **state) {
     (void)state;
     const struct {
@@ -188,6 +203,7 @@ RT_TEST_GROUP(cmd_render) {
         cmocka_unit_test(everything_is_written_at_once_and_the_image_depends_on_no_thread),
         cmocka_unit_test(every_heatmap_asked_for_is_written),
         cmocka_unit_test(a_check_compares_every_ray_with_brute),
+        cmocka_unit_test(work_of_the_build_is_reported_apart_from_tracing),
         cmocka_unit_test(wrong_usage_exits_with_2_and_says_what_would_be_right),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -98,9 +98,14 @@ static void the_referee_decides_against_us_too(void **state) {
         if (ruling.finding == RT_HIT) right = (RtHit){(float)ruling.t, 0};
         if (decision.hit != (ruling.finding == RT_HIT)) {
             against++;
-            assert_int_equal(rt_verdict_side(&g, &ray, expected, right), RT_SIDE_GOT);
-            assert_int_equal(rt_verdict_nearest(&g, &ray, expected, right, NULL), RT_MARGINAL);
-            assert_int_equal(rt_verdict_occluded(&g, &ray, decision.hit, !decision.hit, NULL), RT_MARGINAL);
+            RtSide side;
+            RtVerdict verdict;
+            assert_ok(rt_verdict_side(&g, &ray, expected, right, &side, error));
+            assert_int_equal(side, RT_SIDE_GOT);
+            assert_ok(rt_verdict_nearest(&g, &ray, expected, right, NULL, &verdict, error));
+            assert_int_equal(verdict, RT_MARGINAL);
+            assert_ok(rt_verdict_occluded(&g, &ray, decision.hit, !decision.hit, NULL, &verdict, error));
+            assert_int_equal(verdict, RT_MARGINAL);
         }
         rt_geometry_clear(&g);
     }

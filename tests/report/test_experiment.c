@@ -3,8 +3,11 @@
 #include "clock_testing.h"
 #include "experiment_testing.h"
 
+#include "base/json.h"
+#include "bench/result_tables.h"
 #include "report/result_directory.h"
 
+#include <math.h>
 #include <unistd.h>
 
 static const char small_experiment[] = "name: small\n"
@@ -57,6 +60,17 @@ static void a_run_on_one_thread_starts_no_other(void **state) {
     assert_ok(run(place, "out", false, 1, nobody, error));
     Labour labour = labour_since(before);
     assert_true(labour.others < 0.05 * labour.own);
+}
+
+static void the_work_of_a_build_is_in_the_journal(void **state) {
+    const Place *place = *state;
+    RtResults results;
+    write_changed(place, "small.yaml", small_experiment, "accel: ideal", "accel: item+bvh");
+    assert_ok(run(place, "out", false, 1, nobody, error));
+    assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
+    assert_int_equal(rt_build_at(&results, 0, 1)->shape.build.object_tests, 0);
+    assert_true(rt_build_at(&results, 0, 3)->shape.build.object_tests > 0);
+    rt_results_clear(&results);
 }
 
 /* ---- the YAML ---- */
@@ -309,6 +323,33 @@ static void a_missing_scene_is_an_error_unless_it_is_optional(void **state) {
     }
 }
 
+/* ---- tables ---- */
+
+/* The null run's interval begins just above 1: in every table, and in the verdict. */
+static void the_verdict_on_null_runs_is_what_the_tables_show(void **state) {
+    const Place *place = *state;
+    RtResults results;
+    char sentence[RT_MAX_SENTENCE];
+    assert_ok(load_small(place, false, error));
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    results.workloads[0].known = true;
+    RtCell *null = rt_cell_at(&results, 0, place->experiment->candidate_count, RT_RAY_PRIMARY);
+    null->timed = true;
+    null->ratio = (RtEstimate){.median = 1.000002, .low = 1.0000003, .high = 1.0004};
+    rt_null_sentence(&results, sentence);
+    assert_non_null(strstr(sentence, "0 of 1 intervals straddle 1"));
+    FILE *file = fopen(path_in(place, "tables").text, "w");
+    assert_non_null(file);
+    RtResultRow row = {.results = &results};
+    RtTable times = rt_result_table(RT_TIMES, &row);
+    rt_table_csv(&times, file);
+    rt_print_results(&results, RT_CELLS, file);
+    fclose(file);
+    assert_in_file(place, "tables", ",1,1.0000003,1.0004,");
+    assert_in_file(place, "tables", " 1.0000020 [1.0000003, 1.0004000]");
+    rt_results_clear(&results);
+}
+
 #define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_small, remove_place)
 
 RT_TEST_GROUP(experiment) {
@@ -319,6 +360,7 @@ RT_TEST_GROUP(experiment) {
         IN_PLACE(whichever_allocation_fails_loading_is_out_of_memory),
         IN_PLACE(the_command_refuses_a_bad_experiment_with_exit_code_2),
         IN_PLACE(a_run_on_one_thread_starts_no_other),
+        IN_PLACE(the_work_of_a_build_is_in_the_journal),
         IN_PLACE(what_is_left_out_of_the_yaml_has_its_default),
         IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two),
         IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell),
@@ -326,6 +368,7 @@ RT_TEST_GROUP(experiment) {
         IN_PLACE(a_run_of_another_experiment_is_not_resumed),
         IN_PLACE(the_report_has_the_question_and_nothing_outside_itself),
         IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional),
+        IN_PLACE(the_verdict_on_null_runs_is_what_the_tables_show),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -290,13 +290,21 @@ static void verdicts_tell_ties_and_margins_from_errors(void **state) {
     size_t wrong = 0;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const Case *c = &cases[i];
-        RtVerdict got = rt_verdict_nearest(&g, &c->ray, c->expected, c->answer, NULL);
+        RtVerdict got;
+        assert_ok(rt_verdict_nearest(&g, &c->ray, c->expected, c->answer, NULL, &got, error));
         if (got == c->verdict) continue;
         print_error("%s: %s instead of %s\n", c->what, rt_verdict_name(got), rt_verdict_name(c->verdict));
         wrong++;
     }
     rt_geometry_clear(&g);
     assert_int_equal(wrong, 0);
+}
+
+static void assert_occluded(const RtGeometry *g, const RtRay *ray, bool expected, bool answer,
+                            RtVerdict verdict) {
+    RtVerdict got;
+    assert_ok(rt_verdict_occluded(g, ray, expected, answer, NULL, &got, error));
+    assert_int_equal(got, verdict);
 }
 
 static void occlusion_is_marginal_only_where_a_hit_is(void **state) {
@@ -306,10 +314,10 @@ static void occlusion_is_marginal_only_where_a_hit_is(void **state) {
     RtRay up = down_from(0.5f, 0, -2), ends_before = up, ends_at = up;
     ends_before.tmax = 2.9f;
     ends_at.tmax = 3;
-    assert_int_equal(rt_verdict_occluded(&g, &up, true, true, NULL), RT_EQUAL);
-    assert_int_equal(rt_verdict_occluded(&g, &up, true, false, NULL), RT_WRONG);
-    assert_int_equal(rt_verdict_occluded(&g, &ends_before, false, true, NULL), RT_WRONG);
-    assert_int_equal(rt_verdict_occluded(&g, &ends_at, true, false, NULL), RT_MARGINAL);
+    assert_occluded(&g, &up, true, true, RT_EQUAL);
+    assert_occluded(&g, &up, true, false, RT_WRONG);
+    assert_occluded(&g, &ends_before, false, true, RT_WRONG);
+    assert_occluded(&g, &ends_at, true, false, RT_MARGINAL);
     rt_geometry_clear(&g);
 }
 
