@@ -10,12 +10,55 @@
 #include <cmocka.h>
 
 #include <stdbool.h>
+#include <stdlib.h>
 
-/* The tests of the file test_NAME.c: the body runs them and gives what cmocka_run_group_tests gives, or
- * RT_TEST_SKIPPED. tests/main.c calls it. */
+/* ---- tests ----
+ *
+ * RT_TEST(its_name_is_a_sentence) { ... } in tests/ROOM/test_NAME.c is a test, and RT_TESTS(NAME, setup,
+ * teardown) at the end of the file makes a group of all of them, in their order, for tests/main.c to run.
+ * What is set up for the group, or for one test by RT_TEST_WITH, is *state. */
+
+typedef struct RtTests {
+    size_t count;
+    int lines[64];
+    struct CMUnitTest all[64];
+} RtTests;
+
+static RtTests rt_tests __attribute__((unused)); /* of this file */
+
+/* Compilers call constructors in any order: tests go by their lines. */
+static inline void rt_test_add(int line, struct CMUnitTest test) {
+    size_t i = rt_tests.count++;
+    if (i == sizeof rt_tests.lines / sizeof rt_tests.lines[0]) abort(); /* more than a file should have */
+    for (; i > 0 && rt_tests.lines[i - 1] > line; i--) {
+        rt_tests.lines[i] = rt_tests.lines[i - 1];
+        rt_tests.all[i] = rt_tests.all[i - 1];
+    }
+    rt_tests.lines[i] = line;
+    rt_tests.all[i] = test;
+}
+
+#define RT_TEST_WITH(name, setup, teardown)                                                                  \
+    static void name(void **state);                                                                          \
+    __attribute__((constructor)) static void add_##name(void) {                                              \
+        rt_test_add(__LINE__, (struct CMUnitTest){#name, name, setup, teardown, NULL});                      \
+    }                                                                                                        \
+    static void name(__attribute__((unused)) void **state)
+
+#define RT_TEST(name) RT_TEST_WITH(name, NULL, NULL)
+
+#define RT_RUN_TESTS(name, setup, teardown)                                                                  \
+    _cmocka_run_group_tests(name, rt_tests.all, rt_tests.count, setup, teardown)
+
+/* A group that has more to do than to run its tests: the body gives what cmocka gives, or RT_TEST_SKIPPED. */
 #define RT_TEST_GROUP(name)                                                                                  \
     int test_##name(void);                                                                                   \
     int test_##name(void)
+
+#define RT_TESTS(name, setup, teardown)                                                                      \
+    RT_TEST_GROUP(name) {                                                                                    \
+        return RT_RUN_TESTS(#name, setup, teardown);                                                         \
+    }
 
 /* Exit code of a test executable that ctest reports as skipped. */
 #define RT_TEST_SKIPPED 77

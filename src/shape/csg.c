@@ -23,8 +23,8 @@ static inline void start(Machine *m, const RtCsg *tree, const RtPreparedRay *ray
     m->starts[0] = 0;
 }
 
-/* Is there room for `more` crossings behind all lists? */
-static inline bool has_room(const Machine *m, uint32_t more) {
+/* Is there room for `more` crossings behind all lists? For assertions. */
+__attribute__((unused)) static inline bool has_room(const Machine *m, uint32_t more) {
     return (uint64_t)m->starts[m->depth] + more <= m->capacity;
 }
 

@@ -29,8 +29,7 @@ static RtDescription described(const RtBvh *bvh) {
     return description;
 }
 
-static void validate_names_each_invariant_that_is_broken(void **state) {
-    (void)state;
+RT_TEST(validate_names_each_invariant_that_is_broken) {
     RtScene scene;
     make_row(&scene, 16, 3);
     RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1");
@@ -77,8 +76,7 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
 }
 
 /* Every inner node gets a leaf and the next inner node as children. */
-static void validate_names_a_node_that_is_too_deep(void **state) {
-    (void)state;
+RT_TEST(validate_names_a_node_that_is_too_deep) {
     RtScene scene;
     make_row(&scene, RT_TREE_MAX_DEPTH + 3, 0);
     RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1");
@@ -96,8 +94,7 @@ static void validate_names_a_node_that_is_too_deep(void **state) {
 static const char *const builds[] = {"binned,bins=2", "sweep", "lbvh", "lbvh,bits=1", "ploc"};
 enum { BUILD_COUNT = sizeof builds / sizeof builds[0] };
 
-static void coincident_objects_are_halved_within_the_depth_limit(void **state) {
-    (void)state;
+RT_TEST(coincident_objects_are_halved_within_the_depth_limit) {
     RtScene scene;
     make_row(&scene, 1000, 0);
     for (int b = 0; b < BUILD_COUNT; b++) {
@@ -114,8 +111,7 @@ static void coincident_objects_are_halved_within_the_depth_limit(void **state) {
 
 /* Spheres at distances that grow by powers of 2: a split always cuts off the last few, the worst case in
  * depth. */
-static void a_chain_of_growing_distances_stays_within_the_depth_limit(void **state) {
-    (void)state;
+RT_TEST(a_chain_of_growing_distances_stays_within_the_depth_limit) {
     RtScene scene;
     begin_scene(&scene);
     float x = 1e-17f;
@@ -137,8 +133,7 @@ static void a_chain_of_growing_distances_stays_within_the_depth_limit(void **sta
     rt_scene_clear(&scene);
 }
 
-static void the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand(void **state) {
-    (void)state;
+RT_TEST(the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand) {
     RtScene scene;
     make_row(&scene, 2, 8);
     RtBvh *bvh = make_bvh(&scene, "bvh:max_leaf_size=1,traversal_cost=0.5");
@@ -153,8 +148,7 @@ static void the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand(void *
     rt_scene_clear(&scene);
 }
 
-static void a_build_stays_on_its_threads_and_does_not_depend_on_them(void **state) {
-    (void)state;
+RT_TEST(a_build_stays_on_its_threads_and_does_not_depend_on_them) {
     RtScene scene;
     RtSpec spec;
     RtAccel *first = NULL;
@@ -184,14 +178,4 @@ static void a_build_stays_on_its_threads_and_does_not_depend_on_them(void **stat
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(bvh) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
-        cmocka_unit_test(validate_names_a_node_that_is_too_deep),
-        cmocka_unit_test(coincident_objects_are_halved_within_the_depth_limit),
-        cmocka_unit_test(a_chain_of_growing_distances_stays_within_the_depth_limit),
-        cmocka_unit_test(a_build_stays_on_its_threads_and_does_not_depend_on_them),
-        cmocka_unit_test(the_predicted_cost_of_two_disjoint_spheres_is_the_sum_by_hand),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(bvh, NULL, NULL)

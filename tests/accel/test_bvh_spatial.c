@@ -34,8 +34,7 @@ static RtScene make_diagonal(void) {
     return scene;
 }
 
-static void a_long_diagonal_triangle_is_in_two_leaves(void **state) {
-    (void)state;
+RT_TEST(a_long_diagonal_triangle_is_in_two_leaves) {
     RtScene scene = make_diagonal();
     RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial");
     assert_true(bvh->hierarchy.divided);
@@ -62,8 +61,7 @@ static RtTally count_ray(const RtScene *scene, const char *spec, const RtRay *ra
 
 /* A ray in the plane of the triangles, which it misses, along the diagonal: the root, both of its children,
  * and the two leaves with parts of the sliver, whose siblings in the corners it passes by. */
-static void a_part_that_was_tested_before_is_not_tested_again(void **state) {
-    (void)state;
+RT_TEST(a_part_that_was_tested_before_is_not_tested_again) {
     RtScene scene = make_diagonal();
     const RtRay ray = {{-1, -1, 0}, 0, {1, 1, 0}, INFINITY, RT_RAY_RANDOM, 0};
     RtTally on = count_ray(&scene, "bvh:build=spatial", &ray);
@@ -110,8 +108,7 @@ static RtScene make_slivers(uint32_t count, uint64_t seed, float scale, float of
     return scene;
 }
 
-static void the_budget_is_kept_and_used(void **state) {
-    (void)state;
+RT_TEST(the_budget_is_kept_and_used) {
     RtScene scene = make_slivers(2000, 1, 1, 0);
     RtDescription description;
     double before = INFINITY;
@@ -132,8 +129,7 @@ static void the_budget_is_kept_and_used(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void without_budget_or_overlap_it_is_the_binned_tree(void **state) {
-    (void)state;
+RT_TEST(without_budget_or_overlap_it_is_the_binned_tree) {
     RtScene scene = make_slivers(500, 2, 1, 0);
     RtBvh *binned = make_bvh(&scene, "bvh");
     const char *specs[] = {"bvh:build=spatial,budget=1", "bvh:build=spatial,alpha=1"};
@@ -150,8 +146,7 @@ static void without_budget_or_overlap_it_is_the_binned_tree(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void validate_misses_a_part_of_a_divided_object(void **state) {
-    (void)state;
+RT_TEST(validate_misses_a_part_of_a_divided_object) {
     RtScene scene = make_slivers(200, 3, 1, 0);
     RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial,max_leaf_size=4");
     RtHierarchy *hierarchy = &bvh->hierarchy;
@@ -244,8 +239,7 @@ static void assert_like_brute(const RtScene *scene, const char *spec, uint64_t s
     rt_accel_destroy(&bvh->base);
 }
 
-static void hostile_rays_hit_like_brute(void **state) {
-    (void)state;
+RT_TEST(hostile_rays_hit_like_brute) {
     const char *specs[] = {"bvh:build=spatial",
                            "bvh:build=spatial,alpha=0,budget=16,max_leaf_size=1,traversal_cost=0",
                            "bvh:build=spatial,reinsertion=2,mailbox=off,budget=4"};
@@ -259,8 +253,7 @@ static void hostile_rays_hit_like_brute(void **state) {
 
 /* ---- limits ---- */
 
-static void degenerate_scenes_are_built(void **state) {
-    (void)state;
+RT_TEST(degenerate_scenes_are_built) {
     const char *specs[] = {"random:n=0", "random:n=1,shape=triangle", "random:n=300,distribution=coincident",
                            "random:n=300,distribution=plane,shape=mixed", "random:n=300,distribution=line"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
@@ -277,8 +270,7 @@ static void degenerate_scenes_are_built(void **state) {
     }
 }
 
-static void what_may_take_too_much_is_refused_with_what_would_fit(void **state) {
-    (void)state;
+RT_TEST(what_may_take_too_much_is_refused_with_what_would_fit) {
     RtScene scene = make_slivers(1000, 5, 1, 0);
     RtSpatial how = {.bins = 16, .alpha = 0, .budget = 4, .leaf = 8, .traversal = 1, .limit = 300000};
     RtTree tree;
@@ -296,8 +288,7 @@ static void what_may_take_too_much_is_refused_with_what_would_fit(void **state) 
     rt_scene_clear(&scene);
 }
 
-static void every_allocation_may_fail(void **state) {
-    (void)state;
+RT_TEST(every_allocation_may_fail) {
     RtScene scene = make_slivers(100, 6, 1, 0);
     int64_t live = rt_alloc_live();
     RtStatus status = RT_NO_MEMORY;
@@ -316,17 +307,4 @@ static void every_allocation_may_fail(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(bvh_spatial) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_long_diagonal_triangle_is_in_two_leaves),
-        cmocka_unit_test(a_part_that_was_tested_before_is_not_tested_again),
-        cmocka_unit_test(the_budget_is_kept_and_used),
-        cmocka_unit_test(without_budget_or_overlap_it_is_the_binned_tree),
-        cmocka_unit_test(validate_misses_a_part_of_a_divided_object),
-        cmocka_unit_test(hostile_rays_hit_like_brute),
-        cmocka_unit_test(degenerate_scenes_are_built),
-        cmocka_unit_test(what_may_take_too_much_is_refused_with_what_would_fit),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(bvh_spatial, NULL, assert_nothing_is_kept)

@@ -14,8 +14,7 @@ enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
 /* Every kind with every order and method, on wide nodes and full leaves: more than one parameter at a
  * time. */
-static void every_combination_answers_like_brute(void **state) {
-    (void)state;
+RT_TEST(every_combination_answers_like_brute) {
     static const char *const shapes[] = {"width=2", "width=5,max_leaf_size=4", "width=16,max_leaf_size=32"};
     static const char *const kinds[] = {"box", "sphere", "obb", "slabs"};
     static const char *const families[] = {"mixed", "duplicates", "huge-beside-tiny", "mixed-far"};
@@ -50,8 +49,7 @@ static RtClusters *make_clusters(const RtScene *scene, const char *spec) {
     return (RtClusters *)accel;
 }
 
-static void widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_visit(void **state) {
-    (void)state;
+RT_TEST(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_visit) {
     RtScene scene = make_row(6);
     /* Medians: {0 1 2} and {3 4 5}, both of {a b} and {c}. Boxes of n spheres are 4 n - 2 long: half areas 92
      * for six, 44 for three, 28 for two, 12 for one. */
@@ -79,8 +77,7 @@ static void widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_it
     rt_scene_clear(&scene);
 }
 
-static void objects_share_a_leaf_where_that_costs_no_more(void **state) {
-    (void)state;
+RT_TEST(objects_share_a_leaf_where_that_costs_no_more) {
     RtScene apart = make_row(2);
     RtClusters *self = make_clusters(&apart, "clusters:max_leaf_size=2");
     assert_int_equal(self->hierarchy.node_count, 3); /* 28 * 2 > 28 + 2 * 12 */
@@ -102,8 +99,7 @@ static void count_box(void *context, const RtBox *box, uint32_t depth) {
     at_depth[depth]++;
 }
 
-static void pictures_get_every_node_with_its_depth(void **state) {
-    (void)state;
+RT_TEST(pictures_get_every_node_with_its_depth) {
     RtScene scene = make_row(4);
     RtClusters *self = make_clusters(&scene, "clusters");
     uint32_t at_depth[3] = {0};
@@ -115,8 +111,7 @@ static void pictures_get_every_node_with_its_depth(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void groups_of_spheres_get_tight_extents(void **state) {
-    (void)state;
+RT_TEST(groups_of_spheres_get_tight_extents) {
     RtScene scene = make_row(2); /* a capsule 6 long, 2 thick */
     RtClusters *self = make_clusters(&scene, "clusters:extent=sphere");
     assert_true(self->set.balls[0].radius >= 3 && self->set.balls[0].radius < 3.000001);
@@ -145,8 +140,7 @@ static uint32_t some_leaf(const RtClusters *self) {
     return i;
 }
 
-static void validate_names_each_invariant_of_the_tree_that_is_broken(void **state) {
-    (void)state;
+RT_TEST(validate_names_each_invariant_of_the_tree_that_is_broken) {
     RtScene scene = make_row(16);
     RtClusters *self = make_clusters(&scene, "clusters:width=4");
     RtNode root = self->hierarchy.nodes[0], *leaf = &self->hierarchy.nodes[some_leaf(self)], kept = *leaf;
@@ -182,8 +176,7 @@ static void validate_names_each_invariant_of_the_tree_that_is_broken(void **stat
     rt_scene_clear(&scene);
 }
 
-static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(void **state) {
-    (void)state;
+RT_TEST(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep) {
     RtScene scene = make_row(2);
     for (uint32_t i = 0; i < 2; i++) scene.geometry.boxes[i] = scene.geometry.box;
     RtClusters *self = make_clusters(&scene, "clusters");
@@ -225,8 +218,7 @@ static void validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep(v
     rt_scene_clear(&row);
 }
 
-static void validate_names_the_extent_that_does_not_hold_its_objects(void **state) {
-    (void)state;
+RT_TEST(validate_names_the_extent_that_does_not_hold_its_objects) {
     RtScene scene = make_row(8);
     RtClusters *self = make_clusters(&scene, "clusters:extent=sphere");
     self->set.balls[0].radius *= 1 - 1e-4;
@@ -243,16 +235,4 @@ static void validate_names_the_extent_that_does_not_hold_its_objects(void **stat
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(clusters) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_combination_answers_like_brute),
-        cmocka_unit_test(widening_opens_the_largest_child_and_lowers_the_predicted_cost_by_its_visit),
-        cmocka_unit_test(objects_share_a_leaf_where_that_costs_no_more),
-        cmocka_unit_test(pictures_get_every_node_with_its_depth),
-        cmocka_unit_test(groups_of_spheres_get_tight_extents),
-        cmocka_unit_test(validate_names_each_invariant_of_the_tree_that_is_broken),
-        cmocka_unit_test(validate_names_what_is_in_the_tree_twice_or_not_at_all_or_too_deep),
-        cmocka_unit_test(validate_names_the_extent_that_does_not_hold_its_objects),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(clusters, NULL, NULL)

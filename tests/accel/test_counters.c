@@ -270,8 +270,7 @@ static size_t differences(const Row *row, const RtTally *got) {
     return wrong;
 }
 
-static void counters_are_what_was_counted_by_hand(void **state) {
-    (void)state;
+RT_TEST(counters_are_what_was_counted_by_hand) {
     RtScene scene;
     size_t wrong = 0;
     make_scene(&scene);
@@ -301,8 +300,7 @@ static void counters_are_what_was_counted_by_hand(void **state) {
     assert_int_equal(wrong, 0);
 }
 
-static void ideal_is_broken_by_answers_that_are_no_objects(void **state) {
-    (void)state;
+RT_TEST(ideal_is_broken_by_answers_that_are_no_objects) {
     RtScene scene;
     make_scene(&scene);
     RtAccel *accel;
@@ -320,10 +318,4 @@ static void ideal_is_broken_by_answers_that_are_no_objects(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(counters) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counters_are_what_was_counted_by_hand),
-        cmocka_unit_test(ideal_is_broken_by_answers_that_are_no_objects),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(counters, NULL, assert_nothing_is_kept)

@@ -43,8 +43,7 @@ static bool meets(const RtScene *scene, const RtRay *ray, float *t) {
 
 /* ---- room ---- */
 
-static void the_room_for_hits_is_had_or_it_is_a_status(void **state) {
-    (void)state;
+RT_TEST(the_room_for_hits_is_had_or_it_is_a_status) {
     Row row;
     RtError failure;
     RtGeometry empty = {0};
@@ -94,8 +93,7 @@ static void trace_without_memory(const char *spec, Row *row, const RtHit *expect
     rt_accel_destroy(accel);
 }
 
-static void nothing_is_allocated_while_tracing(void **state) {
-    (void)state;
+RT_TEST(nothing_is_allocated_while_tracing) {
     Row row;
     RtHit expected[RAYS];
     make_row(&row);
@@ -205,8 +203,7 @@ static RtStatus measure_precision(const Row *row, RtError *error) {
     return RT_OK;
 }
 
-static void no_shortage_of_memory_becomes_a_verdict(void **state) {
-    (void)state;
+RT_TEST(no_shortage_of_memory_becomes_a_verdict) {
     Row row;
     make_row(&row);
     assert_every_shortage_is_a_status(judge, &row, "exact arithmetic");
@@ -214,8 +211,7 @@ static void no_shortage_of_memory_becomes_a_verdict(void **state) {
     rt_scene_clear(&row.scene);
 }
 
-static void no_shortage_of_memory_becomes_a_miss(void **state) {
-    (void)state;
+RT_TEST(no_shortage_of_memory_becomes_a_miss) {
     static const char crossings[] = "the crossings of a ray";
     Row row;
     make_row(&row);
@@ -226,12 +222,4 @@ static void no_shortage_of_memory_becomes_a_miss(void **state) {
     rt_scene_clear(&row.scene);
 }
 
-RT_TEST_GROUP(csg_memory) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_room_for_hits_is_had_or_it_is_a_status),
-        cmocka_unit_test(nothing_is_allocated_while_tracing),
-        cmocka_unit_test(no_shortage_of_memory_becomes_a_miss),
-        cmocka_unit_test(no_shortage_of_memory_becomes_a_verdict),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(csg_memory, NULL, assert_nothing_is_kept)

@@ -5,8 +5,7 @@
 #include "accel/embree/embree.h"
 #endif
 
-static void an_empty_scene_is_hit_by_nothing(void **state) {
-    (void)state;
+RT_TEST(an_empty_scene_is_hit_by_nothing) {
     static const char *const specs[] = {"embree", "embree:query=16", "embree:query=stream",
                                         "embree:mode=user", "embree:mode=user,query=8"};
     RtScene scene;
@@ -17,8 +16,7 @@ static void an_empty_scene_is_hit_by_nothing(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_scene_that_outgrows_its_structure_is_noticed_in_user_mode(void **state) {
-    (void)state;
+RT_TEST(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode) {
     RtScene scene;
     RtAccel *accel;
     make_soup(&scene, 40, 1, 10);
@@ -30,8 +28,7 @@ static void a_scene_that_outgrows_its_structure_is_noticed_in_user_mode(void **s
     rt_scene_clear(&scene);
 }
 
-static void building_ten_times_leaks_nothing(void **state) {
-    (void)state;
+RT_TEST(building_ten_times_leaks_nothing) {
     RtScene scene;
     make_soup(&scene, 60, 1, 10);
     int64_t before = rt_alloc_live();
@@ -57,8 +54,7 @@ static void building_ten_times_leaks_nothing(void **state) {
 
 #ifdef RT_WITH_EMBREE
 
-static void an_error_of_the_device_is_known_after_tracing(void **state) {
-    (void)state;
+RT_TEST(an_error_of_the_device_is_known_after_tracing) {
     RtScene scene;
     RtAccel *accel;
     RtError failure;
@@ -74,8 +70,7 @@ static void an_error_of_the_device_is_known_after_tracing(void **state) {
 }
 
 /* What its memory monitor has counted, and our indices of triangles where it has triangles. */
-static void its_bytes_are_what_it_has_allocated_and_our_arrays(void **state) {
-    (void)state;
+RT_TEST(its_bytes_are_what_it_has_allocated_and_our_arrays) {
     static const char *const specs[] = {"embree", "embree:mode=user"};
     RtScene scene;
     make_soup(&scene, 60, 1, 10);
@@ -93,13 +88,9 @@ static void its_bytes_are_what_it_has_allocated_and_our_arrays(void **state) {
     rt_scene_clear(&scene);
 }
 
-#define WITH_EMBREE(test) cmocka_unit_test(test),
-#else
-#define WITH_EMBREE(test)
 #endif
 
-static void the_library_names_a_version_and_an_isa(void **state) {
-    (void)state;
+RT_TEST(the_library_names_a_version_and_an_isa) {
     char text[64];
     const RtAccelOps *ops;
     assert_ok(rt_accel_find("embree", &ops, error));
@@ -111,14 +102,6 @@ static void the_library_names_a_version_and_an_isa(void **state) {
 }
 
 RT_TEST_GROUP(embree) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_empty_scene_is_hit_by_nothing),
-        cmocka_unit_test(a_scene_that_outgrows_its_structure_is_noticed_in_user_mode),
-        WITH_EMBREE(an_error_of_the_device_is_known_after_tracing)
-            WITH_EMBREE(its_bytes_are_what_it_has_allocated_and_our_arrays)
-                cmocka_unit_test(building_ten_times_leaks_nothing),
-        cmocka_unit_test(the_library_names_a_version_and_an_isa),
-    };
     if (!embree_is_built_in()) return RT_TEST_SKIPPED;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RT_RUN_TESTS("embree", NULL, NULL);
 }

@@ -27,8 +27,7 @@ static Rays make_plain_rays(size_t count, float size) {
 }
 
 /* Between triangles lie edges, where native mode may see another object; hence 99.9 %. */
-static void native_mode_agrees_with_brute_on_triangles(void **state) {
-    (void)state;
+RT_TEST(native_mode_agrees_with_brute_on_triangles) {
     static const char *const specs[] = {
         "embree",           "embree:query=8",  "embree:query=16",     "embree:query=stream",
         "embree:robust=on", "embree:isa=sse2", "embree:quality=high", "embree:quality=low",
@@ -57,8 +56,7 @@ static void native_mode_agrees_with_brute_on_triangles(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void native_mode_sees_every_shape(void **state) {
-    (void)state;
+RT_TEST(native_mode_sees_every_shape) {
     RtScene scene;
     make_soup(&scene, 80, 1, 10);
     Rays rays = make_plain_rays(20000, 10);
@@ -84,8 +82,7 @@ static void native_mode_sees_every_shape(void **state) {
 }
 
 /* Embree asserts what it assumes, and ends the process where that does not hold. */
-static void native_mode_takes_every_valid_ray(void **state) {
-    (void)state;
+RT_TEST(native_mode_takes_every_valid_ray) {
     static const char *const specs[] = {"embree",
                                         "embree:query=8",
                                         "embree:query=16",
@@ -123,8 +120,7 @@ static RtAnswer ask_native(const char *scene_spec, const char *spec, RtRay ray) 
 
 /* Along faces of boxes of a CSG tree, and off them by a component of 2^-130, which Embree does not see: a
  * margin. */
-static void a_component_that_embree_drops_is_a_margin(void **state) {
-    (void)state;
+RT_TEST(a_component_that_embree_drops_is_a_margin) {
     RtAnswer answer = ask_native("family:kind=csg-coincident,seed=1", "embree:mode=native",
                                  (RtRay){.org = {{-0.125f, -0x1.d991ccp-1f, 0.0625f}},
                                          .dir = {{-0x1p-130f, 1, -0.0f}},
@@ -135,8 +131,7 @@ static void a_component_that_embree_drops_is_a_margin(void **state) {
 }
 
 /* A needle seen edge on, which Embree without fused operations says is hit where its plane is not. */
-static void a_needle_seen_edge_on_is_a_margin(void **state) {
-    (void)state;
+RT_TEST(a_needle_seen_edge_on_is_a_margin) {
     RtAnswer answer = ask_native("family:kind=slivers,seed=1", "embree:isa=sse2",
                                  (RtRay){.org = {{-0.709930062f, 0.908542037f, 0.687071741f}},
                                          .dir = {{2.6491189f, -5.61743689f, 3.32413292f}},
@@ -147,8 +142,7 @@ static void a_needle_seen_edge_on_is_a_margin(void **state) {
 }
 
 /* A triangle of 2^39, 2^54 away: the dot product of its corner and its normal, 2^134, is beyond float32. */
-static void where_products_overflow_is_a_margin_and_no_hit_at_infinity(void **state) {
-    (void)state;
+RT_TEST(where_products_overflow_is_a_margin_and_no_hit_at_infinity) {
     RtAnswer answer = ask_native("family:kind=slivers-scaled,seed=16", "embree",
                                  (RtRay){.org = {{0x1.d29b58p+53f, -0x1.469a9ap+53f, -0x1.cc3184p+51f}},
                                          .dir = {{-0x1.9b2646p-1f, 0x1.1fcc8cp-1f, 0x1.95666cp-3f}},
@@ -160,14 +154,6 @@ static void where_products_overflow_is_a_margin_and_no_hit_at_infinity(void **st
 }
 
 RT_TEST_GROUP(embree_native) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(native_mode_agrees_with_brute_on_triangles),
-        cmocka_unit_test(native_mode_sees_every_shape),
-        cmocka_unit_test(native_mode_takes_every_valid_ray),
-        cmocka_unit_test(a_component_that_embree_drops_is_a_margin),
-        cmocka_unit_test(a_needle_seen_edge_on_is_a_margin),
-        cmocka_unit_test(where_products_overflow_is_a_margin_and_no_hit_at_infinity),
-    };
     if (!embree_is_built_in()) return RT_TEST_SKIPPED;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RT_RUN_TESTS("embree_native", NULL, NULL);
 }

@@ -2,8 +2,7 @@
  * Skipped without Embree. */
 #include "embree_testing.h"
 
-static void user_mode_is_brute_bit_for_bit_by_every_query(void **state) {
-    (void)state;
+RT_TEST(user_mode_is_brute_bit_for_bit_by_every_query) {
     static const char *const specs[] = {
         "embree:mode=user,query=1,robust=on",  "embree:mode=user,query=1,robust=off",
         "embree:mode=user,query=8,robust=off", "embree:mode=user,query=8,robust=on",
@@ -19,8 +18,7 @@ static void user_mode_is_brute_bit_for_bit_by_every_query(void **state) {
 }
 
 /* An ISA that the machine lacks is refused, and then there is nothing to compare. */
-static void user_mode_is_brute_by_every_isa_and_quality(void **state) {
-    (void)state;
+RT_TEST(user_mode_is_brute_by_every_isa_and_quality) {
     static const char *const isas[] = {"sse2", "sse4.2", "avx", "avx2", "avx512"};
     static const char *const qualities[] = {"low", "medium", "high"};
     static const char *const queries[] = {"1", "8", "16", "stream"};
@@ -47,8 +45,7 @@ static void user_mode_is_brute_by_every_isa_and_quality(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void user_mode_is_brute_in_scenes_of_every_size_and_from_far_away(void **state) {
-    (void)state;
+RT_TEST(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away) {
     static const float sizes[] = {1e-12f, 1e-6f, 1e6f, 1e12f};
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
@@ -62,8 +59,7 @@ static void user_mode_is_brute_in_scenes_of_every_size_and_from_far_away(void **
 }
 
 /* Every hit is asked for again with nothing but its t left of the interval, and from where it is. */
-static void user_mode_finds_hits_at_the_very_ends_of_the_interval(void **state) {
-    (void)state;
+RT_TEST(user_mode_finds_hits_at_the_very_ends_of_the_interval) {
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=8,robust=on",
                                         "embree:mode=user,query=16", "embree:mode=user,query=stream"};
     RtScene scene;
@@ -87,8 +83,7 @@ static void user_mode_finds_hits_at_the_very_ends_of_the_interval(void **state) 
 }
 
 /* Directions so long that a step between two values of t is as large as an object, or as the scene. */
-static void user_mode_is_brute_where_t_is_denormal(void **state) {
-    (void)state;
+RT_TEST(user_mode_is_brute_where_t_is_denormal) {
     static const float sizes[] = {1e-9f, 1e-8f, 1e-7f};
     static const char *const specs[] = {"embree:mode=user", "embree:mode=user,query=16"};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
@@ -109,8 +104,7 @@ static void user_mode_is_brute_where_t_is_denormal(void **state) {
     }
 }
 
-static void user_mode_counts_tests_where_it_is_asked_to(void **state) {
-    (void)state;
+RT_TEST(user_mode_counts_tests_where_it_is_asked_to) {
     RtScene scene;
     make_soup(&scene, 60, 1, 10);
     Rays rays = make_rays(&scene, 600, 10, 3);
@@ -129,14 +123,6 @@ static void user_mode_counts_tests_where_it_is_asked_to(void **state) {
 }
 
 RT_TEST_GROUP(embree_user) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(user_mode_is_brute_bit_for_bit_by_every_query),
-        cmocka_unit_test(user_mode_is_brute_by_every_isa_and_quality),
-        cmocka_unit_test(user_mode_is_brute_in_scenes_of_every_size_and_from_far_away),
-        cmocka_unit_test(user_mode_finds_hits_at_the_very_ends_of_the_interval),
-        cmocka_unit_test(user_mode_is_brute_where_t_is_denormal),
-        cmocka_unit_test(user_mode_counts_tests_where_it_is_asked_to),
-    };
     if (!embree_is_built_in()) return RT_TEST_SKIPPED;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RT_RUN_TESTS("embree_user", NULL, NULL);
 }

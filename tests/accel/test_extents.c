@@ -34,9 +34,7 @@ static RtTally count(const RtScene *scene, const char *spec, RtVec3 org, RtVec3 
     return tallies[RT_RAY_PRIMARY];
 }
 
-static void
-a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_beyond_its_hit(void **state) {
-    (void)state;
+RT_TEST(a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_beyond_its_hit) {
     RtScene scene = three_spheres_in_a_row();
     for (int s = 0; s < SPEC_COUNT; s++) {
         /* From the left the first is hit at once, and the others begin behind it. */
@@ -64,8 +62,7 @@ a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_beyond_its
     rt_scene_clear(&scene);
 }
 
-static void a_ray_by_the_corner_of_the_boxes_meets_the_boxes_only(void **state) {
-    (void)state;
+RT_TEST(a_ray_by_the_corner_of_the_boxes_meets_the_boxes_only) {
     RtScene scene = three_spheres_in_a_row();
     RtVec3 org = rt_vec3(-5, 0.9f, 0.9f), dir = rt_vec3(1, 0, 0);
     static const uint64_t object_tests[SPEC_COUNT] = {3, 0, 3, 3, 0, 0};
@@ -80,8 +77,7 @@ static void a_ray_by_the_corner_of_the_boxes_meets_the_boxes_only(void **state) 
 
 /* ---- describe and validate ---- */
 
-static void describe_tells_references_bytes_and_expected_tests(void **state) {
-    (void)state;
+RT_TEST(describe_tells_references_bytes_and_expected_tests) {
     RtScene scene = three_spheres_in_a_row();
     /* The scene's box is 22 x 2 x 2, of half area 92; a sphere's box has 12, a sphere 2 pi. */
     static const double expected[SPEC_COUNT] = {36.0 / 92, 6 * 3.14159265358979 / 92, 36.0 / 92, NAN, NAN,
@@ -114,8 +110,7 @@ static void count_box(void *context, const RtBox *box, uint32_t depth) {
     ++*(uint32_t *)context;
 }
 
-static void each_box_gives_the_box_of_every_object(void **state) {
-    (void)state;
+RT_TEST(each_box_gives_the_box_of_every_object) {
     RtScene scene = three_spheres_in_a_row();
     RtAccel *accel;
     uint32_t boxes = 0;
@@ -133,8 +128,7 @@ static RtExtents *open_extents(const RtScene *scene, const char *spec) {
     return (RtExtents *)accel;
 }
 
-static void validate_names_the_extent_that_is_too_small(void **state) {
-    (void)state;
+RT_TEST(validate_names_the_extent_that_is_too_small) {
     RtScene scene = three_spheres_in_a_row();
     RtExtents *extents = open_extents(&scene, "extents:kind=sphere");
     extents->set.balls[1].radius *= 1 - 1e-6;
@@ -168,14 +162,4 @@ static void validate_names_the_extent_that_is_too_small(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(extents) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(
-            a_ray_along_three_spheres_tests_three_extents_and_the_objects_not_yet_beyond_its_hit),
-        cmocka_unit_test(a_ray_by_the_corner_of_the_boxes_meets_the_boxes_only),
-        cmocka_unit_test(describe_tells_references_bytes_and_expected_tests),
-        cmocka_unit_test(each_box_gives_the_box_of_every_object),
-        cmocka_unit_test(validate_names_the_extent_that_is_too_small),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(extents, NULL, NULL)

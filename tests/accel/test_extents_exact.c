@@ -143,13 +143,11 @@ static void check_soup(uint64_t seed, float shift) {
     rt_scene_clear(&scene);
 }
 
-static void every_kind_answers_like_brute_on_soups_of_all_shapes(void **state) {
-    (void)state;
+RT_TEST(every_kind_answers_like_brute_on_soups_of_all_shapes) {
     for (uint64_t seed = 1; seed <= 4; seed++) check_soup(seed, 0);
 }
 
-static void every_kind_answers_like_brute_far_from_the_zero_of_coordinates(void **state) {
-    (void)state;
+RT_TEST(every_kind_answers_like_brute_far_from_the_zero_of_coordinates) {
     check_soup(5, 30);
     check_soup(6, 1e3f);
 }
@@ -162,8 +160,7 @@ static RtVec3 least_point(RtRandom *random) {
     return p;
 }
 
-static void every_kind_answers_like_brute_among_the_least_numbers(void **state) {
-    (void)state;
+RT_TEST(every_kind_answers_like_brute_among_the_least_numbers) {
     static RtRay rays[RAYS];
     RtRandom random = rt_random(5, 0);
     RtScene scene;
@@ -183,8 +180,7 @@ static void every_kind_answers_like_brute_among_the_least_numbers(void **state) 
     rt_scene_clear(&scene);
 }
 
-static void a_scene_without_objects_is_missed(void **state) {
-    (void)state;
+RT_TEST(a_scene_without_objects_is_missed) {
     RtScene scene;
     rt_scene_init(&scene);
     assert_ok(rt_scene_finish(&scene, error));
@@ -207,12 +203,4 @@ static void a_scene_without_objects_is_missed(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(extents_exact) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_answers_like_brute_on_soups_of_all_shapes),
-        cmocka_unit_test(every_kind_answers_like_brute_far_from_the_zero_of_coordinates),
-        cmocka_unit_test(every_kind_answers_like_brute_among_the_least_numbers),
-        cmocka_unit_test(a_scene_without_objects_is_missed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(extents_exact, NULL, NULL)

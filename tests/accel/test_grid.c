@@ -24,8 +24,7 @@ static void assert_resolution(const RtScene *scene, const char *spec, uint32_t x
 }
 
 /* A box of 8 x 4 x 2 with 64 spheres in it. */
-static void the_rules_of_resolution_give_what_their_formulas_say(void **state) {
-    (void)state;
+RT_TEST(the_rules_of_resolution_give_what_their_formulas_say) {
     RtScene scene;
     make_lattice(&scene, 8, 4, 2);
     assert_resolution(&scene, "grid:density=1", 8, 4, 2);
@@ -43,8 +42,7 @@ static void the_rules_of_resolution_give_what_their_formulas_say(void **state) {
 
 /* The planes halfway are where spheres touch one another. A voxel holds its lower planes but not its upper
  * ones: along each axis the lower sphere is in both voxels, the upper one in its own alone. */
-static void a_voxel_holds_its_lower_planes(void **state) {
-    (void)state;
+RT_TEST(a_voxel_holds_its_lower_planes) {
     RtScene scene;
     make_lattice(&scene, 2, 2, 2);
     RtGrid *grid = make_grid(&scene, "grid:resolution=2x2x2");
@@ -58,8 +56,7 @@ static void a_voxel_holds_its_lower_planes(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void validate_names_each_invariant_that_is_broken(void **state) {
-    (void)state;
+RT_TEST(validate_names_each_invariant_that_is_broken) {
     RtScene scene;
     make_lattice(&scene, 4, 4, 4);
     RtGrid *grid = make_grid(&scene, "grid:resolution=8x8x8");
@@ -105,8 +102,7 @@ static void validate_names_each_invariant_that_is_broken(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
-    (void)state;
+RT_TEST(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
     RtScene scene;
     make_lattice(&scene, 2, 2, 2);
     RtAccel *accel;
@@ -142,12 +138,4 @@ static void a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit(voi
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(grid) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_rules_of_resolution_give_what_their_formulas_say),
-        cmocka_unit_test(a_voxel_holds_its_lower_planes),
-        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
-        cmocka_unit_test(a_grid_beyond_the_limit_of_memory_is_refused_with_what_would_fit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(grid, NULL, NULL)

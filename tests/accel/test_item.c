@@ -22,8 +22,7 @@ static void check_decided(const RtScene *scene, const char *name, const char *ho
     rt_accel_destroy(accel);
 }
 
-static void nearly_all_primary_rays_of_every_builtin_scene_are_decided(void **state) {
-    (void)state;
+RT_TEST(nearly_all_primary_rays_of_every_builtin_scene_are_decided) {
     for (size_t i = 0; i < rt_builtin_count(); i++) {
         RtScene scene;
         const char *name = rt_builtin_at(i)->name;
@@ -35,8 +34,7 @@ static void nearly_all_primary_rays_of_every_builtin_scene_are_decided(void **st
     }
 }
 
-static void a_decided_ray_makes_at_most_one_object_test(void **state) {
-    (void)state;
+RT_TEST(a_decided_ray_makes_at_most_one_object_test) {
     RtScene scene;
     RtAccel *accel;
     RtQuery query;
@@ -65,8 +63,7 @@ static void a_decided_ray_makes_at_most_one_object_test(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void every_way_to_sample_an_image_is_answered_like_brute(void **state) {
-    (void)state;
+RT_TEST(every_way_to_sample_an_image_is_answered_like_brute) {
     const struct {
         uint32_t width, height, samples;
         bool corners;
@@ -82,8 +79,7 @@ static void every_way_to_sample_an_image_is_answered_like_brute(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_scene_without_objects_is_nothing_everywhere(void **state) {
-    (void)state;
+RT_TEST(a_scene_without_objects_is_nothing_everywhere) {
     RtScene scene;
     RtDescription d;
     RtAccel *accel;
@@ -99,8 +95,7 @@ static void a_scene_without_objects_is_nothing_everywhere(void **state) {
 }
 
 /* One ball: whoever settles asks for it once for each sample that it may be in, and finds it where it is. */
-static void what_is_asked_while_building_is_tallied_apart(void **state) {
-    (void)state;
+RT_TEST(what_is_asked_while_building_is_tallied_apart) {
     static const char *const specs[] = {"item:settle=off+brute", "item+brute", "cache+item+brute"};
     RtScene scene;
     begin_view(&scene);
@@ -123,8 +118,7 @@ static void what_is_asked_while_building_is_tallied_apart(void **state) {
 
 /* ---- what is passed on ---- */
 
-static void rays_that_are_not_of_a_sample_are_passed_on(void **state) {
-    (void)state;
+RT_TEST(rays_that_are_not_of_a_sample_are_passed_on) {
     RtScene scene;
     RtAccel *accel;
     RtQuery query;
@@ -172,8 +166,7 @@ static void rays_that_are_not_of_a_sample_are_passed_on(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_frame_of_another_sampling_is_passed_on_whole_and_right(void **state) {
-    (void)state;
+RT_TEST(a_frame_of_another_sampling_is_passed_on_whole_and_right) {
     RtScene scene;
     RtAccel *accel;
     RtFrame frame;
@@ -195,8 +188,7 @@ static void a_frame_of_another_sampling_is_passed_on_whole_and_right(void **stat
 
 /* ---- limits, and invariants broken ---- */
 
-static void too_many_samples_are_refused_with_a_number_that_fits(void **state) {
-    (void)state;
+RT_TEST(too_many_samples_are_refused_with_a_number_that_fits) {
     const struct {
         uint32_t width, height, samples;
         const char *says;
@@ -216,8 +208,7 @@ static void too_many_samples_are_refused_with_a_number_that_fits(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void each_broken_invariant_is_named(void **state) {
-    (void)state;
+RT_TEST(each_broken_invariant_is_named) {
     RtScene scene;
     RtAccel *accel;
     begin_view(&scene);
@@ -246,17 +237,4 @@ static void each_broken_invariant_is_named(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(item) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nearly_all_primary_rays_of_every_builtin_scene_are_decided),
-        cmocka_unit_test(a_decided_ray_makes_at_most_one_object_test),
-        cmocka_unit_test(every_way_to_sample_an_image_is_answered_like_brute),
-        cmocka_unit_test(what_is_asked_while_building_is_tallied_apart),
-        cmocka_unit_test(a_scene_without_objects_is_nothing_everywhere),
-        cmocka_unit_test(rays_that_are_not_of_a_sample_are_passed_on),
-        cmocka_unit_test(a_frame_of_another_sampling_is_passed_on_whole_and_right),
-        cmocka_unit_test(too_many_samples_are_refused_with_a_number_that_fits),
-        cmocka_unit_test(each_broken_invariant_is_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(item, NULL, assert_nothing_is_kept)

@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-static void polygons_through_the_plane_of_the_eye_are_drawn_right(void **state) {
-    (void)state;
+RT_TEST(polygons_through_the_plane_of_the_eye_are_drawn_right) {
     const RtVec3 floor[4] = {{{-50, -50, 0}}, {{50, -50, 0}}, {{50, 50, 0}}, {{-50, 50, 0}}};
     const RtVec3 wall[3] = {{{2, -30, -1}}, {{2, 30, -1}}, {{2, 5, 9}}};
     RtScene scene;
@@ -21,8 +20,7 @@ static void polygons_through_the_plane_of_the_eye_are_drawn_right(void **state) 
     check_scene(&scene, 0.97);
 }
 
-static void objects_all_around_the_eye_are_drawn_right(void **state) {
-    (void)state;
+RT_TEST(objects_all_around_the_eye_are_drawn_right) {
     RtRandom random = rt_random(11, 0);
     for (int k = 0; k < 24; k++) {
         RtScene scene;
@@ -47,8 +45,7 @@ static void objects_all_around_the_eye_are_drawn_right(void **state) {
     }
 }
 
-static void an_eye_inside_a_sphere_sees_its_inside(void **state) {
-    (void)state;
+RT_TEST(an_eye_inside_a_sphere_sees_its_inside) {
     RtScene scene;
     begin_view(&scene);
     look(&scene, rt_vec3(0.5f, 0, 0), rt_vec3(-1, 0.25f, 0.5f));
@@ -57,8 +54,7 @@ static void an_eye_inside_a_sphere_sees_its_inside(void **state) {
     check_scene(&scene, 1);
 }
 
-static void an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble(void **state) {
-    (void)state;
+RT_TEST(an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble) {
     const RtVec3 square[4] = {{{-1, -1, 0}}, {{1, -1, 0}}, {{1, 1, 0}}, {{-1, 1, 0}}};
     const RtVec3 eyes[] = {{{0, -4, 0}}, {{0, 0, 0}}, {{-1, -1, 0}}, {{0, -4, 1e-6f}}, {{0, 0, 1e-5f}}};
     for (size_t i = 0; i < sizeof eyes / sizeof eyes[0]; i++) {
@@ -74,8 +70,7 @@ static void an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble(void
 
 /* A floor seen so flat that where it is hit is known to a tenth, with a ball in doubt from within on: what is
  * undecided is no nearer than it says, for the floor, no longer named, is one of the others. */
-static void an_undecided_sample_says_from_where_on_all_objects_are(void **state) {
-    (void)state;
+RT_TEST(an_undecided_sample_says_from_where_on_all_objects_are) {
     const RtVec3 floor[4] = {{{-50, -50, 0}}, {{50, -50, 0}}, {{50, 50, 0}}, {{-50, 50, 0}}};
     RtScene scene;
     begin_view(&scene);
@@ -87,8 +82,7 @@ static void an_undecided_sample_says_from_where_on_all_objects_are(void **state)
 }
 
 /* 5 x 5 samples of a picture 2 wide at distance 1: one every 0.4, the middle one on the axis. */
-static void an_object_smaller_than_a_sample_is_seen_on_one_and_not_between(void **state) {
-    (void)state;
+RT_TEST(an_object_smaller_than_a_sample_is_seen_on_one_and_not_between) {
     for (int on = 0; on < 2; on++) {
         RtScene scene;
         float x = on ? 0 : 0.2f;
@@ -111,8 +105,7 @@ static void an_object_smaller_than_a_sample_is_seen_on_one_and_not_between(void 
 }
 
 /* The same square several times, last ids in front by 0 to 4 ulps of its depth. */
-static void coincident_and_nearly_coplanar_polygons_are_told_apart(void **state) {
-    (void)state;
+RT_TEST(coincident_and_nearly_coplanar_polygons_are_told_apart) {
     for (int ulps = 0; ulps <= 4; ulps++) {
         RtScene scene;
         begin_view(&scene);
@@ -128,8 +121,7 @@ static void coincident_and_nearly_coplanar_polygons_are_told_apart(void **state)
     }
 }
 
-static void touching_and_coincident_spheres_are_told_apart(void **state) {
-    (void)state;
+RT_TEST(touching_and_coincident_spheres_are_told_apart) {
     RtScene scene;
     begin_view(&scene);
     look(&scene, rt_vec3(0, -8, 0), rt_vec3(0, 0, 0));
@@ -141,8 +133,7 @@ static void touching_and_coincident_spheres_are_told_apart(void **state) {
     check_scene(&scene, 1);
 }
 
-static void the_near_plane_hides_what_is_before_it(void **state) {
-    (void)state;
+RT_TEST(the_near_plane_hides_what_is_before_it) {
     const RtVec3 pane[4] = {{{-3, 1, -3}}, {{3, 1, -3}}, {{3, 1, 3}}, {{-3, 1, 3}}};
     const float planes[] = {0.5f, 0x1.fffffep-1f, 1, 0x1.000002p+0f, 4.25f, 5, 100};
     for (size_t i = 0; i < sizeof planes / sizeof planes[0]; i++) {
@@ -157,8 +148,7 @@ static void the_near_plane_hides_what_is_before_it(void **state) {
 }
 
 /* A pentagram turns left at every corner; a notch turns right at one. */
-static void concave_polygons_are_not_taken_for_convex_ones(void **state) {
-    (void)state;
+RT_TEST(concave_polygons_are_not_taken_for_convex_ones) {
     const RtVec3 notched[5] = {{{-2, 0, -2}}, {{2, 0, -2}}, {{2, 0, 2}}, {{0, 0, -1}}, {{-2, 0, 2}}};
     RtVec3 star[5];
     for (int i = 0; i < 5; i++) {
@@ -177,8 +167,7 @@ static void concave_polygons_are_not_taken_for_convex_ones(void **state) {
 
 /* A triangle that reaches far to both sides, with an upper edge a little below the rays of one row: its hit
  * function rounds as befits its size, and says of some of these rays that they hit. */
-static void what_is_hit_by_rounding_alone_is_drawn_as_hit(void **state) {
-    (void)state;
+RT_TEST(what_is_hit_by_rounding_alone_is_drawn_as_hit) {
     RtRandom random = rt_random(17, 0);
     uint32_t beyond = 0;
     for (uint32_t row = 0; row < 36; row++) {
@@ -201,8 +190,7 @@ static void what_is_hit_by_rounding_alone_is_drawn_as_hit(void **state) {
     assert_true(beyond > 20);
 }
 
-static void scenes_far_off_tiny_or_huge_are_drawn_right(void **state) {
-    (void)state;
+RT_TEST(scenes_far_off_tiny_or_huge_are_drawn_right) {
     const float sizes[] = {1e-30f, 1e-3f, 1, 1e15f}, places[] = {0, 0, 1e4f, 0};
     for (int k = 0; k < 4; k++) {
         RtScene scene;
@@ -223,20 +211,4 @@ static void scenes_far_off_tiny_or_huge_are_drawn_right(void **state) {
     }
 }
 
-RT_TEST_GROUP(item_exact) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(polygons_through_the_plane_of_the_eye_are_drawn_right),
-        cmocka_unit_test(objects_all_around_the_eye_are_drawn_right),
-        cmocka_unit_test(an_eye_inside_a_sphere_sees_its_inside),
-        cmocka_unit_test(an_eye_in_the_plane_of_a_polygon_or_at_its_corner_is_no_trouble),
-        cmocka_unit_test(an_undecided_sample_says_from_where_on_all_objects_are),
-        cmocka_unit_test(an_object_smaller_than_a_sample_is_seen_on_one_and_not_between),
-        cmocka_unit_test(coincident_and_nearly_coplanar_polygons_are_told_apart),
-        cmocka_unit_test(touching_and_coincident_spheres_are_told_apart),
-        cmocka_unit_test(the_near_plane_hides_what_is_before_it),
-        cmocka_unit_test(concave_polygons_are_not_taken_for_convex_ones),
-        cmocka_unit_test(what_is_hit_by_rounding_alone_is_drawn_as_hit),
-        cmocka_unit_test(scenes_far_off_tiny_or_huge_are_drawn_right),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(item_exact, NULL, assert_nothing_is_kept)

@@ -43,8 +43,7 @@ static void add_floor(RtScene *scene, float x, float y, float z, float size) {
 /* Spheres with the boxes [0,1] and [3,4] x [0,1]^2 in [0,4] x [0,1]^2, of half areas 3, 3 and 9. Cutting at
  * x = 1 or 3 costs 0.3 * 9 + 3 + 7 for 18; what lies above 1, of half area 7, is then cut at 3 for
  * (0.3 * 7 + 3) * 0.8 instead of 7. */
-static void two_spheres_are_split_as_by_hand(void **state) {
-    (void)state;
+RT_TEST(two_spheres_are_split_as_by_hand) {
     RtScene scene;
     RtDescription d;
     begin_scene(&scene);
@@ -76,8 +75,7 @@ static void two_spheres_are_split_as_by_hand(void **state) {
 
 /* A floor in the lowest face of the scene gets a cell without width, so that rays that do not come down to it
  * leave it alone; one in the middle goes into one of the cells it parts. */
-static void polygons_in_a_plane_go_to_one_side_of_it(void **state) {
-    (void)state;
+RT_TEST(polygons_in_a_plane_go_to_one_side_of_it) {
     RtScene scene;
     begin_scene(&scene);
     add_floor(&scene, 0, 0, 0, 10);
@@ -100,8 +98,7 @@ static void polygons_in_a_plane_go_to_one_side_of_it(void **state) {
 }
 
 /* Tiles of a floor and nothing else: cells are cut across it, never along it. */
-static void a_flat_scene_is_divided_within_its_plane(void **state) {
-    (void)state;
+RT_TEST(a_flat_scene_is_divided_within_its_plane) {
     RtScene scene;
     begin_scene(&scene);
     for (int i = 0; i < 64; i++) {
@@ -119,8 +116,7 @@ static void a_flat_scene_is_divided_within_its_plane(void **state) {
 }
 
 /* Objects in one place cannot be parted: whatever is spent on it ends. */
-static void coincident_objects_stay_in_one_leaf(void **state) {
-    (void)state;
+RT_TEST(coincident_objects_stay_in_one_leaf) {
     RtScene scene;
     begin_scene(&scene);
     for (int i = 0; i < 30; i++) {
@@ -135,8 +131,7 @@ static void coincident_objects_stay_in_one_leaf(void **state) {
 }
 
 /* Ten parallel cylinders across the boxes of each other: only their surfaces can be parted. */
-static void slanted_objects_are_parted_by_their_surfaces(void **state) {
-    (void)state;
+RT_TEST(slanted_objects_are_parted_by_their_surfaces) {
     RtScene scene;
     begin_scene(&scene);
     for (int i = 0; i < 10; i++) {
@@ -156,8 +151,7 @@ static uint32_t find_leaf(const RtKd *kd, uint32_t least) {
     return i;
 }
 
-static void validate_names_each_invariant_that_is_broken(void **state) {
-    (void)state;
+RT_TEST(validate_names_each_invariant_that_is_broken) {
     RtScene scene;
     make_lattice(&scene, 4, 4, 4);
     RtKd *kd = make_kd(&scene, "kd:max_leaf_size=4,margin=0.1");
@@ -213,8 +207,7 @@ static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t lim
     return built;
 }
 
-static void a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
-    (void)state;
+RT_TEST(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
     static const char *const scenes[] = {"balls", "random:n=3000,radius=2", "random:n=3000,shape=mixed"};
     static const char *const specs[] = {"traversal_cost=0,failures=60,max_depth=40", "",
                                         "traversal_cost=0,failures=60,overlap=exact,empty_bonus=1"};
@@ -244,8 +237,7 @@ static void a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(voi
 }
 
 /* Together what the spread of the conformance test leaves at its default. */
-static void every_structure_answers_like_brute(void **state) {
-    (void)state;
+RT_TEST(every_structure_answers_like_brute) {
     static const char *const specs[] = {"kd:overlap=exact,traversal_cost=0,failures=4",
                                         "kd:overlap=exact,max_leaf_size=3,margin=0.3,mailbox=off",
                                         "kd:traversal_cost=0,failures=9,empty_bonus=1",
@@ -260,16 +252,4 @@ static void every_structure_answers_like_brute(void **state) {
     }
 }
 
-RT_TEST_GROUP(kd) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_spheres_are_split_as_by_hand),
-        cmocka_unit_test(polygons_in_a_plane_go_to_one_side_of_it),
-        cmocka_unit_test(a_flat_scene_is_divided_within_its_plane),
-        cmocka_unit_test(coincident_objects_stay_in_one_leaf),
-        cmocka_unit_test(slanted_objects_are_parted_by_their_surfaces),
-        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
-        cmocka_unit_test(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit),
-        cmocka_unit_test(every_structure_answers_like_brute),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(kd, NULL, assert_nothing_is_kept)

@@ -33,8 +33,7 @@ static void check_rows(const RtScene *scene, const Row *rows, size_t count) {
     }
 }
 
-static void it_counts_what_was_counted_by_hand(void **state) {
-    (void)state;
+RT_TEST(it_counts_what_was_counted_by_hand) {
     RtScene scene;
     make_screen(&scene);
     RtRay above = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 6), 0);    /* under the sphere, above the screen */
@@ -88,8 +87,7 @@ static void it_counts_what_was_counted_by_hand(void **state) {
 
 /* ---- what a cell remembers ---- */
 
-static void a_cell_remembers_what_blocked_its_last_ray(void **state) {
-    (void)state;
+RT_TEST(a_cell_remembers_what_blocked_its_last_ray) {
     RtScene scene;
     make_screen(&scene);
     /* One cell a face, its list sphere 1 (depth 1), polygon 0 (5), sphere 2 (9). The first ray passes through
@@ -149,10 +147,4 @@ static void a_cell_remembers_what_blocked_its_last_ray(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(light) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_counts_what_was_counted_by_hand),
-        cmocka_unit_test(a_cell_remembers_what_blocked_its_last_ray),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(light, NULL, assert_nothing_is_kept)

@@ -16,8 +16,7 @@ static size_t cell_at(const RtLightBuffer *buffer, uint32_t column, uint32_t row
     return rt_light_face(buffer, 0, 4) + (size_t)row * buffer->n + column;
 }
 
-static void full_occlusion_ends_lists_at_what_covers_a_cell(void **state) {
-    (void)state;
+RT_TEST(full_occlusion_ends_lists_at_what_covers_a_cell) {
     RtScene scene;
     RtAccel *on, *off;
     make_screen(&scene);
@@ -44,8 +43,7 @@ static void full_occlusion_ends_lists_at_what_covers_a_cell(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_concave_polygon_covers_no_cell_of_its_notch(void **state) {
-    (void)state;
+RT_TEST(a_concave_polygon_covers_no_cell_of_its_notch) {
     /* A square with a notch down to its middle. */
     const RtVec3 notched[5] = {{{-8, -8, 5}}, {{8, -8, 5}}, {{8, 8, 5}}, {{0, 0, 5}}, {{-8, 8, 5}}};
     RtScene scene;
@@ -69,8 +67,7 @@ static unsigned number_that_fits(const RtError *error) {
     return (unsigned)strtoul(cells + strlen(": cells="), NULL, 10);
 }
 
-static void too_many_cells_are_refused_with_a_number_that_fits(void **state) {
-    (void)state;
+RT_TEST(too_many_cells_are_refused_with_a_number_that_fits) {
     RtScene scene;
     RtAccel *accel;
     RtError error = {RT_OK, ""};
@@ -84,8 +81,7 @@ static void too_many_cells_are_refused_with_a_number_that_fits(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void each_broken_invariant_is_named(void **state) {
-    (void)state;
+RT_TEST(each_broken_invariant_is_named) {
     RtScene scene;
     RtAccel *accel;
     make_awkward(&scene, 0);
@@ -138,12 +134,4 @@ static void each_broken_invariant_is_named(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(light_cells) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(full_occlusion_ends_lists_at_what_covers_a_cell),
-        cmocka_unit_test(a_concave_polygon_covers_no_cell_of_its_notch),
-        cmocka_unit_test(too_many_cells_are_refused_with_a_number_that_fits),
-        cmocka_unit_test(each_broken_invariant_is_named),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(light_cells, NULL, assert_nothing_is_kept)

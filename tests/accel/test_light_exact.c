@@ -52,8 +52,7 @@ static void make_awkward_rays(const RtScene *scene, RtRay *rays, float away) {
     }
 }
 
-static void lights_in_awkward_places_are_answered_like_brute(void **state) {
-    (void)state;
+RT_TEST(lights_in_awkward_places_are_answered_like_brute) {
     static RtRay rays[AWKWARD_RAYS];
     const char *specs[] = {"light:cells=1+bvh", "light:cells=16+bvh", "light:cells=61,extents=off+bvh",
                            "light:cells=16,full_occlusion=off+bvh", "cache+light+bvh"};
@@ -77,8 +76,7 @@ static void lights_in_awkward_places_are_answered_like_brute(void **state) {
  * diagonal passes; specks 2000 off widen the domain. A vertex is seen from 1000 off with an error of 2^-24 of
  * that, which is 2^-14 of the distance to the light: rays that miss by less are said to hit, from the cells
  * beside. */
-static void rounding_far_off_is_within_the_margin(void **state) {
-    (void)state;
+RT_TEST(rounding_far_off_is_within_the_margin) {
     enum { COUNT = 100000 };
     static RtRay rays[COUNT];
     const RtVec3 light = {{0.1f, 0.2f, 0.3f}};
@@ -110,8 +108,7 @@ static void rounding_far_off_is_within_the_margin(void **state) {
 }
 
 /* What a sphere over half of a cell does not hide is seen, without asking below. */
-static void a_partial_occluder_hides_nothing_beside_it(void **state) {
-    (void)state;
+RT_TEST(a_partial_occluder_hides_nothing_beside_it) {
     enum { COUNT = 20000 };
     static RtRay rays[COUNT];
     const char *specs[] = {"light:cells=1+brute", "light:cells=3+brute", "light:cells=16+brute",
@@ -136,8 +133,7 @@ static void a_partial_occluder_hides_nothing_beside_it(void **state) {
 }
 
 /* Directions exactly along edges and corners of cells and of the cube, to three lights and to none. */
-static void directions_along_edges_and_corners_are_answered_like_brute(void **state) {
-    (void)state;
+RT_TEST(directions_along_edges_and_corners_are_answered_like_brute) {
     enum { SIDE = 9, COUNT = 3 * SIDE * SIDE * SIDE };
     static RtRay rays[COUNT];
     const RtVec3 places[3] = {{{0, 0, 0}}, {{4, 4, 4}}, {{-1, 2, 0.5f}}};
@@ -174,8 +170,7 @@ static void directions_along_edges_and_corners_are_answered_like_brute(void **st
 }
 
 /* A ray that leaves a triangle on the light's side tests neither it nor those in its plane. */
-static void a_receiver_that_faces_the_light_is_not_tested(void **state) {
-    (void)state;
+RT_TEST(a_receiver_that_faces_the_light_is_not_tested) {
     const RtVec3 corners[4] = {{{-1, -1, -1}}, {{1, -1, 1}}, {{1, 1, 1}}, {{-1, 1, -1}}};
     RtScene scene;
     begin_scene(&scene);
@@ -196,13 +191,4 @@ static void a_receiver_that_faces_the_light_is_not_tested(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(light_exact) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lights_in_awkward_places_are_answered_like_brute),
-        cmocka_unit_test(rounding_far_off_is_within_the_margin),
-        cmocka_unit_test(a_partial_occluder_hides_nothing_beside_it),
-        cmocka_unit_test(directions_along_edges_and_corners_are_answered_like_brute),
-        cmocka_unit_test(a_receiver_that_faces_the_light_is_not_tested),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(light_exact, NULL, assert_nothing_is_kept)

@@ -35,8 +35,7 @@ static void assert_structure(const RtScene *scene, const char *spec, uint64_t in
 
 /* 2 x 2 x 2 spheres that touch each other: of those that touch a plane only the lower ones are on both
  * sides. */
-static void a_voxel_with_more_objects_than_nest_holds_a_grid(void **state) {
-    (void)state;
+RT_TEST(a_voxel_with_more_objects_than_nest_holds_a_grid) {
     RtScene scene;
     make_lattice(&scene, 2, 2, 2);
     assert_structure(&scene, "grid:resolution=1x1x1,depth=2,density=1,nest=8", 0, 1, 0, 8);
@@ -47,8 +46,7 @@ static void a_voxel_with_more_objects_than_nest_holds_a_grid(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void nesting_ends_at_the_depth_given_or_with_the_voxels_that_hold_too_many(void **state) {
-    (void)state;
+RT_TEST(nesting_ends_at_the_depth_given_or_with_the_voxels_that_hold_too_many) {
     RtScene scene;
     assert_ok(rt_scene_open("random:n=300,distribution=clustered", &scene, error));
     for (uint32_t depth = 1; depth <= 4; depth++) {
@@ -61,8 +59,7 @@ static void nesting_ends_at_the_depth_given_or_with_the_voxels_that_hold_too_man
 }
 
 /* 40 objects with one and the same box. */
-static void nothing_is_nested_where_every_object_fills_the_voxel(void **state) {
-    (void)state;
+RT_TEST(nothing_is_nested_where_every_object_fills_the_voxel) {
     RtScene scene;
     begin_scene(&scene);
     for (int i = 0; i < 40; i++) {
@@ -73,8 +70,7 @@ static void nothing_is_nested_where_every_object_fills_the_voxel(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void slack_and_flat_reach_as_far_as_they_say(void **state) {
-    (void)state;
+RT_TEST(slack_and_flat_reach_as_far_as_they_say) {
     RtScene scene;
     make_lattice(&scene, 2, 1, 1); /* boxes -0.5..0.5 and 0.5..1.5 */
     assert_structure(&scene, "grid:resolution=4x1x1,slack=0.49", 0, 4, 0, 6);
@@ -88,8 +84,7 @@ static void slack_and_flat_reach_as_far_as_they_say(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void exact_overlap_lists_fewer_objects_on_every_level(void **state) {
-    (void)state;
+RT_TEST(exact_overlap_lists_fewer_objects_on_every_level) {
     RtScene scene;
     assert_ok(rt_scene_open("tetra:size=4", &scene, error));
     RtDescription box = describe(&scene, "grid:depth=3,density=1,nest=2");
@@ -101,8 +96,7 @@ static void exact_overlap_lists_fewer_objects_on_every_level(void **state) {
 }
 
 /* Havran & Sixta 1999, RTN 12(1), "Recursive Grid"; see accel/README.md for the other scenes. */
-static void structures_of_tetra_and_lattice_are_the_published_ones(void **state) {
-    (void)state;
+RT_TEST(structures_of_tetra_and_lattice_are_the_published_ones) {
 #define AS_PUBLISHED ",density=1,nest=8,margin=0.001,flat=0.02,slack=0.01"
     RtScene scene;
     assert_ok(rt_scene_open("tetra", &scene, error));
@@ -117,8 +111,7 @@ static void structures_of_tetra_and_lattice_are_the_published_ones(void **state)
     rt_scene_clear(&scene);
 }
 
-static void validate_names_each_invariant_of_nested_grids_that_is_broken(void **state) {
-    (void)state;
+RT_TEST(validate_names_each_invariant_of_nested_grids_that_is_broken) {
     RtScene scene;
     make_lattice(&scene, 4, 4, 4);
     RtGrid *grid = make_grid(&scene, "grid:resolution=2x2x2,depth=2,density=1,nest=7");
@@ -168,8 +161,7 @@ static void validate_names_each_invariant_of_nested_grids_that_is_broken(void **
     rt_scene_clear(&scene);
 }
 
-static void nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_that_fits(void **state) {
-    (void)state;
+RT_TEST(nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_that_fits) {
     RtScene scene;
     assert_ok(rt_scene_open("random:n=300,distribution=clustered", &scene, error));
     RtValue values[RT_GRID_PARAM_COUNT];
@@ -203,8 +195,7 @@ static void count_box(void *context, const RtBox *box, uint32_t depth) {
     boxes[depth]++;
 }
 
-static void boxes_of_nested_grids_are_shown_a_level_deeper(void **state) {
-    (void)state;
+RT_TEST(boxes_of_nested_grids_are_shown_a_level_deeper) {
     RtScene scene;
     make_lattice(&scene, 4, 4, 4);
     RtGrid *grid = make_grid(&scene, "grid:resolution=2x2x2,depth=2,density=1");
@@ -229,8 +220,7 @@ static double tests_per_ray(const RtScene *scene, const char *spec) {
     return (double)sum.object_tests / (double)sum.rays;
 }
 
-static void a_teapot_in_a_stadium_gains(void **state) {
-    (void)state;
+RT_TEST(a_teapot_in_a_stadium_gains) {
     RtScene scene;
     assert_ok(rt_scene_open("stadium:size=6", &scene, error));
     assert_ok(rt_scene_sample(&scene, 64, 64, 1, false, error));
@@ -240,18 +230,4 @@ static void a_teapot_in_a_stadium_gains(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(nested_grid) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_voxel_with_more_objects_than_nest_holds_a_grid),
-        cmocka_unit_test(nesting_ends_at_the_depth_given_or_with_the_voxels_that_hold_too_many),
-        cmocka_unit_test(nothing_is_nested_where_every_object_fills_the_voxel),
-        cmocka_unit_test(slack_and_flat_reach_as_far_as_they_say),
-        cmocka_unit_test(exact_overlap_lists_fewer_objects_on_every_level),
-        cmocka_unit_test(structures_of_tetra_and_lattice_are_the_published_ones),
-        cmocka_unit_test(validate_names_each_invariant_of_nested_grids_that_is_broken),
-        cmocka_unit_test(nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_that_fits),
-        cmocka_unit_test(boxes_of_nested_grids_are_shown_a_level_deeper),
-        cmocka_unit_test(a_teapot_in_a_stadium_gains),
-    };
-    return cmocka_run_group_tests(tests, NULL, assert_nothing_is_kept);
-}
+RT_TESTS(nested_grid, NULL, assert_nothing_is_kept)

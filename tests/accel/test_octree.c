@@ -34,8 +34,7 @@ static RtDescription description_of(const RtScene *scene, const char *spec) {
 }
 
 /* The planes of the root's split go halfway through the box, where all eight spheres touch one another's. */
-static void objects_go_into_every_leaf_they_touch(void **state) {
-    (void)state;
+RT_TEST(objects_go_into_every_leaf_they_touch) {
     RtScene scene;
     make_lattice(&scene, 2, 2, 2);
     RtDescription d = description_of(&scene, "octree:max_depth=1");
@@ -50,8 +49,7 @@ static void objects_go_into_every_leaf_they_touch(void **state) {
 }
 
 /* The mean of three spheres at 0, 1 and 9 is 10/3, where most of them are; the centre is 4.5. */
-static void a_split_by_cost_is_nearer_to_the_objects(void **state) {
-    (void)state;
+RT_TEST(a_split_by_cost_is_nearer_to_the_objects) {
     RtScene apart;
     const float x[3] = {0, 1, 9};
     make_row(&apart, x, 3);
@@ -66,8 +64,7 @@ static void a_split_by_cost_is_nearer_to_the_objects(void **state) {
 }
 
 /* Thirty objects that fill the same box cannot be separated: no depth is spent on it. */
-static void coincident_objects_stay_in_one_leaf(void **state) {
-    (void)state;
+RT_TEST(coincident_objects_stay_in_one_leaf) {
     RtScene same;
     const float x[30] = {0};
     make_row(&same, x, 30);
@@ -78,8 +75,7 @@ static void coincident_objects_stay_in_one_leaf(void **state) {
 }
 
 /* Spheres at -2 and 2, with boxes up to 1.75 away from the plane between. */
-static void slack_grows_the_boxes_of_objects(void **state) {
-    (void)state;
+RT_TEST(slack_grows_the_boxes_of_objects) {
     RtScene apart;
     const float x[2] = {-2, 2};
     make_row(&apart, x, 2);
@@ -100,8 +96,7 @@ static uint32_t find_leaf(const RtOctree *tree, uint32_t least) {
     return i;
 }
 
-static void validate_names_each_invariant_that_is_broken(void **state) {
-    (void)state;
+RT_TEST(validate_names_each_invariant_that_is_broken) {
     RtScene scene;
     make_lattice(&scene, 4, 4, 4);
     RtOctree *tree = make_octree(&scene, "octree:max_depth=3,margin=0.1");
@@ -179,8 +174,7 @@ static bool fits(const RtScene *scene, RtValue *values, long depth, uint64_t lim
     return built;
 }
 
-static void an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(void **state) {
-    (void)state;
+RT_TEST(an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
     RtScene scene;
     make_lattice(&scene, 2, 2, 2);
     RtValue values[RT_OCTREE_PARAM_COUNT];
@@ -194,8 +188,7 @@ static void an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit(
 }
 
 /* Who counts the bytes while they are taken stops at the first too many, and cannot know of so many more. */
-static void far_too_deep_an_octree_is_refused_by_an_estimate(void **state) {
-    (void)state;
+RT_TEST(far_too_deep_an_octree_is_refused_by_an_estimate) {
     static const char *const scenes[] = {"balls", "tetra", "random:n=20000,radius=1",
                                          "random:n=5000,distribution=stadium"};
     static const char *const specs[] = {"max_depth=20", "max_depth=20,split=cost",
@@ -216,8 +209,7 @@ static void far_too_deep_an_octree_is_refused_by_an_estimate(void **state) {
     }
 }
 
-static void the_estimate_is_near_what_a_build_takes(void **state) {
-    (void)state;
+RT_TEST(the_estimate_is_near_what_a_build_takes) {
     static const char *const specs[] = {"max_depth=9", "max_depth=8,split=cost",
                                         "max_depth=9,max_leaf_size=3"};
     RtScene scene;
@@ -238,8 +230,7 @@ static void the_estimate_is_near_what_a_build_takes(void **state) {
 }
 
 /* Every traversal together with what the spread of the conformance test leaves at its default. */
-static void every_traversal_answers_like_brute_in_every_structure(void **state) {
-    (void)state;
+RT_TEST(every_traversal_answers_like_brute_in_every_structure) {
     static const char *const traversals[] = {"points", "neighbours", "parametric"};
     static const char *const settings[] = {"split=cost,mailbox=off", "margin=0.3,max_leaf_size=3",
                                            "max_depth=0", "max_depth=6,mailbox=off"};
@@ -255,17 +246,4 @@ static void every_traversal_answers_like_brute_in_every_structure(void **state) 
     }
 }
 
-RT_TEST_GROUP(octree) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(objects_go_into_every_leaf_they_touch),
-        cmocka_unit_test(a_split_by_cost_is_nearer_to_the_objects),
-        cmocka_unit_test(coincident_objects_stay_in_one_leaf),
-        cmocka_unit_test(slack_grows_the_boxes_of_objects),
-        cmocka_unit_test(validate_names_each_invariant_that_is_broken),
-        cmocka_unit_test(an_octree_beyond_the_limit_of_memory_is_refused_with_what_would_fit),
-        cmocka_unit_test(far_too_deep_an_octree_is_refused_by_an_estimate),
-        cmocka_unit_test(the_estimate_is_near_what_a_build_takes),
-        cmocka_unit_test(every_traversal_answers_like_brute_in_every_structure),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(octree, NULL, NULL)

@@ -17,8 +17,7 @@ static bool meets(const RtGeometry *g, RtBox box) {
     return rt_object_meets_box(g, 0, &box, margin);
 }
 
-static void a_box_inside_a_sphere_or_off_its_corner_is_not_met(void **state) {
-    (void)state;
+RT_TEST(a_box_inside_a_sphere_or_off_its_corner_is_not_met) {
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_geometry_finish(&g, error));
@@ -29,8 +28,7 @@ static void a_box_inside_a_sphere_or_off_its_corner_is_not_met(void **state) {
     rt_geometry_clear(&g);
 }
 
-static void a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges(void **state) {
-    (void)state;
+RT_TEST(a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges) {
     const RtVec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_triangle(&g, v, NULL, error));
@@ -43,8 +41,7 @@ static void a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges(void **stat
     rt_geometry_clear(&g);
 }
 
-static void a_slanted_polygon_is_met_like_a_triangle(void **state) {
-    (void)state;
+RT_TEST(a_slanted_polygon_is_met_like_a_triangle) {
     const RtVec3 v[4] = {{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}};
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_polygon(&g, v, 4, error));
@@ -54,8 +51,7 @@ static void a_slanted_polygon_is_met_like_a_triangle(void **state) {
     rt_geometry_clear(&g);
 }
 
-static void a_slanted_cylinder_leaves_corners_of_its_box_free(void **state) {
-    (void)state;
+RT_TEST(a_slanted_cylinder_leaves_corners_of_its_box_free) {
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(0, 0, 0), 0.1f, rt_vec3(10, 10, 0), 0.1f, error));
     assert_ok(rt_geometry_finish(&g, error));
@@ -78,8 +74,7 @@ static void assert_part(const RtGeometry *g, RtBox box, RtBox expected) {
     }
 }
 
-static void parts_of_a_triangle_and_of_a_concave_polygon_are_clipped(void **state) {
-    (void)state;
+RT_TEST(parts_of_a_triangle_and_of_a_concave_polygon_are_clipped) {
     const RtVec3 v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
     const RtVec3 l[6] = {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {1, 1, 0}, {1, 4, 0}, {0, 4, 0}};
     RtGeometry g = {0};
@@ -97,8 +92,7 @@ static void parts_of_a_triangle_and_of_a_concave_polygon_are_clipped(void **stat
     rt_geometry_clear(&g);
 }
 
-static void parts_of_balls_and_cones_end_where_they_narrow(void **state) {
-    (void)state;
+RT_TEST(parts_of_balls_and_cones_end_where_they_narrow) {
     RtGeometry g = {0};
     RtBox inside = cube(0, 0, 0, 0.5f), part;
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
@@ -130,8 +124,7 @@ static void assert_parts_hold(const RtScene *scene, uint32_t id, RtVec3 point, d
 }
 
 /* Points that rays hit are points of surfaces: boxes about them are met, whatever the shape. */
-static void boxes_about_hits_are_met(void **state) {
-    (void)state;
+RT_TEST(boxes_about_hits_are_met) {
     for (size_t family = 0; family < rt_family_count(); family++) {
         RtScene scene;
         RtAccel *brute;
@@ -174,8 +167,7 @@ static RtDescription described(const RtScene *scene, const char *spec) {
 
 /* One sphere in 4 x 4 x 4 voxels of half its radius: its box touches all of them, its surface all but the 8
  * in the middle, whose farthest points are at 0.87 of the radius, as are the nearest of the corners. */
-static void a_grid_leaves_out_voxels_inside_a_sphere(void **state) {
-    (void)state;
+RT_TEST(a_grid_leaves_out_voxels_inside_a_sphere) {
     RtScene scene;
     begin_scene(&scene);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0, 0, 0), 1, error));
@@ -190,8 +182,7 @@ static void a_grid_leaves_out_voxels_inside_a_sphere(void **state) {
  * the time it is as high as the triangle it has moved an eighth of that along x, and hits. Its dir is so
  * short that 1 / dir.x is infinite: to crossings it looks as if it stayed at x = 0.3, where voxels do not
  * list the triangle. accel/surface.h has such rays tested against every object. */
-static void a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels(void **state) {
-    (void)state;
+RT_TEST(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels) {
     static const char *const specs[] = {"brute", "grid:resolution=32x32x32,overlap=exact"};
     const RtVec3 v[3] = {{0, 0, 0.5f}, {1, 0, 1.5f}, {1, 1, 1.5f}};
     const RtRay ray = {.org = {0.3f, 0.35f, 0}, .dir = {0x1p-129f, 0, 0x1p-126f}, .tmax = INFINITY};
@@ -214,17 +205,4 @@ static void a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels(void 
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(overlap) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_inside_a_sphere_or_off_its_corner_is_not_met),
-        cmocka_unit_test(a_box_in_the_box_of_a_triangle_is_met_by_plane_and_edges),
-        cmocka_unit_test(a_slanted_polygon_is_met_like_a_triangle),
-        cmocka_unit_test(a_slanted_cylinder_leaves_corners_of_its_box_free),
-        cmocka_unit_test(parts_of_a_triangle_and_of_a_concave_polygon_are_clipped),
-        cmocka_unit_test(parts_of_balls_and_cones_end_where_they_narrow),
-        cmocka_unit_test(boxes_about_hits_are_met),
-        cmocka_unit_test(a_grid_leaves_out_voxels_inside_a_sphere),
-        cmocka_unit_test(a_ray_with_the_shortest_of_directions_is_not_trusted_to_voxels),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(overlap, NULL, NULL)

@@ -27,8 +27,7 @@ static int tear_down(void **state) {
 
 /* ---- specs ---- */
 
-static void a_spec_is_read_from_the_top_down_and_written_as_it_was(void **state) {
-    (void)state;
+RT_TEST(a_spec_is_read_from_the_top_down_and_written_as_it_was) {
     RtSpec spec;
     char text[RT_MAX_SPEC_CHARS];
     assert_ok(rt_spec_parse("cache+grid:density=1e+06", &spec, error));
@@ -42,8 +41,7 @@ static void a_spec_is_read_from_the_top_down_and_written_as_it_was(void **state)
     assert_true(again.layers[1].values[1].f == 1e6);
 }
 
-static void a_wrong_plus_is_refused_with_a_remedy(void **state) {
-    (void)state;
+RT_TEST(a_wrong_plus_is_refused_with_a_remedy) {
     const struct {
         const char *spec, *says;
     } wrong[] = {
@@ -68,7 +66,7 @@ static void a_wrong_plus_is_refused_with_a_remedy(void **state) {
 
 /* ---- layers ---- */
 
-static void layers_are_described_together(void **state) {
+RT_TEST(layers_are_described_together) {
     RtAccel *base, *top;
     RtDescription of_base, of_top;
     assert_ok(rt_accel_open("grid:resolution=3x1x1", *state, &base, error));
@@ -84,7 +82,7 @@ static void layers_are_described_together(void **state) {
     rt_accel_destroy(top);
 }
 
-static void a_stack_is_only_as_exact_as_its_base(void **state) {
+RT_TEST(a_stack_is_only_as_exact_as_its_base) {
     RtAccel *accel;
     assert_ok(rt_accel_open("cache+bvh", *state, &accel, error));
     assert_true(accel->exact && accel->counts);
@@ -97,7 +95,7 @@ static void a_stack_is_only_as_exact_as_its_base(void **state) {
 /* ---- the shadow cache ---- */
 
 /* Shadow rays in this order, each with what cache+brute is to count for it. */
-static void the_cache_counts_what_was_counted_by_hand(void **state) {
+RT_TEST(the_cache_counts_what_was_counted_by_hand) {
     const RtScene *scene = *state;
     const struct {
         RtVec3 from;
@@ -161,7 +159,7 @@ static void the_cache_counts_what_was_counted_by_hand(void **state) {
     rt_accel_destroy(accel);
 }
 
-static void rays_of_other_kinds_pass_an_overlay_uncounted(void **state) {
+RT_TEST(rays_of_other_kinds_pass_an_overlay_uncounted) {
     const RtScene *scene = *state;
     RtAccel *accel;
     RtQuery query;
@@ -187,14 +185,4 @@ static void rays_of_other_kinds_pass_an_overlay_uncounted(void **state) {
     rt_accel_destroy(accel);
 }
 
-RT_TEST_GROUP(overlays) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_spec_is_read_from_the_top_down_and_written_as_it_was),
-        cmocka_unit_test(a_wrong_plus_is_refused_with_a_remedy),
-        cmocka_unit_test(layers_are_described_together),
-        cmocka_unit_test(a_stack_is_only_as_exact_as_its_base),
-        cmocka_unit_test(the_cache_counts_what_was_counted_by_hand),
-        cmocka_unit_test(rays_of_other_kinds_pass_an_overlay_uncounted),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+RT_TESTS(overlays, set_up, tear_down)

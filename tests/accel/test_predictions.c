@@ -57,8 +57,7 @@ static const struct {
     {"brute", true},
 };
 
-static void lines_take_the_tests_and_steps_that_were_predicted(void **state) {
-    (void)state;
+RT_TEST(lines_take_the_tests_and_steps_that_were_predicted) {
     static RtRay rays[LINES];
     RtScene scene;
     assert_ok(rt_scene_open("random:n=500,radius=0.002", &scene, error));
@@ -81,9 +80,4 @@ static void lines_take_the_tests_and_steps_that_were_predicted(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(predictions) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_take_the_tests_and_steps_that_were_predicted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(predictions, NULL, NULL)

@@ -47,8 +47,7 @@ static void assert_tight(const RtTree *tree) {
     }
 }
 
-static void pairs_that_were_parted_are_united(void **state) {
-    (void)state;
+RT_TEST(pairs_that_were_parted_are_united) {
     /* Two cubes here and two far away, paired crosswise: areas of 3 * 1 + 1000 thin boxes. */
     const RtBox boxes[4] = {{{0, 0, 0}, {1, 1, 1}},
                             {{2, 0, 0}, {3, 1, 1}},
@@ -66,8 +65,7 @@ static void pairs_that_were_parted_are_united(void **state) {
     rt_tree_clear(&tree);
 }
 
-static void a_round_never_costs_more_and_a_poor_tree_gets_good(void **state) {
-    (void)state;
+RT_TEST(a_round_never_costs_more_and_a_poor_tree_gets_good) {
     enum { COUNT = 2000 };
     for (uint64_t seed = 1; seed <= 3; seed++) {
         RtBox *boxes = make_boxes(COUNT, seed);
@@ -93,8 +91,7 @@ static void a_round_never_costs_more_and_a_poor_tree_gets_good(void **state) {
     }
 }
 
-static void the_tree_does_not_depend_on_threads(void **state) {
-    (void)state;
+RT_TEST(the_tree_does_not_depend_on_threads) {
     enum { COUNT = 5000 };
     RtBox *boxes = make_boxes(COUNT, 9);
     RtTree first = make_tree(boxes, COUNT, MEDIANS);
@@ -155,8 +152,7 @@ static double cost_after(const RtTree *tree, uint32_t node, uint32_t target) {
     return cost;
 }
 
-static void where_it_ends_no_move_there_is_would_gain(void **state) {
-    (void)state;
+RT_TEST(where_it_ends_no_move_there_is_would_gain) {
     enum { COUNT = 14 };
     for (uint64_t seed = 1; seed <= 8; seed++) {
         RtBox *boxes = make_boxes(COUNT, seed);
@@ -177,8 +173,7 @@ static void where_it_ends_no_move_there_is_would_gain(void **state) {
 
 /* ---- degenerate ---- */
 
-static void what_cannot_gain_stays_as_it_is(void **state) {
-    (void)state;
+RT_TEST(what_cannot_gain_stays_as_it_is) {
     enum { COUNT = 300 };
     RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox)); /* all at one point, then all the unit cube */
     for (int pass = 0; pass < 2; pass++) {
@@ -196,8 +191,7 @@ static void what_cannot_gain_stays_as_it_is(void **state) {
 
 /* Boxes about one point: each holds all the smaller ones, and bounds do not prune. A chain would be the best
  * tree; moves along it would take the square of their number. */
-static void nested_boxes_take_no_time_to_speak_of(void **state) {
-    (void)state;
+RT_TEST(nested_boxes_take_no_time_to_speak_of) {
     enum { COUNT = 20000 };
     RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
     for (int step = 1; step <= 7919; step += 7918) { /* in order, and mixed */
@@ -217,8 +211,7 @@ static void nested_boxes_take_no_time_to_speak_of(void **state) {
     rt_free(boxes);
 }
 
-static void a_tree_that_is_too_deep_is_limited_first(void **state) {
-    (void)state;
+RT_TEST(a_tree_that_is_too_deep_is_limited_first) {
     enum { COUNT = 1000 };
     RtBox *boxes = make_boxes(COUNT, 3);
     RtTree tree = make_tree(boxes, COUNT, CHAIN);
@@ -229,8 +222,7 @@ static void a_tree_that_is_too_deep_is_limited_first(void **state) {
     rt_free(boxes);
 }
 
-static void every_allocation_may_fail(void **state) {
-    (void)state;
+RT_TEST(every_allocation_may_fail) {
     RtBox *boxes = make_boxes(100, 5);
     RtTree tree = make_tree(boxes, 100, MEDIANS);
     int64_t live = rt_alloc_live();
@@ -249,16 +241,4 @@ static void every_allocation_may_fail(void **state) {
     rt_free(boxes);
 }
 
-RT_TEST_GROUP(reinsertion) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs_that_were_parted_are_united),
-        cmocka_unit_test(a_round_never_costs_more_and_a_poor_tree_gets_good),
-        cmocka_unit_test(the_tree_does_not_depend_on_threads),
-        cmocka_unit_test(where_it_ends_no_move_there_is_would_gain),
-        cmocka_unit_test(what_cannot_gain_stays_as_it_is),
-        cmocka_unit_test(nested_boxes_take_no_time_to_speak_of),
-        cmocka_unit_test(a_tree_that_is_too_deep_is_limited_first),
-        cmocka_unit_test(every_allocation_may_fail),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(reinsertion, NULL, NULL)

@@ -4,8 +4,7 @@
 
 #include "accel/tree/order.h"
 
-static void an_axis_is_sorted_by_centres_and_ids(void **state) {
-    (void)state;
+RT_TEST(an_axis_is_sorted_by_centres_and_ids) {
     static const float centers[] = {3, -1, 0, -1e30f, 3, -0.5f, 1e-40f, 1e30f, -1};
     static const uint32_t expected[] = {3, 1, 8, 5, 2, 6, 0, 4, 7};
     enum { COUNT = sizeof expected / sizeof expected[0] };
@@ -29,8 +28,7 @@ static void make_cells(RtBox *boxes) {
     }
 }
 
-static void morton_codes_interleave_the_cells_of_centres(void **state) {
-    (void)state;
+RT_TEST(morton_codes_interleave_the_cells_of_centres) {
     RtBox boxes[64];
     make_cells(boxes);
     RtKeyed *order = rt_order_morton(boxes, 64, 2);
@@ -49,8 +47,7 @@ static void morton_codes_interleave_the_cells_of_centres(void **state) {
     rt_free(order);
 }
 
-static void lbvh_halves_space_along_one_axis_after_another(void **state) {
-    (void)state;
+RT_TEST(lbvh_halves_space_along_one_axis_after_another) {
     RtBox boxes[64];
     make_cells(boxes);
     RtTree tree;
@@ -104,8 +101,7 @@ static double root_split_cost(const RtTree *tree) {
     return cost;
 }
 
-static void a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objects(void **state) {
-    (void)state;
+RT_TEST(a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objects) {
     for (uint64_t seed = 1; seed <= 20; seed++) {
         for (uint32_t count = 16; count <= 200; count += 184) {
             RtBox *boxes = make_boxes(count, seed);
@@ -122,12 +118,4 @@ static void a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_o
     }
 }
 
-RT_TEST_GROUP(tree_orders) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_axis_is_sorted_by_centres_and_ids),
-        cmocka_unit_test(morton_codes_interleave_the_cells_of_centres),
-        cmocka_unit_test(lbvh_halves_space_along_one_axis_after_another),
-        cmocka_unit_test(a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objects),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(tree_orders, NULL, NULL)

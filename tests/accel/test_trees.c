@@ -25,8 +25,7 @@ static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
     return tree;
 }
 
-static void the_nearest_neighbour_is_the_one_that_a_scan_finds(void **state) {
-    (void)state;
+RT_TEST(the_nearest_neighbour_is_the_one_that_a_scan_finds) {
     enum { COUNT = 333 };
     RtBox *boxes = make_boxes(COUNT, 1);
     RtTree tree;
@@ -83,8 +82,7 @@ static RtTree make_greedy_tree(const RtBox *boxes, uint32_t count) {
     return tree;
 }
 
-static void agglomeration_unites_the_nearest_pair_of_all(void **state) {
-    (void)state;
+RT_TEST(agglomeration_unites_the_nearest_pair_of_all) {
     enum { COUNT = 150 };
     for (uint64_t seed = 1; seed <= 5; seed++) {
         RtBox *boxes = make_boxes(COUNT, seed);
@@ -102,8 +100,7 @@ static void agglomeration_unites_the_nearest_pair_of_all(void **state) {
     }
 }
 
-static void clustering_beats_medians_and_more_neighbours_beat_fewer(void **state) {
-    (void)state;
+RT_TEST(clustering_beats_medians_and_more_neighbours_beat_fewer) {
     enum { COUNT = 3000 };
     for (uint64_t seed = 1; seed <= 3; seed++) {
         RtBox *boxes = make_boxes(COUNT, seed);
@@ -123,8 +120,7 @@ static void clustering_beats_medians_and_more_neighbours_beat_fewer(void **state
     }
 }
 
-static void more_orders_of_insertion_never_cost_more(void **state) {
-    (void)state;
+RT_TEST(more_orders_of_insertion_never_cost_more) {
     enum { COUNT = 500 };
     RtBox *boxes = make_boxes(COUNT, 4);
     double before = INFINITY, first = 0;
@@ -143,8 +139,7 @@ static void more_orders_of_insertion_never_cost_more(void **state) {
     rt_free(boxes);
 }
 
-static void an_object_is_inserted_where_areas_grow_least(void **state) {
-    (void)state;
+RT_TEST(an_object_is_inserted_where_areas_grow_least) {
     /* Two pairs far apart; the fifth, beside the second, makes the pair of 2 and 3 grow or unites with 3. */
     RtBox boxes[5] = {{{0, 0, 0}, {1, 1, 1}},
                       {{2, 0, 0}, {3, 1, 1}},
@@ -161,8 +156,7 @@ static void an_object_is_inserted_where_areas_grow_least(void **state) {
     rt_tree_clear(&tree);
 }
 
-static void medians_put_the_lesser_half_in_front(void **state) {
-    (void)state;
+RT_TEST(medians_put_the_lesser_half_in_front) {
     RtRandom random = rt_random(9, 0);
     for (uint32_t count = 1; count <= 64; count++) {
         RtTreeRef refs[64];
@@ -183,8 +177,7 @@ static void medians_put_the_lesser_half_in_front(void **state) {
 
 /* ---- depth ---- */
 
-static void coincident_objects_stay_within_the_depth_limit(void **state) {
-    (void)state;
+RT_TEST(coincident_objects_stay_within_the_depth_limit) {
     enum { COUNT = 1000 };
     RtBox *boxes = rt_alloc(COUNT, sizeof(RtBox));
     for (int i = 0; i < COUNT; i++) boxes[i] = (RtBox){{0, 0, 0}, {1, 1, 1}};
@@ -202,8 +195,7 @@ static void coincident_objects_stay_within_the_depth_limit(void **state) {
 
 /* Boxes at distances that grow by powers of 2, each so large that all smaller ones are nearer to one another:
  * every bottom-up method makes a chain. */
-static void a_chain_of_growing_distances_is_cut_by_medians(void **state) {
-    (void)state;
+RT_TEST(a_chain_of_growing_distances_is_cut_by_medians) {
     enum { COUNT = 110 };
     RtBox boxes[COUNT];
     float x = 1e-17f;
@@ -219,8 +211,7 @@ static void a_chain_of_growing_distances_is_cut_by_medians(void **state) {
     }
 }
 
-static void what_is_shallow_enough_is_left_as_it_is(void **state) {
-    (void)state;
+RT_TEST(what_is_shallow_enough_is_left_as_it_is) {
     RtBox *boxes = make_boxes(500, 1);
     RtTree tree = make_tree(boxes, 500, 0);
     RtTreeNode before[999];
@@ -231,17 +222,4 @@ static void what_is_shallow_enough_is_left_as_it_is(void **state) {
     rt_free(boxes);
 }
 
-RT_TEST_GROUP(trees) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_nearest_neighbour_is_the_one_that_a_scan_finds),
-        cmocka_unit_test(agglomeration_unites_the_nearest_pair_of_all),
-        cmocka_unit_test(clustering_beats_medians_and_more_neighbours_beat_fewer),
-        cmocka_unit_test(more_orders_of_insertion_never_cost_more),
-        cmocka_unit_test(an_object_is_inserted_where_areas_grow_least),
-        cmocka_unit_test(medians_put_the_lesser_half_in_front),
-        cmocka_unit_test(coincident_objects_stay_within_the_depth_limit),
-        cmocka_unit_test(a_chain_of_growing_distances_is_cut_by_medians),
-        cmocka_unit_test(what_is_shallow_enough_is_left_as_it_is),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(trees, NULL, NULL)

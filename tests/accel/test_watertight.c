@@ -233,8 +233,7 @@ static void check_sample(Leaks *leaks, const RtScene *scene, const RtRay rays[CH
     rt_accel_destroy(brute);
 }
 
-static void no_ray_at_an_edge_or_vertex_leaks_from_a_closed_mesh(void **state) {
-    (void)state;
+RT_TEST(no_ray_at_an_edge_or_vertex_leaks_from_a_closed_mesh) {
     static RtRay rays[CHUNK];
     const char *asked = getenv("RAYTALLY_LEAK_RAYS");
     uint64_t all = asked ? strtoull(asked, NULL, 10) : RAYS;
@@ -291,8 +290,7 @@ static RtGeometry make_cube_of_polygons(void) {
 }
 
 /* From the centre, towards the middle of every face, edge and corner: the rays that meet them exactly. */
-static void symmetric_rays_do_not_leak_from_a_cube_of_polygons(void **state) {
-    (void)state;
+RT_TEST(symmetric_rays_do_not_leak_from_a_cube_of_polygons) {
     RtGeometry g = make_cube_of_polygons();
     for (int code = 0; code < 27; code++) {
         RtVec3 dir = {(float)(code % 3 - 1), (float)(code / 3 % 3 - 1), (float)(code / 9 - 1)};
@@ -312,10 +310,4 @@ static void symmetric_rays_do_not_leak_from_a_cube_of_polygons(void **state) {
     rt_geometry_clear(&g);
 }
 
-RT_TEST_GROUP(watertight) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_ray_at_an_edge_or_vertex_leaks_from_a_closed_mesh),
-        cmocka_unit_test(symmetric_rays_do_not_leak_from_a_cube_of_polygons),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(watertight, NULL, NULL)

@@ -14,8 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static void rounding_outward_brackets_the_number(void **state) {
-    (void)state;
+RT_TEST(rounding_outward_brackets_the_number) {
     double third = 1.0 / 3.0;
     assert_true((double)rt_float_below(third) < third);
     assert_true((double)rt_float_above(third) > third);
@@ -28,8 +27,7 @@ static __attribute__((noinline)) void narrow_and_widen(const double *from, doubl
     to[1] = (double)y;
 }
 
-static void narrowing_rounds_also_where_widening_follows(void **state) {
-    (void)state;
+RT_TEST(narrowing_rounds_also_where_widening_follows) {
     volatile double third = 1.0 / 3.0; /* volatile: not to be computed by the compiler */
     volatile float rounded = (float)third;
     const double from[2] = {third, 2 * third};
@@ -38,8 +36,7 @@ static void narrowing_rounds_also_where_widening_follows(void **state) {
     assert_true(to[0] == (double)rounded && to[1] == 2 * (double)rounded);
 }
 
-static void tallies_add_counter_by_counter(void **state) {
-    (void)state;
+RT_TEST(tallies_add_counter_by_counter) {
     RtTally sum = {.rays = 1, .passed_on = 2}, part = {.rays = 10, .steps = 5};
     rt_tally_add(&sum, &part);
     assert_int_equal(sum.rays, 11);
@@ -74,8 +71,7 @@ static const RtParam table[] = {
 };
 
 /* Opening a pipe would wait for its other end; renaming a file to a device would replace the device. */
-static void what_is_not_a_file_is_neither_read_nor_replaced(void **state) {
-    (void)state;
+RT_TEST(what_is_not_a_file_is_neither_read_nor_replaced) {
     static const char *const pipe = RT_BINARY_DIR "/test_base.pipe";
     remove(pipe);
     assert_int_equal(mkfifo(pipe, 0600), 0);
@@ -95,8 +91,7 @@ static void what_is_not_a_file_is_neither_read_nor_replaced(void **state) {
     remove(pipe);
 }
 
-static void parameters_left_out_have_their_defaults(void **state) {
-    (void)state;
+RT_TEST(parameters_left_out_have_their_defaults) {
     RtValue v[4];
     RtError error;
     assert_int_equal(rt_params_parse(table, 4, "rule=cubic,resolution=46x46x3", "it", v, &error), RT_OK);
@@ -105,8 +100,7 @@ static void parameters_left_out_have_their_defaults(void **state) {
     assert_string_equal(text, "width=4,rule=cubic,resolution=46x46x3,mailbox=on");
 }
 
-static void wrong_parameters_are_refused_with_what_would_be_right(void **state) {
-    (void)state;
+RT_TEST(wrong_parameters_are_refused_with_what_would_be_right) {
     const struct {
         const char *text, *says;
     } cases[] = {
@@ -125,8 +119,7 @@ static void wrong_parameters_are_refused_with_what_would_be_right(void **state) 
     }
 }
 
-static void the_nth_allocation_fails_when_told_to(void **state) {
-    (void)state;
+RT_TEST(the_nth_allocation_fails_when_told_to) {
     rt_alloc_fail_at(2);
     void *a = rt_alloc(1, 1), *b = rt_alloc(1, 1), *c = rt_alloc(1, 1);
     assert_non_null(a);
@@ -137,8 +130,7 @@ static void the_nth_allocation_fails_when_told_to(void **state) {
     assert_null(rt_alloc(SIZE_MAX, 2));
 }
 
-static void random_numbers_depend_on_seed_stream_and_place_alone(void **state) {
-    (void)state;
+RT_TEST(random_numbers_depend_on_seed_stream_and_place_alone) {
     RtRandom a = rt_random(7, 1), b = rt_random(7, 1), c = rt_random(7, 2);
     bool differ = false;
     for (int i = 0; i < 9; i++) {
@@ -154,8 +146,7 @@ static void note_path(void *context, const char *path) {
     strcat(strcat(list, strrchr(path, '/')), " ");
 }
 
-static void files_are_listed_by_name_whatever_their_folder_is_called(void **state) {
-    (void)state;
+RT_TEST(files_are_listed_by_name_whatever_their_folder_is_called) {
     static const char *const names[] = {"b.svg", "a.svg", "c.svg.tmp"};
     char root[] = "/tmp/raytally_base_XXXXXX", folder[64], path[96], found[64] = "";
     assert_non_null(mkdtemp(root));
@@ -176,8 +167,7 @@ static void files_are_listed_by_name_whatever_their_folder_is_called(void **stat
     assert_int_equal(rt_directory_each(folder, "", note_path, found), 0);
 }
 
-static void logarithms_are_within_a_unit_in_the_last_place(void **state) {
-    (void)state;
+RT_TEST(logarithms_are_within_a_unit_in_the_last_place) {
     RtRandom random = rt_random(1, 0);
     for (int i = 0; i < 200000; i++) {
         int exponent = i % 2 ? 0 : (int)(rt_random_below(&random, 2000)) - 1000;
@@ -188,8 +178,7 @@ static void logarithms_are_within_a_unit_in_the_last_place(void **state) {
     assert_true(rt_log(1) == 0);
 }
 
-static void cube_roots_are_within_their_bound(void **state) {
-    (void)state;
+RT_TEST(cube_roots_are_within_their_bound) {
     RtRandom random = rt_random(2, 0);
     for (int i = 0; i < 200000; i++) {
         int exponent = i % 2 ? 0 : (int)(rt_random_below(&random, 2000)) - 1000;
@@ -200,8 +189,7 @@ static void cube_roots_are_within_their_bound(void **state) {
     assert_true(rt_cube_root(1) == 1);
 }
 
-static void sines_and_cosines_are_within_their_bound(void **state) {
-    (void)state;
+RT_TEST(sines_and_cosines_are_within_their_bound) {
     for (int i = -72000; i <= 72000; i++) {
         double degrees = i * 0.0125; /* a double, so the angle is what it is */
         long double angle = (long double)degrees * 3.14159265358979323846264L / 180;
@@ -211,8 +199,7 @@ static void sines_and_cosines_are_within_their_bound(void **state) {
     }
 }
 
-static void any_finite_angle_is_turned_by(void **state) {
-    (void)state;
+RT_TEST(any_finite_angle_is_turned_by) {
     static const double angles[] = {1e15, 0x1p60, 1e300, 0x1.fffffffffffffp1023};
     for (size_t i = 0; i < sizeof angles / sizeof angles[0]; i++) {
         RtTurn far = rt_turn(angles[i]), near = rt_turn(fmod(angles[i], 360));
@@ -221,8 +208,7 @@ static void any_finite_angle_is_turned_by(void **state) {
 }
 
 /* Half the height of a view is the tangent of half its angle. */
-static void tangents_of_views_are_rounded_rightly_to_float32(void **state) {
-    (void)state;
+RT_TEST(tangents_of_views_are_rounded_rightly_to_float32) {
     for (int i = 1; i < 180000; i++) {
         float degrees = (float)(i / 1000.0);
         RtTurn half = rt_turn((double)degrees / 2);
@@ -231,8 +217,7 @@ static void tangents_of_views_are_rounded_rightly_to_float32(void **state) {
     }
 }
 
-static void powers_are_within_their_bound(void **state) {
-    (void)state;
+RT_TEST(powers_are_within_their_bound) {
     RtRandom random = rt_random(3, 0);
     for (int i = 0; i < 200000; i++) {
         int exponent = i % 2 ? 0 : (int)(rt_random_below(&random, 200)) - 100;
@@ -249,15 +234,13 @@ static void powers_are_within_their_bound(void **state) {
     }
 }
 
-static void powers_of_one_and_to_nothing_are_exact(void **state) {
-    (void)state;
+RT_TEST(powers_of_one_and_to_nothing_are_exact) {
     assert_true(rt_power(1, 1e6) == 1 && rt_power(1, -0.3) == 1);
     assert_true(rt_power(1e-300, 0) == 1 && rt_power(0x1p-1074, 0) == 1);
     assert_true(rt_power(0x1p-1074, 1e6) == 0 && rt_power(1e300, 1e300) == HUGE_VAL);
 }
 
-static void quarter_turns_are_exact(void **state) {
-    (void)state;
+RT_TEST(quarter_turns_are_exact) {
     static const double cosines[4] = {1, 0, -1, 0};
     for (int quarter = -9; quarter <= 9; quarter++) {
         RtTurn turn = rt_turn(90.0 * quarter);
@@ -265,25 +248,4 @@ static void quarter_turns_are_exact(void **state) {
     }
 }
 
-RT_TEST_GROUP(base) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rounding_outward_brackets_the_number),
-        cmocka_unit_test(narrowing_rounds_also_where_widening_follows),
-        cmocka_unit_test(files_are_listed_by_name_whatever_their_folder_is_called),
-        cmocka_unit_test(what_is_not_a_file_is_neither_read_nor_replaced),
-        cmocka_unit_test(tallies_add_counter_by_counter),
-        cmocka_unit_test(parameters_left_out_have_their_defaults),
-        cmocka_unit_test(wrong_parameters_are_refused_with_what_would_be_right),
-        cmocka_unit_test(the_nth_allocation_fails_when_told_to),
-        cmocka_unit_test(random_numbers_depend_on_seed_stream_and_place_alone),
-        cmocka_unit_test(logarithms_are_within_a_unit_in_the_last_place),
-        cmocka_unit_test(cube_roots_are_within_their_bound),
-        cmocka_unit_test(sines_and_cosines_are_within_their_bound),
-        cmocka_unit_test(quarter_turns_are_exact),
-        cmocka_unit_test(any_finite_angle_is_turned_by),
-        cmocka_unit_test(tangents_of_views_are_rounded_rightly_to_float32),
-        cmocka_unit_test(powers_are_within_their_bound),
-        cmocka_unit_test(powers_of_one_and_to_nothing_are_exact),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(base, NULL, NULL)

@@ -3,7 +3,9 @@
 
 #include "base/csv.h"
 
-static void a_csv_field_may_be_quoted_and_is_written_as_it_was_read(void **state) {
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
+
+RT_TEST_IN_PLACE(a_csv_field_may_be_quoted_and_is_written_as_it_was_read) {
     const Place *place = *state;
     const char text[] = "# told here: a, b\na,b,c\r\n1,\"x, \"\"y\"\"\",\n\n,2,3\n";
     char *written = NULL;
@@ -25,7 +27,7 @@ static void a_csv_field_may_be_quoted_and_is_written_as_it_was_read(void **state
     rt_csv_clear(&csv);
 }
 
-static void a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there(void **state) {
+RT_TEST_IN_PLACE(a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there) {
     const Place *place = *state;
     static const char text[] = "a,b\n1,2\n\0,3,4\n";
     RtCsv csv;
@@ -36,7 +38,7 @@ static void a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there(void **sta
     assert_refused(status, RT_BAD_INPUT, &error, ":3: there is a byte 0");
 }
 
-static void a_csv_file_that_is_none_is_refused_with_its_line(void **state) {
+RT_TEST_IN_PLACE(a_csv_file_that_is_none_is_refused_with_its_line) {
     const Place *place = *state;
     const char *const cases[][2] = {
         {"a,b\n1\n", ":2: there are fewer"}, {"a,b\n1,2\n1,2,3\n", ":3: there are more"},
@@ -52,13 +54,4 @@ static void a_csv_file_that_is_none_is_refused_with_its_line(void **state) {
     }
 }
 
-#define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_place, remove_place)
-
-RT_TEST_GROUP(csv) {
-    const struct CMUnitTest tests[] = {
-        IN_PLACE(a_csv_field_may_be_quoted_and_is_written_as_it_was_read),
-        IN_PLACE(a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there),
-        IN_PLACE(a_csv_file_that_is_none_is_refused_with_its_line),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(csv, NULL, NULL)

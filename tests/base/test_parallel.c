@@ -20,8 +20,7 @@ static RtStatus visit(void *context, size_t item, int thread, RtError *error) {
     return RT_OK;
 }
 
-static void every_item_is_worked_on_once_by_any_number_of_threads(void **state) {
-    (void)state;
+RT_TEST(every_item_is_worked_on_once_by_any_number_of_threads) {
     const int threads[] = {1, 2, 7, 64};
     for (size_t i = 0; i < sizeof threads / sizeof threads[0]; i++) {
         Count count = {.threads = threads[i], .fails_from = ITEMS};
@@ -30,15 +29,13 @@ static void every_item_is_worked_on_once_by_any_number_of_threads(void **state) 
     }
 }
 
-static void no_items_are_no_work(void **state) {
-    (void)state;
+RT_TEST(no_items_are_no_work) {
     Count count = {.threads = 2, .fails_from = 0};
     assert_ok(rt_parallel_for(0, 2, visit, &count, error));
 }
 
 /* Seen by what is asked for: a thread takes memory before it starts. */
-static void more_threads_than_items_are_not_started(void **state) {
-    (void)state;
+RT_TEST(more_threads_than_items_are_not_started) {
     Count count = {.threads = 1, .fails_from = ITEMS};
     RtError one, many;
     for (size_t items = 0; items <= 1; items++) {
@@ -51,16 +48,14 @@ static void more_threads_than_items_are_not_started(void **state) {
     assert_ok(rt_parallel_for(1, 64, visit, &count, error));
 }
 
-static void zero_threads_stand_for_all_processors(void **state) {
-    (void)state;
+RT_TEST(zero_threads_stand_for_all_processors) {
     assert_int_equal(rt_thread_count(0), rt_processor_count());
     assert_true(rt_processor_count() >= 1);
     assert_int_equal(rt_thread_count(3), 3);
 }
 
 /* Items are handed out in ascending order, so the first that fails is always among those begun. */
-static void the_lowest_item_that_fails_is_the_one_reported(void **state) {
-    (void)state;
+RT_TEST(the_lowest_item_that_fails_is_the_one_reported) {
     for (int threads = 1; threads <= 8; threads *= 2) {
         Count count = {.threads = threads, .fails_from = 100};
         RtError error;
@@ -70,8 +65,7 @@ static void the_lowest_item_that_fails_is_the_one_reported(void **state) {
     }
 }
 
-static void memory_that_cannot_be_had_is_a_status(void **state) {
-    (void)state;
+RT_TEST(memory_that_cannot_be_had_is_a_status) {
     Count count = {.threads = 2, .fails_from = ITEMS};
     int64_t live = rt_alloc_live();
     for (uint64_t n = 1; n <= 2; n++) {
@@ -83,14 +77,4 @@ static void memory_that_cannot_be_had_is_a_status(void **state) {
     assert_int_equal(rt_alloc_live(), live);
 }
 
-RT_TEST_GROUP(parallel) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_item_is_worked_on_once_by_any_number_of_threads),
-        cmocka_unit_test(no_items_are_no_work),
-        cmocka_unit_test(more_threads_than_items_are_not_started),
-        cmocka_unit_test(zero_threads_stand_for_all_processors),
-        cmocka_unit_test(the_lowest_item_that_fails_is_the_one_reported),
-        cmocka_unit_test(memory_that_cannot_be_had_is_a_status),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(parallel, NULL, NULL)

@@ -64,24 +64,21 @@ static void assert_written(const RtTable *what, void (*write)(const RtTable *, F
     free(text);
 }
 
-static void csv_quotes_and_leaves_empty_what_is_missing(void **state) {
-    (void)state;
+RT_TEST(csv_quotes_and_leaves_empty_what_is_missing) {
     assert_written(&table, rt_table_csv,
                    "name,hits,seconds,exact,range,rays\n"
                    "\"a|b, `c` **d**\",12,1.5,yes,\"1.50 [0.750, 3.00]\",7\n"
                    "<x>,3456,,no,,\n");
 }
 
-static void text_is_aligned_and_has_a_dash_for_what_is_missing(void **state) {
-    (void)state;
+RT_TEST(text_is_aligned_and_has_a_dash_for_what_is_missing) {
     assert_written(&table, rt_table_text,
                    "name            hit count  seconds  exact  range               rays\n"
                    "a|b, `c` **d**         12      1.5  yes    1.50 [0.750, 3.00]     7\n"
                    "<x>                  3456        -  no     -                      -\n");
 }
 
-static void markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged(void **state) {
-    (void)state;
+RT_TEST(markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged) {
     RtTable ragged = table;
     ragged.ragged = true;
     ragged.row_count = ragged.group_count = 1;
@@ -95,8 +92,7 @@ static void markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged(void **
                    "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.50 [0.750, 3.00] |\n");
 }
 
-static void html_escapes_marks_notes_and_keeps_numbers_for_sorting(void **state) {
-    (void)state;
+RT_TEST(html_escapes_marks_notes_and_keeps_numbers_for_sorting) {
     RtTable narrow = table;
     const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
     narrow.groups = first;
@@ -114,8 +110,7 @@ static void html_escapes_marks_notes_and_keeps_numbers_for_sorting(void **state)
         "</tbody></table></div>\n");
 }
 
-static void json_has_an_object_a_row_and_null_for_what_is_missing(void **state) {
-    (void)state;
+RT_TEST(json_has_an_object_a_row_and_null_for_what_is_missing) {
     json_t *rows = rt_table_json(&table);
     json_t *expected = json_pack(
         "[{s:s, s:i, s:f, s:b, s:{s:f, s:f, s:f}, s:{s:i}}, {s:s, s:i, s:n, s:b, s:{s:n, s:n, s:n}, s:n}]",
@@ -128,8 +123,7 @@ static void json_has_an_object_a_row_and_null_for_what_is_missing(void **state) 
     json_decref(expected);
 }
 
-static void lines_one_by_one_are_those_of_the_whole_table(void **state) {
-    (void)state;
+RT_TEST(lines_one_by_one_are_those_of_the_whole_table) {
     int widths[RT_MAX_TABLE_COLUMNS];
     char *text;
     size_t size;
@@ -143,8 +137,7 @@ static void lines_one_by_one_are_those_of_the_whole_table(void **state) {
     free(text);
 }
 
-static void figures_are_about_four_characters(void **state) {
-    (void)state;
+RT_TEST(figures_are_about_four_characters) {
     const struct {
         double value;
         const char *text;
@@ -178,8 +171,7 @@ static double nine_digits(double end) {
     return strtod(text, NULL);
 }
 
-static void an_interval_is_seen_not_to_hold_1_if_it_does_not(void **state) {
-    (void)state;
+RT_TEST(an_interval_is_seen_not_to_hold_1_if_it_does_not) {
     static const double ends[] = {0.5,         0.98,     0.9951, 0.9994, 0.9996, 1 - 1e-7, 1 - 0x1p-53, 1,
                                   1 + 0x1p-52, 1 + 1e-7, 1.0004, 1.0031, 1.0049, 1.02,     2.5};
     enum { ENDS = sizeof ends / sizeof ends[0] };
@@ -204,16 +196,4 @@ static void an_interval_is_seen_not_to_hold_1_if_it_does_not(void **state) {
     assert_string_equal(rt_field_show(RT_FORM_interval, &close, room), "1.004 [1.003, 1.028]");
 }
 
-RT_TEST_GROUP(table) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(csv_quotes_and_leaves_empty_what_is_missing),
-        cmocka_unit_test(text_is_aligned_and_has_a_dash_for_what_is_missing),
-        cmocka_unit_test(markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged),
-        cmocka_unit_test(html_escapes_marks_notes_and_keeps_numbers_for_sorting),
-        cmocka_unit_test(json_has_an_object_a_row_and_null_for_what_is_missing),
-        cmocka_unit_test(lines_one_by_one_are_those_of_the_whole_table),
-        cmocka_unit_test(figures_are_about_four_characters),
-        cmocka_unit_test(an_interval_is_seen_not_to_hold_1_if_it_does_not),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(table, NULL, NULL)

@@ -11,8 +11,7 @@ static void assert_point(RtVec3 p, float x, float y, float z) {
              (double)y, (double)z);
 }
 
-static void steps_are_applied_in_the_order_they_are_made(void **state) {
-    (void)state;
+RT_TEST(steps_are_applied_in_the_order_they_are_made) {
     RtTransform t = rt_transform_identity();
     assert_ok(rt_transform_scale(&t, rt_vec3(2, 2, 2), error));
     assert_ok(rt_transform_translate(&t, rt_vec3(10, 0, 0), error));
@@ -21,8 +20,7 @@ static void steps_are_applied_in_the_order_they_are_made(void **state) {
     assert_point(rt_transform_point(&t, rt_vec3(1, 0, 0)), 0, 12, 0);
 }
 
-static void quarter_turns_are_exact_and_follow_the_right_hand(void **state) {
-    (void)state;
+RT_TEST(quarter_turns_are_exact_and_follow_the_right_hand) {
     const RtVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int a = 0; a < 3; a++) {
         RtTransform t = rt_transform_identity();
@@ -34,8 +32,7 @@ static void quarter_turns_are_exact_and_follow_the_right_hand(void **state) {
     }
 }
 
-static void a_rotation_keeps_lengths_and_a_squeeze_does_not(void **state) {
-    (void)state;
+RT_TEST(a_rotation_keeps_lengths_and_a_squeeze_does_not) {
     RtTransform t = rt_transform_identity();
     assert_ok(rt_transform_rotate(&t, rt_vec3(1, 2, 3), 37.5, error));
     assert_ok(rt_transform_scale(&t, rt_vec3(3, 3, 3), error));
@@ -45,8 +42,7 @@ static void a_rotation_keeps_lengths_and_a_squeeze_does_not(void **state) {
     assert_true(rt_transform_uniform_scale(&t) == 0);
 }
 
-static void a_normal_stays_across_its_squeezed_plane(void **state) {
-    (void)state;
+RT_TEST(a_normal_stays_across_its_squeezed_plane) {
     RtTransform t = rt_transform_identity();
     assert_ok(rt_transform_scale(&t, rt_vec3(4, 1, 1), error));
     RtVec3 normal = rt_transform_normal(&t, rt_vec3(1, 1, 0));
@@ -56,8 +52,7 @@ static void a_normal_stays_across_its_squeezed_plane(void **state) {
     assert_true(normal.x > 0 && normal.y > 0);
 }
 
-static void steps_that_make_no_sense_are_refused(void **state) {
-    (void)state;
+RT_TEST(steps_that_make_no_sense_are_refused) {
     RtTransform t = rt_transform_identity();
     RtError error;
     assert_int_equal(rt_transform_scale(&t, rt_vec3(1, 0, 1), &error), RT_BAD_INPUT);
@@ -69,13 +64,4 @@ static void steps_that_make_no_sense_are_refused(void **state) {
     assert_point(rt_transform_point(&t, rt_vec3(1, 2, 3)), 1, 2, 3);
 }
 
-RT_TEST_GROUP(transform) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_are_applied_in_the_order_they_are_made),
-        cmocka_unit_test(quarter_turns_are_exact_and_follow_the_right_hand),
-        cmocka_unit_test(a_rotation_keeps_lengths_and_a_squeeze_does_not),
-        cmocka_unit_test(a_normal_stays_across_its_squeezed_plane),
-        cmocka_unit_test(steps_that_make_no_sense_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(transform, NULL, NULL)

@@ -10,8 +10,7 @@
 #include <string.h>
 
 /* The spheres of balls:size=1 are 10, and one polygon; brute tests each for every ray. */
-static void a_count_is_the_sum_over_threads_and_finds_wrong_answers(void **state) {
-    (void)state;
+RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
     RtScene scene;
     RtAccel *accel;
     RtRaySet sets[RT_RAY_KIND_COUNT];
@@ -74,8 +73,7 @@ static RtCell time_thinned(const char *baseline, const char *spec) {
 
 /* The hierarchy needs 1 extent test for each of these rays and 10 for one of all: on all rays the ratio would
  * be 4 and more. */
-static void a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays(void **state) {
-    (void)state;
+RT_TEST(a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays) {
     RtCell cell = time_thinned("bvh", "bvh");
     assert_int_equal(cell.tally.rays, 16);
     assert_int_equal(cell.tally.extent_tests, 16);
@@ -83,18 +81,10 @@ static void a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays(vo
 }
 
 /* ideal knows rays by their addresses; a ray that it does not know costs it 300 tests. */
-static void a_baseline_that_learns_knows_the_rays_of_thinned_candidates(void **state) {
-    (void)state;
+RT_TEST(a_baseline_that_learns_knows_the_rays_of_thinned_candidates) {
     RtCell cell = time_thinned("ideal", "ideal");
     assert_int_equal(cell.tally.object_tests, cell.tally.hits);
     assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
 }
 
-RT_TEST_GROUP(measure) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_count_is_the_sum_over_threads_and_finds_wrong_answers),
-        cmocka_unit_test(a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays),
-        cmocka_unit_test(a_baseline_that_learns_knows_the_rays_of_thinned_candidates),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(measure, NULL, NULL)

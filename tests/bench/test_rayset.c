@@ -55,7 +55,7 @@ static int tear_down(void **state) {
     return rt_alloc_live() == 0 ? 0 : -1;
 }
 
-static void every_ray_is_valid_and_of_its_kind(void **state) {
+RT_TEST(every_ray_is_valid_and_of_its_kind) {
     const Stage *stage = *state;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         const RtRaySet *set = &stage->sets[kind];
@@ -80,7 +80,7 @@ static uint64_t count_from_within(const RtRaySet *shadows) {
     return count;
 }
 
-static void light_from_outside_is_asked_for_outside_of_glass_alone(void **state) {
+RT_TEST(light_from_outside_is_asked_for_outside_of_glass_alone) {
     const Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT];
     RtRecording recording = make_recording(1);
@@ -96,7 +96,7 @@ static void light_from_outside_is_asked_for_outside_of_glass_alone(void **state)
     }
 }
 
-static void sets_are_the_same_on_any_number_of_threads_and_any_accelerator(void **state) {
+RT_TEST(sets_are_the_same_on_any_number_of_threads_and_any_accelerator) {
     const Stage *stage = *state;
     for (int threads = 2; threads <= 3; threads++) {
         RtAccel *other;
@@ -115,7 +115,7 @@ static void sets_are_the_same_on_any_number_of_threads_and_any_accelerator(void 
     }
 }
 
-static void another_seed_changes_diffuse_and_random_rays_alone(void **state) {
+RT_TEST(another_seed_changes_diffuse_and_random_rays_alone) {
     const Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT];
     RtRecording recording = make_recording(0);
@@ -128,7 +128,7 @@ static void another_seed_changes_diffuse_and_random_rays_alone(void **state) {
     }
 }
 
-static void there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface(void **state) {
+RT_TEST(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface) {
     const Stage *stage = *state;
     const RtRaySet *primary = &stage->sets[RT_RAY_PRIMARY], *diffuse = &stage->sets[RT_RAY_DIFFUSE];
     RtQuery query;
@@ -152,7 +152,7 @@ static void there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surfac
     rt_query_clear(&query);
 }
 
-static void random_rays_are_chords_between_uniform_points_of_the_sphere(void **state) {
+RT_TEST(random_rays_are_chords_between_uniform_points_of_the_sphere) {
     const Stage *stage = *state;
     const RtRaySet *set = &stage->sets[RT_RAY_RANDOM];
     const RtBox *box = &stage->scene.geometry.box;
@@ -172,7 +172,7 @@ static void random_rays_are_chords_between_uniform_points_of_the_sphere(void **s
     assert_true(fabs(height - 1.0 / 3) < 0.01);
 }
 
-static void thinning_keeps_every_nth_ray_and_a_limit_holds(void **state) {
+RT_TEST(thinning_keeps_every_nth_ray_and_a_limit_holds) {
     const Stage *stage = *state;
     const RtRaySet *set = &stage->sets[RT_RAY_PRIMARY]; /* 1850 */
     RtRaySet thin;
@@ -213,7 +213,7 @@ static void assert_runs(const RtRaySet *set, uint64_t limit, uint64_t asked, uin
     rt_rayset_clear(&kept);
 }
 
-static void a_limit_keeps_runs_of_neighbours_together_all_over_the_set(void **state) {
+RT_TEST(a_limit_keeps_runs_of_neighbours_together_all_over_the_set) {
     const Stage *stage = *state;
     const RtRaySet *set = &stage->sets[RT_RAY_PRIMARY]; /* 1850 */
     assert_runs(set, 1100, 16, 16, 2);
@@ -221,7 +221,7 @@ static void a_limit_keeps_runs_of_neighbours_together_all_over_the_set(void **st
     assert_runs(set, 200, 256, 3, 10); /* 64 runs at least */
 }
 
-static void every_allocation_of_a_recording_may_fail(void **state) {
+RT_TEST(every_allocation_of_a_recording_may_fail) {
     Stage *stage = *state;
     RtRecording recording = make_recording(1);
     assert_ok(rt_scene_sample(&stage->scene, 20, 20, 1, false, error));
@@ -242,8 +242,7 @@ static void every_allocation_of_a_recording_may_fail(void **state) {
 
 /* There is no room for the usual distance behind it: the camera and the light that every scene gets are put
  * as far off as rays may begin. */
-static void a_scene_at_the_end_of_coordinates_is_seen_and_lit(void **state) {
-    (void)state;
+RT_TEST(a_scene_at_the_end_of_coordinates_is_seen_and_lit) {
     RtScene scene;
     RtMaterial grey = rt_default_material();
     uint32_t material;
@@ -259,18 +258,4 @@ static void a_scene_at_the_end_of_coordinates_is_seen_and_lit(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(rayset) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_ray_is_valid_and_of_its_kind),
-        cmocka_unit_test(light_from_outside_is_asked_for_outside_of_glass_alone),
-        cmocka_unit_test(sets_are_the_same_on_any_number_of_threads_and_any_accelerator),
-        cmocka_unit_test(another_seed_changes_diffuse_and_random_rays_alone),
-        cmocka_unit_test(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface),
-        cmocka_unit_test(random_rays_are_chords_between_uniform_points_of_the_sphere),
-        cmocka_unit_test(thinning_keeps_every_nth_ray_and_a_limit_holds),
-        cmocka_unit_test(a_limit_keeps_runs_of_neighbours_together_all_over_the_set),
-        cmocka_unit_test(every_allocation_of_a_recording_may_fail),
-        cmocka_unit_test(a_scene_at_the_end_of_coordinates_is_seen_and_lit),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+RT_TESTS(rayset, set_up, tear_down)

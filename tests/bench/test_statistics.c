@@ -5,8 +5,7 @@
 
 #include "base/random.h"
 
-static void the_median_is_the_middle_one_or_the_mean_of_the_middle_two(void **state) {
-    (void)state;
+RT_TEST(the_median_is_the_middle_one_or_the_mean_of_the_middle_two) {
     const double odd[] = {9, 1, 5}, even[] = {4, 100, 1, 2}, one[] = {7};
     assert_true(rt_median(odd, 3) == 5);
     assert_true(rt_median(even, 4) == 3);
@@ -14,8 +13,7 @@ static void the_median_is_the_middle_one_or_the_mean_of_the_middle_two(void **st
     assert_true(odd[0] == 9); /* and its input stays as it was */
 }
 
-static void equal_measurements_have_an_interval_of_no_width(void **state) {
-    (void)state;
+RT_TEST(equal_measurements_have_an_interval_of_no_width) {
     const double same[] = {3, 3, 3, 3, 3};
     RtEstimate e = rt_estimate(same, 5);
     assert_true(e.median == 3 && e.low == 3 && e.high == 3 && e.least == 3);
@@ -30,8 +28,7 @@ static void mix(double *values, uint32_t count) {
 }
 
 /* Ranks as in the tables of the binomial distribution with p = 1/2. */
-static void the_interval_lies_at_the_ranks_that_the_binomial_distribution_says(void **state) {
-    (void)state;
+RT_TEST(the_interval_lies_at_the_ranks_that_the_binomial_distribution_says) {
     const struct {
         uint32_t count, low;
         double coverage;
@@ -50,8 +47,7 @@ static void the_interval_lies_at_the_ranks_that_the_binomial_distribution_says(v
     }
 }
 
-static void from_six_rounds_on_an_interval_covers_95_percent(void **state) {
-    (void)state;
+RT_TEST(from_six_rounds_on_an_interval_covers_95_percent) {
     for (uint32_t count = 1; count <= RT_MAX_ROUNDS; count++) {
         double coverage = rt_interval_coverage(count);
         assert_true(coverage < 1 && (coverage >= 0.95) == (count >= RT_FULL_ROUNDS));
@@ -60,8 +56,7 @@ static void from_six_rounds_on_an_interval_covers_95_percent(void **state) {
 
 /* Times have a long tail: 1 / (1 - u) for u uniform, with median 2. 4000 workloads have a standard error of
  * at most 0.8 %. */
-static void intervals_hold_the_true_median_as_often_as_they_say(void **state) {
-    (void)state;
+RT_TEST(intervals_hold_the_true_median_as_often_as_they_say) {
     const uint32_t counts[] = {1, 3, 5, 6, 7, 10, 11, 30};
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
         int inside = 0;
@@ -77,8 +72,7 @@ static void intervals_hold_the_true_median_as_often_as_they_say(void **state) {
 }
 
 /* Both slow down together from round to round; only pairing shows that one is always twice the other. */
-static void ratios_are_paired_within_a_round(void **state) {
-    (void)state;
+RT_TEST(ratios_are_paired_within_a_round) {
     double over[20], under[20];
     for (int i = 0; i < 20; i++) {
         under[i] = 1 + 10 * i;
@@ -88,14 +82,4 @@ static void ratios_are_paired_within_a_round(void **state) {
     assert_true(e.median == 2 && e.low == 2 && e.high == 2);
 }
 
-RT_TEST_GROUP(statistics) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_median_is_the_middle_one_or_the_mean_of_the_middle_two),
-        cmocka_unit_test(equal_measurements_have_an_interval_of_no_width),
-        cmocka_unit_test(the_interval_lies_at_the_ranks_that_the_binomial_distribution_says),
-        cmocka_unit_test(from_six_rounds_on_an_interval_covers_95_percent),
-        cmocka_unit_test(intervals_hold_the_true_median_as_often_as_they_say),
-        cmocka_unit_test(ratios_are_paired_within_a_round),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(statistics, NULL, NULL)

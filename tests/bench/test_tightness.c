@@ -45,8 +45,7 @@ static void add_square(RtGeometry *g, float x, float half) {
     assert_ok(rt_geometry_add_polygon(g, v, 4, error));
 }
 
-static void a_box_about_a_sphere_has_six_over_pi_of_its_area(void **state) {
-    (void)state;
+RT_TEST(a_box_about_a_sphere_has_six_over_pi_of_its_area) {
     RtGeometry g = {0};
     RtTightness found[CHOICES];
     add_sphere(&g, 5, 2);
@@ -59,8 +58,7 @@ static void a_box_about_a_sphere_has_six_over_pi_of_its_area(void **state) {
     assert_true(fabs(found[BOX].met - 6 / (3 * PI)) < 0.01);
 }
 
-static void more_slabs_are_never_looser(void **state) {
-    (void)state;
+RT_TEST(more_slabs_are_never_looser) {
     RtGeometry g = {0};
     RtTightness found[CHOICES];
     const RtVec3 v[3] = {{0, 0, 0}, {1, 2, 3}, {-1, 1, 0.5f}};
@@ -73,8 +71,7 @@ static void more_slabs_are_never_looser(void **state) {
     for (int c = 0; c < CHOICES; c++) assert_int_equal(found[c].object_hits, found[BOX].object_hits);
 }
 
-static void extents_about_a_square_on_its_corner_are_as_calculated(void **state) {
-    (void)state;
+RT_TEST(extents_about_a_square_on_its_corner_are_as_calculated) {
     RtGeometry g = {0};
     RtTightness found[CHOICES];
     add_square(&g, 3, 0.5f);
@@ -86,8 +83,7 @@ static void extents_about_a_square_on_its_corner_are_as_calculated(void **state)
 }
 
 /* The sphere sticks out of the box on four sides. */
-static void a_sphere_about_a_square_along_the_axes_has_pi_times_its_area(void **state) {
-    (void)state;
+RT_TEST(a_sphere_about_a_square_along_the_axes_has_pi_times_its_area) {
     RtGeometry g = {0};
     RtTightness found[CHOICES];
     const RtVec3 v[4] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -97,8 +93,7 @@ static void a_sphere_about_a_square_along_the_axes_has_pi_times_its_area(void **
     assert_tight(&found[BOX]);
 }
 
-static void extents_about_a_right_triangle_are_as_calculated(void **state) {
-    (void)state;
+RT_TEST(extents_about_a_right_triangle_are_as_calculated) {
     RtGeometry g = {0};
     RtTightness found[CHOICES];
     const RtVec3 v[3] = {{0, 0, 1}, {3, 0, 1}, {0, 3, 1}};
@@ -110,8 +105,7 @@ static void extents_about_a_right_triangle_are_as_calculated(void **state) {
 }
 
 /* The areas are added up before they are divided, however different the sizes. */
-static void many_objects_count_by_their_areas(void **state) {
-    (void)state;
+RT_TEST(many_objects_count_by_their_areas) {
     RtGeometry g = {0};
     RtTightness found[CHOICES];
     double sphere = 0, square = 0;
@@ -127,8 +121,7 @@ static void many_objects_count_by_their_areas(void **state) {
     assert_ratio(&found[SPHERE], (sphere + square * PI) / (sphere + square));
 }
 
-static void only_the_objects_of_the_shape_count(void **state) {
-    (void)state;
+RT_TEST(only_the_objects_of_the_shape_count) {
     RtGeometry g = {0};
     RtTightness found[CHOICES];
     add_square(&g, 0, 1);
@@ -142,8 +135,7 @@ static void only_the_objects_of_the_shape_count(void **state) {
     assert_true(found[BOX].met == 0);
 }
 
-static void an_object_that_is_never_met_has_no_tightness_but_a_bound(void **state) {
-    (void)state;
+RT_TEST(an_object_that_is_never_met_has_no_tightness_but_a_bound) {
     RtGeometry g = {0};
     RtTightness found[CHOICES];
     const RtVec3 line[3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, point[3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
@@ -154,8 +146,7 @@ static void an_object_that_is_never_met_has_no_tightness_but_a_bound(void **stat
     assert_true(isnan(found[BOX].ratio) && isinf(found[BOX].high) && found[BOX].low > 1000);
 }
 
-static void the_same_seed_counts_the_same(void **state) {
-    (void)state;
+RT_TEST(the_same_seed_counts_the_same) {
     RtTightness found[2][CHOICES];
     for (int i = 0; i < 2; i++) {
         RtGeometry g = {0};
@@ -166,17 +157,4 @@ static void the_same_seed_counts_the_same(void **state) {
     assert_memory_equal(found[0], found[1], sizeof found[0]);
 }
 
-RT_TEST_GROUP(tightness) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_about_a_sphere_has_six_over_pi_of_its_area),
-        cmocka_unit_test(more_slabs_are_never_looser),
-        cmocka_unit_test(extents_about_a_square_on_its_corner_are_as_calculated),
-        cmocka_unit_test(a_sphere_about_a_square_along_the_axes_has_pi_times_its_area),
-        cmocka_unit_test(extents_about_a_right_triangle_are_as_calculated),
-        cmocka_unit_test(many_objects_count_by_their_areas),
-        cmocka_unit_test(only_the_objects_of_the_shape_count),
-        cmocka_unit_test(an_object_that_is_never_met_has_no_tightness_but_a_bound),
-        cmocka_unit_test(the_same_seed_counts_the_same),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(tightness, NULL, NULL)

@@ -15,8 +15,7 @@ static int convert(const char *arguments) {
     return WIFEXITED(result) ? WEXITSTATUS(result) : -1;
 }
 
-static void convert_keeps_the_scene_and_the_files_that_are_there(void **state) {
-    (void)state;
+RT_TEST(convert_keeps_the_scene_and_the_files_that_are_there) {
     remove(OUT ".yaml");
     assert_int_equal(convert("balls:size=1 " OUT ".yaml"), 0);
     RtScene made = open_scene("balls:size=1"), read = open_scene(OUT ".yaml");
@@ -27,8 +26,7 @@ static void convert_keeps_the_scene_and_the_files_that_are_there(void **state) {
     assert_int_equal(convert("balls:size=2 " OUT ".yaml --force"), 0);
 }
 
-static void convert_refuses_and_leaves_nothing_behind(void **state) {
-    (void)state;
+RT_TEST(convert_refuses_and_leaves_nothing_behind) {
     remove(OUT ".ply");
     assert_int_equal(convert("balls:size=1"), 2);
     assert_int_equal(convert("nothing " OUT ".yaml"), 2);
@@ -37,10 +35,4 @@ static void convert_refuses_and_leaves_nothing_behind(void **state) {
     assert_int_equal(access(OUT ".ply.tmp", F_OK), -1);
 }
 
-RT_TEST_GROUP(cmd_convert) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(convert_keeps_the_scene_and_the_files_that_are_there),
-        cmocka_unit_test(convert_refuses_and_leaves_nothing_behind),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(cmd_convert, NULL, NULL)

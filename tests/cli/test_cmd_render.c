@@ -59,8 +59,7 @@ static void assert_close(const char *scene, const char *what, json_int_t got, do
  * close to the surface that they hit it again (an offset of 2^-24 of the point), and move by 0.01 %
  * at most for all offsets from 2^-21 to 2^-14. Of gears 3 % fewer rays are transmitted than published: here
  * total reflection makes one reflected ray and none that is transmitted. */
-static void the_databases_have_the_rays_that_spd_publishes(void **state) {
-    (void)state;
+RT_TEST(the_databases_have_the_rays_that_spd_publishes) {
     static const struct {
         const char *scene;
         json_int_t objects;
@@ -91,8 +90,7 @@ static void the_databases_have_the_rays_that_spd_publishes(void **state) {
     }
 }
 
-static void everything_is_written_at_once_and_the_image_depends_on_no_thread(void **state) {
-    (void)state;
+RT_TEST(everything_is_written_at_once_and_the_image_depends_on_no_thread) {
     assert_int_equal(render("balls:size=2 --size 80x60 --threads 1 -o " OUT ".png -o " OUT
                             ".exr --structure " OUT ".structure.png --heatmap object_tests " OUT
                             ".heat.png --stats " STATS),
@@ -108,8 +106,7 @@ static void everything_is_written_at_once_and_the_image_depends_on_no_thread(voi
     }
 }
 
-static void every_heatmap_asked_for_is_written(void **state) {
-    (void)state;
+RT_TEST(every_heatmap_asked_for_is_written) {
     static const char *const counters[] = {"object_tests", "extent_tests", "steps"};
     char alone[256], together[1024] = "balls:size=2 --size 80x60";
     for (int i = 0; i < 3; i++) {
@@ -133,8 +130,7 @@ static void every_heatmap_asked_for_is_written(void **state) {
     }
 }
 
-static void a_check_compares_every_ray_with_brute(void **state) {
-    (void)state;
+RT_TEST(a_check_compares_every_ray_with_brute) {
     assert_int_equal(render("balls:size=2 --size 64x64 --accel grid --check"), 0);
     assert_says("all 4096 primary rays answered like brute");
     assert_says("shadow rays answered like brute");
@@ -145,8 +141,7 @@ static void a_check_compares_every_ray_with_brute(void **state) {
     assert_says("the frame is brute's, bit for bit");
 }
 
-static void work_of_the_build_is_reported_apart_from_tracing(void **state) {
-    (void)state;
+RT_TEST(work_of_the_build_is_reported_apart_from_tracing) {
     static const char *const specs[] = {"brute", "item+brute"};
     for (int i = 0; i < 2; i++) {
         char arguments[128];
@@ -160,8 +155,7 @@ static void work_of_the_build_is_reported_apart_from_tracing(void **state) {
     }
 }
 
-static void wrong_usage_exits_with_2_and_says_what_would_be_right(void **state) {
-    (void)state;
+RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
     const struct {
         const char *arguments, *says;
     } cases[] = {
@@ -197,14 +191,4 @@ static void wrong_usage_exits_with_2_and_says_what_would_be_right(void **state) 
     unlink(OUT ".txt");
 }
 
-RT_TEST_GROUP(cmd_render) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_databases_have_the_rays_that_spd_publishes),
-        cmocka_unit_test(everything_is_written_at_once_and_the_image_depends_on_no_thread),
-        cmocka_unit_test(every_heatmap_asked_for_is_written),
-        cmocka_unit_test(a_check_compares_every_ray_with_brute),
-        cmocka_unit_test(work_of_the_build_is_reported_apart_from_tracing),
-        cmocka_unit_test(wrong_usage_exits_with_2_and_says_what_would_be_right),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(cmd_render, NULL, NULL)

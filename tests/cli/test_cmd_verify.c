@@ -41,8 +41,7 @@ static json_int_t number(const json_t *row, const char *key) {
     return json_integer_value(value);
 }
 
-static void a_row_says_how_each_ray_was_answered(void **state) {
-    (void)state;
+RT_TEST(a_row_says_how_each_ray_was_answered) {
     json_t *json =
         document("balls:size=1 tetra:size=2 --accel bvh --accel grid:density=1 --rays 1001 --seed 9 --json");
     assert_int_equal(number(json, "seed"), 9);
@@ -64,8 +63,7 @@ static void a_row_says_how_each_ray_was_answered(void **state) {
     json_decref(json);
 }
 
-static void the_spread_tries_each_value_of_each_parameter(void **state) {
-    (void)state;
+RT_TEST(the_spread_tries_each_value_of_each_parameter) {
     json_t *json = document("balls:size=1 --accel bvh --spread --rays 10 --json");
     const json_t *rows = json_object_get(json, "rows");
     bool leaf = false;
@@ -78,8 +76,7 @@ static void the_spread_tries_each_value_of_each_parameter(void **state) {
     json_decref(json);
 }
 
-static void all_is_the_default_and_threads_change_nothing(void **state) {
-    (void)state;
+RT_TEST(all_is_the_default_and_threads_change_nothing) {
     static char one[65536];
     assert_int_equal(verify("random:n=30,shape=mixed --rays 5000 --threads 1"), 0);
     strcpy(one, text_of(OUT ".out"));
@@ -92,8 +89,7 @@ static void all_is_the_default_and_threads_change_nothing(void **state) {
 
 /* The hard rays graze and touch, where Embree's arithmetic differs by margins: they are not held against
  * it. */
-static void the_families_are_rays_of_their_own_and_hard_ones(void **state) {
-    (void)state;
+RT_TEST(the_families_are_rays_of_their_own_and_hard_ones) {
     static char chords[65536];
     const char *arguments = "random:n=40,distribution=coincident random:n=0 --rays 3001 --json";
     char with_families[256];
@@ -109,8 +105,7 @@ static void the_families_are_rays_of_their_own_and_hard_ones(void **state) {
     json_decref(json);
 }
 
-static void what_cannot_be_verified_is_refused_before_anything_is_printed(void **state) {
-    (void)state;
+RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
     const struct {
         const char *arguments, *says;
     } cases[] = {
@@ -144,8 +139,7 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
     }
 }
 
-static void scenes_of_families_have_the_seed_of_the_rays(void **state) {
-    (void)state;
+RT_TEST(scenes_of_families_have_the_seed_of_the_rays) {
     json_t *json =
         document("families family:kind=soup,seed=9 --accel grid --rays 40 --seed 3 --families --json");
     const json_t *rows = json_object_get(json, "rows");
@@ -166,8 +160,7 @@ static void begin_anew(const char *arguments) {
 }
 
 /* Prints what a run that was not interrupted prints. */
-static void a_run_is_gone_on_with(void **state) {
-    (void)state;
+RT_TEST(a_run_is_gone_on_with) {
     static char whole[65536], table[65536];
     const char *arguments =
         "random:n=20,shape=mixed tetra:size=1 --accel bvh --accel grid --rays 500 --out '" OUT ".rows'";
@@ -187,8 +180,7 @@ static void a_run_is_gone_on_with(void **state) {
     assert_non_null(strstr(text_of(OUT ".err"), "another verification, with other seed"));
 }
 
-static void rows_that_are_there_are_not_begun_anew_unasked(void **state) {
-    (void)state;
+RT_TEST(rows_that_are_there_are_not_begun_anew_unasked) {
     static char rows[65536];
     const char *arguments = "tetra:size=1 --accel bvh --rays 50 --out '" OUT ".kept'";
     char other[1024];
@@ -217,8 +209,7 @@ static void write_sphere(const char *path, int radius) {
     fclose(file);
 }
 
-static void a_run_is_not_gone_on_with_where_a_scene_file_was_edited(void **state) {
-    (void)state;
+RT_TEST(a_run_is_not_gone_on_with_where_a_scene_file_was_edited) {
     const char *arguments = "'" OUT ".yaml' --accel bvh --rays 50 --out '" OUT ".edited'";
     char again[1024];
     write_sphere(OUT ".yaml", 1);
@@ -230,8 +221,7 @@ static void a_run_is_not_gone_on_with_where_a_scene_file_was_edited(void **state
 }
 
 /* No accelerator lies, so the journal is made to say so of one, and gone on with. */
-static void the_last_line_tells_of_wrong_answers_to_occluded_too(void **state) {
-    (void)state;
+RT_TEST(the_last_line_tells_of_wrong_answers_to_occluded_too) {
     const char *arguments = "random:n=20 --accel bvh --accel grid --rays 50 --out '" OUT ".lies'";
     char again[1024];
     begin_anew(arguments);
@@ -264,8 +254,7 @@ static void write_replay(const char *path, const char *shrunk) {
 
 /* What was wrong once and is not any more: the answer that the file tells of does not count, the one now
  * does. */
-static void a_replay_says_whether_the_answer_is_still_wrong(void **state) {
-    (void)state;
+RT_TEST(a_replay_says_whether_the_answer_is_still_wrong) {
     write_replay(OUT ".json", "{\"yaml\": \"objects: [{sphere: {center: [0, 0, 0], radius: 1}}]\"}");
     assert_int_equal(verify("--replay '" OUT ".json'"), 0);
     assert_non_null(strstr(text_of(OUT ".err"), "no longer the scene"));
@@ -274,27 +263,10 @@ static void a_replay_says_whether_the_answer_is_still_wrong(void **state) {
 }
 
 /* By exit code 1 a bisection would take it for the fault that it looks for. */
-static void a_replay_that_cannot_be_asked_is_not_called_wrong(void **state) {
-    (void)state;
+RT_TEST(a_replay_that_cannot_be_asked_is_not_called_wrong) {
     write_replay(OUT ".json", "null");
     assert_int_equal(verify("--replay '" OUT ".json'"), 2);
     assert_non_null(strstr(text_of(OUT ".err"), "no longer the scene"));
 }
 
-RT_TEST_GROUP(cmd_verify) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_row_says_how_each_ray_was_answered),
-        cmocka_unit_test(the_spread_tries_each_value_of_each_parameter),
-        cmocka_unit_test(all_is_the_default_and_threads_change_nothing),
-        cmocka_unit_test(the_families_are_rays_of_their_own_and_hard_ones),
-        cmocka_unit_test(scenes_of_families_have_the_seed_of_the_rays),
-        cmocka_unit_test(a_run_is_gone_on_with),
-        cmocka_unit_test(rows_that_are_there_are_not_begun_anew_unasked),
-        cmocka_unit_test(a_run_is_not_gone_on_with_where_a_scene_file_was_edited),
-        cmocka_unit_test(the_last_line_tells_of_wrong_answers_to_occluded_too),
-        cmocka_unit_test(a_replay_says_whether_the_answer_is_still_wrong),
-        cmocka_unit_test(a_replay_that_cannot_be_asked_is_not_called_wrong),
-        cmocka_unit_test(what_cannot_be_verified_is_refused_before_anything_is_printed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(cmd_verify, NULL, NULL)

@@ -117,8 +117,7 @@ static void print_document(FILE *out) {
     }
 }
 
-static void the_document_says_what_the_columns_say(void **state) {
-    (void)state;
+RT_TEST(the_document_says_what_the_columns_say) {
     char *text, *committed;
     size_t size;
     FILE *out = open_memstream(&text, &size);
@@ -136,8 +135,7 @@ static void the_document_says_what_the_columns_say(void **state) {
     rt_free(committed);
 }
 
-static void every_column_has_a_meaning_and_a_name_of_its_own(void **state) {
-    (void)state;
+RT_TEST(every_column_has_a_meaning_and_a_name_of_its_own) {
     Section sections[SECTIONS];
     list(sections);
     for (size_t i = 0; i < SECTIONS; i++) {
@@ -156,8 +154,7 @@ static void every_column_has_a_meaning_and_a_name_of_its_own(void **state) {
     }
 }
 
-static void the_files_that_are_kept_have_these_columns(void **state) {
-    (void)state;
+RT_TEST(the_files_that_are_kept_have_these_columns) {
     Section sections[SECTIONS];
     list(sections);
     for (size_t i = 0; i < SECTIONS; i++) {
@@ -175,8 +172,7 @@ static void the_files_that_are_kept_have_these_columns(void **state) {
 }
 
 /* A new counter, prediction or side has a column in each of these. */
-static void every_counter_and_prediction_is_in_counts_and_in_bench(void **state) {
-    (void)state;
+RT_TEST(every_counter_and_prediction_is_in_counts_and_in_bench) {
     static const RtResultTable both[] = {RT_COUNTS, RT_BENCH};
     for (size_t i = 0; i < 2; i++) {
         char *text;
@@ -192,12 +188,4 @@ static void every_counter_and_prediction_is_in_counts_and_in_bench(void **state)
     }
 }
 
-RT_TEST_GROUP(columns) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_document_says_what_the_columns_say),
-        cmocka_unit_test(every_column_has_a_meaning_and_a_name_of_its_own),
-        cmocka_unit_test(the_files_that_are_kept_have_these_columns),
-        cmocka_unit_test(every_counter_and_prediction_is_in_counts_and_in_bench),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(columns, NULL, NULL)

@@ -66,8 +66,7 @@ static char *read_document(const char *name) {
     return text;
 }
 
-static void every_accelerator_has_its_section_with_its_parameters_as_they_are(void **state) {
-    (void)state;
+RT_TEST(every_accelerator_has_its_section_with_its_parameters_as_they_are) {
     char *readme = read_document("accel/README.md");
     for (size_t i = 0; i < rt_accel_count(); i++) {
         Text section = {.length = 0};
@@ -77,8 +76,7 @@ static void every_accelerator_has_its_section_with_its_parameters_as_they_are(vo
     free(readme);
 }
 
-static void the_readme_lists_every_accelerator(void **state) {
-    (void)state;
+RT_TEST(the_readme_lists_every_accelerator) {
     char *readme = read_document("README.md");
     for (size_t i = 0; i < rt_accel_count(); i++) {
         char row[64];
@@ -110,8 +108,7 @@ static size_t check_line(const char *document, char *line) {
     return files;
 }
 
-static void tests_that_documents_name_are_there(void **state) {
-    (void)state;
+RT_TEST(tests_that_documents_name_are_there) {
     glob_t found;
     size_t files = 0;
     assert_int_equal(glob("*.md", 0, NULL, &found), 0);
@@ -125,11 +122,4 @@ static void tests_that_documents_name_are_there(void **state) {
     globfree(&found);
 }
 
-RT_TEST_GROUP(docs) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_accelerator_has_its_section_with_its_parameters_as_they_are),
-        cmocka_unit_test(the_readme_lists_every_accelerator),
-        cmocka_unit_test(tests_that_documents_name_are_there),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(docs, NULL, NULL)

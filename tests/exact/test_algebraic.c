@@ -46,8 +46,7 @@ static bool is_at(RtExactArena *s, const RtAlgebraic *root, RtRational t) {
 /* ---- where they are ---- */
 
 /* Up to four rational roots, some of them alike, of any size and nearness; the lead of either sign. */
-static void roots_are_found_at_known_places_and_multiple_ones_once(void **state) {
-    (void)state;
+RT_TEST(roots_are_found_at_known_places_and_multiple_ones_once) {
     RtRandom random = rt_random(31, 0);
     RtExactArena s = {0};
     int doubles = 0;
@@ -89,8 +88,7 @@ static void roots_are_found_at_known_places_and_multiple_ones_once(void **state)
     rt_exact_arena_clear(&s);
 }
 
-static void a_polynomial_without_real_roots_has_none(void **state) {
-    (void)state;
+RT_TEST(a_polynomial_without_real_roots_has_none) {
     RtExactArena s = {0};
     RtAlgebraic roots[RT_MAX_DEGREE];
     RtPolynomial p = with_squares(&s, -1, -2), square = with_squares(&s, -2, -2), one = constant(p.at[4]);
@@ -101,8 +99,7 @@ static void a_polynomial_without_real_roots_has_none(void **state) {
 }
 
 /* t^4 - 10 t^2 + 1 is that of sqrt(2) + sqrt(3), and has no factors. */
-static void values_have_all_digits_of_a_long_double(void **state) {
-    (void)state;
+RT_TEST(values_have_all_digits_of_a_long_double) {
     RtExactArena s = {0};
     RtAlgebraic roots[RT_MAX_DEGREE];
     RtRational zero = rt_exact_of(&s, 0);
@@ -123,8 +120,7 @@ static void values_have_all_digits_of_a_long_double(void **state) {
 
 /* sqrt(2) as a root of polynomials of degree 4 that share it, with and without the other factor, and as a
  * surd. */
-static void equal_roots_of_different_polynomials_are_a_tie(void **state) {
-    (void)state;
+RT_TEST(equal_roots_of_different_polynomials_are_a_tie) {
     RtExactArena s = {0};
     RtAlgebraic a[RT_MAX_DEGREE], b[RT_MAX_DEGREE];
     RtPolynomial p = with_squares(&s, 2, 3), q = with_squares(&s, 1.5, 2);
@@ -148,8 +144,7 @@ static void equal_roots_of_different_polynomials_are_a_tie(void **state) {
 }
 
 /* t^2 (t^2 - 2) - 2^-n is 0 next to sqrt(2): 2^-n / (4 sqrt(2)) above it, however large n is. */
-static void roots_2_to_the_minus_200_apart_are_told_apart(void **state) {
-    (void)state;
+RT_TEST(roots_2_to_the_minus_200_apart_are_told_apart) {
     RtExactArena s = {0};
     for (int n = 50; n <= 400; n += 50) {
         RtAlgebraic a[RT_MAX_DEGREE], b[RT_MAX_DEGREE];
@@ -169,8 +164,7 @@ static void roots_2_to_the_minus_200_apart_are_told_apart(void **state) {
 }
 
 /* Two roots of one polynomial, 2^-n apart, and a third far away. */
-static void near_roots_of_one_polynomial_are_parted(void **state) {
-    (void)state;
+RT_TEST(near_roots_of_one_polynomial_are_parted) {
     RtExactArena s = {0};
     for (int n = 10; n <= 500; n += 70) {
         RtRational third = rt_exact_div(&s, rt_exact_of(&s, 1), rt_exact_of(&s, 3));
@@ -190,14 +184,4 @@ static void near_roots_of_one_polynomial_are_parted(void **state) {
     rt_exact_arena_clear(&s);
 }
 
-RT_TEST_GROUP(algebraic) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(roots_are_found_at_known_places_and_multiple_ones_once),
-        cmocka_unit_test(a_polynomial_without_real_roots_has_none),
-        cmocka_unit_test(values_have_all_digits_of_a_long_double),
-        cmocka_unit_test(equal_roots_of_different_polynomials_are_a_tie),
-        cmocka_unit_test(roots_2_to_the_minus_200_apart_are_told_apart),
-        cmocka_unit_test(near_roots_of_one_polynomial_are_parted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(algebraic, NULL, NULL)

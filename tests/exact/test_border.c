@@ -65,23 +65,20 @@ static Wrongs wrongs_of(HitFunction *decide, float size, int rays) {
     return wrongs;
 }
 
-static void our_hit_function_errs_at_edges_alone(void **state) {
-    (void)state;
+RT_TEST(our_hit_function_errs_at_edges_alone) {
     Wrongs near = wrongs_of(ours, 1, 4000), small = wrongs_of(ours, 0x1p-12f, 4000);
     assert_true(near.wrong > 100 && near.wrong < 2000);
     assert_int_equal(near.far + small.far, 0);
 }
 
-static void broken_hit_functions_are_caught_far_from_edges(void **state) {
-    (void)state;
+RT_TEST(broken_hit_functions_are_caught_far_from_edges) {
     assert_int_equal(wrongs_of(with_an_absolute_epsilon, 1, 1000).far, 0);
     assert_true(wrongs_of(with_an_absolute_epsilon, 0x1p-12f, 1000).far > 100);
     assert_true(wrongs_of(decided_beside, 1, 4000).far > 10);
 }
 
 /* Where our own answer is the wrong one, that of another is right and not merely excused. */
-static void the_referee_decides_against_us_too(void **state) {
-    (void)state;
+RT_TEST(the_referee_decides_against_us_too) {
     RtRandom random = rt_random(5, 0);
     int against = 0;
     for (int i = 1; i < 2000; i += 2) {
@@ -112,11 +109,4 @@ static void the_referee_decides_against_us_too(void **state) {
     assert_true(against > 100);
 }
 
-RT_TEST_GROUP(border) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(our_hit_function_errs_at_edges_alone),
-        cmocka_unit_test(broken_hit_functions_are_caught_far_from_edges),
-        cmocka_unit_test(the_referee_decides_against_us_too),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(border, NULL, NULL)

@@ -73,8 +73,7 @@ static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ra
     return count;
 }
 
-static void lines_at_vertices_edges_and_faces_are_decided_like_the_hit_function(void **state) {
-    (void)state;
+RT_TEST(lines_at_vertices_edges_and_faces_are_decided_like_the_hit_function) {
     RtRandom random = rt_random(21, 0);
     int found = 0;
     for (int mesh = 0; mesh < 40; mesh++) {
@@ -99,8 +98,7 @@ static void lines_at_vertices_edges_and_faces_are_decided_like_the_hit_function(
 
 /* Along z, x is kx and y is ky: up along x, down along y. So faces at the lower x and at the upper y are
  * passed inside, the others outside. */
-static void a_line_in_a_face_passes_beside_it_up_along_x_and_down_along_y(void **state) {
-    (void)state;
+RT_TEST(a_line_in_a_face_passes_beside_it_up_along_x_and_down_along_y) {
     const struct {
         float x, y;
         bool inside;
@@ -125,8 +123,7 @@ static void a_line_in_a_face_passes_beside_it_up_along_x_and_down_along_y(void *
 /* ---- depth ---- */
 
 /* 0..4 and 2..6 in one mesh, 1..3 dug out of it: full at 0..1, 2..6. The whole once more dug out at 5..7. */
-static void a_mesh_that_overlaps_itself_is_inside_where_more_is_entered_than_left(void **state) {
-    (void)state;
+RT_TEST(a_mesh_that_overlaps_itself_is_inside_where_more_is_entered_than_left) {
     static const struct {
         float lo, hi;
         bool turned;
@@ -159,8 +156,7 @@ static bool starts_inside(const RtSolidSet *set, uint32_t index, const RtRay *ra
 
 /* Points at odd multiples of 1/16 are on no face. Lines through them and points at halves meet vertices and
  * edges all the time; their t are no dyadic numbers. */
-static void all_lines_through_a_point_agree_whether_it_is_inside(void **state) {
-    (void)state;
+RT_TEST(all_lines_through_a_point_agree_whether_it_is_inside) {
     RtRandom random = rt_random(22, 0);
     int inside = 0, points = 0;
     for (int mesh = 0; mesh < 30; mesh++) {
@@ -202,8 +198,7 @@ static void add_difference(RtGeometry *g, RtCsgBuilder *b, RtCsgTerm left, RtCsg
 
 /* A cube as a mesh without the same cube as a box is nothing, and the other way round; lines through edges
  * and vertices included. A ball in the cube, taken away, is met behind the mesh's front. */
-static void a_cube_without_the_mesh_of_a_cube_is_empty(void **state) {
-    (void)state;
+RT_TEST(a_cube_without_the_mesh_of_a_cube_is_empty) {
     RtGeometry g = {0};
     RtCsgBuilder b = {0};
     RtTriangle triangles[12];
@@ -236,13 +231,4 @@ static void a_cube_without_the_mesh_of_a_cube_is_empty(void **state) {
     rt_geometry_clear(&g);
 }
 
-RT_TEST_GROUP(exact_mesh) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_at_vertices_edges_and_faces_are_decided_like_the_hit_function),
-        cmocka_unit_test(a_line_in_a_face_passes_beside_it_up_along_x_and_down_along_y),
-        cmocka_unit_test(a_mesh_that_overlaps_itself_is_inside_where_more_is_entered_than_left),
-        cmocka_unit_test(all_lines_through_a_point_agree_whether_it_is_inside),
-        cmocka_unit_test(a_cube_without_the_mesh_of_a_cube_is_empty),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(exact_mesh, NULL, NULL)

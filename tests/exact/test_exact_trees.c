@@ -68,8 +68,7 @@ static void assert_places(const RtGeometry *g, uint32_t id, RtRay ray, int count
     for (int i = 0; i < count; i++) assert_true(t[i] == expected[i]);
 }
 
-static void a_ring_is_met_at_four_places_and_touched_at_none(void **state) {
-    (void)state;
+RT_TEST(a_ring_is_met_at_four_places_and_touched_at_none) {
     RtGeometry g = {0};
     RtCsgBuilder b = {0};
     make_rings(&g, &b);
@@ -96,8 +95,7 @@ static void a_ring_is_met_at_four_places_and_touched_at_none(void **state) {
 
 /* At height 1/2 the tubes are met at 4 -+ sqrt(3/4), which is no number of theirs: those of two rings, by
  * different polynomials, and the ball's, a surd. */
-static void equal_places_of_rings_and_balls_are_a_tie(void **state) {
-    (void)state;
+RT_TEST(equal_places_of_rings_and_balls_are_a_tie) {
     RtGeometry g = {0};
     RtCsgBuilder b = {0};
     make_rings(&g, &b);
@@ -131,8 +129,7 @@ static void equal_places_of_rings_and_balls_are_a_tie(void **state) {
 
 /* Tori placed and stretched at random: before its first place the line is outside, behind it inside, by a
  * function of points that knows no polynomial. */
-static void a_line_is_outside_of_a_torus_up_to_the_first_place_and_inside_behind_it(void **state) {
-    (void)state;
+RT_TEST(a_line_is_outside_of_a_torus_up_to_the_first_place_and_inside_behind_it) {
     RtRandom random = rt_random(41, 0);
     int hits = 0;
     for (int i = 0; i < 400; i++) {
@@ -193,8 +190,7 @@ static void judge(const RtGeometry *g, const RtRay *ray, int *hits) {
     }
 }
 
-static void no_ray_at_the_families_of_trees_is_undecided_and_differences_are_at_borders(void **state) {
-    (void)state;
+RT_TEST(no_ray_at_the_families_of_trees_is_undecided_and_differences_are_at_borders) {
     enum { EACH = 8 };
     int hits = 0, rays = 0;
     for (size_t family = 0; family < rt_family_count(); family++) {
@@ -218,8 +214,7 @@ static void no_ray_at_the_families_of_trees_is_undecided_and_differences_are_at_
     assert_true(hits > rays / 5);
 }
 
-static void a_tree_is_undecided_where_memory_is_short_and_only_there(void **state) {
-    (void)state;
+RT_TEST(a_tree_is_undecided_where_memory_is_short_and_only_there) {
     RtGeometry g = {0};
     RtCsgBuilder b = {0};
     make_rings(&g, &b);
@@ -238,13 +233,4 @@ static void a_tree_is_undecided_where_memory_is_short_and_only_there(void **stat
     rt_geometry_clear(&g);
 }
 
-RT_TEST_GROUP(exact_trees) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ring_is_met_at_four_places_and_touched_at_none),
-        cmocka_unit_test(equal_places_of_rings_and_balls_are_a_tie),
-        cmocka_unit_test(a_line_is_outside_of_a_torus_up_to_the_first_place_and_inside_behind_it),
-        cmocka_unit_test(no_ray_at_the_families_of_trees_is_undecided_and_differences_are_at_borders),
-        cmocka_unit_test(a_tree_is_undecided_where_memory_is_short_and_only_there),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(exact_trees, NULL, NULL)

@@ -36,8 +36,7 @@ static void format_row(RtSubject subject, size_t i, char *out, size_t room) {
              p->off, (int)p->missed, (int)p->invented, (int)p->elsewhere, p->border);
 }
 
-static void the_table_in_the_docs_is_what_is_measured(void **state) {
-    (void)state;
+RT_TEST(the_table_in_the_docs_is_what_is_measured) {
     char *text = NULL;
     size_t size = 0, stale = 0;
     assert_ok(rt_file_read(RT_SOURCE_DIR "/docs/precision.md", 1 << 20, &text, &size, error));
@@ -67,8 +66,7 @@ static bool is_case(size_t i, const char *name) {
 
 /* Half an ulp is what rounding to float32 takes. What is computed in double takes no more, even along
  * tangents and from afar. */
-static void t_is_rounded_once_but_for_triangles(void **state) {
-    (void)state;
+RT_TEST(t_is_rounded_once_but_for_triangles) {
     for (int subject = 0; subject < RT_SUBJECT_COUNT; subject++) {
         if (subject == RT_SUBJECT_TRIANGLE) continue;
         for (size_t i = 0; i < MOST_CASES; i++) {
@@ -84,8 +82,7 @@ static void t_is_rounded_once_but_for_triangles(void **state) {
 /* A triangle's vertices are moved by a rounded shear, half a unit along two axes and more: its surface is
  * uncertain by that, and seen edge on t is by any number of ulps. The others are off by half an ulp of t, at
  * most sqrt(3) units. */
-static void hits_are_on_the_surface_within_a_few_units(void **state) {
-    (void)state;
+RT_TEST(hits_are_on_the_surface_within_a_few_units) {
     for (int subject = 0; subject < RT_SUBJECT_COUNT; subject++) {
         for (size_t i = 0; i < MOST_CASES; i++) {
             double bound = subject == RT_SUBJECT_TRIANGLE ? 4 : 1.74;
@@ -98,8 +95,7 @@ static void hits_are_on_the_surface_within_a_few_units(void **state) {
 
 /* An edge is passed within 2 units. A wall of a tree that is thinner than an ulp of t, 2 units, is not there,
  * and the edge of a sharp wedge is farther off than the wedge is thick. */
-static void decisions_differ_from_exact_ones_at_borders_only(void **state) {
-    (void)state;
+RT_TEST(decisions_differ_from_exact_ones_at_borders_only) {
     for (int subject = 0; subject < RT_SUBJECT_COUNT; subject++) {
         for (size_t i = 0; i < MOST_CASES; i++) {
             const RtPrecision *p = &measured[subject][i];
@@ -117,8 +113,7 @@ static void decisions_differ_from_exact_ones_at_borders_only(void **state) {
 }
 
 /* Powers of two change no digit, unless numbers are lost at the ends of float32. */
-static void scale_makes_no_difference(void **state) {
-    (void)state;
+RT_TEST(scale_makes_no_difference) {
     for (int subject = 0; subject < RT_SUBJECT_COUNT; subject++) {
         const RtPrecision *ordinary = &measured[subject][0];
         for (size_t i = 1; i < MOST_CASES; i++) {
@@ -146,8 +141,7 @@ static double off_plane(RtExactArena *arena, const RtVec3 v[3], const RtRay *ray
 
 /* A needle is thinner than the difference of float32 products, so that weights from those would put t
  * anywhere between its ends; but nothing is uncertain about where its plane is. */
-static void t_of_a_needle_is_that_of_its_plane(void **state) {
-    (void)state;
+RT_TEST(t_of_a_needle_is_that_of_its_plane) {
     RtRandom random = rt_random(11, 0);
     RtExactArena arena = {0};
     int hits = 0;
@@ -178,14 +172,4 @@ static void t_of_a_needle_is_that_of_its_plane(void **state) {
     assert_true(hits > 1000);
 }
 
-RT_TEST_GROUP(precision) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(t_of_a_needle_is_that_of_its_plane),
-        cmocka_unit_test(t_is_rounded_once_but_for_triangles),
-        cmocka_unit_test(hits_are_on_the_surface_within_a_few_units),
-        cmocka_unit_test(decisions_differ_from_exact_ones_at_borders_only),
-        cmocka_unit_test(scale_makes_no_difference),
-        cmocka_unit_test(the_table_in_the_docs_is_what_is_measured),
-    };
-    return cmocka_run_group_tests(tests, measure, NULL);
-}
+RT_TESTS(precision, measure, NULL)

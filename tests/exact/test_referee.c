@@ -12,8 +12,7 @@ static RtSurd surd(RtExactArena *arena, double p, double q, double d) {
 
 /* All p + q sqrt(d) of small numbers, by pairs: 240,100 of them, with many ties (sqrt(8) = 2 sqrt(2),
  * sqrt(9) = 3). Two that differ do so by more than the error of long double. */
-static void surds_are_ordered_like_their_values_and_ties_are_found(void **state) {
-    (void)state;
+RT_TEST(surds_are_ordered_like_their_values_and_ties_are_found) {
     enum { MOST = 7 * 7 * 10 };
     static RtSurd all[MOST];
     static long double values[MOST];
@@ -45,8 +44,7 @@ static void surds_are_ordered_like_their_values_and_ties_are_found(void **state)
 }
 
 /* With x^2 - 2 y^2 = 1 (Pell) x - y sqrt(2) is 1 / (x + y sqrt(2)): nearly all digits cancel. */
-static void a_surd_that_cancels_keeps_all_its_digits(void **state) {
-    (void)state;
+RT_TEST(a_surd_that_cancels_keeps_all_its_digits) {
     RtExactArena arena = {0};
     double x = 3, y = 2;
     while (x < 0x1p50) {
@@ -62,8 +60,7 @@ static void a_surd_that_cancels_keeps_all_its_digits(void **state) {
     rt_exact_arena_clear(&arena);
 }
 
-static void rationals_of_any_size_become_the_nearest_long_double(void **state) {
-    (void)state;
+RT_TEST(rationals_of_any_size_become_the_nearest_long_double) {
     RtExactArena arena = {0};
     RtRational third = rt_exact_div(&arena, rt_exact_of(&arena, 1), rt_exact_of(&arena, -3));
     assert_true(fabsl(rt_exact_value(third) + 1 / 3.0L) <= 0x1p-64L);
@@ -94,8 +91,7 @@ static long double first_t_within(const RtGeometry *g, uint32_t id, RtRay ray, f
     return first_t(g, id, &ray);
 }
 
-static void the_unit_sphere_is_met_at_9_and_11(void **state) {
-    (void)state;
+RT_TEST(the_unit_sphere_is_met_at_9_and_11) {
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_geometry_finish(&g, error));
@@ -108,8 +104,7 @@ static void the_unit_sphere_is_met_at_9_and_11(void **state) {
 }
 
 /* 3-4-5: the distance of the line from the centre is 5, not nearly 5. */
-static void a_sphere_is_touched_in_one_point_exactly(void **state) {
-    (void)state;
+RT_TEST(a_sphere_is_touched_in_one_point_exactly) {
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), 5, error));
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 1, 0), nextafterf(5, 4), error));
@@ -123,8 +118,7 @@ static void a_sphere_is_touched_in_one_point_exactly(void **state) {
 }
 
 /* Corners (0, 0), (4, 0), (0, 4) at z = 0; the edge between the last two is x + y = 4. */
-static void edges_and_vertices_belong_to_triangles_and_polygons(void **state) {
-    (void)state;
+RT_TEST(edges_and_vertices_belong_to_triangles_and_polygons) {
     RtGeometry g = {0};
     const RtVec3 v[4] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}}; /* with the last: concave */
     const RtVec3 needle[3] = {{0, 0, 0}, {1, 1, 0}, {3, 3, 0}};
@@ -157,8 +151,7 @@ static void edges_and_vertices_belong_to_triangles_and_polygons(void **state) {
 
 /* The vertices are those of a square but for one ulp: they lie in no plane. The hit is in the plane that is
  * as far above two of them as below the others, a quarter of an ulp. */
-static void a_polygon_that_is_not_planar_has_one_plane_all_the_same(void **state) {
-    (void)state;
+RT_TEST(a_polygon_that_is_not_planar_has_one_plane_all_the_same) {
     float one = 1, above = nextafterf(1, 2);
     RtGeometry g = {0};
     const RtVec3 v[4] = {{0, 0, one}, {1, 0, one}, {1, 1, above}, {0, 1, one}};
@@ -170,8 +163,7 @@ static void a_polygon_that_is_not_planar_has_one_plane_all_the_same(void **state
 }
 
 /* A cylinder of radius 5 about x: met at 3-4-5; a full cone with its tip at the origin, at 45 degrees. */
-static void circles_and_the_tip_belong_to_cones(void **state) {
-    (void)state;
+RT_TEST(circles_and_the_tip_belong_to_cones) {
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(-2, 0, 0), 5, rt_vec3(2, 0, 0), 5, error));
     assert_ok(rt_geometry_add_cone(&g, rt_vec3(2, 0, 0), 2, rt_vec3(0, 0, 0), 0, error));
@@ -202,8 +194,7 @@ static int order_of(const RtGeometry *g, uint32_t a, uint32_t b, const RtRay *ra
 }
 
 /* The ray meets the sphere at z = 4 (3-4-5), where a triangle lies, and others an ulp before and behind. */
-static void a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t(void **state) {
-    (void)state;
+RT_TEST(a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t) {
     RtGeometry g = {0};
     const float heights[3] = {4, nextafterf(4, 5), nextafterf(4, 3)};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 5, error));
@@ -224,8 +215,7 @@ static void a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t(void **s
 }
 
 /* Three spheres and a cylinder are met at t = 10 - sqrt(3), which is no number that any of them stores. */
-static void equal_roots_of_different_objects_are_a_tie(void **state) {
-    (void)state;
+RT_TEST(equal_roots_of_different_objects_are_a_tie) {
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 2, error));
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(4, 2, 0), 4, error));
@@ -249,8 +239,7 @@ static void equal_roots_of_different_objects_are_a_tie(void **state) {
 
 /* ---- numbers at the ends of float32 ---- */
 
-static void huge_and_denormal_numbers_are_as_exact_as_others(void **state) {
-    (void)state;
+RT_TEST(huge_and_denormal_numbers_are_as_exact_as_others) {
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 0x1p-140f, error));
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0x1p58f, 0), 0x1p57f, error));
@@ -294,8 +283,7 @@ static void add_tree(RtGeometry *g, RtCsgBuilder *b, RtCsgOp op, RtCsgTerm left,
     assert_ok(rt_geometry_add_csg(g, b, root, true, error));
 }
 
-static void trees_are_met_where_their_inside_begins_and_ends(void **state) {
-    (void)state;
+RT_TEST(trees_are_met_where_their_inside_begins_and_ends) {
     RtGeometry g = {0};
     RtCsgBuilder b = {0};
     RtCsgTerm ball = ball_term(&b, 0, 5), touching = ball_term(&b, 10, 5), cube = box_term(&b, -1, 9);
@@ -332,8 +320,7 @@ static void trees_are_met_where_their_inside_begins_and_ends(void **state) {
 /* ---- judging ---- */
 
 /* 0: a wall at z = 0; 1: one an ulp behind; 2: one at z = -1. */
-static void the_referee_says_who_is_right(void **state) {
-    (void)state;
+RT_TEST(the_referee_says_who_is_right) {
     RtGeometry g = {0};
     const float heights[3] = {0, -0x1p-24f, -1};
     for (int i = 0; i < 3; i++) {
@@ -367,21 +354,4 @@ static void the_referee_says_who_is_right(void **state) {
     rt_geometry_clear(&g);
 }
 
-RT_TEST_GROUP(referee) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(surds_are_ordered_like_their_values_and_ties_are_found),
-        cmocka_unit_test(a_surd_that_cancels_keeps_all_its_digits),
-        cmocka_unit_test(rationals_of_any_size_become_the_nearest_long_double),
-        cmocka_unit_test(the_unit_sphere_is_met_at_9_and_11),
-        cmocka_unit_test(a_sphere_is_touched_in_one_point_exactly),
-        cmocka_unit_test(edges_and_vertices_belong_to_triangles_and_polygons),
-        cmocka_unit_test(a_polygon_that_is_not_planar_has_one_plane_all_the_same),
-        cmocka_unit_test(circles_and_the_tip_belong_to_cones),
-        cmocka_unit_test(a_sphere_and_a_triangle_tie_where_they_meet_at_a_rational_t),
-        cmocka_unit_test(equal_roots_of_different_objects_are_a_tie),
-        cmocka_unit_test(huge_and_denormal_numbers_are_as_exact_as_others),
-        cmocka_unit_test(trees_are_met_where_their_inside_begins_and_ends),
-        cmocka_unit_test(the_referee_says_who_is_right),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(referee, NULL, NULL)

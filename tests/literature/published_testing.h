@@ -52,6 +52,6 @@ static inline int make_published(void **state) {
     return 0;
 }
 
-#define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_published, remove_place)
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_published, remove_place)
 
 #endif

@@ -30,7 +30,7 @@ static void assert_fails(const Place *place, const char *rows, const char *reaso
     assert_refused(status, RT_MISMATCH, &error, says);
 }
 
-static void a_figure_within_its_tolerance_is_taken_and_one_outside_is_not(void **state) {
+RT_TEST_IN_PLACE(a_figure_within_its_tolerance_is_taken_and_one_outside_is_not) {
     const Place *place = *state;
     assert_agrees(place, "balls,s,Loop,,all,ray,,11.2,\nballs,s,Grid,4x4x4,cells,,64,,\n", "");
     assert_in_file(place, "out/published.csv", "balls,s,Loop,,all,object_tests,ray,11.2,11,-1.79,3,yes,\n");
@@ -43,7 +43,7 @@ static void a_figure_within_its_tolerance_is_taken_and_one_outside_is_not(void *
     assert_in_file(place, "out/published.md", "**11 (-8.3 %)**");
 }
 
-static void half_a_unit_of_the_last_digit_is_within_but_not_of_a_whole_number(void **state) {
+RT_TEST_IN_PLACE(half_a_unit_of_the_last_digit_is_within_but_not_of_a_whole_number) {
     const Place *place = *state;
     change_experiment(place, "object_tests: 3", "object_tests: 0.5");
     assert_agrees(place, "balls,s,Loop,,all,ray,,11.1,\n", ""); /* 0.1 <= 0.0555 + 0.05 */
@@ -52,7 +52,7 @@ static void half_a_unit_of_the_last_digit_is_within_but_not_of_a_whole_number(vo
     assert_fails(place, "balls,s,Grid,4x4x4,cells,,65,,\n", "", false, "leaves");
 }
 
-static void a_reason_excuses_what_it_is_about_and_a_stale_one_fails(void **state) {
+RT_TEST_IN_PLACE(a_reason_excuses_what_it_is_about_and_a_stale_one_fails) {
     const Place *place = *state;
     const char *rows = "balls,s,Loop,,all,ray,,12.0,\nballs,s,Grid,,cells,,64,,\n";
     assert_agrees(place, rows, "b*,s,all,object_tests,\"he tests one more, twice\"\n");
@@ -63,7 +63,7 @@ static void a_reason_excuses_what_it_is_about_and_a_stale_one_fails(void **state
     assert_fails(place, rows, "balls,other,all,*,why\n", false, "nobody says why");
 }
 
-static void tests_per_hit_are_divided_by_the_rays_that_hit(void **state) {
+RT_TEST_IN_PLACE(tests_per_hit_are_divided_by_the_rays_that_hit) {
     const Place *place = *state;
     char rows[128];
     RtCsv counts;
@@ -83,7 +83,7 @@ static void tests_per_hit_are_divided_by_the_rays_that_hit(void **state) {
     assert_fails(place, rows, "", false, "object_tests");
 }
 
-static void rays_are_compared_where_a_table_has_no_accelerator(void **state) {
+RT_TEST_IN_PLACE(rays_are_compared_where_a_table_has_no_accelerator) {
     const Place *place = *state;
     assert_agrees(place, "", "");
     change_experiment(place, "figures.csv", "numbers.csv");
@@ -92,19 +92,19 @@ static void rays_are_compared_where_a_table_has_no_accelerator(void **state) {
     assert_in_file(place, "out/published.csv", "balls,s,,,,primary,,64,64,0.00,1,yes,\n");
 }
 
-static void a_row_that_nothing_measures_is_shown_and_not_judged(void **state) {
+RT_TEST_IN_PLACE(a_row_that_nothing_measures_is_shown_and_not_judged) {
     const Place *place = *state;
     assert_agrees(place, "balls,s,Tree,,,ray,,12.0,3.5\n", "");
     assert_in_file(place, "out/published.csv", "balls,s,Tree,,,object_tests,ray,12.0,,,3,,\n");
 }
 
-static void the_quick_variant_judges_structures_alone(void **state) {
+RT_TEST_IN_PLACE(the_quick_variant_judges_structures_alone) {
     const Place *place = *state;
     assert_ok(run(place, "balls,s,Loop,,all,ray,,12.0,\n", "*,*,*,*,stale\n", true, error));
     assert_fails(place, "balls,s,Grid,,cells,,60,,\n", "", true, "leaves");
 }
 
-static void ours_must_need_less_than_every_published_row(void **state) {
+RT_TEST_IN_PLACE(ours_must_need_less_than_every_published_row) {
     const Place *place = *state;
     change_experiment(place, "  reasons:", "  ours: [all]\n  reasons:");
     const char *ahead = "balls,s,Tree,deep,,ray,,12.0,3.5\nballs,s,Tree,flat,,ray,,13.0,1.5\n";
@@ -118,16 +118,4 @@ static void ours_must_need_less_than_every_published_row(void **state) {
     assert_fails(place, "balls,s,Tree,deep,,hit,,11.0,3.5\n", "", false, "on balls none of ours needs less");
 }
 
-RT_TEST_GROUP(published_figures) {
-    const struct CMUnitTest tests[] = {
-        IN_PLACE(a_figure_within_its_tolerance_is_taken_and_one_outside_is_not),
-        IN_PLACE(half_a_unit_of_the_last_digit_is_within_but_not_of_a_whole_number),
-        IN_PLACE(a_reason_excuses_what_it_is_about_and_a_stale_one_fails),
-        IN_PLACE(tests_per_hit_are_divided_by_the_rays_that_hit),
-        IN_PLACE(rays_are_compared_where_a_table_has_no_accelerator),
-        IN_PLACE(a_row_that_nothing_measures_is_shown_and_not_judged),
-        IN_PLACE(the_quick_variant_judges_structures_alone),
-        IN_PLACE(ours_must_need_less_than_every_published_row),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(published_figures, NULL, NULL)

@@ -14,7 +14,7 @@ static RtStatus load(const Place *place, RtError *error) {
     return status;
 }
 
-static void what_a_published_table_or_a_reason_says_wrongly_is_told_with_its_line(void **state) {
+RT_TEST_IN_PLACE(what_a_published_table_or_a_reason_says_wrongly_is_told_with_its_line) {
     const Place *place = *state;
     const struct {
         const char *file, *text, *says;
@@ -51,7 +51,7 @@ static void what_a_published_table_or_a_reason_says_wrongly_is_told_with_its_lin
     }
 }
 
-static void what_the_experiment_says_wrongly_about_published_figures_is_told_with_its_line(void **state) {
+RT_TEST_IN_PLACE(what_the_experiment_says_wrongly_about_published_figures_is_told_with_its_line) {
     const Place *place = *state;
     const char *const cases[][3] = {
         {"scenes: [balls]", "scenes: [ball]", ":9:"},
@@ -73,7 +73,7 @@ static void what_the_experiment_says_wrongly_about_published_figures_is_told_wit
     }
 }
 
-static void a_published_table_that_does_not_fit_into_memory_is_refused(void **state) {
+RT_TEST_IN_PLACE(a_published_table_that_does_not_fit_into_memory_is_refused) {
     const Place *place = *state;
     write_figures(place, "balls,s,t,u,all,ray,,11,\n");
     write_reasons(place, "*,*,*,*,why\n");
@@ -91,7 +91,7 @@ static void a_published_table_that_does_not_fit_into_memory_is_refused(void **st
 
 /* ---- directories ---- */
 
-static void reproduce_compares_published_figures_and_checks_them(void **state) {
+RT_TEST_IN_PLACE(reproduce_compares_published_figures_and_checks_them) {
     const Place *place = *state;
     const char *rows = "balls,s,Loop,,all,ray,,11.0,\n";
     write_figures(place, rows);
@@ -113,7 +113,7 @@ static void reproduce_compares_published_figures_and_checks_them(void **state) {
     assert_int_equal(raytally(place, "run small.yaml --out out --force"), 2);
 }
 
-static void a_candidate_is_counted_on_its_scenes_alone_and_one_label_serves_on_several(void **state) {
+RT_TEST_IN_PLACE(a_candidate_is_counted_on_its_scenes_alone_and_one_label_serves_on_several) {
     const Place *place = *state;
     write_figures(place, "");
     assert_int_equal(raytally(place, "run small.yaml --out out"), 0);
@@ -131,13 +131,4 @@ static void a_candidate_is_counted_on_its_scenes_alone_and_one_label_serves_on_s
     assert_false(rt_file_exists(path_in(place, "out/times.csv").text));
 }
 
-RT_TEST_GROUP(published_tables) {
-    const struct CMUnitTest tests[] = {
-        IN_PLACE(what_a_published_table_or_a_reason_says_wrongly_is_told_with_its_line),
-        IN_PLACE(what_the_experiment_says_wrongly_about_published_figures_is_told_with_its_line),
-        IN_PLACE(a_published_table_that_does_not_fit_into_memory_is_refused),
-        IN_PLACE(reproduce_compares_published_figures_and_checks_them),
-        IN_PLACE(a_candidate_is_counted_on_its_scenes_alone_and_one_label_serves_on_several),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(published_tables, NULL, NULL)

@@ -1,8 +1,7 @@
 /* render/illumination.h: shading and the rays that leave a surface, against answers known by hand. */
 #include "render_testing.h"
 
-static void a_point_is_shaded_by_the_sum_of_all_five_terms(void **state) {
-    (void)state;
+RT_TEST(a_point_is_shaded_by_the_sum_of_all_five_terms) {
     /* Looking down on a mirror floor. The light stands at 45 degrees: N.L = sqrt(1/2), and the mirrored light
      * makes 45 degrees with the viewer too, so (R.V)^2 = 1/2. Reflection and transmission see the
      * background. */
@@ -32,8 +31,7 @@ static void a_point_is_shaded_by_the_sum_of_all_five_terms(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void an_object_between_point_and_light_takes_the_light_away(void **state) {
-    (void)state;
+RT_TEST(an_object_between_point_and_light_takes_the_light_away) {
     RtScene scene;
     start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
     add_square(&scene, 1, 0);
@@ -52,8 +50,7 @@ static void an_object_between_point_and_light_takes_the_light_away(void **state)
     rt_scene_clear(&scene);
 }
 
-static void shadow_rays_go_to_lights_on_the_viewers_side_alone(void **state) {
-    (void)state;
+RT_TEST(shadow_rays_go_to_lights_on_the_viewers_side_alone) {
     RtScene scene;
     start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
     add_square(&scene, 1, 0);
@@ -82,8 +79,7 @@ static void glass(RtScene *scene, float reflection) {
     assert_ok(rt_scene_finish(scene, error));
 }
 
-static void a_ray_into_glass_bends_by_snells_law_and_back_out(void **state) {
-    (void)state;
+RT_TEST(a_ray_into_glass_bends_by_snells_law_and_back_out) {
     RtScene scene;
     glass(&scene, 0.25f);
     RtRay rays[RT_MAX_SPAWN];
@@ -110,8 +106,7 @@ static void a_ray_into_glass_bends_by_snells_law_and_back_out(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void total_internal_reflection_is_one_reflection_ray_with_both_factors(void **state) {
-    (void)state;
+RT_TEST(total_internal_reflection_is_one_reflection_ray_with_both_factors) {
     /* The critical angle of 1.5 has the sine 2/3. */
     for (int with_mirror = 0; with_mirror < 2; with_mirror++) {
         RtScene scene;
@@ -136,13 +131,4 @@ static void total_internal_reflection_is_one_reflection_ray_with_both_factors(vo
     }
 }
 
-RT_TEST_GROUP(illumination) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_point_is_shaded_by_the_sum_of_all_five_terms),
-        cmocka_unit_test(an_object_between_point_and_light_takes_the_light_away),
-        cmocka_unit_test(shadow_rays_go_to_lights_on_the_viewers_side_alone),
-        cmocka_unit_test(a_ray_into_glass_bends_by_snells_law_and_back_out),
-        cmocka_unit_test(total_internal_reflection_is_one_reflection_ray_with_both_factors),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(illumination, NULL, NULL)

@@ -49,8 +49,7 @@ static RtFrame trace(const char *spec, uint32_t width, uint32_t height, uint32_t
     return frame;
 }
 
-static void a_png_reads_back_as_the_image(void **state) {
-    (void)state;
+RT_TEST(a_png_reads_back_as_the_image) {
     RtFrame frame = trace("brute", 40, 30, 1, false);
     RtImage image;
     assert_ok(rt_image_from_frame(&image, &frame, error));
@@ -72,8 +71,7 @@ static void a_png_reads_back_as_the_image(void **state) {
     rt_frame_clear(&frame);
 }
 
-static void linear_halves_are_written_as_srgb_188(void **state) {
-    (void)state;
+RT_TEST(linear_halves_are_written_as_srgb_188) {
     RtVec3 color[3] = {{0.5f, 0, 2}, {0, 1, -1}, {0.001f, NAN, 0.25f}};
     RtFrame frame = {.color = color};
     assert_ok(rt_sampling_init(&frame.sampling, 3, 1, 1, false, error));
@@ -85,8 +83,7 @@ static void linear_halves_are_written_as_srgb_188(void **state) {
 }
 
 /* Also next to where the byte changes, be the power off by some 1e-12. */
-static void every_byte_of_srgb_begins_where_it_should(void **state) {
-    (void)state;
+RT_TEST(every_byte_of_srgb_begins_where_it_should) {
     RtVec3 color[255];
     RtFrame frame = {.color = color};
     for (int i = 0; i < 255; i++) {
@@ -107,8 +104,7 @@ static void every_byte_of_srgb_begins_where_it_should(void **state) {
 }
 
 /* A change of shading changes these, too. */
-static void a_picture_of_mirrors_and_glass_has_the_same_bits_everywhere(void **state) {
-    (void)state;
+RT_TEST(a_picture_of_mirrors_and_glass_has_the_same_bits_everywhere) {
     RtScene scene;
     RtAccel *accel;
     RtFrame frame;
@@ -127,8 +123,7 @@ static void a_picture_of_mirrors_and_glass_has_the_same_bits_everywhere(void **s
     rt_scene_clear(&scene);
 }
 
-static void a_pixel_is_the_mean_of_its_samples_or_of_its_corners(void **state) {
-    (void)state;
+RT_TEST(a_pixel_is_the_mean_of_its_samples_or_of_its_corners) {
     RtVec3 color[16];
     RtFrame frame = {.color = color};
     for (int i = 0; i < 16; i++) color[i] = rt_vec3((float)i, 0, 0);
@@ -171,8 +166,7 @@ static void read_channel(const char *path, const char *name, void *out, int widt
     if (!found) fail_msg("%s has no channel %s", path, name);
 }
 
-static void an_exr_reads_back_with_colours_ids_depths_and_counts(void **state) {
-    (void)state;
+RT_TEST(an_exr_reads_back_with_colours_ids_depths_and_counts) {
     enum { W = 37, H = 41, PIXELS = W * H };
     RtFrame frame = trace("brute", W, H, 1, false);
     assert_ok(rt_exr_write(&frame, EXR_FILE, error));
@@ -197,8 +191,7 @@ static void an_exr_reads_back_with_colours_ids_depths_and_counts(void **state) {
     rt_frame_clear(&frame);
 }
 
-static void a_file_that_cannot_be_written_is_a_status_and_leaves_nothing(void **state) {
-    (void)state;
+RT_TEST(a_file_that_cannot_be_written_is_a_status_and_leaves_nothing) {
     RtFrame frame = trace("brute", 4, 4, 1, false);
     RtImage image;
     RtError refusal;
@@ -217,8 +210,7 @@ static void a_file_that_cannot_be_written_is_a_status_and_leaves_nothing(void **
     rt_frame_clear(&frame);
 }
 
-static void a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most(void **state) {
-    (void)state;
+RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
     enum { W = 240, H = 20 };
     static RtTally cost[W * H];
     RtFrame frame = {.cost = cost};
@@ -240,8 +232,7 @@ static void a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most(voi
     rt_image_clear(&image);
 }
 
-static void a_heatmap_of_nothing_or_of_one_pixel_has_its_legend(void **state) {
-    (void)state;
+RT_TEST(a_heatmap_of_nothing_or_of_one_pixel_has_its_legend) {
     RtTally cost = {0};
     RtFrame frame = {.cost = &cost};
     assert_ok(rt_sampling_init(&frame.sampling, 1, 1, 1, false, error));
@@ -254,8 +245,7 @@ static void a_heatmap_of_nothing_or_of_one_pixel_has_its_legend(void **state) {
     }
 }
 
-static void the_scale_grows_in_lightness(void **state) {
-    (void)state;
+RT_TEST(the_scale_grows_in_lightness) {
     double before = -1;
     for (int i = 0; i <= 100; i++) {
         RtColor c = rt_color_scale(i / 100.0);
@@ -265,8 +255,7 @@ static void the_scale_grows_in_lightness(void **state) {
     }
 }
 
-static void the_root_box_is_drawn_where_the_camera_sees_it(void **state) {
-    (void)state;
+RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
     RtScene scene;
     RtAccel *accel;
     RtImage image;
@@ -297,19 +286,4 @@ static void the_root_box_is_drawn_where_the_camera_sees_it(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(image) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_png_reads_back_as_the_image),
-        cmocka_unit_test(linear_halves_are_written_as_srgb_188),
-        cmocka_unit_test(every_byte_of_srgb_begins_where_it_should),
-        cmocka_unit_test(a_picture_of_mirrors_and_glass_has_the_same_bits_everywhere),
-        cmocka_unit_test(a_pixel_is_the_mean_of_its_samples_or_of_its_corners),
-        cmocka_unit_test(an_exr_reads_back_with_colours_ids_depths_and_counts),
-        cmocka_unit_test(a_file_that_cannot_be_written_is_a_status_and_leaves_nothing),
-        cmocka_unit_test(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most),
-        cmocka_unit_test(a_heatmap_of_nothing_or_of_one_pixel_has_its_legend),
-        cmocka_unit_test(the_scale_grows_in_lightness),
-        cmocka_unit_test(the_root_box_is_drawn_where_the_camera_sees_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(image, NULL, NULL)

@@ -30,8 +30,7 @@ static RtTally shadow_tally_of_one_object(int shape, float s, float away) {
 }
 
 /* Whatever is seen and faces the light is lit, of any size, near zero or far from it. */
-static void nothing_shadows_itself(void **state) {
-    (void)state;
+RT_TEST(nothing_shadows_itself) {
     for (int scale = -20; scale <= 20; scale += 10) {
         for (int shape = 0; shape < 4; shape++) {
             for (int far = 0; far < 3; far++) {
@@ -45,8 +44,7 @@ static void nothing_shadows_itself(void **state) {
 }
 
 /* A floor's box is flat, and box tests take it for thicker than it is; a shadow ray must start above that. */
-static void a_shadow_ray_off_a_floor_leaves_the_box_of_the_floor_behind(void **state) {
-    (void)state;
+RT_TEST(a_shadow_ray_off_a_floor_leaves_the_box_of_the_floor_behind) {
     for (int half = 1; half < 100000; half *= 7) {
         RtScene scene;
         float size = (float)half;
@@ -69,8 +67,7 @@ static void a_shadow_ray_off_a_floor_leaves_the_box_of_the_floor_behind(void **s
 }
 
 /* So does one off a small facet of a larger scene, whose thickness is what a structure tests boxes with. */
-static void a_shadow_ray_off_a_facet_leaves_its_box_behind_in_a_larger_scene(void **state) {
-    (void)state;
+RT_TEST(a_shadow_ray_off_a_facet_leaves_its_box_behind_in_a_larger_scene) {
     RtScene scene;
     RtVec3 facet[3] = {{10, 10, 1}, {10.1f, 10, 1}, {10, 10.1f, 1}}, light;
     RtRay ray;
@@ -87,8 +84,7 @@ static void a_shadow_ray_off_a_facet_leaves_its_box_behind_in_a_larger_scene(voi
     rt_scene_clear(&scene);
 }
 
-static void offsets_stay_fine_far_from_zero(void **state) {
-    (void)state;
+RT_TEST(offsets_stay_fine_far_from_zero) {
     RtScene scene;
     start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .diffuse = 1, .ior = 1});
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(1e5f, 0, 0), 1, error));
@@ -98,12 +94,4 @@ static void offsets_stay_fine_far_from_zero(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(offsets) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_shadows_itself),
-        cmocka_unit_test(a_shadow_ray_off_a_floor_leaves_the_box_of_the_floor_behind),
-        cmocka_unit_test(a_shadow_ray_off_a_facet_leaves_its_box_behind_in_a_larger_scene),
-        cmocka_unit_test(offsets_stay_fine_far_from_zero),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(offsets, NULL, NULL)

@@ -6,8 +6,7 @@
 
 #include <pthread.h>
 
-static void two_mirrors_return_a_ray_as_often_as_the_depth_allows(void **state) {
-    (void)state;
+RT_TEST(two_mirrors_return_a_ray_as_often_as_the_depth_allows) {
     RtScene scene;
     start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .ambient = 1, .reflection = 0.5f, .ior = 1});
     add_square(&scene, 1000, 0);
@@ -72,8 +71,7 @@ static void assert_same_frames(const RtFrame *a, const RtFrame *b) {
     assert_memory_equal(a->tallies, b->tallies, sizeof a->tallies);
 }
 
-static void a_frame_is_the_same_bytes_on_any_number_of_threads_counted_or_timed(void **state) {
-    (void)state;
+RT_TEST(a_frame_is_the_same_bytes_on_any_number_of_threads_counted_or_timed) {
     RtScene scene;
     busy_scene(&scene);
     RtFrameOptions options = options_for(&scene, 70, 41, false);
@@ -94,8 +92,7 @@ static void a_frame_is_the_same_bytes_on_any_number_of_threads_counted_or_timed(
     rt_scene_clear(&scene);
 }
 
-static void what_the_samples_cost_adds_up_to_the_tallies_by_kind(void **state) {
-    (void)state;
+RT_TEST(what_the_samples_cost_adds_up_to_the_tallies_by_kind) {
     RtScene scene;
     busy_scene(&scene);
     RtFrameOptions options = options_for(&scene, 20, 20, false);
@@ -113,8 +110,7 @@ static void what_the_samples_cost_adds_up_to_the_tallies_by_kind(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void corner_sampling_traces_one_more_ray_than_pixels_a_side(void **state) {
-    (void)state;
+RT_TEST(corner_sampling_traces_one_more_ray_than_pixels_a_side) {
     RtScene scene;
     busy_scene(&scene);
     RtFrameOptions options = options_for(&scene, 32, 16, true);
@@ -146,8 +142,7 @@ static RtStatus see(void *context, size_t tile, const RtRay *rays, size_t count,
     return RT_OK;
 }
 
-static void the_sink_sees_every_ray_that_is_counted(void **state) {
-    (void)state;
+RT_TEST(the_sink_sees_every_ray_that_is_counted) {
     RtScene scene;
     busy_scene(&scene);
     Seen seen = {.lock = PTHREAD_MUTEX_INITIALIZER, .fail_at_tile = SIZE_MAX};
@@ -166,8 +161,7 @@ static void the_sink_sees_every_ray_that_is_counted(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_sink_that_fails_stops_the_frame_and_leaves_nothing(void **state) {
-    (void)state;
+RT_TEST(a_sink_that_fails_stops_the_frame_and_leaves_nothing) {
     RtScene scene;
     busy_scene(&scene);
     RtAccel *accel;
@@ -187,8 +181,7 @@ static void a_sink_that_fails_stops_the_frame_and_leaves_nothing(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_frame_without_memory_is_a_status_and_leaks_nothing(void **state) {
-    (void)state;
+RT_TEST(a_frame_without_memory_is_a_status_and_leaks_nothing) {
     RtScene scene;
     busy_scene(&scene);
     RtAccel *accel;
@@ -212,15 +205,4 @@ static void a_frame_without_memory_is_a_status_and_leaks_nothing(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(render) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_mirrors_return_a_ray_as_often_as_the_depth_allows),
-        cmocka_unit_test(a_frame_is_the_same_bytes_on_any_number_of_threads_counted_or_timed),
-        cmocka_unit_test(what_the_samples_cost_adds_up_to_the_tallies_by_kind),
-        cmocka_unit_test(corner_sampling_traces_one_more_ray_than_pixels_a_side),
-        cmocka_unit_test(the_sink_sees_every_ray_that_is_counted),
-        cmocka_unit_test(a_sink_that_fails_stops_the_frame_and_leaves_nothing),
-        cmocka_unit_test(a_frame_without_memory_is_a_status_and_leaks_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(render, NULL, NULL)

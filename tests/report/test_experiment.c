@@ -49,8 +49,10 @@ static RtStatus run(const Place *place, const char *directory, RtStart start, in
 
 static const RtObserver nobody = {NULL, NULL, NULL};
 
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
+
 /* Recording, building, counting, timing and drawing. */
-static void a_run_on_one_thread_starts_no_other(void **state) {
+RT_TEST_IN_PLACE(a_run_on_one_thread_starts_no_other) {
     const Place *place = *state;
     write_changed(
         place, "small.yaml", small_experiment,
@@ -62,7 +64,7 @@ static void a_run_on_one_thread_starts_no_other(void **state) {
     assert_true(labour.others < 0.05 * labour.own);
 }
 
-static void the_work_of_a_build_is_in_the_journal(void **state) {
+RT_TEST_IN_PLACE(the_work_of_a_build_is_in_the_journal) {
     const Place *place = *state;
     RtResults results;
     write_changed(place, "small.yaml", small_experiment, "accel: ideal", "accel: item+bvh");
@@ -75,7 +77,7 @@ static void the_work_of_a_build_is_in_the_journal(void **state) {
 
 /* ---- the YAML ---- */
 
-static void a_bad_experiment_is_refused_with_its_line(void **state) {
+RT_TEST_IN_PLACE(a_bad_experiment_is_refused_with_its_line) {
     const Place *place = *state;
     const struct {
         const char *from, *to, *says;
@@ -116,7 +118,7 @@ static void a_bad_experiment_is_refused_with_its_line(void **state) {
     }
 }
 
-static void a_zero_is_taken_where_it_means_something_and_refused_with_the_range_elsewhere(void **state) {
+RT_TEST_IN_PLACE(a_zero_is_taken_where_it_means_something_and_refused_with_the_range_elsewhere) {
     const Place *place = *state;
     write_changed(place, "small.yaml", small_experiment, "rounds: 3", "seed: 0");
     assert_ok(load_small(place, false, error));
@@ -149,7 +151,7 @@ static void a_zero_is_taken_where_it_means_something_and_refused_with_the_range_
     }
 }
 
-static void quick_overrides_only_where_it_is_asked_for(void **state) {
+RT_TEST_IN_PLACE(quick_overrides_only_where_it_is_asked_for) {
     const Place *place = *state;
     write_changed(place, "small.yaml", small_experiment, "rounds: 3",
                   "rounds: 3\nquick: {limit: 7, rounds: 2, milliseconds: 9, depth: 1, size: 8x4}");
@@ -161,7 +163,7 @@ static void quick_overrides_only_where_it_is_asked_for(void **state) {
     assert_true(e->workloads[1].depth == 1 && e->workloads[1].width == 8 && e->workloads[1].height == 4);
 }
 
-static void whichever_allocation_fails_loading_is_out_of_memory(void **state) {
+RT_TEST_IN_PLACE(whichever_allocation_fails_loading_is_out_of_memory) {
     const Place *place = *state;
     int64_t live = rt_alloc_live();
     RtStatus status = RT_NO_MEMORY;
@@ -177,7 +179,7 @@ static void whichever_allocation_fails_loading_is_out_of_memory(void **state) {
     assert_int_equal(status, RT_OK);
 }
 
-static void the_command_refuses_a_bad_experiment_with_exit_code_2(void **state) {
+RT_TEST_IN_PLACE(the_command_refuses_a_bad_experiment_with_exit_code_2) {
     const Place *place = *state;
     write_in(place, "small.yaml", "name: small\nnothing: else\n");
     assert_int_equal(raytally(place, "run small.yaml"), 2);
@@ -185,7 +187,7 @@ static void the_command_refuses_a_bad_experiment_with_exit_code_2(void **state) 
     assert_false(rt_file_exists(path_in(place, "results").text));
 }
 
-static void what_is_left_out_of_the_yaml_has_its_default(void **state) {
+RT_TEST_IN_PLACE(what_is_left_out_of_the_yaml_has_its_default) {
     const Place *place = *state;
     write_in(place, "small.yaml",
              "name: a\nquestion: b\nprediction: c\nscenes: [{scene: ../x/bunny.obj}]\n"
@@ -201,7 +203,7 @@ static void what_is_left_out_of_the_yaml_has_its_default(void **state) {
 
 /* ---- runs ---- */
 
-static void counts_are_the_same_bytes_on_one_thread_and_on_two(void **state) {
+RT_TEST_IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two) {
     const Place *place = *state;
     assert_ok(run(place, "one", RT_START_FRESH, 1, nobody, error));
     assert_ok(run(place, "two", RT_START_FRESH, 2, nobody, error));
@@ -247,7 +249,7 @@ static int count_of(const char *text, const char *part) {
 }
 
 /* Nothing is lost, nothing is counted twice, and another resumption finds all done. */
-static void an_interrupted_run_resumes_and_loses_no_finished_cell(void **state) {
+RT_TEST_IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell) {
     const Place *place = *state;
     assert_ok(run(place, "whole", RT_START_FRESH, 1, nobody, error));
     char *whole = read_in(place, "whole/counts.csv"), *lines = read_in(place, "whole/cells.jsonl");
@@ -273,7 +275,7 @@ static void an_interrupted_run_resumes_and_loses_no_finished_cell(void **state) 
     rt_free(lines);
 }
 
-static void a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_tables(void **state) {
+RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_tables) {
     const Place *place = *state;
     assert_ok(run(place, "done", RT_START_FRESH, 1, nobody, error));
     char *counts = read_in(place, "done/counts.csv"), *times = read_in(place, "done/times.csv");
@@ -289,7 +291,7 @@ static void a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_
     rt_free(times_now);
 }
 
-static void a_run_of_another_experiment_is_not_resumed(void **state) {
+RT_TEST_IN_PLACE(a_run_of_another_experiment_is_not_resumed) {
     const Place *place = *state;
     assert_ok(run(place, "mixed", RT_START_FRESH, 1, nobody, error));
     char text[2048];
@@ -300,7 +302,7 @@ static void a_run_of_another_experiment_is_not_resumed(void **state) {
     assert_non_null(strstr(error.message, "another experiment"));
 }
 
-static void the_report_has_the_question_and_nothing_outside_itself(void **state) {
+RT_TEST_IN_PLACE(the_report_has_the_question_and_nothing_outside_itself) {
     const Place *place = *state;
     assert_ok(run(place, "page", RT_START_FRESH, 1, nobody, error));
     char *page = read_in(place, "page/report.html");
@@ -311,7 +313,7 @@ static void the_report_has_the_question_and_nothing_outside_itself(void **state)
     rt_free(page);
 }
 
-static void a_missing_scene_is_an_error_unless_it_is_optional(void **state) {
+RT_TEST_IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional) {
     const Place *place = *state;
     const char *missing[] = {"nowhere.obj", "nowhere.obj, optional: yes"};
     for (int optional = 0; optional < 2; optional++) {
@@ -326,7 +328,7 @@ static void a_missing_scene_is_an_error_unless_it_is_optional(void **state) {
 /* ---- tables ---- */
 
 /* The null run's interval begins just above 1: in every table, and in the verdict. */
-static void the_verdict_on_null_runs_is_what_the_tables_show(void **state) {
+RT_TEST_IN_PLACE(the_verdict_on_null_runs_is_what_the_tables_show) {
     const Place *place = *state;
     RtResults results;
     char sentence[RT_MAX_SENTENCE];
@@ -350,25 +352,4 @@ static void the_verdict_on_null_runs_is_what_the_tables_show(void **state) {
     rt_results_clear(&results);
 }
 
-#define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_small, remove_place)
-
-RT_TEST_GROUP(experiment) {
-    const struct CMUnitTest tests[] = {
-        IN_PLACE(a_bad_experiment_is_refused_with_its_line),
-        IN_PLACE(a_zero_is_taken_where_it_means_something_and_refused_with_the_range_elsewhere),
-        IN_PLACE(quick_overrides_only_where_it_is_asked_for),
-        IN_PLACE(whichever_allocation_fails_loading_is_out_of_memory),
-        IN_PLACE(the_command_refuses_a_bad_experiment_with_exit_code_2),
-        IN_PLACE(a_run_on_one_thread_starts_no_other),
-        IN_PLACE(the_work_of_a_build_is_in_the_journal),
-        IN_PLACE(what_is_left_out_of_the_yaml_has_its_default),
-        IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two),
-        IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell),
-        IN_PLACE(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_tables),
-        IN_PLACE(a_run_of_another_experiment_is_not_resumed),
-        IN_PLACE(the_report_has_the_question_and_nothing_outside_itself),
-        IN_PLACE(a_missing_scene_is_an_error_unless_it_is_optional),
-        IN_PLACE(the_verdict_on_null_runs_is_what_the_tables_show),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(experiment, NULL, NULL)

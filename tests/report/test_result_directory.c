@@ -134,9 +134,11 @@ int __wrap_fdatasync(int file) {
     return 0;
 }
 
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
+
 /* ---- whose results they are ---- */
 
-static void results_are_refused_unless_they_are_gone_on_with_or_begun_anew(void **state) {
+RT_TEST_IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew) {
     const Place *place = *state;
     assert_ends(place, "run small.yaml", 0, "");
     char *journal = read_in(place, "results/small/cells.jsonl"),
@@ -161,7 +163,7 @@ static void results_are_refused_unless_they_are_gone_on_with_or_begun_anew(void 
     rt_free(page);
 }
 
-static void a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest(void **state) {
+RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest) {
     const Place *place = *state;
     assert_ends(place, "run small.yaml --threads 1 --resume", 0, "");
     char *table = read_in(place, "output"), *manifest = read_in(place, "results/small/manifest.json");
@@ -175,7 +177,7 @@ static void a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifes
     rt_free(manifest);
 }
 
-static void results_without_their_journal_are_not_gone_on_with(void **state) {
+RT_TEST_IN_PLACE(results_without_their_journal_are_not_gone_on_with) {
     const Place *place = *state;
     assert_ends(place, "run small.yaml", 0, "");
     char *counts = read_in(place, "results/small/counts.csv");
@@ -185,7 +187,7 @@ static void results_without_their_journal_are_not_gone_on_with(void **state) {
     rt_free(counts);
 }
 
-static void what_begins_anew_leaves_nothing_of_what_was_there(void **state) {
+RT_TEST_IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there) {
     const Place *place = *state;
     assert_ends(place, "verify tetra:size=1 --accel bvh --rays 10 --out out", 0, "");
     assert_ends(place, "run small.yaml --out out --resume", 2, "no cells.jsonl");
@@ -201,7 +203,7 @@ static void what_begins_anew_leaves_nothing_of_what_was_there(void **state) {
 }
 
 /* Each of these fails; with --force, too, no byte of the results that are there has changed then. */
-static void nothing_is_touched_before_all_that_may_fail_was_tried(void **state) {
+RT_TEST_IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried) {
     const Place *place = *state;
     const struct {
         const char *from, *to;
@@ -236,7 +238,7 @@ static void nothing_is_touched_before_all_that_may_fail_was_tried(void **state) 
 
 /* ---- two at a time ---- */
 
-static void a_second_process_is_refused_with_the_number_of_the_first(void **state) {
+RT_TEST_IN_PLACE(a_second_process_is_refused_with_the_number_of_the_first) {
     const Place *place = *state;
     const char *const writing[] = {"run small.yaml --out out --force", "run small.yaml --out out --resume",
                                    "verify tetra:size=1 --rays 10 --out out --force", "plot out",
@@ -255,7 +257,7 @@ static void a_second_process_is_refused_with_the_number_of_the_first(void **stat
     for (size_t i = 0; i < sizeof writing / sizeof writing[0]; i += 3) assert_ends(place, writing[i], 0, "");
 }
 
-static void a_lock_goes_with_the_process_that_was_killed(void **state) {
+RT_TEST_IN_PLACE(a_lock_goes_with_the_process_that_was_killed) {
     const Place *place = *state;
     RtLock lock;
     int status;
@@ -272,7 +274,7 @@ static void a_lock_goes_with_the_process_that_was_killed(void **state) {
 
 /* ---- plots ---- */
 
-static void a_script_that_lies_elsewhere_is_copied_into_the_directory(void **state) {
+RT_TEST_IN_PLACE(a_script_that_lies_elsewhere_is_copied_into_the_directory) {
     const Place *place = *state;
     assert_ok(rt_directory_create(path_in(place, "here").text, error));
     assert_ok(rt_directory_create(path_in(place, "there/deep").text, error));
@@ -287,7 +289,7 @@ static void a_script_that_lies_elsewhere_is_copied_into_the_directory(void **sta
     assert_ends(place, "plot out/deep", 0, "");
 }
 
-static void two_scripts_of_one_name_are_refused_with_their_line(void **state) {
+RT_TEST_IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line) {
     const Place *place = *state;
     const char *const lists[] = {"[x.gp,\n  ../x.gp]", "[x.gp,\n  names.gp]", "[x.gp,\n  there/]",
                                  "[x.gp,\n  ..]"};
@@ -300,7 +302,7 @@ static void two_scripts_of_one_name_are_refused_with_their_line(void **state) {
     }
 }
 
-static void an_experiment_that_is_named_like_a_folder_above_is_refused(void **state) {
+RT_TEST_IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused) {
     const Place *place = *state;
     RtError error = {RT_OK, ""};
     write_changed(place, "small.yaml", small_experiment, "name: small", "name: ..");
@@ -324,7 +326,7 @@ static void assert_ends_with_path(const Place *place, const char *path, const ch
     assert_ended(place, arguments, ended, code, says);
 }
 
-static void gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words(void **state) {
+RT_TEST_IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words) {
     const Place *place = *state;
     Path bin = path_in(place, "bin");
     write_in(place, "x.gp", "plot nonsense\n");
@@ -341,7 +343,7 @@ static void gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words(void 
     assert_ends_with_path(place, bin.text, "plot out", 1, "it was given plots/names.gp plots/x.gp");
 }
 
-static void where_there_is_no_gnuplot_a_note_says_so(void **state) {
+RT_TEST_IN_PLACE(where_there_is_no_gnuplot_a_note_says_so) {
     const Place *place = *state;
     write_in(place, "x.gp", "print 1\n");
     write_changed(place, "small.yaml", small_experiment, "limit: 100\n", "limit: 100\nplots: [x.gp]\n");
@@ -353,7 +355,7 @@ static void where_there_is_no_gnuplot_a_note_says_so(void **state) {
 
 /* ---- scenes ---- */
 
-static void a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left(void **state) {
+RT_TEST_IN_PLACE(a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left) {
     const Place *place = *state;
     scenes_opened = 0;
     assert_ok(run(place, "out", RT_START_FRESH, error));
@@ -387,7 +389,7 @@ static bool killed_at(const Place *place, int change, const char *directory, RtS
 
 enum { MOMENTS = 24 };
 
-static void a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts(void **state) {
+RT_TEST_IN_PLACE(a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts) {
     const Place *place = *state;
     changes = 0;
     assert_ok(run(place, "whole", RT_START_FRESH, error));
@@ -414,7 +416,7 @@ static void a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts(void *
 }
 
 /* Either the old run is whole, but for what follows from its journal, or the new one is begun. */
-static void a_run_that_begins_anew_and_is_killed_loses_the_old_one_only_for_the_new(void **state) {
+RT_TEST_IN_PLACE(a_run_that_begins_anew_and_is_killed_loses_the_old_one_only_for_the_new) {
     const Place *place = *state;
     assert_ok(run(place, "old", RT_START_FRESH, error));
     write_changed(place, "small.yaml", small_experiment, "limit: 100", "limit: 40");
@@ -445,25 +447,4 @@ static void a_run_that_begins_anew_and_is_killed_loses_the_old_one_only_for_the_
     rt_free(new);
 }
 
-#define IN_PLACE(test) cmocka_unit_test_setup_teardown(test, make_small, remove_place)
-
-RT_TEST_GROUP(result_directory) {
-    const struct CMUnitTest tests[] = {
-        IN_PLACE(results_are_refused_unless_they_are_gone_on_with_or_begun_anew),
-        IN_PLACE(a_finished_run_that_is_resumed_shows_its_table_and_keeps_its_manifest),
-        IN_PLACE(results_without_their_journal_are_not_gone_on_with),
-        IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there),
-        IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried),
-        IN_PLACE(a_second_process_is_refused_with_the_number_of_the_first),
-        IN_PLACE(a_lock_goes_with_the_process_that_was_killed),
-        IN_PLACE(a_script_that_lies_elsewhere_is_copied_into_the_directory),
-        IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line),
-        IN_PLACE(an_experiment_that_is_named_like_a_folder_above_is_refused),
-        IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words),
-        IN_PLACE(where_there_is_no_gnuplot_a_note_says_so),
-        IN_PLACE(a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_left),
-        IN_PLACE(a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts),
-        IN_PLACE(a_run_that_begins_anew_and_is_killed_loses_the_old_one_only_for_the_new),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(result_directory, NULL, NULL)

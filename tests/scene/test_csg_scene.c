@@ -51,8 +51,7 @@ static void make_random(RtScene *scene, uint64_t seed, bool extents) {
 
 /* ---- materials and refraction ---- */
 
-static void a_surface_has_the_material_of_its_solid(void **state) {
-    (void)state;
+RT_TEST(a_surface_has_the_material_of_its_solid) {
     RtScene scene;
     make_bubble(&scene);
     RtRay ray = ray_along(rt_vec3(-4, 0, 0), along_x);
@@ -69,8 +68,7 @@ static void a_surface_has_the_material_of_its_solid(void **state) {
 
 /* Snell's law: out of the glass and into the bubble the ray bends away from the normal of the bubble's
  * wall. */
-static void light_is_refracted_out_of_the_tree_where_a_bubble_begins(void **state) {
-    (void)state;
+RT_TEST(light_is_refracted_out_of_the_tree_where_a_bubble_begins) {
     RtScene scene;
     make_bubble(&scene);
     RtRay ray = ray_along(rt_vec3(-4, 0.5f, 0), along_x), rays[RT_MAX_SPAWN];
@@ -86,8 +84,7 @@ static void light_is_refracted_out_of_the_tree_where_a_bubble_begins(void **stat
 
 /* ---- copies ---- */
 
-static void a_tree_may_be_appended_under_any_transform(void **state) {
-    (void)state;
+RT_TEST(a_tree_may_be_appended_under_any_transform) {
     RtTransform uneven = rt_transform_identity();
     assert_ok(rt_transform_rotate(&uneven, rt_vec3(1, 2, 3), 30, error));
     assert_ok(rt_transform_scale(&uneven, rt_vec3(2, 1, 0.5f), error));
@@ -126,8 +123,7 @@ static void a_tree_may_be_appended_under_any_transform(void **state) {
 
 /* ---- the fingerprint ---- */
 
-static void the_fingerprint_sees_trees_but_not_their_extents(void **state) {
-    (void)state;
+RT_TEST(the_fingerprint_sees_trees_but_not_their_extents) {
     RtScene scene, plain;
     make_random(&scene, 3, true);
     make_random(&plain, 3, false);
@@ -167,8 +163,7 @@ static RtTally counted(const RtScene *scene, RtRay ray) {
     return tallies[ray.kind];
 }
 
-static void solids_and_boxes_are_counted_as_they_are_tested(void **state) {
-    (void)state;
+RT_TEST(solids_and_boxes_are_counted_as_they_are_tested) {
     RtScene scene;
     make_bubble(&scene);
     /* Through both; past the box of the ball; past the tree. */
@@ -184,8 +179,7 @@ static void solids_and_boxes_are_counted_as_they_are_tested(void **state) {
 }
 
 /* Two clusters of four balls each: the ray meets the box of one of them. */
-static void a_node_that_is_missed_costs_one_test(void **state) {
-    (void)state;
+RT_TEST(a_node_that_is_missed_costs_one_test) {
     RtScene scene;
     RtCsgBuilder b = {0};
     RtCsgTerm clusters[2];
@@ -208,8 +202,7 @@ static void a_node_that_is_missed_costs_one_test(void **state) {
 
 /* ---- memory ---- */
 
-static void adding_a_tree_fails_cleanly_at_every_allocation(void **state) {
-    (void)state;
+RT_TEST(adding_a_tree_fails_cleanly_at_every_allocation) {
     RtRandom random = rt_random(33, 0);
     RtCsgBuilder b = {0};
     RtCsgTerm root = random_term(&b, &random, 10, true);
@@ -234,15 +227,4 @@ static void adding_a_tree_fails_cleanly_at_every_allocation(void **state) {
     rt_csg_builder_clear(&b);
 }
 
-RT_TEST_GROUP(csg_scene) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_surface_has_the_material_of_its_solid),
-        cmocka_unit_test(light_is_refracted_out_of_the_tree_where_a_bubble_begins),
-        cmocka_unit_test(a_tree_may_be_appended_under_any_transform),
-        cmocka_unit_test(the_fingerprint_sees_trees_but_not_their_extents),
-        cmocka_unit_test(solids_and_boxes_are_counted_as_they_are_tested),
-        cmocka_unit_test(a_node_that_is_missed_costs_one_test),
-        cmocka_unit_test(adding_a_tree_fails_cleanly_at_every_allocation),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(csg_scene, NULL, NULL)

@@ -56,30 +56,26 @@ static void expect_complaint(const char *formula, const char *complaint) {
     rt_csg_builder_clear(&builder);
 }
 
-static void operators_are_taken_from_the_left(void **state) {
-    (void)state;
+RT_TEST(operators_are_taken_from_the_left) {
     expect("a", "a");
     expect("a - b - c", "((a-b)-c)");
     expect("a|b - c|d", "(((a|b)-c)|d)");
     expect("a & b & c", "((a&b)&c)");
 }
 
-static void intersection_binds_before_the_others(void **state) {
-    (void)state;
+RT_TEST(intersection_binds_before_the_others) {
     expect("a | b & c", "(a|(b&c))");
     expect("a & b | c & d", "((a&b)|(c&d))");
     expect("a - b & c - d", "((a-(b&c))-d)");
 }
 
-static void parentheses_come_first(void **state) {
-    (void)state;
+RT_TEST(parentheses_come_first) {
     expect("(a | b) & c", "((a|b)&c)");
     expect("a - (b - (c - d))", "(a-(b-(c-d)))");
     expect("  ( ( a ) )\t", "a");
 }
 
-static void mistakes_are_placed_at_their_character(void **state) {
-    (void)state;
+RT_TEST(mistakes_are_placed_at_their_character) {
     expect_complaint("", "at character 1");
     expect_complaint("a -", "at character 4");
     expect_complaint("a b", "at character 3");
@@ -91,8 +87,7 @@ static void mistakes_are_placed_at_their_character(void **state) {
     expect_complaint("a - who", "there is no solid 'who'");
 }
 
-static void formulas_nest_as_deeply_as_memory_allows(void **state) {
-    (void)state;
+RT_TEST(formulas_nest_as_deeply_as_memory_allows) {
     enum { DEPTH = 100000 };
     RtCsgBuilder builder = {0};
     RtCsgTerm term;
@@ -108,8 +103,7 @@ static void formulas_nest_as_deeply_as_memory_allows(void **state) {
     rt_csg_builder_clear(&builder);
 }
 
-static void names_are_letters_digits_and_underscores(void **state) {
-    (void)state;
+RT_TEST(names_are_letters_digits_and_underscores) {
     assert_true(rt_formula_is_name("a"));
     assert_true(rt_formula_is_name("_bore_2"));
     assert_false(rt_formula_is_name(""));
@@ -118,14 +112,4 @@ static void names_are_letters_digits_and_underscores(void **state) {
     assert_false(rt_formula_is_name("a b"));
 }
 
-RT_TEST_GROUP(formula) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(operators_are_taken_from_the_left),
-        cmocka_unit_test(intersection_binds_before_the_others),
-        cmocka_unit_test(parentheses_come_first),
-        cmocka_unit_test(mistakes_are_placed_at_their_character),
-        cmocka_unit_test(formulas_nest_as_deeply_as_memory_allows),
-        cmocka_unit_test(names_are_letters_digits_and_underscores),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(formula, NULL, NULL)

@@ -19,8 +19,7 @@ static RtStatus load_text(const char *path, const char *text, RtScene *scene, Rt
     return rt_scene_open(path, scene, out);
 }
 
-static void triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own(void **state) {
-    (void)state;
+RT_TEST(triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own) {
     RtScene scene;
     assert_ok(load_text(OBJ_NAME,
                         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\n"
@@ -37,8 +36,7 @@ static void triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_ow
     rt_scene_clear(&scene);
 }
 
-static void vertex_normals_of_the_file_are_kept(void **state) {
-    (void)state;
+RT_TEST(vertex_normals_of_the_file_are_kept) {
     RtScene scene;
     assert_ok(load_text(OBJ_NAME,
                         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 2\nvn 0 1 0\nvn 1 0 0\nf 1//1 2//2 3//3\n", &scene,
@@ -49,8 +47,7 @@ static void vertex_normals_of_the_file_are_kept(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_mesh_goes_where_its_transform_puts_it(void **state) {
-    (void)state;
+RT_TEST(a_mesh_goes_where_its_transform_puts_it) {
     RtScene scene;
     uint32_t material;
     RtMaterial standard = rt_default_material();
@@ -77,8 +74,7 @@ static const char two_nodes[] =
     "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
     "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}";
 
-static void the_matrices_of_nodes_are_applied_and_mirrors_keep_the_outside_out(void **state) {
-    (void)state;
+RT_TEST(the_matrices_of_nodes_are_applied_and_mirrors_keep_the_outside_out) {
     RtScene scene;
     assert_ok(load_text(RT_BINARY_DIR "/test_mesh_scene.gltf", two_nodes, &scene, error));
     assert_int_equal(scene.geometry.triangle_count, 2);
@@ -88,8 +84,7 @@ static void the_matrices_of_nodes_are_applied_and_mirrors_keep_the_outside_out(v
     rt_scene_clear(&scene);
 }
 
-static void binary_formats_bring_triangles_back_bit_for_bit(void **state) {
-    (void)state;
+RT_TEST(binary_formats_bring_triangles_back_bit_for_bit) {
     static const char *const names[] = {RT_BINARY_DIR "/test_mesh.ply", RT_BINARY_DIR "/test_mesh.stl",
                                         RT_BINARY_DIR "/test_mesh.glb"};
     RtScene scene, again;
@@ -104,8 +99,7 @@ static void binary_formats_bring_triangles_back_bit_for_bit(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void obj_comes_back_within_the_rounding_of_its_reader(void **state) {
-    (void)state;
+RT_TEST(obj_comes_back_within_the_rounding_of_its_reader) {
     RtScene scene, again;
     assert_ok(rt_scene_open("random:n=300,shape=triangle", &scene, error));
     assert_ok(rt_scene_save(&scene, OBJ_NAME, true, error));
@@ -122,8 +116,7 @@ static void obj_comes_back_within_the_rounding_of_its_reader(void **state) {
     rt_scene_clear(&again);
 }
 
-static void a_scene_with_other_shapes_is_not_written_as_a_mesh(void **state) {
-    (void)state;
+RT_TEST(a_scene_with_other_shapes_is_not_written_as_a_mesh) {
     RtScene scene;
     RtError problem;
     const char *path = RT_BINARY_DIR "/test_mesh_refused.ply";
@@ -139,8 +132,7 @@ static void a_scene_with_other_shapes_is_not_written_as_a_mesh(void **state) {
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"        \
     "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n" faces
 
-static void bad_meshes_are_refused_with_what_is_wrong(void **state) {
-    (void)state;
+RT_TEST(bad_meshes_are_refused_with_what_is_wrong) {
     const struct {
         const char *path, *text, *says;
     } cases[] = {
@@ -175,8 +167,7 @@ static void bad_meshes_are_refused_with_what_is_wrong(void **state) {
     assert_non_null(strstr(problem.message, "No such file"));
 }
 
-static void assimp_says_nothing_on_the_terminal(void **state) {
-    (void)state;
+RT_TEST(assimp_says_nothing_on_the_terminal) {
     FILE *both = tmpfile();
     assert_non_null(both);
     fflush(stdout);
@@ -203,8 +194,7 @@ static void assimp_says_nothing_on_the_terminal(void **state) {
     assert_int_equal(bad, RT_BAD_INPUT);
 }
 
-static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
-    (void)state;
+RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
     int64_t before = rt_alloc_live();
     RtScene scene, again;
     RtError problem;
@@ -231,8 +221,7 @@ static void every_failed_allocation_is_reported_and_leaves_nothing(void **state)
     assert_int_equal(rt_alloc_live(), before);
 }
 
-static void the_bunny_has_69666_triangles_all_with_area(void **state) {
-    (void)state;
+RT_TEST(the_bunny_has_69666_triangles_all_with_area) {
     if (!rt_file_exists(BUNNY)) {
         print_message("%s is not there (package glmark2-data)\n", BUNNY);
         skip();
@@ -246,19 +235,4 @@ static void the_bunny_has_69666_triangles_all_with_area(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(mesh) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(triangles_keep_the_order_of_the_file_and_have_no_normals_of_their_own),
-        cmocka_unit_test(vertex_normals_of_the_file_are_kept),
-        cmocka_unit_test(a_mesh_goes_where_its_transform_puts_it),
-        cmocka_unit_test(the_matrices_of_nodes_are_applied_and_mirrors_keep_the_outside_out),
-        cmocka_unit_test(binary_formats_bring_triangles_back_bit_for_bit),
-        cmocka_unit_test(obj_comes_back_within_the_rounding_of_its_reader),
-        cmocka_unit_test(a_scene_with_other_shapes_is_not_written_as_a_mesh),
-        cmocka_unit_test(bad_meshes_are_refused_with_what_is_wrong),
-        cmocka_unit_test(assimp_says_nothing_on_the_terminal),
-        cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
-        cmocka_unit_test(the_bunny_has_69666_triangles_all_with_area),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(mesh, NULL, NULL)

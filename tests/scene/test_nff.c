@@ -36,8 +36,7 @@ static RtStatus load_text(const char *text, RtScene *scene, RtError *out) {
     return load_bytes(text, strlen(text), scene, out);
 }
 
-static void every_statement_is_read(void **state) {
-    (void)state;
+RT_TEST(every_statement_is_read) {
     RtScene scene;
     assert_ok(load_text(everything, &scene, error));
     const RtGeometry *g = &scene.geometry;
@@ -65,8 +64,7 @@ static void every_statement_is_read(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_light_without_colour_has_the_suggested_intensity(void **state) {
-    (void)state;
+RT_TEST(a_light_without_colour_has_the_suggested_intensity) {
     RtScene scene;
     assert_ok(load_text(everything, &scene, error));
     assert_int_equal(scene.light_count, 2);
@@ -75,8 +73,7 @@ static void a_light_without_colour_has_the_suggested_intensity(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void repeated_materials_are_stored_once(void **state) {
-    (void)state;
+RT_TEST(repeated_materials_are_stored_once) {
     RtScene scene;
     assert_ok(load_text("f 1 0 0 1 0 0 0 1\ns 0 0 0 1\nf 0 1 0 1 0 0 0 1\ns 1 0 0 1\nf 1 0 0 1 0 0 0 1\n"
                         "s 2 0 0 1\n",
@@ -86,8 +83,7 @@ static void repeated_materials_are_stored_once(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void signs_of_radii_and_line_ends_do_not_matter(void **state) {
-    (void)state;
+RT_TEST(signs_of_radii_and_line_ends_do_not_matter) {
     RtScene scene;
     assert_ok(load_text("s 0 0 0 -2\r\nc 0 0 0 -1 0 0 1 -1\r\n\r\n\ts\t1\n1\n1\n1", &scene, error));
     assert_int_equal(scene.geometry.object_count, 3);
@@ -95,8 +91,7 @@ static void signs_of_radii_and_line_ends_do_not_matter(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void what_is_written_reads_back_bit_for_bit(void **state) {
-    (void)state;
+RT_TEST(what_is_written_reads_back_bit_for_bit) {
     RtScene scene, again;
     assert_ok(rt_scene_open("random:n=400,shape=mixed", &scene, error));
     assert_ok(rt_scene_save(&scene, FILE_NAME, true, error));
@@ -115,8 +110,7 @@ static void what_is_written_reads_back_bit_for_bit(void **state) {
     rt_scene_clear(&again);
 }
 
-static void a_triangle_without_area_survives_being_written(void **state) {
-    (void)state;
+RT_TEST(a_triangle_without_area_survives_being_written) {
     RtScene scene, again;
     uint32_t material;
     RtMaterial standard = rt_default_material();
@@ -132,8 +126,7 @@ static void a_triangle_without_area_survives_being_written(void **state) {
     rt_scene_clear(&again);
 }
 
-static void an_existing_file_is_kept_unless_it_may_be_overwritten(void **state) {
-    (void)state;
+RT_TEST(an_existing_file_is_kept_unless_it_may_be_overwritten) {
     RtScene scene, again;
     RtError problem;
     assert_ok(load_text("s 0 0 0 1\n", &scene, error));
@@ -147,8 +140,7 @@ static void an_existing_file_is_kept_unless_it_may_be_overwritten(void **state) 
     rt_scene_clear(&again);
 }
 
-static void bad_files_are_refused_with_line_and_remedy(void **state) {
-    (void)state;
+RT_TEST(bad_files_are_refused_with_line_and_remedy) {
     const struct {
         const char *text, *line, *says;
     } cases[] = {
@@ -209,16 +201,14 @@ static void bad_files_are_refused_with_line_and_remedy(void **state) {
     }
 }
 
-static void a_binary_file_is_refused_as_such(void **state) {
-    (void)state;
+RT_TEST(a_binary_file_is_refused_as_such) {
     RtScene scene;
     RtError problem;
     assert_int_equal(load_bytes("s 0 0 0 1\n\0\1\2", 13, &scene, &problem), RT_BAD_INPUT);
     assert_non_null(strstr(problem.message, "binary"));
 }
 
-static void a_file_cut_anywhere_is_read_or_refused(void **state) {
-    (void)state;
+RT_TEST(a_file_cut_anywhere_is_read_or_refused) {
     int64_t before = rt_alloc_live();
     for (size_t size = 0; size < sizeof everything; size++) {
         RtScene scene;
@@ -230,8 +220,7 @@ static void a_file_cut_anywhere_is_read_or_refused(void **state) {
     }
 }
 
-static void a_file_with_any_bytes_changed_is_read_or_refused(void **state) {
-    (void)state;
+RT_TEST(a_file_with_any_bytes_changed_is_read_or_refused) {
     static const char bytes[] = "0123456789-+.eE \n#pscfvblnx\x01\xff";
     int64_t before = rt_alloc_live();
     for (uint64_t run = 0; run < 2000; run++) {
@@ -251,14 +240,12 @@ static void a_file_with_any_bytes_changed_is_read_or_refused(void **state) {
     }
 }
 
-static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
-    (void)state;
+RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
     assert_ok(rt_file_write(FILE_NAME, everything, strlen(everything), error));
     assert_failed_allocations_are_reported(FILE_NAME);
 }
 
-static void the_jewel_is_whole(void **state) {
-    (void)state;
+RT_TEST(the_jewel_is_whole) {
     RtScene scene;
     assert_ok(rt_scene_open(RT_SOURCE_DIR "/scenes/jewel.nff", &scene, error));
     assert_int_equal(scene.geometry.object_count, 1137);
@@ -269,21 +256,4 @@ static void the_jewel_is_whole(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(nff) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_statement_is_read),
-        cmocka_unit_test(a_light_without_colour_has_the_suggested_intensity),
-        cmocka_unit_test(repeated_materials_are_stored_once),
-        cmocka_unit_test(signs_of_radii_and_line_ends_do_not_matter),
-        cmocka_unit_test(what_is_written_reads_back_bit_for_bit),
-        cmocka_unit_test(a_triangle_without_area_survives_being_written),
-        cmocka_unit_test(an_existing_file_is_kept_unless_it_may_be_overwritten),
-        cmocka_unit_test(bad_files_are_refused_with_line_and_remedy),
-        cmocka_unit_test(a_binary_file_is_refused_as_such),
-        cmocka_unit_test(a_file_cut_anywhere_is_read_or_refused),
-        cmocka_unit_test(a_file_with_any_bytes_changed_is_read_or_refused),
-        cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
-        cmocka_unit_test(the_jewel_is_whole),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(nff, NULL, NULL)

@@ -108,8 +108,7 @@ static void compare(const Model *model) {
     assert_int_equal(sum.wrong, 0);
 }
 
-static void openscad_and_embree_agree_with_our_csg_trees(void **state) {
-    (void)state;
+RT_TEST(openscad_and_embree_agree_with_our_csg_trees) {
     for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) compare(&models[i]);
 }
 
@@ -124,6 +123,5 @@ RT_TEST_GROUP(openscad) {
         puts("this build has no Embree: the comparison with OpenSCAD's meshes is skipped");
         return RT_TEST_SKIPPED;
     }
-    const struct CMUnitTest tests[] = {cmocka_unit_test(openscad_and_embree_agree_with_our_csg_trees)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RT_RUN_TESTS("openscad", NULL, NULL);
 }

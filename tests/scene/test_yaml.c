@@ -7,8 +7,7 @@
 
 /* ---- what a file says ---- */
 
-static void a_scene_is_what_its_file_says(void **state) {
-    (void)state;
+RT_TEST(a_scene_is_what_its_file_says) {
     RtScene s;
     assert_ok(load_text(everything, &s, error));
     const RtGeometry *g = &s.geometry;
@@ -30,8 +29,7 @@ static void a_scene_is_what_its_file_says(void **state) {
     rt_scene_clear(&s);
 }
 
-static void what_is_left_out_has_defaults(void **state) {
-    (void)state;
+RT_TEST(what_is_left_out_has_defaults) {
     RtScene s;
     assert_ok(load_text("objects:\n  - sphere: {center: [1, 2, 3], radius: 1}\n", &s, error));
     assert_int_equal(s.light_count, 1);
@@ -40,8 +38,7 @@ static void what_is_left_out_has_defaults(void **state) {
     rt_scene_clear(&s);
 }
 
-static void a_material_called_default_is_the_default(void **state) {
-    (void)state;
+RT_TEST(a_material_called_default_is_the_default) {
     RtScene s;
     assert_ok(load_text("materials: [{name: default, color: [0, 1, 0]}]\n"
                         "objects: [sphere: {center: [1, 2, 3], radius: 1}]\n",
@@ -51,8 +48,7 @@ static void a_material_called_default_is_the_default(void **state) {
     rt_scene_clear(&s);
 }
 
-static void a_built_in_moved_and_moved_back_is_itself(void **state) {
-    (void)state;
+RT_TEST(a_built_in_moved_and_moved_back_is_itself) {
     RtScene plain, s;
     assert_ok(rt_builtin_open("balls:size=2", &plain, error));
     assert_ok(load_text("objects:\n"
@@ -77,8 +73,7 @@ static void a_built_in_moved_and_moved_back_is_itself(void **state) {
 
 /* ---- the documentation, and scenes that come along ---- */
 
-static void every_example_of_the_documentation_loads(void **state) {
-    (void)state;
+RT_TEST(every_example_of_the_documentation_loads) {
     FILE *in = fopen("docs/scenes.md", "r");
     assert_non_null(in);
     char line[1024], text[8192] = "";
@@ -104,8 +99,7 @@ static void every_example_of_the_documentation_loads(void **state) {
     assert_true(count >= 5);
 }
 
-static void every_scene_that_comes_along_loads(void **state) {
-    (void)state;
+RT_TEST(every_scene_that_comes_along_loads) {
     glob_t found;
     assert_int_equal(glob("scenes/*.yaml", 0, NULL, &found), 0);
     for (size_t i = 0; i < found.gl_pathc; i++) {
@@ -117,14 +111,4 @@ static void every_scene_that_comes_along_loads(void **state) {
     globfree(&found);
 }
 
-RT_TEST_GROUP(yaml) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_scene_is_what_its_file_says),
-        cmocka_unit_test(what_is_left_out_has_defaults),
-        cmocka_unit_test(a_material_called_default_is_the_default),
-        cmocka_unit_test(a_built_in_moved_and_moved_back_is_itself),
-        cmocka_unit_test(every_example_of_the_documentation_loads),
-        cmocka_unit_test(every_scene_that_comes_along_loads),
-    };
-    return cmocka_run_group_tests(tests, make_folder, NULL);
-}
+RT_TESTS(yaml, make_folder, NULL)

@@ -177,8 +177,7 @@ static const struct {
      9, "at most 16777216"},
 };
 
-static void bad_input_is_refused_with_its_line_and_a_remedy(void **state) {
-    (void)state;
+RT_TEST(bad_input_is_refused_with_its_line_and_a_remedy) {
     int64_t live = rt_alloc_live();
     for (size_t i = 0; i < sizeof hostile / sizeof hostile[0]; i++) {
         RtScene scene;
@@ -193,8 +192,7 @@ static void bad_input_is_refused_with_its_line_and_a_remedy(void **state) {
     }
 }
 
-static void the_column_is_that_of_the_value(void **state) {
-    (void)state;
+RT_TEST(the_column_is_that_of_the_value) {
     RtScene scene;
     RtError error;
     assert_int_equal(load_text("objects:\n- sphere: {center: [0, 0, 0], radius: 0}\n", &scene, &error),
@@ -202,8 +200,7 @@ static void the_column_is_that_of_the_value(void **state) {
     assert_non_null(strstr(error.message, "scene.yaml:2:39: objects[0].sphere.radius: "));
 }
 
-static void files_that_are_none_are_refused(void **state) {
-    (void)state;
+RT_TEST(files_that_are_none_are_refused) {
     RtScene scene;
     RtError error;
     assert_int_equal(load(RT_TEST_FOLDER "/missing.yaml", &scene, &error), RT_BAD_INPUT);
@@ -216,8 +213,7 @@ static void files_that_are_none_are_refused(void **state) {
     assert_int_equal(load(RT_TEST_FOLDER "/zeros.yaml", &scene, &error), RT_BAD_INPUT);
 }
 
-static void deep_nesting_is_refused_without_descending(void **state) {
-    (void)state;
+RT_TEST(deep_nesting_is_refused_without_descending) {
     static const char *const levels[] = {"[", "- ", "{a: ", "? ", "[{a: ", "!t [", "[? "};
     enum { DEPTH = 100000 };
     static char text[DEPTH * 8];
@@ -250,8 +246,7 @@ static RtStatus parse_much(const char *head, const char *part, size_t bytes, con
 }
 
 /* Most of these would take hours where time grows with the square of the text. */
-static void much_of_anything_is_refused_with_its_place_and_soon(void **state) {
-    (void)state;
+RT_TEST(much_of_anything_is_refused_with_its_place_and_soon) {
     enum { MB = 1000000 };
     static const struct {
         const char *head, *part, *tail, *place, *says;
@@ -285,8 +280,7 @@ static void much_of_anything_is_refused_with_its_place_and_soon(void **state) {
     }
 }
 
-static void zero_bytes_are_refused_with_their_place(void **state) {
-    (void)state;
+RT_TEST(zero_bytes_are_refused_with_their_place) {
     static const char text[] = "objects:\n- sphere: {center: [0, \0 0, 0], radius: 1}\n";
     write_bytes(RT_TEST_FOLDER "/scene.yaml", text, sizeof text - 1);
     RtScene scene;
@@ -295,8 +289,7 @@ static void zero_bytes_are_refused_with_their_place(void **state) {
     assert_non_null(strstr(error.message, "scene.yaml:2:24: this is not text in UTF-8: control characters"));
 }
 
-static void every_prefix_of_a_scene_is_read_or_refused(void **state) {
-    (void)state;
+RT_TEST(every_prefix_of_a_scene_is_read_or_refused) {
     int64_t live = rt_alloc_live();
     for (size_t length = 0; length < sizeof everything; length += 7) {
         write_bytes(RT_TEST_FOLDER "/scene.yaml", everything, length);
@@ -309,8 +302,7 @@ static void every_prefix_of_a_scene_is_read_or_refused(void **state) {
 
 /* ---- memory ---- */
 
-static void whichever_allocation_fails_nothing_is_left(void **state) {
-    (void)state;
+RT_TEST(whichever_allocation_fails_nothing_is_left) {
     write_text(RT_TEST_FOLDER "/scene.yaml", everything);
     int64_t live = rt_alloc_live();
     RtStatus status = RT_NO_MEMORY;
@@ -330,8 +322,7 @@ static void whichever_allocation_fails_nothing_is_left(void **state) {
 
 /* libyaml's own allocations fail where the address space ends: in a child, which is given little more than it
  * has. Sanitizers need all of it. */
-static void too_little_memory_for_libyaml_is_out_of_memory(void **state) {
-    (void)state;
+RT_TEST(too_little_memory_for_libyaml_is_out_of_memory) {
 #if RT_SANITIZED
     skip();
 #else
@@ -360,17 +351,4 @@ static void too_little_memory_for_libyaml_is_out_of_memory(void **state) {
 #endif
 }
 
-RT_TEST_GROUP(yaml_refusals) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_input_is_refused_with_its_line_and_a_remedy),
-        cmocka_unit_test(the_column_is_that_of_the_value),
-        cmocka_unit_test(files_that_are_none_are_refused),
-        cmocka_unit_test(deep_nesting_is_refused_without_descending),
-        cmocka_unit_test(much_of_anything_is_refused_with_its_place_and_soon),
-        cmocka_unit_test(zero_bytes_are_refused_with_their_place),
-        cmocka_unit_test(every_prefix_of_a_scene_is_read_or_refused),
-        cmocka_unit_test(whichever_allocation_fails_nothing_is_left),
-        cmocka_unit_test(too_little_memory_for_libyaml_is_out_of_memory),
-    };
-    return cmocka_run_group_tests(tests, make_folder, NULL);
-}
+RT_TESTS(yaml_refusals, make_folder, NULL)

@@ -24,8 +24,7 @@ static const char *spec_of(const char *name) {
     return strcmp(name, "hall") == 0 ? "hall:size=1" : name;
 }
 
-static void a_scene_saved_and_loaded_keeps_every_bit(void **state) {
-    (void)state;
+RT_TEST(a_scene_saved_and_loaded_keeps_every_bit) {
     RtScene scene;
     assert_ok(load_text(everything, &scene, error));
     assert_survives(&scene);
@@ -38,8 +37,7 @@ static void a_scene_saved_and_loaded_keeps_every_bit(void **state) {
 }
 
 /* Half-spaces are saved as polyhedra of one plane, slabs as polyhedra of two. */
-static void solids_without_an_end_survive_saving(void **state) {
-    (void)state;
+RT_TEST(solids_without_an_end_survive_saving) {
     RtScene scene;
     assert_ok(load_text("solids:\n"
                         "  - {name: ball, sphere: {center: [1, 2, 3], radius: 1.1}}\n"
@@ -53,8 +51,7 @@ static void solids_without_an_end_survive_saving(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void vertex_normals_survive_saving_bit_for_bit(void **state) {
-    (void)state;
+RT_TEST(vertex_normals_survive_saving_bit_for_bit) {
     RtScene scene;
     rt_scene_init(&scene);
     RtMaterial material = rt_default_material();
@@ -71,8 +68,7 @@ static void vertex_normals_survive_saving_bit_for_bit(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void names_of_any_printable_text_survive_saving(void **state) {
-    (void)state;
+RT_TEST(names_of_any_printable_text_survive_saving) {
     static const char *const names[] = {"it's", "''", "a: b # c",    "- [x]", "\"",
                                         "\\n",  " ",  "gl\xc3\xa4s", "*a"};
     enum { COUNT = sizeof names / sizeof names[0] };
@@ -93,8 +89,7 @@ static void names_of_any_printable_text_survive_saving(void **state) {
     rt_scene_clear(&again);
 }
 
-static void names_that_cannot_be_written_are_replaced_by_numbers(void **state) {
-    (void)state;
+RT_TEST(names_that_cannot_be_written_are_replaced_by_numbers) {
     static const char *const pairs[][2] = {
         {"a", "a"}, {"a", ""}, {"a", "b\n"}, {"a", "\xff"}, {"a", "b\xc2\x85\x20"}};
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
@@ -114,8 +109,7 @@ static void names_that_cannot_be_written_are_replaced_by_numbers(void **state) {
     }
 }
 
-static void whichever_allocation_fails_saving_is_out_of_memory(void **state) {
-    (void)state;
+RT_TEST(whichever_allocation_fails_saving_is_out_of_memory) {
     RtScene scene;
     assert_ok(load_text(everything, &scene, error));
     FILE *out = fopen("/dev/null", "wb");
@@ -135,8 +129,7 @@ static void whichever_allocation_fails_saving_is_out_of_memory(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_full_disk_is_reported(void **state) {
-    (void)state;
+RT_TEST(a_full_disk_is_reported) {
     FILE *out = fopen("/dev/full", "wb");
     if (!out) skip();
     setvbuf(out, NULL, _IONBF, 0);
@@ -148,15 +141,4 @@ static void a_full_disk_is_reported(void **state) {
     fclose(out);
 }
 
-RT_TEST_GROUP(yaml_save) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_scene_saved_and_loaded_keeps_every_bit),
-        cmocka_unit_test(solids_without_an_end_survive_saving),
-        cmocka_unit_test(vertex_normals_survive_saving_bit_for_bit),
-        cmocka_unit_test(names_of_any_printable_text_survive_saving),
-        cmocka_unit_test(names_that_cannot_be_written_are_replaced_by_numbers),
-        cmocka_unit_test(whichever_allocation_fails_saving_is_out_of_memory),
-        cmocka_unit_test(a_full_disk_is_reported),
-    };
-    return cmocka_run_group_tests(tests, make_folder, NULL);
-}
+RT_TESTS(yaml_save, make_folder, NULL)

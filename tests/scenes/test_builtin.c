@@ -12,8 +12,7 @@ XXH3_state_t *XXH3_createState(void) {
     return NULL;
 }
 
-static void random_scenes_have_as_many_objects_as_asked_for(void **state) {
-    (void)state;
+RT_TEST(random_scenes_have_as_many_objects_as_asked_for) {
     const struct {
         const char *spec;
         uint32_t spheres, triangles;
@@ -38,8 +37,7 @@ static RtVec3 extent_of(const RtScene *scene, uint32_t first, uint32_t count) {
     return rt_sub(box.hi, box.lo);
 }
 
-static void random_objects_are_where_their_distribution_says(void **state) {
-    (void)state;
+RT_TEST(random_objects_are_where_their_distribution_says) {
     RtScene scene = open_scene("random:n=16,distribution=coincident");
     for (uint32_t i = 1; i < 16; i++) {
         assert_memory_equal(&scene.geometry.spheres[i], &scene.geometry.spheres[0], sizeof(RtSphere));
@@ -85,20 +83,17 @@ static uint64_t fingerprint_with_normals(uint32_t with) {
     return fingerprint;
 }
 
-static void a_fingerprint_needs_no_memory(void **state) {
-    (void)state;
+RT_TEST(a_fingerprint_needs_no_memory) {
     assert_null(XXH3_createState());
     assert_int_not_equal(fingerprint_with_normals(0), 0);
 }
 
-static void a_fingerprint_tells_which_triangle_has_normals(void **state) {
-    (void)state;
+RT_TEST(a_fingerprint_tells_which_triangle_has_normals) {
     assert_int_not_equal(fingerprint_with_normals(0), fingerprint_with_normals(1));
     assert_int_equal(fingerprint_with_normals(1), fingerprint_with_normals(1));
 }
 
-static void random_scenes_depend_on_the_seed_alone(void **state) {
-    (void)state;
+RT_TEST(random_scenes_depend_on_the_seed_alone) {
     RtScene a = open_scene("random:n=500,shape=mixed,seed=7"),
             b = open_scene("random:n=500,shape=mixed,seed=7");
     RtScene c = open_scene("random:n=500,shape=mixed,seed=8");
@@ -113,24 +108,21 @@ static void random_scenes_depend_on_the_seed_alone(void **state) {
     rt_scene_clear(&c);
 }
 
-static void a_random_object_does_not_depend_on_those_before_it(void **state) {
-    (void)state;
+RT_TEST(a_random_object_does_not_depend_on_those_before_it) {
     RtScene few = open_scene("random:n=10"), many = open_scene("random:n=1000");
     assert_memory_equal(&few.geometry.spheres[9].center, &many.geometry.spheres[9].center, sizeof(RtVec3));
     rt_scene_clear(&few);
     rt_scene_clear(&many);
 }
 
-static void one_narrow_cluster_lies_together(void **state) {
-    (void)state;
+RT_TEST(one_narrow_cluster_lies_together) {
     RtScene scene = open_scene("random:n=2000,distribution=clustered,clusters=1,width=0.001,radius=0.001");
     RtVec3 size = rt_box_size(scene.geometry.box);
     assert_true(rt_maxf(size.x, rt_maxf(size.y, size.z)) < 0.1f);
     rt_scene_clear(&scene);
 }
 
-static void wrong_names_are_refused_with_what_would_be_right(void **state) {
-    (void)state;
+RT_TEST(wrong_names_are_refused_with_what_would_be_right) {
     const struct {
         const char *spec, *says;
     } cases[] = {
@@ -162,8 +154,7 @@ static void wrong_names_are_refused_with_what_would_be_right(void **state) {
     }
 }
 
-static void too_large_a_scene_is_refused_with_the_size_that_fits(void **state) {
-    (void)state;
+RT_TEST(too_large_a_scene_is_refused_with_the_size_that_fits) {
     const struct {
         const char *name;
         int64_t value;
@@ -190,8 +181,7 @@ static void too_large_a_scene_is_refused_with_the_size_that_fits(void **state) {
     }
 }
 
-static void the_estimate_of_memory_is_no_less_than_what_is_used(void **state) {
-    (void)state;
+RT_TEST(the_estimate_of_memory_is_no_less_than_what_is_used) {
     static const char *const more[] = {"random:n=20000", "random:n=20000,shape=mixed",
                                        "csg-field:n=65,least=64"};
     size_t extra = sizeof more / sizeof more[0];
@@ -208,8 +198,7 @@ static void the_estimate_of_memory_is_no_less_than_what_is_used(void **state) {
     }
 }
 
-static void the_count_of_objects_is_told_beforehand(void **state) {
-    (void)state;
+RT_TEST(the_count_of_objects_is_told_beforehand) {
     for (size_t i = 0; i < rt_builtin_count(); i++) {
         const RtBuiltin *builtin = rt_builtin_at(i);
         RtValue values[RT_MAX_PARAMS];
@@ -220,8 +209,7 @@ static void the_count_of_objects_is_told_beforehand(void **state) {
     }
 }
 
-static void every_failed_allocation_is_reported_and_leaves_nothing(void **state) {
-    (void)state;
+RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
     for (size_t i = 0; i < rt_builtin_count(); i++) { /* the smallest scene of each */
         const RtBuiltin *builtin = rt_builtin_at(i);
         char spec[RT_MAX_NAME + 32];
@@ -232,20 +220,4 @@ static void every_failed_allocation_is_reported_and_leaves_nothing(void **state)
     assert_failed_allocations_are_reported("random:n=100,shape=mixed");
 }
 
-RT_TEST_GROUP(builtin) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_scenes_have_as_many_objects_as_asked_for),
-        cmocka_unit_test(random_objects_are_where_their_distribution_says),
-        cmocka_unit_test(a_fingerprint_needs_no_memory),
-        cmocka_unit_test(a_fingerprint_tells_which_triangle_has_normals),
-        cmocka_unit_test(random_scenes_depend_on_the_seed_alone),
-        cmocka_unit_test(a_random_object_does_not_depend_on_those_before_it),
-        cmocka_unit_test(one_narrow_cluster_lies_together),
-        cmocka_unit_test(wrong_names_are_refused_with_what_would_be_right),
-        cmocka_unit_test(too_large_a_scene_is_refused_with_the_size_that_fits),
-        cmocka_unit_test(the_estimate_of_memory_is_no_less_than_what_is_used),
-        cmocka_unit_test(the_count_of_objects_is_told_beforehand),
-        cmocka_unit_test(every_failed_allocation_is_reported_and_leaves_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(builtin, NULL, NULL)

@@ -12,8 +12,7 @@
 
 /* ---- counts ---- */
 
-static void places_have_the_objects_that_they_say(void **state) {
-    (void)state;
+RT_TEST(places_have_the_objects_that_they_say) {
     static const ShapeCounts rows[] = {
         {"teapot", 0, 144, 9120, 0},
         {"teapot:size=6", 0, 36, 2256, 0},
@@ -34,8 +33,7 @@ static const char *const specs[] = {"teapot:size=3", "stadium:size=2", "hall:siz
 
 enum { SPECS = sizeof specs / sizeof specs[0] };
 
-static void a_count_before_making_is_the_count_made(void **state) {
-    (void)state;
+RT_TEST(a_count_before_making_is_the_count_made) {
     for (size_t i = 0; i < SPECS; i++) {
         const RtBuiltin *builtin = rt_builtin_find(specs[i]);
         const char *colon = strchr(specs[i], ':');
@@ -93,8 +91,7 @@ static void normals_point_where_the_triangles_do(const RtGeometry *g) {
 }
 
 /* Lid and body end in a circle of 4 n edges, the handle at both ends in 2 n, and so does the spout. */
-static void a_teapot_is_open_at_its_rims_alone(void **state) {
-    (void)state;
+RT_TEST(a_teapot_is_open_at_its_rims_alone) {
     for (uint32_t n = 2; n <= 12; n += 5) {
         char spec[32];
         snprintf(spec, sizeof spec, "teapot:size=%u", n);
@@ -104,8 +101,7 @@ static void a_teapot_is_open_at_its_rims_alone(void **state) {
     }
 }
 
-static void a_teapot_stands_on_its_board_and_its_normals_point_out(void **state) {
-    (void)state;
+RT_TEST(a_teapot_stands_on_its_board_and_its_normals_point_out) {
     RtScene scene = open_scene("teapot");
     RtBox box = scene.geometry.box;
     assert_true(box.lo.x == -4 && box.lo.y == -4 && box.lo.z == 0);
@@ -114,8 +110,7 @@ static void a_teapot_stands_on_its_board_and_its_normals_point_out(void **state)
     rt_scene_clear(&scene);
 }
 
-static void a_stadium_is_ratio_times_as_long_as_its_teapot(void **state) {
-    (void)state;
+RT_TEST(a_stadium_is_ratio_times_as_long_as_its_teapot) {
     const double ratios[] = {50, 1000, 1e6};
     for (size_t i = 0; i < sizeof ratios / sizeof ratios[0]; i++) {
         char spec[64];
@@ -160,8 +155,7 @@ static uint64_t count_misses(RtScene *scene, uint32_t side) {
 }
 
 /* The room itself is the first of its triangles: 39 columns, 2 * 12 - 2 a column. */
-static void a_hall_is_closed_so_that_every_primary_ray_hits(void **state) {
-    (void)state;
+RT_TEST(a_hall_is_closed_so_that_every_primary_ray_hits) {
     RtScene scene = open_scene("hall");
     assert_int_equal(open_edges(&scene.geometry, 0, 39 * 22), 0);
     assert_int_equal(count_misses(&scene, 512), 0);
@@ -177,8 +171,7 @@ static void a_hall_is_closed_so_that_every_primary_ray_hits(void **state) {
 }
 
 /* Recorded with gcc 12 and clang 14 on x86-64. */
-static void places_are_the_same_bit_for_bit_everywhere(void **state) {
-    (void)state;
+RT_TEST(places_are_the_same_bit_for_bit_everywhere) {
     const struct {
         const char *spec;
         uint64_t fingerprint;
@@ -201,8 +194,7 @@ static void assert_same(const char *one, const char *other, bool same) {
     rt_scene_clear(&b);
 }
 
-static void random_places_depend_on_the_seed_alone(void **state) {
-    (void)state;
+RT_TEST(random_places_depend_on_the_seed_alone) {
     assert_same("forest:n=20,seed=7", "forest:n=20,seed=7", true);
     assert_same("forest:n=20,seed=7", "forest:n=20,seed=8", false);
     assert_same("city:size=2,seed=7", "city:size=2,seed=7", true);
@@ -210,8 +202,7 @@ static void random_places_depend_on_the_seed_alone(void **state) {
 }
 
 /* Trees of two kinds: 1036 triangles, or 986. */
-static void a_forest_grows_from_a_thousand_triangles_to_any_number(void **state) {
-    (void)state;
+RT_TEST(a_forest_grows_from_a_thousand_triangles_to_any_number) {
     for (uint32_t n = 1; n <= 1000; n *= 10) {
         char spec[32];
         snprintf(spec, sizeof spec, "forest:n=%u", n);
@@ -252,8 +243,7 @@ static void count_in_planes(const RtGeometry *g, int axis, uint32_t others, uint
     free(planes);
 }
 
-static void three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_others(void **state) {
-    (void)state;
+RT_TEST(three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_others) {
     RtScene scene = open_scene("city");
     uint32_t flat = 0, share = 0;
     for (int axis = 0; axis < 3; axis++) count_in_planes(&scene.geometry, axis, 10, &flat, &share);
@@ -264,8 +254,7 @@ static void three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_o
 
 /* ---- forms ---- */
 
-static void points_on_the_circle_are_exact_where_they_can_be(void **state) {
-    (void)state;
+RT_TEST(points_on_the_circle_are_exact_where_they_can_be) {
     for (uint32_t n = 1; n <= 512; n++) {
         for (uint32_t i = 0; i <= n; i++) {
             RtVec3d p = rt_on_circle(i, n);
@@ -279,8 +268,7 @@ static void points_on_the_circle_are_exact_where_they_can_be(void **state) {
     }
 }
 
-static void a_box_faces_outwards(void **state) {
-    (void)state;
+RT_TEST(a_box_faces_outwards) {
     RtScene scene;
     RtMaterial standard = rt_default_material();
     rt_scene_init(&scene);
@@ -302,8 +290,7 @@ static void a_box_faces_outwards(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards(void **state) {
-    (void)state;
+RT_TEST(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards) {
     static const RtVec3d profile[] = {{0, 0, 0}, {1, 0, 0.2}, {0.5, 0, 1}, {0, 0, 1.5}};
     RtScene scene;
     RtMaterial standard = rt_default_material();
@@ -323,21 +310,4 @@ static void a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards(void **st
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(places) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_have_the_objects_that_they_say),
-        cmocka_unit_test(a_count_before_making_is_the_count_made),
-        cmocka_unit_test(a_teapot_is_open_at_its_rims_alone),
-        cmocka_unit_test(a_teapot_stands_on_its_board_and_its_normals_point_out),
-        cmocka_unit_test(a_stadium_is_ratio_times_as_long_as_its_teapot),
-        cmocka_unit_test(a_hall_is_closed_so_that_every_primary_ray_hits),
-        cmocka_unit_test(places_are_the_same_bit_for_bit_everywhere),
-        cmocka_unit_test(random_places_depend_on_the_seed_alone),
-        cmocka_unit_test(a_forest_grows_from_a_thousand_triangles_to_any_number),
-        cmocka_unit_test(three_of_four_faces_of_a_city_share_their_plane_with_more_than_ten_others),
-        cmocka_unit_test(points_on_the_circle_are_exact_where_they_can_be),
-        cmocka_unit_test(a_box_faces_outwards),
-        cmocka_unit_test(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(places, NULL, NULL)

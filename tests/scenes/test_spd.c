@@ -56,8 +56,7 @@ static void assert_points(const RtVec3 *points, uint32_t count, const char *expe
     assert_string_equal(line.text, expected);
 }
 
-static void they_have_as_many_objects_of_each_shape_as_published(void **state) {
-    (void)state;
+RT_TEST(they_have_as_many_objects_of_each_shape_as_published) {
     static const ShapeCounts rows[] = {
         {"balls", 7381, 1, 0, 0},
         {"balls:size=1", 10, 1, 0, 0},
@@ -86,8 +85,7 @@ static void they_have_as_many_objects_of_each_shape_as_published(void **state) {
     assert_shape_counts(rows, sizeof rows / sizeof rows[0]);
 }
 
-static void their_objects_lie_where_the_databases_have_them(void **state) {
-    (void)state;
+RT_TEST(their_objects_lie_where_the_databases_have_them) {
     static const struct {
         const char *spec;
         uint32_t id;
@@ -167,8 +165,7 @@ static void their_objects_lie_where_the_databases_have_them(void **state) {
 /* The hashes were recorded from runs whose every number was compared with the files of the package: equal to
  * the 6 digits printed there, give or take the rounding to float32. For gears and rings, of which no file was
  * at hand, a second program that makes them stood in, with the sines and cosines of the C library. */
-static void they_print_as_when_they_were_compared_with_the_databases(void **state) {
-    (void)state;
+RT_TEST(they_print_as_when_they_were_compared_with_the_databases) {
     static const struct {
         const char *spec;
         uint64_t hash;
@@ -193,8 +190,7 @@ static void they_print_as_when_they_were_compared_with_the_databases(void **stat
     }
 }
 
-static void they_are_seen_and_lit_as_the_databases_say(void **state) {
-    (void)state;
+RT_TEST(they_are_seen_and_lit_as_the_databases_say) {
     static const struct {
         const char *spec, *from_at_up;
         float fov, near;
@@ -235,8 +231,7 @@ static void they_are_seen_and_lit_as_the_databases_say(void **state) {
 }
 
 /* Of the object `id`: colour, diffuse, specular, shine, transmission, index of refraction, and reflection. */
-static void their_materials_are_those_of_the_databases(void **state) {
-    (void)state;
+RT_TEST(their_materials_are_those_of_the_databases) {
     static const struct {
         const char *spec;
         uint32_t id;
@@ -275,8 +270,7 @@ static void their_materials_are_those_of_the_databases(void **state) {
 }
 
 /* Each face has the corners of the other, moved down, and the rectangles between them join both. */
-static void gears_are_closed(void **state) {
-    (void)state;
+RT_TEST(gears_are_closed) {
     RtScene scene = open_scene("gears");
     const RtGeometry *g = &scene.geometry;
     for (uint32_t first = 1; first < g->polygon_count; first += 146) {
@@ -295,14 +289,4 @@ static void gears_are_closed(void **state) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST_GROUP(spd) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(they_have_as_many_objects_of_each_shape_as_published),
-        cmocka_unit_test(their_objects_lie_where_the_databases_have_them),
-        cmocka_unit_test(they_print_as_when_they_were_compared_with_the_databases),
-        cmocka_unit_test(they_are_seen_and_lit_as_the_databases_say),
-        cmocka_unit_test(their_materials_are_those_of_the_databases),
-        cmocka_unit_test(gears_are_closed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(spd, NULL, NULL)

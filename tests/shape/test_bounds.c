@@ -126,19 +126,16 @@ static void check_objects(float shift) {
     rt_geometry_clear(&g);
 }
 
-static void extents_hold_a_thousand_points_of_every_surface(void **state) {
-    (void)state;
+RT_TEST(extents_hold_a_thousand_points_of_every_surface) {
     check_objects(0);
 }
 
-static void extents_hold_them_far_from_the_zero_of_coordinates(void **state) {
-    (void)state;
+RT_TEST(extents_hold_them_far_from_the_zero_of_coordinates) {
     check_objects(100);
 }
 
 /* Tight enough: along an axis the box ends where the support does, up to the rounding of float32. */
-static void boxes_touch_their_objects(void **state) {
-    (void)state;
+RT_TEST(boxes_touch_their_objects) {
     RtRandom random = rt_random(6, 0);
     RtGeometry g = make_objects(&random, 0);
     for (uint32_t id = 0; id < g.object_count; id++) {
@@ -219,8 +216,7 @@ static void add_planar_polygon(RtGeometry *g, RtRandom *random) {
     assert_ok(rt_geometry_add_polygon(g, vertices, count, error));
 }
 
-static void balls_are_the_smallest_there_are(void **state) {
-    (void)state;
+RT_TEST(balls_are_the_smallest_there_are) {
     RtRandom random = rt_random(7, 0);
     RtGeometry g = make_objects(&random, 0), planar = {0};
     for (int i = 0; i < 100; i++) add_planar_polygon(&planar, &random);
@@ -235,8 +231,7 @@ static void balls_are_the_smallest_there_are(void **state) {
     rt_geometry_clear(&g);
 }
 
-static void the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle(void **state) {
-    (void)state;
+RT_TEST(the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle) {
     RtVec3 circle[MOST_POINTS];
     for (int i = 0; i < MOST_POINTS; i++) {
         circle[i] = rt_vec3((float)cos(i * 6.283185307179586 / MOST_POINTS),
@@ -246,8 +241,7 @@ static void the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle(void **
     assert_true(fabs(ball.radius - 1) < 1e-6 && rt_lengthd(ball.center) < 1e-6);
 }
 
-static void the_box_of_a_polygon_in_a_coordinate_plane_is_flat_and_exact(void **state) {
-    (void)state;
+RT_TEST(the_box_of_a_polygon_in_a_coordinate_plane_is_flat_and_exact) {
     RtGeometry g = {0};
     RtVec3 heptagon[7];
     for (int i = 0; i < 7; i++) {
@@ -259,8 +253,7 @@ static void the_box_of_a_polygon_in_a_coordinate_plane_is_flat_and_exact(void **
     rt_geometry_clear(&g);
 }
 
-static void frames_are_orthonormal(void **state) {
-    (void)state;
+RT_TEST(frames_are_orthonormal) {
     RtRandom random = rt_random(8, 0);
     RtGeometry g = make_objects(&random, 0);
     for (uint32_t id = 0; id < g.object_count; id++) {
@@ -274,15 +267,4 @@ static void frames_are_orthonormal(void **state) {
     rt_geometry_clear(&g);
 }
 
-RT_TEST_GROUP(bounds) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(extents_hold_a_thousand_points_of_every_surface),
-        cmocka_unit_test(extents_hold_them_far_from_the_zero_of_coordinates),
-        cmocka_unit_test(boxes_touch_their_objects),
-        cmocka_unit_test(balls_are_the_smallest_there_are),
-        cmocka_unit_test(the_ball_of_a_polygon_of_many_vertices_is_that_of_its_circle),
-        cmocka_unit_test(the_box_of_a_polygon_in_a_coordinate_plane_is_flat_and_exact),
-        cmocka_unit_test(frames_are_orthonormal),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(bounds, NULL, NULL)

@@ -4,8 +4,7 @@
 
 /* ---- by hand ---- */
 
-static void each_operation_keeps_its_part_of_two_boxes(void **state) {
-    (void)state;
+RT_TEST(each_operation_keeps_its_part_of_two_boxes) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtCsgTerm left = box(&b, rt_vec3(0, 0, 0), rt_vec3(2, 1, 1), 0);
@@ -22,8 +21,7 @@ static void each_operation_keeps_its_part_of_two_boxes(void **state) {
     clear(&forest, &b);
 }
 
-static void touching_boxes_are_joined_without_a_wall(void **state) {
-    (void)state;
+RT_TEST(touching_boxes_are_joined_without_a_wall) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtCsgTerm left = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0);
@@ -38,8 +36,7 @@ static void touching_boxes_are_joined_without_a_wall(void **state) {
     clear(&forest, &b);
 }
 
-static void the_wall_of_a_drilled_hole_looks_into_the_hole(void **state) {
-    (void)state;
+RT_TEST(the_wall_of_a_drilled_hole_looks_into_the_hole) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtCsgTerm plate = box(&b, rt_vec3(-2, -2, -1), rt_vec3(2, 2, 1), 1);
@@ -56,8 +53,7 @@ static void the_wall_of_a_drilled_hole_looks_into_the_hole(void **state) {
     clear(&forest, &b);
 }
 
-static void what_is_taken_from_what_is_taken_away_looks_outward_again(void **state) {
-    (void)state;
+RT_TEST(what_is_taken_from_what_is_taken_away_looks_outward_again) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtCsgTerm hole = cut(&b, ball(&b, rt_vec3(0, 0, 0), 2, 2), ball(&b, rt_vec3(0, 0, 0), 1, 3));
@@ -74,8 +70,7 @@ static void what_is_taken_from_what_is_taken_away_looks_outward_again(void **sta
     clear(&forest, &b);
 }
 
-static void the_left_operand_names_a_face_that_both_have(void **state) {
-    (void)state;
+RT_TEST(the_left_operand_names_a_face_that_both_have) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtCsgTerm a = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 1);
@@ -92,8 +87,7 @@ static void the_left_operand_names_a_face_that_both_have(void **state) {
     clear(&forest, &b);
 }
 
-static void an_empty_result_is_a_point_and_never_hit(void **state) {
-    (void)state;
+RT_TEST(an_empty_result_is_a_point_and_never_hit) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtCsgTerm near = box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0);
@@ -105,8 +99,7 @@ static void an_empty_result_is_a_point_and_never_hit(void **state) {
     clear(&forest, &b);
 }
 
-static void a_ray_is_answered_within_its_interval_only(void **state) {
-    (void)state;
+RT_TEST(a_ray_is_answered_within_its_interval_only) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtCsg tree = compile(&forest, &b, box(&b, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), 0));
@@ -120,8 +113,7 @@ static void a_ray_is_answered_within_its_interval_only(void **state) {
     clear(&forest, &b);
 }
 
-static void a_tree_without_end_is_refused_and_leaves_nothing_behind(void **state) {
-    (void)state;
+RT_TEST(a_tree_without_end_is_refused_and_leaves_nothing_behind) {
     RtCsgBuilder b = {0};
     RtCsgForest forest = {0};
     RtTransform place = rt_transform_identity();
@@ -147,8 +139,7 @@ static void a_tree_without_end_is_refused_and_leaves_nothing_behind(void **state
     clear(&forest, &b);
 }
 
-static void a_tree_of_too_many_solids_is_refused(void **state) {
-    (void)state;
+RT_TEST(a_tree_of_too_many_solids_is_refused) {
     RtCsgBuilder b = {0};
     RtCsgTerm term = ball(&b, rt_vec3(0, 0, 0), 1, 0);
     RtError error;
@@ -234,8 +225,7 @@ static RtCsgTerm less_itself(RtCsgBuilder *b, const RtCsgTerm *t, bool right) {
     return right ? cut(b, t[0], t[0]) : nothing;
 }
 
-static void identities_of_sets_hold_bit_for_bit(void **state) {
-    (void)state;
+RT_TEST(identities_of_sets_hold_bit_for_bit) {
     Side *const sides[] = {
         commuted_union,     commuted_intersection, associated_union, associated_intersection,
         de_morgan,          de_morgan_dual,        distributed,      difference_by_complement,
@@ -243,18 +233,4 @@ static void identities_of_sets_hold_bit_for_bit(void **state) {
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) check_identity(sides[i], i);
 }
 
-RT_TEST_GROUP(csg) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_operation_keeps_its_part_of_two_boxes),
-        cmocka_unit_test(touching_boxes_are_joined_without_a_wall),
-        cmocka_unit_test(the_wall_of_a_drilled_hole_looks_into_the_hole),
-        cmocka_unit_test(what_is_taken_from_what_is_taken_away_looks_outward_again),
-        cmocka_unit_test(the_left_operand_names_a_face_that_both_have),
-        cmocka_unit_test(an_empty_result_is_a_point_and_never_hit),
-        cmocka_unit_test(a_ray_is_answered_within_its_interval_only),
-        cmocka_unit_test(a_tree_without_end_is_refused_and_leaves_nothing_behind),
-        cmocka_unit_test(a_tree_of_too_many_solids_is_refused),
-        cmocka_unit_test(identities_of_sets_hold_bit_for_bit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(csg, NULL, NULL)

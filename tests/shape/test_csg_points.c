@@ -210,8 +210,7 @@ static void report(const char *what, const Score *score) {
     assert_true(score->unsure < score->points / 50);
 }
 
-static void rays_are_right_about_points(void **state) {
-    (void)state;
+RT_TEST(rays_are_right_about_points) {
     uint64_t rays = rays_asked();
     RtRandom random = rt_random(21, 0);
     Score score = {0};
@@ -258,8 +257,7 @@ static void check_tree(const RtCsgForest *forest, const RtCsg *tree, uint64_t ra
     rt_csg_builder_clear(&m.builder);
 }
 
-static void rays_are_right_about_the_trees_of_scenes(void **state) {
-    (void)state;
+RT_TEST(rays_are_right_about_the_trees_of_scenes) {
     const char *names[] = {"scenes/csg-lecture.yaml", "scenes/csg-bracket.yaml", "scenes/chess.yaml",
                            "csg-field:n=27"};
     RtRandom random = rt_random(22, 0);
@@ -276,10 +274,4 @@ static void rays_are_right_about_the_trees_of_scenes(void **state) {
     }
 }
 
-RT_TEST_GROUP(csg_points) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_are_right_about_points),
-        cmocka_unit_test(rays_are_right_about_the_trees_of_scenes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(csg_points, NULL, NULL)

@@ -7,8 +7,7 @@
 
 /* ---- extents ---- */
 
-static void tests_of_inner_nodes_change_no_bit(void **state) {
-    (void)state;
+RT_TEST(tests_of_inner_nodes_change_no_bit) {
     RtRandom random = rt_random(5, 0);
     RtTally with = {0}, without = {0};
     for (uint32_t round = 0; round < 200; round++) {
@@ -36,8 +35,7 @@ static void tests_of_inner_nodes_change_no_bit(void **state) {
     assert_true(with.csg_tests <= without.csg_tests && with.extent_tests < without.extent_tests);
 }
 
-static void a_tree_lies_within_its_extents(void **state) {
-    (void)state;
+RT_TEST(a_tree_lies_within_its_extents) {
     RtRandom random = rt_random(6, 0);
     for (uint32_t round = 0; round < 100; round++) {
         RtCsgBuilder b = {0};
@@ -61,8 +59,7 @@ static void a_tree_lies_within_its_extents(void **state) {
 
 /* The reach of an intersection is the lesser of two, which may end before the box does where they do not
  * meet: a gap along the diagonal of boxes that overlap, and one between boxes. */
-static void a_tree_without_inside_reaches_into_its_box(void **state) {
-    (void)state;
+RT_TEST(a_tree_without_inside_reaches_into_its_box) {
     RtRandom random = rt_random(9, 0);
     static const float apart[2] = {1.3f, 3};
     for (uint32_t i = 0; i < 2; i++) {
@@ -87,8 +84,7 @@ static void a_tree_without_inside_reaches_into_its_box(void **state) {
 /* ---- transforms ---- */
 
 /* A ball at x = 4 is turned to y = 4 and then moved to x = 8: not the other way round, to y = 12. */
-static void the_inner_move_comes_first(void **state) {
-    (void)state;
+RT_TEST(the_inner_move_comes_first) {
     RtTransform turn = rt_transform_identity(), shift = turn;
     assert_ok(rt_transform_rotate(&turn, rt_vec3(0, 0, 1), 90, error));
     assert_ok(rt_transform_translate(&shift, rt_vec3(8, 0, 0), error));
@@ -105,8 +101,7 @@ static void the_inner_move_comes_first(void **state) {
     }
 }
 
-static void a_tree_moved_by_powers_of_two_is_met_at_the_same_bits(void **state) {
-    (void)state;
+RT_TEST(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits) {
     RtRandom random = rt_random(7, 0);
     for (uint32_t round = 0; round < 60; round++) {
         RtCsgBuilder b = {0};
@@ -128,8 +123,7 @@ static void a_tree_moved_by_powers_of_two_is_met_at_the_same_bits(void **state) 
 }
 
 /* A ray moved like the tree meets it at the same t, as far as the rounding of the ray goes. */
-static void moving_the_tree_and_moving_the_ray_agree(void **state) {
-    (void)state;
+RT_TEST(moving_the_tree_and_moving_the_ray_agree) {
     RtRandom random = rt_random(8, 0);
     size_t hits = 0, agreed = 0;
     for (uint32_t round = 0; round < 100; round++) {
@@ -162,8 +156,7 @@ static void moving_the_tree_and_moving_the_ray_agree(void **state) {
     assert_true(hits > 1000);
 }
 
-static void a_copied_tree_is_the_same_tree(void **state) {
-    (void)state;
+RT_TEST(a_copied_tree_is_the_same_tree) {
     RtRandom random = rt_random(9, 0);
     for (uint32_t round = 0; round < 50; round++) {
         RtCsgBuilder b = {0};
@@ -267,8 +260,7 @@ static int run_deep(void) {
 
 /* ---- memory ---- */
 
-static void compiling_fails_cleanly_at_every_allocation(void **state) {
-    (void)state;
+RT_TEST(compiling_fails_cleanly_at_every_allocation) {
     RtRandom random = rt_random(10, 0);
     RtCsgBuilder b = {0};
     RtCsgTerm root = random_term(&b, &random, RT_MAX_RANDOM_TREE, false);
@@ -291,15 +283,5 @@ static void compiling_fails_cleanly_at_every_allocation(void **state) {
 }
 
 RT_TEST_GROUP(csg_trees) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tests_of_inner_nodes_change_no_bit),
-        cmocka_unit_test(a_tree_lies_within_its_extents),
-        cmocka_unit_test(a_tree_without_inside_reaches_into_its_box),
-        cmocka_unit_test(the_inner_move_comes_first),
-        cmocka_unit_test(a_tree_moved_by_powers_of_two_is_met_at_the_same_bits),
-        cmocka_unit_test(moving_the_tree_and_moving_the_ray_agree),
-        cmocka_unit_test(a_copied_tree_is_the_same_tree),
-        cmocka_unit_test(compiling_fails_cleanly_at_every_allocation),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL) + run_deep();
+    return RT_RUN_TESTS("csg_trees", NULL, NULL) + run_deep();
 }

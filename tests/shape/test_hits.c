@@ -34,8 +34,7 @@ static RtRay random_ray(RtRandom *random) {
 
 enum { RAYS = 4000 };
 
-static void both_ends_of_the_interval_of_t_belong_to_it(void **state) {
-    (void)state;
+RT_TEST(both_ends_of_the_interval_of_t_belong_to_it) {
     RtGeometry g = one_of_each(0);
     RtRandom random = rt_random(1, 0);
     int hits = 0;
@@ -56,8 +55,7 @@ static void both_ends_of_the_interval_of_t_belong_to_it(void **state) {
     rt_geometry_clear(&g);
 }
 
-static void a_direction_twice_as_long_halves_t_to_the_bit(void **state) {
-    (void)state;
+RT_TEST(a_direction_twice_as_long_halves_t_to_the_bit) {
     RtGeometry g = one_of_each(0);
     RtRandom random = rt_random(2, 0);
     for (int i = 0; i < RAYS; i++) {
@@ -74,8 +72,7 @@ static void a_direction_twice_as_long_halves_t_to_the_bit(void **state) {
     rt_geometry_clear(&g);
 }
 
-static void a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit(void **state) {
-    (void)state;
+RT_TEST(a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit) {
     static const int exponents[] = {-40, -17, 1, 23, 40};
     RtGeometry unit = one_of_each(0);
     for (int e = 0; e < 5; e++) {
@@ -95,8 +92,7 @@ static void a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit(void **state) {
 }
 
 /* Nearly a disc with a hole, tilted: what is hit must not depend on heights that have lost their digits. */
-static void a_flat_cone_is_hit_between_its_circles_only(void **state) {
-    (void)state;
+RT_TEST(a_flat_cone_is_hit_between_its_circles_only) {
     RtRandom random = rt_random(4, 0);
     int hits = 0;
     for (int i = 0; i < RAYS; i++) {
@@ -116,12 +112,4 @@ static void a_flat_cone_is_hit_between_its_circles_only(void **state) {
     assert_true(hits > RAYS / 20);
 }
 
-RT_TEST_GROUP(hits) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(both_ends_of_the_interval_of_t_belong_to_it),
-        cmocka_unit_test(a_direction_twice_as_long_halves_t_to_the_bit),
-        cmocka_unit_test(a_scene_scaled_by_a_power_of_two_scales_t_to_the_bit),
-        cmocka_unit_test(a_flat_cone_is_hit_between_its_circles_only),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(hits, NULL, NULL)

@@ -30,8 +30,7 @@ static void check(RtGeometry *g, const Case *cases, size_t count) {
 
 #define CHECK(g, cases) check(g, cases, sizeof cases / sizeof *(cases))
 
-static void the_lecture_ray_meets_the_unit_sphere_at_9_and_11(void **state) {
-    (void)state;
+RT_TEST(the_lecture_ray_meets_the_unit_sphere_at_9_and_11) {
     RtGeometry g = {0};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(0, 0, 0), 1, error));
     assert_ok(rt_geometry_finish(&g, error));
@@ -47,8 +46,7 @@ static void the_lecture_ray_meets_the_unit_sphere_at_9_and_11(void **state) {
     rt_geometry_clear(&g);
 }
 
-static void a_sphere_is_hit_from_outside_and_inside_and_touched(void **state) {
-    (void)state;
+RT_TEST(a_sphere_is_hit_from_outside_and_inside_and_touched) {
     static const Case cases[] = {
         {"from outside", {{1, 2, -7}}, {{0, 0, 1}}, 8},
         {"from the centre", {{1, 2, 3}}, {{0, 1, 0}}, 2},
@@ -66,8 +64,7 @@ static void a_sphere_is_hit_from_outside_and_inside_and_touched(void **state) {
     CHECK(&g, cases);
 }
 
-static void a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices(void **state) {
-    (void)state;
+RT_TEST(a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices) {
     static const Case cases[] = {
         {"from the front", {{1, 1, 5}}, {{0, 0, -1}}, 4},
         {"from behind it", {{1, 1, -5}}, {{0, 0, 2}}, 3},
@@ -88,8 +85,7 @@ static void a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices(void **s
     CHECK(&g, cases);
 }
 
-static void a_triangle_without_area_is_let_in_and_never_hit(void **state) {
-    (void)state;
+RT_TEST(a_triangle_without_area_is_let_in_and_never_hit) {
     static const Case cases[] = {
         {"across it", {{1, 0, 5}}, {{0, 0, -1}}, MISS},
         {"along it", {{-1, 0, 0}}, {{1, 0, 0}}, MISS},
@@ -101,8 +97,7 @@ static void a_triangle_without_area_is_let_in_and_never_hit(void **state) {
 }
 
 /* A U in the plane x = 2, with its notch open towards +z. */
-static void a_concave_polygon_is_missed_in_its_notch(void **state) {
-    (void)state;
+RT_TEST(a_concave_polygon_is_missed_in_its_notch) {
     static const Case cases[] = {
         {"through the left arm", {{0, 0.5f, 2}}, {{1, 0, 0}}, 2},
         {"through the right arm, from behind", {{4, 2.5f, 2}}, {{-1, 0, 0}}, 2},
@@ -129,8 +124,7 @@ static void a_concave_polygon_is_missed_in_its_notch(void **state) {
     CHECK(&g, cases);
 }
 
-static void a_cylinder_is_open_at_both_ends(void **state) {
-    (void)state;
+RT_TEST(a_cylinder_is_open_at_both_ends) {
     static const Case cases[] = {
         {"from outside", {{-5, 0, 2}}, {{1, 0, 0}}, 4},
         {"from inside", {{0, 0, 2}}, {{0, -1, 0}}, 1},
@@ -150,8 +144,7 @@ static void a_cylinder_is_open_at_both_ends(void **state) {
     CHECK(&g, cases);
 }
 
-static void a_full_cone_is_hit_up_to_its_tip(void **state) {
-    (void)state;
+RT_TEST(a_full_cone_is_hit_up_to_its_tip) {
     static const Case cases[] = {
         {"half way up", {{-5, 0, 0.5f}}, {{1, 0, 0}}, 4.5f},
         {"half way up, from inside", {{0, 0, 0.5f}}, {{1, 0, 0}}, 0.5f},
@@ -182,8 +175,7 @@ static void assert_vector(RtVec3d a, double x, double y, double z) {
     fail_msg("(%g, %g, %g) is not (%g, %g, %g)", a.x, a.y, a.z, x, y, z);
 }
 
-static void normals_point_outward_or_by_the_right_hand_rule(void **state) {
-    (void)state;
+RT_TEST(normals_point_outward_or_by_the_right_hand_rule) {
     RtGeometry g = {0};
     static const RtVec3 square[] = {{{0, 0, 5}}, {{0, 2, 5}}, {{2, 2, 5}}, {{2, 0, 5}}};
     assert_ok(rt_geometry_add_sphere(&g, rt_vec3(1, 0, 0), 2, error));
@@ -204,8 +196,7 @@ static void normals_point_outward_or_by_the_right_hand_rule(void **state) {
     rt_geometry_clear(&g);
 }
 
-static void vertex_normals_are_interpolated_for_shading_only(void **state) {
-    (void)state;
+RT_TEST(vertex_normals_are_interpolated_for_shading_only) {
     RtGeometry g = {0};
     const RtVec3 vertices[3] = {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 1, 0}}};
     const RtVec3 normals[3] = {{{0, 0, 7}}, {{3, 0, 0}}, {{0, 0.5f, 0}}};
@@ -235,8 +226,7 @@ static void assert_refused(const RtGeometry *g, RtStatus status, const RtError *
         assert_refused(&g, status, error, phrase);                                                           \
     } while (0)
 
-static void degenerate_objects_are_refused_with_the_reason(void **state) {
-    (void)state;
+RT_TEST(degenerate_objects_are_refused_with_the_reason) {
     RtGeometry g = {0};
     const RtVec3 o = {{0, 0, 0}}, z = {{0, 0, 1}}, nan = {{NAN, 0, 0}}, huge = {{0, 6e17f, 0}};
     const RtVec3 line[] = {{{0, 0, 0}}, {{1, 1, 1}}, {{2, 2, 2}}, {{5, 5, 5}}};
@@ -264,18 +254,4 @@ static void degenerate_objects_are_refused_with_the_reason(void **state) {
     rt_geometry_clear(&g);
 }
 
-RT_TEST_GROUP(shape) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_lecture_ray_meets_the_unit_sphere_at_9_and_11),
-        cmocka_unit_test(a_sphere_is_hit_from_outside_and_inside_and_touched),
-        cmocka_unit_test(a_triangle_is_hit_on_both_sides_with_its_edges_and_vertices),
-        cmocka_unit_test(a_triangle_without_area_is_let_in_and_never_hit),
-        cmocka_unit_test(a_concave_polygon_is_missed_in_its_notch),
-        cmocka_unit_test(a_cylinder_is_open_at_both_ends),
-        cmocka_unit_test(a_full_cone_is_hit_up_to_its_tip),
-        cmocka_unit_test(normals_point_outward_or_by_the_right_hand_rule),
-        cmocka_unit_test(vertex_normals_are_interpolated_for_shading_only),
-        cmocka_unit_test(degenerate_objects_are_refused_with_the_reason),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(shape, NULL, NULL)

@@ -26,8 +26,7 @@ static void check_cases(const RtSolidSet *set, uint32_t index, const Case *cases
 
 #define CHECK(set, index, cases) check_cases(set, index, cases, sizeof cases / sizeof *(cases))
 
-static void a_box_has_no_skin(void **state) {
-    (void)state;
+RT_TEST(a_box_has_no_skin) {
     static const Case cases[] = {
         {"straight through", {{5, 0, 0}}, {{-2, 0, 0}}, {2, 3, NAN}},
         {"from the inside", {{0, 0, 0}}, {{0, 0, 1}}, {-1, 1, NAN}},
@@ -50,8 +49,7 @@ static void a_box_has_no_skin(void **state) {
     rt_solid_set_clear(&set);
 }
 
-static void a_half_space_has_no_end(void **state) {
-    (void)state;
+RT_TEST(a_half_space_has_no_end) {
     static const Case cases[] = {
         {"into it", {{0, 0, 5}}, {{1, 0, -2}}, {2, INFINITY, NAN}},
         {"out of it", {{0, 0, 0}}, {{0, 0, 2}}, {-INFINITY, 0.5f, NAN}},
@@ -66,8 +64,7 @@ static void a_half_space_has_no_end(void **state) {
     rt_solid_set_clear(&set);
 }
 
-static void a_sphere_that_is_touched_is_not_crossed(void **state) {
-    (void)state;
+RT_TEST(a_sphere_that_is_touched_is_not_crossed) {
     static const Case cases[] = {
         {"through its centre", {{1, 2, 10}}, {{0, 0, -1}}, {5, 9, NAN}},
         {"from the centre", {{1, 2, 3}}, {{0, 0, 4}}, {-0.5f, 0.5f, NAN}},
@@ -83,8 +80,7 @@ static void a_sphere_that_is_touched_is_not_crossed(void **state) {
 }
 
 /* Apex at (0, 0, 4), base of radius 2 at z = 0. */
-static void a_full_cone_ends_in_its_apex(void **state) {
-    (void)state;
+RT_TEST(a_full_cone_ends_in_its_apex) {
     static const Case cases[] = {
         {"along the axis", {{0, 0, 10}}, {{0, 0, -1}}, {6, 10, NAN}},
         {"along the axis, upward", {{0, 0, -1}}, {{0, 0, 1}}, {1, 5, NAN}},
@@ -109,8 +105,7 @@ static void a_full_cone_ends_in_its_apex(void **state) {
     rt_solid_set_clear(&set);
 }
 
-static void a_cylinder_is_entered_by_cap_or_side(void **state) {
-    (void)state;
+RT_TEST(a_cylinder_is_entered_by_cap_or_side) {
     static const Case cases[] = {
         {"along the axis", {{-3, 0, 0}}, {{1, 0, 0}}, {3, 7, NAN}},
         {"parallel to the axis", {{-3, 1, 1}}, {{2, 0, 0}}, {1.5f, 3.5f, NAN}},
@@ -133,8 +128,7 @@ static void a_cylinder_is_entered_by_cap_or_side(void **state) {
 }
 
 /* Circle of radius 2 in the plane z = 1, tube of radius 1. */
-static void a_torus_has_a_hole(void **state) {
-    (void)state;
+RT_TEST(a_torus_has_a_hole) {
     static const Case cases[] = {
         {"across both sides", {{-5, 0, 1}}, {{1, 0, 0}}, {2, 4, 6, 8, NAN}},
         {"through the hole", {{0, 0, 5}}, {{0, 0, -1}}, {NAN}},
@@ -168,8 +162,7 @@ static void expect(RtStatus status, const RtError *error, const char *words) {
     if (!strstr(error->message, words)) fail_msg("'%s' does not say '%s'", error->message, words);
 }
 
-static void bad_solids_are_refused_and_leave_nothing(void **state) {
-    (void)state;
+RT_TEST(bad_solids_are_refused_and_leave_nothing) {
     RtSolidSet set = {0};
     RtError e;
     uint32_t at;
@@ -233,8 +226,7 @@ static RtStatus add_one_of_each(RtSolidSet *set, uint32_t i, uint32_t *at, RtErr
     }
 }
 
-static void without_memory_nothing_is_added(void **state) {
-    (void)state;
+RT_TEST(without_memory_nothing_is_added) {
     int64_t before = rt_alloc_live();
     RtSolidSet set = {0};
     RtError e;
@@ -258,16 +250,4 @@ static void without_memory_nothing_is_added(void **state) {
     assert_int_equal(rt_alloc_live(), before);
 }
 
-RT_TEST_GROUP(solid_cases) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_has_no_skin),
-        cmocka_unit_test(a_half_space_has_no_end),
-        cmocka_unit_test(a_sphere_that_is_touched_is_not_crossed),
-        cmocka_unit_test(a_full_cone_ends_in_its_apex),
-        cmocka_unit_test(a_cylinder_is_entered_by_cap_or_side),
-        cmocka_unit_test(a_torus_has_a_hole),
-        cmocka_unit_test(bad_solids_are_refused_and_leave_nothing),
-        cmocka_unit_test(without_memory_nothing_is_added),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(solid_cases, NULL, NULL)

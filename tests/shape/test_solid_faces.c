@@ -42,8 +42,7 @@ static uint32_t fine_cube_mesh(RtTriangle out[192]) {
 
 /* Lines from all points of a lattice to others, through edges and corners of the mesh, along its faces and
  * edges. A mesh may take a line in the plane of a face for inside, where a box does not. */
-static void a_cube_of_triangles_is_a_box_even_at_edges_and_corners(void **state) {
-    (void)state;
+RT_TEST(a_cube_of_triangles_is_a_box_even_at_edges_and_corners) {
     RtSolidSet set = {0};
     uint32_t box, mesh;
     RtTriangle triangles[192];
@@ -90,8 +89,7 @@ static uint32_t pair_mesh(RtTriangle out[24]) {
 
 /* One twice; overlapping; touching along an edge, where each directed edge is there twice; apart; a cavity;
  * and what is inside out on its own encloses nothing. */
-static void a_mesh_may_overlap_and_touch_itself_and_be_hollow(void **state) {
-    (void)state;
+RT_TEST(a_mesh_may_overlap_and_touch_itself_and_be_hollow) {
     static const Pair pairs[] = {{1, 0}, {1, 1}, {1, 2}, {1, 3}, {-0.5f, 0}, {-0.5f, 3}};
     RtTransform place = rt_transform_identity();
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
@@ -113,8 +111,7 @@ static void a_mesh_may_overlap_and_touch_itself_and_be_hollow(void **state) {
 }
 
 /* As near to them as float32 allows, which is in them for some. */
-static void lines_along_edges_and_faces_of_a_turned_mesh_keep_to_it(void **state) {
-    (void)state;
+RT_TEST(lines_along_edges_and_faces_of_a_turned_mesh_keep_to_it) {
     RtRandom random = rt_random(9, 0);
     for (int round = 0; round < 50; round++) {
         RtTransform place = rt_transform_identity();
@@ -142,8 +139,7 @@ static void lines_along_edges_and_faces_of_a_turned_mesh_keep_to_it(void **state
 
 /* A vertex in the middle of an edge that the triangle on the other side does not have, and a triangle without
  * area that closes the mesh there. Lines go through that edge. */
-static void a_triangle_without_area_does_no_harm(void **state) {
-    (void)state;
+RT_TEST(a_triangle_without_area_does_no_harm) {
     RtRandom random = rt_random(10, 0);
     for (int round = 0; round < 100; round++) {
         RtTriangle triangles[14];
@@ -172,8 +168,7 @@ static void a_triangle_without_area_does_no_harm(void **state) {
 }
 
 /* A box, the caps of a cylinder and a half-space, turned and moved alike; then not turned. */
-static void faces_in_one_plane_are_met_at_the_same_bits(void **state) {
-    (void)state;
+RT_TEST(faces_in_one_plane_are_met_at_the_same_bits) {
     RtRandom random = rt_random(3, 0);
     for (int round = 0; round < 40; round++) {
         RtTransform move = rt_transform_identity();
@@ -209,8 +204,7 @@ static void faces_in_one_plane_are_met_at_the_same_bits(void **state) {
     }
 }
 /* Their offsets are float32, so that a sum and what it rounds to are one plane. */
-static void faces_along_an_axis_are_where_float32_has_them(void **state) {
-    (void)state;
+RT_TEST(faces_along_an_axis_are_where_float32_has_them) {
     RtSolidSet set = {0};
     uint32_t moved, standing;
     RtTransform move = rt_transform_identity();
@@ -233,8 +227,7 @@ static void faces_along_an_axis_are_where_float32_has_them(void **state) {
 
 /* Ends that float32 moves by as much as the cone is high. What extents are made from has to move, too: a ray
  * that met the cone between its caps once missed the ball about it. */
-static void a_cone_ends_where_float32_has_its_caps(void **state) {
-    (void)state;
+RT_TEST(a_cone_ends_where_float32_has_its_caps) {
     const RtTransform place = {
         {{0.0039, 0, 0, 100000.987}, {0, -0.0039, 0, 99999.1225}, {0, 0, -0.0039, 99999.87427}}};
     RtVec3d up = {{0, 0, 1}};
@@ -258,8 +251,7 @@ static void a_cone_ends_where_float32_has_its_caps(void **state) {
     }
 }
 
-static void what_rounding_makes_flat_is_refused(void **state) {
-    (void)state;
+RT_TEST(what_rounding_makes_flat_is_refused) {
     RtSolidSet set = {0};
     uint32_t box, cone, mesh, index;
     RtTransform far = rt_transform_identity(), none = far;
@@ -285,8 +277,7 @@ static void what_rounding_makes_flat_is_refused(void **state) {
 
 /* ---- hulls ---- */
 
-static void the_hull_of_the_corners_of_a_box_is_the_box(void **state) {
-    (void)state;
+RT_TEST(the_hull_of_the_corners_of_a_box_is_the_box) {
     RtRandom random = rt_random(4, 0);
     RtSolidSet set = {0};
     RtVec3 lo = rt_vec3(-0.7f, 2.1f, 100.3f), hi = rt_vec3(0.1f, 2.5f, 101), corners[10];
@@ -340,8 +331,7 @@ static bool is_inside_hull(const RtVec3 *points, uint32_t count, Point p, long d
     return most < 0;
 }
 
-static void hulls_of_random_points_hold_what_is_between_them(void **state) {
-    (void)state;
+RT_TEST(hulls_of_random_points_hold_what_is_between_them) {
     RtRandom random = rt_random(5, 0);
     for (int round = 0; round < 30; round++) {
         RtSolidSet set = {0};
@@ -365,18 +355,4 @@ static void hulls_of_random_points_hold_what_is_between_them(void **state) {
     }
 }
 
-RT_TEST_GROUP(solid_faces) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cube_of_triangles_is_a_box_even_at_edges_and_corners),
-        cmocka_unit_test(a_mesh_may_overlap_and_touch_itself_and_be_hollow),
-        cmocka_unit_test(lines_along_edges_and_faces_of_a_turned_mesh_keep_to_it),
-        cmocka_unit_test(a_triangle_without_area_does_no_harm),
-        cmocka_unit_test(faces_in_one_plane_are_met_at_the_same_bits),
-        cmocka_unit_test(faces_along_an_axis_are_where_float32_has_them),
-        cmocka_unit_test(a_cone_ends_where_float32_has_its_caps),
-        cmocka_unit_test(what_rounding_makes_flat_is_refused),
-        cmocka_unit_test(the_hull_of_the_corners_of_a_box_is_the_box),
-        cmocka_unit_test(hulls_of_random_points_hold_what_is_between_them),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(solid_faces, NULL, NULL)

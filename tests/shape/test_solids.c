@@ -17,8 +17,7 @@ static uint32_t check_random_lines(const RtSolidSet *set, const Model *model, Rt
     return met;
 }
 
-static void random_lines_are_inside_where_their_points_are(void **state) {
-    (void)state;
+RT_TEST(random_lines_are_inside_where_their_points_are) {
     static const double distances[] = {0, 2, 1e3, 1e5, 1e7};
     RtRandom random = rt_random(1, 0);
     RtTransform place = rt_transform_identity();
@@ -37,8 +36,7 @@ static void random_lines_are_inside_where_their_points_are(void **state) {
     rt_solid_set_clear(&set);
 }
 
-static void so_they_are_where_solids_are_turned_stretched_and_moved(void **state) {
-    (void)state;
+RT_TEST(so_they_are_where_solids_are_turned_stretched_and_moved) {
     RtRandom random = rt_random(2, 0);
     for (int round = 0; round < 60; round++) {
         RtTransform place = rt_transform_identity();
@@ -87,8 +85,7 @@ static void check_accuracy(const RtSolidSet *set, const Model *model, RtRandom *
         fail_msg("%s: %u of %u crossings are not the nearest", model->name, second_best, asked);
 }
 
-static void crossings_are_the_float32_nearest_to_the_truth(void **state) {
-    (void)state;
+RT_TEST(crossings_are_the_float32_nearest_to_the_truth) {
     RtRandom random = rt_random(8, 0);
     for (int turned = 0; turned < 2; turned++) {
         RtTransform place = rt_transform_identity();
@@ -133,8 +130,7 @@ static void check_extents(const RtSolidSet *set, const Model *model, RtRandom *r
     if (isfinite(support)) assert_true(most > support - 0.5 * size);
 }
 
-static void extents_hold_every_crossing(void **state) {
-    (void)state;
+RT_TEST(extents_hold_every_crossing) {
     RtRandom random = rt_random(6, 0);
     for (int round = 0; round < 30; round++) {
         RtTransform place = rt_transform_identity();
@@ -151,8 +147,7 @@ static void extents_hold_every_crossing(void **state) {
     }
 }
 
-static void extents_are_tight_where_they_can_be_known(void **state) {
-    (void)state;
+RT_TEST(extents_are_tight_where_they_can_be_known) {
     RtSolidSet set = {0};
     uint32_t at;
     RtVec3d aslant = {{3, 0, 4}};
@@ -177,8 +172,7 @@ static void extents_are_tight_where_they_can_be_known(void **state) {
     rt_solid_set_clear(&set);
 }
 
-static void what_has_no_end_has_extents_without_end(void **state) {
-    (void)state;
+RT_TEST(what_has_no_end_has_extents_without_end) {
     RtSolidSet set = {0};
     uint32_t half, oblique, slab, wedge;
     RtTransform here = rt_transform_identity();
@@ -207,8 +201,7 @@ static void what_has_no_end_has_extents_without_end(void **state) {
 /* ---- normals ---- */
 
 /* Along the way on which membership grows fastest. */
-static void normals_point_out(void **state) {
-    (void)state;
+RT_TEST(normals_point_out) {
     RtRandom random = rt_random(7, 0);
     RtTransform place = rt_transform_identity();
     assert_ok(rt_transform_scale(&place, rt_vec3(1, 2, 3), error));
@@ -242,15 +235,4 @@ static void normals_point_out(void **state) {
     rt_solid_set_clear(&set);
 }
 
-RT_TEST_GROUP(solids) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_lines_are_inside_where_their_points_are),
-        cmocka_unit_test(so_they_are_where_solids_are_turned_stretched_and_moved),
-        cmocka_unit_test(crossings_are_the_float32_nearest_to_the_truth),
-        cmocka_unit_test(extents_hold_every_crossing),
-        cmocka_unit_test(extents_are_tight_where_they_can_be_known),
-        cmocka_unit_test(what_has_no_end_has_extents_without_end),
-        cmocka_unit_test(normals_point_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RT_TESTS(solids, NULL, NULL)

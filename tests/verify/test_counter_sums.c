@@ -99,7 +99,7 @@ static void assert_plausible(const char *spec, const Stage *stage, const Count *
     }
 }
 
-static void counts_do_not_depend_on_threads_or_streams(void **state) {
+RT_TEST(counts_do_not_depend_on_threads_or_streams) {
     const Stage *stage = *state;
     const struct {
         int threads;
@@ -134,9 +134,4 @@ static void counts_do_not_depend_on_threads_or_streams(void **state) {
     }
 }
 
-RT_TEST_GROUP(counter_sums) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_do_not_depend_on_threads_or_streams),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+RT_TESTS(counter_sums, set_up, tear_down)

@@ -119,14 +119,14 @@ static RtEquivalence check(Stage *stage, Lie lie) {
     return one;
 }
 
-static void the_truth_is_equal_throughout(void **state) {
+RT_TEST(the_truth_is_equal_throughout) {
     RtEquivalence e = check(*state, NO_LIE);
     assert_int_equal(e.verdicts[RT_EQUAL], RAYS);
     assert_int_equal(e.occluded_wrong, 0);
     assert_false(e.any_wrong);
 }
 
-static void one_ulp_of_t_in_the_timed_kernel_is_wrong(void **state) {
+RT_TEST(one_ulp_of_t_in_the_timed_kernel_is_wrong) {
     RtEquivalence e = check(*state, T_IN_TIMED);
     assert_int_equal(e.verdicts[RT_WRONG], 1);
     assert_int_equal(e.first_wrong.index, 1234);
@@ -134,14 +134,14 @@ static void one_ulp_of_t_in_the_timed_kernel_is_wrong(void **state) {
     assert_true(e.first_wrong.got.t < e.first_wrong.expected.t);
 }
 
-static void another_object_in_the_counted_kernel_is_wrong(void **state) {
+RT_TEST(another_object_in_the_counted_kernel_is_wrong) {
     RtEquivalence e = check(*state, ID_IN_COUNTED);
     assert_int_equal(e.verdicts[RT_WRONG], 1);
     assert_int_equal(e.first_wrong.index, 77);
     assert_true(e.first_wrong.counted);
 }
 
-static void a_lie_in_streams_of_one_length_alone_is_found(void **state) {
+RT_TEST(a_lie_in_streams_of_one_length_alone_is_found) {
     RtEquivalence e = check(*state, BLOCKED_IN_STREAMS_OF_64);
     assert_int_equal(e.verdicts[RT_WRONG], 0);
     assert_true(e.occluded_wrong > 0 && e.any_wrong);
@@ -149,7 +149,7 @@ static void a_lie_in_streams_of_one_length_alone_is_found(void **state) {
     assert_int_equal(e.first_wrong.stream, 64);
 }
 
-static void the_last_ray_counts_too(void **state) {
+RT_TEST(the_last_ray_counts_too) {
     RtEquivalence e = check(*state, LOST_LAST_RAY);
     assert_int_equal(e.verdicts[RT_WRONG], 1);
     assert_int_equal(e.first_wrong.index, LAST);
@@ -164,7 +164,7 @@ static void the_last_ray_counts_too(void **state) {
     json_decref(row);
 }
 
-static void an_accelerator_that_is_not_exact_is_judged_by_verdicts(void **state) {
+RT_TEST(an_accelerator_that_is_not_exact_is_judged_by_verdicts) {
     Stage *stage = *state;
     stage->liar.base.exact = false;
     RtEquivalence e = check(stage, T_IN_TIMED);
@@ -200,7 +200,7 @@ static void assert_went_wrong(RtStatus status, const RtError *error) {
     assert_string_equal(error->message, "went wrong while tracing");
 }
 
-static void what_goes_wrong_while_tracing_is_a_status_of_all_who_trace(void **state) {
+RT_TEST(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace) {
     Stage *stage = *state;
     RtAccel *accel;
     RtError failure = {RT_OK, ""};
@@ -259,8 +259,7 @@ typedef struct Case {
     RtVerdict verdict;
 } Case;
 
-static void verdicts_tell_ties_and_margins_from_errors(void **state) {
-    (void)state;
+RT_TEST(verdicts_tell_ties_and_margins_from_errors) {
     RtGeometry g;
     make_geometry(&g);
     RtRay center = down_from(0, 0, 3), above_edge = down_from(0.5f, 0.5f, -2), inner = down_from(0.5f, 0, -2);
@@ -307,8 +306,7 @@ static void assert_occluded(const RtGeometry *g, const RtRay *ray, bool expected
     assert_int_equal(got, verdict);
 }
 
-static void occlusion_is_marginal_only_where_a_hit_is(void **state) {
-    (void)state;
+RT_TEST(occlusion_is_marginal_only_where_a_hit_is) {
     RtGeometry g;
     make_geometry(&g);
     RtRay up = down_from(0.5f, 0, -2), ends_before = up, ends_at = up;
@@ -321,17 +319,4 @@ static void occlusion_is_marginal_only_where_a_hit_is(void **state) {
     rt_geometry_clear(&g);
 }
 
-RT_TEST_GROUP(equivalence) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_truth_is_equal_throughout),
-        cmocka_unit_test(one_ulp_of_t_in_the_timed_kernel_is_wrong),
-        cmocka_unit_test(another_object_in_the_counted_kernel_is_wrong),
-        cmocka_unit_test(a_lie_in_streams_of_one_length_alone_is_found),
-        cmocka_unit_test(the_last_ray_counts_too),
-        cmocka_unit_test(an_accelerator_that_is_not_exact_is_judged_by_verdicts),
-        cmocka_unit_test(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace),
-        cmocka_unit_test(verdicts_tell_ties_and_margins_from_errors),
-        cmocka_unit_test(occlusion_is_marginal_only_where_a_hit_is),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+RT_TESTS(equivalence, set_up, tear_down)

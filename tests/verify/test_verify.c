@@ -84,8 +84,7 @@ static const char *replay_of(const json_t *row) {
     return path;
 }
 
-static void a_failure_can_be_replayed_until_it_is_mended(void **state) {
-    (void)state;
+RT_TEST(a_failure_can_be_replayed_until_it_is_mended) {
     json_t *rows = verify(OUT "/a", 0, RT_START_ANEW);
     assert_int_equal(json_array_size(rows), 4);
     assert_false(rt_verify_row_fails(json_array_get(rows, 0)));
@@ -106,8 +105,7 @@ static void a_failure_can_be_replayed_until_it_is_mended(void **state) {
 }
 
 /* What docs/columns.md says of `verify --json`, and of a wrong answer. */
-static void a_row_has_the_members_that_its_columns_name(void **state) {
-    (void)state;
+RT_TEST(a_row_has_the_members_that_its_columns_name) {
     json_t *rows = verify(OUT "/a", 0, RT_START_ANEW), *row = json_array_get(rows, 1);
     size_t expected = RT_VERIFY_GROUPS - 1; /* objects in the row */
     for (size_t g = 0; g < RT_VERIFY_GROUPS; g++) {
@@ -123,8 +121,7 @@ static void a_row_has_the_members_that_its_columns_name(void **state) {
     json_decref(rows);
 }
 
-static void threads_and_interruptions_change_no_byte(void **state) {
-    (void)state;
+RT_TEST(threads_and_interruptions_change_no_byte) {
     json_decref(verify(OUT "/a", 1, RT_START_ANEW));
     json_decref(verify(OUT "/b", 2, RT_START_ANEW));
     char *journal = text_of(OUT "/b", "rows.jsonl");
@@ -148,8 +145,7 @@ static void threads_and_interruptions_change_no_byte(void **state) {
     assert_int_equal(scenes_worked_on, 0);
 }
 
-static void each_scene_is_opened_once(void **state) {
-    (void)state;
+RT_TEST(each_scene_is_opened_once) {
     json_decref(verify(OUT "/f", 0, RT_START_ANEW));
     assert_int_equal(scenes_worked_on, 2);
     assert_int_equal(scenes_opened, 2);
@@ -163,8 +159,7 @@ static RtStatus build_noting_threads(const void *context, const RtScene *scene, 
     return build_mutant(context, scene, threads, out, error);
 }
 
-static void accelerators_are_built_on_the_threads_of_the_run(void **state) {
-    (void)state;
+RT_TEST(accelerators_are_built_on_the_threads_of_the_run) {
     const RtVerifySpec spec = {"noting", true, {build_noting_threads, &padded, 0}};
     for (int threads = 1; threads <= 3; threads += 2) {
         RtVerify work = {.scenes = scenes,
@@ -179,8 +174,7 @@ static void accelerators_are_built_on_the_threads_of_the_run(void **state) {
     }
 }
 
-static void another_run_is_not_gone_on_with(void **state) {
-    (void)state;
+RT_TEST(another_run_is_not_gone_on_with) {
     json_decref(verify(OUT "/c", 0, RT_START_ANEW));
     RtVerify work = {.scenes = scenes, .scene_count = 1, .folder = OUT "/c", .start = RT_START_RESUME};
     RtError error;
@@ -208,8 +202,7 @@ static RtStatus build_losing(const void *context, const RtScene *scene, int thre
     return RT_OK;
 }
 
-static void a_failure_that_takes_its_neighbours_is_kept_with_them(void **state) {
-    (void)state;
+RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
     const RtVerifySpec spec = {"losing", true, {build_losing, &padded, 1}};
     RtVerify work = {.scenes = scenes,
                      .scene_count = 1,
@@ -234,8 +227,7 @@ static void a_failure_that_takes_its_neighbours_is_kept_with_them(void **state) 
 }
 
 /* A scene from a file is written into the replay file whole, and read from there to the last bit. */
-static void a_replay_file_needs_no_other_file(void **state) {
-    (void)state;
+RT_TEST(a_replay_file_needs_no_other_file) {
     const char *path = OUT "/lecture.json";
     RtScene scene;
     uint32_t ids[] = {1};
@@ -268,8 +260,7 @@ static void a_replay_file_needs_no_other_file(void **state) {
     rt_scene_clear(&scene);
 }
 
-static void what_is_no_replay_file_is_refused(void **state) {
-    (void)state;
+RT_TEST(what_is_no_replay_file_is_refused) {
     const char *const members[] = {"scene",  "fingerprint", "sampling", "accel", "query",
                                    "kernel", "stream",      "rays",     "asked"};
     const char *path = OUT "/broken.json";
@@ -298,8 +289,7 @@ static json_t *row_of(const char *scene, const char *accel, bool exact, int marg
                      marginal / 2);
 }
 
-static void rows_add_up_over_the_parameters_of_an_accelerator(void **state) {
-    (void)state;
+RT_TEST(rows_add_up_over_the_parameters_of_an_accelerator) {
     json_t *rows =
         json_pack("[o, o, o, o, o]", row_of("balls", "item:facets=on+bvh:max_leaf_size=1,bits=6", true, 0),
                   row_of("balls", "item+bvh", true, 0), row_of("balls", "embree", false, 7),
@@ -346,18 +336,4 @@ static int nothing_is_kept(void **state) {
     return rt_alloc_live() == 0 ? 0 : -1;
 }
 
-RT_TEST_GROUP(verify) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_failure_can_be_replayed_until_it_is_mended),
-        cmocka_unit_test(a_row_has_the_members_that_its_columns_name),
-        cmocka_unit_test(threads_and_interruptions_change_no_byte),
-        cmocka_unit_test(each_scene_is_opened_once),
-        cmocka_unit_test(accelerators_are_built_on_the_threads_of_the_run),
-        cmocka_unit_test(another_run_is_not_gone_on_with),
-        cmocka_unit_test(a_failure_that_takes_its_neighbours_is_kept_with_them),
-        cmocka_unit_test(a_replay_file_needs_no_other_file),
-        cmocka_unit_test(what_is_no_replay_file_is_refused),
-        cmocka_unit_test(rows_add_up_over_the_parameters_of_an_accelerator),
-    };
-    return cmocka_run_group_tests(tests, NULL, nothing_is_kept);
-}
+RT_TESTS(verify, NULL, nothing_is_kept)
