@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Sourced by run.sh and test.sh: moves to the top of the tree, installs missing packages, builds a preset.
 # Works without root where nothing is missing.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds with warnings as errors, and tests every room: by gcc, and under the address and
 # undefined-behaviour sanitizers what does not take long there. --all: every test, also by clang and under the
 # thread sanitizer, as continuous integration does.

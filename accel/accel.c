@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The struct that every accelerator begins with, as its `build` gets it. */
 #include "accel/accel.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The interface of accelerators: structures that answer `nearest` and `occluded` for rays.
  *
  * Every accelerator returns the same hits, bit for bit (see base/ray.h for why that is possible); they differ

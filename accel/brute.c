@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* brute: tests every object for every ray. It has no structure and defines the answer: the least (t,
  * id). */
 #include "accel/kernel.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* cache: the shadow cache of Haines & Greenberg 1986, an overlay for shadow rays.
  *
  * Neighbouring points are mostly in the shadow of the same object. So the object that blocked the last ray to

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Making extents, and checking that they hold their objects. Both ask the shapes alone: a ball, a frame, and
  * the support function, the farthest that an object reaches in a direction. All in double, then inflated by
  * more than that arithmetic can be wrong by. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Extents: bounding volumes of one object or of a group of them, of four kinds, and the tests of a ray
  * against them. Shared by the accelerators that may use any kind.
  *

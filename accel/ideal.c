@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* ideal: answers from a record: one object test for a ray that hits, none for one that misses. It is the
  * floor of every plot, what an accelerator that knew everything beforehand would still have to do.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the files of accelerators share: expanding one traversal into its four kernels, and testing an object.
  *
  * A file writes its traversal once, as an RT_KERNEL function of its own struct Type,

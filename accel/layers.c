@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Layers: what is common to all accelerators, overlays stacked upon a base. Building, looking at and
  * destroying a stack, and the queries that are asked of it. */
 #include "accel/accel.h"

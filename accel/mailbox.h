@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Mailboxes, and testing the objects of a cell's list: for structures that may list an object more than once.
  *
  * Paper: Kirk & Arvo 1991, Improved Ray Tagging for Voxel-Based Ray Tracing, Graphics Gems II.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The one list of accelerators. To add one: write its file, add a line here, add the file to
  * CMakeLists.txt. */
 #include "accel/accel.h"

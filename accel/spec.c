@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Specs: "name:key=value,key=value", with '+' between layers. */
 #include "accel/accel.h"
 

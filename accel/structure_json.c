@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "accel/structure_json.h"
 
 typedef RtDescription Row;

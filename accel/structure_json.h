@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a structure looks like, as columns and as JSON: one object, the same wherever it is written. */
 #ifndef RT_ACCEL_STRUCTURE_JSON_H
 #define RT_ACCEL_STRUCTURE_JSON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* For structures that list an object only in cells near its surface, not in all that its box meets: how near
  * that is, and for which rays.
  *

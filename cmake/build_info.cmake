@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes OUT, a header that says what is built: commit, whether the tree differs from it, compiler and flags. It runs
 # at every build, and touches OUT only when something changed.
 # cmake -DSOURCE=... -DOUT=... -DCOMPILER=... -DFLAGS=... -P build_info.cmake

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # build-scaling: time to build, an object, over the number of objects; exponents of the powers fitted to it.
 
 n_accels = words(accels)

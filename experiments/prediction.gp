@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # prediction: tests and steps of random lines against what areas say; of all kinds of rays, as a ratio; and time from a
 # time per ray, test and step fitted to each accelerator.
 

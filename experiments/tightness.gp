@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # tightness: what each kind of extent lets through, and the time of a ray, against the number of plane sets.
 
 n_scenes = words(scenes)

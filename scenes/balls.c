@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* balls: the sphereflake over a floor, 9^0 + ... + 9^size spheres and one polygon.
  *
  * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. Every sphere carries

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Built-in scenes: one generator a file, listed in scenes/builtin.c. */
 #ifndef RT_SCENES_BUILTIN_H
 #define RT_SCENES_BUILTIN_H

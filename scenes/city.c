@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* city: size x size blocks of houses and towers: faces along the axes, most of which share their planes with
  * many others (walls of neighbours, floors of windows, pavements), beside cylinders and spheres.
  *

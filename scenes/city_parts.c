@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/city_parts.h"
 
 #define WALL(red, green, blue)      RT_MATTE("wall", red, green, blue)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a city is made of: each part stands at the origin of forms->place and its front, if it has one, looks
  * towards -y. Lengths are in metres; quads are polygons. How many objects a part is depends on the random
  * numbers alone. */

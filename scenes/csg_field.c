@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* csg-field: n random CSG trees of 8 to 64 solids each, on a jittered grid, to measure what a tree costs.
  *
  * Tree i is made from the random numbers of stream i alone. Its solids (spheres, boxes, cones, cylinders,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The families of scenes. One recipe a row: how many objects of which shapes, where, how large, and how the
  * whole is scaled and moved. */
 #include "scenes/family.h"

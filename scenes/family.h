@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Families of scenes that are hard on accelerators: objects that coincide, are flat, huge, tiny or far away,
  * slivers, shared edges, trees. Each is the built-in scene "family:kind=NAME,seed=N"; here they are counted
  * and named for those who go through all. */

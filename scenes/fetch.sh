@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # fetch.sh [NAME...]: brings public meshes into scenes/fetched/, which git ignores. NAME is bunny or dragon; without
 # one, all that can be had. What is there already stays as it is.
 #   bunny.obj    the Stanford bunny, 69,666 triangles: Debian's glmark2-data, which is installed if that is allowed

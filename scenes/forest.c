@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* forest: trees on a hilly ground, a million small triangles that lie any way, most of them in crowns where
  * much overlaps: for measuring how builders scale, from 10^3 to 10^7 triangles.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Forms: what the larger built-in scenes are made of (boxes, tubes, curved sheets, surfaces of revolution),
  * as triangles or polygons.
  *

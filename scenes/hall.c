@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* hall: a nave with two aisles, about 280,000 triangles and nothing else: long thin ones (fluted shafts,
  * mouldings, walls over arches) together with small ones close together (vases, balusters, chains), and
  * no way out, so that every ray from within hits something.

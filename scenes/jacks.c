@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* jacks: jacks (three crossed cylinders with a sphere at each end) that carry smaller jacks between their
  * arms.
  *

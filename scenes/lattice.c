@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* lattice: a cube of (size + 1)^3 spheres, joined along the edges of the lattice by cylinders.
  *
  * Standard Procedural Databases of E. Haines, added to the set after its paper of 1987. The cube is that from

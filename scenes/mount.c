@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* mount: a fractal mountain of 2 * 4^size triangles, seen through four spheres of glass.
  *
  * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987; midpoint

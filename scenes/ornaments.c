@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/ornaments.h"
 
 #define COUNT_OF(array) (uint32_t)(sizeof(array) / sizeof(array)[0])

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a hall is furnished with, of triangles: each stands on (or hangs at) the origin of forms->place and
  * has forms->material. `size`, from 1, sets how fine they are: what is round has a few times as many sides.
  * Lengths are in metres. */

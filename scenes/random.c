@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* random: n objects in the cube from -1 to 1, uniformly, in clusters, or where they are hard on accelerators:
  * all in one place, on a line, in a plane, huge beside tiny.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/random_tree.h"
 
 #include <assert.h>

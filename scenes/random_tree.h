@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Random CSG trees, for holding accelerators and the trees themselves to account. */
 #ifndef RT_SCENES_RANDOM_TREE_H
 #define RT_SCENES_RANDOM_TREE_H

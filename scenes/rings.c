@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* rings: a pyramid of objects made of six interlocked rings, seen from its tip before a wall.
  *
  * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. A ring is a pentagon of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* shells: a sea shell of 180 * 2^size + 1 spheres, nearly all of which overlap their neighbours.
  *
  * Standard Procedural Databases of E. Haines, after C. Pickover, "A Short Recipe for Seashell Synthesis",

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What scenes of the Standard Procedural Databases share. Their objects come in the order of the files that
  * the package writes. They are made in double with + - * / sqrt and base/elementary.h alone and rounded once,
  * so that every compiler and library makes the same float32. */

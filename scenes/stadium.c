@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* stadium: a teapot in a stadium: thousands of tiny triangles in the middle of a few thousand huge polygons.
  *
  * The classical case against a uniform grid (E. Haines, Ray Tracing News, 1988): voxels that suit the stadium

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What scenes of random objects stand in: materials by which every kind of ray can be traced, and two
  * lights. */
 #ifndef RT_SCENES_STUDIO_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* teapot: Newell's teapot on a checkerboard: many small triangles with vertex normals, a few large quads.
  *
  * As in the Standard Procedural Databases (E. Haines 1987): 64 size^2 - 8 size triangles (teapot_mesh.c) and

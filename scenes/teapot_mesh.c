@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Patches are evaluated by de Casteljau's scheme with the weights n - i and i, so that a border comes out the
  * same bit for bit in both patches that share it, from whichever end; where control points coincide so do the
  * points between them. 8 patches have a border that is one point, where n triangles collapse and are left

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Newell's teapot as triangles, for the scenes in which it stands. */
 #ifndef RT_SCENES_TEAPOT_MESH_H
 #define RT_SCENES_TEAPOT_MESH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Martin Newell's teapot (1975), with the bottom added later: control points of 32 bicubic Bezier patches.
  * The lid is up, +z. Patches are 4 rows of 4 indices; neighbours share the points of their borders. */
 #ifndef RT_SCENES_TEAPOT_PATCHES_H

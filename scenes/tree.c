@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* tree: a binary tree of 2^(size+1) - 1 branches, each a cone with a sphere at its tip, on a field.
  *
  * E. Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987. The trunk goes from the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of accelerators share: scenes that several of them stand on, rays to lights, and what validate
  * says. */
 #ifndef RT_TESTS_ACCEL_TESTING_H

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_circles.sh [TREE]: no files in a circle, and no room that needs one above it. A file needs another where its
 # object file, among those beside $RT_PROGRAM, needs a symbol that the other's defines, and a header another where it
 # includes it. Prints each circle and each need that points up, with the symbols, and fails where there is one. Exit

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_counts.sh [--update]: tests/golden/experiment.yaml gives tests/golden/counts.csv, byte for byte, on one thread
 # and on two; run for every build, this makes the counts of compilers and optimisation levels the same. --update
 # replaces the file: say in CHANGELOG.md why it changed. Uses $RT_PROGRAM.

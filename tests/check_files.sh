@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, tests/ROOM/test_NAME.c as
-# NAME in raytally_tests(ROOM ...). Prints those that are not; exit code 1 where there is one.
+# NAME in raytally_tests(ROOM ...); and every source says its licence. Prints those that are not; exit code 1 where
+# there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
@@ -19,4 +21,11 @@ while read -r path; do
         status=1
     }
 done < <(find src accel scenes tests -name '*.c' | sort)
+while read -r path; do
+    head -n 2 "$path" | grep -q 'SPDX-License-Identifier: Apache-2.0' || {
+        echo "$path: no SPDX line"
+        status=1
+    }
+done < <(find . -name build -prune -o \( -name '*.[ch]' -o -name '*.sh' -o -name '*.gp' -o -name '*.cmake' -o -name CMakeLists.txt \) -print |
+    grep -v '^\./results/' | sort)
 exit $status

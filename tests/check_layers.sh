@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_layers.sh [TREE]: includes go one way only, and nothing but the registry and its own file or folder knows a
 # concrete accelerator: names its operations, includes from its folder or, outside accel/, opens it by its name; tests
 # may include and open. Prints each violation and fails where there is one.

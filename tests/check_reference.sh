@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_reference.sh: counting again gives the counts of results/havran-1999, and the same comparison with published
 # figures, and the counts of every directory in results/reference, byte for byte. Where the bunny was not fetched the
 # latter are skipped (exit code 77). Uses $RT_PROGRAM. Takes four minutes of processor time, on all processors.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_tidy.sh: clang-tidy has nothing to say, by the checks of .clang-tidy, about all but the tests (it is blind
 # to their assertions) and status.c (which status.h tells it about). Reads the compile_commands.json beside
 # $RT_PROGRAM, with assertions on, from which it learns. Without clang-tidy 14 the check is skipped (77).

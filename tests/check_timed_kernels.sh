@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # The timed kernels hold no counting code. Counters are 64-bit words in memory, and counting adds to them; so
 # no function of the library that is called ..._timed may add to a 64-bit word in memory, its own stack apart.
 # The functions called ..._counted must: each file's counted kernels show that this script would see it.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_verified.sh: results/verify is of a thousand million pairs of a ray and an accelerator without a wrong answer, and
 # one of its scenes, verified again, gives the same rows (but for Embree's, whose own arithmetic differs between
 # processors). Some ten seconds. Uses $RT_PROGRAM.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # check_verify.sh [RAYS]: every accelerator answers RAYS hard rays on each family of scenes, and more than five million
 # of them on all, without a wrong answer; what is wrong is left in verify-failures/ to be replayed. Takes some two
 # minutes on two cores: once, by the release build, is enough. Uses $RT_PROGRAM.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* For tests of --threads: who has done the work. */
 #ifndef RT_TESTS_CLOCK_TESTING_H
 #define RT_TESTS_CLOCK_TESTING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Holding accelerators against brute, by rays of every family: on a scene of a family, or on any; all answers
  * by both kernels, in streams of several lengths. */
 #ifndef RT_TESTS_EQUIVALENCE_TESTING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of experiments share: a folder for each test, files in it, and what is said of them. */
 #ifndef RT_TESTS_EXPERIMENT_TESTING_H
 #define RT_TESTS_EXPERIMENT_TESTING_H

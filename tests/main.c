@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The main function of each room's tests: runs the groups that are named, or all, in the order of
  * CMakeLists.txt, whose list is RT_TEST_GROUPS. Exit code 1 where a test failed, 77 where every group was
  * skipped, 2 for a name that is none. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of scenes share: opening one, its objects by shape, and memory that runs out on the way. */
 #ifndef RT_TESTS_SCENE_TESTING_H
 #define RT_TESTS_SCENE_TESTING_H

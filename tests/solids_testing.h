@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of solids share: lines and their lists of crossings, models of every kind of solid with
  * membership of points in long double, which shares no code with spans, and the two held against each
  * other. */

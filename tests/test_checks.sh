@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # The checks of the tree find what they are there for: each is shown a small tree that breaks the rule. And setup.sh builds
 # a tree that was copied with its build folder.
 set -euo pipefail
@@ -17,6 +18,7 @@ fresh_tree() {
     echo '#include "testing.h"' >"$tree/tests/accel/test_grid.c"
     printf '%s\n' 'set(ALL src/render/frame.c' 'src/scene/load.c scenes/balls.c' 'accel/grid.c accel/registry.c)' \
         'raytally_tests(accel bvh' '  grid)' >"$tree/CMakeLists.txt"
+    find "$tree" -type f -exec sed -i '1i# SPDX-License-Identifier: Apache-2.0' {} +
 }
 
 # expect passes|fails CHECK WHAT
@@ -67,6 +69,8 @@ expect fails check_layers.sh "a renderer that compares with the name of an accel
 fresh_tree && echo 'rt_accel_open("overlay+grid:density=4", &scene);' >>"$tree/src/render/frame.c"
 expect fails check_layers.sh "a renderer that opens an accelerator by name"
 
+fresh_tree && sed -i 1d "$tree/accel/grid.c"
+expect fails check_files.sh "a file without a licence"
 fresh_tree && touch "$tree/accel/octree.c"
 expect fails check_files.sh "a file that is not built"
 fresh_tree && touch "$tree/tests/accel/test_octree.c"

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # The command line on bad input: exit code 2, nothing on stdout, a message that says where, what is wrong and what
 # would be right, and no file left behind. Uses $RT_PROGRAM.
 set -uo pipefail

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What every test file includes: cmocka, in the order it wants, and a few helpers. */
 #ifndef RT_TESTS_TESTING_H
 #define RT_TESTS_TESTING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* bvh: a binary hierarchy of boxes, built in one of several ways.
  *
  * Papers: MacDonald & Booth 1990 (the surface area heuristic), Wald 2007, "On fast Construction of SAH-based

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* clusters: a hierarchy of extents of any kind, made by clustering objects.
  *
  * Papers: Rubin & Whitted 1980 (hierarchies of bounding volumes), Goldsmith & Salmon 1987, Walter et al.

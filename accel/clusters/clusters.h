@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The structure behind `clusters`: for its own file and its test, which breaks it on purpose. */
 #ifndef RT_ACCEL_CLUSTERS_CLUSTERS_H
 #define RT_ACCEL_CLUSTERS_CLUSTERS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Embree 3 and Embree 4 under one set of names: the only file that knows which of them it is. RT_WITH_EMBREE
  * is the major version. Embree 4 has no streams of single rays any more (RT_EMBREE_STREAMS is 0).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What Embree calls back for user geometry. A callback gets a primitive and a packet of N rays, of which
  * those with a non-zero `valid` are to be tested. */
 #include "accel/embree/embree.h"

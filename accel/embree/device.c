@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Embree's device: opened for one instruction set, with errors caught instead of printed and every byte it
  * allocates accounted for. Configuration files in the home or the program's folder are ignored, so that a
  * spec says all there is to say. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* embree: Intel's ray tracing kernels, as the competitor and as an oracle.
  *
  *   mode=native  triangles and spheres are Embree's own geometry, with its own arithmetic: fast, and judged

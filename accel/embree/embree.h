@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the files of `embree` share: the accelerator's struct, the state of a query, and Embree's device.
  *
  * Each shape with objects is one Embree geometry, whose geometry id is the RtShape and whose primitive ids

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The kernels: a stream of our rays goes to Embree in chunks, as single rays, packets of 8 or 16, or streams,
  * and comes back as hits. The loop is written once; mode, query and counting are constants where it is
  * inlined.

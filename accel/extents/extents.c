@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* extents: one extent per object and no hierarchy. Every ray is tested against every extent, and against the
  * object only where it meets the extent (Weghorst, Hooper & Greenberg 1984: the cost is b B + i I).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The structure behind `extents`: for its own file and its test, which breaks it on purpose. */
 #ifndef RT_ACCEL_EXTENTS_EXTENTS_H
 #define RT_ACCEL_EXTENTS_EXTENTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Building a grid level by level: the planes of its blocks, and the lists by a count pass and a fill pass.
  * A level's lists are full until the voxels that hold too many objects have been cut into blocks of the next
  * level; what went into those is dropped then. */

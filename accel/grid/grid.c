@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* grid: uniform spatial partitioning. The scene's box is cut into equal voxels, each with a list of the
  * objects whose boxes touch it; a ray visits the voxels it passes through, in order. With depth > 1 a voxel
  * with too many objects is a grid in turn.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The inside of grid: its data, shared by the files of this folder.
  *
  * Levels. Level 0 is one block: the box of the grid, cut into voxels by planes. A voxel may be cut into

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a grid of a given resolution would take, estimated before anything is taken, and which would fit. */
 #include "accel/grid/grid.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which voxels an object goes into: all that its box meets, or (overlap=exact) those of them that its
  * surface comes within `margin` of, found by halving the range of voxels that the box meets.
  *

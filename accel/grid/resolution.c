@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The parameters of a grid, and how they become a resolution. */
 #include "accel/grid/grid.h"
 

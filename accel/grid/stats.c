@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Describing, validating and drawing a grid. */
 #include "accel/grid/grid.h"
 

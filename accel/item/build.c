@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Building an item buffer: a z-buffer that remembers two depths, that of the nearest object and the least of
  * all others.
  *

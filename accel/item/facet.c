@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scan conversion of triangles and convex polygons by homogeneous edge functions (Olano & Greer 1997): a ray
  * passes an edge on the inside if dir . (V x W) has the sign of the inside, V and W being its ends relative
  * to the eye. Nothing is divided by depth, so that facets behind and around the eye need no clipping. The ray

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Footprints: the samples whose rays may hit an object, by projecting its box.
  *
  * Why they are complete. A hit at t means (base/ray.h) that the ray's point at t is in the object's box but

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* item: the item buffer of Weghorst, Hooper & Greenberg 1984, an overlay for primary rays.
  *
  * Each sample of the image knows which object its ray meets first, found once by projecting all objects

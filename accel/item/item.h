@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The inside of item: its data, shared by the files of this folder.
  *
  * A sample of the image says which object is seen there, and from which t on any other object may be:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What an item buffer looks like, and whether its invariants hold. */
 #include "accel/item/item.h"
 

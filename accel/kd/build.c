@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Building a kd-tree, depth first: a cell is divided where that is expected to cost less than testing all its
  * objects.
  *

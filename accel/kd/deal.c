@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Dealing the lists of a cell to its two children: one pass over each, in order, so that they stay sorted.
  *
  * The child with more objects keeps the place of its parent's lists, the other's come on top of them and are

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Events: making, sorting and merging them. Sorted once, for the root, by radix; afterwards only the events
  * of objects that a plane has cut are made anew, sorted and merged. */
 #include "accel/kd/kd.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* kd: cells cut in two by planes of the least expected cost; a ray visits the leaves it meets, nearest first.
  *
  * Papers: MacDonald & Booth 1990 (the surface area heuristic); Havran 2000, Heuristic Ray Shooting Algorithms

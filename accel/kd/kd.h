@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The inside of kd: its data, shared by the files of this folder.
  *
  * Nodes of 8 bytes in one flat array: the root is node 0; the two children of a node lie side by side, after

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Describing, validating and drawing a kd-tree. Cells are not kept, but cut from the root's on the way
  * down. */
 #include "accel/kd/kd.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Finding the plane of the least cost among all at which the part of an object begins, ends or lies: one pass
  * over the events of each axis, which counts what lies below and above.
  *

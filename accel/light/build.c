@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Building a light buffer: objects in order of depth, the covers of cells, and the lists in two passes.
  *
  * Why the lists are complete. A hit on an object at t means (base/ray.h) that the ray's point at t is in the

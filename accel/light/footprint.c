@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where on the faces of a light's cube an object is seen, and what covers whole cells. All in double, in
  * offsets from the light. An object is seen within the rectangle around its box; of the cells there,
  *

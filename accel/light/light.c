@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* light: the light buffer of Haines & Greenberg 1986, an overlay for shadow rays.
  *
  * A ray to a light lies in one cell of the cube around it, and can be blocked by the objects in the list of

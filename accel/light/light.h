@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The inside of light: its data, shared by the files of this folder, and the geometry of cells.
  *
  * Around each light stands a cube of six faces, one per axis and direction: face 2 a + 1 looks from the light

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Does the plane of a flat object (triangle, polygon) lie between a ray's origin and its light?
  *
  * Exact. A hit at t is a point of the ray within delta of the object, along each axis, where for m the

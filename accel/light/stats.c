@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a light buffer looks like, and whether its invariants hold. */
 #include "accel/light/light.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Building an octree, level by level: a leaf's list goes to the array of all lists, an inner node's is dealt
  * to the lists of its eight children (divide.c), the next level, as long as it seems to fit (limit.c). */
 #include "accel/octree/octree.h"

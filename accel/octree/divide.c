@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Dividing the cells of an octree, level by level: where a cell is cut, whether it is, and dealing its list
  * to the lists of its eight children. What children would take is counted before it is taken.
  *

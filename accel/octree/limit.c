@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What an octree that has been built down to some level will take at each depth below, estimated by random
  * probes before it is taken: a probe goes from a cell of the level down to one child at a time, picked from
  * those that would be divided too, and stands for as many cells as there were to pick from. Its sums are

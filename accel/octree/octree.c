@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* octree: cells cut into eight until each holds few objects; a ray tests the objects of the leaves it meets.
  *
  * Papers: Glassner 1984 (traversal=points: every next leaf is sought from the root); Samet 1989 (neighbours:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The inside of octree: its data, shared by the files of this folder.
  *
  * Nodes in one flat array, level by level: the root is node 0, the eight children of a node lie side by side,

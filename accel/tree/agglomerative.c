@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Agglomerative clustering (Walter, Bala, Kulkarni & Pingali 2008): the two nearest clusters are united,
  * until one is left.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* From a binary tree of references to the nodes that are traced: which subtrees become leaves, which nodes
  * are opened into their parent. */
 #include "accel/tree/hierarchy.h"

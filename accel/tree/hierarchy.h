@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Hierarchies of boxes as they are traced: one array of 32-byte nodes, the children of a node side by side,
  * and one array of object ids, of which a leaf owns a run.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Clusters by insertion (Goldsmith & Salmon 1987): objects come one by one, and each is united with whatever
  * cluster makes the sum of all areas grow least. The best place is found by branch and bound: all that lies
  * below a cluster costs at least what its ancestors grow by, and the area of the object itself.

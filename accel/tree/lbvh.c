@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Trees along the Morton curve (Lauterbach, Garland, Sengupta, Luebke & Manocha 2009): references in Morton
  * order are parted where the highest bit in which their codes differ changes, which cuts space in the middle
  * along one axis after another. Equal codes are halved by number.

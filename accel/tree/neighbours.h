@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The nearest neighbour of a cluster, exactly, among clusters that come and go.
  *
  * Every cluster has a slot; slots are the leaves of a complete binary tree in one array (children of i: 2i

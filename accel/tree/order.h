@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Orders of boxes by their centres: along the Morton curve (Morton 1966) or along an axis. Sorted by radix,
  * so in time linear in their number; what has equal keys stays in the order of ids. */
 #ifndef RT_ACCEL_TREE_ORDER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Whether nothing of an object was lost where it was divided: the boxes of the leaves that list it must hold
  * its surface. What of it is in a box is asked of rt_object_part; where no leaf holds that whole, the box is
  * parted at a side of a leaf's that runs through it, over and over, until one does or no side is left.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Parallel locally-ordered clustering on one thread (Meister & Bittner 2018).
  *
  * Clusters stand in a row, in Morton order of the objects' centres. In a round everyone looks for its nearest

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Better trees by moving subtrees to where they cost less.
  *
  * Papers: Bittner, Hapala & Havran 2013, "Fast Insertion-Based Optimization of Bounding Volume Hierarchies"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Trees from the top whose splits may cut objects: each part is a reference of its own.
  *
  * Paper: Stich, Friedrich & Dietrich 2009, "Spatial Splits in Bounding Volume Hierarchies" (HPG). At a node

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Splitting a group of references in two, in place: by the surface area heuristic, sought in equal bins of
  * centres along all three axes (Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies"),
  * or in halves. Boxes are moved with their ids, so that groups are read in a row, however large the scene. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Looking at hierarchies: what they are like, their boxes, and whether they are sound. */
 #include "accel/tree/hierarchy.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Trees from the top by the surface area heuristic, with every place between two neighbouring centres along
  * each of the axes tried (MacDonald & Booth 1990; the sweep of Wald, Boulos & Shirley 2007, "Ray Tracing
  * Deformable Scenes Using Dynamic Bounding Volume Hierarchies"). Time O(n log n) for balanced trees: the

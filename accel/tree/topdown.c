@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Trees from the top: medians, or the surface area heuristic in bins. */
 #include "accel/tree/split.h"
 #include "accel/tree/tree.h"

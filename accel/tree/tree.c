@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Binary trees of references, and the bound on their depth. */
 #include "accel/tree/tree.h"
 

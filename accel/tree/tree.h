@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Binary trees of references, and the ways to make them: what `bvh` and `clusters` are before they are laid
  * out for tracing (hierarchy.h).
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Axis-aligned boxes in float32, the common extent of everything. A box is closed: its faces belong to it.
  * The empty box has lo = +inf, hi = -inf, and is the neutral element of a union.
  *

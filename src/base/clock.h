@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Clocks, in seconds: the wall, and the processor time of the calling thread alone. */
 #ifndef RT_BASE_CLOCK_H
 #define RT_BASE_CLOCK_H

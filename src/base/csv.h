@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CSV files with a header (RFC 4180): fields quoted where commas or quotes ask for it, none across lines.
  * Lines that begin with # are comments. */
 #ifndef RT_BASE_CSV_H

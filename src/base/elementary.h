@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Logarithm, powers, cube root, sine and cosine from + - * / alone: libraries differ in their last bits,
  * these are the same with every compiler and library. Rays, hits, counts and images depend on no others. */
 #ifndef RT_BASE_ELEMENTARY_H

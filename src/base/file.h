@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Files: reading one whole, and writing one so that nothing half-written remains: to PATH.tmp, renamed to
  * PATH when complete. */
 #ifndef RT_BASE_FILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* JSON that several writers share: figures that may be unknown, fingerprints, dates, documents as files. */
 #ifndef RT_BASE_JSON_H
 #define RT_BASE_JSON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A directory that one process writes into at a time. The lock is the kernel's, on the directory itself: it
  * leaves no file behind, and goes with the process that holds it, however that ends. */
 #ifndef RT_BASE_LOCK_H

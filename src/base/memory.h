@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Memory: one allocator for everything, so that a test can count allocations and make the nth one fail.
  * Blocks are 64-byte aligned (a cache line, an AVX-512 register). No allocation happens while tracing. */
 #ifndef RT_BASE_MEMORY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Work in parallel: numbered items handed out to threads, in no fixed order. Results stay deterministic
  * because an item writes only to its own place. */
 #ifndef RT_BASE_PARALLEL_H

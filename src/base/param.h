@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Parameter tables: what can be set on an accelerator or a built-in scene. One table drives parsing, range
  * checks, `raytally accels` and `scenes`, the CSV columns, the docs, and the values that tests try.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Counter-based random numbers (Philox 4x32-10, Salmon et al. 2011, through Random123): the nth number of a
  * stream is a function of (seed, stream, n) alone, so any part of an experiment can be generated on its own
  * and on any thread. Uniform numbers use + - * only; the same bits everywhere, as long as no two are drawn in

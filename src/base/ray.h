@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rays, hits, and the one box test that everything conservative rests on.
  *
  * A ray is org + t * dir for tmin <= t <= tmax; dir need not have length 1, so t is in lengths of dir. Before

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Errors: a status to branch on and a message to read. Nothing below the command line prints or exits; a
  * function that can fail returns RtStatus and fills the caller's RtError. */
 #ifndef RT_BASE_STATUS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tables: what was found, described once and written in every form: CSV, text for a terminal, Markdown, HTML
  * and JSON.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tallies: what tracing cost, in events that are the same on every machine. RT_TALLY_COUNTERS is the one list
  * of counters: the struct, the sums, the CSV columns, --help and the docs all expand it.
  *

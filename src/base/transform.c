@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "base/transform.h"
 
 #include "base/elementary.h"

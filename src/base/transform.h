@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Affine transforms in double: what places meshes and built-in scenes in a scene.
  *
  * A point p (a column) goes to m[.][0..2] p + m[.][3]. Transforms keep the orientation of space (determinant

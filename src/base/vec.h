@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Vectors: three float32 (RtVec3, what geometry and rays are made of) or three doubles (RtVec3d, what hit
  * functions compute with). Only + - * / sqrt, in the order written: with -ffp-contract=off every compiler
  * gives the same bits. */

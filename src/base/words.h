@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Words in messages: lists of the names there are, and the one that was probably meant. */
 #ifndef RT_BASE_WORDS_H
 #define RT_BASE_WORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The tree is built in one loop over the events with a stack of what is open, whose nodes have the size
  * "everything that follows" until they are closed. So a node's path can be told at any time, by descending
  * from the whole to it, and nothing is kept for messages. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* YAML, read into a tree of nodes, and what its nodes say. Scenes and experiments are read by this alone.
  *
  * libyaml's events become nodes in the order of the text, 16 bytes each (libyaml's own documents take over

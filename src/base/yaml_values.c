@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the nodes of a YAML tree say, and what is wrong with them. */
 #include "base/memory.h"
 #include "base/words.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What an earlier run has left in a result directory, and what becomes of it: nothing is overwritten unasked.
  */
 #ifndef RT_BENCH_EARLIER_H

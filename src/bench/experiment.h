@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* An experiment: a question, and what is measured to answer it. Every accelerator of the list is counted and
  * timed on every scene, for every kind of ray; experiments/README.md explains the YAML form key by key. */
 #ifndef RT_BENCH_EXPERIMENT_H

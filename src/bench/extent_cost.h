@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What extents cost: the time of a test of each kind, and what the pair of tightness and time makes of a
  * line, T = b B + i I (Weghorst, Hooper & Greenberg 1984). Here the b extents of a population lie in a list
  * without a hierarchy: b is their number, B the time of an extent test, i the number of extents that a random

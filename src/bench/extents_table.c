@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/extents_table.h"
 
 static const char *const kind_names[RT_EXTENT_KIND_COUNT] = {"box", "sphere", "obb", "slabs"};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The table of `raytally info --extents`: how tight the extents of a scene are, by shape, and what they
  * cost. */
 #ifndef RT_BENCH_EXTENTS_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The journal of a run: one JSON object a line for everything found, on the disk before the next is measured.
  * It is what an interrupted run resumes from, and what the tables and the report are made of.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/json_lines.h"
 
 #include "base/memory.h"

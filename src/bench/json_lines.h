@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Files of one JSON object a line, each on the disk before the next is found out: what an interrupted run
  * goes on from. A last line that was cut off is none. */
 #ifndef RT_BENCH_JSON_LINES_H

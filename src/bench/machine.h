@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the measurements were made with: the machine, the compiler, the version. */
 #ifndef RT_BENCH_MACHINE_H
 #define RT_BENCH_MACHINE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The manifest of a result: what was run, and with what. */
 #ifndef RT_BENCH_MANIFEST_H
 #define RT_BENCH_MANIFEST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Measuring an accelerator on a ray set: counting and timing, which are separate passes over the same rays.
  * Shadow rays are asked of `occluded`, all others of `nearest`. */
 #ifndef RT_BENCH_MEASURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Ray sets. The sink of a frame appends each ray to the list of its tile and kind; the lists are joined in
  * the order of tiles, so threads cannot change a set. Diffuse and random rays draw their numbers from one
  * stream a ray, numbered by kind and index. */

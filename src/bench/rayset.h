@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Ray sets: rays of one kind recorded from one scene, to be replayed to every accelerator alike.
  *
  * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order in which

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Results as tables (base/table.h): those of a result directory, of bench --json, and for the eye. */
 #ifndef RT_BENCH_RESULT_TABLES_H
 #define RT_BENCH_RESULT_TABLES_H

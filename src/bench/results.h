@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What an experiment found, in memory: dense arrays over workload x candidate x ray kind, filled cell by
  * cell. Behind the candidates stands one more, the null run: the baseline built and measured a second time,
  * whose ratio to the baseline must straddle 1. */

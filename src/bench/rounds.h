@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Interleaved rounds: how things are timed against each other. After a warm-up, each round runs all of them
  * once, in an order drawn anew, so that a drift of the machine meets them all alike and the times of one
  * round may be paired. */

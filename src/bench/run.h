@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A run of an experiment: what is not yet known is measured, and kept as it is found.
  *
  *   cells.jsonl      the journal: everything found, line by line as it was found

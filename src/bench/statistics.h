@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Statistics of repeated measurements: the median and its interval.
  *
  * Times on a shared machine have a long tail to the right, so the median stands for them. Its interval is

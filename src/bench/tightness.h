@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tightness of extents (Weghorst, Hooper & Greenberg 1984): the projected area of an extent over that of its
  * object, averaged over all directions.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A workload in order: the rays of its scene are recorded by the default accelerator, which also gives
  * the answers that all others are held against; every candidate is built; then, ray kind by ray kind, each is
  * counted, and all are timed against each other. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A workload: one scene of an experiment, with every candidate measured on the rays recorded from it. What is
  * already known (from an earlier, interrupted run) is not measured again. */
 #ifndef RT_BENCH_WORKLOAD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A workload while it runs: what the files share that make one up (workload.c, workload_time.c). */
 #ifndef RT_BENCH_WORKLOAD_STATE_H
 #define RT_BENCH_WORKLOAD_STATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The timing of one kind of rays in a workload. */
 #include "base/memory.h"
 #include "base/parallel.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The command line: one file per command, each with its own argp parser (so `raytally COMMAND --help` teaches
  * it), and what they share. Only here is anything printed, and only main exits. */
 #ifndef RT_CLI_CLI_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally accels: what the tables of the registry say. */
 #include "accel/accel.h"
 #include "cli/cli.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally convert: a scene from one format to another. */
 #include "cli/cli.h"
 #include "scene/load.h"

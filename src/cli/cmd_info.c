@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally info: what is in a scene. */
 #include "bench/extents_table.h"
 #include "cli/cli.h"

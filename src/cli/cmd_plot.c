@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally plot: the plots of a result directory, drawn again. */
 #include "cli/cli.h"
 #include "cli/directory.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally render: a picture of a scene, and what it cost. The timed kernels make the picture; where counts
  * are asked for, a second frame is traced by the counted ones. */
 #include "accel/structure_json.h"

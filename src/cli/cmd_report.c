@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally report: the report of a result directory, written again. */
 #include "bench/manifest.h"
 #include "cli/cli.h"

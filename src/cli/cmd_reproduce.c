@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally reproduce: the counts of a result directory, counted again and compared byte for byte, with all
  * that is made of them alone. */
 #include "base/memory.h"

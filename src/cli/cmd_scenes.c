@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally scenes: what the table of built-in scenes says. */
 #include "cli/cli.h"
 #include "scenes/builtin.h"

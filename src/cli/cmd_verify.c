@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally verify: does every accelerator answer every ray like brute? And --replay: does one still answer
  * one ray wrong? What is done lies in verify/verify.h and verify/replay.h; this is its command
  * line. */

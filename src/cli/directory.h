@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Commands that work on a result directory: their common command line, `raytally COMMAND DIR`. */
 #ifndef RT_CLI_DIRECTORY_H
 #define RT_CLI_DIRECTORY_H

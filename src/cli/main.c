@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally: the list of commands. */
 #include "base/words.h"
 #include "cli/cli.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One line of progress on stderr, redrawn in place, and only on a terminal. */
 #ifndef RT_CLI_PROGRESS_H
 #define RT_CLI_PROGRESS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Roots of polynomials with rational coefficients, as exact numbers. A root is its polynomial, which has no
  * root twice, and an interval with rational ends that holds this root and no other: it can be narrowed for as
  * long as it takes.

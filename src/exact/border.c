@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/border.h"
 
 double rt_border_unit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line) {

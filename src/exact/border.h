@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How near to a border a decision is: a hit function that says otherwise than exact arithmetic is excused if
  * the ray, moved a little, would be decided its way.
  *

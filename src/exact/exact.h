@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Exact numbers: rationals (GMP), vectors of them, and surds p + q sqrt(d), which are what roots of quadratic
  * equations are. A float32 or double is a rational, so whatever + - * / make of such numbers is here without
  * any rounding, and order and sign are decided, never estimated.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CSG trees in exact arithmetic. A solid is made of parts that one equation describes, a quadric, a
  * half-space or a torus; on a line the inside of each is an alternation of in and out at a few places. Meshes
  * are parts with any number of places (exact_mesh.c). Solids join parts, and trees join solids, by the same

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CSG trees in exact arithmetic: what one is, exactly, says exact_hit.h. */
 #ifndef RT_EXACT_EXACT_CSG_H
 #define RT_EXACT_EXACT_CSG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Hit functions in exact arithmetic: where a line meets an object, from the numbers that the object is made
  * of and nothing else. What an object is, exactly:
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Meshes in exact arithmetic, by the rule of shape/solid_mesh.c without its rounding. The line is seen along
  * itself: vertices are moved to the origin and sheared along its largest component until it is the z axis,
  * and x and y are left. A triangle is crossed where its outline winds about the line; the sign of the volume

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Mesh solids in exact arithmetic: what one is, exactly, says exact_hit.h. */
 #ifndef RT_EXACT_EXACT_MESH_H
 #define RT_EXACT_EXACT_MESH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/line.h"
 
 RtWideRay rt_wide_ray(const RtRay *ray) {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Lines that are asked about in exact arithmetic: rays whose origin need not be float32, in double and as
  * exact numbers, and what can come of asking. */
 #ifndef RT_EXACT_LINE_H

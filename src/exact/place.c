@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/place.h"
 
 RtPlace rt_place_of_surd(const RtSurd *surd) {

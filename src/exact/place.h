@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Places on a line: numbers t where it meets a surface. Of surfaces of degree 2 they are surds (exact.h), of
  * tori, which have degree 4, roots of a polynomial (algebraic.h). All are compared with all, exactly. */
 #ifndef RT_EXACT_PLACE_H

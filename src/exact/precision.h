@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Precision: how far off our hit functions are. Rays of several cases are aimed at random objects of one
  * kind, and what rt_object_hit says is held against exact arithmetic (exact/referee.h): the error of
  * t, and the decisions that differ. docs/precision.md has the table. */

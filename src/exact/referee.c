@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/referee.h"
 
 const char *rt_side_name(RtSide side) {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The referee: which of two answers to a ray is right, in exact arithmetic from the float32 input alone
  * (exact/exact_hit.h). It trusts no margin and no hit function, and takes some 0.1 ms per object that
  * the ray comes near to, a few ms at a tree of many tori: it is asked where others disagree.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Published figures beside measured ones.
  *
  * A table is a CSV file with a row per published row. Columns: scene and source; then accel, the label of the

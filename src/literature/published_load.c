@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "base/csv.h"
 #include "base/memory.h"
 #include "base/words.h"

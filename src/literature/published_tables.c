@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "literature/published_tables.h"
 
 #include <inttypes.h>

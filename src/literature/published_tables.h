@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What was compared with published figures, as tables (base/table.h): those of a result directory,
  * byte-identical wherever they are made, and for the eye. */
 #ifndef RT_LITERATURE_PUBLISHED_TABLES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Drawing on images: filled rectangles, lines, text. What lies outside of the image is not drawn. */
 #ifndef RT_RENDER_DRAW_H
 #define RT_RENDER_DRAW_H

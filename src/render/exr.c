@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* OpenEXR through the C API of OpenEXRCore. The library writes through a stream of ours, into the temporary
  * file; each block of scan lines is gathered into one row-major array of pixels with all channels
  * interleaved. */

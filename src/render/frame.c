@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Frames. Each thread has a worker with all the memory it will need: one buffer of rays for each level of the
  * ray tree, and room for the answers of one stream.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Frames: one image of a scene, traced recursively under the standard illumination model, on any accelerator.
  *
  * A frame is cut into tiles of RT_TILE x RT_TILE samples; a tile is the unit of work of a thread. Within a

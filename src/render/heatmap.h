@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Heatmaps: what each pixel cost, as a colour, above a legend. */
 #ifndef RT_RENDER_HEATMAP_H
 #define RT_RENDER_HEATMAP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The standard illumination model at one hit, and the rays that it asks for:
  *
  *   I = ka Ia + sum over lights of S_L I_L (kd (N.L) + ks (R.V)^shine) + kt It + kr Ir

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Images: from the samples of a frame to pixels, and to files. Files are written whole or not at all. */
 #ifndef RT_RENDER_IMAGE_H
 #define RT_RENDER_IMAGE_H

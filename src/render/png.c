@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* PNG through libpng's simplified interface, which has no long jumps. */
 #include "render/image.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Boxes are drawn in the homogeneous coordinates of the view: (x, y, w) with w the distance along the axis
  * and the image -w <= x, y <= w, in which the near plane and the four sides of the view are planes to clip
  * with alike. */

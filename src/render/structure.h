@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures of accelerators: the boxes of a structure drawn over a dimmed image of the scene. */
 #ifndef RT_RENDER_STRUCTURE_H
 #define RT_RENDER_STRUCTURE_H

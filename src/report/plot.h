@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Plots of a result directory, drawn by gnuplot from its CSV files.
  *
  * The experiment's scripts are copied into DIR/plots and run there in one process, in the order of the YAML,

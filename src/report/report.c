@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The page: what was asked and predicted, the figures, the tables, and what it was measured with. Plots and
  * images go in as data URLs, so that the file can be mailed. */
 #include "report/report.h"

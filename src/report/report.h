@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The report of a result directory: one HTML file with everything in it. */
 #ifndef RT_REPORT_REPORT_H
 #define RT_REPORT_REPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "report/result_directory.h"
 
 #include "bench/journal.h"

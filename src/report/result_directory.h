@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Running an experiment into a result directory, and working on one that is there. Besides what a run keeps
  * (bench/run.h) it has:
  *

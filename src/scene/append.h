@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Puts the objects of one scene into another, or some of them into a scene of their own. */
 #ifndef RT_SCENE_APPEND_H
 #define RT_SCENE_APPEND_H

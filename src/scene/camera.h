@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The camera: a pinhole. One function makes every primary ray, so that rays, item buffers and ray sets agree
  * on them bit for bit.
  *

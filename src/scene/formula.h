@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Formulas of CSG trees, as they stand in scene files: names joined by operators,
  *
  *   a | b    union            a & b    intersection            a - b    difference

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes as files, in any format that raytally reads or writes. */
 #ifndef RT_SCENE_LOAD_H
 #define RT_SCENE_LOAD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reading meshes. Assimp's scene is a tree of nodes, each with a matrix and indices of meshes; the matrices
  * are multiplied on the way down, in double, and every vertex is rounded to float32 once. */
 #include "scene/mesh.h"

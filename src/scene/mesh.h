@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Triangle meshes, through Assimp: OBJ, PLY, STL, glTF and what else it reads. Scenes in NFF and YAML have
  * readers of their own.
  *

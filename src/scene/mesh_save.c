@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writing meshes: one aiScene of one mesh, three vertices a triangle, borrowed by Assimp's exporter, which
  * gives the bytes of the file. OBJ is written here, because that exporter makes up vertex normals. */
 #include "scene/mesh.h"

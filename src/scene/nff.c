@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reading NFF. The file is read whole and cut into tokens, words between blanks, each of which knows its
  * line; line ends matter only to the optional colour of a light and to comments. Invariant: `at` never passes
  * `end`, where a 0 stands, so that strtod stops there too. Numbers announced by the file are checked against

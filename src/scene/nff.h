@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* NFF, Eric Haines' Neutral File Format 3.1, the language of the Standard Procedural Databases:
  *
  *   v                          the camera, with from, at, up (x y z each), angle (degrees over the height of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writing NFF: camera, background, lights, then the objects in order, with an `f` wherever the material
  * changes. */
 #include "scene/nff.h"

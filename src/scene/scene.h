@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A scene: objects in flat arrays (RtGeometry), a material per object, lights, a camera. It owns its memory;
  * a zeroed struct is the empty scene. Readers and generators fill it through the functions below, call
  * rt_scene_finish once, and from then on it is read only and may be shared by threads. Only its sampling may

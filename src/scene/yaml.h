@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally's own scene format, described with examples in docs/scenes.md. */
 #ifndef RT_SCENE_YAML_H
 #define RT_SCENE_YAML_H

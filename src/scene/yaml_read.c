@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* From the nodes of a YAML file (base/yaml.h) to a scene. */
 #include "base/memory.h"
 #include "scene/append.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What scenes have in several places: names, materials, transforms, cones, meshes. */
 #include "scene/yaml_reader.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the files between YAML and scenes share, private to yaml_read.c, yaml_solids.c and yaml_write.c. What
  * is wrong with values themselves is found by the functions that add them to the scene; rt_yaml_place says
  * where. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The solids of a YAML scene, and the trees that its formulas make of them. A formula sees the solids that
  * stand before it, so none can contain itself. */
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A scene to YAML, plainly printed. Numbers are written with as many significant digits as give the float32
  * back bit for bit: 9 always do, 6 often. */
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Smallest enclosing balls, by few points that span one: as long as a point lies outside the smallest ball
  * about those, the farthest joins them, and those that the next ball does not need leave. The ball grows at
  * every step, so no choice comes back (an LP-type problem: Sharir & Welzl 1992). For coplanar points a ball

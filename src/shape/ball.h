@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bounding spheres, in double. */
 #ifndef RT_SHAPE_BALL_H
 #define RT_SHAPE_BALL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cones: the side of a truncated cone between two circles, open at both ends as in NFF; equal radii make a
  * cylinder, one radius 0 a full cone. Both sides are hit.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rays and trees: the machine that runs a tree's program (csg.h). Its stack of lists lies in one array of
  * crossings, list after list: the ray's room. Two lists are merged to behind them, and the result moved down
  * to where they began. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CSG trees (Requicha 1977; ray casting: Roth 1982, "Ray Casting for Modeling Solids", CGIP 18): solids
  * joined by union, intersection and difference. A tree is one object.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Putting terms together: a growing array of nodes whose operands come before them. */
 #include "shape/csg.h"
 

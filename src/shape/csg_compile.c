@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* From terms to programs (csg.h). The tree is written out as an array of parts in preorder, one for each use
  * of a term: a part's left operand follows it at once, its right one after all of that. So a pass from the
  * back sees operands before operations, and nothing here calls itself; what must be remembered lies on stacks

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Extents of trees: how far they reach in a direction, and a ball about them, by running a tree's program on
  * numbers and balls instead of lists of crossings. */
 #include "shape/csg.h"

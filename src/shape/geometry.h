@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Geometry: all objects of a scene in flat arrays, one array per shape, and the one entry point that
  * dispatches on shape.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Surfaces against boxes: a convex thing and a box are apart if their shadows on some axis are. For polygons
  * the axes that can tell are their normal, the box's, and the cross products of an edge of each (Akenine-
  * Möller 2001, "Fast 3D Triangle-Box Overlap Testing", JGT 6(1), from Gottschalk, Lin & Manocha 1996). Of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which boxes does the surface of an object meet, and how much of them? For structures that put an object
  * only into such cells, not into all that its box touches. */
 #ifndef RT_SHAPE_OVERLAP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "shape/polygon.h"
 
 /* Newell's normal: twice the area of the polygon along its normal, about vertex 0 for precision. */

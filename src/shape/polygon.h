@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Polygons: planar, n >= 3 vertices, convex or concave, both sides hit.
  *
  * Hit by projection (the lecture's way): the ray meets the plane, and the point is tested for being inside in

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Real roots of a t^2 + 2 b t + c = 0, in double, without cancellation (q = -(b + sign(b) sqrt(d)), t = q / a
  * and c / q: Press et al., Numerical Recipes, section 5.6). */
 #ifndef RT_SHAPE_QUADRATIC_H

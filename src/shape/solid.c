@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sets of solids: the dispatch on the kind, and moving. What a kind is, and how one is added, stands in its
  * own file, solid_KIND.c. */
 #include "shape/solid.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Solids: the leaves of CSG trees. A ray's line meets a solid in closed intervals of t, its spans; a span is
  * given by the two crossings that open and close it.
  *

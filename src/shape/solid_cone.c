@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The convex cone of standard coordinates, cut by its caps: |(x, y)| <= r(z) = 1 + (ratio - 1) z between two
  * planes of the world.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The convex hull of points, as a polyhedron: the planes of all faces that the points have, by trying the
  * plane of each three. Most are given up at once, at a point on one side and a point on the other; those that
  * are left are faces, found as often as they have triples of vertices, and taken once.

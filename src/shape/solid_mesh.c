@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The inside of a closed triangle mesh: every directed edge is there as often as its reverse, so that the
  * surface has no border; more of it is entered than left, seen along any line, where the line is inside.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Making mesh solids: is the mesh closed and turned outward, and in which order do its triangles stand?
  *
  * They are leaves of a complete binary tree, RT_SOLID_LEAF to a leaf: the half of the leaves of a node that

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the solids of all kinds are made from: planes and places, and putting a solid into its set.
  *
  * Adding ends in rt_solid_finish, whatever the kind: planes and triangles are put behind those of the set,

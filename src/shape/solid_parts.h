@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the files of the solids share: the functions that each kind has, planes, lines in standard
  * coordinates, and how spans become crossings. For the solid_*.c alone. */
 #ifndef RT_SHAPE_SOLID_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Convex polyhedra: what is behind all of count planes of the world, bounded or not. A line is cut by one
  * plane after the other.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The unit ball behind its map: p = place(q), |q| <= 1. A line is met about its point nearest to the centre
  * (shape/sphere.h), where the half chord is sqrt(1 - |l|^2) with l the vector to that point. */
 #include "shape/solid_parts.h"

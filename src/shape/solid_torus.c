@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The torus about the unit circle of the xy plane, with a tube of radius `ratio` < 1.
  *
  * A point is inside where g = (w - 1)^2 + z^2 - ratio^2 < 0, w = sqrt(x^2 + y^2). Times

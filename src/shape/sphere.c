@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "shape/sphere.h"
 
 RtBox rt_sphere_box(const RtSphere *sphere) {

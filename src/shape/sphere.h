@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Spheres: centre and radius > 0; the surface, hit from outside and from inside.
  *
  * The hit is computed in double about the point of the ray nearest to the centre (Haines, Günther & Akenine-

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "shape/triangle.h"
 
 RtBall rt_triangle_ball(const RtTriangle *triangle) {

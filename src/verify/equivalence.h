@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Equivalence: does an accelerator answer every ray like brute?
  *
  * The reference answers are computed once for a scene and its rays, and then compared with any number of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A failure: rays of which an accelerator answers one wrong, so that they can be asked about again: over the
  * same scene, over a part of it, by another build.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The families of rays: one function a family, which makes one ray from the random numbers it is given. */
 #include "verify/ray_families.h"
 #include "bench/rayset.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Families of rays that are hard on accelerators: they graze, start or end on surfaces, or run along axes,
  * edges and the faces of boxes.
  *

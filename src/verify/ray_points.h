@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Points that hard rays start at and aim at: within boxes, and at the vertices, edges and surfaces of
  * objects. Each is drawn from random numbers; in an empty scene any point and any box will do. */
 #ifndef RT_VERIFY_RAY_POINTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A replay file: a wrong answer with all that it takes to ask again, on any machine, in one JSON document.
  *
  *   scene, fingerprint   the scene as it was named, and its rt_scene_fingerprint; "yaml" is the scene itself

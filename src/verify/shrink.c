@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/shrink.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Shrinking: which few objects of a scene are enough for an accelerator to answer a ray wrong.
  *
  * Zeller & Hildebrandt 2002, "Simplifying and Isolating Failure-Inducing Input" (IEEE TSE 28(2)): objects are

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The spread of an accelerator: its defaults, and then each parameter at each value worth testing, one at a
  * time. What verification and the conformance tests go through. */
 #ifndef RT_VERIFY_SPREAD_H

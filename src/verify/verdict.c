@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/verdict.h"
 
 #define ERROR     0x1p-20

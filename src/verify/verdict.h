@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Verdicts: how an answer of an accelerator with arithmetic of its own (Embree's native mode) compares with
  * the answer of our hit functions.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Verification: does every accelerator answer every ray of every scene like brute?
  *
  * A row is a scene and a spec. It says how many answers are equal, ties, marginal and wrong; its first wrong

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The rays by which a scene is verified.
  *
  * Half of them come from a small frame of the scene's camera, in equal shares of primary, shadow, reflection,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a verification found, for reading: its rows as verify.csv, and what they add up to as verify.md. Both
  * follow from the rows alone, so they are the same bytes however the rows came about. */
 #ifndef RT_VERIFY_VERIFY_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of accel/embree share: soups of all shapes, rays that graze boxes, and answers beside those of
  * brute. */
 #ifndef RT_TESTS_EMBREE_TESTING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of accel/extents share: a spec for each kind of extent. */
 #ifndef RT_TESTS_EXTENTS_TESTING_H
 #define RT_TESTS_EXTENTS_TESTING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of the item buffer share: views, and frames of the nearest hits by brute and by item. */
 #ifndef RT_TESTS_ITEM_TESTING_H
 #define RT_TESTS_ITEM_TESTING_H

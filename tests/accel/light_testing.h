@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of the light buffer share: a screen under one light, and lights in awkward places. */
 #ifndef RT_TESTS_LIGHT_TESTING_H
 #define RT_TESTS_LIGHT_TESTING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/bvh from the inside: its invariants, broken on purpose, and its depth. */
 #include "accel_testing.h"
 #include "clock_testing.h"

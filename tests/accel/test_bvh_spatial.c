@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* bvh:build=spatial: what is cut, that nothing of it is lost, and rays that would find out. */
 #include "accel_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/clusters: exactness of every kind of extent with every order and method, the shape of its nodes, and
  * each invariant broken on purpose. */
 #include "accel_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CSG trees that take much room for their crossings: all of it is had before the first ray, and where it
  * cannot be had there is a status, never a miss. */
 #include "csg_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/embree: no objects, a structure outgrown, memory, and which Embree it is. Skipped without Embree. */
 #include "embree_testing.h"
 

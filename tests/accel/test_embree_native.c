@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/embree, mode=native: as brute says but at edges, and what it says otherwise is a margin. Skipped
  * without Embree. */
 #include "embree_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/embree, mode=user: brute bit for bit, by every query, instruction set and quality, at every size.
  * Skipped without Embree. */
 #include "embree_testing.h"

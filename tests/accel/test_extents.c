@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/extents: counters by hand, what describe tells, and a broken extent found. */
 #include "extents_testing.h"
 

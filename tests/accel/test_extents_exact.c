@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/extents: exact for every kind of extent where hits are least certain. */
 #include "equivalence_testing.h"
 #include "extents_testing.h"

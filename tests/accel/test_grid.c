@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/grid/ from the inside: its invariants, broken on purpose, its rules of resolution, its limits. */
 #include "accel_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The item buffer: how much it decides, what it passes on, limits, and its invariants broken. */
 #include "item_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The item buffer is never wrong where geometry is awkward, and decides nearly all there: eyes inside objects
  * and in their planes, objects that touch, rounding, scenes tiny and huge. */
 #include "item_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/kd/ from the inside: splits worked out by hand, its invariants, broken on purpose, its limits. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"

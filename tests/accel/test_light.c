@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The light buffer: what it counts, counted by hand, and what its cells remember. */
 #include "light_testing.h"
 

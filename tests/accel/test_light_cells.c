@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The cells of the light buffer: their lists, what covers them, how many fit, and invariants broken. */
 #include "light_testing.h"
 

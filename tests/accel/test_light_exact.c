@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The light buffer answers like brute where that is hard: lights in awkward places, rounding from far off,
  * rays along edges and corners of cells; and it is no worse for it. */
 #include "light_testing.h"

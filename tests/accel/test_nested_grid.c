@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/grid/ with depth > 1: which voxels hold grids, the published structures, the invariants of nested
  * grids, broken on purpose, their limits, and what they gain. */
 #include "accel_testing.h"

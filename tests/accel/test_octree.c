@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/octree/ from the inside: its invariants, broken on purpose, what goes into which cell, its limits. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* shape/overlap.h: which boxes the surface of an object meets, and grids that list objects by it. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"

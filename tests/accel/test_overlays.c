@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Overlays: specs with '+', the layers they build, what is counted where, and the shadow cache. */
 #include "accel_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Predictions of what a random line costs, held against random lines: over objects so small that hardly any
  * line meets one, nothing stops a line, as the predictions assume. */
 #include "testing.h"

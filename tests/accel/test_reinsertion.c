@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/tree/reinsertion.c: what moves, what it gains, and that nothing else changes. */
 #include "tree_testing.h"
 

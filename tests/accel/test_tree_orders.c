@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/tree: orders along axes and by Morton codes, and the methods that rest on them, linear hierarchies
  * and sweeps. */
 #include "tree_testing.h"

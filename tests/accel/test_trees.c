@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* accel/tree: the methods against their definitions, and bounded depth. */
 #include "tree_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A closed mesh never leaks: from inside, every ray meets it, also one that is aimed at an edge or a vertex.
  *
  * Bodies: spheres of triangles, a cube, a pot turned from a concave profile (triangles share vertices bit for

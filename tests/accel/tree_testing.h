@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of trees of references share: boxes to make them from, and whether they are trees. */
 #ifndef RT_TESTS_TREE_TESTING_H
 #define RT_TESTS_TREE_TESTING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* base/: files, tallies, parameters, memory, rounding, random numbers. */
 #include "testing.h"
 

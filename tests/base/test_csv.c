@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* base/csv.h: fields that are quoted, and files that are no tables. */
 #include "experiment_testing.h"
 

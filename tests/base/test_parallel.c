@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* base/parallel: also run under ThreadSanitizer. */
 #include "testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* base/table.h: one small table, with every kind of field, in every form. */
 #include "testing.h"
 

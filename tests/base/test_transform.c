@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* scene/transform: steps in order, exact quarter turns, normals, uniform scale. */
 #include "testing.h"
 

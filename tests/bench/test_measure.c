@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* bench/measure.h and workload.h: what is counted is the sum over threads and is compared with right
  * answers; thinned candidates are timed against the baseline on their own rays. */
 #include "testing.h"

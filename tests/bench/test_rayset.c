@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Ray sets: the same on any number of threads, every ray valid, of its kind and where it should be. */
 #include "testing.h"
 

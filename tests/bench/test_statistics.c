@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* experiments/statistics: the median, its interval, and ratios paired within a round. */
 #include "testing.h"
 

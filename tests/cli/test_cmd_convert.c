@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally convert, as a user runs it: what it keeps, what it refuses. */
 #include "scene_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally render, as a user runs it: what it writes, what it refuses, and the rays of the Standard
  * Procedural Databases. */
 #include "testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* raytally verify, as a user runs it: the document it prints, the exit codes, what it refuses. */
 #include "testing.h"
 

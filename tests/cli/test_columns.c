@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* docs/columns.md is what the columns of all tables say of themselves: the test says where the right one is.
  * And the files and documents that are there have these columns. */
 #include "testing.h"

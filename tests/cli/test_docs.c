@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The documents say what the program says: parameters in accel/README.md, accelerators in README.md; and the
  * tests that they name are there. */
 #include "testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Roots of polynomials as exact numbers: where they are, that multiple roots are given once, and that equal
  * ones are told from those that nearly are. */
 #include "testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Hit functions against the referee: ours decides otherwise than exact arithmetic only where a ray passes an
  * edge within the rounding of float32; broken ones do so elsewhere. docs/precision.md counts it for all
  * shapes. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Meshes in exact arithmetic: lines through vertices and edges and in faces, meshes that overlap themselves,
  * and that all lines through a point are of one mind whether it is inside. */
 #include "solids_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Trees in exact arithmetic: tori, their tangents and ties, and that every ray at the trees of the families
  * is decided, as our hit functions do but for rays that pass a border within rounding. */
 #include "equivalence_testing.h"

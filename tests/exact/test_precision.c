@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How exact our hit functions are, held against exact arithmetic. Prints the table of docs/precision.md and
  * looks whether it is the one that is printed there. */
 #include "testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The referee: exact numbers, hits at borders, true ties, and that our hit functions and it are of one mind
  * but for rays that pass a border within the rounding of float32. */
 #include "testing.h"

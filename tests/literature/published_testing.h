@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of published figures share: an experiment that counts on balls:size=1, ten spheres and a
  * polygon, of which brute tests all 11 for each of the 64 primary rays, while the grid has 64 voxels; and a
  * table and reasons beside it. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Structures, tests and steps on the Standard Procedural Databases against published ones, 513 x 513 rays
  * through the corners of pixels, 5 levels deep, no mailbox: Havran & Sixta 1999 (grids, RTN 12(1)) and Havran
  * 1999 (octrees, RTN 12(2)). Cells are to be the published ones exactly, references, too, or within 3 %,

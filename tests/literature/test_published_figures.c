@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* literature/published.h: how figures are judged, against tolerances, reasons and ours. */
 #include "published_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* literature/published.h: tables and reasons that are refused, and what is written to a result directory. */
 #include "published_testing.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The white bishop of scenes/chess.yaml on the third square of its row.
 include <pieces.scad>
 translate([-1.5, -3.5, 0.001]) {

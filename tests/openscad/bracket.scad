@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tree of scenes/csg-bracket.yaml, written a second time by hand.
 $fn = 96;
 module end() { translate([2.5, 0, 0]) cylinder(h = 0.6, r = 1.5); }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The white knight of scenes/chess.yaml on the second square of its row.
 include <pieces.scad>
 translate([-2.5, -3.5, 0.001]) rotate(90) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tree of scenes/csg-lecture.yaml, written a second time by hand.
 $fn = 64;
 union() {

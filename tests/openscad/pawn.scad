@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The white pawn of scenes/chess.yaml on the first square of its row.
 include <pieces.scad>
 translate([-3.5, -2.5, 0.001]) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the chessmen of scenes/chess.yaml share, written a second time by hand.
 $fn = 48;
 module ball(at, r) { translate(at) sphere(r); }

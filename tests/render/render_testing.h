@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of shading and frames share: small scenes under a camera, frames by brute, surfaces that rays
  * meet. */
 #ifndef RT_TESTS_RENDER_TESTING_H

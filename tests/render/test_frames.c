@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Frames: every registered accelerator, at every value worth testing of each of its parameters, and overlays
  * in stacks, make the same frame as brute: the same bits of colour, object and depth in every sample, by the
  * timed and by the counted kernels, on one thread and on three; and the same counts on both. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* render/illumination.h: shading and the rays that leave a surface, against answers known by hand. */
 #include "render_testing.h"
 

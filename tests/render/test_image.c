@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* render/: images, heatmaps and pictures of structures, read back from the files they were written to. */
 #include "testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* render/illumination.h: secondary rays start so far off their surface that neither it nor its box is in
  * their way, and no farther. */
 #include "render_testing.h"

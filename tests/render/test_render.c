@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* render/frame.h: how deep rays go, what is counted, who sees it, and what fails; the same bytes on any
  * number of threads. */
 #include "render_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* experiments/: from a YAML to a result directory, whatever the number of threads, and whatever was
  * interrupted. */
 #include "clock_testing.h"

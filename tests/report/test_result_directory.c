@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A result directory: what is in it is not lost, whoever runs into it, whatever fails, whenever a run is
  * killed.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CSG trees as objects of a scene: materials of solids, refraction within a tree, copies of scenes, the
  * fingerprint, counting, and lack of memory while one is added. */
 #include "csg_testing.h"

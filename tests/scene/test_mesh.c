@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Meshes through Assimp: what is kept, what is placed where, what is refused. */
 #include "testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The CSG trees of the example scenes against OpenSCAD: the same models, written a second time by hand in its
  * language (tests/openscad/), made into closed meshes by its exact arithmetic (CGAL), and hit through Embree.
  * Nothing is shared with our merging of spans.

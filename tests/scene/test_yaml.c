@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The YAML scene format: what it reads, in the documentation and in the scenes that come along, too. */
 #include "yaml_testing.h"
 

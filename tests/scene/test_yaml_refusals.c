@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The YAML scene format: what it refuses, and where; nothing is left of it, whichever allocation fails. */
 #include "yaml_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The YAML scene format: what is saved and loaded again is the same to the bit. */
 #include "yaml_testing.h"
 

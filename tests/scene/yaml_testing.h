@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of the YAML scene format share: a folder with meshes that scenes refer to, a scene of
  * everything, and loading what stands in a text. */
 #ifndef RT_TESTS_YAML_TESTING_H

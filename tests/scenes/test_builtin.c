@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* scenes/: random scenes, what is refused, and memory; test_spd.c has the databases. */
 #include "scene_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* scenes/: the built-in scenes that are places (a teapot on a board, in a stadium, a hall, a forest, a city)
  * and the forms that they are made of. */
 #include "scene_testing.h"

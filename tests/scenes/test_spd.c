@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* scenes/: the Standard Procedural Databases against the files that their package writes. */
 #include "scene_testing.h"
 

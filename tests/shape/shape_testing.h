@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What tests of shapes share: rays, and where they meet an object. */
 #ifndef RT_TESTS_SHAPE_TESTING_H
 #define RT_TESTS_SHAPE_TESTING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Boxes, balls and support functions of every shape hold a thousand points of its surface, and touch it. */
 #include "testing.h"
 

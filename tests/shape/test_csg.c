@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* shape/csg: what each operation leaves, faces and materials, refusals, and the identities of sets. Hits are
  * compared by their bits, over random rays through random trees (experiments/random_tree). */
 #include "csg_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Trees against points: is a point inside? Asked of the formula and of what each solid is, in long double and
  * by other arithmetic than that of rays: quadratic and quartic forms, half-spaces, solid angles. Along random
  * rays points are taken on either side of every hit and midway between two; what rays say of them must be

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* shape/csg: trees as a whole. Extents that change nothing, moves, trees of any depth, and lack of memory. */
 #include "csg_testing.h"
 

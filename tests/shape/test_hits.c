@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* shape/: what all hit functions promise: closed intervals of t, powers of two that scale it exactly, and no
  * hits beyond an object, however flat. */
 #include "shape_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* shape/: hits, normals and refusals of every shape, against answers known by hand. */
 #include "shape_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* shape/solid.h: spans of every kind of solid against membership of points, accuracy, extents, normals. */
 #include "solids_testing.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Accelerators that are broken on purpose, each by one known pitfall, and their unbroken controls. They are
  * tiny and slow, and built over any scene: a flat list of boxes, a grid of 3 x 3 x 3 voxels that are visited
  * in the order in which a ray enters them, lists of objects for the octants around a light. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Conformance: every registered accelerator, at every value worth testing of each of its parameters, on every
  * family of scenes, answers every ray of every family like brute, bit for bit (or, where it is not exact,
  * without a wrong verdict); and so it does, over few objects or none, at the least and the greatest value of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Counters are the same numbers on any number of threads and in streams of any length, and plausible beside
  * one another, for every accelerator at every setting of the spread. */
 #include "equivalence_testing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Equivalence and verdicts: lies are found, whichever kernel tells them and in whatever stream; margins and
  * ties are told from errors. */
 #include "equivalence_testing.h"

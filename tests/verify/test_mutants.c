@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A test of the test: accelerators with a known pitfall are caught by the rays and scenes that `verify`
  * takes, within a bounded number of rays, and their first failure shrinks to a few objects; the same code
  * without the fault is not caught. */

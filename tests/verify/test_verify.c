@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Verification as the harness runs it: what it finds is kept in a replay file that still disagrees when it is
  * asked again, and no longer does once the fault is mended; an interrupted run goes on to the same table. */
 #include "mutants.h"
