@@ -309,6 +309,7 @@ static void the_verdict_on_null_runs_is_what_the_tables_show(void **state) {
     results.trials[0].known = true;
     RtCell *null = rt_cell_at(&results, 0, place->experiment->contender_count, RT_RAY_PRIMARY);
     null->timed = true;
+    null->rounds = 10;
     null->ratio = (RtEstimate){.median = 1.000002, .low = 1.0000003, .high = 1.0004};
     rt_null_sentence(&results, sentence);
     assert_non_null(strstr(sentence, "0 of 1 intervals straddle 1"));
