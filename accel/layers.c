@@ -97,10 +97,10 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
     *query = (RtQuery){.accel = accel};
-    size_t bytes = 0;
-    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
     RtScratch scratch = {NULL, NULL};
     RT_TRY(rt_hit_room(&accel->scene->geometry, &scratch.room, error));
+    size_t bytes = 0;
+    for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
     if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
         rt_free(scratch.room);
         return rt_fail_memory(error, "the scratch memory of a query", bytes);

@@ -21,7 +21,7 @@ static inline void start(Machine *m, const RtCsg *tree, const RtPreparedRay *ray
     m->crossings = ray->room;
     m->capacity = tree->most_crossings;
     m->depth = 0;
-    m->starts[0] = 0;
+    m->starts[0] = m->starts[1] = 0; /* also what a program without instructions leaves */
 }
 
 /* Is there room for `more` crossings behind all lists? For assertions. */

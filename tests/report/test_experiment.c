@@ -338,6 +338,7 @@ RT_TEST_IN_PLACE(the_verdict_on_null_runs_is_what_the_tables_show) {
     results.workloads[0].known = true;
     RtCell *null = rt_cell_at(&results, 0, place->experiment->candidate_count, RT_RAY_PRIMARY);
     null->timed = true;
+    null->rounds = 10;
     null->ratio = (RtEstimate){.median = 1.000002, .low = 1.0000003, .high = 1.0004};
     rt_null_sentence(&results, sentence);
     assert_non_null(strstr(sentence, "0 of 1 intervals straddle 1"));
