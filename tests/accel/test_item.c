@@ -202,7 +202,7 @@ static void too_many_samples_are_refused_with_a_number_that_fits(void **state) {
         const char *says;
     } sizes[] = {{32768, 32768, 1, "an image of 146"},
                  {32768, 32768, 64, "an image of"},
-                 {2048, 2048, 64, "7 samples a side"}};
+                 {2048, 2048, 64, "7 samples along the side"}};
     RtScene scene;
     begin_view(&scene);
     assert_ok(rt_scene_finish(&scene, error));

@@ -133,7 +133,7 @@ static void what_cannot_be_verified_is_refused_before_anything_is_printed(void *
         {"--replay nothing.json", "nothing.json"},
         {"--replay nothing.json balls", "takes no SCENE"},
         {"--replay nothing.json --json", "prints text"},
-        {"--replay " RT_SOURCE_DIR "/README.md", "no JSON"},
+        {"--replay " RT_SOURCE_DIR "/README.md", "not JSON"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         if (verify(cases[i].arguments) != 2) fail_msg("'%s' is not refused", cases[i].arguments);

@@ -60,7 +60,7 @@ static void a_reason_excuses_what_it_is_about_and_a_stale_one_fails(void **state
     assert_in_file(place, "out/published.md", "he tests one more");
     assert_fails(place, rows, "balls,s,all,object_tests,why\nballs,s,cells,*,why\n", false,
                  "reasons.csv:3: no figure needs this reason");
-    assert_fails(place, rows, "balls,other,all,*,why\n", false, "nobody says why");
+    assert_fails(place, rows, "balls,other,all,*,why\n", false, "without a reason");
 }
 
 static void tests_per_hit_are_divided_by_the_rays_that_hit(void **state) {
