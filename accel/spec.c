@@ -20,7 +20,7 @@ static RtStatus parse_layer(const char *text, size_t chars, RtSpecLayer *layer, 
     if (name_chars == 0 || name_chars >= RT_MAX_NAME || chars >= sizeof copy) {
         return rt_fail(
             error, RT_BAD_INPUT,
-            "'%.80s' is no spec of an accelerator: write NAME[:KEY=VALUE,...], overlays before it as "
+            "'%.80s' is not the spec of an accelerator: write NAME[:KEY=VALUE,...], overlays before it as "
             "in OVERLAY+NAME",
             text);
     }
@@ -40,7 +40,7 @@ static RtStatus check_layers(const RtSpec *spec, const char *text, RtError *erro
         if (spec->layers[i].ops->kinds) continue;
         return rt_fail(
             error, RT_BAD_INPUT,
-            "'%.80s': %s answers every ray, nothing can lie below it: what stands before a '+' is an "
+            "'%.80s': %s answers every ray, so nothing can lie below it: what stands before a '+' is an "
             "overlay; `raytally accels` says which are",
             text, name);
     }
@@ -57,7 +57,7 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
     for (;;) {
         size_t chars = layer_length(rest);
         if (spec->layer_count == RT_MAX_LAYERS) {
-            return rt_fail(error, RT_BAD_INPUT, "'%.80s': more than %d accelerators one upon the other", text,
+            return rt_fail(error, RT_BAD_INPUT, "'%.80s': more than %d accelerators stacked", text,
                            RT_MAX_LAYERS);
         }
         RT_TRY(parse_layer(rest, chars, &spec->layers[spec->layer_count++], error));

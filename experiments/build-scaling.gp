@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# build-scaling: time to build, an object, over the number of objects; exponents of the powers fitted to it.
+# build-scaling: time to build per object, over the number of objects; exponents of the powers fitted to it.
 
 n_accels = words(accels)
 own(a) = strcol("accel") eq word(accels, a) ? column("objects") : NaN
@@ -22,7 +22,7 @@ set logscale xy
 set grid xtics ytics
 set format x "10^{%T}"
 set xlabel "objects" textcolor rgb ink
-set ylabel "time to build, ns an object" textcolor rgb ink
+set ylabel "time to build, ns per object" textcolor rgb ink
 set key outside right center Left reverse font ",12" textcolor rgb ink samplen 1.5 spacing 1.2 \
     title "time grows with objects to the power" left
 set xrange [700 : 1.4e7]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# csg: what extents on the inner nodes of CSG trees spare, a row of panels for the small trees and one for the large.
+# csg: what extents on the inner nodes of CSG trees save, a row of panels for the small trees and one for the large.
 
 n_accels = words(accels)
 sizes = "small large"

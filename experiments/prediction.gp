@@ -110,8 +110,8 @@ do for [m = 1:2] {
   set rmargin at screen 0.49 + (m - 1) * 0.485
   set tmargin at screen 0.92; set bmargin at screen 0.12
   set title (m == 1 ? "from tests and steps as measured" : "from tests and steps as predicted") textcolor rgb ink font ",14"
-  set xlabel "ns a ray by fitted times of a ray, a test and a step" textcolor rgb ink
-  set ylabel (m == 1 ? "ns a ray, measured" : "") textcolor rgb ink
+  set xlabel "ns per ray by fitted times of a ray, a test and a step" textcolor rgb ink
+  set ylabel (m == 1 ? "ns per ray, measured" : "") textcolor rgb ink
   if (m == 2) { unset key }
   per_ray(what) = m == 1 ? column(what eq "tests" ? "object_tests" : "steps") / column("rays") : column("predicted_".what)
   model(a, s) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a) ? \

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# tightness: what each kind of extent lets through, and the time of a ray, against the number of plane sets.
+# tightness: what each kind of extent lets through, and the time per ray, against the number of plane sets.
 
 n_scenes = words(scenes)
 chosen(s) = strcol("scene") eq word(scenes, s)
@@ -38,7 +38,7 @@ do for [s = 1:n_scenes] {
        for [i = 1:3] passed[3 * (s - 1) + i] with lines linewidth 1.5 linecolor rgb hue(i) title word(others, i)
   unset key
   set yrange [0 : *]
-  set title word(scenes, s).": time a ray, that of boxes being 1" font ",14" textcolor rgb ink
+  set title word(scenes, s).": time per ray, that of boxes being 1" font ",14" textcolor rgb ink
   set xlabel "plane sets k" textcolor rgb ink
   plot "times.csv" using (chosen(s) ? k_of(strcol("accel")) : NaN):(1 / column("ratio")):(1 / column("ratio_high")):(1 / column("ratio_low")) \
          with yerrorlines linewidth 2 pointtype 7 linecolor rgb hue(4) notitle, \

@@ -77,10 +77,10 @@ done
 refuses 'one SCENE at a time' info balls balls
 does info balls:size=1 --extents --rays 1000
 does info balls:size=1 --extents=all --rays 1000 --json
-refuses "extents: 'some'.*--extents=all" info balls --extents=some
-refuses "rays: '0'.*1\.\." info balls --extents --rays 0
-refuses "rays: '1000000000000'.*1\.\." verify --rays 1000000000000
-refuses "rays: '0'.*1\.\." verify --rays 0
+refuses "extents: invalid value 'some'.*--extents=all" info balls --extents=some
+refuses "rays: invalid value '0'.*1\.\." info balls --extents --rays 0
+refuses "rays: invalid value '1000000000000'.*1\.\." verify --rays 1000000000000
+refuses "rays: invalid value '0'.*1\.\." verify --rays 0
 refuses "no accelerator 'nope'" verify --accel nope
 refuses 'nope\.nff: there is no such file' verify nope.nff
 
@@ -205,7 +205,7 @@ refuses 'depth.*1\.\.64' $bench --accel bvh --depth 0
 refuses 'ray-stride.*1\.\.' $bench --accel bvh --ray-stride 0
 refuses 'depth.*1\.\.64' render balls:size=1 --depth 0 -o x.png
 does $bench --accel bvh --seed 0 --count-only
-refuses '--ray-stride stands behind' $bench --ray-stride 2 --accel bvh
+refuses '--ray-stride comes after' $bench --ray-stride 2 --accel bvh
 refuses 'missing/x\.csv.*No such file' $bench --accel bvh --csv missing/x.csv
 does $bench --accel all --json
 does $bench --accel brute --ray-stride 3 --accel bvh --baseline bvh --count-only
@@ -218,7 +218,7 @@ yaml absent 'name: a' 'question: b' 'prediction: c' 'scenes: [{scene: absent.obj
 refuses 'absent\.obj: there is no such file; .*fetch\.sh' run absent.yaml
 for command in plot report reproduce; do
     refuses 'DIR is missing' $command
-    refuses 'nowhere is no finished result directory' $command nowhere
+    refuses 'nowhere is not a finished result directory' $command nowhere
 done
 does info family:kind=slivers,seed=7
 does render family:kind=csg,seed=7 --size 8x8 -o family.png
@@ -239,7 +239,7 @@ for scene in 'my scene.obj' 'a folder/Größe & Co.obj'; do
     does run blank.yaml --force
     does reproduce results/blank
 done
-refuses 'verified is no result directory of an experiment' report verified
+refuses 'verified is not the result directory of an experiment' report verified
 
 # ---- and what is right works: the same scenes without their mistake ----
 

@@ -161,7 +161,7 @@ static RtStatus refuse_size(const RtItemBuffer *buffer, RtError *error) {
     double part = sqrt((most - rest) / bytes);
     char remedy[96];
     if (part * s->samples >= 1 && s->samples > 1) {
-        snprintf(remedy, sizeof remedy, "%.0f samples a side of a pixel", floor(part * s->samples));
+        snprintf(remedy, sizeof remedy, "%.0f samples along the side of a pixel", floor(part * s->samples));
     } else {
         snprintf(remedy, sizeof remedy, "an image of %.0f x %.0f pixels", fmax(floor(part * s->width) - 1, 1),
                  fmax(floor(part * s->height) - 1, 1));

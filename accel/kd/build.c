@@ -208,7 +208,7 @@ static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
 
 static RtStatus build_tree(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
     if (g->object_count >= RT_KD_OBJECTS) {
-        return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds less than %u objects, not %u", RT_KD_OBJECTS,
+        return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds fewer than %u objects, not %u", RT_KD_OBJECTS,
                        g->object_count);
     }
     uint32_t asked = b->kd->max_depth;

@@ -42,8 +42,7 @@ static RtStatus take_line(RtCsv *csv, char *line, uint32_t number, bool header, 
     }
     if (bad) return rt_fail_at(error, csv->path, number, 0, "a quote is not closed, or text follows it");
     if (count != csv->columns) {
-        return rt_fail_at(error, csv->path, number, 0,
-                          "there are %s fields than the header has, which are %u",
+        return rt_fail_at(error, csv->path, number, 0, "there are %s fields than in the header, which has %u",
                           count < csv->columns ? "fewer" : "more", csv->columns);
     }
     if (!header) csv->lines[csv->rows++] = number;
@@ -78,7 +77,7 @@ RtStatus rt_csv_read(RtCsv *csv, const char *path, RtError *error) {
     /* The text would seem to end there, and the rows behind it would be missing without a word. */
     if (strlen(csv->text) < size) {
         return rt_fail_at(error, path, count_of(csv->text, '\n') + 1, 0,
-                          "there is a byte 0, which no text has");
+                          "there is a zero byte, which no text has");
     }
     return take_text(csv, error);
 }

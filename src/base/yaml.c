@@ -192,7 +192,7 @@ static RtStatus add_document(Builder *b) {
     RT_TRY(next_event(b));
     if (b->event.type == YAML_STREAM_END_EVENT) return RT_OK;
     return rt_fail_at(b->yaml->error, b->yaml->path, b->event.start_mark.line + 1,
-                      b->event.start_mark.column + 1, "a second document begins here: keep one in a file");
+                      b->event.start_mark.column + 1, "a second document begins here: a file holds one");
 }
 
 /* libyaml compares each %TAG with all before it, so a file of them would take its length squared. They stand

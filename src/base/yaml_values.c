@@ -52,9 +52,9 @@ static uint32_t find_word(const Words *words, const char *word) {
 
 static RtStatus fail_unexpected(const RtYaml *yaml, const RtYamlNode *node, const char *expected) {
     const char *text = node->kind == RT_YAML_SCALAR ? text_of(yaml, node) : "";
-    if (*text) return rt_yaml_fail(yaml, node, "'%.60s' found where %s should be", text, expected);
+    if (*text) return rt_yaml_fail(yaml, node, "invalid value '%.60s': expected %s", text, expected);
     static const char *const kinds[] = {"nothing", "a list", "a mapping"};
-    return rt_yaml_fail(yaml, node, "%s found where %s should be", kinds[node->kind], expected);
+    return rt_yaml_fail(yaml, node, "expected %s, found %s", expected, kinds[node->kind]);
 }
 
 static RtStatus fail_unknown(const RtYaml *yaml, const RtYamlNode *key, const Words *words) {
@@ -76,7 +76,7 @@ static RtStatus check_choice(const RtYaml *yaml, const RtYamlNode *node, const W
     }
     if (count == 0 || given == 1) return RT_OK;
     rt_join_names(names, count, list, sizeof list);
-    return rt_yaml_fail(yaml, node, "this must be one of: %s; it has %u of them: write one an entry", list,
+    return rt_yaml_fail(yaml, node, "expected exactly one of %s, found %u of them: write one per entry", list,
                         given);
 }
 
@@ -118,7 +118,7 @@ RtStatus rt_yaml_list(const RtYaml *yaml, const RtYamlNode *node, const char *ke
         return fail_unexpected(yaml, list, expected);
     }
     if (list->count < least) {
-        return rt_yaml_fail(yaml, list, "the list has %u entries, must have at least %u", list->count, least);
+        return rt_yaml_fail(yaml, list, "the list has %u entries: expected at least %u", list->count, least);
     }
     if (list->count <= most) return RT_OK;
     const RtYamlNode *extra = list + 1;
@@ -136,7 +136,7 @@ static RtStatus read_number(const RtYaml *yaml, const RtYamlNode *node, float *n
     char *end;
     double value = narrow ? (double)strtof(text, &end) : strtod(text, &end);
     if (end == text || *end || !isfinite(value)) {
-        return rt_yaml_fail(yaml, node, "'%.60s' is not a finite number%s: give one, as in 1.5", text,
+        return rt_yaml_fail(yaml, node, "invalid value '%.60s': expected a finite number%s, as in 1.5", text,
                             narrow ? " that fits float32" : "");
     }
     if (narrow) *narrow = (float)value;
@@ -207,7 +207,7 @@ RtStatus rt_yaml_u64(const RtYaml *yaml, const RtYamlNode *node, const char *key
         *value = given;
         return RT_OK;
     }
-    return rt_yaml_fail(yaml, node, "'%.60s' will not do: it must be a whole number, %llu..%llu", text,
+    return rt_yaml_fail(yaml, node, "invalid value '%.60s': expected a whole number %llu..%llu", text,
                         (unsigned long long)lo, (unsigned long long)hi);
 }
 
@@ -235,18 +235,18 @@ RtStatus rt_yaml_word(const RtYaml *yaml, const RtYamlNode *node, const char *ke
     *index = find_word(&words, text_of(yaml, node));
     if (*index < words.count) return RT_OK;
     rt_suggest(text_of(yaml, node), words.names, words.count, suggestion);
-    return rt_yaml_fail(yaml, node, "this must be %s, not '%.60s'%s", expected, text_of(yaml, node),
-                        suggestion);
+    return rt_yaml_fail(yaml, node, "invalid value '%.60s'%s%s expected %s", text_of(yaml, node), suggestion,
+                        *suggestion ? "" : ":", expected);
 }
 
 RtStatus rt_yaml_text(const RtYaml *yaml, const RtYamlNode *node, const char *key, size_t most,
                       const char **text) {
     if (!(node = value_of(yaml, node, key))) return RT_OK;
-    if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, "a text");
+    if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, "text");
     *text = text_of(yaml, node);
     size_t length = strlen(*text);
     if (length >= 1 && length <= most) return RT_OK;
-    return rt_yaml_fail(yaml, node, "the text has %zu characters, must have 1..%zu", length, most);
+    return rt_yaml_fail(yaml, node, "the text has %zu characters: expected 1..%zu", length, most);
 }
 
 RtStatus rt_yaml_copy(const RtYaml *yaml, const RtYamlNode *node, const char *key, size_t room, char *out) {

@@ -33,14 +33,14 @@ RtStatus rt_earlier_look(const char *directory, const char *journal, RtStart sta
     if (whole) {
         return rt_fail(
             error, RT_BAD_INPUT,
-            "%s holds a run that %s: %s with --resume, begin anew and lose it with --force, or give "
+            "%s holds a run that %s: %s with --resume, start over and lose it with --force, or give "
             "another --out",
             directory, finished ? "is finished" : "was interrupted",
             finished ? "write its tables again" : "go on");
     }
     return rt_fail(error, RT_BAD_INPUT,
                    "%s holds results of another kind, or without their journal (%s, but no %s), which cannot "
-                   "be gone on with: begin anew and lose them with --force, or give another --out",
+                   "be resumed: start over and lose them with --force, or give another --out",
                    directory, result, journal);
 }
 

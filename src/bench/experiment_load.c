@@ -23,7 +23,7 @@ static RtStatus read_size(const RtYaml *y, const RtYamlNode *n, uint32_t *width,
     RT_TRY(rt_yaml_text(y, n, "size", RT_MAX_LABEL, &text));
     if (!text || rt_image_size_parse(text, width, height)) return RT_OK;
     return rt_yaml_fail(y, rt_yaml_get(y, n, "size"),
-                        "'%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 512x512", text,
+                        "invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 512x512", text,
                         RT_MAX_IMAGE_SIDE);
 }
 
@@ -103,8 +103,8 @@ static RtStatus read_tolerances(const RtYaml *y, const RtYamlNode *n, double tol
     for (int c = 0; c < RT_COLUMN_COUNT; c++) {
         RT_TRY(rt_yaml_double(y, n, names[c], &tolerance[c]));
         if (tolerance[c] >= 0) continue;
-        return rt_yaml_fail(y, rt_yaml_get(y, n, names[c]), "%g will not do: it must be percents, 0 or more",
-                            tolerance[c]);
+        return rt_yaml_fail(y, rt_yaml_get(y, n, names[c]),
+                            "invalid value '%g': expected a percentage, 0 or more", tolerance[c]);
     }
     return RT_OK;
 }

@@ -204,20 +204,20 @@ static RtStatus check_header(const char *path, const json_t *line, const RtExper
     if (get_hex(line, "hash") != experiment->fingerprint) {
         return rt_fail(
             error, RT_BAD_INPUT,
-            "%s: this is a run of another experiment, or of another version of it ('%s'): begin anew "
+            "%s: this is a run of another experiment, or of another version of it ('%s'): start over "
             "and lose it with --force, or give another --out",
             path, name ? name : "");
     }
     if (quick != experiment->quick) {
         return rt_fail(
             error, RT_BAD_INPUT,
-            "%s: this is a run %s --quick: begin anew and lose it with --force, or give another --out", path,
+            "%s: this is a run %s --quick: start over and lose it with --force, or give another --out", path,
             quick ? "with" : "without");
     }
     if (!same_build || (build && strcmp(build, rt_build_identity()) == 0)) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
-        "%s: this run was begun by another build (%s; this is %s): begin anew and lose it with --force, or "
+        "%s: this run was begun by another build (%s; this is %s): start over and lose it with --force, or "
         "give another --out",
         path, build ? build : "unknown", rt_build_identity());
 }

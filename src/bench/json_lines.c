@@ -67,5 +67,5 @@ RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error) {
     if (json_array_size(*lines) > 0) return RT_OK;
     json_decref(*lines);
     *lines = NULL;
-    return rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty: begin anew, with --force", path);
+    return rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty: start over with --force", path);
 }

@@ -73,7 +73,7 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
     *manifest = NULL;
     RT_TRY(rt_path_join(directory, "manifest.json", path, error));
     if (!rt_file_exists(path)) {
-        return rt_fail(error, RT_BAD_INPUT, "%s is no finished result directory: it has no manifest.json",
+        return rt_fail(error, RT_BAD_INPUT, "%s is not a finished result directory: it has no manifest.json",
                        directory);
     }
     *manifest = json_load_file(path, 0, &fault);

@@ -77,12 +77,12 @@ static const void *build_of(const void *row) {
     X(rounds, "rounds", integer, "", "how often it was timed", r->cell->rounds)                              \
     X(coverage, "ratio_coverage", real6, "", "probability with which intervals hold the median",             \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
-    X(ns, "ns", real6, "ns", "processor time a ray, by the clock on several threads; median",                \
+    X(ns, "ns", real6, "ns", "processor time per ray, by the clock on several threads; median",              \
       1e9 * r->cell->seconds.median)                                                                         \
     X(ns_low, "ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->seconds.low)                \
     X(ns_high, "ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->seconds.high)             \
     X(ns_min, "ns_min", real6, "ns", "the smallest such time", 1e9 * r->cell->seconds.least)                 \
-    X(wall_ns, "wall_ns", real6, "ns", "time a ray by the clock; median", 1e9 * r->cell->wall.median)        \
+    X(wall_ns, "wall_ns", real6, "ns", "time per ray by the clock; median", 1e9 * r->cell->wall.median)      \
     X(wall_ns_low, "wall_ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->wall.low)         \
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays a second, by the median", 1e-6 / r->all.seconds) \
@@ -98,15 +98,15 @@ static const void *build_of(const void *row) {
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
       known(r->cell->tally.steps, r->all.steps))                                                             \
     X(differ, "differ", integer, "", "answers unlike the baseline's; 0 if exact", r->cell->differ)           \
-    X(tests_a_ray, "tests/ray", figure, "", "object tests a ray", r->all.object_tests)                       \
-    X(extents_a_ray, "ext./ray", figure, "", "extent tests a ray", r->all.extent_tests)                      \
-    X(steps_a_ray, "steps/ray", figure, "", "steps a ray", r->all.steps)                                     \
-    X(ns_a_ray, "ns/ray", figure, "ns", "median time a ray", 1e9 * r->all.seconds)                           \
+    X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
+    X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
+    X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->all.steps)                                   \
+    X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->all.seconds)                         \
     X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds)                            \
     X(interval, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                        \
     X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
     X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
-    X(min_ns, "min ns", figure, "ns", "smallest time a ray", TIMED(1e9 * r->cell->seconds.least))
+    X(min_ns, "min ns", figure, "ns", "smallest time per ray", TIMED(1e9 * r->cell->seconds.least))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 

@@ -89,7 +89,7 @@ static RtStatus describe_workload(RtWorkloadState *workload, RtError *error) {
     }
     if (result->known && !same) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "'%s' has changed since this run was interrupted: begin anew, with --force",
+                       "'%s' has changed since this run was interrupted: start over with --force",
                        workload->experiment->workloads[workload->index].label);
     }
     if (result->known) return RT_OK;

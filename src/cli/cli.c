@@ -50,7 +50,7 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
     errno = 0;
     long long value = strtoll(text, &end, 10);
     if (end == text || *end || errno || value < lo || value > hi) {
-        argp_error(state, "%s: '%s' will not do: it must be a whole number %lld..%lld", option, text,
+        argp_error(state, "%s: invalid value '%s': expected a whole number %lld..%lld", option, text,
                    (long long)lo, (long long)hi);
     }
     return value;
@@ -58,7 +58,7 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
 
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height) {
     if (rt_image_size_parse(text, width, height)) return;
-    argp_error(state, "--size: '%s' will not do: it must be WIDTHxHEIGHT, each 1..%d, as in 640x480", text,
+    argp_error(state, "--size: invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 640x480", text,
                RT_MAX_IMAGE_SIDE);
 }
 

@@ -43,20 +43,19 @@ static const struct argp_option options[] = {
      "its defaults",
      0},
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
-     "Measure the --accel before this on every Kth ray only: for slow ones", 0},
+     "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
     {"rays", OPT_RAYS, "KIND,...", 0,
      "Ray kinds: primary, shadow, reflection, transmission, diffuse, random (all)", 0},
-    {"limit", OPT_LIMIT, "N", 0, "Rays of a kind at most; a larger set is thinned evenly (100000)", 0},
+    {"limit", OPT_LIMIT, "N", 0, "At most N rays of a kind; a larger set is thinned evenly (100000)", 0},
     {"coherent-run", OPT_COHERENT_RUN, "N", 0,
-     "Neighbouring rays that are kept together where a set is thinned, for packets and caches (256)", 0},
+     "Neighbouring rays kept together where a set is thinned, for packets and caches (256)", 0},
     {"baseline", OPT_BASELINE, "SPEC", 0, "The accelerator that ratios refer to (the first)", 0},
     {"rounds", OPT_ROUNDS, "N", 0,
-     "Times each is timed, in an order drawn anew (10); 6 at least for intervals of 95 %", 0},
+     "Timing rounds, each in an order drawn anew (10); at least 6 for intervals of 95 %", 0},
     {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays and of orders (1)", 0},
     {"threads", OPT_THREADS, "N", 0,
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
-     "counting on "
-     "all; on several, wall time is compared",
+     "counting on all; on several, wall time is compared",
      0},
     {"size", OPT_SIZE, "WxH", 0, "Size of the frame whose rays are recorded (the camera's)", 0},
     {"corners", OPT_CORNERS, 0, 0, "Sample pixel corners, (W+1) x (H+1) rays", 0},
@@ -73,7 +72,7 @@ static const struct argp_option options[] = {
 
 static void add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
     if (experiment->candidate_count == RT_MAX_CANDIDATES) {
-        argp_error(state, "--accel: there may be %d at most", RT_MAX_CANDIDATES);
+        argp_error(state, "--accel: at most %d may be given", RT_MAX_CANDIDATES);
     }
     if (strlen(text) >= RT_MAX_SPEC_CHARS) {
         argp_error(state, "--accel: a spec has at most %d characters", RT_MAX_SPEC_CHARS - 1);
@@ -112,7 +111,7 @@ static void parse_kinds(RtExperiment *experiment, const char *text, struct argp_
         RtRayKind *kind = &experiment->kinds[experiment->kind_count++];
         if (rt_ray_kind_parse(name, kind, &error) != RT_OK) argp_error(state, "--rays: %s", error.message);
     }
-    if (!experiment->kind_count) argp_error(state, "--rays: give one kind at least");
+    if (!experiment->kind_count) argp_error(state, "--rays: give at least one kind");
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
@@ -121,7 +120,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     switch (key) {
     case 'a': add_accels(e, argument, state); return 0;
     case OPT_RAY_STRIDE:
-        if (!e->candidate_count) argp_error(state, "--ray-stride stands behind the --accel that it is for");
+        if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
         e->candidates[e->candidate_count - 1].ray_stride =
             (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
         return 0;

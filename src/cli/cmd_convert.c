@@ -19,7 +19,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     switch (key) {
     case 'f': o->force = true; return 0;
     case ARGP_KEY_ARG:
-        if (o->out) argp_error(state, "one scene IN, one file OUT: '%s' is one too many", argument);
+        if (o->out) argp_error(state, "one scene IN and one file OUT; '%s' is one too many", argument);
         *(o->in ? &o->out : &o->in) = argument;
         return 0;
     case ARGP_KEY_END:

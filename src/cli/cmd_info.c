@@ -27,7 +27,7 @@ static const struct argp_option options[] = {
      "Also measure how tight the extents of the objects are and what their tests take: boxes, spheres, "
      "oriented boxes, 3, 7 and 13 slabs, or with =all every number of slabs",
      0},
-    {"rays", 'n', "N", 0, "Random lines a shape that --extents counts with (100000)", 0},
+    {"rays", 'n', "N", 0, "Random lines per shape for --extents (100000)", 0},
     {"seed", 's', "S", 0, "Seed of these lines (1)", 0},
     {"json", 'j', 0, 0, "One JSON document on stdout", 0},
     {0}};
@@ -40,7 +40,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         o->extents = true;
         o->every_slabs = argument != NULL;
         if (argument && strcmp(argument, "all") != 0)
-            argp_error(state, "--extents: '%s' will not do: it is --extents or --extents=all", argument);
+            argp_error(state, "--extents: invalid value '%s': expected --extents or --extents=all", argument);
         return 0;
     case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 1000000000); return 0;
     case 's': o->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;

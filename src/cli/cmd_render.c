@@ -39,7 +39,7 @@ static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0, "Accelerator (default bvh); `raytally accels` lists them", 0},
     {"size", 's', "WxH", 0, "Size of the image in pixels (default: the scene's)", 0},
     {"corners", KEY_CORNERS, 0, 0, "Sample the corners of pixels, (W+1) x (H+1) rays, as SPD asks", 0},
-    {"samples", 'n', "N", 0, "N x N samples a pixel, 1..64 (default 1)", 0},
+    {"samples", 'n', "N", 0, "N x N samples per pixel, 1..64 (default 1)", 0},
     {"depth", 'd', "N", 0, "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)", 0},
     {"threads", 't', "N", 0, "Threads (default: all processors)", 0},
     {"output", 'o', "FILE", 0, "The image, .png or .exr; may be given once for each", 0},
@@ -63,7 +63,8 @@ static bool has_extension(const char *path, const char *extension) {
 static void set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
                      const char *extension) {
     if (!has_extension(path, extension)) {
-        argp_error(state, "%s: '%s' will not do: its name must end in %s", option, path, extension);
+        argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
+                   extension);
     }
     if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
     *slot = path;
@@ -85,7 +86,7 @@ static size_t counter_by_name(struct argp_state *state, const char *name) {
 
 static void parse_output(Options *o, struct argp_state *state, const char *path) {
     if (!has_extension(path, ".png") && !has_extension(path, ".exr")) {
-        argp_error(state, "-o: '%s' will not do: its name must end in .png or .exr", path);
+        argp_error(state, "-o: invalid value '%s': expected a file name that ends in .png or .exr", path);
     }
     const char **slot = has_extension(path, ".png") ? &o->png : &o->exr;
     if (*slot) argp_error(state, "-o: both '%s' and '%s': one file of each format is written", *slot, path);
@@ -151,7 +152,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case KEY_STATS: set_path(state, "--stats", &o->stats, argument, ".json"); return 0;
     case KEY_HEATMAP: parse_heatmap(o, state, argument); return 0;
     case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "one SCENE at a time: '%s' is too much", argument);
+        if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
         o->scene = argument;
         return 0;
     case ARGP_KEY_END: check_options(o, state); return 0;
@@ -363,7 +364,7 @@ static RtStatus check_rays(const Run *run, RtError *error) {
 int rt_command_render(int argc, char **argv) {
     static const char doc[] =
         "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
-        "To begin with: raytally render balls -o balls.png";
+        "For example: raytally render balls -o balls.png";
     const struct argp argp = {.options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc};
     Options o = {.accel = rt_accel_default(), .samples = 1, .depth = RT_DEFAULT_DEPTH};
     argp_parse(&argp, argc, argv, 0, 0, &o);

@@ -116,7 +116,6 @@ int rt_command_reproduce(int argc, char **argv) {
         argc, argv,
         "Count everything in a result directory again and compare with DIR/counts.csv, byte "
         "for byte; with published figures, too, where the experiment names any. Run it from where the "
-        "experiment was "
-        "run.",
+        "experiment was run.",
         false, reproduce);
 }

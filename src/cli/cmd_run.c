@@ -23,15 +23,13 @@ static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "The result directory (results/NAME)", 0},
     {"resume", OPT_RESUME, 0, 0,
      "Go on where an interrupted run stopped; what it measured is kept. Of a finished one, write tables and "
-     "plots "
-     "again",
+     "plots again",
      0},
     {"force", OPT_FORCE, 0, 0,
-     "Begin anew: the results in DIR are lost. Of --resume and --force the last one counts", 0},
+     "Start over: the results in DIR are lost. Of --resume and --force the last one counts", 0},
     {"threads", 't', "N", 0,
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
-     "counting on "
-     "all; on several, wall time is compared",
+     "counting on all; on several, wall time is compared",
      0},
     {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
     {0}};
@@ -90,7 +88,7 @@ int rt_command_run(int argc, char **argv) {
                                   "another process writes into."
                                   "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
                                   "gnuplot there is a note), or a published figure is missed. "
-                                  "experiments/README.md tells how to write an experiment."};
+                                  "experiments/README.md says how to write an experiment."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);

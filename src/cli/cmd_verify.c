@@ -53,14 +53,13 @@ enum { KEY_SPREAD = 256, KEY_FAMILIES, KEY_RESUME, KEY_FORCE, KEY_REPLAY };
 
 static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0, "An accelerator, or `all` of them (the default); may be repeated", 0},
-    {"spread", KEY_SPREAD, 0, 0, "Also each parameter of each at every value worth testing, one at a time",
-     0},
+    {"spread", KEY_SPREAD, 0, 0, "Also try each parameter at every value worth testing, one at a time", 0},
     {"families", KEY_FAMILIES, 0, 0,
      "Instead of random chords, rays that graze, start and end on surfaces, run along axes, edges and faces; "
      "and, where no SCENE is given, also the families of scenes",
      0},
     {"rays", 'n', "N", 0, "Rays for each scene and accelerator (default 100000)", 0},
-    {"seed", 's', "S", 0, "Of the random rays, and of `families` (default 1)", 0},
+    {"seed", 's', "S", 0, "Seed of the random rays and of `families` (default 1)", 0},
     {"threads", 't', "N", 0, "Threads; 0, the default, is all processors", 0},
     {"out", 'o', "DIR", 0,
      "Keep the rows in DIR as they are found, tables of them (verify.csv, verify.md), and what was wrong to "
@@ -68,9 +67,8 @@ static const struct argp_option options[] = {
      0},
     {"resume", KEY_RESUME, 0, 0, "Go on with the interrupted run in --out DIR", 0},
     {"force", KEY_FORCE, 0, 0,
-     "Begin anew: the results in --out DIR are lost, which is refused without. Of --resume and --force the "
-     "last one "
-     "counts",
+     "Start over: the results in --out DIR are lost, which is refused without it. Of --resume and "
+     "--force the last one counts",
      0},
     {"replay", KEY_REPLAY, "FILE", 0,
      "Ask again what was answered wrong: exit code 1 if it still is, 2 if it cannot be asked", 0},
@@ -131,8 +129,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case ARGP_KEY_ARG: add_scene(o, argument, state); return 0;
     case ARGP_KEY_END:
         if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->folder || o->json)) {
-            argp_error(state, "--replay asks what is in FILE, and prints text: it takes no SCENE, --accel, "
-                              "--out or --json");
+            argp_error(state,
+                       "--replay asks again what is in FILE and prints text: it takes no SCENE, --accel, "
+                       "--out or --json");
         }
         if (o->start != RT_START_FRESH && !o->folder) {
             argp_error(state, "--resume and --force are about the run in --out DIR: name it");
@@ -365,7 +364,7 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     }
     rt_replay_clear(&file);
     if (status != RT_OK || asked > 0) return status;
-    return rt_fail(error, RT_BAD_INPUT, "%s: nothing of it can be asked again", o->replay);
+    return rt_fail(error, RT_BAD_INPUT, "%s: none of it can be asked again", o->replay);
 }
 
 int rt_command_verify(int argc, char **argv) {

@@ -31,7 +31,7 @@ static void print_usage(FILE *to) {
     for (int i = 0; i < COMMAND_COUNT; i++) {
         fprintf(to, "  %-9s %-14s %s\n", commands[i].name, commands[i].arguments, commands[i].summary);
     }
-    fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. To begin with:\n"
+    fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. To start with:\n"
                 "  raytally accels                          what there is to compare\n"
                 "  raytally render balls -o balls.png       a picture\n"
                 "  raytally bench balls --accel bvh --accel grid   a comparison\n"

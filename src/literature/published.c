@@ -211,7 +211,7 @@ static RtStatus fail_outside(const RtPublished *published, const RtFigure *figur
     rt_figure_measured(figure, measured);
     return rt_fail(
         error, RT_MISMATCH,
-        "%u published figures are missed by more than their tolerance, and nobody says why; the first: %s of "
+        "%u published figures are missed by more than their tolerance, without a reason; the first: %s of "
         "%s on %s is %s, published is %s",
         count, rt_column_name(figure->column), name, published->experiment->workloads[row->workload].label,
         measured, figure->text);
@@ -234,7 +234,7 @@ static RtStatus check_reasons(const RtPublished *published, RtError *error) {
         if (published->reasons[i].used) continue;
         return rt_fail_at(
             error, published->reasons_path, published->reasons[i].line, 0,
-            "no figure needs this reason: all that it is about are within their tolerance, not measured, "
+            "no figure needs this reason: all that it applies to are within their tolerance, not measured, "
             "or have an earlier one");
     }
     return RT_OK;
@@ -249,7 +249,7 @@ static RtStatus check_best(const RtPublished *published, RtError *error) {
             const RtBest *best = &published->best[t][m];
             if (best->row == RT_NOT_MEASURED || rt_best_is_ahead(best)) continue;
             return rt_fail(error, RT_MISMATCH,
-                           "on %s none of ours needs less than the best published row: %s are %.4g a ray, "
+                           "on %s none of ours needs less than the best published row: %s are %.4g per ray, "
                            "published %.4g",
                            experiment->workloads[t].label, rt_measure_name((RtMeasure)m), best->ours,
                            best->published);

@@ -140,8 +140,8 @@ static RtStatus take_row(RtPublished *published, const RtCsv *csv, uint32_t r, R
     RT_TRY(find_candidate(experiment, row, csv->path, line, error));
     if (!row->per_hit && strcmp(per, "ray") != 0 &&
         *rt_csv_field(csv, r, rt_csv_find(csv, rt_column_name(RT_COLUMN_object_tests)))) {
-        return rt_fail_at(error, csv->path, line, 0,
-                          "tests_per: '%s' will not do: object_tests are per ray or per hit", per);
+        return rt_fail_at(error, csv->path, line, 0, "tests_per: invalid value '%s': expected ray or hit",
+                          per);
     }
     for (uint32_t c = 0; c < csv->columns; c++) RT_TRY(take_figure(published, csv, r, c, error));
     published->row_count++;
@@ -179,7 +179,7 @@ static RtStatus take_reasons(RtPublished *published, const RtCsv *csv, RtError *
     for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++) {
         if (rt_csv_find(csv, columns[i]) < csv->columns) continue;
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s: the column '%s' is missing: there are to be scene, source, accel, column, reason",
+                       "%s: the column '%s' is missing: expected scene, source, accel, column, reason",
                        csv->path, columns[i]);
     }
     published->reasons = rt_alloc(csv->rows, sizeof(RtReason));

@@ -96,10 +96,10 @@ static RtField shown_figure(const void *row, const RtTableColumn *column) {
       tolerance_of(r, r->figure->column))                                                                    \
     X(within, "within", flag, "", "whether it is no larger; empty: not judged", within_of(r))                \
     X(reason, "reason", text, "", "why the figure is missed", reason_of(r->published, r->figure))            \
-    X(measure, "measure", text, "", "what is to be least, a ray of any kind", rt_measure_name(r->measure))   \
+    X(measure, "measure", text, "", "what is to be least, per ray of any kind", rt_measure_name(r->measure)) \
     X(published_row, "best published row", text, "", "the row that has the least", name_of(r))               \
     X(ours, "ours", real6, "", "what the one of ours needs that needs least", r->best->ours)                 \
-    X(extent_tests, "extent_tests", real6, "", "extent tests a ray that this one makes besides",             \
+    X(extent_tests, "extent_tests", real6, "", "extent tests per ray that this one makes besides",           \
       r->best->extent_tests)                                                                                 \
     X(ahead, "ahead", flag, "", "whether ours is less than what was published",                              \
       rt_field_flag(rt_best_is_ahead(r->best)))                                                              \

@@ -167,7 +167,7 @@ RtStatus rt_exr_write(const RtFrame *frame, const char *path, RtError *error) {
     exr_result_t result = write_file(&stream, frame);
     if (result == EXR_ERR_SUCCESS) return rt_output_commit(&stream.output, error);
     rt_output_discard(&stream.output);
-    if (result == EXR_ERR_OUT_OF_MEMORY) return rt_fail(error, RT_NO_MEMORY, "%s: memory is short", path);
+    if (result == EXR_ERR_OUT_OF_MEMORY) return rt_fail(error, RT_NO_MEMORY, "%s: out of memory", path);
     if (local.status != RT_OK) return rt_fail(error, RT_IO, "%s", local.message);
     return rt_fail(error, RT_IO, "%s: writing the OpenEXR file failed: %s", path,
                    exr_get_default_error_message(result));

@@ -275,7 +275,7 @@ static RtStatus init_frame(RtFrame *frame, const RtSampling *sampling, bool coun
     if (samples > RT_MAX_FRAME_SAMPLES) {
         return rt_fail(error, RT_BAD_INPUT,
                        "a frame of %u x %u samples: at most %u samples fit; take a smaller image or fewer "
-                       "samples a pixel",
+                       "samples per pixel",
                        sampling->columns, sampling->rows, RT_MAX_FRAME_SAMPLES);
     }
     frame->sampling = *sampling;
@@ -322,7 +322,7 @@ static RtStatus run(Job *job, const RtAccel *accel, int threads, RtError *error)
 RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error) {
     *frame = (RtFrame){0};
     if (options->depth < 1 || options->depth > RT_MAX_DEPTH) {
-        return rt_fail(error, RT_BAD_INPUT, "a ray tree of %u levels: must be 1..%d", options->depth,
+        return rt_fail(error, RT_BAD_INPUT, "a ray tree of %u levels: expected 1..%d", options->depth,
                        RT_MAX_DEPTH);
     }
     Job job = {.frame = frame, .options = options, .scene = accel->scene};

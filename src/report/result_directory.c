@@ -156,7 +156,8 @@ RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults 
     json_decref(manifest);
     if (!rt_file_exists(path)) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s is no result directory of an experiment: it has no experiment.yaml", directory);
+                       "%s is not the result directory of an experiment: it has no experiment.yaml",
+                       directory);
     }
     RT_TRY(rt_experiment_load(experiment, path, quick, error));
     RT_TRY(rt_results_init(results, experiment, error));

@@ -18,11 +18,11 @@ bool rt_image_size_parse(const char *text, uint32_t *width, uint32_t *height) {
 RtStatus rt_sampling_init(RtSampling *sampling, uint32_t width, uint32_t height, uint32_t samples,
                           bool corners, RtError *error) {
     if (width < 1 || height < 1 || width > RT_MAX_IMAGE_SIDE || height > RT_MAX_IMAGE_SIDE) {
-        return rt_fail(error, RT_BAD_INPUT, "an image of %u x %u pixels: each side must be 1..%d", width,
+        return rt_fail(error, RT_BAD_INPUT, "an image of %u x %u pixels: expected 1..%d on each side", width,
                        height, RT_MAX_IMAGE_SIDE);
     }
     if (samples < 1 || samples > 64) {
-        return rt_fail(error, RT_BAD_INPUT, "%u samples a side of a pixel: must be 1..64", samples);
+        return rt_fail(error, RT_BAD_INPUT, "%u samples along the side of a pixel: expected 1..64", samples);
     }
     if (corners && samples > 1) {
         return rt_fail(error, RT_BAD_INPUT,
@@ -39,11 +39,12 @@ RtStatus rt_sampling_init(RtSampling *sampling, uint32_t width, uint32_t height,
 
 RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling, RtError *error) {
     if (!(camera->fov > 0 && camera->fov < 180)) {
-        return rt_fail(error, RT_BAD_INPUT, "the camera's fov is %g degrees: must be above 0 and below 180",
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the camera's fov is %g degrees: expected a value above 0 and below 180",
                        (double)camera->fov);
     }
     if (!(camera->near >= 0)) {
-        return rt_fail(error, RT_BAD_INPUT, "the camera's near plane is at %g: must be at least 0",
+        return rt_fail(error, RT_BAD_INPUT, "the camera's near plane is at %g: expected at least 0",
                        (double)camera->near);
     }
     RtVec3d axis = rt_subd(rt_widen(camera->at), rt_widen(camera->from));

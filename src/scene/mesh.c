@@ -173,7 +173,7 @@ RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, con
     if (file->mRootNode) status = add_node(&reader, file->mRootNode, transform ? transform : &identity);
     if (status == RT_OK && scene->geometry.object_count == before) {
         status =
-            rt_fail_at(error, path, 0, 0, "there is no triangle in this file: a mesh needs one at least");
+            rt_fail_at(error, path, 0, 0, "there is no triangle in this file: a mesh needs at least one");
     }
     aiReleaseImport(file);
     return status;

@@ -127,8 +127,8 @@ static RtStatus check_shapes(const RtGeometry *g, const char *extension, RtError
     for (int shape = 0; shape < RT_SHAPE_COUNT; shape++) {
         if (shape == RT_SHAPE_TRIANGLE || counts[shape] == 0) continue;
         return rt_fail(error, RT_BAD_INPUT,
-                       ".%s holds triangles only, but in this scene there are also objects that are no "
-                       "triangles (%s: %u)%s",
+                       ".%s holds triangles only, but this scene has objects of other shapes "
+                       "(%s: %u)%s",
                        extension, rt_shape_name((RtShape)shape), counts[shape],
                        g->csg_count == 0 ? ": write .yaml or .nff" : "");
     }

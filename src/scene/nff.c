@@ -77,8 +77,7 @@ static void take(Reader *r, Token token) {
 
 static RtStatus fail_token(Reader *r, Token token, const char *wanted) {
     char text[48];
-    return rt_fail_at(r->error, r->path, token.line, 0, "%s is needed here, but there is %s", wanted,
-                      show(token, text));
+    return rt_fail_at(r->error, r->path, token.line, 0, "expected %s, found %s", wanted, show(token, text));
 }
 
 /* The same inside a statement: where the next statement or the end has come too soon, the place is the end of
@@ -105,8 +104,9 @@ static RtStatus read_double(Reader *r, const char *what, double *out) {
     if (token.length == 0 || stop != token.text + token.length) return fail_inside(r, token, what);
     if (!isfinite(*out) || fabs(*out) > (double)FLT_MAX) {
         char text[48];
-        return rt_fail_at(r->error, r->path, token.line, 0, "%s: %s is no finite number that fits a float",
-                          what, show(token, text));
+        return rt_fail_at(r->error, r->path, token.line, 0,
+                          "%s: invalid value %s: expected a finite number that fits float32", what,
+                          show(token, text));
     }
     take(r, token);
     return RT_OK;
@@ -130,7 +130,8 @@ static RtStatus read_count(Reader *r, const char *what, double lo, double hi, ui
     RT_TRY(read_double(r, what, &number));
     if (number < lo || number > hi || number != floor(number)) {
         return rt_fail_at(r->error, r->path, token.line, 0,
-                          "%s is %.15g: it must be a whole number %.15g..%.15g", what, number, lo, hi);
+                          "%s: invalid value '%.15g': expected a whole number %.15g..%.15g", what, number, lo,
+                          hi);
     }
     *out = (uint32_t)number;
     return RT_OK;
@@ -183,7 +184,7 @@ static RtStatus read_camera(Reader *r) {
         if (!given[i]) return fail_inside(r, peek(r), wanted);
     }
     if (camera->near < 0) {
-        return rt_fail_at(r->error, r->path, r->statement, 0, "hither is %g: it must be at least 0",
+        return rt_fail_at(r->error, r->path, r->statement, 0, "hither is %g: expected at least 0",
                           (double)camera->near);
     }
     return check_camera(r, camera);
@@ -347,7 +348,7 @@ static RtStatus read_background(Reader *r) {
     RT_TRY(read_vector(r, "a number of b r g b", &color));
     if (color.x < 0 || color.y < 0 || color.z < 0) {
         return rt_fail_at(r->error, r->path, r->statement, 0,
-                          "the background has a negative colour: each of r g b must be at least 0");
+                          "the background has a negative colour: expected at least 0 for each of r g b");
     }
     r->scene->background = color;
     return RT_OK;

@@ -31,7 +31,7 @@ RtMaterial rt_default_material(void) {
 static RtStatus check_range(const char *material, const char *what, float value, float lo, float hi,
                             RtError *error) {
     if (value >= lo && value <= hi) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "material '%s': %s is %g, must be %g..%g", material, what,
+    return rt_fail(error, RT_BAD_INPUT, "material '%s': %s is %g: expected %g..%g", material, what,
                    (double)value, (double)lo, (double)hi);
 }
 

@@ -11,7 +11,7 @@
 typedef struct Writer {
     const RtScene *scene;
     FILE *out;
-    bool numbered; /* the names of materials will not do: m0, m1 ... */
+    bool numbered; /* the names of materials cannot be used: m0, m1 ... */
 } Writer;
 
 /* ---- values ---- */

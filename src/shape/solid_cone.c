@@ -124,8 +124,7 @@ RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *pla
                            RtError *error) {
     if (!(ratio >= 0 && ratio <= 1)) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "the ratio of a cone's radii is %g: it must be from 0 to 1; turn the cone round",
-                       ratio);
+                       "the ratio of a cone's radii is %g: expected 0..1; turn the cone round", ratio);
     }
     RT_TRY(rt_solid_check_place(place, error));
     RtSolid solid = {.kind = RT_SOLID_CONE,

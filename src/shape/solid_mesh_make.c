@@ -75,10 +75,11 @@ RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtEr
         volume += rt_dotd(v[0], rt_crossd(v[1], v[2])) / 6;
     }
     if (volume > 0) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "the volume in the mesh is %g: it must be above 0; if it is turned inside out, turn its "
-                   "triangles round (counter-clockwise seen from outside)",
-                   volume);
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "the volume in the mesh is %g: expected a value above 0; if it is turned inside out, turn its "
+        "triangles round (counter-clockwise seen from outside)",
+        volume);
 }
 
 /* ---- order and boxes ---- */
@@ -159,7 +160,7 @@ static RtStatus check_and_order(RtTriangle *triangles, uint32_t count, RtError *
 RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
                            const RtTransform *place, uint32_t *index, RtError *error) {
     if (count < 4) {
-        return rt_fail(error, RT_BAD_INPUT, "a closed mesh has 4 triangles at least; this one has %u", count);
+        return rt_fail(error, RT_BAD_INPUT, "a closed mesh has at least 4 triangles; this one has %u", count);
     }
     RT_TRY(rt_solid_check_place(place, error));
     RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + count,

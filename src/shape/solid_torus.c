@@ -143,7 +143,8 @@ RtStatus rt_solid_add_torus(RtSolidSet *set, double ratio, const RtTransform *pl
     if (!(ratio > 0 && ratio < 1)) {
         return rt_fail(
             error, RT_BAD_INPUT,
-            "the tube of a torus is %g times as wide as its circle: it must be above 0 and below 1", ratio);
+            "the tube of a torus is %g times as wide as its circle: expected a value above 0 and below 1",
+            ratio);
     }
     RtSolid solid = {.kind = RT_SOLID_TORUS, .ratio = ratio, .place = *place};
     return rt_solid_finish(set, &solid, rt_solid_torus_support, index, error);

@@ -54,7 +54,7 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
                               RtError *error);
 
 /* The verdict on an answer of the query's accelerator to `nearest`, or to `occluded`, where brute's nearest
- * hit is `expected`: RT_EQUAL or RT_WRONG if it is exact. RT_NO_MEMORY as in experiments/verdict.h. */
+ * hit is `expected`: RT_EQUAL or RT_WRONG if it is exact. RT_NO_MEMORY as in verify/verdict.h. */
 RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
                            RtVerdict *verdict, RtError *error);
 RtStatus rt_blocked_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, bool got,

@@ -177,14 +177,15 @@ RtStatus rt_replay_load(RtReplay *replay, const char *path, RtError *error) {
     replay->document = json_loadb(text, size, 0, &at);
     rt_free(text);
     if (!replay->document) {
-        return rt_fail_at(error, path, (size_t)(at.line > 0 ? at.line : 0), 0, "this is no JSON: %s",
+        return rt_fail_at(error, path, (size_t)(at.line > 0 ? at.line : 0), 0, "this is not JSON: %s",
                           at.text);
     }
     if (take(replay, &wrong)) return RT_OK;
     RtStatus status =
-        wrong ? rt_fail(error, RT_BAD_INPUT,
-                        "%s: this is no file to replay: '%s' is missing or not what `raytally verify` writes",
-                        path, wrong)
+        wrong ? rt_fail(
+                    error, RT_BAD_INPUT,
+                    "%s: this is not a file to replay: '%s' is missing or not what `raytally verify` writes",
+                    path, wrong)
               : rt_fail_memory(error, "rays", replay->failure.count * sizeof(RtRay));
     rt_replay_clear(replay);
     return status;

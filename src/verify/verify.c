@@ -99,7 +99,7 @@ static RtStatus load_known(Run *run, const char *path, RtError *error) {
         if (json_equal(json_object_get(json_array_get(run->known, 0), key), value)) continue;
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: this is the journal of another verification, with other %s (see its first line): "
-                       "begin anew and lose it with --force, or give another --out",
+                       "start over and lose it with --force, or give another --out",
                        path, key);
     }
     return RT_OK;

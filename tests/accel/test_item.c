@@ -195,7 +195,7 @@ RT_TEST(too_many_samples_are_refused_with_a_number_that_fits) {
         const char *says;
     } sizes[] = {{32768, 32768, 1, "an image of 146"},
                  {32768, 32768, 64, "an image of"},
-                 {2048, 2048, 64, "7 samples a side"}};
+                 {2048, 2048, 64, "7 samples along the side"}};
     RtScene scene;
     begin_view(&scene);
     assert_ok(rt_scene_finish(&scene, error));

@@ -129,7 +129,7 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
         {"--replay nothing.json", "nothing.json"},
         {"--replay nothing.json balls", "takes no SCENE"},
         {"--replay nothing.json --json", "prints text"},
-        {"--replay " RT_SOURCE_DIR "/README.md", "no JSON"},
+        {"--replay " RT_SOURCE_DIR "/README.md", "not JSON"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         if (verify(cases[i].arguments) != 2) fail_msg("'%s' is not refused", cases[i].arguments);

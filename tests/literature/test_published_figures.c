@@ -61,7 +61,7 @@ RT_TEST_IN_PLACE(a_reason_excuses_what_it_is_about_and_a_stale_one_fails) {
     assert_in_file(place, "out/published.md", "he tests one more");
     assert_fails(place, rows, "balls,s,all,object_tests,why\nballs,s,cells,*,why\n", false,
                  "reasons.csv:3: no figure needs this reason");
-    assert_fails(place, rows, "balls,other,all,*,why\n", false, "nobody says why");
+    assert_fails(place, rows, "balls,other,all,*,why\n", false, "without a reason");
 }
 
 RT_TEST_IN_PLACE(tests_per_hit_are_divided_by_the_rays_that_hit) {

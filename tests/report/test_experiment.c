@@ -104,7 +104,7 @@ RT_TEST_IN_PLACE(a_bad_experiment_is_refused_with_its_line) {
         {"rounds: 3", "count_only: maybe", "yes or no or true or false, not 'maybe'"},
         {"rounds: 3", "published: {tables: [a.csv], tolerance: {steps: -1}}",
          "published.tolerance.steps: -1"},
-        {"rounds: 3", "published: {tables: [a.csv], tolerance: {steps: 1e400}}", "not a finite number"},
+        {"rounds: 3", "published: {tables: [a.csv], tolerance: {steps: 1e400}}", "expected a finite number"},
         {"rounds: 3", "published: {tables: [a.csv], ours: [bhv]}", "published.ours[0]: 'bhv'"},
         {"rounds: 3", "published: {tables: [../a.csv]}", ":14:"},
         {"rounds: 3", "rays: [primary, primary]", "rays[1]: primary rays are given twice"},
@@ -130,18 +130,18 @@ RT_TEST_IN_PLACE(a_zero_is_taken_where_it_means_something_and_refused_with_the_r
     const struct {
         const char *from, *to, *says;
     } cases[] = {
-        {"limit: 300", "limit: 0", ":13:8: limit: '0' will not do: it must be a whole number, 1..100000000"},
-        {"rounds: 3", "rounds: 0", ":14:9: rounds: '0' will not do: it must be a whole number, 1..1000"},
+        {"limit: 300", "limit: 0", ":13:8: limit: invalid value '0': expected a whole number 1..100000000"},
+        {"rounds: 3", "rounds: 0", ":14:9: rounds: invalid value '0': expected a whole number 1..1000"},
         {"rounds: 3", "coherent_run: 0",
-         ":14:15: coherent_run: '0' will not do: it must be a whole number, 1.."},
-        {"depth: 3", "depth: 0", "scenes[0].depth: '0' will not do: it must be a whole number, 1..64"},
+         ":14:15: coherent_run: invalid value '0': expected a whole number 1.."},
+        {"depth: 3", "depth: 0", "scenes[0].depth: invalid value '0': expected a whole number 1..64"},
         {"ray_stride: 7", "ray_stride: 0",
-         "accelerators[0].ray_stride: '0' will not do: it must be a whole number, 1.."},
-        {"rounds: 3", "quick: {rounds: 0}", "quick.rounds: '0' will not do"},
-        {"rounds: 3", "quick: {depth: 0}", "quick.depth: '0' will not do"},
-        {"rounds: 3", "quick: {limit: 0}", "quick.limit: '0' will not do"},
-        {"rounds: 3", "quick: {milliseconds: 60001}", "quick.milliseconds: '60001' will not do"},
-        {"rounds: 3", "seed: -1", "seed: '-1' will not do: it must be a whole number, 0.."},
+         "accelerators[0].ray_stride: invalid value '0': expected a whole number 1.."},
+        {"rounds: 3", "quick: {rounds: 0}", "quick.rounds: invalid value '0'"},
+        {"rounds: 3", "quick: {depth: 0}", "quick.depth: invalid value '0'"},
+        {"rounds: 3", "quick: {limit: 0}", "quick.limit: invalid value '0'"},
+        {"rounds: 3", "quick: {milliseconds: 60001}", "quick.milliseconds: invalid value '60001'"},
+        {"rounds: 3", "seed: -1", "seed: invalid value '-1': expected a whole number 0.."},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         write_changed(place, "small.yaml", small_experiment, cases[i].from, cases[i].to);

@@ -180,7 +180,7 @@ RT_TEST(bad_solids_are_refused_and_leave_nothing) {
     expect(rt_solid_add_sphere(&set, &flat, &at, &e), &e, "flat");
     expect(rt_solid_add_sphere(&set, &endless, &at, &e), &e, "finite");
     expect(rt_solid_add_sphere(&set, &far, &at, &e), &e, "scale it down");
-    expect(rt_solid_add_cone(&set, 1.5, &here, &at, &e), &e, "from 0 to 1");
+    expect(rt_solid_add_cone(&set, 1.5, &here, &at, &e), &e, "expected 0..1");
     expect(rt_solid_add_torus(&set, 1, &here, &at, &e), &e, "below 1");
     expect(rt_solid_add_torus(&set, (double)NAN, &here, &at, &e), &e, "below 1");
     expect(rt_solid_add_polyhedron(&set, planes, 0, &here, &at, &e), &e, "from 1 to");
