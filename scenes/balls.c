@@ -9,14 +9,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "4",
-     .lo = 1,
-     .hi = 7,
-     .meaning = "levels below the root: (9^(size+1) - 1) / 8 spheres",
-     .source = "SPD: 7381 spheres",
-     .test_values = "1|3"},
+    {"size", RT_INT("4", 1, 7, "1|3"), "levels below the root: (9^(size+1) - 1) / 8 spheres",
+     "SPD: 7381 spheres"},
 };
 
 enum { CHILDREN = 9 };

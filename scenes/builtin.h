@@ -10,11 +10,7 @@
 #define RT_BUILTIN_OBJECT_BYTES 256
 
 /* The parameter `seed` of scenes that are made from random numbers. */
-#define RT_BUILTIN_SEED                                                                                      \
-    {                                                                                                        \
-        .name = "seed", .type = RT_PARAM_INT, .standard = "1", .lo = 0, .hi = 1e15,                          \
-        .meaning = "of the random numbers", .source = "any", .test_values = "1"                              \
-    }
+#define RT_BUILTIN_SEED "seed", RT_INT("1", 0, 1e15, "1"), "of the random numbers", "any"
 
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: where the scene comes from */

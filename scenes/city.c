@@ -8,19 +8,13 @@
 #include "scenes/builtin.h"
 #include "scenes/city_parts.h"
 
-enum { SIZE, SEED };
+#define PARAMS(X)                                                                                            \
+    X(SIZE, "size", RT_INT("9", 1, 150, "1|3"),                                                              \
+      "blocks along each edge of the city, of about 600 objects each", "tens of thousands of objects")       \
+    X(SEED, RT_BUILTIN_SEED)
 
-static const RtParam params[] = {
-    [SIZE] = {.name = "size",
-              .type = RT_PARAM_INT,
-              .standard = "9",
-              .lo = 1,
-              .hi = 150,
-              .meaning = "blocks along each edge of the city, of about 600 objects each",
-              .source = "tens of thousands of objects",
-              .test_values = "1|3"},
-    [SEED] = RT_BUILTIN_SEED,
-};
+enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static const double block = 72, street = 18, kerb = 0.2, pavement = 4;
 
@@ -143,7 +137,7 @@ const RtBuiltin rt_builtin_city = {
     .summary = "blocks of houses and towers: faces along the axes that share planes; cylinders and spheres",
     .source = "made to be hard on structures that cut space by planes",
     .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    .param_count = PARAM_COUNT,
     .object_count = object_count,
     .generate = generate,
 };

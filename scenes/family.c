@@ -317,17 +317,14 @@ static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
 #define AS_CHOICE(name, ...) "|" name
 static const Recipe recipes[] = {RECIPES(AS_RECIPE)};
 
-static const RtParam params[] = {
-    RT_BUILTIN_SEED,
-    {.name = "kind",
-     .type = RT_PARAM_CHOICE,
-     .standard = "mixed",
-     .choices = &RECIPES(AS_CHOICE)[1], /* without the first bar */
-     .meaning = "what is hard about it",
-     .source = "any",
-     .test_values = "mixed"},
-};
-enum { SEED, KIND, PARAM_COUNT };
+/* Of the choices without the first bar. */
+#define PARAMS(X)                                                                                            \
+    X(SEED, RT_BUILTIN_SEED)                                                                                 \
+    X(KIND, "kind", RT_PARAM_CHOICE, "mixed", 0, 0, &RECIPES(AS_CHOICE)[1], "mixed",                         \
+      "what is hard about it", "any")
+
+enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static RtStatus fill(Builder *b, RtError *error) {
     RtMaterial material = rt_default_material();

@@ -11,14 +11,8 @@
 #include "scenes/teapot_mesh.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "8",
-     .lo = 1,
-     .hi = 100,
-     .meaning = "how fine round things are: a vase has 6 size x 5 size cells",
-     .source = "about 280,000 triangles, like the halls that papers use",
-     .test_values = "1|2"},
+    {"size", RT_INT("8", 1, 100, "1|2"), "how fine round things are: a vase has 6 size x 5 size cells",
+     "about 280,000 triangles, like the halls that papers use"},
 };
 
 enum { PLASTER, LIGHT_MARBLE, DARK_MARBLE, STONE, COFFERS, GOLD, CHINA, TERRACOTTA, GLAZE, SKY, MATERIALS };

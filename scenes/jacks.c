@@ -11,14 +11,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "3",
-     .lo = 1,
-     .hi = 8,
-     .meaning = "levels: (8^size - 1) / 7 jacks of 3 cylinders and 6 spheres",
-     .source = "SPD: 219 cylinders, 438 spheres",
-     .test_values = "1|2"},
+    {"size", RT_INT("3", 1, 8, "1|2"), "levels: (8^size - 1) / 7 jacks of 3 cylinders and 6 spheres",
+     "SPD: 219 cylinders, 438 spheres"},
 };
 
 #define ARM        0.75

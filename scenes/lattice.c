@@ -9,14 +9,9 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "12",
-     .lo = 1,
-     .hi = 400,
-     .meaning = "cells along an edge: (size+1)^3 spheres, 3 size (size+1)^2 cylinders",
-     .source = "SPD: 2197 spheres, 6084 cylinders",
-     .test_values = "1|3"},
+    {"size", RT_INT("12", 1, 400, "1|3"),
+     "cells along an edge: (size+1)^3 spheres, 3 size (size+1)^2 cylinders",
+     "SPD: 2197 spheres, 6084 cylinders"},
 };
 
 enum { JOINT, RODS = JOINT + 1, MATERIALS = RODS + 3 };

@@ -11,14 +11,7 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "6",
-     .lo = 1,
-     .hi = 9,
-     .meaning = "levels: 2 * 4^size triangles",
-     .source = "SPD: 8192 triangles",
-     .test_values = "1|3"},
+    {"size", RT_INT("6", 1, 9, "1|3"), "levels: 2 * 4^size triangles", "SPD: 8192 triangles"},
 };
 
 /* A corner of a square: its place in the lattice of 2^size by 2^size squares, and its height. */

@@ -11,14 +11,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "7",
-     .lo = 1,
-     .hi = 200,
-     .meaning = "layers: 5 size (size+1) (2 size+1) spheres and as many cylinders",
-     .source = "SPD: 4200 spheres and cylinders",
-     .test_values = "1|2"},
+    {"size", RT_INT("7", 1, 200, "1|2"), "layers: 5 size (size+1) (2 size+1) spheres and as many cylinders",
+     "SPD: 4200 spheres and cylinders"},
 };
 
 enum { RINGS = 6, CORNERS = 5 };

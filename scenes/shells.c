@@ -10,14 +10,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "5",
-     .lo = 1,
-     .hi = 20,
-     .meaning = "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns",
-     .source = "SPD: 5761 spheres",
-     .test_values = "1|3"},
+    {"size", RT_INT("5", 1, 20, "1|3"),
+     "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns", "SPD: 5761 spheres"},
 };
 
 enum { ARCS = 180 }; /* of 18 degrees, each of 2^size spheres */

@@ -7,26 +7,15 @@
 #include "scenes/builtin.h"
 #include "scenes/teapot_mesh.h"
 
-enum { SIZE, RATIO };
+#define PARAMS(X)                                                                                            \
+    X(SIZE, "size", RT_INT("12", 1, RT_TEAPOT_MAX_SIZE, "1|6"),                                              \
+      "cells along each edge of a patch of the teapot: 64 size^2 - 8 size triangles",                        \
+      "as in the scene teapot")                                                                              \
+    X(RATIO, "ratio", RT_FLOAT("1000", 50, 1e6, "50|100000"),                                                \
+      "the stadium is this many times as long as the teapot", "a teapot of 25 cm in a stadium of 250 m")
 
-static const RtParam params[] = {
-    [SIZE] = {.name = "size",
-              .type = RT_PARAM_INT,
-              .standard = "12",
-              .lo = 1,
-              .hi = RT_TEAPOT_MAX_SIZE,
-              .meaning = "cells along each edge of a patch of the teapot: 64 size^2 - 8 size triangles",
-              .source = "as in the scene teapot",
-              .test_values = "1|6"},
-    [RATIO] = {.name = "ratio",
-               .type = RT_PARAM_FLOAT,
-               .standard = "1000",
-               .lo = 50,
-               .hi = 1e6,
-               .meaning = "the stadium is this many times as long as the teapot",
-               .source = "a teapot of 25 cm in a stadium of 250 m",
-               .test_values = "50|100000"},
-};
+enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 enum {
     SECTORS = 64,
@@ -258,7 +247,7 @@ const RtBuiltin rt_builtin_stadium = {
     .summary = "a teapot in a stadium: tiny triangles close together amid a few thousand huge polygons",
     .source = "after E. Haines 1988, Ray Tracing News: the classical case against a uniform grid",
     .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    .param_count = PARAM_COUNT,
     .object_count = object_count,
     .generate = generate,
 };

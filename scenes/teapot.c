@@ -8,14 +8,9 @@
 #include "scenes/teapot_mesh.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "12",
-     .lo = 1,
-     .hi = RT_TEAPOT_MAX_SIZE,
-     .meaning = "cells along each edge of a patch, and squares along the board: 65 size^2 - 8 size objects",
-     .source = "the published tables: 9264 objects",
-     .test_values = "1|6"},
+    {"size", RT_INT("12", 1, RT_TEAPOT_MAX_SIZE, "1|6"),
+     "cells along each edge of a patch, and squares along the board: 65 size^2 - 8 size objects",
+     "the published tables: 9264 objects"},
 };
 
 enum { CHINA, LIGHT_SQUARES, DARK_SQUARES };

@@ -9,14 +9,7 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "6",
-     .lo = 1,
-     .hi = 9,
-     .meaning = "levels: 4^size triangles",
-     .source = "SPD: 4096 triangles",
-     .test_values = "1|3"},
+    {"size", RT_INT("6", 1, 9, "1|3"), "levels: 4^size triangles", "SPD: 4096 triangles"},
 };
 
 static uint64_t object_count(const RtValue *values) {

@@ -9,14 +9,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "11",
-     .lo = 1,
-     .hi = 20,
-     .meaning = "levels above the trunk: 2^(size+1) - 1 cones and as many spheres",
-     .source = "SPD: 4095 cones and spheres",
-     .test_values = "1|3"},
+    {"size", RT_INT("11", 1, 20, "1|3"), "levels above the trunk: 2^(size+1) - 1 cones and as many spheres",
+     "SPD: 4095 cones and spheres"},
 };
 
 #define TRUNK_RADIUS 0.15

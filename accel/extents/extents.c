@@ -14,24 +14,15 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-enum { PARAM_KIND, PARAM_SLABS, PARAM_COUNT };
+#define PARAMS(X)                                                                                            \
+    X(PARAM_KIND, "kind", RT_CHOICE("box", RT_EXTENT_KINDS),                                                 \
+      "the extent of an object: axis-aligned box, sphere, oriented box, or k slabs", "the cheapest test")    \
+    X(PARAM_SLABS, "slabs", RT_INT("7", 3, RT_MAX_SLABS, "3|5|7|13"),                                        \
+      "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",              \
+      "Kay & Kajiya 1986")
 
-static const RtParam params[PARAM_COUNT] = {
-    {.name = "kind",
-     .type = RT_PARAM_CHOICE,
-     .standard = "box",
-     .choices = RT_EXTENT_KINDS,
-     .meaning = "the extent of an object: axis-aligned box, sphere, oriented box, or k slabs",
-     .source = "the cheapest test"},
-    {.name = "slabs",
-     .type = RT_PARAM_INT,
-     .standard = "7",
-     .lo = 3,
-     .hi = RT_MAX_SLABS,
-     .meaning = "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",
-     .source = "Kay & Kajiya 1986",
-     .test_values = "3|5|7|13"},
-};
+enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
     return (RtGroup){geometry, id, 1, geometry->boxes[*id]};

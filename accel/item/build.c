@@ -16,9 +16,9 @@
 #include <stdlib.h>
 
 const RtParam rt_item_params[RT_ITEM_PARAM_COUNT] = {
-    [RT_ITEM_SETTLE] = {"settle", RT_PARAM_FLAG, "on", 0, 0, NULL,
-                        "ask hit functions while building, where the projection leaves a sample undecided",
-                        "this program; off is Weghorst, Hooper & Greenberg 1984", NULL},
+    {"settle", RT_FLAG("on"),
+     "ask hit functions while building, where the projection leaves a sample undecided",
+     "this program; off is Weghorst, Hooper & Greenberg 1984"},
 };
 
 typedef struct Entry {
