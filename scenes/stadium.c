@@ -41,14 +41,7 @@ enum {
 };
 
 static const RtMaterial materials[MATERIALS] = {
-    [CHINA] = {.name = "china",
-               .color = {0.95f, 0.93f, 0.88f},
-               .ambient = 0.15f,
-               .diffuse = 0.7f,
-               .specular = 0.6f,
-               .shine = 60,
-               .reflection = 0.12f,
-               .ior = 1},
+    [CHINA] = RT_MATERIAL("china", 0.95f, 0.93f, 0.88f, 0.15f, 0.7f, 0.6f, 60, 0.12f),
     [WOOD] = RT_MATTE("wood", 0.45f, 0.26f, 0.13f),
     [GRASS] = RT_MATTE("grass", 0.10f, 0.36f, 0.08f),
     [LIGHT_GRASS] = RT_MATTE("light grass", 0.16f, 0.46f, 0.12f),
@@ -59,7 +52,7 @@ static const RtMaterial materials[MATERIALS] = {
     [BLUE_SEATS] = RT_MATTE("blue seats", 0.1f, 0.2f, 0.6f),
     [ROOF] = RT_MATTE("roof", 0.95f, 0.95f, 0.95f),
     [STEEL] = RT_MATTE("steel", 0.4f, 0.42f, 0.45f),
-    [LAMP] = {.name = "lamp", .color = {1, 0.98f, 0.9f}, .ambient = 1, .diffuse = 0.2f, .shine = 1, .ior = 1},
+    [LAMP] = RT_MATERIAL("lamp", 1, 0.98f, 0.9f, 1, 0.2f, 0, 1, 0),
 };
 
 /* Of the bowl, in half lengths of the stadium: how far out, over the pitch's oval, and how high. */
