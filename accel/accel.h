@@ -163,6 +163,9 @@ struct RtAccelOps {
  * begins with, which is exact and counts; to *out, to be freed with rt_free. */
 RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error);
 
+/* What `build` ends with: *out is the accelerator or, if it failed, nothing is left of it. Gives `status`. */
+RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out);
+
 /* ---- the registry ---- */
 
 /* The registered accelerators, in the order in which they are listed: brute first. */

@@ -95,12 +95,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
     ((RtBvh *)accel)->mailbox = values[PARAM_MAILBOX].flag;
-    RtStatus status = fill(hierarchy, what, error);
-    if (status == RT_OK)
-        *out = accel;
-    else
-        destroy(accel);
-    return status;
+    return rt_accel_built(accel, fill(hierarchy, what, error), out);
 }
 
 /* ---- queries ---- */

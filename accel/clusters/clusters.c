@@ -110,12 +110,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                     .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                     .traversal_cost = 1};
     self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
-    RtStatus status = fill(self, values, error);
-    if (status == RT_OK)
-        *out = accel;
-    else
-        destroy(accel);
-    return status;
+    return rt_accel_built(accel, fill(self, values, error), out);
 }
 
 /* ---- queries ---- */

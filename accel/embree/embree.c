@@ -152,13 +152,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     self->query = (RtEmbreeQueryKind)values[QUERY].choice;
     accel->exact = self->user;
     accel->counts = false;
-    RtStatus status = build_into(self, what, error);
-    if (status != RT_OK) {
-        destroy(accel);
-        return status;
-    }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, build_into(self, what, error), out);
 }
 
 /* ---- describe, validate ---- */

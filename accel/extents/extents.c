@@ -36,16 +36,11 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtExtents *self = (RtExtents *)accel;
     RtStatus status = rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_KIND].choice,
                                          (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);
-    if (status != RT_OK) {
-        destroy(accel);
-        return status;
-    }
-    for (uint32_t id = 0; id < geometry->object_count; id++) {
+    for (uint32_t id = 0; status == RT_OK && id < geometry->object_count; id++) {
         RtGroup group = group_of(geometry, &id);
         rt_extent_fit(&self->set, id, &group);
     }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }
 
 /* ---- tracing ---- */

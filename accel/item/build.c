@@ -203,11 +203,5 @@ RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RT_TRY(rt_accel_new(what, sizeof(RtItemBuffer), &accel, error));
     RtItemBuffer *buffer = (RtItemBuffer *)accel;
     buffer->settle = what->values[RT_ITEM_SETTLE].flag;
-    RtStatus status = fill(buffer, error);
-    if (status != RT_OK) {
-        rt_item_destroy(&buffer->base);
-        return status;
-    }
-    *out = &buffer->base;
-    return RT_OK;
+    return rt_accel_built(accel, fill(buffer, error), out);
 }

@@ -186,6 +186,7 @@ RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
     const RtValue *values = what->values;
     const RtGeometry *g = &what->scene->geometry;
     int64_t depth = values[RT_KD_MAX_DEPTH].i;
+    RtStatus status = RT_OK;
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtKd), &accel, error));
     RtKd *kd = (RtKd *)accel;
@@ -201,13 +202,8 @@ RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
         RtKdBuilder builder = {.kd = kd, .ledger = &ledger};
         kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
         kd->served = rt_surface_rays(&g->box, &kd->box);
-        RtStatus status = build_tree(&builder, g, error);
+        status = build_tree(&builder, g, error);
         clear(&builder);
-        if (status != RT_OK) {
-            rt_kd_destroy(accel);
-            return status;
-        }
     }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }

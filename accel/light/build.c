@@ -278,10 +278,5 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
     if (status == RT_OK) status = make_near_lists(buffer, error);
     if (status == RT_OK) status = make_lists(buffer, order, error);
     rt_free(order);
-    if (status != RT_OK) {
-        rt_light_destroy(&buffer->base);
-        return status;
-    }
-    *out = &buffer->base;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }

@@ -80,10 +80,5 @@ RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error) {
     }
     rt_free(builder.list);
     rt_free(builder.next);
-    if (status != RT_OK) {
-        rt_octree_destroy(accel);
-        return status;
-    }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }
