@@ -72,13 +72,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_sphere(&flake, rt_vec3d(0, 0, 0), 0.5, rt_vec3d(0, 0, 1), values[0].i, error);
 }
 
-extern const RtBuiltin rt_builtin_balls;
 const RtBuiltin rt_builtin_balls = {
     .name = "balls",
     .summary = "a sphereflake over a floor: reflective spheres of very different sizes, touching",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -24,6 +24,12 @@ typedef struct RtBuiltin {
     RtStatus (*generate)(RtScene *scene, const RtValue *values, RtError *error);
 } RtBuiltin;
 
+/* Each in its own file. */
+extern const RtBuiltin rt_builtin_balls, rt_builtin_city, rt_builtin_csg_field, rt_builtin_family,
+    rt_builtin_forest, rt_builtin_gears, rt_builtin_hall, rt_builtin_jacks, rt_builtin_lattice,
+    rt_builtin_mount, rt_builtin_random, rt_builtin_rings, rt_builtin_shells, rt_builtin_stadium,
+    rt_builtin_teapot, rt_builtin_tetra, rt_builtin_tree;
+
 size_t rt_builtin_count(void);
 const RtBuiltin *rt_builtin_at(size_t i);
 

@@ -13,7 +13,7 @@
       "blocks along each edge of the city, of about 600 objects each", "tens of thousands of objects")       \
     X(SEED, RT_BUILTIN_SEED)
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static const double block = 72, street = 18, kerb = 0.2, pavement = 4;
@@ -131,13 +131,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_city;
 const RtBuiltin rt_builtin_city = {
     .name = "city",
     .summary = "blocks of houses and towers: faces along the axes that share planes; cylinders and spheres",
     .source = "made to be hard on structures that cut space by planes",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -15,7 +15,7 @@
     X(EXTENTS, "extents", RT_FLAG("on"), "trees skip inner nodes whose box a ray misses", "Roth 1982")       \
     X(SEED, RT_BUILTIN_SEED)
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 typedef struct Field {
@@ -136,13 +136,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_csg_field;
 const RtBuiltin rt_builtin_csg_field = {
     .name = "csg-field",
     .summary = "n CSG trees of 8 to 64 random solids, in four materials",
     .source = "made to measure CSG",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .object_bytes = object_bytes,
     .generate = generate,

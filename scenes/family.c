@@ -323,7 +323,7 @@ static const Recipe recipes[] = {RECIPES(AS_RECIPE)};
     X(KIND, "kind", RT_PARAM_CHOICE, "mixed", 0, 0, &RECIPES(AS_CHOICE)[1], "mixed",                         \
       "what is hard about it", "any")
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static RtStatus fill(Builder *b, RtError *error) {
@@ -373,8 +373,7 @@ const RtBuiltin rt_builtin_family = {
     .name = "family",
     .summary = "small scenes that are hard on accelerators, an image of a thousand pixels each",
     .source = "random, each kind from a stream of its own: what rays graze, touch, or cannot tell apart",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .object_bytes = object_bytes,
     .generate = generate,

@@ -14,7 +14,7 @@
     X(N, "n", RT_INT("1000", 1, 1e6, "1|5"), "trees, of about 1020 triangles each", "a million triangles")   \
     X(SEED, RT_BUILTIN_SEED)
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 enum { BARK, BIRCH_BARK, SOIL, NEEDLES, DARK_NEEDLES, LEAVES, MATERIALS = LEAVES + 9 };
@@ -228,13 +228,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_forest;
 const RtBuiltin rt_builtin_forest = {
     .name = "forest",
     .summary = "n trees on hilly ground: a million small triangles that lie any way",
     .source = "made to measure how builders scale",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

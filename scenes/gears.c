@@ -116,13 +116,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_gears;
 const RtBuiltin rt_builtin_gears = {
     .name = "gears",
     .summary = "gears of concave polygons with 144 corners, some of glass, above a mirror",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .object_bytes = object_bytes,
     .generate = generate,

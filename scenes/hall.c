@@ -329,13 +329,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_hall;
 const RtBuiltin rt_builtin_hall = {
     .name = "hall",
     .summary = "a closed interior: columns, vault, vases; long thin triangles and small ones close together",
     .source = "made like the interiors that papers on hierarchies use",
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -82,13 +82,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_jack(&jacks, rt_vec3d(0, 0, 0), 1, values[0].i, error);
 }
 
-extern const RtBuiltin rt_builtin_jacks;
 const RtBuiltin rt_builtin_jacks = {
     .name = "jacks",
     .summary = "crossed cylinders with spheres at their ends, among smaller ones: mirrors that touch",
     .source = RT_SPD_LATER_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -72,13 +72,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_lattice;
 const RtBuiltin rt_builtin_lattice = {
     .name = "lattice",
     .summary = "spheres at the points of a cubic lattice, and the cylinders between them",
     .source = RT_SPD_LATER_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -126,13 +126,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_level(&mount, corners, 1, mount.size, error);
 }
 
-extern const RtBuiltin rt_builtin_mount;
 const RtBuiltin rt_builtin_mount = {
     .name = "mount",
     .summary = "a fractal mountain of triangles of one size, seen through spheres of glass",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -32,7 +32,7 @@ enum { SPHERES, TRIANGLES, MIXED };
       "standard deviation of a cluster along each axis, for distribution=clustered",                         \
       "a twentieth of the cube")
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* Streams of cluster centres lie beyond those of objects. */
@@ -176,13 +176,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_random;
 const RtBuiltin rt_builtin_random = {
     .name = "random",
     .summary = "n random objects, uniform, in clusters or in awkward places, in four materials",
     .source = "made for tests",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

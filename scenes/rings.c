@@ -104,13 +104,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_rings;
 const RtBuiltin rt_builtin_rings = {
     .name = "rings",
     .summary = "a pyramid of interlocked rings of cylinders and spheres, mirrors, before a wall",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -51,13 +51,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_sphere(scene, 0, radius, error);
 }
 
-extern const RtBuiltin rt_builtin_shells;
 const RtBuiltin rt_builtin_shells = {
     .name = "shells",
     .summary = "a sea shell of spheres that overlap, many of them tiny",
     .source = RT_SPD_LATER_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -14,7 +14,7 @@
     X(RATIO, "ratio", RT_FLOAT("1000", 50, 1e6, "50|100000"),                                                \
       "the stadium is this many times as long as the teapot", "a teapot of 25 cm in a stadium of 250 m")
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 enum {
@@ -234,13 +234,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_stadium;
 const RtBuiltin rt_builtin_stadium = {
     .name = "stadium",
     .summary = "a teapot in a stadium: tiny triangles close together amid a few thousand huge polygons",
     .source = "after E. Haines 1988, Ray Tracing News: the classical case against a uniform grid",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

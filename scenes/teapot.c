@@ -52,13 +52,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_teapot;
 const RtBuiltin rt_builtin_teapot = {
     .name = "teapot",
     .summary = "Newell's teapot on a checkerboard: small triangles with vertex normals, a few large quads",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

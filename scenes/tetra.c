@@ -56,13 +56,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_level(scene, rt_vec3d(0, 0, 0), 1, values[0].i, error);
 }
 
-extern const RtBuiltin rt_builtin_tetra;
 const RtBuiltin rt_builtin_tetra = {
     .name = "tetra",
     .summary = "a Sierpinski tetrahedron of triangles, mostly empty space",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

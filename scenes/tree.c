@@ -88,13 +88,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_branch(&tree, rt_vec3d(0, 0, 0), &upright, TRUNK_RADIUS, values[0].i, error);
 }
 
-extern const RtBuiltin rt_builtin_tree;
 const RtBuiltin rt_builtin_tree = {
     .name = "tree",
     .summary = "a tree of cones and spheres that get smaller and smaller, alone on a large field",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

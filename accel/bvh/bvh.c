@@ -43,7 +43,7 @@ typedef enum Build { BINNED, SWEEP, LBVH, PLOC, SPATIAL } Build;
     X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"),                                         \
       "rounds in which subtrees move to where they cost less", "0: the tree as it is built")
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- build ---- */
@@ -188,8 +188,7 @@ const RtAccelOps rt_bvh_ops = {
     .name = "bvh",
     .summary = "binary hierarchy of boxes, by the surface area heuristic or along the Morton curve",
     .paper = "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,

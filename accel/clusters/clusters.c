@@ -44,7 +44,7 @@ typedef enum Method { AGGLOMERATIVE, PLOC, GOLDSMITH_SALMON, RUBIN_WHITTED, SAH 
     X(PARAM_SEED, "seed", RT_INT("1", 0, 1e9, "2"), "method=goldsmith-salmon: seed of the random orders",    \
       "any")
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- build ---- */
@@ -210,8 +210,7 @@ const RtAccelOps rt_clusters_ops = {
     .summary =
         "hierarchy of extents of any kind, by clustering objects from the bottom, the top or one by one",
     .paper = "Walter, Bala, Kulkarni & Pingali 2008, Fast Agglomerative Clustering for Rendering, RT'08",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,

@@ -30,7 +30,7 @@
     X(QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                                       \
       "rays handed over at once: one, a packet of 8 or 16, a stream", "the most general one")
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- build ---- */
@@ -189,8 +189,7 @@ const RtAccelOps rt_embree_ops = {
     .summary = "Intel's kernels: the competitor (mode=native) and an oracle (mode=user)",
     .paper = "Wald, Woop, Benthin, Johnson & Ernst 2014, Embree: A Kernel Framework for Efficient CPU Ray "
              "Tracing, ACM TOG 33(4)",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     .nearest = rt_embree_nearest_timed,

@@ -21,7 +21,7 @@ static void destroy(RtAccel *accel) {
       "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",              \
       "Kay & Kajiya 1986")
 
-enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT };
+enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
@@ -105,8 +105,7 @@ const RtAccelOps rt_extents_ops = {
     .name = "extents",
     .summary = "every object's extent, and the object only where it is hit: no hierarchy",
     .paper = "Weghorst, Hooper & Greenberg 1984, Improved Computational Methods for Ray Tracing, TOG 3(1)",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,

@@ -42,9 +42,12 @@ typedef struct RtParam {
 #define RT_FLAG(standard)                            RT_PARAM_FLAG, standard, 0, 0, NULL, NULL
 
 /* A list PARAMS(X), of X(INDEX, the entry without its braces), makes both the indices,
- * enum { PARAMS(RT_PARAM_INDEX) PARAM_COUNT }, and the table, {PARAMS(RT_PARAM_ENTRY)}. */
+ * enum { PARAMS(RT_PARAM_INDEX) }, and the table, {PARAMS(RT_PARAM_ENTRY)}. */
 #define RT_PARAM_INDEX(index, ...) index,
 #define RT_PARAM_ENTRY(index, ...) [index] = {__VA_ARGS__},
+
+/* The members `params` and `param_count` of what has this table. */
+#define RT_PARAMS_OF(table) .params = (table), .param_count = sizeof(table) / sizeof((table)[0])
 
 typedef union RtValue {
     int64_t i;
