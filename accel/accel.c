@@ -11,3 +11,11 @@ RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError 
     *out = accel;
     return RT_OK;
 }
+
+RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out) {
+    if (status == RT_OK)
+        *out = accel;
+    else
+        accel->ops->destroy(accel);
+    return status;
+}

@@ -104,6 +104,14 @@ typedef struct RtBuild {
     uint64_t limit;        /* one that would take more bytes, as far as its own folder counts, is refused */
 } RtBuild;
 
+/* Parameters that several accelerators have. */
+#define RT_MAILBOX_PARAM                                                                                     \
+    "mailbox", RT_FLAG("on"), "do not test an object twice for one ray", "Kirk & Arvo 1991"
+#define RT_MARGIN_PARAM(what)                                                                                \
+    "margin", RT_FLOAT("0", 0, 1, "0.01|1"),                                                                 \
+        "how much wider than the scene's box " what " is, as a part of it",                                  \
+        "the published scene boxes are a little wider than tight"
+
 /* One accelerator, as a const table in its own file. Optional members may be NULL. */
 struct RtAccelOps {
     const char *name;    /* as in a spec */
@@ -155,6 +163,9 @@ struct RtAccelOps {
 /* For `build`, in accel.c: `bytes` for the own struct of the accelerator, zeroed but for the RtAccel that it
  * begins with, which is exact and counts; to *out, to be freed with rt_free. */
 RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error);
+
+/* What `build` ends with: *out is the accelerator or, if it failed, nothing is left of it. Gives `status`. */
+RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out);
 
 /* ---- the registry ---- */
 

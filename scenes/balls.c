@@ -10,14 +10,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "4",
-     .lo = 1,
-     .hi = 7,
-     .meaning = "levels below the root: (9^(size+1) - 1) / 8 spheres",
-     .source = "SPD: 7381 spheres",
-     .test_values = "1|3"},
+    {"size", RT_INT("4", 1, 7, "1|3"), "levels below the root: (9^(size+1) - 1) / 8 spheres",
+     "SPD: 7381 spheres"},
 };
 
 enum { CHILDREN = 9 };
@@ -79,13 +73,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_sphere(&flake, rt_vec3d(0, 0, 0), 0.5, rt_vec3d(0, 0, 1), values[0].i, error);
 }
 
-extern const RtBuiltin rt_builtin_balls;
 const RtBuiltin rt_builtin_balls = {
     .name = "balls",
     .summary = "a sphereflake over a floor: reflective spheres of very different sizes, touching",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -11,11 +11,7 @@
 #define RT_BUILTIN_OBJECT_BYTES 256
 
 /* The parameter `seed` of scenes that are made from random numbers. */
-#define RT_BUILTIN_SEED                                                                                      \
-    {                                                                                                        \
-        .name = "seed", .type = RT_PARAM_INT, .standard = "1", .lo = 0, .hi = 1e15,                          \
-        .meaning = "of the random numbers", .source = "any", .test_values = "1"                              \
-    }
+#define RT_BUILTIN_SEED "seed", RT_INT("1", 0, 1e15, "1"), "of the random numbers", "any"
 
 typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: where the scene comes from */
@@ -28,6 +24,12 @@ typedef struct RtBuiltin {
     /* Fills an initialised scene (rt_scene_init); the caller finishes it, or clears it after a failure. */
     RtStatus (*generate)(RtScene *scene, const RtValue *values, RtError *error);
 } RtBuiltin;
+
+/* Each in its own file. */
+extern const RtBuiltin rt_builtin_balls, rt_builtin_city, rt_builtin_csg_field, rt_builtin_family,
+    rt_builtin_forest, rt_builtin_gears, rt_builtin_hall, rt_builtin_jacks, rt_builtin_lattice,
+    rt_builtin_mount, rt_builtin_random, rt_builtin_rings, rt_builtin_shells, rt_builtin_stadium,
+    rt_builtin_teapot, rt_builtin_tetra, rt_builtin_tree;
 
 size_t rt_builtin_count(void);
 const RtBuiltin *rt_builtin_at(size_t i);

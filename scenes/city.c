@@ -9,19 +9,13 @@
 #include "scenes/builtin.h"
 #include "scenes/city_parts.h"
 
-enum { SIZE, SEED };
+#define PARAMS(X)                                                                                            \
+    X(SIZE, "size", RT_INT("9", 1, 150, "1|3"),                                                              \
+      "blocks along each edge of the city, of about 600 objects each", "tens of thousands of objects")       \
+    X(SEED, RT_BUILTIN_SEED)
 
-static const RtParam params[] = {
-    [SIZE] = {.name = "size",
-              .type = RT_PARAM_INT,
-              .standard = "9",
-              .lo = 1,
-              .hi = 150,
-              .meaning = "blocks along each edge of the city, of about 600 objects each",
-              .source = "tens of thousands of objects",
-              .test_values = "1|3"},
-    [SEED] = RT_BUILTIN_SEED,
-};
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static const double block = 72, street = 18, kerb = 0.2, pavement = 4;
 
@@ -138,13 +132,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_city;
 const RtBuiltin rt_builtin_city = {
     .name = "city",
     .summary = "blocks of houses and towers: faces along the axes that share planes; cylinders and spheres",
     .source = "made to be hard on structures that cut space by planes",
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

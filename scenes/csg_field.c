@@ -8,40 +8,16 @@
 #include "scenes/builtin.h"
 #include "scenes/studio.h"
 
-enum { N, LEAST, MOST, EXTENTS, SEED };
+#define PARAMS(X)                                                                                            \
+    X(N, "n", RT_INT("1000", 1, 1e6, "1|27"), "trees", "the size that experiments use")                      \
+    X(LEAST, "least", RT_INT("8", 1, 4096, "1|8"), "fewest solids of a tree", "a simple machine part")       \
+    X(MOST, "most", RT_INT("64", 1, 4096, "64"), "most solids of a tree; no fewer than the fewest",          \
+      "a complicated machine part")                                                                          \
+    X(EXTENTS, "extents", RT_FLAG("on"), "trees skip inner nodes whose box a ray misses", "Roth 1982")       \
+    X(SEED, RT_BUILTIN_SEED)
 
-static const RtParam params[] = {
-    [N] = {.name = "n",
-           .type = RT_PARAM_INT,
-           .standard = "1000",
-           .lo = 1,
-           .hi = 1e6,
-           .meaning = "trees",
-           .source = "the size that experiments use",
-           .test_values = "1|27"},
-    [LEAST] = {.name = "least",
-               .type = RT_PARAM_INT,
-               .standard = "8",
-               .lo = 1,
-               .hi = 4096,
-               .meaning = "fewest solids of a tree",
-               .source = "a simple machine part",
-               .test_values = "1|8"},
-    [MOST] = {.name = "most",
-              .type = RT_PARAM_INT,
-              .standard = "64",
-              .lo = 1,
-              .hi = 4096,
-              .meaning = "most solids of a tree; no fewer than the fewest",
-              .source = "a complicated machine part",
-              .test_values = "64"},
-    [EXTENTS] = {.name = "extents",
-                 .type = RT_PARAM_FLAG,
-                 .standard = "on",
-                 .meaning = "trees skip inner nodes whose box a ray misses",
-                 .source = "Roth 1982"},
-    [SEED] = RT_BUILTIN_SEED,
-};
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 typedef struct Field {
     RtCsgBuilder builder;
@@ -161,13 +137,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_csg_field;
 const RtBuiltin rt_builtin_csg_field = {
     .name = "csg-field",
     .summary = "n CSG trees of 8 to 64 random solids, in four materials",
     .source = "made to measure CSG",
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .object_bytes = object_bytes,
     .generate = generate,

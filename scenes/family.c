@@ -318,17 +318,14 @@ static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
 #define AS_CHOICE(name, ...) "|" name
 static const Recipe recipes[] = {RECIPES(AS_RECIPE)};
 
-static const RtParam params[] = {
-    RT_BUILTIN_SEED,
-    {.name = "kind",
-     .type = RT_PARAM_CHOICE,
-     .standard = "mixed",
-     .choices = &RECIPES(AS_CHOICE)[1], /* without the first bar */
-     .meaning = "what is hard about it",
-     .source = "any",
-     .test_values = "mixed"},
-};
-enum { SEED, KIND, PARAM_COUNT };
+/* Of the choices without the first bar. */
+#define PARAMS(X)                                                                                            \
+    X(SEED, RT_BUILTIN_SEED)                                                                                 \
+    X(KIND, "kind", RT_PARAM_CHOICE, "mixed", 0, 0, &RECIPES(AS_CHOICE)[1], "mixed",                         \
+      "what is hard about it", "any")
+
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static RtStatus fill(Builder *b, RtError *error) {
     RtMaterial material = rt_default_material();
@@ -377,8 +374,7 @@ const RtBuiltin rt_builtin_family = {
     .name = "family",
     .summary = "small scenes that are hard on accelerators, an image of a thousand pixels each",
     .source = "random, each kind from a stream of its own: what rays graze, touch, or cannot tell apart",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .object_bytes = object_bytes,
     .generate = generate,

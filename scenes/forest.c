@@ -11,19 +11,12 @@
 #include "scenes/builtin.h"
 #include "scenes/forms.h"
 
-enum { N, SEED };
+#define PARAMS(X)                                                                                            \
+    X(N, "n", RT_INT("1000", 1, 1e6, "1|5"), "trees, of about 1020 triangles each", "a million triangles")   \
+    X(SEED, RT_BUILTIN_SEED)
 
-static const RtParam params[] = {
-    [N] = {.name = "n",
-           .type = RT_PARAM_INT,
-           .standard = "1000",
-           .lo = 1,
-           .hi = 1e6,
-           .meaning = "trees, of about 1020 triangles each",
-           .source = "a million triangles",
-           .test_values = "1|5"},
-    [SEED] = RT_BUILTIN_SEED,
-};
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 enum { BARK, BIRCH_BARK, SOIL, NEEDLES, DARK_NEEDLES, LEAVES, MATERIALS = LEAVES + 9 };
 
@@ -236,13 +229,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_forest;
 const RtBuiltin rt_builtin_forest = {
     .name = "forest",
     .summary = "n trees on hilly ground: a million small triangles that lie any way",
     .source = "made to measure how builders scale",
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

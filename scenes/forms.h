@@ -42,9 +42,13 @@ uint64_t rt_forms_count(RtFormsMaker *make, const RtValue *values);
 RtStatus rt_forms_materials(const RtForms *forms, const RtMaterial *materials, uint32_t count,
                             RtError *error);
 
-/* A matte material of `color`: ka .12, kd .8. */
-#define RT_MATTE(what, red, green, blue)                                                                     \
-    { .name = what, .color = {red, green, blue}, .ambient = 0.12f, .diffuse = 0.8f, .shine = 1, .ior = 1 }
+/* A material of this color, as it stands in a table. */
+#define RT_MATERIAL(what, red, green, blue, ka, kd, ks, exponent, kr)                                        \
+    {                                                                                                        \
+        .name = what, .color = {red, green, blue}, .ambient = ka, .diffuse = kd, .specular = ks,             \
+        .shine = exponent, .reflection = kr, .ior = 1                                                        \
+    }
+#define RT_MATTE(what, red, green, blue) RT_MATERIAL(what, red, green, blue, 0.12f, 0.8f, 0, 1, 0)
 
 /* Places what comes next with the origin at `at`, turned about z by `quarters` of 90 degrees, exactly. */
 void rt_forms_at(RtForms *forms, RtVec3d at, int quarters);

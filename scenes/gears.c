@@ -10,14 +10,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "4",
-     .lo = 1,
-     .hi = 100,
-     .meaning = "gears along an edge: 146 size^3 + 1 polygons",
-     .source = "SPD: 9345 polygons",
-     .test_values = "1|2"},
+    {"size", RT_INT("4", 1, 100, "1|2"), "gears along an edge: 146 size^3 + 1 polygons",
+     "SPD: 9345 polygons"},
 };
 
 enum { TEETH = 36, CORNERS = 4 * TEETH, TOOTH = 3600 / TEETH }; /* TOOTH in tenths of a degree */
@@ -123,13 +117,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_gears;
 const RtBuiltin rt_builtin_gears = {
     .name = "gears",
     .summary = "gears of concave polygons with 144 corners, some of glass, above a mirror",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .object_bytes = object_bytes,
     .generate = generate,

@@ -12,23 +12,14 @@
 #include "scenes/teapot_mesh.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "8",
-     .lo = 1,
-     .hi = 100,
-     .meaning = "how fine round things are: a vase has 6 size x 5 size cells",
-     .source = "about 280,000 triangles, like the halls that papers use",
-     .test_values = "1|2"},
+    {"size", RT_INT("8", 1, 100, "1|2"), "how fine round things are: a vase has 6 size x 5 size cells",
+     "about 280,000 triangles, like the halls that papers use"},
 };
 
 enum { PLASTER, LIGHT_MARBLE, DARK_MARBLE, STONE, COFFERS, GOLD, CHINA, TERRACOTTA, GLAZE, SKY, MATERIALS };
 
 #define POLISHED(what, red, green, blue, mirrored)                                                           \
-    {                                                                                                        \
-        .name = what, .color = {red, green, blue}, .ambient = 0.12f, .diffuse = 0.7f, .specular = 0.35f,     \
-        .shine = 40, .reflection = mirrored, .ior = 1                                                        \
-    }
+    RT_MATERIAL(what, red, green, blue, 0.12f, 0.7f, 0.35f, 40, mirrored)
 
 static const RtMaterial materials[MATERIALS] = {
     [PLASTER] = RT_MATTE("plaster", 0.85f, 0.8f, 0.7f),
@@ -40,8 +31,7 @@ static const RtMaterial materials[MATERIALS] = {
     [CHINA] = POLISHED("china", 0.9f, 0.9f, 0.92f, 0.1f),
     [TERRACOTTA] = POLISHED("terracotta", 0.7f, 0.33f, 0.18f, 0),
     [GLAZE] = POLISHED("glaze", 0.12f, 0.35f, 0.45f, 0.08f),
-    [SKY] =
-        {.name = "sky", .color = {0.65f, 0.8f, 1}, .ambient = 0.9f, .diffuse = 0.1f, .shine = 1, .ior = 1},
+    [SKY] = RT_MATERIAL("sky", 0.65f, 0.8f, 1, 0.9f, 0.1f, 0, 1, 0),
 };
 
 enum { BAYS = 8, COFFERS_AROUND = 11, COFFERS_ALONG = 34, CHANDELIERS = 4, CHAIN_LINKS = 66 };
@@ -340,13 +330,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_hall;
 const RtBuiltin rt_builtin_hall = {
     .name = "hall",
     .summary = "a closed interior: columns, vault, vases; long thin triangles and small ones close together",
     .source = "made like the interiors that papers on hierarchies use",
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

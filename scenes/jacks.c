@@ -12,14 +12,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "3",
-     .lo = 1,
-     .hi = 8,
-     .meaning = "levels: (8^size - 1) / 7 jacks of 3 cylinders and 6 spheres",
-     .source = "SPD: 219 cylinders, 438 spheres",
-     .test_values = "1|2"},
+    {"size", RT_INT("3", 1, 8, "1|2"), "levels: (8^size - 1) / 7 jacks of 3 cylinders and 6 spheres",
+     "SPD: 219 cylinders, 438 spheres"},
 };
 
 #define ARM        0.75
@@ -89,13 +83,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_jack(&jacks, rt_vec3d(0, 0, 0), 1, values[0].i, error);
 }
 
-extern const RtBuiltin rt_builtin_jacks;
 const RtBuiltin rt_builtin_jacks = {
     .name = "jacks",
     .summary = "crossed cylinders with spheres at their ends, among smaller ones: mirrors that touch",
     .source = RT_SPD_LATER_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

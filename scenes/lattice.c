@@ -10,14 +10,9 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "12",
-     .lo = 1,
-     .hi = 400,
-     .meaning = "cells along an edge: (size+1)^3 spheres, 3 size (size+1)^2 cylinders",
-     .source = "SPD: 2197 spheres, 6084 cylinders",
-     .test_values = "1|3"},
+    {"size", RT_INT("12", 1, 400, "1|3"),
+     "cells along an edge: (size+1)^3 spheres, 3 size (size+1)^2 cylinders",
+     "SPD: 2197 spheres, 6084 cylinders"},
 };
 
 enum { JOINT, RODS = JOINT + 1, MATERIALS = RODS + 3 };
@@ -78,13 +73,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_lattice;
 const RtBuiltin rt_builtin_lattice = {
     .name = "lattice",
     .summary = "spheres at the points of a cubic lattice, and the cylinders between them",
     .source = RT_SPD_LATER_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

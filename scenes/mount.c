@@ -12,14 +12,7 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "6",
-     .lo = 1,
-     .hi = 9,
-     .meaning = "levels: 2 * 4^size triangles",
-     .source = "SPD: 8192 triangles",
-     .test_values = "1|3"},
+    {"size", RT_INT("6", 1, 9, "1|3"), "levels: 2 * 4^size triangles", "SPD: 8192 triangles"},
 };
 
 /* A corner of a square: its place in the lattice of 2^size by 2^size squares, and its height. */
@@ -134,13 +127,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_level(&mount, corners, 1, mount.size, error);
 }
 
-extern const RtBuiltin rt_builtin_mount;
 const RtBuiltin rt_builtin_mount = {
     .name = "mount",
     .summary = "a fractal mountain of triangles of one size, seen through spheres of glass",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

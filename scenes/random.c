@@ -11,67 +11,30 @@
 #include "scenes/builtin.h"
 #include "scenes/studio.h"
 
-enum { N, DISTRIBUTION, SHAPE, SEED, RADIUS, SPREAD, CLUSTERS, WIDTH };
 enum { UNIFORM, CLUSTERED, COINCIDENT, LINE, PLANE, STADIUM };
 enum { SPHERES, TRIANGLES, MIXED };
 
-static const RtParam params[] = {
-    [N] = {.name = "n",
-           .type = RT_PARAM_INT,
-           .standard = "1000",
-           .lo = 0,
-           .hi = RT_MAX_OBJECTS,
-           .meaning = "objects",
-           .source = "small enough to see",
-           .test_values = "0|1|2|100|5000"},
-    [DISTRIBUTION] = {.name = "distribution",
-                      .type = RT_PARAM_CHOICE,
-                      .standard = "uniform",
-                      .choices = "uniform|clustered|coincident|line|plane|stadium",
-                      .meaning = "where the objects are: coincident: all in one place and alike; line: in a "
-                                 "row; plane: flat ones coplanar; stadium: tiny ones about the origin, and "
-                                 "every eighth huge",
-                      .source = "the usual case"},
-    [SHAPE] = {.name = "shape",
-               .type = RT_PARAM_CHOICE,
-               .standard = "sphere",
-               .choices = "sphere|triangle|mixed",
-               .meaning = "what they are; mixed: spheres, polygons, triangles and cones in turn",
-               .source = "the simplest"},
-    [SEED] = RT_BUILTIN_SEED,
-    [RADIUS] = {.name = "radius",
-                .type = RT_PARAM_FLOAT,
-                .standard = "0.25",
-                .lo = 1e-6,
-                .hi = 1e3,
-                .meaning = "mean radius of an object, in mean spacings",
-                .source = "few objects overlap",
-                .test_values = "0.25|2"},
-    [SPREAD] = {.name = "spread",
-                .type = RT_PARAM_FLOAT,
-                .standard = "0.5",
-                .lo = 0,
-                .hi = 0.999,
-                .meaning = "radii differ from the mean by up to this part of it",
-                .source = "a ratio of 3 between largest and smallest",
-                .test_values = "0|0.9"},
-    [CLUSTERS] = {.name = "clusters",
-                  .type = RT_PARAM_INT,
-                  .standard = "16",
-                  .lo = 1,
-                  .hi = 1e6,
-                  .meaning = "number of clusters, for distribution=clustered",
-                  .source = "enough to leave empty space",
-                  .test_values = "16"},
-    [WIDTH] = {.name = "width",
-               .type = RT_PARAM_FLOAT,
-               .standard = "0.1",
-               .lo = 1e-6,
-               .hi = 1,
-               .meaning = "standard deviation of a cluster along each axis, for distribution=clustered",
-               .source = "a twentieth of the cube",
-               .test_values = "0.1"},
-};
+#define PARAMS(X)                                                                                            \
+    X(N, "n", RT_INT("1000", 0, RT_MAX_OBJECTS, "0|1|2|100|5000"), "objects", "small enough to see")         \
+    X(DISTRIBUTION, "distribution", RT_CHOICE("uniform", "uniform|clustered|coincident|line|plane|stadium"), \
+      "where the objects are: coincident: all in one place and alike; line: in a row; plane: flat ones "     \
+      "coplanar; stadium: tiny ones about the origin, and every eighth huge",                                \
+      "the usual case")                                                                                      \
+    X(SHAPE, "shape", RT_CHOICE("sphere", "sphere|triangle|mixed"),                                          \
+      "what they are; mixed: spheres, polygons, triangles and cones in turn", "the simplest")                \
+    X(SEED, RT_BUILTIN_SEED)                                                                                 \
+    X(RADIUS, "radius", RT_FLOAT("0.25", 1e-6, 1e3, "0.25|2"), "mean radius of an object, in mean spacings", \
+      "few objects overlap")                                                                                 \
+    X(SPREAD, "spread", RT_FLOAT("0.5", 0, 0.999, "0|0.9"),                                                  \
+      "radii differ from the mean by up to this part of it", "a ratio of 3 between largest and smallest")    \
+    X(CLUSTERS, "clusters", RT_INT("16", 1, 1e6, "16"), "number of clusters, for distribution=clustered",    \
+      "enough to leave empty space")                                                                         \
+    X(WIDTH, "width", RT_FLOAT("0.1", 1e-6, 1, "0.1"),                                                       \
+      "standard deviation of a cluster along each axis, for distribution=clustered",                         \
+      "a twentieth of the cube")
+
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* Streams of cluster centres lie beyond those of objects. */
 #define CLUSTER_STREAM (UINT64_C(1) << 32)
@@ -214,13 +177,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_random;
 const RtBuiltin rt_builtin_random = {
     .name = "random",
     .summary = "n random objects, uniform, in clusters or in awkward places, in four materials",
     .source = "made for tests",
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

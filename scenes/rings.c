@@ -12,14 +12,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "7",
-     .lo = 1,
-     .hi = 200,
-     .meaning = "layers: 5 size (size+1) (2 size+1) spheres and as many cylinders",
-     .source = "SPD: 4200 spheres and cylinders",
-     .test_values = "1|2"},
+    {"size", RT_INT("7", 1, 200, "1|2"), "layers: 5 size (size+1) (2 size+1) spheres and as many cylinders",
+     "SPD: 4200 spheres and cylinders"},
 };
 
 enum { RINGS = 6, CORNERS = 5 };
@@ -111,13 +105,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return RT_OK;
 }
 
-extern const RtBuiltin rt_builtin_rings;
 const RtBuiltin rt_builtin_rings = {
     .name = "rings",
     .summary = "a pyramid of interlocked rings of cylinders and spheres, mirrors, before a wall",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -11,14 +11,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "5",
-     .lo = 1,
-     .hi = 20,
-     .meaning = "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns",
-     .source = "SPD: 5761 spheres",
-     .test_values = "1|3"},
+    {"size", RT_INT("5", 1, 20, "1|3"),
+     "doublings of the number of spheres, 180 * 2^size + 1, over the same nine turns", "SPD: 5761 spheres"},
 };
 
 enum { ARCS = 180 }; /* of 18 degrees, each of 2^size spheres */
@@ -58,13 +52,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_sphere(scene, 0, radius, error);
 }
 
-extern const RtBuiltin rt_builtin_shells;
 const RtBuiltin rt_builtin_shells = {
     .name = "shells",
     .summary = "a sea shell of spheres that overlap, many of them tiny",
     .source = RT_SPD_LATER_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -8,26 +8,15 @@
 #include "scenes/builtin.h"
 #include "scenes/teapot_mesh.h"
 
-enum { SIZE, RATIO };
+#define PARAMS(X)                                                                                            \
+    X(SIZE, "size", RT_INT("12", 1, RT_TEAPOT_MAX_SIZE, "1|6"),                                              \
+      "cells along each edge of a patch of the teapot: 64 size^2 - 8 size triangles",                        \
+      "as in the scene teapot")                                                                              \
+    X(RATIO, "ratio", RT_FLOAT("1000", 50, 1e6, "50|100000"),                                                \
+      "the stadium is this many times as long as the teapot", "a teapot of 25 cm in a stadium of 250 m")
 
-static const RtParam params[] = {
-    [SIZE] = {.name = "size",
-              .type = RT_PARAM_INT,
-              .standard = "12",
-              .lo = 1,
-              .hi = RT_TEAPOT_MAX_SIZE,
-              .meaning = "cells along each edge of a patch of the teapot: 64 size^2 - 8 size triangles",
-              .source = "as in the scene teapot",
-              .test_values = "1|6"},
-    [RATIO] = {.name = "ratio",
-               .type = RT_PARAM_FLOAT,
-               .standard = "1000",
-               .lo = 50,
-               .hi = 1e6,
-               .meaning = "the stadium is this many times as long as the teapot",
-               .source = "a teapot of 25 cm in a stadium of 250 m",
-               .test_values = "50|100000"},
-};
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 enum {
     SECTORS = 64,
@@ -53,14 +42,7 @@ enum {
 };
 
 static const RtMaterial materials[MATERIALS] = {
-    [CHINA] = {.name = "china",
-               .color = {0.95f, 0.93f, 0.88f},
-               .ambient = 0.15f,
-               .diffuse = 0.7f,
-               .specular = 0.6f,
-               .shine = 60,
-               .reflection = 0.12f,
-               .ior = 1},
+    [CHINA] = RT_MATERIAL("china", 0.95f, 0.93f, 0.88f, 0.15f, 0.7f, 0.6f, 60, 0.12f),
     [WOOD] = RT_MATTE("wood", 0.45f, 0.26f, 0.13f),
     [GRASS] = RT_MATTE("grass", 0.10f, 0.36f, 0.08f),
     [LIGHT_GRASS] = RT_MATTE("light grass", 0.16f, 0.46f, 0.12f),
@@ -71,7 +53,7 @@ static const RtMaterial materials[MATERIALS] = {
     [BLUE_SEATS] = RT_MATTE("blue seats", 0.1f, 0.2f, 0.6f),
     [ROOF] = RT_MATTE("roof", 0.95f, 0.95f, 0.95f),
     [STEEL] = RT_MATTE("steel", 0.4f, 0.42f, 0.45f),
-    [LAMP] = {.name = "lamp", .color = {1, 0.98f, 0.9f}, .ambient = 1, .diffuse = 0.2f, .shine = 1, .ior = 1},
+    [LAMP] = RT_MATERIAL("lamp", 1, 0.98f, 0.9f, 1, 0.2f, 0, 1, 0),
 };
 
 /* Of the bowl, in half lengths of the stadium: how far out, over the pitch's oval, and how high. */
@@ -253,13 +235,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_stadium;
 const RtBuiltin rt_builtin_stadium = {
     .name = "stadium",
     .summary = "a teapot in a stadium: tiny triangles close together amid a few thousand huge polygons",
     .source = "after E. Haines 1988, Ray Tracing News: the classical case against a uniform grid",
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

@@ -9,14 +9,9 @@
 #include "scenes/teapot_mesh.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "12",
-     .lo = 1,
-     .hi = RT_TEAPOT_MAX_SIZE,
-     .meaning = "cells along each edge of a patch, and squares along the board: 65 size^2 - 8 size objects",
-     .source = "the published tables: 9264 objects",
-     .test_values = "1|6"},
+    {"size", RT_INT("12", 1, RT_TEAPOT_MAX_SIZE, "1|6"),
+     "cells along each edge of a patch, and squares along the board: 65 size^2 - 8 size objects",
+     "the published tables: 9264 objects"},
 };
 
 enum { CHINA, LIGHT_SQUARES, DARK_SQUARES };
@@ -58,13 +53,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return rt_forms_make(scene, make, values, error);
 }
 
-extern const RtBuiltin rt_builtin_teapot;
 const RtBuiltin rt_builtin_teapot = {
     .name = "teapot",
     .summary = "Newell's teapot on a checkerboard: small triangles with vertex normals, a few large quads",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

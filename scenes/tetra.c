@@ -10,14 +10,7 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "6",
-     .lo = 1,
-     .hi = 9,
-     .meaning = "levels: 4^size triangles",
-     .source = "SPD: 4096 triangles",
-     .test_values = "1|3"},
+    {"size", RT_INT("6", 1, 9, "1|3"), "levels: 4^size triangles", "SPD: 4096 triangles"},
 };
 
 static uint64_t object_count(const RtValue *values) {
@@ -64,13 +57,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_level(scene, rt_vec3d(0, 0, 0), 1, values[0].i, error);
 }
 
-extern const RtBuiltin rt_builtin_tetra;
 const RtBuiltin rt_builtin_tetra = {
     .name = "tetra",
     .summary = "a Sierpinski tetrahedron of triangles, mostly empty space",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

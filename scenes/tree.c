@@ -10,14 +10,8 @@
 #include "scenes/spd.h"
 
 static const RtParam params[] = {
-    {.name = "size",
-     .type = RT_PARAM_INT,
-     .standard = "11",
-     .lo = 1,
-     .hi = 20,
-     .meaning = "levels above the trunk: 2^(size+1) - 1 cones and as many spheres",
-     .source = "SPD: 4095 cones and spheres",
-     .test_values = "1|3"},
+    {"size", RT_INT("11", 1, 20, "1|3"), "levels above the trunk: 2^(size+1) - 1 cones and as many spheres",
+     "SPD: 4095 cones and spheres"},
 };
 
 #define TRUNK_RADIUS 0.15
@@ -95,13 +89,11 @@ static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) 
     return add_branch(&tree, rt_vec3d(0, 0, 0), &upright, TRUNK_RADIUS, values[0].i, error);
 }
 
-extern const RtBuiltin rt_builtin_tree;
 const RtBuiltin rt_builtin_tree = {
     .name = "tree",
     .summary = "a tree of cones and spheres that get smaller and smaller, alone on a large field",
     .source = RT_SPD_SOURCE,
-    .params = params,
-    .param_count = sizeof params / sizeof params[0],
+    RT_PARAMS_OF(params),
     .object_count = object_count,
     .generate = generate,
 };

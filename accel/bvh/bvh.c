@@ -19,101 +19,33 @@
 
 typedef enum Build { BINNED, SWEEP, LBVH, PLOC, SPATIAL } Build;
 
-enum {
-    PARAM_BUILD,
-    PARAM_BINS,
-    PARAM_BITS,
-    PARAM_RADIUS,
-    PARAM_ALPHA,
-    PARAM_BUDGET,
-    PARAM_MAILBOX,
-    PARAM_MAX_LEAF_SIZE,
-    PARAM_TRAVERSAL_COST,
-    PARAM_REINSERTION,
-    PARAM_COUNT
-};
+#define PARAMS(X)                                                                                            \
+    X(PARAM_BUILD, "build", RT_CHOICE("binned", "binned|sweep|lbvh|ploc|spatial"),                           \
+      "SAH in bins; SAH at every centre; halves of Morton codes; nearest in Morton order; SAH in bins with " \
+      "planes that cut objects",                                                                             \
+      "Wald 2007")                                                                                           \
+    X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|5|64"),                                            \
+      "build=binned, spatial: bins along each axis in which split positions are sought", "Wald 2007")        \
+    X(PARAM_BITS, "bits", RT_INT("21", 1, RT_MAX_MORTON_BITS, "1|10"),                                       \
+      "build=lbvh, ploc: bits of a Morton code along each axis", "the most that 64 bits hold")               \
+    X(PARAM_RADIUS, "radius", RT_INT("25", 1, 1024, "1|100"),                                                \
+      "build=ploc: neighbours searched on either side", "Meister & Bittner 2018")                            \
+    X(PARAM_ALPHA, "alpha", RT_FLOAT("1e-05", 0, 1, "0|0.01"),                                               \
+      "build=spatial: objects may be cut where groups overlap by more than this part of the root's area",    \
+      "Stich et al. 2009")                                                                                   \
+    X(PARAM_BUDGET, "budget", RT_FLOAT("2", 1, 16, "1|1.1|16"),                                              \
+      "build=spatial: most references per object, on average", "this program")                               \
+    X(PARAM_MAILBOX, "mailbox", RT_FLAG("on"), "build=spatial: do not test an object twice for one ray",     \
+      "Kirk & Arvo 1991")                                                                                    \
+    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("8", 1, 1024, "1|2|64"), "most objects a leaf may hold",  \
+      "measured: no better beyond")                                                                          \
+    X(PARAM_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"),                            \
+      "cost of visiting an inner node, in object tests", "MacDonald & Booth 1990")                           \
+    X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"),                                         \
+      "rounds in which subtrees move to where they cost less", "0: the tree as it is built")
 
-static const RtParam params[PARAM_COUNT] = {
-    [PARAM_BUILD] = {.name = "build",
-                     .type = RT_PARAM_CHOICE,
-                     .standard = "binned",
-                     .choices = "binned|sweep|lbvh|ploc|spatial",
-                     .meaning = "SAH in bins; SAH at every centre; halves of Morton codes; nearest in Morton "
-                                "order; SAH in bins with planes that cut objects",
-                     .source = "Wald 2007"},
-    [PARAM_BINS] = {.name = "bins",
-                    .type = RT_PARAM_INT,
-                    .standard = "16",
-                    .lo = 2,
-                    .hi = RT_MAX_BINS,
-                    .meaning =
-                        "build=binned, spatial: bins along each axis in which split positions are sought",
-                    .source = "Wald 2007",
-                    .test_values = "2|5|64"},
-    [PARAM_BITS] = {.name = "bits",
-                    .type = RT_PARAM_INT,
-                    .standard = "21",
-                    .lo = 1,
-                    .hi = RT_MAX_MORTON_BITS,
-                    .meaning = "build=lbvh, ploc: bits of a Morton code along each axis",
-                    .source = "the most that 64 bits hold",
-                    .test_values = "1|10"},
-    [PARAM_RADIUS] = {.name = "radius",
-                      .type = RT_PARAM_INT,
-                      .standard = "25",
-                      .lo = 1,
-                      .hi = 1024,
-                      .meaning = "build=ploc: neighbours searched on either side",
-                      .source = "Meister & Bittner 2018",
-                      .test_values = "1|100"},
-    [PARAM_ALPHA] = {.name = "alpha",
-                     .type = RT_PARAM_FLOAT,
-                     .standard = "1e-05",
-                     .lo = 0,
-                     .hi = 1,
-                     .meaning =
-                         "build=spatial: objects may be cut where groups overlap by more than this part "
-                         "of the root's area",
-                     .source = "Stich et al. 2009",
-                     .test_values = "0|0.01"},
-    [PARAM_BUDGET] = {.name = "budget",
-                      .type = RT_PARAM_FLOAT,
-                      .standard = "2",
-                      .lo = 1,
-                      .hi = 16,
-                      .meaning = "build=spatial: most references per object, on average",
-                      .source = "this program",
-                      .test_values = "1|1.1|16"},
-    [PARAM_MAILBOX] = {.name = "mailbox",
-                       .type = RT_PARAM_FLAG,
-                       .standard = "on",
-                       .meaning = "build=spatial: do not test an object twice for one ray",
-                       .source = "Kirk & Arvo 1991"},
-    [PARAM_MAX_LEAF_SIZE] = {.name = "max_leaf_size",
-                             .type = RT_PARAM_INT,
-                             .standard = "8",
-                             .lo = 1,
-                             .hi = 1024,
-                             .meaning = "most objects a leaf may hold",
-                             .source = "measured: no better beyond",
-                             .test_values = "1|2|64"},
-    [PARAM_TRAVERSAL_COST] = {.name = "traversal_cost",
-                              .type = RT_PARAM_FLOAT,
-                              .standard = "1",
-                              .lo = 0,
-                              .hi = 1000,
-                              .meaning = "cost of visiting an inner node, in object tests",
-                              .source = "MacDonald & Booth 1990",
-                              .test_values = "0|0.1|10"},
-    [PARAM_REINSERTION] = {.name = "reinsertion",
-                           .type = RT_PARAM_INT,
-                           .standard = "0",
-                           .lo = 0,
-                           .hi = 1000,
-                           .meaning = "rounds in which subtrees move to where they cost less",
-                           .source = "0: the tree as it is built",
-                           .test_values = "1|3"},
-};
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- build ---- */
 
@@ -164,12 +96,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                .traversal_cost = values[PARAM_TRAVERSAL_COST].f};
     ((RtBvh *)accel)->mailbox = values[PARAM_MAILBOX].flag;
-    RtStatus status = fill(hierarchy, what, error);
-    if (status == RT_OK)
-        *out = accel;
-    else
-        destroy(accel);
-    return status;
+    return rt_accel_built(accel, fill(hierarchy, what, error), out);
 }
 
 /* ---- queries ---- */
@@ -262,8 +189,7 @@ const RtAccelOps rt_bvh_ops = {
     .name = "bvh",
     .summary = "binary hierarchy of boxes, by the surface area heuristic or along the Morton curve",
     .paper = "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies, RT'07",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,

@@ -20,97 +20,33 @@
 
 typedef enum Method { AGGLOMERATIVE, PLOC, GOLDSMITH_SALMON, RUBIN_WHITTED, SAH } Method;
 
-enum {
-    PARAM_METHOD,
-    PARAM_EXTENT,
-    PARAM_SLABS,
-    PARAM_WIDTH,
-    PARAM_MAX_LEAF_SIZE,
-    PARAM_TRAVERSAL_ORDER,
-    PARAM_RADIUS,
-    PARAM_ORDER,
-    PARAM_PERMUTATIONS,
-    PARAM_SEED,
-    PARAM_COUNT
-};
+#define PARAMS(X)                                                                                            \
+    X(PARAM_METHOD, "method",                                                                                \
+      RT_CHOICE("agglomerative", "agglomerative|ploc|goldsmith-salmon|rubin-whitted|sah"),                   \
+      "nearest pairs; nearest in Morton order; insertion; medians; SAH in 16 bins", "Walter et al. 2008")    \
+    X(PARAM_EXTENT, "extent", RT_CHOICE("box", RT_EXTENT_KINDS),                                             \
+      "the extents of nodes: axis-aligned boxes, spheres, oriented boxes, or slabs", "the cheapest test")    \
+    X(PARAM_SLABS, "slabs", RT_INT("7", 3, RT_MAX_SLABS, "3|13"),                                            \
+      "plane sets of extent=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces", "Kay & Kajiya 1986")      \
+    X(PARAM_WIDTH, "width", RT_INT("2", 2, RT_NODE_MAX_WIDTH, "3|4|16"),                                     \
+      "most children of a node: the largest are opened into their parents", "clustering makes binary trees") \
+    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1024, "2|8|64"),                                  \
+      "most objects of a leaf; several share one where that costs no more by SAH",                           \
+      "an extent about every object")                                                                        \
+    X(PARAM_TRAVERSAL_ORDER, "traversal_order", RT_CHOICE("nearest", "fixed|nearest"),                       \
+      "children as they stand, or by where the ray enters them", "Kay & Kajiya 1986")                        \
+    X(PARAM_RADIUS, "radius", RT_INT("25", 1, 1024, "1|100"),                                                \
+      "method=ploc: neighbours searched on either side", "Meister & Bittner 2018")                           \
+    X(PARAM_ORDER, "order", RT_CHOICE("random", "given|random"),                                             \
+      "method=goldsmith-salmon: order of insertion, that of ids or a random one", "Goldsmith & Salmon 1987") \
+    X(PARAM_PERMUTATIONS, "permutations", RT_INT("1", 1, 1000, "3"),                                         \
+      "method=goldsmith-salmon: orders tried, all but the first random; the best is kept",                   \
+      "Goldsmith & Salmon 1987")                                                                             \
+    X(PARAM_SEED, "seed", RT_INT("1", 0, 1e9, "2"), "method=goldsmith-salmon: seed of the random orders",    \
+      "any")
 
-static const RtParam params[PARAM_COUNT] = {
-    [PARAM_METHOD] = {.name = "method",
-                      .type = RT_PARAM_CHOICE,
-                      .standard = "agglomerative",
-                      .choices = "agglomerative|ploc|goldsmith-salmon|rubin-whitted|sah",
-                      .meaning = "nearest pairs; nearest in Morton order; insertion; medians; SAH in 16 bins",
-                      .source = "Walter et al. 2008"},
-    [PARAM_EXTENT] = {.name = "extent",
-                      .type = RT_PARAM_CHOICE,
-                      .standard = "box",
-                      .choices = RT_EXTENT_KINDS,
-                      .meaning =
-                          "the extents of nodes: axis-aligned boxes, spheres, oriented boxes, or slabs",
-                      .source = "the cheapest test"},
-    [PARAM_SLABS] = {.name = "slabs",
-                     .type = RT_PARAM_INT,
-                     .standard = "7",
-                     .lo = 3,
-                     .hi = RT_MAX_SLABS,
-                     .meaning = "plane sets of extent=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces",
-                     .source = "Kay & Kajiya 1986",
-                     .test_values = "3|13"},
-    [PARAM_WIDTH] = {.name = "width",
-                     .type = RT_PARAM_INT,
-                     .standard = "2",
-                     .lo = 2,
-                     .hi = RT_NODE_MAX_WIDTH,
-                     .meaning = "most children of a node: the largest are opened into their parents",
-                     .source = "clustering makes binary trees",
-                     .test_values = "3|4|16"},
-    [PARAM_MAX_LEAF_SIZE] = {.name = "max_leaf_size",
-                             .type = RT_PARAM_INT,
-                             .standard = "1",
-                             .lo = 1,
-                             .hi = 1024,
-                             .meaning =
-                                 "most objects of a leaf; several share one where that costs no more by SAH",
-                             .source = "an extent about every object",
-                             .test_values = "2|8|64"},
-    [PARAM_TRAVERSAL_ORDER] = {.name = "traversal_order",
-                               .type = RT_PARAM_CHOICE,
-                               .standard = "nearest",
-                               .choices = "fixed|nearest",
-                               .meaning = "children as they stand, or by where the ray enters them",
-                               .source = "Kay & Kajiya 1986"},
-    [PARAM_RADIUS] = {.name = "radius",
-                      .type = RT_PARAM_INT,
-                      .standard = "25",
-                      .lo = 1,
-                      .hi = 1024,
-                      .meaning = "method=ploc: neighbours searched on either side",
-                      .source = "Meister & Bittner 2018",
-                      .test_values = "1|100"},
-    [PARAM_ORDER] = {.name = "order",
-                     .type = RT_PARAM_CHOICE,
-                     .standard = "random",
-                     .choices = "given|random",
-                     .meaning = "method=goldsmith-salmon: order of insertion, that of ids or a random one",
-                     .source = "Goldsmith & Salmon 1987"},
-    [PARAM_PERMUTATIONS] =
-        {.name = "permutations",
-         .type = RT_PARAM_INT,
-         .standard = "1",
-         .lo = 1,
-         .hi = 1000,
-         .meaning = "method=goldsmith-salmon: orders tried, all but the first random; the best is kept",
-         .source = "Goldsmith & Salmon 1987",
-         .test_values = "3"},
-    [PARAM_SEED] = {.name = "seed",
-                    .type = RT_PARAM_INT,
-                    .standard = "1",
-                    .lo = 0,
-                    .hi = 1e9,
-                    .meaning = "method=goldsmith-salmon: seed of the random orders",
-                    .source = "any",
-                    .test_values = "2"},
-};
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- build ---- */
 
@@ -175,12 +111,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                     .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                     .traversal_cost = 1};
     self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
-    RtStatus status = fill(self, values, error);
-    if (status == RT_OK)
-        *out = accel;
-    else
-        destroy(accel);
-    return status;
+    return rt_accel_built(accel, fill(self, values, error), out);
 }
 
 /* ---- queries ---- */
@@ -280,8 +211,7 @@ const RtAccelOps rt_clusters_ops = {
     .summary =
         "hierarchy of extents of any kind, by clustering objects from the bottom, the top or one by one",
     .paper = "Walter, Bala, Kulkarni & Pingali 2008, Fast Agglomerative Clustering for Rendering, RT'08",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,

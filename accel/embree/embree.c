@@ -17,39 +17,22 @@
 #include <stdatomic.h>
 #include <string.h>
 
-enum { MODE, QUALITY, ISA, ROBUST, QUERY, PARAM_COUNT };
+#define PARAMS(X)                                                                                            \
+    X(MODE, "mode", RT_CHOICE("native", "native|user"),                                                      \
+      "Embree's own triangles and spheres, or our hit functions on its hierarchy",                           \
+      "native is the competitor")                                                                            \
+    X(QUALITY, "quality", RT_CHOICE("medium", "low|medium|high"),                                            \
+      "build: Morton codes, binned SAH, SAH with spatial splits", "Embree's default")                        \
+    X(ISA, "isa", RT_CHOICE("default", RT_EMBREE_ISAS),                                                      \
+      "instruction set; default is the widest of the processor", "Embree's default")                         \
+    X(ROBUST, "robust", RT_FLAG("off"),                                                                      \
+      "no ray slips between triangles that share an edge; user mode is exact either way",                    \
+      "Embree's default")                                                                                    \
+    X(QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                                       \
+      "rays handed over at once: one, a packet of 8 or 16, a stream", "the most general one")
 
-static const RtParam params[PARAM_COUNT] = {
-    [MODE] = {.name = "mode",
-              .type = RT_PARAM_CHOICE,
-              .standard = "native",
-              .choices = "native|user",
-              .meaning = "Embree's own triangles and spheres, or our hit functions on its hierarchy",
-              .source = "native is the competitor"},
-    [QUALITY] = {.name = "quality",
-                 .type = RT_PARAM_CHOICE,
-                 .standard = "medium",
-                 .choices = "low|medium|high",
-                 .meaning = "build: Morton codes, binned SAH, SAH with spatial splits",
-                 .source = "Embree's default"},
-    [ISA] = {.name = "isa",
-             .type = RT_PARAM_CHOICE,
-             .standard = "default",
-             .choices = RT_EMBREE_ISAS,
-             .meaning = "instruction set; default is the widest of the processor",
-             .source = "Embree's default"},
-    [ROBUST] = {.name = "robust",
-                .type = RT_PARAM_FLAG,
-                .standard = "off",
-                .meaning = "no ray slips between triangles that share an edge; user mode is exact either way",
-                .source = "Embree's default"},
-    [QUERY] = {.name = "query",
-               .type = RT_PARAM_CHOICE,
-               .standard = "1",
-               .choices = "1|8|16|stream",
-               .meaning = "rays handed over at once: one, a packet of 8 or 16, a stream",
-               .source = "the most general one"},
-};
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- build ---- */
 
@@ -170,13 +153,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     self->query = (RtEmbreeQueryKind)values[QUERY].choice;
     accel->exact = self->user;
     accel->counts = false;
-    RtStatus status = build_into(self, what, error);
-    if (status != RT_OK) {
-        destroy(accel);
-        return status;
-    }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, build_into(self, what, error), out);
 }
 
 /* ---- describe, validate ---- */
@@ -213,8 +190,7 @@ const RtAccelOps rt_embree_ops = {
     .summary = "Intel's kernels: the competitor (mode=native) and an oracle (mode=user)",
     .paper = "Wald, Woop, Benthin, Johnson & Ernst 2014, Embree: A Kernel Framework for Efficient CPU Ray "
              "Tracing, ACM TOG 33(4)",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     .nearest = rt_embree_nearest_timed,

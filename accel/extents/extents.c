@@ -15,24 +15,15 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-enum { PARAM_KIND, PARAM_SLABS, PARAM_COUNT };
+#define PARAMS(X)                                                                                            \
+    X(PARAM_KIND, "kind", RT_CHOICE("box", RT_EXTENT_KINDS),                                                 \
+      "the extent of an object: axis-aligned box, sphere, oriented box, or k slabs", "the cheapest test")    \
+    X(PARAM_SLABS, "slabs", RT_INT("7", 3, RT_MAX_SLABS, "3|5|7|13"),                                        \
+      "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",              \
+      "Kay & Kajiya 1986")
 
-static const RtParam params[PARAM_COUNT] = {
-    {.name = "kind",
-     .type = RT_PARAM_CHOICE,
-     .standard = "box",
-     .choices = RT_EXTENT_KINDS,
-     .meaning = "the extent of an object: axis-aligned box, sphere, oriented box, or k slabs",
-     .source = "the cheapest test"},
-    {.name = "slabs",
-     .type = RT_PARAM_INT,
-     .standard = "7",
-     .lo = 3,
-     .hi = RT_MAX_SLABS,
-     .meaning = "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",
-     .source = "Kay & Kajiya 1986",
-     .test_values = "3|5|7|13"},
-};
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
     return (RtGroup){geometry, id, 1, geometry->boxes[*id]};
@@ -46,16 +37,11 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtExtents *self = (RtExtents *)accel;
     RtStatus status = rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_KIND].choice,
                                          (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);
-    if (status != RT_OK) {
-        destroy(accel);
-        return status;
-    }
-    for (uint32_t id = 0; id < geometry->object_count; id++) {
+    for (uint32_t id = 0; status == RT_OK && id < geometry->object_count; id++) {
         RtGroup group = group_of(geometry, &id);
         rt_extent_fit(&self->set, id, &group);
     }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }
 
 /* ---- tracing ---- */
@@ -120,8 +106,7 @@ const RtAccelOps rt_extents_ops = {
     .name = "extents",
     .summary = "every object's extent, and the object only where it is hit: no hierarchy",
     .paper = "Weghorst, Hooper & Greenberg 1984, Improved Computational Methods for Ray Tracing, TOG 3(1)",
-    .params = params,
-    .param_count = PARAM_COUNT,
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     RT_KERNEL_OPS,

@@ -265,6 +265,7 @@ static RtBox choose_box(const RtGeometry *geometry, double flat, double margin) 
 RtStatus rt_grid_build(const RtBuild *what, RtAccel **out, RtError *error) {
     const RtScene *scene = what->scene;
     const RtValue *values = what->values;
+    RtStatus status = RT_OK;
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtGrid), &accel, error));
     RtGrid *grid = (RtGrid *)accel;
@@ -276,12 +277,7 @@ RtStatus rt_grid_build(const RtBuild *what, RtAccel **out, RtError *error) {
     if (scene->geometry.object_count > 0) {
         grid->box = choose_box(&scene->geometry, values[RT_GRID_FLAT].f, values[RT_GRID_MARGIN].f);
         grid->served = rt_surface_rays(&scene->geometry.box, &grid->box);
-        RtStatus status = make_levels(&builder);
-        if (status != RT_OK) {
-            rt_grid_destroy(accel);
-            return status;
-        }
+        status = make_levels(&builder);
     }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }

@@ -284,8 +284,7 @@ const RtAccelOps rt_grid_ops = {
     .summary = "uniform spatial partitioning: equal voxels with lists of objects, walked in order",
     .paper = "Fujimoto, Tanaka & Iwata 1986, ARTS, CG&A 6(4); Amanatides & Woo 1987, A Fast Voxel Traversal "
              "Algorithm; Jevans & Wyvill 1989, Adaptive Voxel Subdivision for Ray Tracing, GI'89",
-    .params = rt_grid_params,
-    .param_count = RT_GRID_PARAM_COUNT,
+    RT_PARAMS_OF(rt_grid_params),
     .build = rt_grid_build,
     .destroy = rt_grid_destroy,
     RT_KERNEL_OPS,

@@ -19,26 +19,42 @@
 #include "accel/surface.h"
 #include "shape/overlap.h"
 
-enum {
-    RT_GRID_RULE,
-    RT_GRID_DENSITY,
-    RT_GRID_RESOLUTION,
-    RT_GRID_DEPTH,
-    RT_GRID_NEST,
-    RT_GRID_MARGIN,
-    RT_GRID_FLAT,
-    RT_GRID_SLACK,
-    RT_GRID_MAILBOX,
-    RT_GRID_OVERLAP,
-    RT_GRID_PARAM_COUNT
-};
+#define RT_GRID_PARAMS(X)                                                                                    \
+    X(RT_GRID_RULE, "rule", RT_CHOICE("cubic", "cubic|woo|heterogeneous|regular"),                           \
+      "how density becomes a resolution: cubic voxels; Woo's by the longest side; Klimaszewski's; as many "  \
+      "along each axis",                                                                                     \
+      "Cleary & Wyvill 1988; Woo 1992; Klimaszewski & Sederberg 1997; Jevans & Wyvill 1989")                 \
+    X(RT_GRID_DENSITY, "density", RT_FLOAT("4", 1e-6, 1e6, "0.001|1|20"),                                    \
+      "voxels per object that the rule aims at", "between 1 (too coarse) and 20 of Havran & Sixta 1999")     \
+    X(RT_GRID_RESOLUTION, "resolution",                                                                      \
+      RT_RESOLUTION("auto", 1, RT_GRID_MAX_RESOLUTION, "1x1x1|2x3x5|64x1x64"),                               \
+      "voxels along x, y, z, of the outermost grid; auto follows the rule", "this program")                  \
+    X(RT_GRID_DEPTH, "depth", RT_INT("1", 1, RT_GRID_MAX_LEVELS, "2|3"),                                     \
+      "levels of grids; from 2 on a voxel may hold a grid of its own, by the rule",                          \
+      "one grid; nested ones are Jevans & Wyvill 1989")                                                      \
+    X(RT_GRID_NEST, "nest", RT_INT("8", 1, 1e6, "1|30"),                                                     \
+      "depth=2 and more: most objects of a voxel that holds no grid, above the last level",                  \
+      "the only number that gives the integers of Havran & Sixta 1999")                                      \
+    X(RT_GRID_MARGIN, RT_MARGIN_PARAM("the grid"))                                                           \
+    X(RT_GRID_FLAT, "flat", RT_FLOAT("0", 0, 1e9, "0.5"),                                                    \
+      "by how much the grid's box reaches beyond objects without thickness",                                 \
+      "0.02 comes nearest to the integers of Havran & Sixta 1999")                                           \
+    X(RT_GRID_SLACK, "slack", RT_FLOAT("0", 0, 1e9, "0.1"),                                                  \
+      "objects also go into the voxels that come so close, in units of the scene",                           \
+      "0.01 gives the integers of Havran & Sixta 1999 for nested grids")                                     \
+    X(RT_GRID_MAILBOX, RT_MAILBOX_PARAM)                                                                     \
+    X(RT_GRID_OVERLAP, "overlap", RT_CHOICE("box", "box|exact"),                                             \
+      "an object goes into the voxels that its box, or its surface, meets",                                  \
+      "boxes: Havran & Sixta 1999; exact: Akenine-Möller 2001")
+
+enum { RT_GRID_PARAMS(RT_PARAM_INDEX) RT_GRID_PARAM_COUNT };
 extern const RtParam rt_grid_params[RT_GRID_PARAM_COUNT];
 
 /* In the order of the choices of the parameters. */
 enum { RT_GRID_CUBIC, RT_GRID_WOO, RT_GRID_HETEROGENEOUS, RT_GRID_REGULAR };
 enum { RT_GRID_BOX, RT_GRID_EXACT };
 
-enum { RT_GRID_MAX_LEVELS = 8 };
+enum { RT_GRID_MAX_LEVELS = 8, RT_GRID_MAX_RESOLUTION = 4096 };
 
 /* A box that is cut into voxels. */
 typedef struct RtGridBlock {

@@ -17,9 +17,9 @@
 #include <stdlib.h>
 
 const RtParam rt_item_params[RT_ITEM_PARAM_COUNT] = {
-    [RT_ITEM_SETTLE] = {"settle", RT_PARAM_FLAG, "on", 0, 0, NULL,
-                        "ask hit functions while building, where the projection leaves a sample undecided",
-                        "this program; off is Weghorst, Hooper & Greenberg 1984", NULL},
+    {"settle", RT_FLAG("on"),
+     "ask hit functions while building, where the projection leaves a sample undecided",
+     "this program; off is Weghorst, Hooper & Greenberg 1984"},
 };
 
 typedef struct Entry {
@@ -204,11 +204,5 @@ RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RT_TRY(rt_accel_new(what, sizeof(RtItemBuffer), &accel, error));
     RtItemBuffer *buffer = (RtItemBuffer *)accel;
     buffer->settle = what->values[RT_ITEM_SETTLE].flag;
-    RtStatus status = fill(buffer, error);
-    if (status != RT_OK) {
-        rt_item_destroy(&buffer->base);
-        return status;
-    }
-    *out = &buffer->base;
-    return RT_OK;
+    return rt_accel_built(accel, fill(buffer, error), out);
 }

@@ -47,8 +47,7 @@ const RtAccelOps rt_item_ops = {
     .summary =
         "overlay: the object that is seen at each sample of the image, found by projecting all objects",
     .paper = "Weghorst, Hooper & Greenberg 1984, Improved Computational Methods for Ray Tracing, TOG 3(1)",
-    .params = rt_item_params,
-    .param_count = RT_ITEM_PARAM_COUNT,
+    RT_PARAMS_OF(rt_item_params),
     .kinds = 1u << RT_RAY_PRIMARY,
     .build = rt_item_build,
     .destroy = rt_item_destroy,

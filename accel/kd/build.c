@@ -12,69 +12,7 @@
 
 enum { OVERLAP_BOX, OVERLAP_EXACT };
 
-const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {
-    [RT_KD_TRAVERSAL_COST] = {.name = "traversal_cost",
-                              .type = RT_PARAM_FLOAT,
-                              .standard = "0.3",
-                              .lo = 0,
-                              .hi = 1000,
-                              .meaning = "cost of visiting an inner node, in object tests",
-                              .source = "measured",
-                              .test_values = "0|1|10"},
-    [RT_KD_EMPTY_BONUS] = {.name = "empty_bonus",
-                           .type = RT_PARAM_FLOAT,
-                           .standard = "0.2",
-                           .lo = 0,
-                           .hi = 1,
-                           .meaning = "part of its cost that a split is forgiven for cutting off empty space",
-                           .source = "Wald & Havran 2006",
-                           .test_values = "0|0.5|1"},
-    [RT_KD_MAX_LEAF_SIZE] = {.name = "max_leaf_size",
-                             .type = RT_PARAM_INT,
-                             .standard = "0",
-                             .lo = 0,
-                             .hi = 1e6,
-                             .meaning = "a cell with at most so many objects is not divided",
-                             .source = "Wald & Havran 2006: the cost alone decides",
-                             .test_values = "1|2|1000000"},
-    [RT_KD_MAX_DEPTH] = {.name = "max_depth",
-                         .type = RT_PARAM_INT,
-                         .standard = "-1",
-                         .lo = -1,
-                         .hi = RT_KD_DEPTH_LIMIT,
-                         .meaning = "depth at which cells are divided no more, the root's being 0; -1: 8 and "
-                                    "1.3 times the binary logarithm of the objects",
-                         .source = "Pharr & Humphreys 2004, Physically Based Rendering",
-                         .test_values = "0|5|60"},
-    [RT_KD_FAILURES] = {.name = "failures",
-                        .type = RT_PARAM_INT,
-                        .standard = "1",
-                        .lo = 0,
-                        .hi = RT_KD_DEPTH_LIMIT,
-                        .meaning = "splits on the way to a leaf that need not be expected to save anything",
-                        .source = "Havran & Bittner 2002; measured: tests for steps",
-                        .test_values = "0|4"},
-    [RT_KD_OVERLAP] = {.name = "overlap",
-                       .type = RT_PARAM_CHOICE,
-                       .standard = "box",
-                       .choices = "box|exact",
-                       .meaning =
-                           "an object that is cut is as large, in each half, as its box or its surface",
-                       .source = "exact: Havran & Bittner 2002; Wald & Havran 2006"},
-    [RT_KD_MARGIN] = {.name = "margin",
-                      .type = RT_PARAM_FLOAT,
-                      .standard = "0",
-                      .lo = 0,
-                      .hi = 1,
-                      .meaning = "how much wider than the scene's box the root is, as a part of it",
-                      .source = "the published scene boxes are a little wider than tight",
-                      .test_values = "0.01|1"},
-    [RT_KD_MAILBOX] = {.name = "mailbox",
-                       .type = RT_PARAM_FLAG,
-                       .standard = "on",
-                       .meaning = "do not test an object twice for one ray",
-                       .source = "Kirk & Arvo 1991"},
-};
+const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {RT_KD_PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- what it takes ---- */
 
@@ -249,6 +187,7 @@ RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
     const RtValue *values = what->values;
     const RtGeometry *g = &what->scene->geometry;
     int64_t depth = values[RT_KD_MAX_DEPTH].i;
+    RtStatus status = RT_OK;
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtKd), &accel, error));
     RtKd *kd = (RtKd *)accel;
@@ -264,13 +203,8 @@ RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
         RtKdBuilder builder = {.kd = kd, .ledger = &ledger};
         kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
         kd->served = rt_surface_rays(&g->box, &kd->box);
-        RtStatus status = build_tree(&builder, g, error);
+        status = build_tree(&builder, g, error);
         clear(&builder);
-        if (status != RT_OK) {
-            rt_kd_destroy(accel);
-            return status;
-        }
     }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }

@@ -93,8 +93,7 @@ const RtAccelOps rt_kd_ops = {
     .paper =
         "Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N), "
         "RT'06",
-    .params = rt_kd_params,
-    .param_count = RT_KD_PARAM_COUNT,
+    RT_PARAMS_OF(rt_kd_params),
     .build = rt_kd_build,
     .destroy = rt_kd_destroy,
     RT_KERNEL_OPS,

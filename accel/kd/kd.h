@@ -16,17 +16,27 @@
 #include "accel/accel.h"
 #include "accel/surface.h"
 
-enum {
-    RT_KD_TRAVERSAL_COST,
-    RT_KD_EMPTY_BONUS,
-    RT_KD_MAX_LEAF_SIZE,
-    RT_KD_MAX_DEPTH,
-    RT_KD_FAILURES,
-    RT_KD_OVERLAP,
-    RT_KD_MARGIN,
-    RT_KD_MAILBOX,
-    RT_KD_PARAM_COUNT
-};
+#define RT_KD_PARAMS(X)                                                                                      \
+    X(RT_KD_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("0.3", 0, 1000, "0|1|10"),                            \
+      "cost of visiting an inner node, in object tests", "measured")                                         \
+    X(RT_KD_EMPTY_BONUS, "empty_bonus", RT_FLOAT("0.2", 0, 1, "0|0.5|1"),                                    \
+      "part of its cost that a split is forgiven for cutting off empty space", "Wald & Havran 2006")         \
+    X(RT_KD_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("0", 0, 1e6, "1|2|1000000"),                              \
+      "a cell with at most so many objects is not divided", "Wald & Havran 2006: the cost alone decides")    \
+    X(RT_KD_MAX_DEPTH, "max_depth", RT_INT("-1", -1, RT_KD_DEPTH_LIMIT, "0|5|60"),                           \
+      "depth at which cells are divided no more, the root's being 0; -1: 8 and 1.3 times the binary "        \
+      "logarithm of the objects",                                                                            \
+      "Pharr & Humphreys 2004, Physically Based Rendering")                                                  \
+    X(RT_KD_FAILURES, "failures", RT_INT("1", 0, RT_KD_DEPTH_LIMIT, "0|4"),                                  \
+      "splits on the way to a leaf that need not be expected to save anything",                              \
+      "Havran & Bittner 2002; measured: tests for steps")                                                    \
+    X(RT_KD_OVERLAP, "overlap", RT_CHOICE("box", "box|exact"),                                               \
+      "an object that is cut is as large, in each half, as its box or its surface",                          \
+      "exact: Havran & Bittner 2002; Wald & Havran 2006")                                                    \
+    X(RT_KD_MARGIN, RT_MARGIN_PARAM("the root"))                                                             \
+    X(RT_KD_MAILBOX, RT_MAILBOX_PARAM)
+
+enum { RT_KD_PARAMS(RT_PARAM_INDEX) RT_KD_PARAM_COUNT };
 extern const RtParam rt_kd_params[RT_KD_PARAM_COUNT];
 
 enum { RT_KD_DEPTH_LIMIT = 60 };

@@ -21,20 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT] = {
-    [RT_LIGHT_CELLS] = {"cells", RT_PARAM_INT, "64", 1, 4096, NULL,
-                        "cells along the edge of a face of the cube", "Haines & Greenberg 1986 use 20 to 200",
-                        "1|7|256"},
-    [RT_LIGHT_FULL_OCCLUSION] = {"full_occlusion", RT_PARAM_FLAG, "on", 0, 0, NULL,
-                                 "end a list at the first object that covers the whole cell",
-                                 "Haines & Greenberg 1986", NULL},
-    [RT_LIGHT_EXTENTS] = {"extents", RT_PARAM_FLAG, "on", 0, 0, NULL,
-                          "test the box of an object of a list, and the side of its plane, before the object",
-                          "this program", NULL},
-    [RT_LIGHT_CACHE] = {"cache", RT_PARAM_FLAG, "on", 0, 0, NULL,
-                        "try the object that blocked the last ray in a cell first", "Haines & Greenberg 1986",
-                        NULL},
-};
+const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT] = {RT_LIGHT_PARAMS(RT_PARAM_ENTRY)};
 
 static int compare_entries(const void *a, const void *b) {
     const RtLightEntry *x = a, *y = b;
@@ -292,10 +279,5 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
     if (status == RT_OK) status = make_near_lists(buffer, error);
     if (status == RT_OK) status = make_lists(buffer, order, error);
     rt_free(order);
-    if (status != RT_OK) {
-        rt_light_destroy(&buffer->base);
-        return status;
-    }
-    *out = &buffer->base;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }

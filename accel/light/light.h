@@ -18,7 +18,17 @@
 
 #include "accel/accel.h"
 
-enum { RT_LIGHT_CELLS, RT_LIGHT_FULL_OCCLUSION, RT_LIGHT_EXTENTS, RT_LIGHT_CACHE, RT_LIGHT_PARAM_COUNT };
+#define RT_LIGHT_PARAMS(X)                                                                                   \
+    X(RT_LIGHT_CELLS, "cells", RT_INT("64", 1, 4096, "1|7|256"),                                             \
+      "cells along the edge of a face of the cube", "Haines & Greenberg 1986 use 20 to 200")                 \
+    X(RT_LIGHT_FULL_OCCLUSION, "full_occlusion", RT_FLAG("on"),                                              \
+      "end a list at the first object that covers the whole cell", "Haines & Greenberg 1986")                \
+    X(RT_LIGHT_EXTENTS, "extents", RT_FLAG("on"),                                                            \
+      "test the box of an object of a list, and the side of its plane, before the object", "this program")   \
+    X(RT_LIGHT_CACHE, "cache", RT_FLAG("on"), "try the object that blocked the last ray in a cell first",    \
+      "Haines & Greenberg 1986")
+
+enum { RT_LIGHT_PARAMS(RT_PARAM_INDEX) RT_LIGHT_PARAM_COUNT };
 extern const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT];
 
 /* An object of a list. No point of it that can be hit is less deep. */

@@ -5,76 +5,7 @@
 
 #include "base/memory.h"
 
-const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {
-    [RT_OCTREE_MAX_LEAF_SIZE] = {.name = "max_leaf_size",
-                                 .type = RT_PARAM_INT,
-                                 .standard = "1",
-                                 .lo = 1,
-                                 .hi = 1e6,
-                                 .meaning = "a cell with at most so many objects is not divided",
-                                 .source = "Havran 1999, RTN 12(2)",
-                                 .test_values = "2|1000000"},
-    [RT_OCTREE_MAX_DEPTH] = {.name = "max_depth",
-                             .type = RT_PARAM_INT,
-                             .standard = "-1",
-                             .lo = -1,
-                             .hi = RT_OCTREE_DEPTH_LIMIT,
-                             .meaning =
-                                 "depth at which cells are divided no more, the root's being 0; -1: two "
-                                 "more than gives a cell per object",
-                             .source = "the best depths of Havran 1999: 5 to 7 for 8000 objects",
-                             .test_values = "0|4|6"},
-    [RT_OCTREE_SPLIT] = {.name = "split",
-                         .type = RT_PARAM_CHOICE,
-                         .standard = "centre",
-                         .choices = "centre|cost",
-                         .meaning =
-                             "where a cell is cut: its centre, or the cheapest of eleven planes per axis",
-                         .source = "Glassner 1984"},
-    [RT_OCTREE_MARGIN] = {.name = "margin",
-                          .type = RT_PARAM_FLOAT,
-                          .standard = "0",
-                          .lo = 0,
-                          .hi = 1,
-                          .meaning = "how much wider than the scene's box the root is, as a part of it",
-                          .source = "the published scene boxes are a little wider than tight",
-                          .test_values = "0.01|1"},
-    [RT_OCTREE_SLACK] =
-        {.name = "slack",
-         .type = RT_PARAM_FLOAT,
-         .standard = "0",
-         .lo = 0,
-         .hi = 1e6,
-         .meaning = "how far from a cell an object may be and still be listed there, in units of the scene",
-         .source = "0 is enough; Havran 1999 lists more (README)",
-         .test_values = "0.01|100"},
-    [RT_OCTREE_FLAT] =
-        {.name = "flat",
-         .type = RT_PARAM_FLOAT,
-         .standard = "0",
-         .lo = 0,
-         .hi = 1e6,
-         .meaning = "how far objects that are flat along an axis reach to both sides, in units of the scene",
-         .source = "0 is enough; Havran 1999 thickens them (README)",
-         .test_values = "0.01"},
-    [RT_OCTREE_CUT_FILLED] = {.name = "cut_filled",
-                              .type = RT_PARAM_FLAG,
-                              .standard = "off",
-                              .meaning = "divide cells, too, that every one of their objects' boxes fills",
-                              .source = "off: it separates nothing; Havran 1999 does"},
-    [RT_OCTREE_MAILBOX] = {.name = "mailbox",
-                           .type = RT_PARAM_FLAG,
-                           .standard = "on",
-                           .meaning = "do not test an object twice for one ray",
-                           .source = "Kirk & Arvo 1991"},
-    [RT_OCTREE_TRAVERSAL] = {.name = "traversal",
-                             .type = RT_PARAM_CHOICE,
-                             .standard = "parametric",
-                             .choices = "points|neighbours|parametric",
-                             .meaning =
-                                 "next leaf: sought from the root, from an ancestor, or left on a stack",
-                             .source = "Havran 1999: fewest steps"},
-};
+const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {RT_OCTREE_PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- levels ---- */
 
@@ -150,10 +81,5 @@ RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error) {
     }
     rt_free(builder.list);
     rt_free(builder.next);
-    if (status != RT_OK) {
-        rt_octree_destroy(accel);
-        return status;
-    }
-    *out = accel;
-    return RT_OK;
+    return rt_accel_built(accel, status, out);
 }

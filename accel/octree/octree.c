@@ -290,8 +290,7 @@ const RtAccelOps rt_octree_ops = {
     .summary = "cells cut into eight until each holds few objects, met by a ray in one of three ways",
     .paper = "Glassner 1984, Space Subdivision for Fast Ray Tracing, CG&A 4(10); Revelles, Ureña & Lastra "
              "2000, An Efficient Parametric Algorithm for Octree Traversal, WSCG",
-    .params = rt_octree_params,
-    .param_count = RT_OCTREE_PARAM_COUNT,
+    RT_PARAMS_OF(rt_octree_params),
     .build = rt_octree_build,
     .destroy = rt_octree_destroy,
     RT_KERNEL_OPS,

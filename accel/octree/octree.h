@@ -15,18 +15,30 @@
 
 #include "accel/accel.h"
 
-enum {
-    RT_OCTREE_MAX_LEAF_SIZE,
-    RT_OCTREE_MAX_DEPTH,
-    RT_OCTREE_SPLIT,
-    RT_OCTREE_MARGIN,
-    RT_OCTREE_SLACK,
-    RT_OCTREE_FLAT,
-    RT_OCTREE_CUT_FILLED,
-    RT_OCTREE_MAILBOX,
-    RT_OCTREE_TRAVERSAL,
-    RT_OCTREE_PARAM_COUNT
-};
+#define RT_OCTREE_PARAMS(X)                                                                                  \
+    X(RT_OCTREE_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("1", 1, 1e6, "2|1000000"),                            \
+      "a cell with at most so many objects is not divided", "Havran 1999, RTN 12(2)")                        \
+    X(RT_OCTREE_MAX_DEPTH, "max_depth", RT_INT("-1", -1, RT_OCTREE_DEPTH_LIMIT, "0|4|6"),                    \
+      "depth at which cells are divided no more, the root's being 0; -1: two more than gives a cell per "    \
+      "object",                                                                                              \
+      "the best depths of Havran 1999: 5 to 7 for 8000 objects")                                             \
+    X(RT_OCTREE_SPLIT, "split", RT_CHOICE("centre", "centre|cost"),                                          \
+      "where a cell is cut: its centre, or the cheapest of eleven planes per axis", "Glassner 1984")         \
+    X(RT_OCTREE_MARGIN, RT_MARGIN_PARAM("the root"))                                                         \
+    X(RT_OCTREE_SLACK, "slack", RT_FLOAT("0", 0, 1e6, "0.01|100"),                                           \
+      "how far from a cell an object may be and still be listed there, in units of the scene",               \
+      "0 is enough; Havran 1999 lists more (README)")                                                        \
+    X(RT_OCTREE_FLAT, "flat", RT_FLOAT("0", 0, 1e6, "0.01"),                                                 \
+      "how far objects that are flat along an axis reach to both sides, in units of the scene",              \
+      "0 is enough; Havran 1999 thickens them (README)")                                                     \
+    X(RT_OCTREE_CUT_FILLED, "cut_filled", RT_FLAG("off"),                                                    \
+      "divide cells, too, that every one of their objects' boxes fills",                                     \
+      "off: it separates nothing; Havran 1999 does")                                                         \
+    X(RT_OCTREE_MAILBOX, RT_MAILBOX_PARAM)                                                                   \
+    X(RT_OCTREE_TRAVERSAL, "traversal", RT_CHOICE("parametric", "points|neighbours|parametric"),             \
+      "next leaf: sought from the root, from an ancestor, or left on a stack", "Havran 1999: fewest steps")
+
+enum { RT_OCTREE_PARAMS(RT_PARAM_INDEX) RT_OCTREE_PARAM_COUNT };
 extern const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT];
 
 /* In the order of the choices of the parameters. */

@@ -30,10 +30,25 @@ typedef struct RtParam {
     const char *standard;    /* the default, as text */
     double lo, hi;           /* range of a number, inclusive */
     const char *choices;     /* "box|sphere|obb" for RT_PARAM_CHOICE, else NULL */
+    const char *test_values; /* values worth testing, "1|4|20"; NULL for choices and flags: all of them */
     const char *meaning;     /* one line; units where there are any */
     const char *source;      /* where the default comes from */
-    const char *test_values; /* values worth testing, "1|4|20"; NULL for choices and flags: all of them */
 } RtParam;
+
+/* What a parameter may be, in an entry {name, RT_INT(...), meaning, source} of a table. */
+#define RT_INT(standard, lo, hi, test_values)        RT_PARAM_INT, standard, lo, hi, NULL, test_values
+#define RT_FLOAT(standard, lo, hi, test_values)      RT_PARAM_FLOAT, standard, lo, hi, NULL, test_values
+#define RT_RESOLUTION(standard, lo, hi, test_values) RT_PARAM_RESOLUTION, standard, lo, hi, NULL, test_values
+#define RT_CHOICE(standard, choices)                 RT_PARAM_CHOICE, standard, 0, 0, choices, NULL
+#define RT_FLAG(standard)                            RT_PARAM_FLAG, standard, 0, 0, NULL, NULL
+
+/* A list PARAMS(X), of X(INDEX, the entry without its braces), makes both the indices,
+ * enum { PARAMS(RT_PARAM_INDEX) }, and the table, {PARAMS(RT_PARAM_ENTRY)}. */
+#define RT_PARAM_INDEX(index, ...) index,
+#define RT_PARAM_ENTRY(index, ...) [index] = {__VA_ARGS__},
+
+/* The members `params` and `param_count` of what has this table. */
+#define RT_PARAMS_OF(table) .params = (table), .param_count = sizeof(table) / sizeof((table)[0])
 
 typedef union RtValue {
     int64_t i;
