@@ -25,7 +25,7 @@ typedef struct Seen {
     double x, y, z;
 } Seen;
 
-static Seen see(const RtSolidRay *ray, RtVec3 vertex) {
+static Seen seen_vertex(const RtSolidRay *ray, RtVec3 vertex) {
     const RtPreparedRay *r = &ray->thick;
     RtVec3d v = rt_subd(rt_widen(vertex), ray->org);
     double z = v.at[r->kz] / ray->dir.at[r->kz];
@@ -91,7 +91,8 @@ static uint32_t collect_leaf(const RtTriangle *triangles, uint32_t first, uint32
     bool backward = ray->thick.negative[ray->thick.kz] != 0;
     for (uint32_t i = first; i < end; i++) {
         const RtTriangle *triangle = &triangles[i];
-        const Seen v[3] = {see(ray, triangle->v[0]), see(ray, triangle->v[1]), see(ray, triangle->v[2])};
+        const Seen v[3] = {seen_vertex(ray, triangle->v[0]), seen_vertex(ray, triangle->v[1]),
+                           seen_vertex(ray, triangle->v[2])};
         int number = winding(v);
         if (number == 0) continue;
         double t = rt_clampd(depth_of(triangle, ray, v), (double)near, (double)far);
