@@ -65,6 +65,7 @@ RtField rt_field_print(const char *format, ...) {
     RtField field = {.is = RT_FIELD_TEXT};
     va_list args;
     va_start(args, format);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
     vsnprintf(field.room, sizeof field.room, format, args);
     va_end(args);
     return field;
