@@ -13,7 +13,7 @@ while read -r path; do
     case $path in
     tests/*/test_*)
         name=${path##*/test_} room=${path#tests/} room=${room%%/*}
-        pattern="raytally_tests\\($room([^)]*[[:space:]])?${name%.c}([[:space:])])"
+        pattern="raytally_tests\\($room[[:space:]]+([^)]*[[:space:]])?${name%.c}([[:space:])])"
         ;;
     esac
     grep -qE "$pattern" <<<"$list" || {

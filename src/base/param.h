@@ -70,7 +70,7 @@ void rt_params_format(const RtParam *table, size_t count, const RtValue *values,
 /* One value as text. */
 void rt_param_format(const RtParam *param, RtValue value, char *out, size_t room);
 
-/* The range or the choices as text: "1..4096", "box|sphere", "on|off", "auto | NxNxN". */
+/* The range or the choices as text: "1..4096", "box|sphere", "on|off", "auto or NXxNYxNZ, each 1..512". */
 void rt_param_range(const RtParam *param, char *out, size_t room);
 
 /* The `n`th value worth testing, as text, from `test_values` or all choices; false when there are no more. */

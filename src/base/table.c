@@ -376,37 +376,45 @@ void rt_table_html(const RtTable *table, FILE *out) {
 
 /* ---- JSON ---- */
 
-static json_t *group_json(const RtColumnGroup *group, const void *row, json_t *object) {
+/* False where memory is short. */
+static bool put_members(const RtColumnGroup *group, const void *row, json_t *object) {
     for (size_t i = 0; i < group->count; i++) {
         RtField field = field_of(group, i, row);
-        json_object_set_new(object, group->columns[i].name, field_json(group->columns[i].form, &field));
+        json_t *value = field_json(group->columns[i].form, &field);
+        if (json_object_set_new(object, group->columns[i].name, value) != 0) return false;
     }
-    return object;
+    return true;
+}
+
+static bool put_group(const RtColumnGroup *group, const void *row, json_t *object) {
+    const char *name = group->name, *dot = name ? strchr(name, '.') : NULL;
+    if (!name) return put_members(group, row, object);
+    json_t *into = dot ? json_object_getn(object, name, (size_t)(dot - name)) : object;
+    if (dot) name = dot + 1;
+    if (group->of && !group->of(row)) return json_object_set_new(into, name, json_null()) == 0;
+    json_t *members = json_object();
+    if (json_object_set(into, name, members) != 0) return json_decref(members), false;
+    json_decref(members);
+    return put_members(group, row, members);
 }
 
 json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row) {
     json_t *object = json_object();
-    for (size_t g = 0; g < count; g++) {
-        const RtColumnGroup *group = &groups[g];
-        json_t *into = object;
-        const char *name = group->name, *dot = name ? strchr(name, '.') : NULL;
-        if (dot) into = json_object_getn(object, name, (size_t)(dot - name)), name = dot + 1;
-        if (!name) {
-            group_json(group, row, into);
-        } else if (group->of && !group->of(row)) {
-            json_object_set_new(into, name, json_null());
-        } else {
-            json_object_set_new(into, name, group_json(group, row, json_object()));
-        }
-    }
-    return object;
+    bool whole = object != NULL;
+    for (size_t g = 0; whole && g < count; g++) whole = put_group(&groups[g], row, object);
+    if (whole) return object;
+    json_decref(object);
+    return NULL;
 }
 
 json_t *rt_table_json(const RtTable *table) {
     json_t *rows = json_array();
     for (size_t i = 0; i < table->row_count; i++) {
         const void *row = table->row(table->context, i);
-        if (row) json_array_append_new(rows, rt_row_json(table->groups, table->group_count, row));
+        if (!row || json_array_append_new(rows, rt_row_json(table->groups, table->group_count, row)) == 0)
+            continue;
+        json_decref(rows);
+        return NULL;
     }
     return rows;
 }

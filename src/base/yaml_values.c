@@ -189,6 +189,8 @@ RtStatus rt_yaml_rows(const RtYaml *yaml, const RtYamlNode *node, const char *ke
         RtStatus status = read_numbers(yaml, n, width, row, NULL);
         if (status == RT_OK) continue;
         rt_free(*rows);
+        *rows = NULL;
+        *count = 0;
         return status;
     }
     return RT_OK;

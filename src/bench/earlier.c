@@ -12,6 +12,13 @@ static const char *const result_files[] = {RT_RUN_JOURNAL, RT_VERIFY_JOURNAL, RT
 
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
+bool rt_earlier_is_result(const char *name) {
+    for (int i = 0; i < RESULT_FILES; i++) {
+        if (strcmp(name, result_files[i]) == 0) return true;
+    }
+    return strcmp(name, "experiment.yaml") == 0;
+}
+
 static bool has(const char *directory, const char *name) {
     char path[RT_MAX_PATH];
     return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);

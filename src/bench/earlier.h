@@ -20,6 +20,9 @@ typedef enum RtStart {
 #define RT_VERIFY_JOURNAL "rows.jsonl"
 #define RT_MANIFEST       "manifest.json"
 
+/* Whether a result directory has a file of that name of its own. */
+bool rt_earlier_is_result(const char *name);
+
 /* Whether there is the journal that such a start goes on with. Refuses results that are not to be touched:
  * any at all by a fresh start, any without the journal by one that resumes. */
 RtStatus rt_earlier_look(const char *directory, const char *journal, RtStart start, bool *goes_on,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/experiment.h"
 
+#include "bench/earlier.h"
+
 #include <ctype.h>
 #include <string.h>
 
@@ -123,6 +125,13 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
 
 /* The files are copied into the result directory under their names. */
 static RtStatus check_beside(const char *name, RtError *error) {
+    if (rt_earlier_is_result(name)) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "'%s' is what the result directory calls a file of its own: rename it, or put it into a "
+            "folder beside the experiment",
+            name);
+    }
     if (*name != '/' && !strstr(name, "..")) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,

@@ -34,14 +34,16 @@ static json_t *build_json(const RtBuildResult *build) {
     json_t *run =
         json_pack("{s:s, s:b, s:b, s:f, s:I}", "spec", build->spec, "exact", build->exact, "counts",
                   build->counts, "seconds", build->seconds, "bytes", (json_int_t)build->shape.bytes);
-    json_object_update_new(object, run);
-    return object;
+    if (json_object_update_new(object, run) == 0) return object;
+    json_decref(object);
+    return NULL;
 }
 
 static json_t *count_json(const RtCell *cell) {
     json_t *object = rt_json_tally(&cell->tally);
-    json_object_set_new(object, "differ", json_integer((json_int_t)cell->differ));
-    return object;
+    if (json_object_set_new(object, "differ", json_integer((json_int_t)cell->differ)) == 0) return object;
+    json_decref(object);
+    return NULL;
 }
 
 static json_t *estimate_json(const RtEstimate *e) {

@@ -211,8 +211,8 @@ RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtE
     return RT_OK;
 }
 
-/* Where the run of a group of `every` runs starts, in runs from the start of the group. At random, for a
- * constant would pick columns of the image where `every` divides the runs of a row. */
+/* Where the run of a group of `stride` runs starts, in runs from the start of the group. At random, for a
+ * constant would pick columns of the image where `stride` divides the runs of a row. */
 static uint64_t pick(uint64_t group, uint64_t stride) {
     RtRandom random = rt_random(0, group);
     return (uint64_t)rt_random_bits(&random) * stride >> 32;

@@ -109,10 +109,19 @@ static void name_missing(const RtRun *run) {
     }
 }
 
+/* The manifest tells of a run that is over, and what was measured until then. */
+static RtStatus unfinish(RtRun *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_run_path(run, RT_MANIFEST, path, error));
+    remove(path);
+    run->measured = true;
+    return RT_OK;
+}
+
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
     RtRun *run = context;
     const RtObserver *observer = &run->options->workload.observer;
-    run->measured = true;
+    if (!run->measured) RT_TRY(unfinish(run, error));
     RT_TRY(rt_journal_append(&run->journal, results, event, error));
     return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
 }

@@ -6,9 +6,9 @@
  *   times.csv        measured columns, where anything is timed
  *   images/          a picture of each scene
  *
- * rt_run_open looks, rt_run_begin makes the directory and keeps others away, rt_run_measure does the work.
- * What an earlier run has left is lost only by the last, so all that may be refused is to be looked at
- * before. Whenever the process ends, however, its journal or the one before it is whole. */
+ * rt_run_open looks, rt_run_begin makes the directory and keeps others away, rt_run_measure begins the
+ * journal and does the work. What an earlier run has left is lost only by the last, so all that may fail is
+ * to be tried before. Whenever the process ends, however, its journal or the one before it is whole. */
 #ifndef RT_BENCH_RUN_H
 #define RT_BENCH_RUN_H
 
@@ -43,7 +43,7 @@ RtStatus rt_run_open(RtRun *run, RtResults *results, const RtRunOptions *options
 /* Makes the directory with plots/ and images/ in it. */
 RtStatus rt_run_begin(RtRun *run, RtError *error);
 
-/* Fills the results. */
+/* Begins the journal, or goes on with it, and fills the results. */
 RtStatus rt_run_measure(RtRun *run, RtError *error);
 
 void rt_run_close(RtRun *run);

@@ -33,7 +33,7 @@ static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
 
 static bool workload_is_done(const RtWorkloadState *workload) {
     const RtWorkloadResult *result = &workload->results->workloads[workload->index];
-    if (!result->known) return result->skipped;
+    if (result->skipped || !result->known) return result->skipped;
     for (uint32_t c = 0; c < workload->count; c++) {
         if (runs(workload, c) && !rt_build_at(workload->results, workload->index, c)->known) return false;
     }
@@ -144,7 +144,7 @@ static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
 
 /* ---- the rays of one kind ---- */
 
-/* Rays in a set that is thinned by `every`. */
+/* Rays in a set that is of which every `stride`th is kept. */
 static uint64_t thinned_count(const RtRaySet *set, uint64_t stride) {
     return (set->count + stride - 1) / stride;
 }

@@ -15,8 +15,8 @@
 RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error);
 
 /* Copies the scripts from where they lie, seen from the experiment's folder, to `directory`/plots, which
- * exists, each under its rt_plot_name. */
-RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, RtError *error);
+ * exists, each under its rt_plot_name; `keep`: but for those that are there, which may have been edited. */
+RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, bool keep, RtError *error);
 
 /* Draws. RT_NOT_AVAILABLE where gnuplot is not installed; RT_MISMATCH, with what it says, where it fails:
  * then the plots are what they were before. */

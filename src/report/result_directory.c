@@ -76,7 +76,7 @@ static RtStatus begin(Work *work, RtError *error) {
     RT_TRY(rt_plots_find(run->experiment, error));
     RT_TRY(rt_run_begin(run, error));
     RT_TRY(copy_experiment(run, error));
-    return rt_plots_prepare(run->experiment, run->options->directory, error);
+    return rt_plots_prepare(run->experiment, run->options->directory, run->resumed, error);
 }
 
 static RtStatus write_exact(const Work *work, const RtExactFile *file, RtError *error) {

@@ -59,6 +59,7 @@ RT_TEST_IN_PLACE(what_the_experiment_says_wrongly_about_published_figures_is_tol
         {"scenes: [balls]", "scenes: [ball]", ":9:"},
         {"scenes: [cloud]", "scenes: [cloud, balls]", ":11:"}, /* 'cells' twice on balls */
         {"[figures.csv]", "[../figures.csv]", ":12:"},
+        {"[figures.csv]", "[published.csv]", ":12:"}, /* which the run would write over */
         {"[figures.csv]", "[/figures.csv]", ":12:"},
         {"leaves: 1", "leaves: -1", ":15:23: published.tolerance.leaves: invalid value '-1'"},
         {"leaves: 1", "leafs: 1", ":15:"},

@@ -276,6 +276,21 @@ RT_TEST_IN_PLACE(an_interrupted_run_resumes_and_loses_no_finished_cell) {
     rt_free(lines);
 }
 
+/* A line of its journal was lost; the run that measures it anew stops behind it. */
+RT_TEST_IN_PLACE(a_run_that_goes_on_measuring_is_not_finished_until_it_is) {
+    const Place *place = *state;
+    RtError stopped;
+    Stopper stopper = {0};
+    RtObserver observer = {&stopper, stop_after, NULL};
+    assert_ok(run(place, "parts", RT_START_FRESH, 1, nobody, error));
+    cut_last_line(place, "parts/cells.jsonl");
+    assert_true(rt_file_exists(path_in(place, "parts/manifest.json").text));
+    assert_int_equal(run(place, "parts", RT_START_RESUME, 1, observer, &stopped), RT_IO);
+    assert_false(rt_file_exists(path_in(place, "parts/manifest.json").text));
+    assert_ok(run(place, "parts", RT_START_RESUME, 1, nobody, error));
+    assert_true(rt_file_exists(path_in(place, "parts/manifest.json").text));
+}
+
 RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_same_tables) {
     const Place *place = *state;
     assert_ok(run(place, "done", RT_START_FRESH, 1, nobody, error));

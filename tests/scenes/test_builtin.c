@@ -3,6 +3,7 @@
 #include "scene_testing.h"
 
 #include "scenes/builtin.h"
+#include "scenes/family.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -195,6 +196,20 @@ RT_TEST(the_estimate_of_memory_is_no_less_than_what_is_used) {
                                   values, error));
         RtScene scene = open_scene(spec);
         if (rt_scene_bytes(&scene) > rt_builtin_bytes(builtin, values)) fail_msg("%s takes more", spec);
+        rt_scene_clear(&scene);
+    }
+}
+
+RT_TEST(the_count_of_objects_of_every_family_is_told_beforehand) {
+    for (size_t i = 0; i < rt_family_count(); i++) {
+        char spec[RT_MAX_SPEC_CHARS];
+        RtValue values[RT_MAX_PARAMS];
+        rt_family_spec(i, 3, spec);
+        const RtBuiltin *builtin = rt_builtin_find(spec);
+        assert_ok(rt_params_parse(builtin->params, builtin->param_count, strchr(spec, ':') + 1, "it", values,
+                                  error));
+        RtScene scene = open_scene(spec);
+        assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
         rt_scene_clear(&scene);
     }
 }
