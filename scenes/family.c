@@ -351,7 +351,7 @@ static void choose_scale(Builder *b) {
 
 static uint64_t object_count(const RtValue *values) {
     const Recipe *recipe = &recipes[values[KIND].choice];
-    const uint32_t n = recipe->count;
+    const uint64_t n = recipe->count;
     if (recipe->make == MESH) return 8 * n * n;
     return recipe->make == AXIS_ALIGNED ? n + (n + 1) / 2 : n; /* every other one is two triangles */
 }
