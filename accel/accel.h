@@ -207,8 +207,10 @@ void rt_spec_format(const RtSpec *spec, char *out);
 /* ---- using an accelerator ---- */
 
 /* Builds what the spec says over `scene`, on `threads` threads (0 = all processors), which does not change
- * the structure; rt_accel_open on all processors. Destroy with rt_accel_destroy. */
+ * the structure. rt_accel_open_on takes the spec as text, rt_accel_open too, and all processors. Destroy with
+ * rt_accel_destroy. */
 RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
+RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);
 void rt_accel_destroy(RtAccel *accel); /* with all below it; NULL is allowed */
 

@@ -35,11 +35,16 @@ RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, R
     return RT_OK;
 }
 
-RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out,
+                          RtError *error) {
     RtSpec parsed;
     *out = NULL;
     RT_TRY(rt_spec_parse(spec, &parsed, error));
-    return rt_accel_build(&parsed, scene, 0, out, error);
+    return rt_accel_build(&parsed, scene, threads, out, error);
+}
+
+RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error) {
+    return rt_accel_open_on(spec, scene, 0, out, error);
 }
 
 void rt_accel_destroy(RtAccel *accel) {

@@ -13,10 +13,6 @@
 
 enum { MAX_CHARS = 512 };
 
-static const char *text_of(const RtYaml *yaml, const RtYamlNode *node) {
-    return yaml->text + node->text;
-}
-
 /* ---- places ---- */
 
 /* "objects[3].sphere.radius"; of a key it is that of its mapping. */
@@ -30,7 +26,7 @@ static void write_path(const RtYaml *yaml, const RtYamlNode *target, char out[MA
         bool mapping = node->kind == RT_YAML_MAPPING;
         if (mapping && i % 2 == 0) return;
         used += (size_t)(mapping ? snprintf(out + used, MAX_CHARS - used, "%s%.40s", used ? "." : "",
-                                            text_of(yaml, child - 1))
+                                            rt_yaml_text_of(yaml, child - 1))
                                  : snprintf(out + used, MAX_CHARS - used, "[%u]", i));
         node = child;
     }
@@ -56,7 +52,7 @@ RtStatus(rt_yaml_fail)(const RtYaml *yaml, const RtYamlNode *node, const char *f
 const RtYamlNode *rt_yaml_get(const RtYaml *yaml, const RtYamlNode *mapping, const char *key) {
     if (mapping->kind != RT_YAML_MAPPING) return NULL;
     for (const RtYamlNode *k = mapping + 1; k != mapping + mapping->size; k += 1 + k[1].size) {
-        if (strcmp(text_of(yaml, k), key) == 0) return k + 1;
+        if (strcmp(rt_yaml_text_of(yaml, k), key) == 0) return k + 1;
     }
     return NULL;
 }

@@ -68,6 +68,11 @@ const RtYamlNode *rt_yaml_get(const RtYaml *yaml, const RtYamlNode *mapping, con
 RtStatus rt_yaml_list(const RtYaml *yaml, const RtYamlNode *node, const char *key, uint32_t least,
                       uint32_t most, const char *what);
 
+/* The text of a scalar, ended by a 0. */
+static inline const char *rt_yaml_text_of(const RtYaml *yaml, const RtYamlNode *node) {
+    return yaml->text + node->text;
+}
+
 /* The entries of a list: for (n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size). NULL has none.
  */
 static inline const RtYamlNode *rt_yaml_first(const RtYamlNode *list) {

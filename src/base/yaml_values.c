@@ -12,10 +12,6 @@
 
 enum { MAX_WORDS = 32, MAX_CHARS = 512 };
 
-static const char *text_of(const RtYaml *yaml, const RtYamlNode *node) {
-    return yaml->text + node->text;
-}
-
 /* ---- words ---- */
 
 /* A list of words, taken apart. */
@@ -51,7 +47,7 @@ static uint32_t find_word(const Words *words, const char *word) {
 /* ---- mappings and lists ---- */
 
 static RtStatus fail_unexpected(const RtYaml *yaml, const RtYamlNode *node, const char *expected) {
-    const char *text = node->kind == RT_YAML_SCALAR ? text_of(yaml, node) : "";
+    const char *text = node->kind == RT_YAML_SCALAR ? rt_yaml_text_of(yaml, node) : "";
     if (*text) return rt_yaml_fail(yaml, node, "invalid value '%.60s': expected %s", text, expected);
     static const char *const kinds[] = {"nothing", "a list", "a mapping"};
     return rt_yaml_fail(yaml, node, "expected %s, found %s", expected, kinds[node->kind]);
@@ -60,8 +56,8 @@ static RtStatus fail_unexpected(const RtYaml *yaml, const RtYamlNode *node, cons
 static RtStatus fail_unknown(const RtYaml *yaml, const RtYamlNode *key, const Words *words) {
     char list[MAX_CHARS], suggestion[RT_MAX_SUGGESTION];
     rt_join_names(words->names, words->count, list, sizeof list);
-    rt_suggest(text_of(yaml, key), words->names, words->count, suggestion);
-    return rt_yaml_fail(yaml, key, "unknown key '%.60s'%s%s%s", text_of(yaml, key), suggestion,
+    rt_suggest(rt_yaml_text_of(yaml, key), words->names, words->count, suggestion);
+    return rt_yaml_fail(yaml, key, "unknown key '%.60s'%s%s%s", rt_yaml_text_of(yaml, key), suggestion,
                         *suggestion ? " The keys are: " : ": the keys are ", list);
 }
 
@@ -91,7 +87,7 @@ RtStatus rt_yaml_keys(const RtYaml *yaml, const RtYamlNode *node, const char *ke
     }
     uint32_t seen = 0;
     for (const RtYamlNode *key = node + 1; key != node + node->size; key += 1 + key[1].size) {
-        uint32_t i = find_word(&words, text_of(yaml, key));
+        uint32_t i = find_word(&words, rt_yaml_text_of(yaml, key));
         if (i == words.count) return fail_unknown(yaml, key, &words);
         if (seen >> i & 1) return rt_yaml_fail(yaml, key, "'%s' is given twice: remove one", words.names[i]);
         seen |= UINT32_C(1) << i;
@@ -132,7 +128,7 @@ RtStatus rt_yaml_list(const RtYaml *yaml, const RtYamlNode *node, const char *ke
 static RtStatus read_number(const RtYaml *yaml, const RtYamlNode *node, float *narrow, double *wide) {
     if (!node) return RT_OK;
     if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, "a number, as in 1.5");
-    const char *text = text_of(yaml, node);
+    const char *text = rt_yaml_text_of(yaml, node);
     char *end;
     double value = narrow ? (double)strtof(text, &end) : strtod(text, &end);
     if (end == text || *end || !isfinite(value)) {
@@ -200,7 +196,7 @@ RtStatus rt_yaml_u64(const RtYaml *yaml, const RtYamlNode *node, const char *key
                      uint64_t *value) {
     if (!(node = value_of(yaml, node, key))) return RT_OK;
     if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, "a whole number");
-    const char *text = text_of(yaml, node);
+    const char *text = rt_yaml_text_of(yaml, node);
     char *end = NULL;
     errno = 0;
     uint64_t given = text[0] >= '0' && text[0] <= '9' ? strtoull(text, &end, 10) : 0;
@@ -234,18 +230,18 @@ RtStatus rt_yaml_word(const RtYaml *yaml, const RtYamlNode *node, const char *ke
         snprintf(expected + used, sizeof expected - used, "%s%s", i ? " or " : "", words.names[i]);
     }
     if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, expected);
-    *index = find_word(&words, text_of(yaml, node));
+    *index = find_word(&words, rt_yaml_text_of(yaml, node));
     if (*index < words.count) return RT_OK;
-    rt_suggest(text_of(yaml, node), words.names, words.count, suggestion);
-    return rt_yaml_fail(yaml, node, "invalid value '%.60s'%s%s expected %s", text_of(yaml, node), suggestion,
-                        *suggestion ? "" : ":", expected);
+    rt_suggest(rt_yaml_text_of(yaml, node), words.names, words.count, suggestion);
+    return rt_yaml_fail(yaml, node, "invalid value '%.60s'%s%s expected %s", rt_yaml_text_of(yaml, node),
+                        suggestion, *suggestion ? "" : ":", expected);
 }
 
 RtStatus rt_yaml_text(const RtYaml *yaml, const RtYamlNode *node, const char *key, size_t most,
                       const char **text) {
     if (!(node = value_of(yaml, node, key))) return RT_OK;
     if (node->kind != RT_YAML_SCALAR) return fail_unexpected(yaml, node, "text");
-    *text = text_of(yaml, node);
+    *text = rt_yaml_text_of(yaml, node);
     size_t length = strlen(*text);
     if (length >= 1 && length <= most) return RT_OK;
     return rt_yaml_fail(yaml, node, "the text has %zu characters: expected 1..%zu", length, most);

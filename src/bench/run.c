@@ -141,14 +141,12 @@ static RtStatus write_tables(const RtRun *run, RtError *error) {
 
 static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,
                            RtError *error) {
-    RtSpec spec;
     RtAccel *accel;
     RtFrame frame = {0};
     RtImage image = {0};
     RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
     RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
-    RT_TRY(rt_spec_parse(rt_accel_default(), &spec, error));
-    RT_TRY(rt_accel_build(&spec, scene, threads, &accel, error));
+    RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, &accel, error));
     RtStatus status = rt_frame_trace(&frame, accel, &options, error);
     if (status == RT_OK) status = rt_image_from_frame(&image, &frame, error);
     if (status == RT_OK) status = rt_png_write(&image, path, error);

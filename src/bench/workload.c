@@ -64,9 +64,8 @@ static RtStatus record_rays(RtWorkloadState *workload, RtError *error) {
                              .threads = workload->options->threads,
                              .light_from_outside = setup->light_from_outside};
     RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
-    RtSpec spec;
-    RT_TRY(rt_spec_parse(rt_accel_default(), &spec, error));
-    RT_TRY(rt_accel_build(&spec, workload->scene, recording.threads, &workload->reference, error));
+    RT_TRY(rt_accel_open_on(rt_accel_default(), workload->scene, recording.threads, &workload->reference,
+                            error));
     RtStatus status = rt_rayset_record(recorded, workload->reference, &recording, error);
     if (status == RT_OK) status = keep_sets(workload, recorded, error);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);

@@ -5,9 +5,7 @@
 
 static RtStatus build_spec(const void *context, const RtScene *scene, int threads, RtAccel **out,
                            RtError *error) {
-    RtSpec spec;
-    RT_TRY(rt_spec_parse(context, &spec, error));
-    return rt_accel_build(&spec, scene, threads, out, error);
+    return rt_accel_open_on(context, scene, threads, out, error);
 }
 
 RtMaker rt_maker_of_spec(const char *spec) {
