@@ -11,6 +11,7 @@
 #define ACCELERATORS(X)                                                                                      \
     X(rt_brute_ops)                                                                                          \
     X(rt_bvh_ops)                                                                                            \
+    X(rt_wide_ops)                                                                                           \
     X(rt_clusters_ops)                                                                                       \
     X(rt_extents_ops)                                                                                        \
     X(rt_grid_ops)                                                                                           \

@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From a binary tree of references to nodes of eight children.
+ *
+ * Which subtrees become leaves, and which nodes are opened into their parents, is decided together, for the
+ * least expected cost (Ylitie, Karras & Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through
+ * Compressed Wide BVHs", section 2.3): let cost(n, k) be what the least costly forest of at most k subtrees
+ * costs that holds what is below n. Then
+ *
+ *     cost(n, 1) = min(leaf(n), area(n) + split(n, 8)),
+ *     cost(n, k) = min(cost(n, k - 1), split(n, k)),       split(n, k) = min over i of cost(left, i) + cost(right, k - i),
+ *
+ * and the choices that were made lead from the root down. */
+#include "accel/wide/wide.h"
+
+#include "base/memory.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* choice[k - 1]: how many of k subtrees the left child gets; FEWER: k - 1 will do; for k = 1 LEAF or what of
+ * eight the left child gets. */
+enum { FEWER = 0, LEAF = 255 };
+
+typedef struct Plan {
+    uint8_t choice[RT_WIDE];
+} Plan;
+
+typedef struct Layout {
+    RtWideTree *self;
+    const RtTree *tree;
+    const RtGeometry *geometry;
+    const RtWideLayout *how;
+    Plan *plans; /* [tree->used] */
+} Layout;
+
+/* What a subtree holds, and what it costs as a forest of at most k + 1 subtrees. */
+typedef struct Weight {
+    double cost[RT_WIDE];
+    uint32_t references;
+    uint32_t shapes; /* bits 1 << RtShape */
+} Weight;
+
+static double leaf_cost(const Layout *layout, const Weight *weight) {
+    bool blocks = weight->shapes == 1u << RT_SHAPE_TRIANGLE || weight->shapes == 1u << RT_SHAPE_SPHERE;
+    uint32_t tests = blocks ? (weight->references + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK : weight->references;
+    return layout->how->block_cost * tests;
+}
+
+static Weight weigh(const Layout *layout, uint32_t index) {
+    const RtTreeNode *node = &layout->tree->nodes[index];
+    Plan *plan = &layout->plans[index];
+    double area = rt_box_half_area(node->box);
+    Weight own = {.references = 1};
+    memset(plan, 0, sizeof *plan);
+    if (rt_tree_is_leaf(layout->tree, index)) {
+        own.shapes = 1u << rt_ref_shape(layout->geometry->objects[node->child[1]]);
+        plan->choice[0] = LEAF;
+        for (int k = 0; k < RT_WIDE; k++) own.cost[k] = area * leaf_cost(layout, &own);
+        return own;
+    }
+    Weight left = weigh(layout, node->child[0]), right = weigh(layout, node->child[1]);
+    own.references = left.references + right.references;
+    own.shapes = left.shapes | right.shapes;
+    double split[RT_WIDE];
+    for (int k = 1; k < RT_WIDE; k++) { /* k + 1 subtrees */
+        split[k] = INFINITY;
+        for (int i = 0; i < k; i++) { /* i + 1 of them to the left, k - i to the right */
+            double cost = left.cost[i] + right.cost[k - 1 - i];
+            if (!(cost < split[k])) continue;
+            split[k] = cost;
+            plan->choice[k] = (uint8_t)(i + 1);
+        }
+    }
+    own.cost[0] = area + split[RT_WIDE - 1];
+    plan->choice[0] = plan->choice[RT_WIDE - 1];
+    if (own.references <= layout->how->leaf_limit) {
+        double leaf = area * leaf_cost(layout, &own);
+        if (leaf <= own.cost[0]) {
+            own.cost[0] = leaf;
+            plan->choice[0] = LEAF;
+        }
+    }
+    for (int k = 1; k < RT_WIDE; k++) {
+        own.cost[k] = split[k];
+        if (split[k] < own.cost[k - 1]) continue;
+        own.cost[k] = own.cost[k - 1];
+        plan->choice[k] = FEWER;
+    }
+    return own;
+}
+
+/* The roots of the forest of at most `most` subtrees below `index`, appended to children[0..*count). */
+static void open_children(const Layout *layout, uint32_t index, uint32_t most, uint32_t *children,
+                          uint32_t *count) {
+    const Plan *plan = &layout->plans[index];
+    while (most > 1 && plan->choice[most - 1] == FEWER) most--;
+    if (most == 1) {
+        children[(*count)++] = index;
+        return;
+    }
+    const uint32_t *child = layout->tree->nodes[index].child;
+    uint32_t left = plan->choice[most - 1];
+    open_children(layout, child[0], left, children, count);
+    open_children(layout, child[1], most - left, children, count);
+}
+
+/* ids[0..*count): the objects of a subtree, each once. */
+static void collect(const Layout *layout, uint32_t index, uint32_t *ids, uint32_t *count) {
+    const uint32_t *child = layout->tree->nodes[index].child;
+    if (rt_tree_is_leaf(layout->tree, index)) {
+        for (uint32_t i = 0; i < *count && layout->tree->divided; i++) {
+            if (ids[i] == child[1]) return;
+        }
+        ids[(*count)++] = child[1];
+        return;
+    }
+    for (int s = 0; s < 2; s++) collect(layout, child[s], ids, count);
+}
+
+static void put_triangle(const Layout *layout, RtWideTriangles *block, uint32_t lane, uint32_t id) {
+    const RtGeometry *g = layout->geometry;
+    const RtTriangle *triangle = &g->triangles[rt_ref_index(g->objects[id])];
+    for (int v = 0; v < 3; v++) {
+        for (int a = 0; a < 3; a++) block->v[v][a][lane] = triangle->v[v].at[a];
+    }
+    block->id[lane] = id;
+}
+
+static void put_sphere(const Layout *layout, RtWideSpheres *block, uint32_t lane, uint32_t id) {
+    const RtGeometry *g = layout->geometry;
+    const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
+    for (int a = 0; a < 3; a++) block->center[a][lane] = sphere->center.at[a];
+    block->radius[lane] = sphere->radius;
+    block->id[lane] = id;
+}
+
+static RtWideRef place_leaf(const Layout *layout, uint32_t index) {
+    RtWideTree *self = layout->self;
+    uint32_t ids[RT_WIDE_MAX_LEAF], count = 0, shapes = 0;
+    collect(layout, index, ids, &count);
+    for (uint32_t i = 0; i < count; i++) shapes |= 1u << rt_ref_shape(layout->geometry->objects[ids[i]]);
+    self->leaf_count++;
+    self->reference_count += count;
+    uint32_t blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK, lanes = blocks * RT_WIDE_BLOCK;
+    if (shapes == 1u << RT_SHAPE_TRIANGLE) {
+        uint32_t first = self->triangle_count;
+        for (uint32_t i = 0; i < lanes; i++) {
+            put_triangle(layout, &self->triangles[first + i / RT_WIDE_BLOCK], i % RT_WIDE_BLOCK,
+                         ids[i < count ? i : count - 1]);
+        }
+        self->triangle_count += blocks;
+        return rt_wide_leaf(RT_WIDE_TRIANGLES, first, count);
+    }
+    if (shapes == 1u << RT_SHAPE_SPHERE) {
+        uint32_t first = self->sphere_count;
+        for (uint32_t i = 0; i < lanes; i++) {
+            put_sphere(layout, &self->spheres[first + i / RT_WIDE_BLOCK], i % RT_WIDE_BLOCK,
+                       ids[i < count ? i : count - 1]);
+        }
+        self->sphere_count += blocks;
+        return rt_wide_leaf(RT_WIDE_SPHERES, first, count);
+    }
+    uint32_t first = self->id_count;
+    memcpy(self->ids + first, ids, count * sizeof *ids);
+    self->id_count += count;
+    return rt_wide_leaf(RT_WIDE_LIST, first, count);
+}
+
+static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32_t depth);
+
+static RtWideRef place(const Layout *layout, uint32_t index, uint32_t depth) {
+    if (depth > layout->self->depth) layout->self->depth = depth;
+    if (layout->plans[index].choice[0] == LEAF) return place_leaf(layout, index);
+    uint32_t at = layout->self->node_count++;
+    place_node(layout, at, index, depth);
+    return at;
+}
+
+static void put_box(RtWideNode *node, uint32_t lane, RtBox box) {
+    for (int a = 0; a < 3; a++) {
+        node->plane[2 * a][lane] = box.lo.at[a];
+        node->plane[2 * a + 1][lane] = box.hi.at[a];
+    }
+}
+
+static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32_t depth) {
+    uint32_t children[RT_WIDE], count = 0;
+    const Plan *plan = &layout->plans[index];
+    if (plan->choice[0] == LEAF) {
+        children[count++] = index;
+    } else {
+        const uint32_t *child = layout->tree->nodes[index].child;
+        open_children(layout, child[0], plan->choice[0], children, &count);
+        open_children(layout, child[1], RT_WIDE - plan->choice[0], children, &count);
+    }
+    RtWideNode *node = &layout->self->nodes[at];
+    node->count = count;
+    for (uint32_t i = 0; i < RT_WIDE; i++) {
+        put_box(node, i, i < count ? layout->tree->nodes[children[i]].box : RT_EMPTY_BOX);
+        node->child[i] = i < count ? place(layout, children[i], depth + 1) : RT_WIDE_DONE;
+    }
+}
+
+/* What the arrays will hold, as the plans say. */
+static void count_all(const Layout *layout, uint32_t index, RtWideTree *sum) {
+    if (layout->plans[index].choice[0] != LEAF) {
+        uint32_t children[RT_WIDE], count = 0;
+        const uint32_t *child = layout->tree->nodes[index].child;
+        uint32_t left = layout->plans[index].choice[0];
+        open_children(layout, child[0], left, children, &count);
+        open_children(layout, child[1], RT_WIDE - left, children, &count);
+        sum->node_count++;
+        for (uint32_t i = 0; i < count; i++) count_all(layout, children[i], sum);
+        return;
+    }
+    uint32_t ids[RT_WIDE_MAX_LEAF], count = 0, shapes = 0;
+    collect(layout, index, ids, &count);
+    for (uint32_t i = 0; i < count; i++) shapes |= 1u << rt_ref_shape(layout->geometry->objects[ids[i]]);
+    uint32_t blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
+    if (shapes == 1u << RT_SHAPE_TRIANGLE)
+        sum->triangle_count += blocks;
+    else if (shapes == 1u << RT_SHAPE_SPHERE)
+        sum->sphere_count += blocks;
+    else
+        sum->id_count += count;
+}
+
+RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
+                         RtError *error) {
+    *self = (RtWideTree){0};
+    RT_TRY(rt_tree_limit_depth(tree, error));
+    Layout layout = {self, tree, geometry, how, rt_alloc(tree->used, sizeof(Plan))};
+    if (!layout.plans) return rt_fail_memory(error, "the plan of a hierarchy", tree->used * sizeof(Plan));
+    Weight whole = weigh(&layout, tree->root);
+    double area = rt_box_half_area(tree->nodes[tree->root].box);
+    RtWideTree sum = {0};
+    count_all(&layout, tree->root, &sum);
+    if (sum.node_count == 0) sum.node_count = 1;
+    self->nodes = rt_alloc(sum.node_count, sizeof *self->nodes);
+    self->triangles = rt_alloc(sum.triangle_count, sizeof *self->triangles);
+    self->spheres = rt_alloc(sum.sphere_count, sizeof *self->spheres);
+    self->ids = rt_alloc(sum.id_count, sizeof *self->ids);
+    bool enough = self->nodes && self->triangles && self->spheres && self->ids;
+    self->divided = tree->divided;
+    self->cost = area > 0 ? whole.cost[0] / area : NAN;
+    self->node_count = 1;
+    if (enough) place_node(&layout, 0, tree->root, 0);
+    rt_free(layout.plans);
+    if (enough) return RT_OK;
+    rt_wide_clear(self);
+    return rt_fail_memory(error, "a hierarchy", rt_wide_bytes(&sum));
+}
+
+void rt_wide_clear(RtWideTree *self) {
+    rt_free(self->nodes);
+    rt_free(self->triangles);
+    rt_free(self->spheres);
+    rt_free(self->ids);
+    *self = (RtWideTree){0};
+}
+
+uint64_t rt_wide_bytes(const RtWideTree *self) {
+    return self->node_count * sizeof *self->nodes + self->triangle_count * sizeof *self->triangles +
+           self->sphere_count * sizeof *self->spheres + self->id_count * sizeof *self->ids;
+}
