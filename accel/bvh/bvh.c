@@ -72,7 +72,7 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     case PLOC: return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, error);
     case SPATIAL: return rt_tree_spatial(tree, geometry, &how, error);
     }
-    return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, error);
+    return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, what->threads, error);
 }
 
 static RtStatus fill(RtHierarchy *hierarchy, const RtBuild *what, RtError *error) {

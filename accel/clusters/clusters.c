@@ -57,7 +57,9 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValue *values, RtError *error) {
+static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
+    const RtGeometry *geometry = &what->scene->geometry;
+    const RtValue *values = what->values;
     const RtBox *boxes = geometry->boxes;
     uint32_t count = geometry->object_count;
     const RtInsertionOrder order = {values[PARAM_ORDER].choice == 1, (uint32_t)values[PARAM_PERMUTATIONS].i,
@@ -67,10 +69,10 @@ static RtStatus make_tree(RtTree *tree, const RtGeometry *geometry, const RtValu
     case PLOC:
         return rt_tree_ploc(tree, boxes, count, RT_MAX_MORTON_BITS, (uint32_t)values[PARAM_RADIUS].i, error);
     case GOLDSMITH_SALMON: return rt_tree_insertion(tree, boxes, count, &order, error);
-    case RUBIN_WHITTED: return rt_tree_topdown(tree, boxes, count, 0, error);
+    case RUBIN_WHITTED: return rt_tree_topdown(tree, boxes, count, 0, what->threads, error);
     case SAH: break;
     }
-    return rt_tree_topdown(tree, boxes, count, 16, error);
+    return rt_tree_topdown(tree, boxes, count, 16, what->threads, error);
 }
 
 /* The objects below node `index`: leaves come in the order of their ids. */
@@ -83,11 +85,12 @@ static RtGroup group_of(const RtClusters *self, uint32_t index) {
                      last->first + rt_node_fanout(last) - first->first, hierarchy->nodes[index].box};
 }
 
-static RtStatus fill(RtClusters *self, const RtValue *values, RtError *error) {
-    const RtGeometry *geometry = &self->base.scene->geometry;
+static RtStatus fill(RtClusters *self, const RtBuild *what, RtError *error) {
+    const RtGeometry *geometry = &what->scene->geometry;
+    const RtValue *values = what->values;
     RtTree tree;
     if (geometry->object_count > 0) {
-        RT_TRY(make_tree(&tree, geometry, values, error));
+        RT_TRY(make_tree(&tree, what, error));
         RtStatus status = rt_hierarchy_lay_out(&self->hierarchy, &tree, error);
         rt_tree_clear(&tree);
         if (status != RT_OK) return status;
@@ -111,7 +114,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                                     .leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                                     .traversal_cost = 1};
     self->nearest_first = values[PARAM_TRAVERSAL_ORDER].choice == 1;
-    return rt_accel_built(accel, fill(self, values, error), out);
+    return rt_accel_built(accel, fill(self, what, error), out);
 }
 
 /* ---- queries ---- */

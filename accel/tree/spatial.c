@@ -197,7 +197,9 @@ static void cut_at(const Builder *b, const Group *group, const Plane *plane, uin
 static bool divide(const Builder *b, const Group *group, int depth, uint32_t counts[2]) {
     RtTreeRef *refs = b->refs + group->first;
     uint32_t count = group->count, left = 0;
-    if (depth < RT_TREE_MEDIAN_DEPTH) left = rt_split_binned(refs, count, b->how.bins);
+    RtBox4 centers[2];
+    if (depth < RT_TREE_MEDIAN_DEPTH)
+        left = rt_split_binned(refs, count, b->how.bins, rt_refs_centers(refs, count), centers);
     bool halved = left == 0;
     if (halved) left = rt_split_median(refs, count);
     counts[0] = left;

@@ -53,8 +53,7 @@ static Place find_place(const Sweep *s, uint32_t begin, uint32_t count, int dept
         for (int axis = 0; axis < 3; axis++) try_axis(s, s->rows[axis] + begin, count, axis, &best);
         return best;
     }
-    RtBox centers = rt_refs_centers(s->rows[0] + begin, count);
-    return (Place){0, count / 2, rt_major_axis(rt_box_size(centers))};
+    return (Place){0, count / 2, rt_longest_axis(rt_refs_centers(s->rows[0] + begin, count))};
 }
 
 /* Moves what goes to the left to the front, either side in the order that it has. */

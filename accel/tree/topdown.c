@@ -1,40 +1,262 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trees from the top: medians, or the surface area heuristic in bins. */
-#include "accel/tree/split.h"
-#include "accel/tree/tree.h"
+/* Trees from the top: medians, or the surface area heuristic in bins.
+ *
+ * Where the nodes of a subtree stand follows from its number of references, so subtrees are built by threads
+ * that know nothing of each other (subtree.h). The top, until there are subtrees enough for all, is made
+ * level by level: the references of all its groups are dealt in chunks, which are binned, and then parted
+ * into the other of two rows, by whichever thread comes first. Which references go to which side depends on
+ * them alone (split.h), so the tree is that of one thread. */
+#include "accel/tree/subtree.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 
-typedef struct Builder {
-    RtTree *tree;
-    int bins; /* 0: medians */
-} Builder;
+#include <assert.h>
+#include <stdlib.h>
 
-static uint32_t divide(const Builder *b, RtTreeRef *refs, uint32_t count, int depth) {
-    uint32_t left = b->bins > 0 && depth < RT_TREE_MEDIAN_DEPTH ? rt_split_binned(refs, count, b->bins) : 0;
-    return left > 0 ? left : rt_split_median(refs, count);
-}
+enum {
+    SHARES = 16,     /* the top ends where groups are no more than such a part of what one thread has to do */
+    CHUNK = 1 << 13, /* references, at least */
+    LARGE = 4 * CHUNK /* fewer are for one thread */
+};
 
-static uint32_t build(const Builder *b, RtTreeRef *refs, uint32_t count, int depth) {
-    uint32_t node = rt_tree_take(b->tree);
-    if (count == 1) {
-        rt_tree_set_leaf(b->tree, node, refs[0].box, refs[0].id);
-        return node;
+static_assert(sizeof(RtTreeRef) <= sizeof(RtTreeNode), "references fit into the room of the nodes");
+
+typedef struct TopNode {
+    uint32_t node, left; /* references of the left child */
+} TopNode;
+
+/* Some references of a group that is being split. */
+typedef struct Chunk {
+    uint32_t group, first, count; /* refs[first..first + count) of the group's */
+    uint32_t to[2];               /* of the group's places, where those of either side go */
+    RtBox4 centers[2];            /* of either side */
+    RtBins bins;
+} Chunk;
+
+typedef struct Top {
+    const RtSubtreeBuilder *b;
+    const RtBox *boxes;
+    RtTreeRef *rows[2]; /* [count] the references, in turns; the second are the nodes, before there are any */
+    uint32_t count, row, limit, chunk_size;
+    RtRefGroup *groups, *next, *done; /* of this level, of the next, and what is left to one thread each */
+    RtSplit *splits;                  /* [open] of the groups of this level */
+    Chunk *chunks;
+    TopNode *nodes; /* parents before their children */
+    uint32_t open, next_count, done_count, chunk_count, node_count;
+} Top;
+
+/* Deals the references of all open groups. */
+static void deal(Top *top) {
+    top->chunk_count = 0;
+    for (uint32_t g = 0; g < top->open; g++) {
+        for (uint32_t first = 0; first < top->groups[g].count; first += top->chunk_size) {
+            uint32_t rest = top->groups[g].count - first;
+            Chunk *chunk = &top->chunks[top->chunk_count++];
+            chunk->group = g;
+            chunk->first = first;
+            chunk->count = rest < top->chunk_size ? rest : top->chunk_size;
+        }
     }
-    uint32_t left = divide(b, refs, count, depth);
-    uint32_t first = build(b, refs, left, depth + 1);
-    rt_tree_set_union(b->tree, node, first, build(b, refs + left, count - left, depth + 1));
-    return node;
 }
 
-RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, RtError *error) {
+static RtStatus make_refs(void *context, size_t item, int thread, RtError *error) {
+    Top *top = context;
+    Chunk *chunk = &top->chunks[item];
+    RtTreeRef *refs = top->rows[0] + chunk->first;
+    (void)thread;
+    (void)error;
+    for (uint32_t i = 0; i < chunk->count; i++)
+        refs[i] = (RtTreeRef){top->boxes[chunk->first + i], chunk->first + i};
+    chunk->centers[0] = rt_refs_centers(refs, chunk->count);
+    return RT_OK;
+}
+
+static RtStatus fill_chunk(void *context, size_t item, int thread, RtError *error) {
+    Top *top = context;
+    Chunk *chunk = &top->chunks[item];
+    const RtRefGroup *group = &top->groups[chunk->group];
+    (void)thread;
+    (void)error;
+    rt_bins_init(&chunk->bins, (uint32_t)top->b->bins, group->centers);
+    rt_bins_add(&chunk->bins, group->refs + chunk->first, chunk->count);
+    return RT_OK;
+}
+
+/* Splits the groups by the bins of all their chunks, which learn where theirs go. */
+static void choose_splits(Top *top) {
+    for (uint32_t c = 0, end; c < top->chunk_count; c = end) {
+        uint32_t g = top->chunks[c].group;
+        RtBins all = top->chunks[c].bins;
+        for (end = c + 1; end < top->chunk_count && top->chunks[end].group == g; end++)
+            rt_bins_merge(&all, &top->chunks[end].bins);
+        RtSplit split = top->splits[g] = rt_bins_split(&all, top->groups[g].count);
+        uint32_t to[2] = {0, split.left};
+        for (; c < end; c++) {
+            Chunk *chunk = &top->chunks[c];
+            uint32_t left = 0;
+            for (uint32_t i = 0; i < split.bin; i++) left += chunk->bins.bins[split.axis][i].number;
+            for (int s = 0; s < 2; s++) chunk->to[s] = to[s];
+            to[0] += left;
+            to[1] += chunk->count - left;
+        }
+    }
+}
+
+static RtStatus part_chunk(void *context, size_t item, int thread, RtError *error) {
+    Top *top = context;
+    Chunk *chunk = &top->chunks[item];
+    const RtRefGroup *group = &top->groups[chunk->group];
+    const RtTreeRef *from = group->refs + chunk->first;
+    RtTreeRef *into = top->rows[1 - top->row] + (group->refs - top->rows[top->row]);
+    RtSide side = rt_bins_side(&chunk->bins, &top->splits[chunk->group]);
+    uint32_t to[2] = {chunk->to[0], chunk->to[1]};
+    (void)thread;
+    (void)error;
+    if (!(top->splits[chunk->group].cost < INFINITY)) return RT_OK;
+    chunk->centers[0] = chunk->centers[1] = rt_box4_empty();
+    for (uint32_t i = 0; i < chunk->count; i++) {
+        RtFloat4 center = rt_box4_center(rt_box4_load(&from[i].box));
+        uint32_t s = rt_side_of(&side, center);
+        chunk->centers[s] = rt_box4_add_point(chunk->centers[s], center);
+        into[to[s]++] = from[i];
+    }
+    return RT_OK;
+}
+
+/* A group is open while it is large and can be split by bins. */
+static void add_group(Top *top, RtRefGroup group) {
+    bool large = group.count > top->limit && group.depth < RT_TREE_MEDIAN_DEPTH;
+    if (large)
+        top->next[top->next_count++] = group;
+    else
+        top->done[top->done_count++] = group;
+}
+
+/* The sides of what was split are the groups of the next level. */
+static void descend(Top *top) {
+    RtTreeRef *into = top->rows[1 - top->row], *from = top->rows[top->row];
+    top->next_count = 0;
+    for (uint32_t c = 0; c < top->chunk_count;) {
+        uint32_t g = top->chunks[c].group;
+        const RtRefGroup *group = &top->groups[g];
+        const RtSplit *split = &top->splits[g];
+        RtBox4 centers[2] = {rt_box4_empty(), rt_box4_empty()};
+        for (; c < top->chunk_count && top->chunks[c].group == g; c++) {
+            for (int s = 0; s < 2; s++) centers[s] = rt_box4_union(centers[s], top->chunks[c].centers[s]);
+        }
+        if (!(split->cost < INFINITY)) {
+            top->done[top->done_count++] = *group;
+            continue;
+        }
+        RtTreeRef *refs = into + (group->refs - from);
+        top->nodes[top->node_count++] = (TopNode){group->node, split->left};
+        add_group(top, (RtRefGroup){refs, split->left, group->node + 1, group->depth + 1, centers[0]});
+        add_group(top, (RtRefGroup){refs + split->left, group->count - split->left,
+                                    group->node + 2 * split->left, group->depth + 1, centers[1]});
+    }
+    RtRefGroup *kept = top->groups;
+    top->groups = top->next;
+    top->next = kept;
+    top->open = top->next_count;
+    top->row = 1 - top->row;
+}
+
+/* A level's groups are in the row of its turn; the nodes go where the second one is. */
+static RtStatus move_back(void *context, size_t item, int thread, RtError *error) {
+    Top *top = context;
+    RtRefGroup *group = &top->done[item];
+    (void)thread;
+    (void)error;
+    if (group->depth % 2 == 0) return RT_OK;
+    RtTreeRef *refs = top->rows[0] + (group->refs - top->rows[1]);
+    memcpy(refs, group->refs, group->count * sizeof(RtTreeRef));
+    group->refs = refs;
+    return RT_OK;
+}
+
+static RtStatus build_group(void *context, size_t item, int thread, RtError *error) {
+    Top *top = context;
+    (void)thread;
+    (void)error;
+    rt_subtree_build(top->b, top->done[item]);
+    return RT_OK;
+}
+
+/* ---- all of it ---- */
+
+static int larger_first(const void *a, const void *b) {
+    const RtRefGroup *x = a, *y = b;
+    if (x->count != y->count) return x->count > y->count ? -1 : 1;
+    return x->node < y->node ? -1 : x->node > y->node;
+}
+
+static RtStatus build_top(Top *top, int threads, RtError *error) {
+    top->groups[0] = (RtRefGroup){top->rows[0], top->count, 0, 0, rt_box4_empty()};
+    top->open = 1;
+    deal(top);
+    RT_TRY(rt_parallel_for(top->chunk_count, threads, make_refs, top, error));
+    for (uint32_t c = 0; c < top->chunk_count; c++)
+        top->groups[0].centers = rt_box4_union(top->groups[0].centers, top->chunks[c].centers[0]);
+    if (top->limit >= top->count) {
+        top->done[top->done_count++] = top->groups[0];
+        top->open = 0;
+    }
+    while (top->open > 0) {
+        deal(top);
+        RT_TRY(rt_parallel_for(top->chunk_count, threads, fill_chunk, top, error));
+        choose_splits(top);
+        RT_TRY(rt_parallel_for(top->chunk_count, threads, part_chunk, top, error));
+        descend(top);
+    }
+    qsort(top->done, top->done_count, sizeof(RtRefGroup), larger_first);
+    RT_TRY(rt_parallel_for(top->done_count, threads, move_back, top, error));
+    RT_TRY(rt_parallel_for(top->done_count, threads, build_group, top, error));
+    const RtTreeNode *nodes = top->b->tree->nodes;
+    for (uint32_t i = top->node_count; i-- > 0;) {
+        uint32_t node = top->nodes[i].node, left = top->nodes[i].left;
+        RtBox4 box[2] = {rt_box4_load(&nodes[node + 1].box), rt_box4_load(&nodes[node + 2 * left].box)};
+        rt_subtree_unite(top->b, node, left, box);
+    }
+    return RT_OK;
+}
+
+static bool allocate(Top *top) {
+    size_t open = top->count / top->limit + 1, nodes = open * RT_TREE_MEDIAN_DEPTH;
+    top->rows[0] = rt_alloc_unset(top->count, sizeof(RtTreeRef));
+    top->groups = rt_alloc(2 * open, sizeof(RtRefGroup));
+    top->next = rt_alloc(2 * open, sizeof(RtRefGroup));
+    top->done = rt_alloc(nodes + 1, sizeof(RtRefGroup));
+    top->splits = rt_alloc(open, sizeof(RtSplit));
+    top->chunks = rt_alloc_unset(open + top->count / top->chunk_size + 1, sizeof(Chunk));
+    top->nodes = rt_alloc(nodes, sizeof(TopNode));
+    return top->rows[0] && top->groups && top->next && top->done && top->splits && top->chunks && top->nodes;
+}
+
+static void clear(Top *top) {
+    rt_free(top->rows[0]);
+    rt_free(top->groups);
+    rt_free(top->next);
+    rt_free(top->done);
+    rt_free(top->splits);
+    rt_free(top->chunks);
+    rt_free(top->nodes);
+}
+
+RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, int threads,
+                         RtError *error) {
     RT_TRY(rt_tree_init(tree, count, error));
-    RtTreeRef *refs = rt_refs_new(boxes, count);
-    if (refs) {
-        Builder builder = {tree, bins};
-        tree->root = build(&builder, refs, count, 0);
-        rt_free(refs);
-        return RT_OK;
-    }
-    rt_tree_clear(tree);
-    return rt_fail_memory(error, "a tree from the top", count * sizeof(RtTreeRef));
+    uint32_t shares = SHARES * (uint32_t)rt_thread_count(threads);
+    bool one = shares == SHARES || bins == 0 || count < LARGE;
+    RtSubtreeBuilder builder = {tree, bins};
+    Top top = {.b = &builder, .boxes = boxes, .count = count};
+    top.limit = one ? count : count / shares > CHUNK ? count / shares : CHUNK;
+    top.chunk_size = top.limit;
+    bool enough = allocate(&top);
+    top.rows[1] = (RtTreeRef *)tree->nodes;
+    tree->used = tree->capacity;
+    RtStatus status = enough ? build_top(&top, one ? 1 : threads, error)
+                             : rt_fail_memory(error, "a tree from the top", count * sizeof(RtTreeRef));
+    clear(&top);
+    if (status != RT_OK) rt_tree_clear(tree);
+    return status;
 }

@@ -10,7 +10,7 @@
 RtStatus rt_tree_init(RtTree *tree, uint32_t most, RtError *error) {
     assert(most > 0 && most <= UINT32_MAX / 2);
     *tree = (RtTree){.capacity = 2 * most - 1};
-    tree->nodes = rt_alloc(tree->capacity, sizeof(RtTreeNode));
+    tree->nodes = rt_alloc_unset(tree->capacity, sizeof(RtTreeNode));
     if (tree->nodes) return RT_OK;
     return rt_fail_memory(error, "a tree of references", tree->capacity * sizeof(RtTreeNode));
 }

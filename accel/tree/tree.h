@@ -103,8 +103,11 @@ RtStatus rt_tree_insertion(RtTree *tree, const RtBox *boxes, uint32_t count, con
                            RtError *error);
 
 /* From the top: halves by number along the longest axis of centres (Rubin & Whitted 1980, whose hierarchies
- * were made by hand; bins = 0), or by the surface area heuristic in `bins` bins (Wald 2007). */
-RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, RtError *error);
+ * were made by hand; bins = 0), or by the surface area heuristic in `bins` bins (Wald 2007). A subtree of n
+ * references is a run of 2 n - 1 nodes: its root, the left subtree, the right one. The same tree on any
+ * number of `threads` (0 = all processors). */
+RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, int threads,
+                         RtError *error);
 
 /* From the top by the surface area heuristic, all places between centres tried (MacDonald & Booth 1990). */
 RtStatus rt_tree_sweep(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);

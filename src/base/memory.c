@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 static _Atomic uint64_t fail_countdown;
@@ -18,15 +19,31 @@ static bool told_to_fail(void) {
     return false;
 }
 
-void *rt_alloc(size_t count, size_t size) {
-    if (size != 0 && count > (SIZE_MAX - RT_CACHE_LINE) / size) return NULL;
+/* Pages of this size are asked for from blocks of LARGE_BLOCK bytes on. */
+enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 2 * LARGE_PAGE };
+
+/* `count` elements of `size` bytes on a boundary; to *padded their bytes and what follows up to the next. */
+static void *allocate(size_t count, size_t size, size_t boundary, size_t *padded) {
+    if (size != 0 && count > (SIZE_MAX - boundary) / size) return NULL;
     if (told_to_fail()) return NULL;
-    size_t bytes = count * size;
-    size_t padded = (bytes + RT_CACHE_LINE) / RT_CACHE_LINE * RT_CACHE_LINE;
-    void *block = aligned_alloc(RT_CACHE_LINE, padded);
-    if (!block) return NULL;
-    memset(block, 0, padded);
-    atomic_fetch_add(&live_blocks, 1);
+    *padded = (count * size + boundary) / boundary * boundary;
+    void *block = aligned_alloc(boundary, *padded);
+    if (block) atomic_fetch_add(&live_blocks, 1);
+    return block;
+}
+
+void *rt_alloc(size_t count, size_t size) {
+    size_t padded;
+    void *block = allocate(count, size, RT_CACHE_LINE, &padded);
+    if (block) memset(block, 0, padded);
+    return block;
+}
+
+void *rt_alloc_unset(size_t count, size_t size) {
+    size_t padded;
+    bool large = size != 0 && count >= LARGE_BLOCK / size;
+    void *block = allocate(count, size, large ? LARGE_PAGE : RT_CACHE_LINE, &padded);
+    if (block && large) madvise(block, padded, MADV_HUGEPAGE); /* does what it can: it may fail */
     return block;
 }
 

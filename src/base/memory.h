@@ -15,7 +15,11 @@
  * count of 0 gives a valid block that may be freed. Free with rt_free. */
 void *rt_alloc(size_t count, size_t size);
 
-/* Frees a block of rt_alloc; NULL is allowed. */
+/* The same, but nothing is set: for large arrays that are filled anyway, so that the threads that fill them
+ * touch them first. Large blocks are of large pages where the system gives them. */
+void *rt_alloc_unset(size_t count, size_t size);
+
+/* Frees a block of rt_alloc or rt_alloc_unset; NULL is allowed. */
 void rt_free(void *block);
 
 /* Makes room for `needed` elements in a growing array. `array` is the address of a pointer, of any type, to

@@ -10,7 +10,7 @@ enum { BINNED, MEDIANS, CHAIN, KINDS };
 static RtTree make_tree(const RtBox *boxes, uint32_t count, int kind) {
     RtTree tree;
     if (kind != CHAIN) {
-        assert_ok(rt_tree_topdown(&tree, boxes, count, kind == BINNED ? 16 : 0, error));
+        assert_ok(rt_tree_topdown(&tree, boxes, count, kind == BINNED ? 16 : 0, 1, error));
         return tree;
     }
     assert_ok(rt_tree_init_leaves(&tree, boxes, count, error));

@@ -107,7 +107,7 @@ RT_TEST(a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objec
         for (uint32_t count = 16; count <= 200; count += 184) {
             RtBox *boxes = make_boxes(count, seed);
             RtTree binned, sweep;
-            assert_ok(rt_tree_topdown(&binned, boxes, count, 16, error));
+            assert_ok(rt_tree_topdown(&binned, boxes, count, 16, 1, error));
             assert_ok(rt_tree_sweep(&sweep, boxes, count, error));
             double least = least_split_cost(boxes, count);
             assert_true(root_split_cost(&sweep) == least);
@@ -117,6 +117,36 @@ RT_TEST(a_sweep_finds_the_cheapest_of_all_splits_and_so_do_as_many_bins_as_objec
             rt_free(boxes);
         }
     }
+}
+
+/* Boxes with all that is hard: a group far off, many in one place, and the zeros of either sign. */
+static RtBox *make_hard_boxes(uint32_t count) {
+    RtBox *boxes = make_boxes(count, 3);
+    for (uint32_t i = 0; i < count; i += 7) boxes[i] = boxes[i % 3];
+    for (uint32_t i = 1; i < count; i += 7) {
+        boxes[i].lo.at[i % 3] = i % 2 ? -0.0f : 0.0f;
+        boxes[i].hi.at[i % 3] = i % 4 < 2 ? -0.0f : 0.0f;
+    }
+    for (uint32_t i = 2; i < count; i += 70) boxes[i].lo.x = boxes[i].hi.x = 1e15f * (float)i;
+    return boxes;
+}
+
+RT_TEST(a_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
+    enum { COUNT = 50000 };
+    RtBox *boxes = make_hard_boxes(COUNT);
+    RtTree one, other;
+    for (int bins = 0; bins <= 64; bins += 16) {
+        assert_ok(rt_tree_topdown(&one, boxes, COUNT, bins, 1, error));
+        assert_tree(&one);
+        for (int threads = 2; threads <= 5; threads++) {
+            assert_ok(rt_tree_topdown(&other, boxes, COUNT, bins, threads, error));
+            assert_int_equal(one.root, other.root);
+            assert_memory_equal(one.nodes, other.nodes, one.used * sizeof(RtTreeNode));
+            rt_tree_clear(&other);
+        }
+        rt_tree_clear(&one);
+    }
+    rt_free(boxes);
 }
 
 RT_TESTS(tree_orders, NULL, NULL)
