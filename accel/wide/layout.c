@@ -119,51 +119,61 @@ static void collect(const Layout *layout, uint32_t index, uint32_t *ids, uint32_
 
 static void put_triangle(const Layout *layout, RtWideTriangles *block, uint32_t lane, uint32_t id) {
     const RtGeometry *g = layout->geometry;
-    const RtTriangle *triangle = &g->triangles[rt_ref_index(g->objects[id])];
     for (int v = 0; v < 3; v++) {
-        for (int a = 0; a < 3; a++) block->v[v][a][lane] = triangle->v[v].at[a];
+        for (int a = 0; a < 3; a++) {
+            bool none = id == RT_NO_OBJECT;
+            block->v[v][a][lane] = none ? NAN : g->triangles[rt_ref_index(g->objects[id])].v[v].at[a];
+        }
     }
     block->id[lane] = id;
 }
 
 static void put_sphere(const Layout *layout, RtWideSpheres *block, uint32_t lane, uint32_t id) {
     const RtGeometry *g = layout->geometry;
-    const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
-    for (int a = 0; a < 3; a++) block->center[a][lane] = sphere->center.at[a];
-    block->radius[lane] = sphere->radius;
+    if (id != RT_NO_OBJECT) {
+        const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
+        for (int a = 0; a < 3; a++) block->center[a][lane] = sphere->center.at[a];
+        block->radius[lane] = sphere->radius;
+    }
     block->id[lane] = id;
+}
+
+/* What a leaf of these objects is, and its bytes. */
+static RtWideKind kind_of(const Layout *layout, const uint32_t *ids, uint32_t count, uint32_t *bytes) {
+    uint32_t shapes = 0, blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
+    for (uint32_t i = 0; i < count; i++) shapes |= 1u << rt_ref_shape(layout->geometry->objects[ids[i]]);
+    if (shapes == 1u << RT_SHAPE_TRIANGLE) {
+        *bytes = blocks * (uint32_t)sizeof(RtWideTriangles);
+        return RT_WIDE_TRIANGLES;
+    }
+    if (shapes == 1u << RT_SHAPE_SPHERE) {
+        *bytes = blocks * (uint32_t)sizeof(RtWideSpheres);
+        return RT_WIDE_SPHERES;
+    }
+    *bytes = sizeof(RtWideList);
+    return RT_WIDE_LIST;
 }
 
 static RtWideRef place_leaf(const Layout *layout, uint32_t index) {
     RtWideTree *self = layout->self;
-    uint32_t ids[RT_WIDE_MAX_LEAF], count = 0, shapes = 0;
+    uint32_t ids[RT_WIDE_MAX_LEAF], count = 0, bytes;
     collect(layout, index, ids, &count);
-    for (uint32_t i = 0; i < count; i++) shapes |= 1u << rt_ref_shape(layout->geometry->objects[ids[i]]);
+    RtWideKind kind = kind_of(layout, ids, count, &bytes);
+    uint32_t at = (uint32_t)self->bytes, lanes = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK * RT_WIDE_BLOCK;
+    char *place = self->arena + at;
     self->leaf_count++;
     self->reference_count += count;
-    uint32_t blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK, lanes = blocks * RT_WIDE_BLOCK;
-    if (shapes == 1u << RT_SHAPE_TRIANGLE) {
-        uint32_t first = self->triangle_count;
-        for (uint32_t i = 0; i < lanes; i++) {
-            put_triangle(layout, &self->triangles[first + i / RT_WIDE_BLOCK], i % RT_WIDE_BLOCK,
-                         ids[i < count ? i : count - 1]);
+    self->bytes += bytes;
+    for (uint32_t i = 0; i < lanes; i++) {
+        uint32_t id = i < count ? ids[i] : RT_NO_OBJECT, block = i / RT_WIDE_BLOCK, lane = i % RT_WIDE_BLOCK;
+        switch (kind) {
+        case RT_WIDE_TRIANGLES: put_triangle(layout, (RtWideTriangles *)place + block, lane, id); break;
+        case RT_WIDE_SPHERES: put_sphere(layout, (RtWideSpheres *)place + block, lane, id); break;
+        case RT_WIDE_LIST:
+        case RT_WIDE_NODE: ((RtWideList *)place)->id[i] = id; break;
         }
-        self->triangle_count += blocks;
-        return rt_wide_leaf(RT_WIDE_TRIANGLES, first, count);
     }
-    if (shapes == 1u << RT_SHAPE_SPHERE) {
-        uint32_t first = self->sphere_count;
-        for (uint32_t i = 0; i < lanes; i++) {
-            put_sphere(layout, &self->spheres[first + i / RT_WIDE_BLOCK], i % RT_WIDE_BLOCK,
-                       ids[i < count ? i : count - 1]);
-        }
-        self->sphere_count += blocks;
-        return rt_wide_leaf(RT_WIDE_SPHERES, first, count);
-    }
-    uint32_t first = self->id_count;
-    memcpy(self->ids + first, ids, count * sizeof *ids);
-    self->id_count += count;
-    return rt_wide_leaf(RT_WIDE_LIST, first, count);
+    return rt_wide_leaf(kind, at, count);
 }
 
 static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32_t depth);
@@ -171,7 +181,8 @@ static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32
 static RtWideRef place(const Layout *layout, uint32_t index, uint32_t depth) {
     if (depth > layout->self->depth) layout->self->depth = depth;
     if (layout->plans[index].choice[0] == LEAF) return place_leaf(layout, index);
-    uint32_t at = layout->self->node_count++;
+    uint32_t at = (uint32_t)layout->self->bytes;
+    layout->self->bytes += sizeof(RtWideNode);
     place_node(layout, at, index, depth);
     return at;
 }
@@ -193,7 +204,8 @@ static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32
         open_children(layout, child[0], plan->choice[0], children, &count);
         open_children(layout, child[1], RT_WIDE - plan->choice[0], children, &count);
     }
-    RtWideNode *node = &layout->self->nodes[at];
+    RtWideNode *node = (RtWideNode *)(layout->self->arena + at);
+    layout->self->node_count++;
     node->count = count;
     for (uint32_t i = 0; i < RT_WIDE; i++) {
         put_box(node, i, i < count ? layout->tree->nodes[children[i]].box : RT_EMPTY_BOX);
@@ -201,28 +213,22 @@ static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32
     }
 }
 
-/* What the arrays will hold, as the plans say. */
-static void count_all(const Layout *layout, uint32_t index, RtWideTree *sum) {
+/* The bytes that the arena takes, as the plans say, without the root's where that is a leaf. */
+static uint64_t count_bytes(const Layout *layout, uint32_t index) {
     if (layout->plans[index].choice[0] != LEAF) {
         uint32_t children[RT_WIDE], count = 0;
         const uint32_t *child = layout->tree->nodes[index].child;
         uint32_t left = layout->plans[index].choice[0];
+        uint64_t bytes = sizeof(RtWideNode);
         open_children(layout, child[0], left, children, &count);
         open_children(layout, child[1], RT_WIDE - left, children, &count);
-        sum->node_count++;
-        for (uint32_t i = 0; i < count; i++) count_all(layout, children[i], sum);
-        return;
+        for (uint32_t i = 0; i < count; i++) bytes += count_bytes(layout, children[i]);
+        return bytes;
     }
-    uint32_t ids[RT_WIDE_MAX_LEAF], count = 0, shapes = 0;
+    uint32_t ids[RT_WIDE_MAX_LEAF], count = 0, bytes;
     collect(layout, index, ids, &count);
-    for (uint32_t i = 0; i < count; i++) shapes |= 1u << rt_ref_shape(layout->geometry->objects[ids[i]]);
-    uint32_t blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
-    if (shapes == 1u << RT_SHAPE_TRIANGLE)
-        sum->triangle_count += blocks;
-    else if (shapes == 1u << RT_SHAPE_SPHERE)
-        sum->sphere_count += blocks;
-    else
-        sum->id_count += count;
+    kind_of(layout, ids, count, &bytes);
+    return bytes;
 }
 
 RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
@@ -233,33 +239,21 @@ RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geome
     if (!layout.plans) return rt_fail_memory(error, "the plan of a hierarchy", tree->used * sizeof(Plan));
     Weight whole = weigh(&layout, tree->root);
     double area = rt_box_half_area(tree->nodes[tree->root].box);
-    RtWideTree sum = {0};
-    count_all(&layout, tree->root, &sum);
-    if (sum.node_count == 0) sum.node_count = 1;
-    self->nodes = rt_alloc(sum.node_count, sizeof *self->nodes);
-    self->triangles = rt_alloc(sum.triangle_count, sizeof *self->triangles);
-    self->spheres = rt_alloc(sum.sphere_count, sizeof *self->spheres);
-    self->ids = rt_alloc(sum.id_count, sizeof *self->ids);
-    bool enough = self->nodes && self->triangles && self->spheres && self->ids;
+    uint64_t bytes = sizeof(RtWideNode) + count_bytes(&layout, tree->root);
+    if (bytes > UINT32_MAX - 512) {
+        rt_free(layout.plans);
+        return rt_fail(error, RT_BAD_INPUT, "too large");
+    }
+    self->arena = how->huge_pages ? rt_alloc_unset(bytes, 1) : rt_alloc(bytes, 1);
     self->divided = tree->divided;
     self->cost = area > 0 ? whole.cost[0] / area : NAN;
-    self->node_count = 1;
-    if (enough) place_node(&layout, 0, tree->root, 0);
+    self->bytes = sizeof(RtWideNode);
+    if (self->arena) place_node(&layout, 0, tree->root, 0);
     rt_free(layout.plans);
-    if (enough) return RT_OK;
-    rt_wide_clear(self);
-    return rt_fail_memory(error, "a hierarchy", rt_wide_bytes(&sum));
+    return self->arena ? RT_OK : rt_fail_memory(error, "a hierarchy", bytes);
 }
 
 void rt_wide_clear(RtWideTree *self) {
-    rt_free(self->nodes);
-    rt_free(self->triangles);
-    rt_free(self->spheres);
-    rt_free(self->ids);
+    rt_free(self->arena);
     *self = (RtWideTree){0};
-}
-
-uint64_t rt_wide_bytes(const RtWideTree *self) {
-    return self->node_count * sizeof *self->nodes + self->triangle_count * sizeof *self->triangles +
-           self->sphere_count * sizeof *self->spheres + self->id_count * sizeof *self->ids;
 }

@@ -12,9 +12,11 @@ typedef enum Build { BINNED, SWEEP, LBVH, PLOC, SPATIAL } Build;
     X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("4", 1, RT_WIDE_MAX_LEAF, "1|16"), "most", "measured")    \
     X(PARAM_BLOCK_COST, "block_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"), "cost of a block", "measured")     \
     X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"), "rounds", "0")                          \
-    X(PARAM_IN_FLIGHT, "in_flight", RT_INT("16", 1, RT_WIDE_MAX_IN_FLIGHT, "1|3|64"), "rays", "measured")    \
+    X(PARAM_IN_FLIGHT, "in_flight", RT_INT("32", 1, RT_WIDE_MAX_IN_FLIGHT, "1|3|64"), "rays", "measured")    \
     X(PARAM_ORDER, "order", RT_FLAG("on"), "near first", "this")                                             \
     X(PARAM_PREFETCH, "prefetch", RT_FLAG("on"), "near first", "this")                                       \
+    X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "near first", "this")                                       \
+    X(PARAM_PACKETS, "packets", RT_FLAG("on"), "near first", "this")                                       \
     X(PARAM_ISA, "isa", RT_CHOICE("best", "best|portable|avx2|avx512"), "how", "this")
 
 enum { PARAMS(RT_PARAM_INDEX) };
@@ -43,7 +45,7 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     case PLOC: return rt_tree_ploc(tree, boxes, count, 21, 25, error);
     case SPATIAL: return rt_tree_spatial(tree, geometry, &how, error);
     }
-    return rt_tree_topdown(tree, boxes, count, (int)what->values[PARAM_BINS].i, error);
+    return rt_tree_topdown(tree, boxes, count, (int)what->values[PARAM_BINS].i, what->threads, error);
 }
 
 static RtStatus fill(RtWideTree *self, const RtBuild *what, RtError *error) {
@@ -52,7 +54,7 @@ static RtStatus fill(RtWideTree *self, const RtBuild *what, RtError *error) {
     if (geometry->object_count == 0) return RT_OK;
     RT_TRY(make_tree(&tree, what, error));
     RtStatus status = rt_tree_reinsert(&tree, (uint32_t)what->values[PARAM_REINSERTION].i, what->threads, error);
-    RtWideLayout how = {(uint32_t)what->values[PARAM_MAX_LEAF_SIZE].i, what->values[PARAM_BLOCK_COST].f, what->threads,
+    RtWideLayout how = {(uint32_t)what->values[PARAM_MAX_LEAF_SIZE].i, what->values[PARAM_BLOCK_COST].f, what->values[PARAM_HUGE_PAGES].flag, what->threads,
                         what->limit};
     if (status == RT_OK) status = rt_wide_lay_out(self, &tree, geometry, &how, error);
     rt_tree_clear(&tree);
@@ -67,6 +69,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     self->in_flight = (uint32_t)what->values[PARAM_IN_FLIGHT].i;
     self->order = what->values[PARAM_ORDER].flag;
     self->prefetch = what->values[PARAM_PREFETCH].flag;
+    self->packets = what->values[PARAM_PACKETS].flag;
     self->kernels = &rt_wide_avx512;
     if (what->values[PARAM_ISA].choice == 1) self->kernels = &rt_wide_portable;
     if (what->values[PARAM_ISA].choice == 2) self->kernels = &rt_wide_avx2;
@@ -90,14 +93,14 @@ static void occluded_counted(const RtAccel *a, const RtScratch *s, const RtRay *
 
 static size_t scratch_bytes(const RtAccel *accel) {
     (void)accel;
-    return (size_t)RT_WIDE_MAX_IN_FLIGHT * 6144;
+    return (size_t)RT_WIDE_MAX_IN_FLIGHT * 6144 + 32768;
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtWide *self = (const RtWide *)accel;
     const RtWideTree *t = self->nearest;
     *out = (RtDescription){RT_NO_PREDICTION};
-    out->bytes = rt_wide_bytes(t);
+    out->bytes = t->bytes;
     out->interior = t->node_count;
     out->leaves = t->leaf_count;
     out->references = t->reference_count;

@@ -19,37 +19,37 @@
 enum {
     RT_WIDE = 8,                       /* children of a node at most */
     RT_WIDE_BLOCK = 4,                 /* objects of a block at most */
-    RT_WIDE_MAX_LEAF = 16,             /* objects of a leaf at most */
+    RT_WIDE_MAX_LEAF = 8,              /* objects of a leaf at most */
     RT_WIDE_MAX_IN_FLIGHT = 64,        /* rays that are traced at once at most */
     RT_WIDE_STACK = RT_TREE_MAX_DEPTH * (RT_WIDE - 1) + 2 * RT_WIDE /* each level leaves seven, and a vector's slack */
 };
 
-/* A child: what it is in the two highest bits, then, of leaves, its number of objects less one in four, then
- * the index of a node, of the first block, or of the first id. */
+/* A child: where it is in the arena, in bytes, a multiple of 32; and in the bits that leaves free what it is
+ * and, of a leaf, its number of objects less one. The root is a node at 0. */
 typedef uint32_t RtWideRef;
 typedef enum RtWideKind { RT_WIDE_NODE, RT_WIDE_TRIANGLES, RT_WIDE_SPHERES, RT_WIDE_LIST } RtWideKind;
-#define RT_WIDE_INDEX_BITS 26
-#define RT_WIDE_MAX_INDEX  (UINT32_C(1) << RT_WIDE_INDEX_BITS)
+#define RT_WIDE_UNIT 32
 
-static inline RtWideRef rt_wide_leaf(RtWideKind kind, uint32_t first, uint32_t count) {
-    return (uint32_t)kind << 30 | (count - 1) << RT_WIDE_INDEX_BITS | first;
+static inline RtWideRef rt_wide_leaf(RtWideKind kind, uint32_t at, uint32_t count) {
+    return at | (count - 1) << 2 | (uint32_t)kind;
 }
 
 static inline RtWideKind rt_wide_kind(RtWideRef ref) {
-    return (RtWideKind)(ref >> 30);
+    return (RtWideKind)(ref & 3);
 }
 
-static inline uint32_t rt_wide_index(RtWideRef ref) {
-    return ref & (RT_WIDE_MAX_INDEX - 1);
+/* Where a node or a leaf begins. */
+static inline uint32_t rt_wide_place(RtWideRef ref) {
+    return ref & ~(uint32_t)(RT_WIDE_UNIT - 1);
 }
 
 /* Objects of a leaf. */
 static inline uint32_t rt_wide_count(RtWideRef ref) {
-    return (ref >> RT_WIDE_INDEX_BITS & 15) + 1;
+    return (ref >> 2 & 7) + 1;
 }
 
-/* No node and no leaf: under all that waits on a stack. */
-#define RT_WIDE_DONE UINT32_MAX
+/* No node and no leaf: a list where the root is. Under all that waits on a stack. */
+#define RT_WIDE_DONE ((RtWideRef)RT_WIDE_LIST)
 
 typedef struct RtWideNode {
     float plane[6][RT_WIDE]; /* lo x, hi x, lo y, hi y, lo z, hi z */
@@ -60,6 +60,7 @@ typedef struct RtWideNode {
 
 _Static_assert(sizeof(RtWideNode) == 256, "a node is four cache lines");
 
+/* Lanes without a triangle have vertices that are not numbers, which no test lets pass. */
 typedef struct RtWideTriangles {
     float v[3][3][RT_WIDE_BLOCK]; /* by vertex and axis */
     uint32_t id[RT_WIDE_BLOCK];
@@ -69,19 +70,29 @@ typedef struct RtWideSpheres {
     float center[3][RT_WIDE_BLOCK];
     float radius[RT_WIDE_BLOCK];
     uint32_t id[RT_WIDE_BLOCK];
+    uint32_t unused[12];
 } RtWideSpheres;
+
+typedef struct RtWideList {
+    uint32_t id[RT_WIDE_MAX_LEAF];
+} RtWideList;
 
 /* One hierarchy. */
 typedef struct RtWideTree {
-    RtWideNode *nodes;
-    RtWideTriangles *triangles;
-    RtWideSpheres *spheres;
-    uint32_t *ids;
-    uint32_t node_count, triangle_count, sphere_count, id_count; /* of blocks, where there are blocks */
-    uint32_t leaf_count, reference_count, depth;
+    char *arena;    /* nodes and leaves, as RtWideRef says */
+    uint64_t bytes; /* of it; 0 without objects */
+    uint32_t node_count, leaf_count, reference_count, depth;
     bool divided; /* objects may be in several leaves; rays need be thick (accel/surface.h) */
     double cost;  /* expected, in visits of nodes, of a line through the root's box */
 } RtWideTree;
+
+static inline const RtWideNode *rt_wide_node(const RtWideTree *tree, RtWideRef ref) {
+    return (const RtWideNode *)(const void *)(tree->arena + ref);
+}
+
+static inline const void *rt_wide_leaf_at(const RtWideTree *tree, RtWideRef ref) {
+    return tree->arena + rt_wide_place(ref);
+}
 
 /* The kernels for one instruction set. */
 typedef struct RtWideKernels {
@@ -106,6 +117,7 @@ typedef struct RtWide {
 typedef struct RtWideLayout {
     uint32_t leaf_limit;  /* objects of a leaf */
     double block_cost;    /* of testing a block, or an object of a list, in visits of nodes */
+    bool huge_pages;
     int threads;
     uint64_t limit; /* bytes */
 } RtWideLayout;
@@ -114,7 +126,6 @@ typedef struct RtWideLayout {
 RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
                          RtError *error);
 void rt_wide_clear(RtWideTree *self);
-uint64_t rt_wide_bytes(const RtWideTree *self);
 
 size_t rt_wide_scratch_bytes(const RtAccel *accel);
 

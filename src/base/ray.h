@@ -28,9 +28,11 @@
 #define RT_BASE_RAY_H
 
 #include "base/box.h"
+#include "base/four.h"
 #include "base/status.h"
 
 #include <float.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* X(CONSTANT, name, meaning) */
@@ -84,9 +86,9 @@ typedef struct RtPreparedRay {
     struct RtCrossing *room; /* what hit functions write to (rt_hit_ray); NULL: for boxes alone */
     RtVec3 org, dir;
     float tmin, tmax;              /* tmax finite: a hit at infinity is none */
-    float inv[3];                  /* 1 / dir, possibly infinite */
-    float org_near[3], org_far[3]; /* origins moved by the thickness */
-    uint32_t negative[3];          /* 1 where dir has its sign bit set, -0 included */
+    float inv[4];                  /* 1 / dir, possibly infinite; here and below x, y, z and one more for vectors */
+    float org_near[4], org_far[4]; /* origins moved by the thickness */
+    uint32_t negative[4];          /* 1 where dir has its sign bit set, -0 included */
     int kx, ky, kz;                /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
     float shear_x, shear_y;        /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
 } RtPreparedRay;
@@ -139,21 +141,27 @@ static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
  * `room` is for hit functions, and may be NULL where none are asked (rt_hit_ray in shape/geometry.h). */
 static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
                                      struct RtCrossing *room) {
-    const float *dir = ray->dir.at;
+    /* A ray is org, tmin, dir, tmax, and what follows. */
+    RtFour org = rt_four(ray), dir = rt_four((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
+    RtFour to_lo = rt_four_abs(rt_four_lo(scene_box) - org), to_hi = rt_four_abs(rt_four_hi(scene_box) - org);
+    RtFourBits sign = rt_four_sign(dir), negative = sign < 0;
+    float thickness = rt_four_most(rt_four_max(to_lo, to_hi)) * 0x1p-20f;
+    RtFour shift = (RtFour)((RtFourBits)(thickness + rt_four_abs(org) * 0x1p-23f) ^ sign);
+    RtFour near = org + shift, far = org - shift;
+    negative &= 1;
     p->original = ray;
     p->room = room;
     p->org = ray->org;
     p->dir = ray->dir;
-    for (int a = 0; a < 3; a++) {
-        p->inv[a] = 1 / dir[a];
-        p->negative[a] = signbit(dir[a]) ? 1 : 0;
-    }
-    rt_ray_thicken(p, scene_box);
+    memcpy(p->inv, &inv, sizeof p->inv);
+    memcpy(p->org_near, &near, sizeof p->org_near);
+    memcpy(p->org_far, &far, sizeof p->org_far);
+    memcpy(p->negative, &negative, sizeof p->negative);
     p->tmin = ray->tmin;
     p->tmax = rt_minf(ray->tmax, FLT_MAX);
     p->kz = rt_major_axis(ray->dir);
-    p->kx = p->kz == 2 ? 0 : p->kz + 1;
-    p->ky = p->kx == 2 ? 0 : p->kx + 1;
+    p->kx = 9 >> 2 * p->kz & 3; /* the axis after it: 1, 2, 0 */
+    p->ky = 9 >> 2 * p->kx & 3;
     p->shear_x = p->dir.at[p->kx] * p->inv[p->kz];
     p->shear_y = p->dir.at[p->ky] * p->inv[p->kz];
 }
@@ -186,32 +194,43 @@ static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float 
     return near <= far;
 }
 
-/* The interval [*near, *far] of t in which the ray is within an object's box `own`, by the thickness of that
- * box alone; none where *near > *far. */
-static inline void rt_box_own_span(const RtBox *own, const RtPreparedRay *ray, float *near, float *far) {
-    const RtVec3 planes[2] = {own->lo, own->hi};
-    float thickness = rt_thickness(ray->org, own);
+/* The interval [*near, *far] of t in which the ray is within an object's box, from `lo` to `hi`, by the
+ * thickness of that box alone; none where *near > *far. */
+static inline void rt_four_own_span(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *near, float *far) {
+    RtFour org = rt_four(&ray->org), inv = rt_four(ray->inv); /* and what follows org */
+    RtFourBits sign = rt_four_sign(rt_four(&ray->dir));
+    RtFour farthest = rt_four_max(rt_four_abs(lo - org), rt_four_abs(hi - org));
+    RtFour outward = rt_four_most(farthest) * 0x1p-20f + rt_four_abs(org) * 0x1p-23f;
+    RtFour shift = (RtFour)((RtFourBits)outward ^ sign);
+    RtFour first = (rt_four_pick(sign, lo, hi) - (org + shift)) * inv;
+    RtFour second = (rt_four_pick(sign, hi, lo) - (org - shift)) * inv;
     *near = -INFINITY, *far = INFINITY;
     for (int a = 0; a < 3; a++) {
-        float outward = rt_shift(thickness, ray->org.at[a]);
-        float shift = ray->negative[a] ? -outward : outward;
-        float first = (planes[ray->negative[a]].at[a] - (ray->org.at[a] + shift)) * ray->inv[a];
-        float second = (planes[1 - ray->negative[a]].at[a] - (ray->org.at[a] - shift)) * ray->inv[a];
-        *near = rt_maxf(first, *near);
-        *far = rt_minf(second, *far);
+        *near = rt_maxf(first[a], *near);
+        *far = rt_minf(second[a], *far);
     }
 }
 
-/* What makes a candidate t a hit on an object whose own box is `own`: the thick ray meets the box, t is
- * brought into [enter, leave] (it moves by rounding only), and then lies in [tmin, tmax]. NaN is refused. */
-static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, float *t) {
+/* What makes a candidate t a hit on an object whose own box is from `lo` to `hi`: the thick ray meets the
+ * box, t is brought into [enter, leave] (it moves by rounding only), and then lies in [tmin, tmax]. NaN is
+ * refused. */
+static inline bool rt_four_admit(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *t) {
     float near, far;
-    rt_box_own_span(own, ray, &near, &far);
+    rt_four_own_span(lo, hi, ray, &near, &far);
     if (!(near <= far)) return false;
     float clamped = *t < near ? near : *t > far ? far : *t;
     if (!(clamped >= ray->tmin && clamped <= ray->tmax)) return false;
     *t = clamped;
     return true;
+}
+
+/* The same for a box in memory. */
+static inline void rt_box_own_span(const RtBox *own, const RtPreparedRay *ray, float *near, float *far) {
+    rt_four_own_span(rt_four_lo(own), rt_four_hi(own), ray, near, far);
+}
+
+static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, float *t) {
+    return rt_four_admit(rt_four_lo(own), rt_four_hi(own), ray, t);
 }
 
 #endif

@@ -103,8 +103,10 @@ static inline bool rt_finite(RtVec3 a) {
 
 /* The axis along which |a| is largest; the lower axis wins a tie. */
 static inline int rt_major_axis(RtVec3 a) {
+    /* Without branches, which no one could predict. */
     float x = fabsf(a.x), y = fabsf(a.y), z = fabsf(a.z);
-    return x >= y ? (x >= z ? 0 : 2) : (y >= z ? 1 : 2);
+    int is_z = (z > x) & (z > y);
+    return 2 * is_z | ((y > x) & !is_z);
 }
 
 #endif

@@ -39,29 +39,44 @@ RtVec3d rt_triangle_normal(const RtTriangle *triangle);
 /* Barycentric weights of v[0], v[1], v[2] at `point` in the plane of the triangle; they sum to 1. */
 RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
 
-/* The t in [tmin, tmax] at which the ray meets the triangle; a ray in its plane misses it. */
-static inline bool rt_triangle_hit(const RtTriangle *triangle, const RtPreparedRay *ray, float *t) {
-    float x[3], y[3], z[3];
-    for (int i = 0; i < 3; i++) {
-        const float *v = triangle->v[i].at;
-        z[i] = v[ray->kz] - ray->org.at[ray->kz];
-        x[i] = v[ray->kx] - ray->org.at[ray->kx] - ray->shear_x * z[i];
-        y[i] = v[ray->ky] - ray->org.at[ray->ky] - ray->shear_y * z[i];
-    }
-    float fu = x[2] * y[1] - y[2] * x[1];
-    float fv = x[0] * y[2] - y[0] * x[2];
-    float fw = x[1] * y[0] - y[1] * x[0];
-    if ((fu < 0 || fv < 0 || fw < 0) && (fu > 0 || fv > 0 || fw > 0)) return false;
+/* A coordinate of each vertex. */
+static inline RtFour rt_triangle_along(const float *v, size_t vertex, size_t axis) {
+    v += axis;
+    return (RtFour){v[0], v[vertex], v[2 * vertex], v[2 * vertex]};
+}
+
+/* A vertex. */
+static inline RtFour rt_triangle_vertex(const float *v, size_t axis) {
+    return (RtFour){v[0], v[axis], v[2 * axis], v[2 * axis]};
+}
+
+/* The t in [tmin, tmax] at which the ray meets a triangle; a ray in its plane misses it. Coordinate a of vertex i is
+ * v[i * vertex + a * axis], so that a triangle among others, coordinate by coordinate, can be tested where it is. */
+static inline bool rt_triangle_hit_strided(const float *v, size_t vertex, size_t axis, const RtPreparedRay *ray,
+                                           float *t) {
+    const float *org = ray->org.at;
+    RtFour z = rt_triangle_along(v, vertex, (size_t)ray->kz * axis) - org[ray->kz];
+    RtFour x = rt_triangle_along(v, vertex, (size_t)ray->kx * axis) - org[ray->kx] - ray->shear_x * z;
+    RtFour y = rt_triangle_along(v, vertex, (size_t)ray->ky * axis) - org[ray->ky] - ray->shear_y * z;
+    RtFour x1 = __builtin_shufflevector(x, x, 1, 2, 0, 3), x2 = __builtin_shufflevector(x, x, 2, 0, 1, 3);
+    RtFour y1 = __builtin_shufflevector(y, y, 1, 2, 0, 3), y2 = __builtin_shufflevector(y, y, 2, 0, 1, 3);
+    RtFour edges = x2 * y1 - y2 * x1;
+    if (rt_four_any(edges < 0) && rt_four_any(edges > 0)) return false;
     double u = (double)x[2] * (double)y[1] - (double)y[2] * (double)x[1];
-    double v = (double)x[0] * (double)y[2] - (double)y[0] * (double)x[2];
-    double w = (double)x[1] * (double)y[0] - (double)y[1] * (double)x[0];
-    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
-    double determinant = u + v + w;
+    double w1 = (double)x[0] * (double)y[2] - (double)y[0] * (double)x[2];
+    double w2 = (double)x[1] * (double)y[0] - (double)y[1] * (double)x[0];
+    if ((u < 0 || w1 < 0 || w2 < 0) && (u > 0 || w1 > 0 || w2 > 0)) return false;
+    double determinant = u + w1 + w2;
     if (determinant == 0) return false;
-    double depth = (u * (double)z[0] + v * (double)z[1] + w * (double)z[2]) / determinant;
+    double depth = (u * (double)z[0] + w1 * (double)z[1] + w2 * (double)z[2]) / determinant;
     *t = (float)(depth / (double)ray->dir.at[ray->kz]);
-    RtBox own = rt_triangle_box(triangle);
-    return rt_box_admit(&own, ray, t);
+    RtFour a = rt_triangle_vertex(v, axis), b = rt_triangle_vertex(v + vertex, axis);
+    RtFour c = rt_triangle_vertex(v + 2 * vertex, axis);
+    return rt_four_admit(rt_four_min(rt_four_min(a, b), c), rt_four_max(rt_four_max(a, b), c), ray, t);
+}
+
+static inline bool rt_triangle_hit(const RtTriangle *triangle, const RtPreparedRay *ray, float *t) {
+    return rt_triangle_hit_strided(triangle->v[0].at, 3, 1, ray, t);
 }
 
 #endif

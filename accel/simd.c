@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "accel/wide/simd.h"
+#include "accel/simd.h"
 
 #if !defined(__AVX512VL__)
 const uint64_t rt_v8_lanes[256] = {
