@@ -70,7 +70,7 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
     case LBVH: return rt_tree_lbvh(tree, boxes, count, bits, error);
     case PLOC: return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, error);
-    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, error);
+    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, what->threads, error);
     }
     return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, what->threads, error);
 }

@@ -127,8 +127,10 @@ static inline double rt_tree_part_margin(const RtBox *scene) {
     return 0x1p-40 * rt_box_largest_coordinate(*scene);
 }
 
-/* From the top, where a plane that cuts objects may part them: Stich, Friedrich & Dietrich 2009. */
-RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtSpatial *how, RtError *error);
+/* From the top, where a plane that cuts objects may part them: Stich, Friedrich & Dietrich 2009. The same
+ * tree on any number of `threads` (0 = all processors). */
+RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtSpatial *how, int threads,
+                         RtError *error);
 
 /* ---- better trees ---- */
 
