@@ -68,8 +68,8 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     switch ((Build)values[PARAM_BUILD].choice) {
     case BINNED: break;
     case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
-    case LBVH: return rt_tree_lbvh(tree, boxes, count, bits, error);
-    case PLOC: return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, error);
+    case LBVH: return rt_tree_lbvh(tree, boxes, count, bits, what->threads, error);
+    case PLOC: return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, what->threads, error);
     case SPATIAL: return rt_tree_spatial(tree, geometry, &how, what->threads, error);
     }
     return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, what->threads, error);

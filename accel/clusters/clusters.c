@@ -67,7 +67,7 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     switch ((Method)values[PARAM_METHOD].choice) {
     case AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
     case PLOC:
-        return rt_tree_ploc(tree, boxes, count, RT_MAX_MORTON_BITS, (uint32_t)values[PARAM_RADIUS].i, error);
+        return rt_tree_ploc(tree, boxes, count, RT_MAX_MORTON_BITS, (uint32_t)values[PARAM_RADIUS].i, what->threads, error);
     case GOLDSMITH_SALMON: return rt_tree_insertion(tree, boxes, count, &order, error);
     case RUBIN_WHITTED: return rt_tree_topdown(tree, boxes, count, 0, what->threads, error);
     case SAH: break;
