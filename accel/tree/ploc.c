@@ -28,11 +28,6 @@ typedef struct Cluster {
     uint32_t node;
 } Cluster;
 
-typedef struct Nearest {
-    double distance;
-    uint32_t place; /* in the row */
-} Nearest;
-
 /* What a chunk leaves of its clusters, and how many unions it makes; then those of the chunks before. */
 typedef struct Left {
     uint32_t clusters, unions;
@@ -41,7 +36,8 @@ typedef struct Left {
 typedef struct Rounds {
     RtTree *tree;
     Cluster *row, *next; /* [count] */
-    Nearest *nearest;    /* [count] */
+    double *distance;    /* [count] to the nearest */
+    uint32_t *nearest;   /* [count] its place in the row */
     Left *left;          /* [chunks] */
     uint32_t count, radius;
 } Rounds;
@@ -55,26 +51,30 @@ static uint32_t chunk_end(const Rounds *r, size_t chunk) {
     return r->count - begin < CHUNK ? r->count : begin + CHUNK;
 }
 
-static inline void offer(Nearest *nearest, uint32_t from, uint32_t place, double distance) {
-    if (distance > nearest->distance) return;
-    if (distance == nearest->distance && (from ^ place) > (from ^ nearest->place)) return;
-    *nearest = (Nearest){distance, place};
+static inline void offer(const Rounds *r, uint32_t from, uint32_t place, double distance) {
+    double least = r->distance[from];
+    if (distance > least || (distance == least && (from ^ place) > (from ^ r->nearest[from]))) return;
+    r->distance[from] = distance;
+    r->nearest[from] = place;
 }
 
-/* Measures cluster i against first..last, which come after it, two at a time. Only those of begin..end - 1
- * are told. */
-static void measure(const Rounds *r, uint32_t i, uint32_t first, uint32_t last, uint32_t begin,
-                    uint32_t end) {
+/* Measures cluster i against first..last, two at a time, and tells it, or them, or both. Nearly always nobody
+ * is nearer than who is known. */
+static inline __attribute__((always_inline)) void measure(const Rounds *r, uint32_t i, uint32_t first,
+                                                          uint32_t last, bool tell_it, bool tell_them) {
     RtBox4 own = r->row[i].box;
-    Nearest unknown = {INFINITY, UINT32_MAX}, *nearest = i >= begin ? &r->nearest[i] : &unknown;
     for (uint32_t j = first; j <= last; j += 2) {
         uint32_t k = j < last ? j + 1 : j;
         RtDouble2 distances =
             rt_box4_half_areas(rt_box4_union(own, r->row[j].box), rt_box4_union(own, r->row[k].box));
-        offer(nearest, i, j, distances[0]);
-        offer(nearest, i, k, distances[1]);
-        if (j < end) offer(&r->nearest[j], j, i, distances[0]);
-        if (k < end) offer(&r->nearest[k], k, i, distances[1]);
+        double its = tell_it ? r->distance[i] : -1;
+        RtDouble2 known = {its, its};
+        if (tell_them) known = rt_max2(known, (RtDouble2){r->distance[j], r->distance[k]});
+        if (!rt_any_at_most2(distances, known)) continue;
+        if (tell_it) offer(r, i, j, distances[0]);
+        if (tell_it) offer(r, i, k, distances[1]);
+        if (tell_them) offer(r, j, i, distances[0]);
+        if (tell_them) offer(r, k, i, distances[1]);
     }
 }
 
@@ -83,23 +83,33 @@ static RtStatus find_nearest(void *context, size_t chunk, int thread, RtError *e
     uint32_t begin = chunk_begin(chunk), end = chunk_end(r, chunk);
     (void)thread;
     (void)error;
-    for (uint32_t i = begin; i < end; i++) r->nearest[i] = (Nearest){INFINITY, UINT32_MAX};
-    for (uint32_t i = begin > r->radius ? begin - r->radius : 0; i < end; i++) {
+    for (uint32_t i = begin; i < end; i++) {
+        r->distance[i] = INFINITY;
+        r->nearest[i] = UINT32_MAX;
+    }
+    /* Downward, so that everyone meets the near ones first, among whom the nearest is as a rule. */
+    for (uint32_t i = end, lowest = begin > r->radius ? begin - r->radius : 0; i-- > lowest;) {
         uint32_t last = r->count - 1 - i > r->radius ? i + r->radius : r->count - 1;
-        measure(r, i, i < begin ? begin : i + 1, i < begin && last >= end ? end - 1 : last, begin, end);
+        uint32_t last_here = last < end ? last : end - 1;
+        if (i < begin) {
+            measure(r, i, begin, last_here, false, true);
+        } else {
+            measure(r, i, i + 1, last_here, true, true);
+            measure(r, i, end, last, true, false);
+        }
     }
     return RT_OK;
 }
 
-static bool is_mutual(const Nearest *nearest, uint32_t i) {
-    return nearest[nearest[i].place].place == i;
+static bool is_mutual(const uint32_t *nearest, uint32_t i) {
+    return nearest[nearest[i]] == i;
 }
 
 /* Whoever's choice is still free gets it. */
-static void pair_more(Nearest *nearest, uint32_t count) {
+static void pair_more(uint32_t *nearest, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t other = nearest[i].place;
-        if (!is_mutual(nearest, i) && !is_mutual(nearest, other)) nearest[other].place = i;
+        uint32_t other = nearest[i];
+        if (!is_mutual(nearest, i) && !is_mutual(nearest, other)) nearest[other] = i;
     }
 }
 
@@ -109,7 +119,7 @@ static RtStatus count_left(void *context, size_t chunk, int thread, RtError *err
     (void)thread;
     (void)error;
     for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
-        bool mutual = is_mutual(r->nearest, i), first = r->nearest[i].place > i;
+        bool mutual = is_mutual(r->nearest, i), first = r->nearest[i] > i;
         left.clusters += !mutual || first;
         left.unions += mutual && first;
     }
@@ -124,7 +134,7 @@ static RtStatus unite_pairs(void *context, size_t chunk, int thread, RtError *er
     (void)thread;
     (void)error;
     for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
-        uint32_t other = r->nearest[i].place;
+        uint32_t other = r->nearest[i];
         bool mutual = is_mutual(r->nearest, i);
         if (mutual && other < i) continue;
         *to = r->row[i];
@@ -185,15 +195,17 @@ RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t
     Rounds r = {tree,
                 rt_alloc_unset(count, sizeof(Cluster)),
                 rt_alloc_unset(count, sizeof(Cluster)),
-                rt_alloc_unset(count, sizeof(Nearest)),
+                rt_alloc_unset(count, sizeof(double)),
+                rt_alloc_unset(count, sizeof(uint32_t)),
                 rt_alloc((size_t)count / CHUNK + 1, sizeof(Left)),
                 count,
                 radius};
-    bool enough = r.row && r.next && r.nearest && r.left;
+    bool enough = r.row && r.next && r.distance && r.nearest && r.left;
     RtStatus status = enough ? run_rounds(&r, threads, error)
                              : rt_fail_memory(error, "a row of clusters", (size_t)count * sizeof(Cluster));
     rt_free(r.row);
     rt_free(r.next);
+    rt_free(r.distance);
     rt_free(r.nearest);
     rt_free(r.left);
     if (status != RT_OK) rt_tree_clear(tree);
