@@ -68,9 +68,10 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     switch ((Build)values[PARAM_BUILD].choice) {
     case BINNED: break;
     case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
-    case LBVH: return rt_tree_lbvh(tree, boxes, count, bits, error);
-    case PLOC: return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, error);
-    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, error);
+    case LBVH: return rt_tree_lbvh(tree, boxes, count, bits, what->threads, error);
+    case PLOC:
+        return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, what->threads, error);
+    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, what->threads, error);
     }
     return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, what->threads, error);
 }
@@ -82,7 +83,7 @@ static RtStatus fill(RtHierarchy *hierarchy, const RtBuild *what, RtError *error
     RT_TRY(make_tree(&tree, what, error));
     uint32_t rounds = (uint32_t)what->values[PARAM_REINSERTION].i;
     RtStatus status = rt_tree_reinsert(&tree, rounds, what->threads, error);
-    if (status == RT_OK) status = rt_hierarchy_lay_out(hierarchy, &tree, error);
+    if (status == RT_OK) status = rt_hierarchy_lay_out(hierarchy, &tree, what->threads, error);
     rt_tree_clear(&tree);
     return status;
 }

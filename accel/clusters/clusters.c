@@ -67,7 +67,8 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     switch ((Method)values[PARAM_METHOD].choice) {
     case AGGLOMERATIVE: return rt_tree_agglomerative(tree, boxes, count, error);
     case PLOC:
-        return rt_tree_ploc(tree, boxes, count, RT_MAX_MORTON_BITS, (uint32_t)values[PARAM_RADIUS].i, error);
+        return rt_tree_ploc(tree, boxes, count, RT_MAX_MORTON_BITS, (uint32_t)values[PARAM_RADIUS].i,
+                            what->threads, error);
     case GOLDSMITH_SALMON: return rt_tree_insertion(tree, boxes, count, &order, error);
     case RUBIN_WHITTED: return rt_tree_topdown(tree, boxes, count, 0, what->threads, error);
     case SAH: break;
@@ -91,7 +92,7 @@ static RtStatus fill(RtClusters *self, const RtBuild *what, RtError *error) {
     RtTree tree;
     if (geometry->object_count > 0) {
         RT_TRY(make_tree(&tree, what, error));
-        RtStatus status = rt_hierarchy_lay_out(&self->hierarchy, &tree, error);
+        RtStatus status = rt_hierarchy_lay_out(&self->hierarchy, &tree, what->threads, error);
         rt_tree_clear(&tree);
         if (status != RT_OK) return status;
     }

@@ -6,6 +6,7 @@
 #include "accel/kd/kd.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 
 #include <float.h>
 #include <string.h>
@@ -16,21 +17,6 @@ const RtParam rt_kd_params[RT_KD_PARAM_COUNT] = {RT_KD_PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- what it takes ---- */
 
-/* Of the cells met at a depth: how many, entries in their lists, and shares; and of those that are leaves. */
-typedef struct Level {
-    uint64_t nodes, ids, leaf_ids;
-    double share, leaf_share;
-} Level;
-
-/* Bytes so far of the tree, and of the same tree cut off at any depth. Once it takes more than the limit
- * nothing is kept, only counted, and max_depth is lowered to where it seems to fit, as often as it has to
- * be. */
-typedef struct RtKdLedger {
-    uint64_t limit, bytes;
-    double estimate; /* bytes that the tree asked for would take; 0 while it fits */
-    Level levels[RT_KD_DEPTH_LIMIT + 1];
-} RtKdLedger;
-
 static uint64_t bytes_of(uint64_t nodes, uint64_t ids) {
     return nodes * sizeof(RtKdNode) + ids * sizeof(uint32_t);
 }
@@ -38,7 +24,7 @@ static uint64_t bytes_of(uint64_t nodes, uint64_t ids) {
 /* Of a tree that is cut off at `depth`: the bytes so far, and those in the end if what is still to come is
  * like what there is. */
 static uint64_t bytes_down_to(const RtKdLedger *ledger, uint32_t depth, double *estimate) {
-    const Level *levels = ledger->levels;
+    const RtKdLevel *levels = ledger->levels;
     uint64_t nodes = levels[depth].nodes, ids = levels[depth].ids;
     double share = levels[depth].share;
     for (uint32_t d = 0; d < depth; d++) {
@@ -52,7 +38,7 @@ static uint64_t bytes_down_to(const RtKdLedger *ledger, uint32_t depth, double *
 
 static void enter_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf) {
     RtKdLedger *ledger = b->ledger;
-    Level *level = &ledger->levels[cell->depth];
+    RtKdLevel *level = &ledger->levels[cell->depth];
     level->nodes++;
     level->ids += cell->ids.count;
     level->share += cell->share;
@@ -106,7 +92,7 @@ static RtStatus make_inner(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit
     return RT_OK;
 }
 
-static RtStatus divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
+RtStatus rt_kd_divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error) {
     const RtKd *kd = b->kd;
     if (cell->depth > kd->max_depth) return RT_OK; /* for it has been lowered */
     if (cell->ids.count <= kd->max_leaf_size || cell->depth == kd->max_depth)
@@ -144,18 +130,12 @@ static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
     return RT_OK;
 }
 
-static RtStatus build_tree(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
-    if (g->object_count >= RT_KD_OBJECTS) {
-        return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds fewer than %u objects, not %u", RT_KD_OBJECTS,
-                       g->object_count);
-    }
+static RtStatus build_on_one(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
     uint32_t asked = b->kd->max_depth;
-    b->sides = rt_alloc(g->object_count, 1);
-    if (!b->sides) return rt_fail_memory(error, "building a kd-tree", g->object_count);
     RT_TRY(make_root(b, g, error));
     while (b->pending_count > 0) {
         RtKdCell cell = b->pending[--b->pending_count];
-        RT_TRY(divide(b, &cell, error));
+        RT_TRY(rt_kd_divide(b, &cell, error));
     }
     if (b->ledger->estimate == 0) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
@@ -164,7 +144,42 @@ static RtStatus build_tree(RtKdBuilder *b, const RtGeometry *g, RtError *error) 
                    asked, b->ledger->estimate / 0x1p30, (double)b->ledger->limit / 0x1p30, b->kd->max_depth);
 }
 
-static void clear(RtKdBuilder *b) {
+static RtStatus build_on_several(RtKdBuilder *b, const RtGeometry *g, uint32_t most, int threads, bool *fits,
+                                 RtError *error) {
+    RT_TRY(make_root(b, g, error));
+    return rt_kd_build_subtrees(b, most, threads, fits, error);
+}
+
+/* Cells of one thread have no more than such a part of what a thread has to do, but SMALL at least. */
+enum { SHARES = 8, SMALL = 1 << 12 };
+
+/* On several threads; where that may take too much, all over on one, which knows what would fit. */
+static RtStatus build_tree(RtKd *kd, const RtGeometry *g, uint64_t limit, int threads, RtError *error) {
+    uint32_t shares = SHARES * (uint32_t)rt_thread_count(threads), most = g->object_count / shares;
+    bool several = shares > SHARES && most >= SMALL, fits = false;
+    RtKd empty = *kd;
+    RtStatus status = RT_OK;
+    if (g->object_count >= RT_KD_OBJECTS) {
+        return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds fewer than %u objects, not %u", RT_KD_OBJECTS,
+                       g->object_count);
+    }
+    for (; status == RT_OK && !fits; several = false) {
+        RtKdLedger ledger = {.limit = limit};
+        RtKdBuilder builder = {.kd = kd, .ledger = &ledger, .sides = rt_alloc(g->object_count, 1)};
+        rt_free(kd->nodes);
+        rt_free(kd->ids);
+        *kd = empty;
+        fits = !several;
+        status = !builder.sides ? rt_fail_memory(error, "building a kd-tree", g->object_count)
+                 : several      ? build_on_several(&builder, g, most, threads, &fits, error)
+                                : build_on_one(&builder, g, error);
+        rt_kd_clear(&builder);
+    }
+    return status;
+}
+
+void rt_kd_clear(RtKdBuilder *b) {
+    RtKdBuilder cleared = {.kd = b->kd, .ledger = b->ledger};
     for (int a = 0; a < 3; a++) rt_free(b->events[a]);
     for (int c = 0; c < 2; c++) {
         rt_free(b->cut_ids[c]);
@@ -174,6 +189,7 @@ static void clear(RtKdBuilder *b) {
     rt_free(b->sides);
     rt_free(b->fresh);
     rt_free(b->spare);
+    *b = cleared;
 }
 
 void rt_kd_destroy(RtAccel *accel) {
@@ -199,12 +215,9 @@ RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error) {
     kd->mailbox = values[RT_KD_MAILBOX].flag;
     kd->surfaces = values[RT_KD_OVERLAP].choice == OVERLAP_EXACT;
     if (g->object_count > 0) {
-        RtKdLedger ledger = {.limit = what->limit};
-        RtKdBuilder builder = {.kd = kd, .ledger = &ledger};
         kd->box = rt_box_widened(g->box, values[RT_KD_MARGIN].f);
         kd->served = rt_surface_rays(&g->box, &kd->box);
-        status = build_tree(&builder, g, error);
-        clear(&builder);
+        status = build_tree(kd, g, what->limit, what->threads, error);
     }
     return rt_accel_built(accel, status, out);
 }

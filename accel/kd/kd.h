@@ -144,7 +144,7 @@ typedef struct RtKdSplit {
  * one of objects and one of events for each axis, in the order in which they will be popped. */
 typedef struct RtKdBuilder {
     RtKd *kd;
-    struct RtKdLedger *ledger; /* see build.c */
+    struct RtKdLedger *ledger; /* borrowed */
     RtKdEvent *events[3];
     uint32_t *ids;
     uint32_t event_capacity[3], id_capacity, node_capacity, leaf_id_capacity;
@@ -157,6 +157,30 @@ typedef struct RtKdBuilder {
     RtKdEvent *fresh, *spare;
     uint32_t cut_id_capacity[2], cut_part_capacity[2], fresh_capacity, spare_capacity;
 } RtKdBuilder;
+
+/* Of the cells met at a depth: how many, entries in their lists, and shares; and of those that are leaves. */
+typedef struct RtKdLevel {
+    uint64_t nodes, ids, leaf_ids;
+    double share, leaf_share;
+} RtKdLevel;
+
+/* Bytes so far of the tree, and of the same tree cut off at any depth. Once it takes more than the limit
+ * nothing is kept, only counted, and max_depth is lowered to where it seems to fit, as often as it has to
+ * be. */
+typedef struct RtKdLedger {
+    uint64_t limit, bytes;
+    double estimate; /* bytes that the tree asked for would take; 0 while it fits */
+    RtKdLevel levels[RT_KD_DEPTH_LIMIT + 1];
+} RtKdLedger;
+
+/* build.c. Divides a cell, whose children wait on top of the pending ones, or makes it a leaf. */
+RtStatus rt_kd_divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error);
+void rt_kd_clear(RtKdBuilder *b);
+
+/* subtrees.c. Builds all below the root, which is pending, with cells of no more than `most` objects on all
+ * threads: the tree that one thread makes, node by node. *fits is false where it may take too much: then
+ * what there is is of no use. */
+RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *fits, RtError *error);
 
 /* events.c. The events of the parts of ids[0..count) in a cell along an axis, sorted, to out[0..2 * count);
  * gives their number. `spare`: as much room. */

@@ -4,34 +4,103 @@
 #include "accel/tree/hierarchy.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 
 #include <assert.h>
 
-typedef struct Layout {
-    RtHierarchy *self;
-    const RtTree *tree;
-    bool *leaf; /* [tree->used] by node of the tree: it becomes a leaf, unless it lies below one */
-} Layout;
+/* The top of the tree goes so far down; what hangs below is for one thread each. */
+enum { TOP_LEVELS = 9, MAX_PARTS = 1 << TOP_LEVELS };
 
 /* What a subtree holds, and what it costs to trace: area times object tests and visits of inner nodes. */
 typedef struct Weight {
     uint32_t references, leaves;
     double cost;
+    bool too_deep; /* it reaches below RT_TREE_MAX_DEPTH; the rest is not known then */
 } Weight;
 
-/* A subtree of few enough references becomes a leaf where that costs no more. */
-static Weight weigh(Layout *layout, uint32_t index) {
-    const RtTreeNode *node = &layout->tree->nodes[index];
-    double area = rt_box_half_area(node->box);
+/* Nodes and ids that are taken. */
+typedef struct Taken {
+    uint32_t nodes, ids;
+} Taken;
+
+/* A subtree below the top. */
+typedef struct Part {
+    uint32_t index, levels; /* its root; and how many more there may be below it */
+    Weight weight;
+    uint32_t node; /* where its root is placed; unset if it lies in a leaf */
+    Taken taken;   /* what is taken before it */
+    bool placed;
+} Part;
+
+typedef struct Layout {
+    RtHierarchy *self;
+    const RtTree *tree;
+    bool *leaf;  /* [tree->used] by node of the tree: it becomes a leaf, unless it lies below one */
+    Part *parts; /* [part_count] from left to right */
+    uint32_t part_count, next;
+} Layout;
+
+static Weight weight_of_leaf(Layout *layout, uint32_t index) {
     layout->leaf[index] = true;
-    if (rt_tree_is_leaf(layout->tree, index)) return (Weight){1, 1, area};
-    Weight left = weigh(layout, node->child[0]), right = weigh(layout, node->child[1]);
+    return (Weight){1, 1, rt_box_half_area(layout->tree->nodes[index].box), false};
+}
+
+/* A subtree of few enough references becomes a leaf where that costs no more. */
+static Weight weight_of_both(Layout *layout, uint32_t index, Weight left, Weight right) {
+    double area = rt_box_half_area(layout->tree->nodes[index].box);
     Weight inner = {left.references + right.references, left.leaves + right.leaves,
-                    layout->self->traversal_cost * area + left.cost + right.cost};
-    Weight leaf = {inner.references, 1, area * inner.references};
-    if (leaf.references <= layout->self->leaf_limit && leaf.cost <= inner.cost) return leaf;
-    layout->leaf[index] = false;
-    return inner;
+                    layout->self->traversal_cost * area + left.cost + right.cost,
+                    left.too_deep || right.too_deep};
+    Weight leaf = {inner.references, 1, area * inner.references, inner.too_deep};
+    bool better = leaf.references <= layout->self->leaf_limit && leaf.cost <= inner.cost;
+    layout->leaf[index] = better;
+    return better ? leaf : inner;
+}
+
+static Weight weigh(Layout *layout, uint32_t index, uint32_t levels) {
+    if (rt_tree_is_leaf(layout->tree, index)) return weight_of_leaf(layout, index);
+    if (levels == 0) return (Weight){.too_deep = true};
+    const uint32_t *child = layout->tree->nodes[index].child;
+    Weight left = weigh(layout, child[0], levels - 1), right = weigh(layout, child[1], levels - 1);
+    return weight_of_both(layout, index, left, right);
+}
+
+static RtStatus weigh_part(void *context, size_t item, int thread, RtError *error) {
+    Layout *layout = context;
+    Part *part = &layout->parts[item];
+    (void)thread;
+    (void)error;
+    part->weight = weigh(layout, part->index, part->levels);
+    return RT_OK;
+}
+
+static bool is_top(const Layout *layout, uint32_t index, uint32_t depth) {
+    return depth < TOP_LEVELS && !rt_tree_is_leaf(layout->tree, index);
+}
+
+static void list_parts(Layout *layout, uint32_t index, uint32_t depth) {
+    const uint32_t *child = layout->tree->nodes[index].child;
+    if (!is_top(layout, index, depth)) {
+        layout->parts[layout->part_count++] = (Part){.index = index, .levels = RT_TREE_MAX_DEPTH - depth};
+        return;
+    }
+    for (int s = 0; s < 2; s++) list_parts(layout, child[s], depth + 1);
+}
+
+/* Of the parts in turn. */
+static Weight weigh_top(Layout *layout, uint32_t index, uint32_t depth) {
+    if (!is_top(layout, index, depth)) return layout->parts[layout->next++].weight;
+    const uint32_t *child = layout->tree->nodes[index].child;
+    Weight left = weigh_top(layout, child[0], depth + 1), right = weigh_top(layout, child[1], depth + 1);
+    return weight_of_both(layout, index, left, right);
+}
+
+static RtStatus weigh_all(Layout *layout, int threads, Weight *whole, RtError *error) {
+    layout->part_count = layout->next = 0;
+    list_parts(layout, layout->tree->root, 0);
+    RT_TRY(rt_parallel_for(layout->part_count, threads, weigh_part, layout, error));
+    *whole = weigh_top(layout, layout->tree->root, 0);
+    return RT_OK;
 }
 
 /* The children of a wide node: the largest that is no leaf is opened in its place, until there are
@@ -58,55 +127,130 @@ static uint32_t open_children(const Layout *layout, uint32_t index, uint32_t *ch
 }
 
 /* Appends the objects of a subtree to the leaf whose ids begin at `first`; parts of one object are one. */
-static void append_ids(const Layout *layout, uint32_t first, uint32_t index) {
+static void append_ids(const Layout *layout, uint32_t first, uint32_t index, Taken *taken) {
     RtHierarchy *self = layout->self;
     const uint32_t *child = layout->tree->nodes[index].child;
     if (rt_tree_is_leaf(layout->tree, index)) {
-        for (uint32_t i = first; i < self->id_count && self->divided; i++) {
+        for (uint32_t i = first; i < taken->ids && self->divided; i++) {
             if (self->ids[i] == child[1]) return;
         }
-        self->ids[self->id_count++] = child[1];
+        self->ids[taken->ids++] = child[1];
         return;
     }
-    for (int s = 0; s < 2; s++) append_ids(layout, first, child[s]);
+    for (int s = 0; s < 2; s++) append_ids(layout, first, child[s], taken);
 }
 
-static void place(const Layout *layout, uint32_t node_index, uint32_t index) {
-    RtHierarchy *self = layout->self;
-    RtNode *node = &self->nodes[node_index];
+/* Makes a node, and takes places for its children, which go to children[..]; none of a leaf. */
+static void place_one(const Layout *layout, uint32_t node_index, uint32_t index, uint32_t *children,
+                      Taken *taken) {
+    RtNode *node = &layout->self->nodes[node_index];
     node->box = layout->tree->nodes[index].box;
     if (layout->leaf[index]) {
-        node->first = self->id_count;
-        append_ids(layout, node->first, index);
-        node->count = RT_NODE_LEAF | (self->id_count - node->first);
+        node->first = taken->ids;
+        append_ids(layout, node->first, index, taken);
+        node->count = RT_NODE_LEAF | (taken->ids - node->first);
         return;
     }
-    uint32_t children[RT_NODE_MAX_WIDTH];
     node->count = open_children(layout, index, children);
-    node->first = self->node_count;
-    self->node_count += node->count;
-    for (uint32_t i = 0; i < node->count; i++) place(layout, node->first + i, children[i]);
+    node->first = taken->nodes;
+    taken->nodes += node->count;
 }
 
-RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, RtError *error) {
-    assert(self->width >= 2 && self->width <= RT_NODE_MAX_WIDTH);
-    RT_TRY(rt_tree_limit_depth(tree, error));
-    Layout layout = {self, tree, rt_alloc(tree->used, sizeof(bool))};
-    if (!layout.leaf) return rt_fail_memory(error, "the leaves of a hierarchy", tree->used * sizeof(bool));
-    Weight whole = weigh(&layout, tree->root);
+static void place(const Layout *layout, uint32_t node_index, uint32_t index, Taken *taken) {
+    const RtNode *node = &layout->self->nodes[node_index];
+    uint32_t children[RT_NODE_MAX_WIDTH];
+    place_one(layout, node_index, index, children, taken);
+    if (rt_node_is_leaf(node)) return;
+    for (uint32_t i = 0; i < node->count; i++) place(layout, node->first + i, children[i], taken);
+}
+
+static RtStatus place_part(void *context, size_t item, int thread, RtError *error) {
+    const Layout *layout = context;
+    const Part *part = &layout->parts[item];
+    Taken taken = part->taken;
+    (void)thread;
+    (void)error;
+    if (part->placed) place(layout, part->node, part->index, &taken);
+    return RT_OK;
+}
+
+/* Passes by the parts of a subtree. */
+static void skip_parts(Layout *layout, uint32_t index, uint32_t depth) {
+    const uint32_t *child = layout->tree->nodes[index].child;
+    if (!is_top(layout, index, depth)) {
+        layout->next++;
+        return;
+    }
+    for (int s = 0; s < 2; s++) skip_parts(layout, child[s], depth + 1);
+}
+
+/* Of pairs, none of them divided: what the parts take is known before. */
+static void place_top(Layout *layout, uint32_t node_index, uint32_t index, uint32_t depth, Taken *taken) {
+    if (!is_top(layout, index, depth)) {
+        Part *part = &layout->parts[layout->next++];
+        part->node = node_index;
+        part->taken = *taken;
+        part->placed = true;
+        taken->nodes += 2 * part->weight.leaves - 2;
+        taken->ids += part->weight.references;
+        return;
+    }
+    const RtNode *node = &layout->self->nodes[node_index];
+    uint32_t children[RT_NODE_MAX_WIDTH];
+    place_one(layout, node_index, index, children, taken);
+    if (rt_node_is_leaf(node)) {
+        skip_parts(layout, index, depth);
+        return;
+    }
+    for (uint32_t i = 0; i < 2; i++) place_top(layout, node->first + i, children[i], depth + 1, taken);
+}
+
+static RtStatus place_all(Layout *layout, int threads, RtError *error) {
+    RtHierarchy *self = layout->self;
+    uint32_t root = layout->tree->root;
+    Taken taken = {1, 0};
+    if (self->width > 2 || self->divided) {
+        place(layout, 0, root, &taken);
+    } else {
+        layout->next = 0;
+        place_top(layout, 0, root, 0, &taken);
+        RT_TRY(rt_parallel_for(layout->part_count, threads, place_part, layout, error));
+    }
+    self->node_count = taken.nodes;
+    self->id_count = taken.ids;
+    return RT_OK;
+}
+
+static RtStatus lay_out(Layout *layout, RtTree *tree, int threads, RtError *error) {
+    RtHierarchy *self = layout->self;
+    Weight whole;
+    RT_TRY(weigh_all(layout, threads, &whole, error));
+    if (whole.too_deep) {
+        RT_TRY(rt_tree_limit_depth(tree, error));
+        RT_TRY(weigh_all(layout, threads, &whole, error));
+    }
     size_t most = 2 * (size_t)whole.leaves - 1;
-    self->nodes = rt_alloc(most, sizeof(RtNode));
-    self->ids = rt_alloc(whole.references, sizeof(uint32_t));
-    bool enough = self->nodes && self->ids;
-    self->node_count = 1;
-    self->id_count = 0;
+    self->nodes = rt_alloc_unset(most, sizeof(RtNode));
+    self->ids = rt_alloc_unset(whole.references, sizeof(uint32_t));
     self->divided = tree->divided;
-    if (enough) place(&layout, 0, tree->root);
-    rt_free(layout.leaf);
-    if (enough) return RT_OK;
-    rt_hierarchy_clear(self);
+    if (self->nodes && self->ids) return place_all(layout, threads, error);
     return rt_fail_memory(error, "the nodes of a hierarchy",
                           most * sizeof(RtNode) + whole.references * sizeof(uint32_t));
+}
+
+RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtError *error) {
+    assert(self->width >= 2 && self->width <= RT_NODE_MAX_WIDTH);
+    Layout layout = {.self = self,
+                     .tree = tree,
+                     .leaf = rt_alloc_unset(tree->used, sizeof(bool)),
+                     .parts = rt_alloc(MAX_PARTS, sizeof(Part))};
+    RtStatus status = layout.leaf && layout.parts
+                          ? lay_out(&layout, tree, threads, error)
+                          : rt_fail_memory(error, "the leaves of a hierarchy", tree->used * sizeof(bool));
+    rt_free(layout.leaf);
+    rt_free(layout.parts);
+    if (status != RT_OK) rt_hierarchy_clear(self);
+    return status;
 }
 
 void rt_hierarchy_clear(RtHierarchy *self) {

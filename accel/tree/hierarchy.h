@@ -44,8 +44,9 @@ static inline uint32_t rt_node_fanout(const RtNode *node) {
 
 /* Fills nodes and ids of a hierarchy, whose other limits are set, from a complete tree, which is limited in
  * depth for it. References of a subtree share a leaf where that costs no more by the surface area heuristic;
- * nodes wider than pairs take in the largest of their children. On failure nothing is left behind. */
-RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, RtError *error);
+ * nodes wider than pairs take in the largest of their children. The same on any number of `threads` (0 = all
+ * processors). On failure nothing is left behind. */
+RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtError *error);
 void rt_hierarchy_clear(RtHierarchy *self);
 
 /* For RtAccelOps. The predictions are those of boxes. */

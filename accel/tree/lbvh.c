@@ -3,16 +3,29 @@
  * order are parted where the highest bit in which their codes differ changes, which cuts space in the middle
  * along one axis after another. Equal codes are halved by number.
  *
+ * The nodes of a subtree of n references are a run of 2 n - 1, so subtrees are built by threads that know
+ * nothing of each other.
+ *
  * The place of the change is found by halving, as in Karras 2012, "Maximizing Parallelism in the Construction
  * of BVHs, Octrees, and k-d Trees"; his order, in which all nodes can be made at once, is left out. */
 #include "accel/tree/order.h"
 #include "accel/tree/tree.h"
 #include "base/memory.h"
+#include "base/parallel.h"
+
+/* References row[begin..begin + count), and the first node of their subtree. */
+typedef struct Group {
+    uint32_t begin, count, node;
+} Group;
 
 typedef struct Builder {
     RtTree *tree;
+    const RtBox *boxes; /* by id */
     const RtKeyed *row; /* in Morton order */
-    const RtBox *boxes; /* in the same order */
+    RtBox *in_row;      /* boxes in the same order */
+    uint32_t limit;     /* a group of no more is for one thread */
+    Group *groups;      /* [group_count] such */
+    uint32_t group_count;
 } Builder;
 
 /* How many of row[0..count) go to the left; count >= 2. */
@@ -28,33 +41,88 @@ static uint32_t divide(const RtKeyed *row, uint32_t count) {
     return last;
 }
 
-/* Goes no deeper than a code has bits and a number of references has halves. */
-static uint32_t build(const Builder *b, uint32_t begin, uint32_t count) {
-    uint32_t node = rt_tree_take(b->tree);
-    if (count == 1) {
-        rt_tree_set_leaf(b->tree, node, b->boxes[begin], b->row[begin].id);
-        return node;
-    }
-    uint32_t left = divide(b->row + begin, count);
-    uint32_t first = build(b, begin, left);
-    rt_tree_set_union(b->tree, node, first, build(b, begin + left, count - left));
-    return node;
+static void get_sides(const Builder *b, Group group, Group sides[2]) {
+    uint32_t left = divide(b->row + group.begin, group.count);
+    sides[0] = (Group){group.begin, left, group.node + 1};
+    sides[1] = (Group){group.begin + left, group.count - left, group.node + 2 * left};
 }
 
-RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, RtError *error) {
-    RT_TRY(rt_tree_init(tree, count, error));
-    RtKeyed *row = rt_order_morton(boxes, count, bits);
-    RtBox *boxes_in_row = rt_alloc(count, sizeof(RtBox));
-    bool enough = row && boxes_in_row;
-    if (enough) {
-        /* All at once, so that the processor waits for many boxes at a time. */
-        for (uint32_t i = 0; i < count; i++) boxes_in_row[i] = boxes[row[i].id];
-        Builder builder = {tree, row, boxes_in_row};
-        tree->root = build(&builder, 0, count);
+/* Goes no deeper than a code has bits and a number of references has halves. */
+static void build(const Builder *b, Group group) {
+    if (group.count == 1) {
+        rt_tree_set_leaf(b->tree, group.node, b->in_row[group.begin], b->row[group.begin].id);
+        return;
     }
+    Group sides[2];
+    get_sides(b, group, sides);
+    for (int s = 0; s < 2; s++) build(b, sides[s]);
+    rt_tree_set_union(b->tree, group.node, sides[0].node, sides[1].node);
+}
+
+/* ---- on all threads ---- */
+
+/* The top ends where groups are such a part of what one thread has to do; CHUNK references are for one. */
+enum { SHARES = 8, CHUNK = 1 << 13, LEVELS = 3 * RT_MAX_MORTON_BITS + 32 };
+
+/* Lists the groups that are for one thread; their boxes are fetched all at once, so that the processor waits
+ * for many of them at a time. */
+static void list_groups(Builder *b, Group group) {
+    if (group.count <= b->limit) {
+        b->groups[b->group_count++] = group;
+        return;
+    }
+    Group sides[2];
+    get_sides(b, group, sides);
+    for (int s = 0; s < 2; s++) list_groups(b, sides[s]);
+}
+
+static RtStatus build_group(void *context, size_t item, int thread, RtError *error) {
+    const Builder *b = context;
+    Group group = b->groups[item];
+    (void)thread;
+    (void)error;
+    for (uint32_t i = group.begin; i < group.begin + group.count; i++) b->in_row[i] = b->boxes[b->row[i].id];
+    build(b, group);
+    return RT_OK;
+}
+
+static void unite_top(const Builder *b, Group group) {
+    if (group.count <= b->limit) return;
+    Group sides[2];
+    get_sides(b, group, sides);
+    for (int s = 0; s < 2; s++) unite_top(b, sides[s]);
+    rt_tree_set_union(b->tree, group.node, sides[0].node, sides[1].node);
+}
+
+static RtStatus build_all(Builder *b, uint32_t count, int threads, RtError *error) {
+    Group all = {0, count, 0};
+    list_groups(b, all);
+    b->tree->used = b->tree->capacity;
+    RT_TRY(rt_parallel_for(b->group_count, threads, build_group, b, error));
+    unite_top(b, all);
+    return RT_OK;
+}
+
+RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, int threads,
+                      RtError *error) {
+    RT_TRY(rt_tree_init(tree, count, error));
+    uint32_t share = count / SHARES / (uint32_t)rt_thread_count(threads);
+    RtKeyed *row = rt_order_morton(boxes, count, bits, threads);
+    Builder builder = {.tree = tree,
+                       .boxes = boxes,
+                       .row = row,
+                       .in_row = rt_alloc_unset(count, sizeof(RtBox)),
+                       .limit = share > CHUNK ? share : CHUNK};
+    /* At each of the levels, of 63 bits and then of halves, so many groups at most have two sides. */
+    builder.groups = rt_alloc(2 * (size_t)LEVELS * (count / builder.limit + 1), sizeof(Group));
+    RtStatus status = RT_NO_MEMORY;
+    if (row && builder.in_row && builder.groups)
+        status = build_all(&builder, count, threads, error);
+    else
+        rt_fail_memory(error, "Morton codes", 2 * (size_t)count * sizeof(RtKeyed));
     rt_free(row);
-    rt_free(boxes_in_row);
-    if (enough) return RT_OK;
-    rt_tree_clear(tree);
-    return rt_fail_memory(error, "Morton codes", 2 * (size_t)count * sizeof(RtKeyed));
+    rt_free(builder.in_row);
+    rt_free(builder.groups);
+    if (status != RT_OK) rt_tree_clear(tree);
+    return status;
 }

@@ -2,42 +2,96 @@
 #include "accel/tree/order.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 
 #include <string.h>
 
-enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS };
+enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS, CHUNK = 1 << 14 };
 
-/* Moves items[0..count) to out, in order of the digit at bit `shift` of their keys, else as they are. False,
- * and nothing is moved, if all have the same digit. */
-static bool sort_by_digit(const RtKeyed *items, RtKeyed *out, uint32_t count, uint32_t shift) {
-    uint32_t place[DIGITS] = {0};
-    for (uint32_t i = 0; i < count; i++) place[items[i].key >> shift & (DIGITS - 1)]++;
-    if (place[items[0].key >> shift & (DIGITS - 1)] == count) return false;
+/* Where a chunk's items of each digit go. */
+typedef struct Places {
+    uint32_t of[DIGITS];
+} Places;
+
+/* Items are dealt in chunks of one size, which does not show in the order. */
+typedef struct Sorter {
+    const RtBox *boxes;
+    RtBox centers; /* about all, of the chunks that were looked at */
+    uint32_t bits; /* of a Morton code along an axis */
+    int axis;      /* or the axis that is sorted along, if there are no bits */
+    RtKeyed *items, *out;
+    uint32_t count, chunk_size, shift;
+    Places *places;    /* [chunks] */
+    RtBox *centers_of; /* [chunks] */
+} Sorter;
+
+/* A chunk's first item and the one after its last. */
+static uint32_t chunk_begin(const Sorter *s, size_t chunk) {
+    return (uint32_t)chunk * s->chunk_size;
+}
+
+static uint32_t chunk_end(const Sorter *s, size_t chunk) {
+    uint32_t begin = chunk_begin(s, chunk);
+    return s->count - begin < s->chunk_size ? s->count : begin + s->chunk_size;
+}
+
+static RtStatus find_centers(void *context, size_t chunk, int thread, RtError *error) {
+    Sorter *s = context;
+    RtBox centers = RT_EMPTY_BOX;
+    (void)thread;
+    (void)error;
+    for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
+        centers = rt_box_add_point(centers, rt_box_center(s->boxes[i]));
+    s->centers_of[chunk] = centers;
+    return RT_OK;
+}
+
+static RtStatus count_digits(void *context, size_t chunk, int thread, RtError *error) {
+    Sorter *s = context;
+    uint32_t *place = s->places[chunk].of;
+    (void)thread;
+    (void)error;
+    memset(place, 0, sizeof(Places));
+    for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
+        place[s->items[i].key >> s->shift & (DIGITS - 1)]++;
+    return RT_OK;
+}
+
+static RtStatus move_items(void *context, size_t chunk, int thread, RtError *error) {
+    Sorter *s = context;
+    uint32_t *place = s->places[chunk].of;
+    (void)thread;
+    (void)error;
+    for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
+        s->out[place[s->items[i].key >> s->shift & (DIGITS - 1)]++] = s->items[i];
+    return RT_OK;
+}
+
+/* Turns numbers of digits into places: digit by digit, and of each chunk by chunk. False if there is but one
+ * digit: all is in order. */
+static bool find_places(Sorter *s, size_t chunks) {
     for (uint32_t digit = 0, begin = 0; digit < DIGITS; digit++) {
-        uint32_t next = begin + place[digit];
-        place[digit] = begin;
-        begin = next;
+        for (size_t c = 0; c < chunks; c++) {
+            uint32_t number = s->places[c].of[digit];
+            if (number == s->count && chunks == 1) return false;
+            s->places[c].of[digit] = begin;
+            begin += number;
+        }
     }
-    for (uint32_t i = 0; i < count; i++) out[place[items[i].key >> shift & (DIGITS - 1)]++] = items[i];
     return true;
 }
 
-/* Sorts items[0..count), whose keys have `bits` bits; takes the block, gives the one that they are in
- * then. */
-static RtKeyed *sorted(RtKeyed *items, uint32_t count, uint32_t bits) {
-    RtKeyed *spare = items ? rt_alloc(count, sizeof(RtKeyed)) : NULL;
-    if (!spare) {
-        rt_free(items);
-        return NULL;
+/* Sorts the items, whose keys have `bits` bits. */
+static RtStatus sort(Sorter *s, uint32_t bits, size_t chunks, int threads) {
+    for (s->shift = 0; s->shift < bits; s->shift += DIGIT_BITS) {
+        RT_TRY(rt_parallel_for(chunks, threads, count_digits, s, NULL));
+        if (!find_places(s, chunks)) continue;
+        RT_TRY(rt_parallel_for(chunks, threads, move_items, s, NULL));
+        RtKeyed *kept = s->items;
+        s->items = s->out;
+        s->out = kept;
     }
-    for (uint32_t shift = 0; count > 1 && shift < bits; shift += DIGIT_BITS) {
-        if (!sort_by_digit(items, spare, count, shift)) continue;
-        RtKeyed *kept = items;
-        items = spare;
-        spare = kept;
-    }
-    rt_free(spare);
-    return items;
+    return RT_OK;
 }
 
 /* Spreads 21 bits so that two zeros follow each. */
@@ -60,16 +114,6 @@ static uint64_t morton_code(RtVec3 center, const RtBox *centers, int cells) {
     return code;
 }
 
-RtKeyed *rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits) {
-    RtKeyed *items = rt_alloc(count, sizeof(RtKeyed));
-    RtBox centers = RT_EMPTY_BOX;
-    for (uint32_t i = 0; i < count; i++) centers = rt_box_add_point(centers, rt_box_center(boxes[i]));
-    for (uint32_t i = 0; items && i < count; i++) {
-        items[i] = (RtKeyed){morton_code(rt_box_center(boxes[i]), &centers, 1 << bits), i};
-    }
-    return sorted(items, count, 3 * bits);
-}
-
 /* The bits of a number, so that they ascend with it: those of negative ones turned about. */
 static uint32_t ascending_bits(float x) {
     uint32_t bits;
@@ -77,10 +121,49 @@ static uint32_t ascending_bits(float x) {
     return bits & UINT32_C(0x80000000) ? ~bits : bits | UINT32_C(0x80000000);
 }
 
-RtKeyed *rt_order_axis(const RtBox *boxes, uint32_t count, int axis) {
-    RtKeyed *items = rt_alloc(count, sizeof(RtKeyed));
-    for (uint32_t i = 0; items && i < count; i++) {
-        items[i] = (RtKeyed){ascending_bits(rt_box_center(boxes[i]).at[axis]), i};
+static RtStatus make_keys(void *context, size_t chunk, int thread, RtError *error) {
+    Sorter *s = context;
+    (void)thread;
+    (void)error;
+    for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++) {
+        RtVec3 center = rt_box_center(s->boxes[i]);
+        uint64_t key =
+            s->bits > 0 ? morton_code(center, &s->centers, 1 << s->bits) : ascending_bits(center.at[s->axis]);
+        s->items[i] = (RtKeyed){key, i};
     }
-    return sorted(items, count, 32);
+    return RT_OK;
+}
+
+static RtStatus make_order(Sorter *s, size_t chunks, int threads) {
+    RT_TRY(rt_parallel_for(chunks, threads, find_centers, s, NULL));
+    s->centers = RT_EMPTY_BOX;
+    for (size_t c = 0; c < chunks; c++) s->centers = rt_box_union(s->centers, s->centers_of[c]);
+    RT_TRY(rt_parallel_for(chunks, threads, make_keys, s, NULL));
+    return sort(s, s->bits > 0 ? 3 * s->bits : 32, chunks, threads);
+}
+
+/* The items in order, or NULL. */
+static RtKeyed *ordered(Sorter s, int threads) {
+    uint32_t most = (uint32_t)rt_thread_count(threads);
+    s.chunk_size = s.count / most + 1 > CHUNK ? s.count / most + 1 : CHUNK;
+    size_t chunks = s.count / s.chunk_size + 1;
+    s.items = rt_alloc_unset(s.count, sizeof(RtKeyed));
+    s.out = rt_alloc_unset(s.count, sizeof(RtKeyed));
+    s.places = rt_alloc(chunks, sizeof(Places));
+    s.centers_of = rt_alloc(chunks, sizeof(RtBox));
+    bool done = s.items && s.out && s.places && s.centers_of && make_order(&s, chunks, threads) == RT_OK;
+    rt_free(s.out);
+    rt_free(s.places);
+    rt_free(s.centers_of);
+    if (done) return s.items;
+    rt_free(s.items);
+    return NULL;
+}
+
+RtKeyed *rt_order_morton(const RtBox *boxes, uint32_t count, uint32_t bits, int threads) {
+    return ordered((Sorter){.boxes = boxes, .count = count, .bits = bits}, threads);
+}
+
+RtKeyed *rt_order_axis(const RtBox *boxes, uint32_t count, int axis, int threads) {
+    return ordered((Sorter){.boxes = boxes, .count = count, .axis = axis}, threads);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Parallel locally-ordered clustering on one thread (Meister & Bittner 2018).
+/* Parallel locally-ordered clustering (Meister & Bittner 2018).
  *
  * Clusters stand in a row, in Morton order of the objects' centres. In a round everyone looks for its nearest
  * among the `radius` before and after; two that chose each other are united and stand where the first stood.
@@ -7,72 +7,172 @@
  * differs among the partners of one cluster: so the least pair of a round always is mutual, every round makes
  * progress, and coincident objects pair up like a balanced tree.
  *
+ * The row is dealt in chunks. A chunk measures the pairs that its own clusters are in, and writes its part of
+ * the next row where the chunks before end: so unions are numbered in the order of the row, whichever thread
+ * makes them.
+ *
  * Deviation: where distances grow along the row, the nearest of everyone is the one before, and only one pair
  * of a round is mutual. So after PATIENCE rounds, in which most scenes are done, a cluster is also united
  * with its nearest if that has not been united yet: rounds are then fewer than objects by far, and the time
  * is linear in the objects but for a logarithm. */
 #include "accel/tree/order.h"
 #include "accel/tree/tree.h"
+#include "base/box4.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 
-enum { PATIENCE = RT_TREE_MAX_DEPTH };
+enum { PATIENCE = RT_TREE_MAX_DEPTH, CHUNK = 1 << 12 };
 
-typedef struct Nearest {
-    double distance;
-    uint32_t place; /* in the row */
-} Nearest;
+typedef struct Cluster {
+    RtBox4 box;
+    uint32_t node;
+} Cluster;
 
-static void offer(Nearest *nearest, uint32_t from, uint32_t place, double distance) {
-    if (distance > nearest->distance) return;
-    if (distance == nearest->distance && (from ^ place) > (from ^ nearest->place)) return;
-    *nearest = (Nearest){distance, place};
+/* What a chunk leaves of its clusters, and how many unions it makes; then those of the chunks before. */
+typedef struct Left {
+    uint32_t clusters, unions;
+} Left;
+
+typedef struct Rounds {
+    RtTree *tree;
+    Cluster *row, *next; /* [count] */
+    double *distance;    /* [count] to the nearest */
+    uint32_t *nearest;   /* [count] its place in the row */
+    Left *left;          /* [chunks] */
+    uint32_t count, radius;
+} Rounds;
+
+static uint32_t chunk_begin(size_t chunk) {
+    return (uint32_t)chunk * CHUNK;
 }
 
-/* Fills nearest[0..count) for the clusters of the row; each pair is measured once. */
-static void find_nearest(const RtTree *tree, const uint32_t *row, Nearest *nearest, uint32_t count,
-                         uint32_t radius) {
-    for (uint32_t i = 0; i < count; i++) nearest[i] = (Nearest){INFINITY, UINT32_MAX};
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t last = count - 1 - i > radius ? i + radius : count - 1;
-        for (uint32_t j = i + 1; j <= last; j++) {
-            double distance = rt_tree_distance(tree, row[i], row[j]);
-            offer(&nearest[i], i, j, distance);
-            offer(&nearest[j], j, i, distance);
-        }
+static uint32_t chunk_end(const Rounds *r, size_t chunk) {
+    uint32_t begin = chunk_begin(chunk);
+    return r->count - begin < CHUNK ? r->count : begin + CHUNK;
+}
+
+static inline void offer(const Rounds *r, uint32_t from, uint32_t place, double distance) {
+    double least = r->distance[from];
+    if (distance > least || (distance == least && (from ^ place) > (from ^ r->nearest[from]))) return;
+    r->distance[from] = distance;
+    r->nearest[from] = place;
+}
+
+/* Measures cluster i against first..last, two at a time, and tells it, or them, or both. Nearly always nobody
+ * is nearer than who is known. */
+static inline __attribute__((always_inline)) void measure(const Rounds *r, uint32_t i, uint32_t first,
+                                                          uint32_t last, bool tell_it, bool tell_them) {
+    RtBox4 own = r->row[i].box;
+    for (uint32_t j = first; j <= last; j += 2) {
+        uint32_t k = j < last ? j + 1 : j;
+        RtDouble2 distances =
+            rt_box4_half_areas(rt_box4_union(own, r->row[j].box), rt_box4_union(own, r->row[k].box));
+        double its = tell_it ? r->distance[i] : -1;
+        RtDouble2 known = {its, its};
+        if (tell_them) known = rt_max2(known, (RtDouble2){r->distance[j], r->distance[k]});
+        if (!rt_any_at_most2(distances, known)) continue;
+        if (tell_it) offer(r, i, j, distances[0]);
+        if (tell_it) offer(r, i, k, distances[1]);
+        if (tell_them) offer(r, j, i, distances[0]);
+        if (tell_them) offer(r, k, i, distances[1]);
     }
 }
 
-static bool is_mutual(const Nearest *nearest, uint32_t i) {
-    return nearest[nearest[i].place].place == i;
+static RtStatus find_nearest(void *context, size_t chunk, int thread, RtError *error) {
+    const Rounds *r = context;
+    uint32_t begin = chunk_begin(chunk), end = chunk_end(r, chunk);
+    (void)thread;
+    (void)error;
+    for (uint32_t i = begin; i < end; i++) {
+        r->distance[i] = INFINITY;
+        r->nearest[i] = UINT32_MAX;
+    }
+    /* Downward, so that everyone meets the near ones first, among whom the nearest is as a rule. */
+    for (uint32_t i = end, lowest = begin > r->radius ? begin - r->radius : 0; i-- > lowest;) {
+        uint32_t last = r->count - 1 - i > r->radius ? i + r->radius : r->count - 1;
+        uint32_t last_here = last < end ? last : end - 1;
+        if (i < begin) {
+            measure(r, i, begin, last_here, false, true);
+        } else {
+            measure(r, i, i + 1, last_here, true, true);
+            measure(r, i, end, last, true, false);
+        }
+    }
+    return RT_OK;
+}
+
+static bool is_mutual(const uint32_t *nearest, uint32_t i) {
+    return nearest[nearest[i]] == i;
 }
 
 /* Whoever's choice is still free gets it. */
-static void pair_more(Nearest *nearest, uint32_t count) {
+static void pair_more(uint32_t *nearest, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t other = nearest[i].place;
-        if (!is_mutual(nearest, i) && !is_mutual(nearest, other)) nearest[other].place = i;
+        uint32_t other = nearest[i];
+        if (!is_mutual(nearest, i) && !is_mutual(nearest, other)) nearest[other] = i;
     }
 }
 
-/* One round; gives the length of the row it leaves. */
-static uint32_t unite_pairs(RtTree *tree, uint32_t *row, Nearest *nearest, uint32_t count, uint32_t radius,
-                            uint32_t round) {
-    uint32_t left = 0;
-    find_nearest(tree, row, nearest, count, radius);
-    if (round >= PATIENCE) pair_more(nearest, count);
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t other = nearest[i].place;
-        bool mutual = is_mutual(nearest, i);
-        if (mutual && other < i) continue;
-        row[left++] = mutual ? rt_tree_unite(tree, row[i], row[other]) : row[i];
+static RtStatus count_left(void *context, size_t chunk, int thread, RtError *error) {
+    const Rounds *r = context;
+    Left left = {0, 0};
+    (void)thread;
+    (void)error;
+    for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
+        bool mutual = is_mutual(r->nearest, i), first = r->nearest[i] > i;
+        left.clusters += !mutual || first;
+        left.unions += mutual && first;
     }
-    return left;
+    r->left[chunk] = left;
+    return RT_OK;
+}
+
+static RtStatus unite_pairs(void *context, size_t chunk, int thread, RtError *error) {
+    const Rounds *r = context;
+    Cluster *to = r->next + r->left[chunk].clusters;
+    uint32_t node = r->tree->used + r->left[chunk].unions;
+    (void)thread;
+    (void)error;
+    for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
+        uint32_t other = r->nearest[i];
+        bool mutual = is_mutual(r->nearest, i);
+        if (mutual && other < i) continue;
+        *to = r->row[i];
+        if (mutual) {
+            rt_tree_set_union(r->tree, node, r->row[i].node, r->row[other].node);
+            *to = (Cluster){rt_box4_load(&r->tree->nodes[node].box), node};
+            node++;
+        }
+        to++;
+    }
+    return RT_OK;
+}
+
+static RtStatus run_round(Rounds *r, uint32_t round, int threads, RtError *error) {
+    size_t chunks = (r->count + CHUNK - 1) / CHUNK;
+    RT_TRY(rt_parallel_for(chunks, threads, find_nearest, r, error));
+    if (round >= PATIENCE) pair_more(r->nearest, r->count);
+    RT_TRY(rt_parallel_for(chunks, threads, count_left, r, error));
+    Left sum = {0, 0};
+    for (size_t c = 0; c < chunks; c++) {
+        Left left = r->left[c];
+        r->left[c] = sum;
+        sum = (Left){sum.clusters + left.clusters, sum.unions + left.unions};
+    }
+    RT_TRY(rt_parallel_for(chunks, threads, unite_pairs, r, error));
+    Cluster *kept = r->row;
+    r->row = r->next;
+    r->next = kept;
+    r->count = sum.clusters;
+    r->tree->used += sum.unions;
+    r->tree->root = r->tree->used - 1;
+    return RT_OK;
 }
 
 /* Neighbours in the row are neighbours in memory, as far as can be. */
-static RtStatus init_in_order(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits,
+static RtStatus init_in_order(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, int threads,
                               RtError *error) {
-    RtKeyed *order = rt_order_morton(boxes, count, bits);
+    RtKeyed *order = rt_order_morton(boxes, count, bits, threads);
     if (!order) return rt_fail_memory(error, "Morton codes", 2 * (size_t)count * sizeof(RtKeyed));
     RtStatus status = rt_tree_init(tree, count, error);
     for (uint32_t i = 0; status == RT_OK && i < count; i++) {
@@ -83,18 +183,31 @@ static RtStatus init_in_order(RtTree *tree, const RtBox *boxes, uint32_t count, 
     return status;
 }
 
+static RtStatus run_rounds(Rounds *r, int threads, RtError *error) {
+    for (uint32_t i = 0; i < r->count; i++) r->row[i] = (Cluster){rt_box4_load(&r->tree->nodes[i].box), i};
+    for (uint32_t round = 0; r->count > 1; round++) RT_TRY(run_round(r, round, threads, error));
+    return RT_OK;
+}
+
 RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
-                      RtError *error) {
-    RT_TRY(init_in_order(tree, boxes, count, bits, error));
-    uint32_t *row = rt_alloc(count, sizeof(uint32_t));
-    Nearest *nearest = rt_alloc(count, sizeof(Nearest));
-    bool enough = row && nearest;
-    for (uint32_t i = 0; enough && i < count; i++) row[i] = i;
-    for (uint32_t left = count, round = 0; enough && left > 1; round++)
-        left = unite_pairs(tree, row, nearest, left, radius, round);
-    rt_free(row);
-    rt_free(nearest);
-    if (enough) return RT_OK;
-    rt_tree_clear(tree);
-    return rt_fail_memory(error, "a row of clusters", (size_t)count * sizeof(Nearest));
+                      int threads, RtError *error) {
+    RT_TRY(init_in_order(tree, boxes, count, bits, threads, error));
+    Rounds r = {tree,
+                rt_alloc_unset(count, sizeof(Cluster)),
+                rt_alloc_unset(count, sizeof(Cluster)),
+                rt_alloc_unset(count, sizeof(double)),
+                rt_alloc_unset(count, sizeof(uint32_t)),
+                rt_alloc((size_t)count / CHUNK + 1, sizeof(Left)),
+                count,
+                radius};
+    bool enough = r.row && r.next && r.distance && r.nearest && r.left;
+    RtStatus status = enough ? run_rounds(&r, threads, error)
+                             : rt_fail_memory(error, "a row of clusters", (size_t)count * sizeof(Cluster));
+    rt_free(r.row);
+    rt_free(r.next);
+    rt_free(r.distance);
+    rt_free(r.nearest);
+    rt_free(r.left);
+    if (status != RT_OK) rt_tree_clear(tree);
+    return status;
 }

@@ -94,7 +94,7 @@ static uint32_t build(const Sweep *s, uint32_t begin, uint32_t count, int depth)
 
 /* The references in order along an axis, or NULL. */
 static RtTreeRef *make_row(const RtBox *boxes, uint32_t count, int axis) {
-    RtKeyed *order = rt_order_axis(boxes, count, axis);
+    RtKeyed *order = rt_order_axis(boxes, count, axis, 1);
     RtTreeRef *row = order ? rt_alloc(count, sizeof(RtTreeRef)) : NULL;
     for (uint32_t i = 0; row && i < count; i++) row[i] = (RtTreeRef){boxes[order[i].id], order[i].id};
     rt_free(order);

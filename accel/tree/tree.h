@@ -85,12 +85,15 @@ RtStatus rt_tree_limit_depth(RtTree *tree, RtError *error);
 RtStatus rt_tree_agglomerative(RtTree *tree, const RtBox *boxes, uint32_t count, RtError *error);
 
 /* Meister & Bittner 2018: in Morton order of centres (by `bits` bits an axis, order.h), nodes that are each
- * other's nearest among the `radius` before and after are united, in rounds. */
+ * other's nearest among the `radius` before and after are united, in rounds. The same tree on any number of
+ * `threads` (0 = all processors). */
 RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
-                      RtError *error);
+                      int threads, RtError *error);
 
-/* Lauterbach et al. 2009: along the Morton curve, parted where the highest differing bit of codes changes. */
-RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, RtError *error);
+/* Lauterbach et al. 2009: along the Morton curve, parted where the highest differing bit of codes changes. The
+ * same tree on any number of `threads` (0 = all processors). */
+RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, int threads,
+                      RtError *error);
 
 typedef struct RtInsertionOrder {
     bool random;           /* the first try, too, is a random permutation; else it is the order of ids */
@@ -127,8 +130,10 @@ static inline double rt_tree_part_margin(const RtBox *scene) {
     return 0x1p-40 * rt_box_largest_coordinate(*scene);
 }
 
-/* From the top, where a plane that cuts objects may part them: Stich, Friedrich & Dietrich 2009. */
-RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtSpatial *how, RtError *error);
+/* From the top, where a plane that cuts objects may part them: Stich, Friedrich & Dietrich 2009. The same
+ * tree on any number of `threads` (0 = all processors). */
+RtStatus rt_tree_spatial(RtTree *tree, const RtGeometry *geometry, const RtSpatial *how, int threads,
+                         RtError *error);
 
 /* ---- better trees ---- */
 

@@ -57,6 +57,23 @@ static inline unsigned rt_at_least4(RtFloat4 a, RtFloat4 b) {
 #endif
 }
 
+static inline RtDouble2 rt_max2(RtDouble2 a, RtDouble2 b) {
+#ifdef __SSE2__
+    return _mm_max_pd(a, b);
+#else
+    return (RtDouble2){a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1]};
+#endif
+}
+
+/* Whether a[i] <= b[i] for any i. */
+static inline bool rt_any_at_most2(RtDouble2 a, RtDouble2 b) {
+#ifdef __SSE2__
+    return _mm_movemask_pd(_mm_cmple_pd(a, b)) != 0;
+#else
+    return a[0] <= b[0] || a[1] <= b[1];
+#endif
+}
+
 static inline RtBox4 rt_box4_empty(void) {
     return (RtBox4){rt_float4(INFINITY), rt_float4(-INFINITY)};
 }

@@ -238,6 +238,60 @@ RT_TEST(a_tree_beyond_the_limit_of_memory_is_refused_with_what_would_fit) {
 }
 
 /* Together what the spread of the conformance test leaves at its default. */
+/* Enough objects for subtrees to be set aside. */
+RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
+    const char *specs[] = {"kd", "kd:overlap=exact,max_leaf_size=4,failures=4"};
+    RtScene scene;
+    assert_ok(rt_scene_open("random:n=100000,shape=mixed,distribution=clustered", &scene, error));
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        RtAccel *one, *other;
+        assert_ok(rt_accel_open_on(specs[i], &scene, 1, &one, error));
+        for (int threads = 2; threads <= 3; threads++) {
+            assert_ok(rt_accel_open_on(specs[i], &scene, threads, &other, error));
+            const RtKd *a = (const RtKd *)one, *b = (const RtKd *)other;
+            assert_int_equal(a->node_count, b->node_count);
+            assert_int_equal(a->id_count, b->id_count);
+            assert_memory_equal(a->nodes, b->nodes, a->node_count * sizeof(RtKdNode));
+            assert_memory_equal(a->ids, b->ids, a->id_count * sizeof(uint32_t));
+            rt_accel_destroy(other);
+        }
+        rt_accel_destroy(one);
+    }
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(several_threads_refuse_what_one_refuses_and_leave_nothing_behind) {
+    RtScene scene;
+    RtValue values[RT_KD_PARAM_COUNT];
+    const RtAccelOps *ops;
+    assert_ok(rt_accel_find("kd", &ops, error));
+    assert_ok(rt_scene_open("random:n=70000", &scene, error));
+    assert_ok(rt_params_parse(rt_kd_params, RT_KD_PARAM_COUNT, "", "kd", values, error));
+    int64_t live = rt_alloc_live();
+    /* In the top, in a subtree, in no subtree alone. */
+    for (uint64_t limit = 1 << 12; limit <= 1 << 20; limit *= 16) {
+        RtError refusals[2];
+        for (int t = 0; t < 2; t++) {
+            RtAccel *accel = NULL;
+            RtBuild what = {ops, &scene, values, t + 1, limit};
+            assert_int_equal(rt_kd_build(&what, &accel, &refusals[t]), RT_BAD_INPUT);
+            assert_int_equal(rt_alloc_live(), live);
+        }
+        assert_string_equal(refusals[0].message, refusals[1].message);
+    }
+    for (uint64_t n = 1; n < 400; n += 1 + n / 8) {
+        RtAccel *accel = NULL;
+        RtError failure = {RT_OK, ""};
+        rt_alloc_fail_at(n);
+        RtStatus status = rt_accel_open_on("kd", &scene, 2, &accel, &failure);
+        rt_alloc_fail_at(0);
+        assert_true(status == RT_NO_MEMORY || status == RT_OK);
+        if (status == RT_OK) rt_accel_destroy(accel);
+        assert_int_equal(rt_alloc_live(), live);
+    }
+    rt_scene_clear(&scene);
+}
+
 RT_TEST(every_structure_answers_like_brute) {
     static const char *const specs[] = {"kd:overlap=exact,traversal_cost=0,failures=4",
                                         "kd:overlap=exact,max_leaf_size=3,margin=0.3,mailbox=off",

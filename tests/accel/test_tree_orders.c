@@ -15,7 +15,7 @@ RT_TEST(an_axis_is_sorted_by_centres_and_ids) {
             boxes[i] = (RtBox){{0, 0, 0}, {0, 0, 0}};
             boxes[i].lo.at[axis] = boxes[i].hi.at[axis] = centers[i];
         }
-        RtKeyed *order = rt_order_axis(boxes, COUNT, axis);
+        RtKeyed *order = rt_order_axis(boxes, COUNT, axis, 1);
         for (uint32_t i = 0; i < COUNT; i++) assert_int_equal(order[i].id, expected[i]);
         rt_free(order);
     }
@@ -32,7 +32,7 @@ static void make_cells(RtBox *boxes) {
 RT_TEST(morton_codes_interleave_the_cells_of_centres) {
     RtBox boxes[64];
     make_cells(boxes);
-    RtKeyed *order = rt_order_morton(boxes, 64, 2);
+    RtKeyed *order = rt_order_morton(boxes, 64, 2, 1);
     for (uint32_t i = 0; i < 64; i++) {
         uint32_t id = order[i].id, code = 0;
         for (uint32_t bit = 0; bit < 6; bit++) code |= (id >> (bit % 3 * 2 + bit / 3) & 1) << bit;
@@ -40,7 +40,7 @@ RT_TEST(morton_codes_interleave_the_cells_of_centres) {
         assert_int_equal(code, i);
     }
     rt_free(order);
-    order = rt_order_morton(boxes, 64, 1); /* eight a cell, by id */
+    order = rt_order_morton(boxes, 64, 1, 1); /* eight a cell, by id */
     for (uint32_t i = 1; i < 64; i++) {
         assert_int_equal(order[i].key, i / 8);
         if (i % 8) assert_true(order[i].id > order[i - 1].id);
@@ -52,7 +52,7 @@ RT_TEST(lbvh_halves_space_along_one_axis_after_another) {
     RtBox boxes[64];
     make_cells(boxes);
     RtTree tree;
-    assert_ok(rt_tree_lbvh(&tree, boxes, 64, 21, error));
+    assert_ok(rt_tree_lbvh(&tree, boxes, 64, 21, 1, error));
     assert_int_equal(assert_tree(&tree), 6);
     uint32_t node = tree.root;
     for (int level = 0; level < 6; level++, node = tree.nodes[node].child[0]) { /* z, y, x, z, y, x */
@@ -131,15 +131,24 @@ static RtBox *make_hard_boxes(uint32_t count) {
     return boxes;
 }
 
+static RtTree make_tree(const RtBox *boxes, uint32_t count, int method, int threads) {
+    RtTree tree;
+    switch (method) {
+    case 0: assert_ok(rt_tree_ploc(&tree, boxes, count, 21, 25, threads, error)); break;
+    case 1: assert_ok(rt_tree_lbvh(&tree, boxes, count, 21, threads, error)); break;
+    default: assert_ok(rt_tree_topdown(&tree, boxes, count, 16 * (method - 2), threads, error)); break;
+    }
+    return tree;
+}
+
 RT_TEST(a_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
-    enum { COUNT = 50000 };
+    enum { COUNT = 50000, METHODS = 7 };
     RtBox *boxes = make_hard_boxes(COUNT);
-    RtTree one, other;
-    for (int bins = 0; bins <= 64; bins += 16) {
-        assert_ok(rt_tree_topdown(&one, boxes, COUNT, bins, 1, error));
+    for (int method = 0; method < METHODS; method++) {
+        RtTree one = make_tree(boxes, COUNT, method, 1);
         assert_tree(&one);
         for (int threads = 2; threads <= 5; threads++) {
-            assert_ok(rt_tree_topdown(&other, boxes, COUNT, bins, threads, error));
+            RtTree other = make_tree(boxes, COUNT, method, threads);
             assert_int_equal(one.root, other.root);
             assert_memory_equal(one.nodes, other.nodes, one.used * sizeof(RtTreeNode));
             rt_tree_clear(&other);

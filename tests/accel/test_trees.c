@@ -16,12 +16,12 @@ static RtTree make_tree(const RtBox *boxes, uint32_t count, int method) {
     RtTree tree;
     switch (method) {
     case 0: assert_ok(rt_tree_agglomerative(&tree, boxes, count, error)); break;
-    case 1: assert_ok(rt_tree_ploc(&tree, boxes, count, 21, 25, error)); break;
+    case 1: assert_ok(rt_tree_ploc(&tree, boxes, count, 21, 25, 1, error)); break;
     case 2: assert_ok(rt_tree_insertion(&tree, boxes, count, &order, error)); break;
     case 3: assert_ok(rt_tree_topdown(&tree, boxes, count, 0, 1, error)); break;
     case 4: assert_ok(rt_tree_topdown(&tree, boxes, count, 16, 1, error)); break;
     case 5: assert_ok(rt_tree_sweep(&tree, boxes, count, error)); break;
-    default: assert_ok(rt_tree_lbvh(&tree, boxes, count, 21, error)); break;
+    default: assert_ok(rt_tree_lbvh(&tree, boxes, count, 21, 1, error)); break;
     }
     return tree;
 }
