@@ -13,8 +13,9 @@ void rt_experiment_init(RtExperiment *experiment) {
     experiment->rounds = 10;
     experiment->milliseconds = 20;
     experiment->seed = 1;
-    experiment->kind_count = RT_RAY_KIND_COUNT;
-    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) experiment->kinds[k] = (RtRayKind)k;
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        if (k != RT_RAY_OCCLUSION) experiment->kinds[experiment->kind_count++] = (RtRayKind)k;
+    }
 }
 
 /* Whether labels may have this character: they name rows of CSV, plots and files of images. */

@@ -94,8 +94,8 @@ typedef struct RtExperiment {
     uint64_t fingerprint;     /* of the YAML's bytes */
 } RtExperiment;
 
-/* No scenes, no candidates, all ray kinds, and the defaults: limit 100000, rays kept singly, 10 rounds, 20
- * milliseconds. */
+/* No scenes, no candidates, all ray kinds but occlusion, which is diffuse once more, and the defaults: limit
+ * 100000, rays kept singly, 10 rounds, 20 milliseconds. */
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Whatever is wrong (unknown keys, specs that do not parse, labels used twice, a

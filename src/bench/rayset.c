@@ -111,6 +111,18 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     return RT_OK;
 }
 
+/* The same rays, to be asked whether anything lies on them. */
+static RtStatus make_occlusion(Recorder *recorder, RtError *error) {
+    const RtRaySet *diffuse = &recorder->sets[RT_RAY_DIFFUSE];
+    RtRaySet *set = &recorder->sets[RT_RAY_OCCLUSION];
+    RT_TRY(set_init(set, RT_RAY_OCCLUSION, diffuse->count, error));
+    for (uint64_t i = 0; i < diffuse->count; i++) {
+        set->rays[i] = diffuse->rays[i];
+        set->rays[i].kind = RT_RAY_OCCLUSION;
+    }
+    return RT_OK;
+}
+
 /* ---- random rays ---- */
 
 static RtVec3 point_of_sphere(RtRandom *random, const RtBall *sphere) {
@@ -173,6 +185,7 @@ static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *fra
         RT_TRY(join(recorder, kind, error));
     }
     RT_TRY(make_diffuse(recorder, error));
+    RT_TRY(make_occlusion(recorder, error));
     RT_TRY(make_random(recorder, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) seal(&recorder->sets[kind]);
     return RT_OK;

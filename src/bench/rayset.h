@@ -4,7 +4,7 @@
  * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order in which
  * the frame's tiles produce them (tile after tile), whatever the number of threads. Diffuse rays start at the
  * primary hits, cosine-distributed about the normal; random rays are chords of the scene's bounding sphere
- * between two uniform points of it. */
+ * between two uniform points of it. Occlusion rays are the diffuse ones, of another kind. */
 #ifndef RT_BENCH_RAYSET_H
 #define RT_BENCH_RAYSET_H
 

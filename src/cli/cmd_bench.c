@@ -45,7 +45,9 @@ static const struct argp_option options[] = {
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
      "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
     {"rays", OPT_RAYS, "KIND,...", 0,
-     "Ray kinds: primary, shadow, reflection, transmission, diffuse, random (all)", 0},
+     "Ray kinds: primary, shadow, reflection, transmission, diffuse, random; and occlusion, the diffuse rays "
+     "asked for any hit (all but occlusion)",
+     0},
     {"limit", OPT_LIMIT, "N", 0, "At most N rays of a kind; a larger set is thinned evenly (100000)", 0},
     {"coherent-run", OPT_COHERENT_RUN, "N", 0,
      "Neighbouring rays kept together where a set is thinned, for packets and caches (256)", 0},

@@ -41,6 +41,38 @@ RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
     rt_scene_clear(&scene);
 }
 
+/* Where `occluded` is asked, t does not matter, and a ray that hits is done before every object was tested.
+ */
+RT_TEST(shadow_and_occlusion_rays_are_asked_for_any_hit) {
+    RtScene scene;
+    RtAccel *accel;
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RtRecording recording = {.depth = 1, .seed = 1, .random = 100, .threads = 1};
+    assert_ok(rt_scene_open("balls:size=1", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 16, 16, 1, false, error));
+    assert_ok(rt_accel_open("brute", &scene, &accel, error));
+    assert_ok(rt_rayset_record(sets, accel, &recording, error));
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        RtCount count;
+        uint64_t hits = 0, tests = sets[k].count * scene.geometry.object_count;
+        RtHit *expected = rt_alloc(sets[k].count, sizeof(RtHit));
+        assert_ok(rt_measure_answers(accel, &sets[k], 1, expected, error));
+        for (uint64_t i = 0; i < sets[k].count; i++) {
+            hits += expected[i].object != RT_NO_OBJECT;
+            expected[i].t = -1;
+        }
+        assert_ok(rt_measure_count(accel, &sets[k], expected, 1, &count, error));
+        bool any = k == RT_RAY_SHADOW || k == RT_RAY_OCCLUSION;
+        assert_int_equal(count.tally.hits, hits);
+        assert_int_equal(count.differ, any ? 0 : sets[k].count);
+        assert_true((count.tally.object_tests < tests) == (any && hits > 0));
+        rt_free(expected);
+        rt_rayset_clear(&sets[k]);
+    }
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
 /* Times `spec` on every 16th primary ray of a cloud against `baseline` on all, and gives the cell. In a frame
  * 16 wide those are the rays of the leftmost column, which pass by everything. */
 static RtCell time_thinned(const char *baseline, const char *spec) {

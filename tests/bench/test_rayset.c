@@ -116,7 +116,7 @@ RT_TEST(sets_are_the_same_on_any_number_of_threads_and_any_accelerator) {
     }
 }
 
-RT_TEST(another_seed_changes_diffuse_and_random_rays_alone) {
+RT_TEST(another_seed_changes_bounces_and_random_rays_alone) {
     const Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT];
     RtRecording recording = make_recording(0);
@@ -124,7 +124,7 @@ RT_TEST(another_seed_changes_diffuse_and_random_rays_alone) {
     assert_ok(rt_rayset_record(sets, stage->accel, &recording, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         bool same = sets[kind].fingerprint == stage->sets[kind].fingerprint;
-        assert_true(same == (kind != RT_RAY_DIFFUSE && kind != RT_RAY_RANDOM));
+        assert_true(same == (kind < RT_RAY_DIFFUSE));
         rt_rayset_clear(&sets[kind]);
     }
 }
@@ -151,6 +151,17 @@ RT_TEST(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface) {
     assert_int_equal(next, diffuse->count);
     assert_true(escaped > 0 && escaped < next);
     rt_query_clear(&query);
+}
+
+RT_TEST(occlusion_rays_are_the_diffuse_ones) {
+    const Stage *stage = *state;
+    const RtRaySet *diffuse = &stage->sets[RT_RAY_DIFFUSE], *occlusion = &stage->sets[RT_RAY_OCCLUSION];
+    assert_int_equal(occlusion->count, diffuse->count);
+    for (uint64_t i = 0; i < diffuse->count; i++) {
+        RtRay ray = diffuse->rays[i];
+        ray.kind = RT_RAY_OCCLUSION;
+        assert_memory_equal(&occlusion->rays[i], &ray, sizeof ray);
+    }
 }
 
 RT_TEST(random_rays_are_chords_between_uniform_points_of_the_sphere) {

@@ -197,7 +197,7 @@ RT_TEST_IN_PLACE(what_is_left_out_of_the_yaml_has_its_default) {
     const RtExperiment *e = place->experiment;
     assert_string_equal(e->workloads[0].label, "bunny");
     assert_true(e->workloads[0].file && e->workloads[0].depth == 5 && e->workloads[0].width == 0);
-    assert_true(e->kind_count == RT_RAY_KIND_COUNT && e->limit == 100000 && e->rounds == 10 &&
+    assert_true(e->kind_count == RT_RAY_OCCLUSION && e->limit == 100000 && e->rounds == 10 &&
                 e->baseline == 0);
     assert_non_null(strstr(e->workloads[0].path, "/../x/bunny.obj")); /* seen from the folder of the YAML */
 }
