@@ -233,6 +233,33 @@ RT_TEST(a_limit_keeps_runs_of_neighbours_together_all_over_the_set) {
     assert_runs(set, 200, 256, 3, 10); /* 64 runs at least */
 }
 
+/* Asserts that each 64 rays from the first of set->rays[0..count) are a block of 8 x 8 samples. */
+static void assert_blocks(const RtRaySet *set, uint64_t count, uint32_t columns) {
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t first = set->rays[i - i % 64].source, source = set->rays[i].source;
+        uint32_t column = first % columns, row = first / columns;
+        assert_true(column % 8 == 0 && row % 8 == 0);
+        assert_true(source % columns - column < 8 && source / columns - row < 8);
+    }
+}
+
+/* Of 50 x 37 samples, 3 x 2 tiles of 256 are whole. */
+RT_TEST(primary_rays_come_in_blocks_of_neighbours_and_a_limit_keeps_them_whole) {
+    Stage *stage = *state;
+    RtRaySet sets[RT_RAY_KIND_COUNT], kept;
+    RtRecording recording = make_recording(1);
+    assert_blocks(&stage->sets[RT_RAY_PRIMARY], 3 * 2 * 256, 50);
+    assert_ok(rt_scene_sample(&stage->scene, 200, 200, 1, false, error));
+    assert_ok(rt_rayset_record(sets, stage->accel, &recording, error));
+    assert_blocks(&sets[RT_RAY_PRIMARY], 200 * 200, 200);
+    assert_ok(rt_rayset_limit(&sets[RT_RAY_PRIMARY], 15000, 200, &kept, error));
+    assert_true(kept.count % 192 == 0 && kept.count > 12000); /* runs of 192 */
+    assert_blocks(&kept, kept.count, 200);
+    rt_rayset_clear(&kept);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
+    assert_ok(rt_scene_sample(&stage->scene, 50, 37, 1, false, error));
+}
+
 RT_TEST(every_allocation_of_a_recording_may_fail) {
     Stage *stage = *state;
     RtRecording recording = make_recording(1);
