@@ -37,6 +37,9 @@ typedef struct RtEmbreeDevice {
 /* The choices of the parameter `isa`, in order, "default" first. */
 #define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
 
+/* RT_OK, or RT_NOT_AVAILABLE where the processor lacks instruction set number `isa` of RT_EMBREE_ISAS. */
+RtStatus rt_embree_isa_check(uint32_t isa, RtError *error);
+
 /* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS and builds on `threads` threads (0
  * = all processors); RT_NOT_AVAILABLE where the processor lacks it. `device` must stay where it is until it
  * is closed. */

@@ -13,6 +13,7 @@ void rt_experiment_init(RtExperiment *experiment) {
     experiment->rounds = 10;
     experiment->milliseconds = 20;
     experiment->seed = 1;
+    experiment->baseline_count = 1;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         if (k != RT_RAY_OCCLUSION) experiment->kinds[experiment->kind_count++] = (RtRayKind)k;
     }
@@ -37,6 +38,47 @@ RtStatus rt_workload_set_scene(RtWorkload *workload, const char *spec, const cha
         if (!may_name(*c)) *c = '_';
     }
     return rt_path_join(workload->file ? folder : "", spec, workload->path, error);
+}
+
+/* ---- the baseline ---- */
+
+static RtStatus append_best(RtExperiment *experiment, const char *label, RtError *error) {
+    char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
+    size_t count = 0;
+    RT_TRY(rt_best_specs(label, specs, &count, error));
+    if (experiment->candidate_count + count > RT_MAX_CANDIDATES) {
+        return rt_fail(error, RT_BAD_INPUT, "'%s' stands for %zu accelerators: at most %d fit together",
+                       label, count, RT_MAX_CANDIDATES);
+    }
+    snprintf(experiment->best, sizeof experiment->best, "%s", label);
+    experiment->baseline = experiment->candidate_count;
+    experiment->baseline_count = (uint32_t)count;
+    for (size_t i = 0; i < count; i++) {
+        RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
+        *candidate = (RtCandidate){.ray_stride = 1};
+        snprintf(candidate->spec, sizeof candidate->spec, "%s", specs[i]);
+        snprintf(candidate->label, sizeof candidate->label, "%s", specs[i]);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
+    experiment->baseline_count = 1;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        experiment->baseline = c;
+        if (strcmp(experiment->candidates[c].label, label) == 0) return RT_OK;
+    }
+    if (rt_best_is(label)) return append_best(experiment, label, error);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "'%.80s' is not the label of one of the accelerators, nor a name like embree:best", label);
+}
+
+bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c) {
+    return c - experiment->baseline < experiment->baseline_count;
+}
+
+const char *rt_baseline_label(const RtExperiment *experiment) {
+    return *experiment->best ? experiment->best : experiment->candidates[experiment->baseline].label;
 }
 
 /* ---- who is where ---- */
@@ -108,10 +150,8 @@ static RtStatus check_workload(const RtExperiment *experiment, uint32_t i, RtErr
     return check_label(workload->label, error);
 }
 
+/* What a best of stands for is available and goes everywhere. */
 static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
-    if (experiment->baseline >= experiment->candidate_count) {
-        return rt_fail(error, RT_BAD_INPUT, "this is not the label of one of the accelerators");
-    }
     const RtCandidate *baseline = &experiment->candidates[experiment->baseline];
     if (baseline->missing) {
         return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",
@@ -172,6 +212,7 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     }
     for (uint32_t i = 0; i < experiment->candidate_count; i++) {
         snprintf(where, RT_MAX_LABEL, "accelerators[%u]", i);
+        if (*experiment->best && rt_candidate_is_baseline(experiment, i)) strcpy(where, "baseline");
         RT_TRY(check_candidate(experiment, i, error));
     }
     for (uint32_t i = 0; i < experiment->kind_count; i++) {

@@ -120,4 +120,68 @@ RT_TEST(a_baseline_that_learns_knows_the_rays_of_thinned_candidates) {
     assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
 }
 
+/* A name for the best of several, of any accelerator that has one; NULL where none was built in. */
+static const char *any_best(char name[RT_MAX_LABEL]) {
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        if (ops->best_count == 0) continue;
+        snprintf(name, RT_MAX_LABEL, "%s:%s", ops->name, ops->bests[0].name);
+        return name;
+    }
+    return NULL;
+}
+
+/* Of the baseline's candidates from `first` on, one has a ratio of exactly 1, and the ratios of all refer to
+ * it. */
+static void assert_best_is_baseline(const RtResults *results, RtRayKind kind) {
+    const RtExperiment *e = results->experiment;
+    uint32_t best = rt_cell_at(results, 0, e->baseline, kind)->baseline;
+    double least = INFINITY;
+    for (uint32_t c = e->baseline; c < e->baseline + e->baseline_count; c++) {
+        least = fmin(least, rt_cell_at(results, 0, c, kind)->seconds.median);
+    }
+    assert_true(rt_cell_at(results, 0, best, kind)->seconds.median == least);
+    for (uint32_t c = 0; c < e->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, 0, c, kind);
+        bool thinned = e->candidates[c].ray_stride > 1;
+        assert_true(cell->timed && rt_candidate_is_baseline(e, cell->baseline));
+        assert_true(thinned || cell->baseline == best);
+        assert_true((cell->ratio.low == 1 && cell->ratio.high == 1) == (c == best));
+    }
+    assert_int_equal(rt_cell_at(results, 0, e->candidate_count, kind)->baseline, e->baseline);
+}
+
+RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    RtResults results;
+    char where[RT_MAX_LABEL], name[RT_MAX_LABEL];
+    assert_non_null(e);
+    if (!any_best(name)) {
+        rt_free(e);
+        return;
+    }
+    rt_experiment_init(e);
+    strcpy(e->name, "best");
+    e->milliseconds = 1;
+    e->kind_count = 2;
+    e->workload_count = 1;
+    e->workloads[0].depth = 1;
+    e->workloads[0].width = e->workloads[0].height = 32;
+    e->candidate_count = 2;
+    e->candidates[0] = (RtCandidate){.label = "all", .spec = "bvh", .ray_stride = 1};
+    e->candidates[1] = (RtCandidate){.label = "some", .spec = "bvh", .ray_stride = 7};
+    assert_ok(rt_experiment_set_baseline(e, name, error));
+    assert_true(e->baseline == 2 && e->baseline_count > 1 && e->candidate_count == 2 + e->baseline_count);
+    assert_string_equal(rt_baseline_label(e), name);
+    assert_ok(rt_workload_set_scene(&e->workloads[0], "random:n=300", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    assert_ok(rt_workload_run(&results, 0, &options, error));
+    assert_best_is_baseline(&results, RT_RAY_PRIMARY);
+    assert_best_is_baseline(&results, RT_RAY_SHADOW);
+    rt_results_clear(&results);
+    rt_free(e);
+}
+
 RT_TESTS(measure, NULL, NULL)
