@@ -63,14 +63,11 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
 }
 
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
-    experiment->baseline_count = 1;
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        experiment->baseline = c;
-        if (strcmp(experiment->candidates[c].label, label) == 0) return RT_OK;
-    }
-    if (rt_best_is(label)) return append_best(experiment, label, error);
-    return rt_fail(error, RT_BAD_INPUT,
-                   "'%.80s' is not the label of one of the accelerators, nor a name like embree:best", label);
+    uint32_t c = 0;
+    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
+    experiment->baseline = c;
+    if (c < experiment->candidate_count || !rt_best_is(label)) return RT_OK;
+    return append_best(experiment, label, error);
 }
 
 bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c) {
@@ -150,8 +147,10 @@ static RtStatus check_workload(const RtExperiment *experiment, uint32_t i, RtErr
     return check_label(workload->label, error);
 }
 
-/* What a best of stands for is available and goes everywhere. */
 static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
+    if (experiment->baseline >= experiment->candidate_count) {
+        return rt_fail(error, RT_BAD_INPUT, "this is not the label of one of the accelerators");
+    }
     const RtCandidate *baseline = &experiment->candidates[experiment->baseline];
     if (baseline->missing) {
         return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",
