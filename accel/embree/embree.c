@@ -68,8 +68,10 @@ static void set_reach(RtEmbree *self) {
     self->growth = rt_float_above(reach * 0x1p-19 + magnitude * 0x1p-21 + 0x1p-100);
 }
 
-static void attach(RtEmbree *self, RTCGeometry geometry, RtShape shape, const uint32_t *ids) {
-    self->slots[shape] = (RtEmbreeSlot){self, ids};
+static void attach(RtEmbree *self, RTCGeometry geometry, RtShape shape, const uint32_t *ids, uint32_t count) {
+    RtEmbreeSlot slot = {.self = self, .ids = ids, .first = ids[0], .consecutive = true};
+    for (uint32_t i = 0; i < count; i++) slot.consecutive &= ids[i] == slot.first + i;
+    self->slots[shape] = slot;
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(self->scene, geometry, shape);
     rtcReleaseGeometry(geometry);
@@ -84,7 +86,7 @@ static void attach_user(RtEmbree *self, RtShape shape, const uint32_t *ids, uint
                                     self->user ? rt_embree_user_intersect : rt_embree_native_intersect);
     rtcSetGeometryOccludedFunction(geometry,
                                    self->user ? rt_embree_user_occluded : rt_embree_native_occluded);
-    attach(self, geometry, shape, ids);
+    attach(self, geometry, shape, ids, count);
 }
 
 /* The scene's vertices are shared. Embree reads 16 bytes of each, 4 more than the last one has; a block of
@@ -101,7 +103,7 @@ static RtStatus attach_triangles(RtEmbree *self, enum RTCBuildQuality quality, R
                                sizeof(RtVec3), count);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, self->indices, 0,
                                3 * sizeof(uint32_t), g->triangle_count);
-    attach(self, geometry, RT_SHAPE_TRIANGLE, g->triangle_ids);
+    attach(self, geometry, RT_SHAPE_TRIANGLE, g->triangle_ids, g->triangle_count);
     return RT_OK;
 }
 
@@ -113,7 +115,7 @@ static void attach_spheres(RtEmbree *self, enum RTCBuildQuality quality) {
     rtcSetGeometryBuildQuality(geometry, quality);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, g->spheres, 0,
                                sizeof(RtSphere), g->sphere_count);
-    attach(self, geometry, RT_SHAPE_SPHERE, g->sphere_ids);
+    attach(self, geometry, RT_SHAPE_SPHERE, g->sphere_ids, g->sphere_count);
 }
 
 static RtStatus attach_all(RtEmbree *self, enum RTCBuildQuality quality, RtError *error) {
@@ -141,6 +143,7 @@ static RtStatus build_into(RtEmbree *self, const RtBuild *what, RtError *error) 
     RT_TRY(available(values, error));
     RT_TRY(rt_embree_device_open(&self->device, values[ISA].choice, what->threads, error));
     set_reach(self);
+    for (int shape = 0; shape < RT_SHAPE_COUNT; shape++) self->slots[shape].consecutive = true;
     self->scene = rtcNewScene(self->device.device);
     rtcSetSceneFlags(self->scene, values[ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(self->scene, quality);

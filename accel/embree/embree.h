@@ -61,6 +61,8 @@ typedef struct RtEmbree RtEmbree;
 typedef struct RtEmbreeSlot {
     const RtEmbree *self;
     const uint32_t *ids; /* object id of each primitive; the scene's */
+    uint32_t first;      /* ids[0] */
+    bool consecutive;    /* ids[i] = first + i; true also where there are none */
 } RtEmbreeSlot;
 
 typedef enum RtEmbreeQueryKind {
@@ -118,9 +120,15 @@ void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *argumen
 void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments);
 void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *arguments);
 
-/* A context for one chunk of rays. */
+/* A context for rays that are handed over together. */
 void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches,
                           RtCrossing *room);
+
+/* What native mode answers (native.c). */
+void rt_embree_native_nearest(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
+                              RtHit *hits);
+void rt_embree_native_occlusion(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays,
+                                size_t count, uint32_t *blockers);
 
 /* The kernels of the table of operations, and their scratch memory. */
 RtNearestKernel rt_embree_nearest_timed;
