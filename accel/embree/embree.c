@@ -143,7 +143,6 @@ static RtStatus build_into(RtEmbree *self, const RtBuild *what, RtError *error) 
     RT_TRY(available(values, error));
     RT_TRY(rt_embree_device_open(&self->device, values[ISA].choice, what->threads, error));
     set_reach(self);
-    for (int shape = 0; shape < RT_SHAPE_COUNT; shape++) self->slots[shape].consecutive = true;
     self->scene = rtcNewScene(self->device.device);
     rtcSetSceneFlags(self->scene, values[ROBUST].flag ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
     rtcSetSceneBuildQuality(self->scene, quality);

@@ -119,14 +119,12 @@ RT_KERNEL bool put_chunk(RtEmbreeBatch *batch, unsigned lanes, const RtRay *rays
 RT_KERNEL RtHit take_hit(const RtEmbree *self, RtEmbreeBatch *batch, unsigned lanes, size_t i,
                          double stretch) {
     uint32_t geometry = rt_embree_at(batch, lanes, i, RT_EMBREE_GEOMETRY)->u;
-    RtEmbreeWord t = {(float)((double)rt_embree_at(batch, lanes, i, RT_EMBREE_TFAR)->f * stretch)};
-    const RtEmbreeWord infinity = {INFINITY};
-    uint32_t hit = -(uint32_t)((geometry != RTC_INVALID_GEOMETRY_ID) & (t.f <= FLT_MAX));
-    uint32_t primitive = rt_embree_at(batch, lanes, i, RT_EMBREE_PRIMITIVE)->u & hit;
-    const RtEmbreeSlot *slot = &self->slots[geometry & hit];
-    uint32_t object = slot->consecutive ? slot->first + primitive : slot->ids[primitive];
-    t.u = (t.u & hit) | (infinity.u & ~hit);
-    return (RtHit){t.f, object | ~hit};
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return RT_MISS;
+    float t = (float)((double)rt_embree_at(batch, lanes, i, RT_EMBREE_TFAR)->f * stretch);
+    if (!(t <= FLT_MAX)) return RT_MISS;
+    const RtEmbreeSlot *slot = &self->slots[geometry];
+    uint32_t primitive = rt_embree_at(batch, lanes, i, RT_EMBREE_PRIMITIVE)->u;
+    return (RtHit){t, slot->consecutive ? slot->first + primitive : slot->ids[primitive]};
 }
 
 static __attribute__((noinline)) void take_any(const RtEmbree *self, RtEmbreeBatch *batch, unsigned lanes,
@@ -137,6 +135,13 @@ static __attribute__((noinline)) void take_any(const RtEmbree *self, RtEmbreeBat
 }
 
 /* ---- the whole ---- */
+
+/* Asks for the rays of the next chunk, so that they are there when this one has been traced. */
+RT_KERNEL void prefetch_rays(const RtRay *rays, size_t count) {
+    for (size_t i = 0; i < count * sizeof(RtRay); i += RT_CACHE_LINE) {
+        __builtin_prefetch((const char *)rays + i);
+    }
+}
 
 RT_KERNEL void answer_chunk(const RtEmbree *self, RtEmbreeBatch *batch, RtEmbreeContext *context,
                             const RtRay *rays, size_t count, RtHit *hits, uint32_t *blockers, unsigned lanes,
@@ -171,7 +176,8 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
     for (size_t i = 0; i < chunk && i < count; i++) rt_embree_put_constants(batch, lanes, i);
     unsigned denormals = rt_embree_denormals_off();
     for (size_t begin = 0; begin < count; begin += chunk) {
-        size_t n = count - begin < chunk ? count - begin : chunk;
+        size_t left = count - begin, n = left < chunk ? left : chunk;
+        prefetch_rays(rays + begin + n, left - n < chunk ? left - n : chunk);
         answer_chunk(self, batch, &trace.context, rays + begin, n, hits ? hits + begin : NULL,
                      hits ? NULL : blockers + begin, lanes, stream, denormals);
     }
