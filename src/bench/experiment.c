@@ -42,6 +42,18 @@ RtStatus rt_workload_set_scene(RtWorkload *workload, const char *spec, const cha
 
 /* ---- the baseline ---- */
 
+/* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without the commas that
+ * gnuplot stops at. */
+static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
+    size_t used = 0;
+    for (const char *c = spec; *c && used + 1 < RT_MAX_LABEL; c++) {
+        bool key = *c == ':' || *c == ',';
+        label[used++] = key ? '-' : *c;
+        if (key) c += strcspn(c, "=");
+    }
+    label[used] = '\0';
+}
+
 static RtStatus append_best(RtExperiment *experiment, const char *label, RtError *error) {
     char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
     size_t count = 0;
@@ -56,8 +68,8 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
     for (size_t i = 0; i < count; i++) {
         RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
         *candidate = (RtCandidate){.ray_stride = 1};
-        snprintf(candidate->spec, sizeof candidate->spec, "%s", specs[i]);
-        snprintf(candidate->label, sizeof candidate->label, "%s", specs[i]);
+        memcpy(candidate->spec, specs[i], sizeof candidate->spec);
+        label_setting(specs[i], candidate->label);
     }
     return RT_OK;
 }

@@ -24,7 +24,8 @@ static RtField label_of(const Row *r) {
 
 static RtField ratio_of(const Row *r) {
     bool ends = r->which != RT_TOTALS;
-    return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN, r->cell->ratio.high);
+    return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN,
+                             ends ? r->cell->ratio.high : (double)NAN);
 }
 
 static RtField baseline_of(const Row *r) {
