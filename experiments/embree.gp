@@ -51,7 +51,7 @@ do for [s = 1:n_scenes] {
   set title word(scenes, s) font ",14" textcolor rgb ink
   if (s == 1) {
     set ylabel "throughput / Embree's best" textcolor rgb ink
-    set key at screen 0.985, screen 0.99 right top horizontal maxrows 2 samplen 1 textcolor rgb ink
+    set key at screen 0.985, screen 0.99 right top vertical maxrows 2 samplen 1 textcolor rgb ink
   } else { unset key; unset ylabel }
   plot for [q = 1:4] "times.csv" using (at(s, q, "avx2")):(column("ratio")) \
          with points pointtype 6 pointsize 0.7 linewidth 1.5 linecolor rgb hue(q) title "avx2, query=".word(queries, q), \
