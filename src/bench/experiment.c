@@ -47,9 +47,12 @@ RtStatus rt_workload_set_scene(RtWorkload *workload, const char *spec, const cha
 static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
     size_t used = 0;
     for (const char *c = spec; *c && used + 1 < RT_MAX_LABEL; c++) {
-        bool key = *c == ':' || *c == ',';
-        label[used++] = key ? '-' : *c;
-        if (key) c += strcspn(c, "=");
+        label[used] = *c;
+        if (*c == ':' || *c == ',') {
+            label[used] = '-';
+            c += strcspn(c, "=");
+        }
+        used++;
     }
     label[used] = '\0';
 }
