@@ -112,6 +112,14 @@ typedef struct RtBuild {
         "how much wider than the scene's box " what " is, as a part of it",                                  \
         "the published scene boxes are a little wider than tight"
 
+/* A name under which several settings of an accelerator stand together as one competitor, the fastest of them
+ * on the rays at hand: `embree:best`. It is what others are compared with, and cannot be built itself. */
+typedef struct RtBestOf {
+    const char *name;
+    const char *settings; /* "isa=avx2|avx512,query=1|8": every combination; the other parameters' defaults */
+    const char *meaning;  /* one line */
+} RtBestOf;
+
 /* One accelerator, as a const table in its own file. Optional members may be NULL. */
 struct RtAccelOps {
     const char *name;    /* as in a spec */
@@ -120,6 +128,8 @@ struct RtAccelOps {
     const RtParam *params;
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
+    const RtBestOf *bests; /* [best_count], or NULL */
+    size_t best_count;
 
     /* On failure nothing is left behind. *out is owned by the caller: `destroy`, which leaves what lies below
      * alone. An overlay is built without regard to what it will lie on. */
@@ -154,6 +164,10 @@ struct RtAccelOps {
     /* Optional: takes recorded answers for rays[0..count), which stay where they are while the accelerator is
      * asked about them. */
     RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
+
+    /* Optional: RT_OK, or RT_NOT_AVAILABLE and why this machine, or the library at hand, cannot do what
+     * values[param_count] ask for. */
+    RtStatus (*available)(const RtValue *values, RtError *error);
 
     /* Optional: the version of the library that does the work, and what it runs on here, "3.13.5 avx512", to
      * out[0..room); false, and "", where it cannot be had. */
@@ -203,6 +217,16 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
 
 /* The spec with every effective parameter, "grid:rule=woo,density=10,...", to out[0..RT_MAX_SPEC_CHARS). */
 void rt_spec_format(const RtSpec *spec, char *out);
+
+#define RT_MAX_BEST 32
+
+/* Whether `text` is written like a best of, NAME:WORD; no spec is. */
+bool rt_best_is(const char *text);
+
+/* The specs that `text` ("embree:best") stands for, as far as they are available here, to specs[0..*count).
+ * RT_BAD_INPUT where there is no such name, RT_NOT_AVAILABLE where none is available. */
+RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS], size_t *count,
+                       RtError *error);
 
 /* ---- using an accelerator ---- */
 

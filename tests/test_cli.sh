@@ -195,6 +195,7 @@ refuses 'accelerator is missing' $bench
 refuses 'nope\.nff: there is no such file' bench nope.nff --accel bvh
 refuses "'grd': did you mean 'grid'" $bench --accel grd
 refuses 'bvh.*used twice' $bench --accel bvh --accel bvh
+refuses "'bvh:best' is neither a spec" $bench --accel bvh --baseline bvh:best
 refuses "no ray kind 'sideways'.*primary" $bench --accel bvh --rays sideways
 refuses 'primary.*twice' $bench --accel bvh --rays primary,primary
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 1000000000
@@ -209,6 +210,7 @@ refuses '--ray-stride comes after' $bench --ray-stride 2 --accel bvh
 refuses 'missing/x\.csv.*No such file' $bench --accel bvh --csv missing/x.csv
 does $bench --accel all --json
 does $bench --accel brute --ray-stride 3 --accel bvh --baseline bvh --count-only
+does $bench --accel bvh --rays diffuse,occlusion
 
 refuses 'EXPERIMENT is missing' run
 refuses 'nope\.yaml: .*No such file' run nope.yaml

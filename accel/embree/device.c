@@ -51,12 +51,15 @@ static RtStatus fail(int code, const char *message, RtError *error) {
     return rt_fail(error, status, "Embree reports error %d: %s", code, message);
 }
 
+RtStatus rt_embree_isa_check(uint32_t isa, RtError *error) {
+    if (processor_has(isa)) return RT_OK;
+    return rt_fail(error, RT_NOT_AVAILABLE,
+                   "accelerator embree: this processor has no %s; choose a smaller isa, or isa=default",
+                   isa_names[isa]);
+}
+
 RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error) {
-    if (!processor_has(isa)) {
-        return rt_fail(error, RT_NOT_AVAILABLE,
-                       "accelerator embree: this processor has no %s; choose a smaller isa, or isa=default",
-                       isa_names[isa]);
-    }
+    RT_TRY(rt_embree_isa_check(isa, error));
     char config[64];
     int length = snprintf(config, sizeof config, "ignore_config_files=1,threads=%d", threads);
     if (isa != ISA_DEFAULT) {

@@ -37,6 +37,9 @@ typedef struct RtEmbreeDevice {
 /* The choices of the parameter `isa`, in order, "default" first. */
 #define RT_EMBREE_ISAS "default|sse2|sse4.2|avx|avx2|avx512"
 
+/* RT_OK, or RT_NOT_AVAILABLE where the processor lacks instruction set number `isa` of RT_EMBREE_ISAS. */
+RtStatus rt_embree_isa_check(uint32_t isa, RtError *error);
+
 /* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS and builds on `threads` threads (0
  * = all processors); RT_NOT_AVAILABLE where the processor lacks it. `device` must stay where it is until it
  * is closed. */
@@ -58,6 +61,8 @@ typedef struct RtEmbree RtEmbree;
 typedef struct RtEmbreeSlot {
     const RtEmbree *self;
     const uint32_t *ids; /* object id of each primitive; the scene's */
+    uint32_t first;      /* ids[0] */
+    bool consecutive;    /* ids[i] = first + i */
 } RtEmbreeSlot;
 
 typedef enum RtEmbreeQueryKind {
@@ -81,7 +86,8 @@ struct RtEmbree {
 
 /* ---- queries ---- */
 
-#define RT_EMBREE_PACKET_RAYS 16  /* rays handed over at once as single rays or packets */
+/* Rays handed over at once as single rays or packets: 32 to 128 were slower, by up to a tenth. */
+#define RT_EMBREE_PACKET_RAYS 16
 #define RT_EMBREE_STREAM_RAYS 256 /* the same as a stream */
 
 /* One ray of user mode: ours, and what was found on it. */
@@ -115,9 +121,15 @@ void rt_embree_user_occluded(const struct RTCOccludedFunctionNArguments *argumen
 void rt_embree_native_intersect(const struct RTCIntersectFunctionNArguments *arguments);
 void rt_embree_native_occluded(const struct RTCOccludedFunctionNArguments *arguments);
 
-/* A context for one chunk of rays. */
+/* A context for rays that are handed over together. */
 void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtEmbreeSearch *searches,
                           RtCrossing *room);
+
+/* What native mode answers (native.c). */
+void rt_embree_native_nearest(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
+                              RtHit *hits);
+void rt_embree_native_occlusion(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays,
+                                size_t count, uint32_t *blockers);
 
 /* The kernels of the table of operations, and their scratch memory. */
 RtNearestKernel rt_embree_nearest_timed;

@@ -41,9 +41,9 @@ static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
     switch ((Build)what->values[PARAM_BUILD].choice) {
     case BINNED: break;
     case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
-    case LBVH: return rt_tree_lbvh(tree, boxes, count, 21, error);
-    case PLOC: return rt_tree_ploc(tree, boxes, count, 21, 25, error);
-    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, error);
+    case LBVH: return rt_tree_lbvh(tree, boxes, count, 21, what->threads, error);
+    case PLOC: return rt_tree_ploc(tree, boxes, count, 21, 25, what->threads, error);
+    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, what->threads, error);
     }
     return rt_tree_topdown(tree, boxes, count, (int)what->values[PARAM_BINS].i, what->threads, error);
 }

@@ -42,7 +42,8 @@
     X(REFLECTION, reflection, "mirrored at a reflective surface")                                            \
     X(TRANSMISSION, transmission, "refracted through a transparent surface")                                 \
     X(DIFFUSE, diffuse, "from a surface, cosine-distributed about the normal")                               \
-    X(RANDOM, random, "a random chord of the scene's bounding sphere")
+    X(RANDOM, random, "a random chord of the scene's bounding sphere")                                       \
+    X(OCCLUSION, occlusion, "a diffuse ray that asks for any hit; answered by `occluded`")
 
 typedef enum RtRayKind {
 #define RT_RAY_KIND_ENUM(CONSTANT, name, meaning) RT_RAY_##CONSTANT,
@@ -50,6 +51,11 @@ typedef enum RtRayKind {
 #undef RT_RAY_KIND_ENUM
         RT_RAY_KIND_COUNT
 } RtRayKind;
+
+/* Rays that ask whether anything lies on them, and not what is nearest: `occluded` answers them. */
+static inline bool rt_ray_kind_is_occlusion(RtRayKind kind) {
+    return kind == RT_RAY_SHADOW || kind == RT_RAY_OCCLUSION;
+}
 
 /* "primary", ...; and the kind of a name, or RT_BAD_INPUT and the names there are. */
 const char *rt_ray_kind_name(RtRayKind kind);

@@ -13,8 +13,10 @@ void rt_experiment_init(RtExperiment *experiment) {
     experiment->rounds = 10;
     experiment->milliseconds = 20;
     experiment->seed = 1;
-    experiment->kind_count = RT_RAY_KIND_COUNT;
-    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) experiment->kinds[k] = (RtRayKind)k;
+    experiment->baseline_count = 1;
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        if (k != RT_RAY_OCCLUSION) experiment->kinds[experiment->kind_count++] = (RtRayKind)k;
+    }
 }
 
 /* Whether labels may have this character: they name rows of CSV, plots and files of images. */
@@ -36,6 +38,59 @@ RtStatus rt_workload_set_scene(RtWorkload *workload, const char *spec, const cha
         if (!may_name(*c)) *c = '_';
     }
     return rt_path_join(workload->file ? folder : "", spec, workload->path, error);
+}
+
+/* ---- the baseline ---- */
+
+/* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without the commas that
+ * gnuplot stops at. */
+static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
+    size_t used = 0;
+    for (const char *c = spec; *c && used + 1 < RT_MAX_LABEL; c++) {
+        label[used] = *c;
+        if (*c == ':' || *c == ',') {
+            label[used] = '-';
+            c += strcspn(c, "=");
+        }
+        used++;
+    }
+    label[used] = '\0';
+}
+
+static RtStatus append_best(RtExperiment *experiment, const char *label, RtError *error) {
+    char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
+    size_t count = 0;
+    RT_TRY(rt_best_specs(label, specs, &count, error));
+    if (experiment->candidate_count + count > RT_MAX_CANDIDATES) {
+        return rt_fail(error, RT_BAD_INPUT, "'%s' stands for %zu accelerators: at most %d fit together",
+                       label, count, RT_MAX_CANDIDATES);
+    }
+    snprintf(experiment->best, sizeof experiment->best, "%s", label);
+    experiment->baseline = experiment->candidate_count;
+    experiment->baseline_count = (uint32_t)count;
+    for (size_t i = 0; i < count; i++) {
+        RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
+        *candidate = (RtCandidate){.ray_stride = 1};
+        memcpy(candidate->spec, specs[i], sizeof candidate->spec);
+        label_setting(specs[i], candidate->label);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
+    uint32_t c = 0;
+    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
+    experiment->baseline = c;
+    if (c < experiment->candidate_count || !rt_best_is(label)) return RT_OK;
+    return append_best(experiment, label, error);
+}
+
+bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c) {
+    return c - experiment->baseline < experiment->baseline_count;
+}
+
+const char *rt_baseline_label(const RtExperiment *experiment) {
+    return *experiment->best ? experiment->best : experiment->candidates[experiment->baseline].label;
 }
 
 /* ---- who is where ---- */
@@ -171,6 +226,7 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
     }
     for (uint32_t i = 0; i < experiment->candidate_count; i++) {
         snprintf(where, RT_MAX_LABEL, "accelerators[%u]", i);
+        if (*experiment->best && rt_candidate_is_baseline(experiment, i)) strcpy(where, "baseline");
         RT_TRY(check_candidate(experiment, i, error));
     }
     for (uint32_t i = 0; i < experiment->kind_count; i++) {

@@ -74,8 +74,11 @@ typedef struct RtExperiment {
     RtCandidate candidates[RT_MAX_CANDIDATES];
     uint32_t candidate_count;
     char again[RT_MAX_LABEL +
-               8];     /* label of the null run, the baseline's with " (again)": rt_experiment_check */
-    uint32_t baseline; /* index of the candidate that ratios refer to; it is not thinned */
+               8]; /* label of the null run, the baseline's with " (again)": rt_experiment_check */
+    /* Ratios refer to the candidates baseline..baseline + baseline_count - 1, to the fastest of them on the
+     * rays of the cell where they are several. None of them is thinned. */
+    uint32_t baseline, baseline_count;
+    char best[RT_MAX_LABEL]; /* what several stand for, "embree:best"; else "" */
     RtRayKind kinds[RT_RAY_KIND_COUNT];
     uint32_t kind_count;
     uint64_t limit;        /* rays of one kind at most; a larger set is thinned evenly */
@@ -94,8 +97,8 @@ typedef struct RtExperiment {
     uint64_t fingerprint;     /* of the YAML's bytes */
 } RtExperiment;
 
-/* No scenes, no candidates, all ray kinds, and the defaults: limit 100000, rays kept singly, 10 rounds, 20
- * milliseconds. */
+/* No scenes, no candidates, all ray kinds but occlusion, which is diffuse once more, and the defaults: limit
+ * 100000, rays kept singly, 10 rounds, 20 milliseconds. */
 void rt_experiment_init(RtExperiment *experiment);
 
 /* Reads the YAML at `path`. Whatever is wrong (unknown keys, specs that do not parse, labels used twice, a
@@ -104,6 +107,17 @@ RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool qui
 
 /* Whether candidate `c`, which may be the null run (candidate_count), is measured on workload `t`. */
 bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
+
+/* The baseline by its label; or, where that is the name of a best of (accel.h: "embree:best"), what it stands
+ * for here, appended to the candidates. A label that is none leaves an index that rt_experiment_check
+ * refuses. */
+RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error);
+
+/* Whether candidate `c` is one of those that ratios refer to. */
+bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c);
+
+/* What ratios refer to: the label of the baseline, or "embree:best". */
+const char *rt_baseline_label(const RtExperiment *experiment);
 
 /* The candidate of that label on workload `t`; candidate_count + 1 where there is none. `again` is the null
  * run. */

@@ -143,14 +143,11 @@ static RtStatus read_rays(const RtYaml *y, const RtYamlNode *list, RtExperiment 
     return RT_OK;
 }
 
-/* A label that is none leaves an index that rt_experiment_check refuses. */
-static RtStatus read_baseline(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
+static RtStatus read_baseline(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment,
+                              RtError *error) {
     const char *label = experiment->candidates[0].label;
     RT_TRY(rt_yaml_text(y, n, "baseline", RT_MAX_LABEL - 1, &label));
-    uint32_t c = 0;
-    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
-    experiment->baseline = c;
-    return RT_OK;
+    return rt_yaml_place(y, rt_experiment_set_baseline(experiment, label, error), n, "baseline");
 }
 
 /* Understood even where it is not asked for, so that mistakes in it do not wait. */
@@ -218,7 +215,7 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
     RT_TRY(read_lists(y, n, experiment, error));
-    RT_TRY(read_baseline(y, n, experiment));
+    RT_TRY(read_baseline(y, n, experiment, error));
     const RtYamlNode *published = rt_yaml_get(y, n, "published"), *smaller = rt_yaml_get(y, n, "quick");
     if (published) RT_TRY(read_published(y, published, experiment));
     if (smaller) RT_TRY(read_quick(y, smaller, quick, experiment));

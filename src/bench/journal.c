@@ -50,11 +50,11 @@ static json_t *estimate_json(const RtEstimate *e) {
     return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
 }
 
-static json_t *time_json(const RtCell *cell) {
-    return json_pack("{s:I, s:I, s:i, s:o, s:o, s:o}", "rays", (json_int_t)cell->tally.rays, "rounds",
+static json_t *time_json(const RtExperiment *experiment, const RtCell *cell) {
+    return json_pack("{s:I, s:I, s:i, s:o, s:o, s:o, s:s}", "rays", (json_int_t)cell->tally.rays, "rounds",
                      (json_int_t)cell->rounds, "threads", cell->threads, "seconds",
                      estimate_json(&cell->seconds), "wall", estimate_json(&cell->wall), "ratio",
-                     estimate_json(&cell->ratio));
+                     estimate_json(&cell->ratio), "baseline", rt_candidate_label(experiment, cell->baseline));
 }
 
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
@@ -75,7 +75,7 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
                          count_json(cell));
     case RT_EVENT_TIME:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
-                         time_json(cell));
+                         time_json(experiment, cell));
     }
     return NULL;
 }
@@ -166,7 +166,10 @@ static void take_count(RtCell *cell, const json_t *object) {
     take_tally(&cell->tally, object);
 }
 
-static void take_time(RtCell *cell, const json_t *object) {
+static void take_time(const RtExperiment *experiment, uint32_t workload, RtCell *cell, const json_t *object) {
+    const char *baseline = json_string_value(json_object_get(object, "baseline"));
+    uint32_t c = rt_candidate_find(experiment, baseline ? baseline : "", workload);
+    cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
     cell->timed = true;
     cell->tally.rays = get_integer(object, "rays");
     cell->rounds = (uint32_t)get_integer(object, "rounds");
@@ -195,7 +198,7 @@ static void take_line(RtResults *results, const json_t *line) {
     if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;
     RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
-    if ((object = json_object_get(line, "timed"))) take_time(cell, object);
+    if ((object = json_object_get(line, "timed"))) take_time(experiment, workload, cell, object);
 }
 
 static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,

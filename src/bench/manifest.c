@@ -55,7 +55,7 @@ static json_t *manifest_json(const RtResults *results, const RtWorkloadOptions *
         experiment->prediction, "quick", experiment->quick, "seed", (json_int_t)experiment->seed, "limit",
         (json_int_t)experiment->limit, "coherent_run", (json_int_t)experiment->coherent_run, "rounds",
         (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
-        experiment->candidates[experiment->baseline].label, "date", rt_json_now(), "threads_counting",
+        rt_baseline_label(experiment), "date", rt_json_now(), "threads_counting",
         rt_thread_count(options->threads), "threads_timing", rt_thread_count(options->timing), "scenes",
         scenes_json(results), "accelerators", candidates_json(experiment), "machine", rt_machine_json());
 }

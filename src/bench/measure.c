@@ -20,10 +20,6 @@ typedef struct Pass {
     RtTally (*tallies)[RT_RAY_KIND_COUNT]; /* [threads], or NULL: the timed kernels */
 } Pass;
 
-static bool is_shadow(const RtRaySet *set) {
-    return set->kind == RT_RAY_SHADOW;
-}
-
 static void pass_clear(Pass *pass) {
     for (int i = 0; pass->queries && i < pass->threads; i++) rt_query_clear(&pass->queries[i]);
     rt_free(pass->queries);
@@ -37,10 +33,10 @@ static void pass_clear(Pass *pass) {
 static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set, int threads, bool counted,
                           RtError *error) {
     *pass = (Pass){.set = set, .threads = rt_thread_count(threads)};
-    size_t count = set->count, answer = is_shadow(set) ? sizeof(bool) : sizeof(RtHit);
+    size_t count = set->count, answer = rt_ray_kind_is_occlusion(set->kind) ? sizeof(bool) : sizeof(RtHit);
     pass->queries = rt_alloc((size_t)pass->threads, sizeof *pass->queries);
     if (counted) pass->tallies = rt_alloc((size_t)pass->threads, sizeof *pass->tallies);
-    if (is_shadow(set)) {
+    if (rt_ray_kind_is_occlusion(set->kind)) {
         pass->blocked = rt_alloc(count, answer);
     } else {
         pass->hits = rt_alloc(count, answer);
@@ -86,7 +82,7 @@ static RtStatus run_pass(Pass *pass, RtError *error) {
 
 RtStatus rt_measure_answers(const RtAccel *accel, const RtRaySet *set, int threads, RtHit *hits,
                             RtError *error) {
-    /* `nearest` also for shadow rays: a hit is then known by its object. */
+    /* `nearest` also for shadow and occlusion rays: a hit is then known by its object. */
     RtRaySet nearest = *set;
     nearest.kind = RT_RAY_PRIMARY;
     Pass pass;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Measuring an accelerator on a ray set: counting and timing, which are separate passes over the same rays.
- * Shadow rays are asked of `occluded`, all others of `nearest`. */
+ * Shadow and occlusion rays are asked of `occluded`, all others of `nearest`. */
 #ifndef RT_BENCH_MEASURE_H
 #define RT_BENCH_MEASURE_H
 
@@ -20,7 +20,7 @@ typedef struct RtCount {
 } RtCount;
 
 /* Counts what `set` costs, the same at any number of threads, and compares each answer with
- * expected[0..set->count): object id and bits of t, or for shadow rays whether there is a hit. */
+ * expected[0..set->count): object id and bits of t, or for those of `occluded` whether there is a hit. */
 RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
                           RtCount *count, RtError *error);
 

@@ -111,6 +111,18 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     return RT_OK;
 }
 
+/* The same rays, to be asked whether anything lies on them. */
+static RtStatus make_occlusion(Recorder *recorder, RtError *error) {
+    const RtRaySet *diffuse = &recorder->sets[RT_RAY_DIFFUSE];
+    RtRaySet *set = &recorder->sets[RT_RAY_OCCLUSION];
+    RT_TRY(set_init(set, RT_RAY_OCCLUSION, diffuse->count, error));
+    for (uint64_t i = 0; i < diffuse->count; i++) {
+        set->rays[i] = diffuse->rays[i];
+        set->rays[i].kind = RT_RAY_OCCLUSION;
+    }
+    return RT_OK;
+}
+
 /* ---- random rays ---- */
 
 static RtVec3 point_of_sphere(RtRandom *random, const RtBall *sphere) {
@@ -173,6 +185,7 @@ static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *fra
         RT_TRY(join(recorder, kind, error));
     }
     RT_TRY(make_diffuse(recorder, error));
+    RT_TRY(make_occlusion(recorder, error));
     RT_TRY(make_random(recorder, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) seal(&recorder->sets[kind]);
     return RT_OK;
@@ -181,10 +194,8 @@ static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *fra
 RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording,
                           RtError *error) {
     const RtSampling *sampling = &accel->scene->sampling;
-    size_t across = (sampling->columns + RT_TILE - 1) / RT_TILE;
-    size_t down = (sampling->rows + RT_TILE - 1) / RT_TILE;
     Recorder recorder = {
-        .recording = recording, .scene = accel->scene, .tile_count = across * down, .sets = sets};
+        .recording = recording, .scene = accel->scene, .tile_count = rt_tile_count(sampling), .sets = sets};
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sets[kind] = (RtRaySet){.kind = (RtRayKind)kind};
     recorder.tiles = rt_alloc(recorder.tile_count, sizeof(TileRays));
     if (!recorder.tiles) {
@@ -222,6 +233,7 @@ RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtR
     assert(limit > 0 && run > 0);
     uint64_t stride = (from->count + limit - 1) / limit;
     if (run > limit / 64) run = limit / 64;
+    if (run > RT_TILE_BLOCK) run -= run % RT_TILE_BLOCK;
     if (stride <= 1 || run <= 1) return rt_rayset_thin(from, stride ? stride : 1, to, error);
     RT_TRY(set_init(to, from->kind, limit, error));
     to->count = 0;

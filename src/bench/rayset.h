@@ -2,9 +2,10 @@
 /* Ray sets: rays of one kind recorded from one scene, to be replayed to every accelerator alike.
  *
  * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order in which
- * the frame's tiles produce them (tile after tile), whatever the number of threads. Diffuse rays start at the
- * primary hits, cosine-distributed about the normal; random rays are chords of the scene's bounding sphere
- * between two uniform points of it. */
+ * the frame's tiles produce them (tile after tile, each along a Z-order curve: render/tiles.h), whatever the
+ * number of threads: neighbours in a set start and end close to one another where the kind allows it. Diffuse
+ * rays start at the primary hits, cosine-distributed about the normal; random rays are chords of the scene's
+ * bounding sphere between two uniform points of it. Occlusion rays are the diffuse ones, of another kind. */
 #ifndef RT_BENCH_RAYSET_H
 #define RT_BENCH_RAYSET_H
 
@@ -37,7 +38,8 @@ RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtE
 /* At most `limit` rays, evenly spread, in runs of `run` neighbours: of every ceil(count / limit) runs
  * one is kept. Runs of 1 thin the set as above: the widest spread, for counting. Longer ones, up to a
  * 64th of `limit`, are picked at random within their group and keep the coherence that packets and caches
- * live on, for timing. */
+ * live on, for timing; from 64 rays on they are cut to a multiple of that, so that of primary rays whole
+ * blocks of 8 x 8 samples are kept. */
 RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error);
 
 void rt_rayset_clear(RtRaySet *set);

@@ -24,7 +24,13 @@ static RtField label_of(const Row *r) {
 
 static RtField ratio_of(const Row *r) {
     bool ends = r->which != RT_TOTALS;
-    return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN, r->cell->ratio.high);
+    return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN,
+                             ends ? r->cell->ratio.high : (double)NAN);
+}
+
+static RtField baseline_of(const Row *r) {
+    if (!r->cell->timed) return rt_field_missing();
+    return rt_field_text(rt_candidate_label(r->results->experiment, r->cell->baseline));
 }
 
 /* A counter, unless it is not known how often it counted a ray. */
@@ -86,6 +92,7 @@ static const void *build_of(const void *row) {
     X(wall_ns_low, "wall_ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->wall.low)         \
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
     X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays a second, by the median", 1e-6 / r->all.seconds) \
+    X(baseline, "baseline", text, "", "the accelerator that the ratio refers to", baseline_of(r))            \
     X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by rounds; median", r->all.ratio)   \
     X(ratio_low, "ratio_low", end, "", "lower end of its interval", TIMED(r->cell->ratio.low))               \
     X(ratio_high, "ratio_high", end, "", "upper end of its interval", TIMED(r->cell->ratio.high))            \
@@ -191,12 +198,14 @@ static const void *row_at(void *context, size_t i) {
     find(r, i);
     const bool null = r->candidate == r->results->experiment->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
+    const bool lost = timed && !null && rt_candidate_is_baseline(r->results->experiment, r->candidate) &&
+                      r->cell->baseline != r->candidate;
     const bool there[RT_RESULT_TABLE_COUNT] = {
         [RT_COUNTS] = counted && r->build->counts,
         [RT_TIMES] = timed,
         [RT_BENCH] = counted && !null,
         [RT_NULL_RUNS] = timed && null,
-        [RT_CELLS] = counted || timed,
+        [RT_CELLS] = (counted || timed) && !lost,
         [RT_CELLS_MORE] = counted || timed,
         [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->candidate_count,
     };
@@ -248,6 +257,11 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
         }
         fputc('\n', out);
         rt_table_text(&table, out);
+        if (which == RT_CELLS && experiment->baseline_count > 1) {
+            fprintf(out,
+                    "Ratios refer to %s: of %" PRIu32 " settings the fastest for each kind, shown here.\n",
+                    experiment->best, experiment->baseline_count);
+        }
     }
 }
 

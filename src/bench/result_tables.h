@@ -17,8 +17,8 @@ typedef enum RtResultTable {
     RT_TIMES,
     RT_BENCH,      /* "rows" of bench --json: of each cell that was counted */
     RT_NULL_RUNS,  /* "null_runs" there */
-    RT_CELLS,      /* for the eye: one workload by accelerator and ray kind */
-    RT_CELLS_MORE, /* the same with more columns */
+    RT_CELLS,      /* for the eye: one workload by accelerator and ray kind; of a best of only the best */
+    RT_CELLS_MORE, /* the same with more columns, and all rows */
     RT_TOTALS,     /* one workload by accelerator, all kinds together */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;

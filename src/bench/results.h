@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What an experiment found, in memory: dense arrays over workload x candidate x ray kind, filled cell by
- * cell. Behind the candidates stands one more, the null run: the baseline built and measured a second time,
- * whose ratio to the baseline must straddle 1. */
+ * cell. Behind the candidates stands one more, the null run: the baseline (where it is the best of several,
+ * the first of them) built and measured a second time, whose ratio to itself must straddle 1. */
 #ifndef RT_BENCH_RESULTS_H
 #define RT_BENCH_RESULTS_H
 
@@ -34,6 +34,8 @@ typedef struct RtCell {
     RtEstimate seconds; /* a ray: processor time on one thread, wall time on several */
     RtEstimate wall;    /* a ray, on the wall clock */
     RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
+    uint32_t
+        baseline; /* the candidate that is: where there are several, the fastest of them, by its median */
 } RtCell;
 
 typedef struct RtResults {

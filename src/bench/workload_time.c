@@ -4,14 +4,14 @@
 #include "base/parallel.h"
 #include "bench/workload_state.h"
 
-/* All that is timed against each other: each candidate on its share, and the baseline on every share that is
- * thinned, so that a ratio compares times on the same rays. */
+/* All that is timed against each other: each candidate on its share, and the baseline (all that it is the
+ * best of) on every share that is thinned, so that a ratio compares times on the same rays. */
 typedef struct Contest {
     uint32_t count, rounds;
     RtTimed *timed;  /* [count] */
     double *seconds; /* [count][2][rounds], where they go */
     uint32_t *place; /* [workload->count] of a candidate among them */
-    uint32_t *rival; /* [workload->count] of the baseline on its rays */
+    uint32_t *rival; /* [workload->count] of the first candidate of the baseline on its rays; others follow */
 } Contest;
 
 static uint32_t enter(Contest *contest, const RtAccel *accel, const RtRaySet *set) {
@@ -22,8 +22,8 @@ static uint32_t enter(Contest *contest, const RtAccel *accel, const RtRaySet *se
 
 /* Clear it also after a failure. */
 static RtStatus contest_init(Contest *contest, const RtWorkloadState *workload, RtError *error) {
-    const uint32_t baseline = workload->experiment->baseline;
-    size_t most = 2 * (size_t)workload->count, doubles = 2 * most * workload->experiment->rounds;
+    const uint32_t baseline = workload->experiment->baseline, rivals = workload->experiment->baseline_count;
+    size_t most = (1 + (size_t)rivals) * workload->count, doubles = 2 * most * workload->experiment->rounds;
     *contest = (Contest){.rounds = workload->experiment->rounds,
                          .timed = rt_alloc(most, sizeof(RtTimed)),
                          .seconds = rt_alloc(doubles, sizeof(double)),
@@ -39,7 +39,10 @@ static RtStatus contest_init(Contest *contest, const RtWorkloadState *workload, 
     for (uint32_t c = 0; c < workload->count; c++) {
         contest->rival[c] = contest->place[baseline];
         if (!workload->accels[c] || rt_workload_ray_stride(workload, c) == 1) continue;
-        contest->rival[c] = enter(contest, workload->accels[baseline], &workload->shares[c].set);
+        contest->rival[c] = contest->count;
+        for (uint32_t i = 0; i < rivals; i++) {
+            enter(contest, workload->accels[baseline + i], &workload->shares[c].set);
+        }
     }
     return RT_OK;
 }
@@ -51,14 +54,30 @@ static void contest_clear(Contest *contest) {
     rt_free(contest->rival);
 }
 
+/* Which of the baseline's candidates is the fastest on the rays of `candidate`, by its median over all
+ * rounds; to pick it by the times that ratios are then made of favours the baseline, if anyone. The null run
+ * is compared with what it repeats. */
+static uint32_t pick_rival(const RtWorkloadState *workload, const Contest *contest, uint32_t candidate) {
+    const RtExperiment *experiment = workload->experiment;
+    const RtTimed *rivals = &contest->timed[contest->rival[candidate]];
+    uint32_t best = 0, count = candidate == experiment->candidate_count ? 1 : experiment->baseline_count;
+    for (uint32_t i = 1; i < count; i++) {
+        double median = rt_median(rivals[i].seconds, contest->rounds);
+        if (median < rt_median(rivals[best].seconds, contest->rounds)) best = i;
+    }
+    return best;
+}
+
 /* Takes what was timed into the cells. */
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Contest *contest,
                            RtError *error) {
     uint32_t rounds = contest->rounds;
     for (uint32_t c = 0; c < workload->count; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        const RtTimed *own = &contest->timed[contest->place[c]], *rival = &contest->timed[contest->rival[c]];
         if (!workload->accels[c] || cell->timed) continue;
+        uint32_t best = pick_rival(workload, contest, c);
+        const RtTimed *own = &contest->timed[contest->place[c]];
+        const RtTimed *rival = &contest->timed[contest->rival[c] + best];
         cell->timed = true;
         cell->rounds = rounds;
         cell->threads = rt_thread_count(workload->options->timing);
@@ -66,6 +85,7 @@ static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Cont
         cell->seconds = rt_estimate(own->seconds, rounds);
         cell->wall = rt_estimate(own->wall, rounds);
         cell->ratio = rt_estimate_ratio(rival->seconds, own->seconds, rounds);
+        cell->baseline = workload->experiment->baseline + best;
         RT_TRY(rt_workload_tell(workload, RT_EVENT_TIME, c, kind, error));
     }
     return RT_OK;

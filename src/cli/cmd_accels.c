@@ -16,6 +16,10 @@ static void print_accelerator(const RtAccelOps *ops) {
         putchar('\n');
     }
     rt_cli_print_params(ops->params, ops->param_count);
+    for (size_t i = 0; i < ops->best_count; i++) {
+        const RtBestOf *best = &ops->bests[i];
+        printf("  as a baseline, %s:%s: %s (%s)\n", ops->name, best->name, best->meaning, best->settings);
+    }
     putchar('\n');
 }
 
@@ -25,9 +29,15 @@ static json_t *accelerator_json(const RtAccelOps *ops) {
         if (ops->kinds && !(ops->kinds >> kind & 1)) continue;
         json_array_append_new(kinds, json_string(rt_ray_kind_name((RtRayKind)kind)));
     }
-    return json_pack("{s:s, s:s, s:s, s:b, s:o, s:o}", "name", ops->name, "summary", ops->summary, "paper",
-                     ops->paper, "overlay", ops->kinds != 0, "kinds", kinds, "params",
-                     rt_cli_params_json(ops->params, ops->param_count));
+    json_t *bests = json_array();
+    for (size_t i = 0; i < ops->best_count; i++) {
+        const RtBestOf *best = &ops->bests[i];
+        json_array_append_new(bests, json_pack("{s:s, s:s, s:s}", "name", best->name, "settings",
+                                               best->settings, "meaning", best->meaning));
+    }
+    return json_pack("{s:s, s:s, s:s, s:b, s:o, s:o, s:o}", "name", ops->name, "summary", ops->summary,
+                     "paper", ops->paper, "overlay", ops->kinds != 0, "kinds", kinds, "params",
+                     rt_cli_params_json(ops->params, ops->param_count), "best_of", bests);
 }
 
 int rt_command_accels(int argc, char **argv) {

@@ -45,11 +45,17 @@ static const struct argp_option options[] = {
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
      "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
     {"rays", OPT_RAYS, "KIND,...", 0,
-     "Ray kinds: primary, shadow, reflection, transmission, diffuse, random (all)", 0},
+     "Ray kinds: primary, shadow, reflection, transmission, diffuse, random; and occlusion, the diffuse rays "
+     "asked for any hit (all but occlusion)",
+     0},
     {"limit", OPT_LIMIT, "N", 0, "At most N rays of a kind; a larger set is thinned evenly (100000)", 0},
     {"coherent-run", OPT_COHERENT_RUN, "N", 0,
      "Neighbouring rays kept together where a set is thinned, for packets and caches (256)", 0},
-    {"baseline", OPT_BASELINE, "SPEC", 0, "The accelerator that ratios refer to (the first)", 0},
+    {"baseline", OPT_BASELINE, "SPEC", 0,
+     "The accelerator that ratios refer to (the first); or NAME:best, the fastest of several settings for "
+     "each "
+     "kind, as in embree:best (`raytally accels NAME`)",
+     0},
     {"rounds", OPT_ROUNDS, "N", 0,
      "Timing rounds, each in an order drawn anew (10); at least 6 for intervals of 95 %", 0},
     {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays and of orders (1)", 0},
@@ -97,6 +103,20 @@ static void add_accels(RtExperiment *experiment, const char *text, struct argp_s
         char spec[RT_MAX_SPEC_CHARS];
         rt_spread_spec(rt_accel_at(i), 0, spec);
         add_accel(experiment, spec, state);
+    }
+}
+
+/* One that was not given is added. */
+static void set_baseline(RtExperiment *experiment, const char *text, struct argp_state *state) {
+    RtError error;
+    uint32_t c = 0;
+    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].spec, text) != 0) c++;
+    experiment->baseline = c;
+    if (c < experiment->candidate_count) return;
+    if (!rt_best_is(text)) {
+        add_accel(experiment, text, state);
+    } else if (rt_experiment_set_baseline(experiment, text, &error) != RT_OK) {
+        argp_error(state, "--baseline: %s", error.message);
     }
 }
 
@@ -156,14 +176,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         if (!o->scene)
             argp_error(state, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists");
         if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
-        if (o->baseline) {
-            e->baseline = 0;
-            while (e->baseline < e->candidate_count &&
-                   strcmp(e->candidates[e->baseline].spec, o->baseline) != 0) {
-                e->baseline++;
-            }
-            if (e->baseline == e->candidate_count) add_accel(e, o->baseline, state);
-        }
+        if (o->baseline) set_baseline(e, o->baseline, state);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }

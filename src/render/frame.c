@@ -56,7 +56,8 @@ struct Job {
     const RtFrameOptions *options;
     const RtScene *scene;
     RtView view;
-    size_t tiles, tiles_across, tiles_done;
+    RtSample *tiles; /* [tile_count], in order */
+    size_t tile_count, tiles_done;
     pthread_mutex_t lock; /* guards tiles_done and the calls of progress */
     Worker *workers;
 };
@@ -201,18 +202,16 @@ static RtStatus trace_level(Worker *worker, uint32_t depth, RtError *error) {
 static void make_primary_rays(Worker *worker, Level *level) {
     const Job *job = worker->job;
     const RtSampling *s = &job->view.sampling;
-    uint32_t left = (uint32_t)(worker->tile % job->tiles_across) * RT_TILE;
-    uint32_t top = (uint32_t)(worker->tile / job->tiles_across) * RT_TILE;
     level->count = 0;
-    for (uint32_t row = top; row < s->rows && row < top + RT_TILE; row++) {
-        for (uint32_t column = left; column < s->columns && column < left + RT_TILE; column++) {
-            RtRay ray = rt_view_ray(&job->view, column, row);
-            job->frame->object[ray.source] = RT_NO_OBJECT;
-            job->frame->depth[ray.source] = INFINITY;
-            if (!rt_ray_is_valid(&ray)) continue;
-            level->rays[level->count] = ray;
-            level->paths[level->count++] = (Path){ray.source, 1};
-        }
+    for (uint32_t i = 0; i < RT_TILE * RT_TILE; i++) {
+        RtSample sample = rt_tile_sample(job->tiles[worker->tile], i);
+        if (sample.column >= s->columns || sample.row >= s->rows) continue;
+        RtRay ray = rt_view_ray(&job->view, sample.column, sample.row);
+        job->frame->object[ray.source] = RT_NO_OBJECT;
+        job->frame->depth[ray.source] = INFINITY;
+        if (!rt_ray_is_valid(&ray)) continue;
+        level->rays[level->count] = ray;
+        level->paths[level->count++] = (Path){ray.source, 1};
     }
 }
 
@@ -226,7 +225,7 @@ static RtStatus trace_tile(void *context, size_t tile, int thread, RtError *erro
     RT_TRY(trace_level(worker, 0, error));
     if (!o->progress) return RT_OK;
     pthread_mutex_lock(&job->lock);
-    o->progress(o->progress_context, ++job->tiles_done, job->tiles);
+    o->progress(o->progress_context, ++job->tiles_done, job->tile_count);
     pthread_mutex_unlock(&job->lock);
     return RT_OK;
 }
@@ -288,6 +287,14 @@ static RtStatus init_frame(RtFrame *frame, const RtSampling *sampling, bool coun
     return rt_fail_memory(error, "a frame", samples * each);
 }
 
+static RtStatus init_tiles(Job *job, const RtSampling *sampling, RtError *error) {
+    job->tile_count = rt_tile_count(sampling);
+    job->tiles = rt_alloc(job->tile_count, sizeof(RtSample));
+    if (!job->tiles) return rt_fail_memory(error, "the tiles of a frame", job->tile_count * sizeof(RtSample));
+    rt_tiles_in_order(sampling, job->tiles);
+    return RT_OK;
+}
+
 void rt_frame_clear(RtFrame *frame) {
     rt_free(frame->color);
     rt_free(frame->object);
@@ -298,7 +305,9 @@ void rt_frame_clear(RtFrame *frame) {
 
 /* ---- the whole ---- */
 
-static RtStatus run(Job *job, const RtAccel *accel, int threads, RtError *error) {
+static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
+    int threads = rt_thread_count(job->options->threads);
+    if ((size_t)threads > job->tile_count) threads = (int)job->tile_count;
     job->workers = rt_alloc((size_t)threads, sizeof(Worker));
     if (!job->workers) return rt_fail_memory(error, "workers", (size_t)threads * sizeof(Worker));
     RtStatus status = RT_OK;
@@ -306,7 +315,7 @@ static RtStatus run(Job *job, const RtAccel *accel, int threads, RtError *error)
         status = init_worker(&job->workers[i], job, accel, error);
     }
     double start = rt_wall_seconds();
-    if (status == RT_OK) status = rt_parallel_for(job->tiles, threads, trace_tile, job, error);
+    if (status == RT_OK) status = rt_parallel_for(job->tile_count, threads, trace_tile, job, error);
     job->frame->seconds = rt_wall_seconds() - start;
     if (status == RT_OK) status = rt_accel_check(accel, error);
     for (int i = 0; i < threads; i++) {
@@ -328,16 +337,14 @@ RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptio
     Job job = {.frame = frame, .options = options, .scene = accel->scene};
     const RtSampling *sampling = &accel->scene->sampling;
     RT_TRY(rt_view_init(&job.view, &accel->scene->camera, *sampling, error));
-    job.tiles_across = (sampling->columns + RT_TILE - 1) / RT_TILE;
-    job.tiles = job.tiles_across * ((sampling->rows + RT_TILE - 1) / RT_TILE);
     RtStatus status = init_frame(frame, sampling, options->counted, error);
+    if (status == RT_OK) status = init_tiles(&job, sampling, error);
     if (status == RT_OK) {
-        int threads = rt_thread_count(options->threads);
-        if ((size_t)threads > job.tiles) threads = (int)job.tiles;
         pthread_mutex_init(&job.lock, NULL);
-        status = run(&job, accel, threads, error);
+        status = run(&job, accel, error);
         pthread_mutex_destroy(&job.lock);
     }
+    rt_free(job.tiles);
     if (status != RT_OK) rt_frame_clear(frame);
     return status;
 }

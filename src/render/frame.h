@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Frames: one image of a scene, traced recursively under the standard illumination model, on any accelerator.
  *
- * A frame is cut into tiles of RT_TILE x RT_TILE samples; a tile is the unit of work of a thread. Within a
+ * A frame is cut into tiles (render/tiles.h); a tile is the unit of work of a thread. Within a
  * tile rays are traced level by level (all primary rays as one stream, then all shadow rays of their hits,
  * then all reflection and transmission rays they spawned, and so on), so that an accelerator sees streams. A
  * level of more than 1024 rays is cut into streams, each followed to the bottom before the next; shadow rays
@@ -12,17 +12,17 @@
 #define RT_RENDER_FRAME_H
 
 #include "accel/accel.h"
+#include "render/tiles.h"
 
-#define RT_TILE          16
 #define RT_MAX_DEPTH     64
 #define RT_DEFAULT_DEPTH 5 /* levels where nobody asks for another number, as SPD does */
 
 /* A frame of more samples is refused: 8192 x 8192, which take 1.3 GB, counted 6.7 GB. */
 #define RT_MAX_FRAME_SAMPLES (UINT32_C(1) << 26)
 
-/* Called with every ray of one tile as it is traced, by any thread, but for one tile in one order: level by
- * level, each stream as it goes to the accelerator (shadow rays to `occluded`, the others to `nearest`).
- * `rays` is valid during the call only. */
+/* Called with every ray of one tile, by its number in the order of tiles, as it is traced, by any thread, but
+ * for one tile in one order: level by level, each stream as it goes to the accelerator (shadow rays to
+ * `occluded`, the others to `nearest`). `rays` is valid during the call only. */
 typedef RtStatus RtRaySink(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error);
 
 typedef struct RtFrameOptions {

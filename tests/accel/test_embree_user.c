@@ -108,7 +108,7 @@ RT_TEST(user_mode_is_brute_where_t_is_denormal) {
 RT_TEST(user_mode_counts_tests_where_it_is_asked_to) {
     RtScene scene;
     make_soup(&scene, 60, 1, 10);
-    Rays rays = make_rays(&scene, 600, 10, 3);
+    Rays rays = make_rays(&scene, 100 * RT_RAY_KIND_COUNT, 10, 3);
     Answers brute = ask(&scene, "brute", rays, true), user = ask(&scene, "embree:mode=user", rays, true);
     for (size_t kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         const RtTally *b = &brute.tallies[kind], *u = &user.tallies[kind];

@@ -116,7 +116,7 @@ RT_TEST(sets_are_the_same_on_any_number_of_threads_and_any_accelerator) {
     }
 }
 
-RT_TEST(another_seed_changes_diffuse_and_random_rays_alone) {
+RT_TEST(another_seed_changes_bounces_and_random_rays_alone) {
     const Stage *stage = *state;
     RtRaySet sets[RT_RAY_KIND_COUNT];
     RtRecording recording = make_recording(0);
@@ -124,7 +124,7 @@ RT_TEST(another_seed_changes_diffuse_and_random_rays_alone) {
     assert_ok(rt_rayset_record(sets, stage->accel, &recording, error));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         bool same = sets[kind].fingerprint == stage->sets[kind].fingerprint;
-        assert_true(same == (kind != RT_RAY_DIFFUSE && kind != RT_RAY_RANDOM));
+        assert_true(same == (kind < RT_RAY_DIFFUSE));
         rt_rayset_clear(&sets[kind]);
     }
 }
@@ -151,6 +151,17 @@ RT_TEST(there_is_a_diffuse_ray_for_each_primary_hit_and_it_leaves_the_surface) {
     assert_int_equal(next, diffuse->count);
     assert_true(escaped > 0 && escaped < next);
     rt_query_clear(&query);
+}
+
+RT_TEST(occlusion_rays_are_the_diffuse_ones) {
+    const Stage *stage = *state;
+    const RtRaySet *diffuse = &stage->sets[RT_RAY_DIFFUSE], *occlusion = &stage->sets[RT_RAY_OCCLUSION];
+    assert_int_equal(occlusion->count, diffuse->count);
+    for (uint64_t i = 0; i < diffuse->count; i++) {
+        RtRay ray = diffuse->rays[i];
+        ray.kind = RT_RAY_OCCLUSION;
+        assert_memory_equal(&occlusion->rays[i], &ray, sizeof ray);
+    }
 }
 
 RT_TEST(random_rays_are_chords_between_uniform_points_of_the_sphere) {
@@ -220,6 +231,33 @@ RT_TEST(a_limit_keeps_runs_of_neighbours_together_all_over_the_set) {
     assert_runs(set, 1100, 16, 16, 2);
     assert_runs(set, 600, 5, 5, 4);
     assert_runs(set, 200, 256, 3, 10); /* 64 runs at least */
+}
+
+/* Asserts that each 64 rays from the first of set->rays[0..count) are a block of 8 x 8 samples. */
+static void assert_blocks(const RtRaySet *set, uint64_t count, uint32_t columns) {
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t first = set->rays[i - i % 64].source, source = set->rays[i].source;
+        uint32_t column = first % columns, row = first / columns;
+        assert_true(column % 8 == 0 && row % 8 == 0);
+        assert_true(source % columns - column < 8 && source / columns - row < 8);
+    }
+}
+
+/* Of 50 x 37 samples, 3 x 2 tiles of 256 are whole. */
+RT_TEST(primary_rays_come_in_blocks_of_neighbours_and_a_limit_keeps_them_whole) {
+    Stage *stage = *state;
+    RtRaySet sets[RT_RAY_KIND_COUNT], kept;
+    RtRecording recording = make_recording(1);
+    assert_blocks(&stage->sets[RT_RAY_PRIMARY], 3 * 2 * 256, 50);
+    assert_ok(rt_scene_sample(&stage->scene, 200, 200, 1, false, error));
+    assert_ok(rt_rayset_record(sets, stage->accel, &recording, error));
+    assert_blocks(&sets[RT_RAY_PRIMARY], 200 * 200, 200);
+    assert_ok(rt_rayset_limit(&sets[RT_RAY_PRIMARY], 15000, 200, &kept, error));
+    assert_true(kept.count % 192 == 0 && kept.count > 12000); /* runs of 192 */
+    assert_blocks(&kept, kept.count, 200);
+    rt_rayset_clear(&kept);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
+    assert_ok(rt_scene_sample(&stage->scene, 50, 37, 1, false, error));
 }
 
 RT_TEST(every_allocation_of_a_recording_may_fail) {

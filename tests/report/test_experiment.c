@@ -89,6 +89,7 @@ RT_TEST_IN_PLACE(a_bad_experiment_is_refused_with_its_line) {
         {"rounds: 3", "rays: [primary, sideways]", ":14:"},
         {"baseline: bvh", "baseline: octree", ":12:"},
         {"baseline: bvh", "baseline: brute", ":12:"},
+        {"baseline: bvh", "baseline: bvh:best", ":12:11: baseline: 'bvh:best' is neither a spec"},
         {"accel: bvh", "accel: bhv", ":9:"},
         {"density=4", "density=-4", ":10:"},
         {"label: grid", "label: bvh", ":10:"},
@@ -197,7 +198,7 @@ RT_TEST_IN_PLACE(what_is_left_out_of_the_yaml_has_its_default) {
     const RtExperiment *e = place->experiment;
     assert_string_equal(e->workloads[0].label, "bunny");
     assert_true(e->workloads[0].file && e->workloads[0].depth == 5 && e->workloads[0].width == 0);
-    assert_true(e->kind_count == RT_RAY_KIND_COUNT && e->limit == 100000 && e->rounds == 10 &&
+    assert_true(e->kind_count == RT_RAY_OCCLUSION && e->limit == 100000 && e->rounds == 10 &&
                 e->baseline == 0);
     assert_non_null(strstr(e->workloads[0].path, "/../x/bunny.obj")); /* seen from the folder of the YAML */
 }

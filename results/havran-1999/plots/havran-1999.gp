@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # havran-1999: published against measured figures, their deviations row by row, and ours against the best published row.
 
 n_scenes = words(scenes)

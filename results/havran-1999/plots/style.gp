@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the plots of all experiments share: the look, and reading the CSV files. names.gp runs before this.
 #
 # A ray kind weighs in totals what its whole set has of rays (set_rays), so that accelerators that were measured on

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # first-look: costs per ray and of building, a row of panels a scene; and time by ray kind.
 
 n_scenes = words(scenes); n_accels = words(accels); n_kinds = words(kinds)
