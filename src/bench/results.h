@@ -34,8 +34,7 @@ typedef struct RtCell {
     RtEstimate seconds; /* a ray: processor time on one thread, wall time on several */
     RtEstimate wall;    /* a ray, on the wall clock */
     RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
-    uint32_t
-        baseline; /* the candidate that is: where there are several, the fastest of them, by its median */
+    uint32_t baseline; /* the candidate that is: where there are several, the fastest of them on these rays */
 } RtCell;
 
 typedef struct RtResults {

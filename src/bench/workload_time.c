@@ -4,6 +4,8 @@
 #include "base/parallel.h"
 #include "bench/workload_state.h"
 
+#include <math.h>
+
 /* All that is timed against each other: each candidate on its share, and the baseline (all that it is the
  * best of) on every share that is thinned, so that a ratio compares times on the same rays. */
 typedef struct Contest {
@@ -54,16 +56,32 @@ static void contest_clear(Contest *contest) {
     rt_free(contest->rival);
 }
 
-/* Which of the baseline's candidates is the fastest on the rays of `candidate`, by its median over all
- * rounds; to pick it by the times that ratios are then made of favours the baseline, if anyone. The null run
- * is compared with what it repeats. */
+/* The median of what part number `i` of rivals[0..count) has of the time that all of them take in a round:
+ * paired as ratios are, so that a drift does not decide. */
+static double part_of_round(const RtTimed *rivals, uint32_t count, uint32_t i, uint32_t rounds) {
+    double part[RT_MAX_ROUNDS];
+    for (uint32_t r = 0; r < rounds; r++) {
+        double all = 0;
+        for (uint32_t k = 0; k < count; k++) all += rivals[k].seconds[r];
+        part[r] = rivals[i].seconds[r] / all;
+    }
+    return rt_median(part, rounds);
+}
+
+/* Which of the baseline's candidates is the fastest on the rays of `candidate`. To pick it by the times that
+ * ratios are then made of favours the baseline, if anyone. The null run is compared with what it repeats. */
 static uint32_t pick_rival(const RtWorkloadState *workload, const Contest *contest, uint32_t candidate) {
     const RtExperiment *experiment = workload->experiment;
     const RtTimed *rivals = &contest->timed[contest->rival[candidate]];
-    uint32_t best = 0, count = candidate == experiment->candidate_count ? 1 : experiment->baseline_count;
-    for (uint32_t i = 1; i < count; i++) {
-        double median = rt_median(rivals[i].seconds, contest->rounds);
-        if (median < rt_median(rivals[best].seconds, contest->rounds)) best = i;
+    uint32_t best = 0, count = experiment->baseline_count;
+    if (candidate == experiment->candidate_count) return 0;
+    double least = INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        double part = part_of_round(rivals, count, i, contest->rounds);
+        if (part < least) {
+            least = part;
+            best = i;
+        }
     }
     return best;
 }

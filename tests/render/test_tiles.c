@@ -20,8 +20,9 @@ static uint32_t walk(const RtSampling *s) {
     RtSample first = {0, 0};
     assert_true(tile && seen);
     rt_tiles_in_order(s, tile);
-    for (size_t i = 0; i < tiles * RT_TILE * RT_TILE; i++) {
-        RtSample at = rt_tile_sample(tile[i / (RT_TILE * RT_TILE)], (uint32_t)(i % (RT_TILE * RT_TILE)));
+    const size_t each = (size_t)RT_TILE * RT_TILE;
+    for (size_t i = 0; i < tiles * each; i++) {
+        RtSample at = rt_tile_sample(tile[i / each], (uint32_t)(i % each));
         if (at.column >= s->columns || at.row >= s->rows) continue;
         size_t k = (size_t)at.row * s->columns + at.column;
         assert_false(seen[k]);
