@@ -31,6 +31,25 @@ static inline uint32_t rt_v8_at_most(__m256 a, __m256 b) {
 extern const uint64_t rt_v8_lanes[256];
 #endif
 
+/* b in the lanes of the mask, else a. */
+static inline __m256i rt_v8_pick(uint32_t mask, __m256i a, __m256i b) {
+#if defined(__AVX512VL__)
+    return _mm256_mask_mov_epi32(a, (__mmask8)mask, b);
+#else
+    const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    __m256i in = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32((int)mask), bits), bits);
+    return _mm256_blendv_epi8(a, b, in);
+#endif
+}
+
+/* Eight words from and to anywhere. */
+static inline __m256i rt_v8_get(const void *from) {
+    return _mm256_loadu_si256((const __m256i *)from);
+}
+static inline void rt_v8_put(void *to, __m256i a) {
+    _mm256_storeu_si256((__m256i *)to, a);
+}
+
 /* The order that brings the lanes of a mask to the front, for rt_v8_take. */
 #if defined(__AVX512VL__)
 typedef __mmask8 RtV8Order;
@@ -58,6 +77,10 @@ typedef __m512 RtV16;
 static inline RtV16 rt_v16_all(float a) { return _mm512_set1_ps(a); }
 static inline RtV16 rt_v16_load(const float *a) { return _mm512_load_ps(a); }
 static inline void rt_v16_store(float *to, RtV16 a) { _mm512_store_ps(to, a); }
+/* table[index[i]] in lane i, of sixteen. */
+static inline RtV16 rt_v16_lookup(const float *table, const uint32_t *index) {
+    return _mm512_permutexvar_ps(_mm512_load_si512(index), _mm512_load_ps(table));
+}
 static inline RtV16 rt_v16_add(RtV16 a, RtV16 b) { return _mm512_add_ps(a, b); }
 static inline RtV16 rt_v16_sub(RtV16 a, RtV16 b) { return _mm512_sub_ps(a, b); }
 static inline RtV16 rt_v16_mul(RtV16 a, RtV16 b) { return _mm512_mul_ps(a, b); }
@@ -89,6 +112,10 @@ static inline RtV16 rt_v16_load(const float *a) { return (RtV16){_mm256_load_ps(
 static inline void rt_v16_store(float *to, RtV16 a) {
     _mm256_store_ps(to, a.lo);
     _mm256_store_ps(to + 8, a.hi);
+}
+static inline RtV16 rt_v16_lookup(const float *table, const uint32_t *index) {
+    __m256i lo = _mm256_load_si256((const __m256i *)index), hi = _mm256_load_si256((const __m256i *)(index + 8));
+    return (RtV16){_mm256_i32gather_ps(table, lo, 4), _mm256_i32gather_ps(table, hi, 4)};
 }
 static inline RtV16 rt_v16_abs(RtV16 a) {
     const __m256 sign = _mm256_set1_ps(-0.0f);

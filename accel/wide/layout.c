@@ -41,7 +41,7 @@ typedef struct Weight {
 } Weight;
 
 static double leaf_cost(const Layout *layout, const Weight *weight) {
-    bool blocks = weight->shapes == 1u << RT_SHAPE_TRIANGLE || weight->shapes == 1u << RT_SHAPE_SPHERE;
+    bool blocks = weight->shapes == 1u << RT_SHAPE_TRIANGLE;
     uint32_t tests = blocks ? (weight->references + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK : weight->references;
     return layout->how->block_cost * tests;
 }
@@ -128,16 +128,6 @@ static void put_triangle(const Layout *layout, RtWideTriangles *block, uint32_t 
     block->id[lane] = id;
 }
 
-static void put_sphere(const Layout *layout, RtWideSpheres *block, uint32_t lane, uint32_t id) {
-    const RtGeometry *g = layout->geometry;
-    if (id != RT_NO_OBJECT) {
-        const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
-        for (int a = 0; a < 3; a++) block->center[a][lane] = sphere->center.at[a];
-        block->radius[lane] = sphere->radius;
-    }
-    block->id[lane] = id;
-}
-
 /* What a leaf of these objects is, and its bytes. */
 static RtWideKind kind_of(const Layout *layout, const uint32_t *ids, uint32_t count, uint32_t *bytes) {
     uint32_t shapes = 0, blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
@@ -146,12 +136,8 @@ static RtWideKind kind_of(const Layout *layout, const uint32_t *ids, uint32_t co
         *bytes = blocks * (uint32_t)sizeof(RtWideTriangles);
         return RT_WIDE_TRIANGLES;
     }
-    if (shapes == 1u << RT_SHAPE_SPHERE) {
-        *bytes = blocks * (uint32_t)sizeof(RtWideSpheres);
-        return RT_WIDE_SPHERES;
-    }
     *bytes = sizeof(RtWideList);
-    return RT_WIDE_LIST;
+    return RT_WIDE_OBJECTS;
 }
 
 static RtWideRef place_leaf(const Layout *layout, uint32_t index) {
@@ -166,12 +152,10 @@ static RtWideRef place_leaf(const Layout *layout, uint32_t index) {
     self->bytes += bytes;
     for (uint32_t i = 0; i < lanes; i++) {
         uint32_t id = i < count ? ids[i] : RT_NO_OBJECT, block = i / RT_WIDE_BLOCK, lane = i % RT_WIDE_BLOCK;
-        switch (kind) {
-        case RT_WIDE_TRIANGLES: put_triangle(layout, (RtWideTriangles *)place + block, lane, id); break;
-        case RT_WIDE_SPHERES: put_sphere(layout, (RtWideSpheres *)place + block, lane, id); break;
-        case RT_WIDE_LIST:
-        case RT_WIDE_NODE: ((RtWideList *)place)->id[i] = id; break;
-        }
+        if (kind == RT_WIDE_TRIANGLES)
+            put_triangle(layout, (RtWideTriangles *)(void *)place + block, lane, id);
+        else
+            ((RtWideList *)(void *)place)->id[i] = id;
     }
     return rt_wide_leaf(kind, at, count);
 }

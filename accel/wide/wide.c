@@ -92,8 +92,7 @@ static void occluded_counted(const RtAccel *a, const RtScratch *s, const RtRay *
 }
 
 static size_t scratch_bytes(const RtAccel *accel) {
-    (void)accel;
-    return (size_t)RT_WIDE_MAX_IN_FLIGHT * 6144 + 32768;
+    return ((const RtWide *)accel)->kernels->scratch_bytes(accel);
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {

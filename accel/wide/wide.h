@@ -21,13 +21,18 @@ enum {
     RT_WIDE_BLOCK = 4,                 /* objects of a block at most */
     RT_WIDE_MAX_LEAF = 8,              /* objects of a leaf at most */
     RT_WIDE_MAX_IN_FLIGHT = 64,        /* rays that are traced at once at most */
-    RT_WIDE_STACK = RT_TREE_MAX_DEPTH * (RT_WIDE - 1) + 2 * RT_WIDE /* each level leaves seven, and a vector's slack */
 };
 
 /* A child: where it is in the arena, in bytes, a multiple of 32; and in the bits that leaves free what it is
  * and, of a leaf, its number of objects less one. The root is a node at 0. */
 typedef uint32_t RtWideRef;
-typedef enum RtWideKind { RT_WIDE_NODE, RT_WIDE_TRIANGLES, RT_WIDE_SPHERES, RT_WIDE_LIST } RtWideKind;
+typedef enum RtWideKind {
+    RT_WIDE_NODE,
+    RT_WIDE_TRIANGLES, /* blocks of them */
+    RT_WIDE_OBJECTS,   /* a list of anything */
+    RT_WIDE_LANDED     /* no place at all, but where a ray goes that has nowhere left to go */
+} RtWideKind;
+#define RT_WIDE_DONE ((RtWideRef)RT_WIDE_LANDED)
 #define RT_WIDE_UNIT 32
 
 static inline RtWideRef rt_wide_leaf(RtWideKind kind, uint32_t at, uint32_t count) {
@@ -48,9 +53,6 @@ static inline uint32_t rt_wide_count(RtWideRef ref) {
     return (ref >> 2 & 7) + 1;
 }
 
-/* No node and no leaf: a list where the root is. Under all that waits on a stack. */
-#define RT_WIDE_DONE ((RtWideRef)RT_WIDE_LIST)
-
 typedef struct RtWideNode {
     float plane[6][RT_WIDE]; /* lo x, hi x, lo y, hi y, lo z, hi z */
     RtWideRef child[RT_WIDE];
@@ -65,13 +67,6 @@ typedef struct RtWideTriangles {
     float v[3][3][RT_WIDE_BLOCK]; /* by vertex and axis */
     uint32_t id[RT_WIDE_BLOCK];
 } RtWideTriangles;
-
-typedef struct RtWideSpheres {
-    float center[3][RT_WIDE_BLOCK];
-    float radius[RT_WIDE_BLOCK];
-    uint32_t id[RT_WIDE_BLOCK];
-    uint32_t unused[12];
-} RtWideSpheres;
 
 typedef struct RtWideList {
     uint32_t id[RT_WIDE_MAX_LEAF];
@@ -100,6 +95,7 @@ typedef struct RtWideKernels {
     RtOccludedKernel *occluded;
     RtNearestCounted *nearest_counted;
     RtOccludedCounted *occluded_counted;
+    size_t (*scratch_bytes)(const RtAccel *accel);
 } RtWideKernels;
 
 extern const RtWideKernels rt_wide_portable, rt_wide_avx2, rt_wide_avx512;
@@ -126,7 +122,5 @@ typedef struct RtWideLayout {
 RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
                          RtError *error);
 void rt_wide_clear(RtWideTree *self);
-
-size_t rt_wide_scratch_bytes(const RtAccel *accel);
 
 #endif
