@@ -19,27 +19,46 @@ static uint32_t usual_depth(uint32_t objects) {
     return 8 + 13 * log / 10;
 }
 
+typedef struct Root {
+    RtKdBuilder *builder;
+    const RtGeometry *geometry;
+    RtKdCell cell;
+} Root;
+
+/* The events of an axis, with room to deal them. */
+static RtStatus make_axis(void *context, size_t axis, int thread, RtError *error) {
+    Root *root = context;
+    RtKdBuilder *b = root->builder;
+    const RtGeometry *g = root->geometry;
+    uint64_t room = 4 * (uint64_t)g->object_count;
+    (void)thread;
+    RT_TRY(rt_reserve(&b->events[axis], &b->event_capacity[axis], room, sizeof(RtKdEvent), error));
+    RtKdEvent *spare = rt_alloc_unset(2 * (size_t)g->object_count, sizeof(RtKdEvent));
+    if (!spare)
+        return rt_fail_memory(error, "sorting events", 2 * (size_t)g->object_count * sizeof(RtKdEvent));
+    root->cell.events[axis].count = rt_kd_make_events(b->ids, g->boxes, g->object_count, &root->cell.box,
+                                                      (int)axis, b->events[axis], spare);
+    rt_free(spare);
+    return RT_OK;
+}
+
 /* The root's lists, with room to deal them. */
-static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
-    RtKdCell root = {.share = 1, .box = b->kd->box, .ids = {0, g->object_count}};
+static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, int threads, RtError *error) {
+    Root root = {b, g, {.share = 1, .box = b->kd->box, .ids = {0, g->object_count}}};
     uint64_t room = 2 * (uint64_t)g->object_count;
     RT_TRY(rt_reserve(&b->kd->nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
     b->kd->node_count = 1;
     RT_TRY(rt_reserve(&b->ids, &b->id_capacity, room, sizeof(uint32_t), error));
     for (uint32_t i = 0; i < g->object_count; i++) b->ids[i] = i;
     RT_TRY(rt_reserve(&b->spare, &b->spare_capacity, room, sizeof(RtKdEvent), error));
-    for (int a = 0; a < 3; a++) {
-        RT_TRY(rt_reserve(&b->events[a], &b->event_capacity[a], 2 * room, sizeof(RtKdEvent), error));
-        root.events[a].count =
-            rt_kd_make_events(b->ids, g->boxes, g->object_count, &root.box, a, b->events[a], b->spare);
-    }
-    b->pending[b->pending_count++] = root;
+    RT_TRY(rt_parallel_for(3, threads, make_axis, &root, error));
+    b->pending[b->pending_count++] = root.cell;
     return RT_OK;
 }
 
 static RtStatus build_on_one(RtKdBuilder *b, const RtGeometry *g, RtError *error) {
     uint32_t asked = b->kd->max_depth;
-    RT_TRY(make_root(b, g, error));
+    RT_TRY(make_root(b, g, 1, error));
     while (b->pending_count > 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(rt_kd_divide(b, &cell, error));
@@ -53,7 +72,7 @@ static RtStatus build_on_one(RtKdBuilder *b, const RtGeometry *g, RtError *error
 
 static RtStatus build_on_several(RtKdBuilder *b, const RtGeometry *g, uint32_t most, int threads, bool *fits,
                                  RtError *error) {
-    RT_TRY(make_root(b, g, error));
+    RT_TRY(make_root(b, g, threads, error));
     return rt_kd_build_subtrees(b, most, threads, fits, error);
 }
 
