@@ -173,7 +173,7 @@ typedef struct RtKdLedger {
     RtKdLevel levels[RT_KD_DEPTH_LIMIT + 1];
 } RtKdLedger;
 
-/* build.c. Divides a cell, whose children wait on top of the pending ones, or makes it a leaf. */
+/* divide.c. Divides a cell, whose children wait on top of the pending ones, or makes it a leaf. */
 RtStatus rt_kd_divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error);
 void rt_kd_clear(RtKdBuilder *b);
 

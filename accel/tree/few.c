@@ -75,7 +75,7 @@ void rt_few_part(RtFew *self, uint32_t begin, uint32_t count, const RtSplit *spl
             uint8_t ref = order[i];
             right[i - left] = ref;
             order[left] = ref;
-            left += is_left >> ref & 1;
+            left += (uint32_t)(is_left >> ref & 1);
         }
         memcpy(order + left, right, count - left);
     }

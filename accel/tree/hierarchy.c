@@ -158,7 +158,7 @@ static void place_one(const Layout *layout, uint32_t node_index, uint32_t index,
 
 static void place(const Layout *layout, uint32_t node_index, uint32_t index, Taken *taken) {
     const RtNode *node = &layout->self->nodes[node_index];
-    uint32_t children[RT_NODE_MAX_WIDTH];
+    uint32_t children[RT_NODE_MAX_WIDTH] = {0};
     place_one(layout, node_index, index, children, taken);
     if (rt_node_is_leaf(node)) return;
     for (uint32_t i = 0; i < node->count; i++) place(layout, node->first + i, children[i], taken);
@@ -196,7 +196,7 @@ static void place_top(Layout *layout, uint32_t node_index, uint32_t index, uint3
         return;
     }
     const RtNode *node = &layout->self->nodes[node_index];
-    uint32_t children[RT_NODE_MAX_WIDTH];
+    uint32_t children[RT_NODE_MAX_WIDTH] = {0};
     place_one(layout, node_index, index, children, taken);
     if (rt_node_is_leaf(node)) {
         skip_parts(layout, index, depth);

@@ -144,6 +144,7 @@ static bool divide(const Builder *b, Group *group, uint32_t counts[2]) {
 /* The two sides of a group, each with its share of the free places behind it. */
 static void share_out(const Builder *b, const Group *group, const uint32_t counts[2], Group sides[2]) {
     uint32_t total = counts[0] + counts[1], spare = group->count + group->spare - total;
+    assert(total > 0);
     uint32_t right = (uint32_t)((uint64_t)spare * counts[1] / total), room = counts[0] + spare - right;
     RtTreeRef *refs = b->refs + group->first;
     memmove(refs + room, refs + counts[0], counts[1] * sizeof(RtTreeRef));
@@ -295,7 +296,7 @@ static RtStatus build_all(Builder *b, RtTree *tree, uint32_t count, uint32_t mos
     uint32_t parts = SHARES * (uint32_t)rt_thread_count(threads);
     Top top = {.b = b, .run_count = 1};
     top.limit = parts == SHARES ? most : most / parts > FEW ? most / parts : FEW;
-    size_t runs = 1 + 2 * RT_TREE_MEDIAN_DEPTH * ((size_t)most / top.limit);
+    size_t runs = 1 + (size_t)2 * RT_TREE_MEDIAN_DEPTH * (most / top.limit);
     top.runs = rt_alloc(runs, sizeof(Run));
     top.todo = rt_alloc(runs, sizeof(uint32_t));
     RtStatus status = RT_NO_MEMORY;

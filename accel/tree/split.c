@@ -2,13 +2,6 @@
 #include "accel/tree/split.h"
 
 #include "accel/tree/few.h"
-#include "base/memory.h"
-
-RtTreeRef *rt_refs_new(const RtBox *boxes, uint32_t count) {
-    RtTreeRef *refs = rt_alloc(count, sizeof(RtTreeRef));
-    for (uint32_t i = 0; refs && i < count; i++) refs[i] = (RtTreeRef){boxes[i], i};
-    return refs;
-}
 
 RtBox4 rt_refs_centers(const RtTreeRef *refs, uint32_t count) {
     RtBox4 centers = rt_box4_empty();

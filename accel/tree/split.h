@@ -9,9 +9,6 @@
 
 #include "accel/tree/bins.h"
 
-/* refs[i] = {boxes[i], i} for i in 0..count-1; NULL where memory is short. Free with rt_free. */
-RtTreeRef *rt_refs_new(const RtBox *boxes, uint32_t count);
-
 /* The box about all centres, and its longest axis. */
 RtBox4 rt_refs_centers(const RtTreeRef *refs, uint32_t count);
 int rt_longest_axis(RtBox4 box);

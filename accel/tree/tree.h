@@ -90,8 +90,8 @@ RtStatus rt_tree_agglomerative(RtTree *tree, const RtBox *boxes, uint32_t count,
 RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
                       int threads, RtError *error);
 
-/* Lauterbach et al. 2009: along the Morton curve, parted where the highest differing bit of codes changes. The
- * same tree on any number of `threads` (0 = all processors). */
+/* Lauterbach et al. 2009: along the Morton curve, parted where the highest differing bit of codes changes.
+ * The same tree on any number of `threads` (0 = all processors). */
 RtStatus rt_tree_lbvh(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, int threads,
                       RtError *error);
 
