@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Vectors for the kernels of `wide`, in the words of AVX2: its own intrinsics where a file is compiled for it, else
- * SIMDe's, which do the same lane by lane in whatever the machine has. */
+/* Vectors for the kernels of `wide`, in the words of AVX2: its own intrinsics where a file is compiled for
+ * it, else SIMDe's, which do the same lane by lane in whatever the machine has. */
 #ifndef RT_ACCEL_WIDE_SIMD_H
 #define RT_ACCEL_WIDE_SIMD_H
 
@@ -74,24 +74,52 @@ static inline __m256i rt_v8_take(RtV8Order order, __m256i a) {
 #if defined(__AVX512F__)
 typedef __m512 RtV16;
 #define RT_V16(op, ...) _mm512_##op##_ps(__VA_ARGS__)
-static inline RtV16 rt_v16_all(float a) { return _mm512_set1_ps(a); }
-static inline RtV16 rt_v16_load(const float *a) { return _mm512_load_ps(a); }
-static inline void rt_v16_store(float *to, RtV16 a) { _mm512_store_ps(to, a); }
+static inline RtV16 rt_v16_all(float a) {
+    return _mm512_set1_ps(a);
+}
+static inline RtV16 rt_v16_load(const float *a) {
+    return _mm512_load_ps(a);
+}
+static inline void rt_v16_store(float *to, RtV16 a) {
+    _mm512_store_ps(to, a);
+}
 /* table[index[i]] in lane i, of sixteen. */
 static inline RtV16 rt_v16_lookup(const float *table, const uint32_t *index) {
     return _mm512_permutexvar_ps(_mm512_load_si512(index), _mm512_load_ps(table));
 }
-static inline RtV16 rt_v16_add(RtV16 a, RtV16 b) { return _mm512_add_ps(a, b); }
-static inline RtV16 rt_v16_sub(RtV16 a, RtV16 b) { return _mm512_sub_ps(a, b); }
-static inline RtV16 rt_v16_mul(RtV16 a, RtV16 b) { return _mm512_mul_ps(a, b); }
-static inline RtV16 rt_v16_div(RtV16 a, RtV16 b) { return _mm512_div_ps(a, b); }
-static inline RtV16 rt_v16_min(RtV16 a, RtV16 b) { return _mm512_min_ps(a, b); }
-static inline RtV16 rt_v16_max(RtV16 a, RtV16 b) { return _mm512_max_ps(a, b); }
-static inline RtV16 rt_v16_abs(RtV16 a) { return _mm512_abs_ps(a); }
-static inline uint32_t rt_v16_at_most(RtV16 a, RtV16 b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
-static inline uint32_t rt_v16_signs(RtV16 a) { return _mm512_movepi32_mask(_mm512_castps_si512(a)); }
-static inline float rt_v16_least(RtV16 a) { return _mm512_reduce_min_ps(a); }
-static inline float rt_v16_most(RtV16 a) { return _mm512_reduce_max_ps(a); }
+static inline RtV16 rt_v16_add(RtV16 a, RtV16 b) {
+    return _mm512_add_ps(a, b);
+}
+static inline RtV16 rt_v16_sub(RtV16 a, RtV16 b) {
+    return _mm512_sub_ps(a, b);
+}
+static inline RtV16 rt_v16_mul(RtV16 a, RtV16 b) {
+    return _mm512_mul_ps(a, b);
+}
+static inline RtV16 rt_v16_div(RtV16 a, RtV16 b) {
+    return _mm512_div_ps(a, b);
+}
+static inline RtV16 rt_v16_min(RtV16 a, RtV16 b) {
+    return _mm512_min_ps(a, b);
+}
+static inline RtV16 rt_v16_max(RtV16 a, RtV16 b) {
+    return _mm512_max_ps(a, b);
+}
+static inline RtV16 rt_v16_abs(RtV16 a) {
+    return _mm512_abs_ps(a);
+}
+static inline uint32_t rt_v16_at_most(RtV16 a, RtV16 b) {
+    return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ);
+}
+static inline uint32_t rt_v16_signs(RtV16 a) {
+    return _mm512_movepi32_mask(_mm512_castps_si512(a));
+}
+static inline float rt_v16_least(RtV16 a) {
+    return _mm512_reduce_min_ps(a);
+}
+static inline float rt_v16_most(RtV16 a) {
+    return _mm512_reduce_max_ps(a);
+}
 #else
 typedef struct RtV16 {
     __m256 lo, hi;
@@ -107,21 +135,28 @@ RT_V16_PAIR(div)
 RT_V16_PAIR(min)
 RT_V16_PAIR(max)
 #undef RT_V16_PAIR
-static inline RtV16 rt_v16_all(float a) { return (RtV16){_mm256_set1_ps(a), _mm256_set1_ps(a)}; }
-static inline RtV16 rt_v16_load(const float *a) { return (RtV16){_mm256_load_ps(a), _mm256_load_ps(a + 8)}; }
+static inline RtV16 rt_v16_all(float a) {
+    return (RtV16){_mm256_set1_ps(a), _mm256_set1_ps(a)};
+}
+static inline RtV16 rt_v16_load(const float *a) {
+    return (RtV16){_mm256_load_ps(a), _mm256_load_ps(a + 8)};
+}
 static inline void rt_v16_store(float *to, RtV16 a) {
     _mm256_store_ps(to, a.lo);
     _mm256_store_ps(to + 8, a.hi);
 }
 static inline RtV16 rt_v16_lookup(const float *table, const uint32_t *index) {
-    __m256i lo = _mm256_load_si256((const __m256i *)index), hi = _mm256_load_si256((const __m256i *)(index + 8));
+    __m256i lo = _mm256_load_si256((const __m256i *)index),
+            hi = _mm256_load_si256((const __m256i *)(index + 8));
     return (RtV16){_mm256_i32gather_ps(table, lo, 4), _mm256_i32gather_ps(table, hi, 4)};
 }
 static inline RtV16 rt_v16_abs(RtV16 a) {
     const __m256 sign = _mm256_set1_ps(-0.0f);
     return (RtV16){_mm256_andnot_ps(sign, a.lo), _mm256_andnot_ps(sign, a.hi)};
 }
-static inline uint32_t rt_v16_at_most(RtV16 a, RtV16 b) { return rt_v8_at_most(a.lo, b.lo) | rt_v8_at_most(a.hi, b.hi) << 8; }
+static inline uint32_t rt_v16_at_most(RtV16 a, RtV16 b) {
+    return rt_v8_at_most(a.lo, b.lo) | rt_v8_at_most(a.hi, b.hi) << 8;
+}
 static inline uint32_t rt_v16_signs(RtV16 a) {
     return (uint32_t)_mm256_movemask_ps(a.lo) | (uint32_t)_mm256_movemask_ps(a.hi) << 8;
 }
@@ -130,7 +165,9 @@ static inline float rt_v8_least(__m256 a) {
     b = _mm_min_ps(b, _mm_movehl_ps(b, b));
     return _mm_cvtss_f32(_mm_min_ss(b, _mm_shuffle_ps(b, b, 1)));
 }
-static inline float rt_v16_least(RtV16 a) { return rt_v8_least(_mm256_min_ps(a.lo, a.hi)); }
+static inline float rt_v16_least(RtV16 a) {
+    return rt_v8_least(_mm256_min_ps(a.lo, a.hi));
+}
 static inline float rt_v16_most(RtV16 a) {
     const __m256 sign = _mm256_set1_ps(-0.0f);
     return -rt_v8_least(_mm256_xor_ps(_mm256_max_ps(a.lo, a.hi), sign));

@@ -27,8 +27,8 @@ typedef struct Flight {
     uint32_t near[3], far[3]; /* of each axis, where in a node the planes are that are met first, and last */
     Axes axes;
     RtHit best;
-    size_t index;   /* in the stream */
-    RtTally *tally; /* NULL in the timed kernels */
+    size_t index;               /* in the stream */
+    RtTally *tally;             /* NULL in the timed kernels */
     float enter[RT_WIDE_STACK]; /* what waits, the next one last; at the bottom RT_WIDE_DONE */
     RtWideRef waiting[RT_WIDE_STACK];
 } Flight;
@@ -36,7 +36,8 @@ typedef struct Flight {
 /* Bytes from a plane of a node to the next, and from a coordinate of a block to the next. */
 enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(float) };
 
-/* Ready for the root. False where the ray is too odd for the boxes of this tree: it is answered already. */
+/* Ready for the root. False where the ray is answered already: there is nothing, or the ray is too odd for
+ * the boxes of divided objects, and was tested against all. */
 RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
                         const RtRay *ray, size_t index, bool any, RtTally *tallies) {
     const RtPreparedRay *r = &f->ray;
@@ -44,6 +45,7 @@ RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, 
     f->best = RT_MISS;
     f->index = index;
     f->tally = tallies ? &tallies[ray->kind] : NULL;
+    if (tree->node_count == 0) return false;
     if (tree->divided) {
         if (!rt_surface_is_near(&f->ray)) {
             rt_test_all(g, &f->ray, any, &f->best, f->tally);
@@ -57,9 +59,14 @@ RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, 
         f->near[a] = r->negative[a] ? hi : lo;
         f->far[a] = r->negative[a] ? lo : hi;
     }
-    f->axes = (Axes){(uint32_t)r->kx * COORDINATE, (uint32_t)r->ky * COORDINATE, (uint32_t)r->kz * COORDINATE,
-                     r->org.at[r->kx],             r->org.at[r->ky],             r->org.at[r->kz],
-                     r->shear_x,                   r->shear_y};
+    f->axes = (Axes){(uint32_t)r->kx * COORDINATE,
+                     (uint32_t)r->ky * COORDINATE,
+                     (uint32_t)r->kz * COORDINATE,
+                     r->org.at[r->kx],
+                     r->org.at[r->ky],
+                     r->org.at[r->kz],
+                     r->shear_x,
+                     r->shear_y};
     f->enter[0] = -INFINITY;
     f->waiting[0] = RT_WIDE_DONE;
     f->top = 1;
@@ -112,7 +119,8 @@ RT_KERNEL uint32_t choose(uint32_t mask, __m256 enter, bool ordered) {
 
 /* Goes on to one child of the mask, and waits with the others; where there is none, to what waits last.
  * Without a branch, for which way it went nobody could predict. */
-RT_KERNEL RtWideRef go_on(Flight *f, const RtWideNode *node, uint32_t mask, __m256 enter, bool ordered, bool any) {
+RT_KERNEL RtWideRef go_on(Flight *f, const RtWideNode *node, uint32_t mask, __m256 enter, bool ordered,
+                          bool any) {
     uint32_t top = f->top, lane = choose(mask, enter, ordered), others = mask & ~(1u << lane);
     RtWideRef popped = f->waiting[top - 1], child = node->child[lane];
     RtV8Order order = rt_v8_order(others);
@@ -135,7 +143,8 @@ RT_KERNEL __m128 coordinate(const RtWideTriangles *block, int vertex, uint32_t o
 
 RT_KERNEL Sheared shear(const RtWideTriangles *block, const Axes *axes) {
     const __m128 shear_x = _mm_set1_ps(axes->shear_x), shear_y = _mm_set1_ps(axes->shear_y);
-    const __m128 org_x = _mm_set1_ps(axes->org_x), org_y = _mm_set1_ps(axes->org_y), org_z = _mm_set1_ps(axes->org_z);
+    const __m128 org_x = _mm_set1_ps(axes->org_x), org_y = _mm_set1_ps(axes->org_y),
+                 org_z = _mm_set1_ps(axes->org_z);
     Sheared s;
     for (int i = 0; i < 3; i++) {
         s.z[i] = _mm_sub_ps(coordinate(block, i, axes->z), org_z);
@@ -165,13 +174,14 @@ RT_KERNEL uint32_t sieve_leaf(const RtWideTriangles *blocks, RtWideRef ref, cons
 }
 
 /* Tests those triangles of a leaf in full; true where the search is over. */
-RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, const RtPreparedRay *ray, bool any,
-                              RtHit *best, RtTally *tally) {
+RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, const RtPreparedRay *ray,
+                              bool any, RtHit *best, RtTally *tally) {
     for (; mask; mask &= mask - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(mask), lane = i % RT_WIDE_BLOCK;
         const RtWideTriangles *block = &blocks[i / RT_WIDE_BLOCK];
         float t;
-        if (!rt_triangle_hit_strided(&block->v[0][0][lane], 3 * RT_WIDE_BLOCK, RT_WIDE_BLOCK, ray, &t)) continue;
+        if (!rt_triangle_hit_strided(&block->v[0][0][lane], 3 * RT_WIDE_BLOCK, RT_WIDE_BLOCK, ray, &t))
+            continue;
         RT_COUNT(tally, object_hits, 1);
         if (rt_hit_before(t, block->id[lane], *best)) *best = (RtHit){t, block->id[lane]};
         if (any) return true;
@@ -180,8 +190,8 @@ RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, cons
 }
 
 /* Tests what is in a leaf of anything else; true where the search is over. */
-RT_KERNEL bool test_objects(const RtWideTree *tree, const RtGeometry *g, RtWideRef ref, const RtPreparedRay *ray,
-                            bool any, RtHit *best, RtTally *tally) {
+RT_KERNEL bool test_objects(const RtWideTree *tree, const RtGeometry *g, RtWideRef ref,
+                            const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     const RtWideList *list = rt_wide_leaf_at(tree, ref);
     for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
         if (rt_test_object(g, list->id[i], ray, any, best, tally)) return true;

@@ -2,10 +2,10 @@
 /* The kernels of `wide`, included once for each instruction set by a file that has named its table of them,
  * RT_WIDE_KERNELS.
  *
- * Rays are taken as packets of sixteen while they go the same way and that pays; all others are streams. Which
- * pays better is found out as it goes: a block of rays is traced in one way, the next in the other, and by what
- * their visits cost the way for the next ones is chosen. Counted kernels trace no packets: a count belongs to
- * one ray. */
+ * Rays are taken as packets of sixteen while they go the same way and that pays; all others are streams.
+ * Which pays better is found out as it goes: a block of rays is traced in one way, the next in the other, and
+ * by what their visits cost the way for the next ones is chosen. Counted kernels trace no packets: a count
+ * belongs to one ray. */
 #include "accel/wide/packet.h"
 #include "accel/wide/stream.h"
 
@@ -64,11 +64,11 @@ RT_KERNEL uint64_t fly_as_packets(const Course *c, size_t first, size_t count, s
 RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch, const RtRay *rays,
                      size_t count, Answers to) {
     const Course c = {self, tree, scratch, rays, to};
-    if (tree->node_count == 0 || self->in_flight == 1) {
+    if (self->in_flight == 1) {
         trace_singly(self, tree, scratch, rays, count, to);
         return;
     }
-    if (!self->packets || to.tallies || count < PACKET) {
+    if (!self->packets || to.tallies || tree->node_count == 0 || count < PACKET) {
         fly_as_stream(&c, 0, count);
         return;
     }
@@ -115,4 +115,5 @@ static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, con
     trace(self, self->occluded, scratch, rays, count, (Answers){NULL, blockers, tallies});
 }
 
-const RtWideKernels RT_WIDE_KERNELS = {nearest_timed, occluded_timed, nearest_counted, occluded_counted, scratch_bytes};
+const RtWideKernels RT_WIDE_KERNELS = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,
+                                       scratch_bytes};

@@ -7,7 +7,8 @@
  * costs that holds what is below n. Then
  *
  *     cost(n, 1) = min(leaf(n), area(n) + split(n, 8)),
- *     cost(n, k) = min(cost(n, k - 1), split(n, k)),       split(n, k) = min over i of cost(left, i) + cost(right, k - i),
+ *     cost(n, k) = min(cost(n, k - 1), split(n, k)),       split(n, k) = min over i of cost(left, i) +
+ * cost(right, k - i),
  *
  * and the choices that were made lead from the root down. */
 #include "accel/wide/wide.h"
@@ -147,8 +148,6 @@ static RtWideRef place_leaf(const Layout *layout, uint32_t index) {
     RtWideKind kind = kind_of(layout, ids, count, &bytes);
     uint32_t at = (uint32_t)self->bytes, lanes = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK * RT_WIDE_BLOCK;
     char *place = self->arena + at;
-    self->leaf_count++;
-    self->reference_count += count;
     self->bytes += bytes;
     for (uint32_t i = 0; i < lanes; i++) {
         uint32_t id = i < count ? ids[i] : RT_NO_OBJECT, block = i / RT_WIDE_BLOCK, lane = i % RT_WIDE_BLOCK;
@@ -160,14 +159,13 @@ static RtWideRef place_leaf(const Layout *layout, uint32_t index) {
     return rt_wide_leaf(kind, at, count);
 }
 
-static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32_t depth);
+static void place_node(const Layout *layout, uint32_t at, uint32_t index);
 
-static RtWideRef place(const Layout *layout, uint32_t index, uint32_t depth) {
-    if (depth > layout->self->depth) layout->self->depth = depth;
+static RtWideRef place(const Layout *layout, uint32_t index) {
     if (layout->plans[index].choice[0] == LEAF) return place_leaf(layout, index);
     uint32_t at = (uint32_t)layout->self->bytes;
     layout->self->bytes += sizeof(RtWideNode);
-    place_node(layout, at, index, depth);
+    place_node(layout, at, index);
     return at;
 }
 
@@ -178,7 +176,7 @@ static void put_box(RtWideNode *node, uint32_t lane, RtBox box) {
     }
 }
 
-static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32_t depth) {
+static void place_node(const Layout *layout, uint32_t at, uint32_t index) {
     uint32_t children[RT_WIDE], count = 0;
     const Plan *plan = &layout->plans[index];
     if (plan->choice[0] == LEAF) {
@@ -193,7 +191,7 @@ static void place_node(const Layout *layout, uint32_t at, uint32_t index, uint32
     node->count = count;
     for (uint32_t i = 0; i < RT_WIDE; i++) {
         put_box(node, i, i < count ? layout->tree->nodes[children[i]].box : RT_EMPTY_BOX);
-        node->child[i] = i < count ? place(layout, children[i], depth + 1) : RT_WIDE_DONE;
+        node->child[i] = i < count ? place(layout, children[i]) : RT_WIDE_DONE;
     }
 }
 
@@ -215,6 +213,14 @@ static uint64_t count_bytes(const Layout *layout, uint32_t index) {
     return bytes;
 }
 
+static RtStatus refuse(uint64_t bytes, uint64_t limit, RtError *error) {
+    uint64_t most = limit < RT_WIDE_MAX_BYTES ? limit : RT_WIDE_MAX_BYTES;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "wide would take %.0f MB for this scene, the most is %.0f MB: take a larger max_leaf_size or bvh",
+        (double)bytes * 1e-6, (double)most * 1e-6);
+}
+
 RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
                          RtError *error) {
     *self = (RtWideTree){0};
@@ -224,15 +230,15 @@ RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geome
     Weight whole = weigh(&layout, tree->root);
     double area = rt_box_half_area(tree->nodes[tree->root].box);
     uint64_t bytes = sizeof(RtWideNode) + count_bytes(&layout, tree->root);
-    if (bytes > UINT32_MAX - 512) {
+    if (bytes > how->limit || bytes > RT_WIDE_MAX_BYTES) {
         rt_free(layout.plans);
-        return rt_fail(error, RT_BAD_INPUT, "too large");
+        return refuse(bytes, how->limit, error);
     }
     self->arena = how->huge_pages ? rt_alloc_unset(bytes, 1) : rt_alloc(bytes, 1);
     self->divided = tree->divided;
     self->cost = area > 0 ? whole.cost[0] / area : NAN;
     self->bytes = sizeof(RtWideNode);
-    if (self->arena) place_node(&layout, 0, tree->root, 0);
+    if (self->arena) place_node(&layout, 0, tree->root);
     rt_free(layout.plans);
     return self->arena ? RT_OK : rt_fail_memory(error, "a hierarchy", bytes);
 }

@@ -4,9 +4,9 @@
  * At a node one test of the packet does for all its rays: between the least and the most of their origins and
  * reciprocals lies, along each axis, where any of them enters a box and leaves it (interval arithmetic, as in
  * Boulos, Wald & Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire Ray Packets"). It is
- * conservative to the bit, for the operations are those of rt_box_hit, and rounding is monotone. At a leaf each
- * ray tests the leaf's box for itself, and those that meet it test its triangles, four at once; what passes the
- * sieve is tested in full, sixteen rays and triangles at once.
+ * conservative to the bit, for the operations are those of rt_box_hit, and rounding is monotone. At a leaf
+ * each ray tests the leaf's box for itself, and those that meet it test its triangles, four at once; what
+ * passes the sieve is tested in full, sixteen rays and triangles at once.
  *
  * Rays of a packet have the same signs of direction, the same major axis, and no component of 0. */
 #ifndef RT_ACCEL_WIDE_PACKET_H
@@ -23,7 +23,8 @@ enum { MOST_PAIRS = PACKET * RT_WIDE_MAX_LEAF + PACKET };
 typedef struct Pairs {
     uint32_t count;
     _Alignas(RT_CACHE_LINE) uint32_t ray[MOST_PAIRS];
-    const float *triangle[MOST_PAIRS]; /* the first coordinate of the first vertex; the others as in a block */
+    const float
+        *triangle[MOST_PAIRS]; /* the first coordinate of the first vertex; the others as in a block */
 } Pairs;
 
 typedef struct Packet {
@@ -33,7 +34,8 @@ typedef struct Packet {
     bool negative[3];
     uint32_t kx, ky, kz;
     uint32_t near[3], far[3]; /* as of a flight */
-    /* The least and most of all rays: of each axis the origin of the first to enter, and of the last to leave. */
+    /* The least and most of all rays: of each axis the origin of the first to enter, and of the last to
+     * leave. */
     float first[3], last[3], inv_least[3], inv_most[3], tmin_least, limit_most;
     RtHit best[PACKET];
     uint32_t prepared; /* bit i: ray[i] is */
@@ -70,7 +72,8 @@ RT_KERNEL void transpose(__m128 *a, __m128 *b, __m128 *c, __m128 *d) {
 RT_KERNEL void put_fields(const RtRay *rays, size_t offset, float *a, float *b, float *c, float *d) {
     for (int i = 0; i < PACKET; i += 4) {
         __m128 row[4];
-        for (int k = 0; k < 4; k++) row[k] = _mm_loadu_ps((const float *)(const void *)((const char *)&rays[i + k] + offset));
+        for (int k = 0; k < 4; k++)
+            row[k] = _mm_loadu_ps((const float *)(const void *)((const char *)&rays[i + k] + offset));
         transpose(&row[0], &row[1], &row[2], &row[3]);
         _mm_store_ps(a + i, row[0]);
         _mm_store_ps(b + i, row[1]);
@@ -83,15 +86,16 @@ RT_KERNEL void put_fields(const RtRay *rays, size_t offset, float *a, float *b, 
 RT_KERNEL bool major_axis(Packet *p) {
     RtV16 x = rt_v16_abs(rt_v16_load(p->dir[0])), y = rt_v16_abs(rt_v16_load(p->dir[1]));
     RtV16 z = rt_v16_abs(rt_v16_load(p->dir[2]));
-    uint32_t not_z = rt_v16_at_most(z, x) | rt_v16_at_most(z, y), not_y = rt_v16_at_most(y, x) | (~not_z & EVERY);
+    uint32_t not_z = rt_v16_at_most(z, x) | rt_v16_at_most(z, y),
+             not_y = rt_v16_at_most(y, x) | (~not_z & EVERY);
     p->kz = not_z == 0 ? 2 : not_y == 0 ? 1 : 0;
     p->kx = 9u >> 2 * p->kz & 3;
     p->ky = 9u >> 2 * p->kx & 3;
     return is_uniform(not_z) && is_uniform(not_y);
 }
 
-/* The rays thickened, as rt_ray_prepare_in does or, where objects are divided, rt_surface_thicken; and what lies
- * between the least and the most of them. */
+/* The rays thickened, as rt_ray_prepare_in does or, where objects are divided, rt_surface_thicken; and what
+ * lies between the least and the most of them. */
 RT_KERNEL void bound(Packet *p, const RtGeometry *g, bool divided) {
     RtV16 farthest = rt_v16_all(0);
     for (int a = 0; a < 3; a++) {
@@ -181,7 +185,8 @@ RT_KERNEL uint32_t meet_child(const RtWideTree *tree, RtWideRef parent, const Pa
 
 /* ---- leaves ---- */
 
-RT_KERNEL const RtPreparedRay *prepared(Packet *p, uint32_t i, const RtGeometry *g, const RtRay *rays, RtCrossing *room) {
+RT_KERNEL const RtPreparedRay *prepared(Packet *p, uint32_t i, const RtGeometry *g, const RtRay *rays,
+                                        RtCrossing *room) {
     if (!(p->prepared >> i & 1)) rt_hit_ray(&p->ray[i], g, &rays[i], room);
     p->prepared |= 1u << i;
     return &p->ray[i];
@@ -231,7 +236,8 @@ RT_KERNEL uint32_t hit_pairs(const Packet *p, const uint32_t *ray, const float *
     RtV16 org_z = rt_v16_lookup(p->org[p->kz], ray);
     for (int i = 0; i < 3; i++) {
         RtV16 depth = rt_v16_sub(rt_v16_load(v[i][p->kz]), org_z);
-        RtV16 across = rt_v16_sub(rt_v16_load(v[i][p->kx]), org_x), up = rt_v16_sub(rt_v16_load(v[i][p->ky]), org_y);
+        RtV16 across = rt_v16_sub(rt_v16_load(v[i][p->kx]), org_x),
+              up = rt_v16_sub(rt_v16_load(v[i][p->ky]), org_y);
         rt_v16_store(z[i], depth);
         rt_v16_store(x[i], rt_v16_sub(across, rt_v16_mul(shear_x, depth)));
         rt_v16_store(y[i], rt_v16_sub(up, rt_v16_mul(shear_y, depth)));
@@ -250,9 +256,11 @@ RT_KERNEL uint32_t hit_pairs(const Packet *p, const uint32_t *ray, const float *
         __m256d e0 = _mm256_sub_pd(_mm256_mul_pd(a[2], b[1]), _mm256_mul_pd(b[2], a[1]));
         __m256d e1 = _mm256_sub_pd(_mm256_mul_pd(a[0], b[2]), _mm256_mul_pd(b[0], a[2]));
         __m256d e2 = _mm256_sub_pd(_mm256_mul_pd(a[1], b[0]), _mm256_mul_pd(b[1], a[0]));
-        __m256d least = _mm256_min_pd(_mm256_min_pd(e0, e1), e2), most = _mm256_max_pd(_mm256_max_pd(e0, e1), e2);
+        __m256d least = _mm256_min_pd(_mm256_min_pd(e0, e1), e2),
+                most = _mm256_max_pd(_mm256_max_pd(e0, e1), e2);
         __m256d determinant = _mm256_add_pd(_mm256_add_pd(e0, e1), e2);
-        __m256d inside = _mm256_or_pd(_mm256_cmp_pd(least, zero, _CMP_GE_OQ), _mm256_cmp_pd(most, zero, _CMP_LE_OQ));
+        __m256d inside =
+            _mm256_or_pd(_mm256_cmp_pd(least, zero, _CMP_GE_OQ), _mm256_cmp_pd(most, zero, _CMP_LE_OQ));
         inside = _mm256_and_pd(inside, _mm256_cmp_pd(determinant, zero, _CMP_NEQ_OQ));
         __m256d depth = _mm256_add_pd(_mm256_mul_pd(e0, c[0]), _mm256_mul_pd(e1, c[1]));
         depth = _mm256_div_pd(_mm256_add_pd(depth, _mm256_mul_pd(e2, c[2])), determinant);
@@ -273,7 +281,8 @@ RT_KERNEL uint32_t hit_pairs(const Packet *p, const uint32_t *ray, const float *
     RtV16 near = rt_v16_all(-INFINITY), far = rt_v16_all(INFINITY), at = rt_v16_load(t);
     for (int a = 0; a < 3; a++) {
         RtV16 shift = rt_v16_add(thickness, rt_v16_mul(rt_v16_abs(org[a]), rt_v16_all(0x1p-23f)));
-        RtV16 above = rt_v16_add(org[a], shift), below = rt_v16_sub(org[a], shift), inv = rt_v16_lookup(p->inv[a], ray);
+        RtV16 above = rt_v16_add(org[a], shift), below = rt_v16_sub(org[a], shift),
+              inv = rt_v16_lookup(p->inv[a], ray);
         RtV16 first = rt_v16_sub(p->negative[a] ? hi[a] : lo[a], p->negative[a] ? below : above);
         RtV16 second = rt_v16_sub(p->negative[a] ? lo[a] : hi[a], p->negative[a] ? above : below);
         near = rt_v16_max(rt_v16_mul(first, inv), near);
@@ -305,8 +314,8 @@ RT_KERNEL void test_pairs(Packet *p, const RtGeometry *g, const RtRay *rays, boo
             uint32_t i = k + (uint32_t)__builtin_ctz(some), ray = pairs->ray[i], id;
             const float *triangle = pairs->triangle[i];
             memcpy(&id, triangle + place_of(3, 0), sizeof id);
-            if (left < WORTH_A_BATCH &&
-                !rt_triangle_hit_strided(triangle, 3 * RT_WIDE_BLOCK, RT_WIDE_BLOCK, prepared(p, ray, g, rays, room), &t[i - k]))
+            if (left < WORTH_A_BATCH && !rt_triangle_hit_strided(triangle, 3 * RT_WIDE_BLOCK, RT_WIDE_BLOCK,
+                                                                 prepared(p, ray, g, rays, room), &t[i - k]))
                 continue;
             if (rt_hit_before(t[i - k], id, p->best[ray])) p->best[ray] = (RtHit){t[i - k], id};
             narrow_ray(p, ray, any);
@@ -315,8 +324,8 @@ RT_KERNEL void test_pairs(Packet *p, const RtGeometry *g, const RtRay *rays, boo
 }
 
 /* Tests a leaf for the rays of the mask. */
-RT_KERNEL void test_leaf(Packet *p, const RtWideTree *tree, const RtGeometry *g, const RtRay *rays, RtWideRef ref,
-                         uint32_t mask, bool any, RtCrossing *room) {
+RT_KERNEL void test_leaf(Packet *p, const RtWideTree *tree, const RtGeometry *g, const RtRay *rays,
+                         RtWideRef ref, uint32_t mask, bool any, RtCrossing *room) {
     if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
         pair(p, rt_wide_leaf_at(tree, ref), rt_wide_count(ref) > RT_WIDE_BLOCK ? 2 : 1, mask);
         test_pairs(p, g, rays, any, room);
@@ -331,8 +340,8 @@ RT_KERNEL void test_leaf(Packet *p, const RtWideTree *tree, const RtGeometry *g,
 
 /* ---- the way through ---- */
 
-RT_KERNEL void fly_together(const RtWide *self, const RtWideTree *tree, Packet *p, const RtRay *rays, bool any,
-                            RtCrossing *room) {
+RT_KERNEL void fly_together(const RtWide *self, const RtWideTree *tree, Packet *p, const RtRay *rays,
+                            bool any, RtCrossing *room) {
     const RtGeometry *g = &self->base.scene->geometry;
     const bool ordered = !any && self->order;
     const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
@@ -349,7 +358,8 @@ RT_KERNEL void fly_together(const RtWide *self, const RtWideTree *tree, Packet *
                 RtV8Order order = rt_v8_order(others);
                 rt_v8_put(&p->enter[top], rt_v8_take(order, _mm256_castps_si256(enter)));
                 rt_v8_put(&p->waiting[top], rt_v8_take(order, rt_v8_get(node->child)));
-                rt_v8_put(&p->parent[top], rt_v8_take(order, _mm256_add_epi32(_mm256_set1_epi32((int)ref), lanes)));
+                rt_v8_put(&p->parent[top],
+                          rt_v8_take(order, _mm256_add_epi32(_mm256_set1_epi32((int)ref), lanes)));
                 top += (uint32_t)__builtin_popcount(others);
                 if (others && self->prefetch) prefetch(tree, p->waiting[top - 1]);
                 parent = ref + lane;

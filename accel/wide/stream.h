@@ -53,7 +53,7 @@ RT_KERNEL void fly_alone(const RtWide *self, const RtWideTree *tree, Flight *f, 
                 ref = node->child[__builtin_ctz(mask)];
             } else {
                 ref = go_on(f, node, mask, enter, ordered, any);
-                if (self->prefetch) prefetch(tree, f->waiting[f->top - 1]);
+                if (mask && self->prefetch) prefetch(tree, f->waiting[f->top - 1]);
             }
             continue;
         }
@@ -70,8 +70,8 @@ RT_KERNEL void fly_alone(const RtWide *self, const RtWideTree *tree, Flight *f, 
     } while (ref != RT_WIDE_DONE);
 }
 
-RT_KERNEL void trace_singly(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch, const RtRay *rays,
-                            size_t count, Answers to) {
+RT_KERNEL void trace_singly(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch,
+                            const RtRay *rays, size_t count, Answers to) {
     Flight *f = scratch->own;
     for (size_t i = 0; i < count; i++) {
         if (take_off(f, tree, &self->base.scene->geometry, scratch, &rays[i], i, !to.hits, to.tallies))
@@ -89,7 +89,7 @@ typedef struct Traffic {
     const RtRay *rays;
     size_t begun, count; /* of the rays */
     uint32_t in_flight;
-    uint64_t visits; /* of nodes and leaves, for whoever compares with packets */
+    uint64_t visits;     /* of nodes and leaves, for whoever compares with packets */
     uint32_t waiting[4]; /* rays that go on to each RtWideKind; RT_WIDE_DONE is a list */
     Flight *list[4][RT_WIDE_MAX_IN_FLIGHT];
 } Traffic;
@@ -126,7 +126,9 @@ RT_KERNEL void visit_nodes(Traffic *t, bool any, bool counted) {
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_NODE][i];
         const RtWideNode *node = rt_wide_node(t->tree, f->next);
-        enlist(t, f, go_on(f, node, masks[i], any ? _mm256_setzero_ps() : _mm256_load_ps(enters[i]), ordered, any), 1);
+        enlist(t, f,
+               go_on(f, node, masks[i], any ? _mm256_setzero_ps() : _mm256_load_ps(enters[i]), ordered, any),
+               1);
     }
 }
 
@@ -182,7 +184,8 @@ RT_KERNEL void visit_objects(Traffic *t, bool any) {
 RT_KERNEL void send_off(Traffic *t, Flight *f, Answers to) {
     while (t->begun < t->count) {
         size_t i = t->begun++;
-        if (take_off(f, t->tree, &t->self->base.scene->geometry, t->scratch, &t->rays[i], i, !to.hits, to.tallies)) {
+        if (take_off(f, t->tree, &t->self->base.scene->geometry, t->scratch, &t->rays[i], i, !to.hits,
+                     to.tallies)) {
             t->in_flight++;
             enlist(t, f, 0, 1);
             return;
@@ -191,8 +194,8 @@ RT_KERNEL void send_off(Traffic *t, Flight *f, Answers to) {
     }
 }
 
-RT_KERNEL uint64_t trace_many(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch, const RtRay *rays,
-                              size_t count, Answers to) {
+RT_KERNEL uint64_t trace_many(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch,
+                              const RtRay *rays, size_t count, Answers to) {
     const bool any = !to.hits, counted = to.tallies != NULL;
     Suspects suspects[RT_WIDE_MAX_IN_FLIGHT];
     Flight *flights = scratch->own;
@@ -204,7 +207,8 @@ RT_KERNEL uint64_t trace_many(const RtWide *self, const RtWideTree *tree, const 
         for (uint32_t i = 0; i < n; i++) {
             Flight *f = suspects[i].flight;
             const RtWideTriangles *blocks = rt_wide_leaf_at(tree, f->next);
-            leave_leaf(&t, f, test_triangles(blocks, suspects[i].mask, &f->ray, any, &f->best, f->tally), any);
+            leave_leaf(&t, f, test_triangles(blocks, suspects[i].mask, &f->ray, any, &f->best, f->tally),
+                       any);
         }
         if (t.waiting[RT_WIDE_OBJECTS]) visit_objects(&t, any);
         n = take_list(&t, RT_WIDE_LANDED);

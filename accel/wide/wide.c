@@ -1,26 +1,90 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* wide */
+/* wide: a hierarchy of boxes eight children wide, traced in vectors, many rays at once.
+ *
+ * Papers: Wald, Benthin & Boulos 2008, "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using
+ * Multi-branching BVHs" (nodes of many children, tested at once); and those named in layout.c, stream.h and
+ * packet.h. The layout and its invariants are in wide.h. A tree of references is made by the methods of
+ * accel/tree/tree.h, as for `bvh`.
+ *
+ * Exact, because boxes are tested by the operations of rt_box_hit and hits found by those of rt_triangle_hit,
+ * lane by lane; what a packet's interval turns away each of its rays would (packet.h). In which order
+ * children are visited is free.
+ *
+ * Counting: an extent test per child of a node visited; a step per node and per leaf; an object test per
+ * triangle of a leaf, which are tested at once. Counts are those of rays alone, the same for all instruction
+ * sets and any number of rays in flight. */
 #include "accel/wide/wide.h"
 
 #include "base/memory.h"
 
 typedef enum Build { BINNED, SWEEP, LBVH, PLOC, SPATIAL } Build;
+typedef enum Isa { BEST, PORTABLE, AVX2, AVX512 } Isa;
+
+/* What `bvh` has as parameters. */
+enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
 
 #define PARAMS(X)                                                                                            \
-    X(PARAM_BUILD, "build", RT_CHOICE("binned", "binned|sweep|lbvh|ploc|spatial"), "how", "Wald 2007")       \
-    X(PARAM_BINS, "bins", RT_INT("16", 2, 64, "2|5|64"), "bins", "Wald 2007")                                \
-    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("4", 1, RT_WIDE_MAX_LEAF, "1|16"), "most", "measured")    \
-    X(PARAM_BLOCK_COST, "block_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"), "cost of a block", "measured")     \
-    X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"), "rounds", "0")                          \
-    X(PARAM_IN_FLIGHT, "in_flight", RT_INT("32", 1, RT_WIDE_MAX_IN_FLIGHT, "1|3|64"), "rays", "measured")    \
-    X(PARAM_ORDER, "order", RT_FLAG("on"), "near first", "this")                                             \
-    X(PARAM_PREFETCH, "prefetch", RT_FLAG("on"), "near first", "this")                                       \
-    X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "near first", "this")                                       \
-    X(PARAM_PACKETS, "packets", RT_FLAG("on"), "near first", "this")                                       \
-    X(PARAM_ISA, "isa", RT_CHOICE("best", "best|portable|avx2|avx512"), "how", "this")
+    X(PARAM_BUILD, "build", RT_CHOICE("binned", "binned|sweep|lbvh|ploc|spatial"),                           \
+      "how the binary tree is made that is laid out eight wide, as for bvh", "Wald 2007")                    \
+    X(PARAM_BINS, "bins", RT_INT("16", 2, RT_WIDE_MAX_BINS, "2|64"),                                         \
+      "build=binned, spatial: bins along each axis in which split positions are sought", "Wald 2007")        \
+    X(PARAM_ALPHA, "alpha", RT_FLOAT("1e-05", 0, 1, "0|0.01"),                                               \
+      "build=spatial: objects may be cut where groups overlap by more than this part of the root's area",    \
+      "Stich et al. 2009")                                                                                   \
+    X(PARAM_BUDGET, "budget", RT_FLOAT("2", 1, 16, "1|16"),                                                  \
+      "build=spatial: most references per object, on average", "as for bvh")                                 \
+    X(PARAM_WHOLE, "whole", RT_FLAG("off"),                                                                  \
+      "build=spatial: rays that ask for any hit have a second tree, binned, whose objects are whole",        \
+      "measured: cuts help nearest hits and may hurt occlusion")                                             \
+    X(PARAM_MAX_LEAF_SIZE, "max_leaf_size", RT_INT("4", 1, RT_WIDE_MAX_LEAF, "1|8"),                         \
+      "most objects a leaf may hold; four triangles are tested at once", "measured")                         \
+    X(PARAM_BLOCK_COST, "block_cost", RT_FLOAT("1", 0, 1000, "0|0.1|10"),                                    \
+      "cost of testing four triangles, or one other object, in visits of a node", "measured")                \
+    X(PARAM_REINSERTION, "reinsertion", RT_INT("0", 0, 1000, "1|3"),                                         \
+      "rounds in which subtrees of the binary tree move to where they cost less",                            \
+      "0: the tree as it is built")                                                                          \
+    X(PARAM_IN_FLIGHT, "in_flight", RT_INT("32", 1, RT_WIDE_MAX_IN_FLIGHT, "1|3|64"),                        \
+      "rays of a stream traced at once on a thread; 1: one after the other", "measured")                     \
+    X(PARAM_ORDER, "order", RT_FLAG("on"), "the nearest child first; off: the last", "this program")         \
+    X(PARAM_PREFETCH, "prefetch", RT_FLAG("on"), "fetch ahead what a ray goes on to", "measured")            \
+    X(PARAM_PACKETS, "packets", RT_FLAG("on"),                                                               \
+      "rays that go the same way are traced sixteen at a time where that pays", "measured")                  \
+    X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "ask the system for large pages", "measured")           \
+    X(PARAM_ISA, "isa", RT_CHOICE("best", "best|portable|avx2|avx512"),                                      \
+      "instruction set; changes no answer and no count", "best: of this machine")
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
+
+/* ---- instruction sets ---- */
+
+static bool has(Isa isa) {
+    bool avx2 = false, avx512 = false;
+#ifdef RT_WITH_AVX
+    __builtin_cpu_init();
+    avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
+    avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
+#endif
+    return isa == AVX512 ? avx512 : isa == AVX2 ? avx2 : true;
+}
+
+static const RtWideKernels *kernels_of(Isa isa) {
+#ifdef RT_WITH_AVX
+    if (isa == AVX512 || (isa == BEST && has(AVX512))) return &rt_wide_avx512;
+    if (isa == AVX2 || (isa == BEST && has(AVX2))) return &rt_wide_avx2;
+#endif
+    return &rt_wide_portable;
+}
+
+static RtStatus available(const RtValue *values, RtError *error) {
+    if (has((Isa)values[PARAM_ISA].choice)) return RT_OK;
+    char name[RT_MAX_SPEC_CHARS];
+    rt_param_format(&params[PARAM_ISA], values[PARAM_ISA], name, sizeof name);
+    return rt_fail(error, RT_NOT_AVAILABLE, "this processor has no %s: leave isa out", name);
+}
+
+/* ---- build ---- */
 
 static void destroy(RtAccel *accel) {
     RtWide *self = (RtWide *)accel;
@@ -28,94 +92,124 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
+static RtStatus make_tree(RtTree *tree, const RtBuild *what, Build build, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
+    const RtValue *values = what->values;
     const RtBox *boxes = geometry->boxes;
     uint32_t count = geometry->object_count;
-    RtSpatial how = {.bins = (int)what->values[PARAM_BINS].i,
-                     .alpha = 1e-5,
-                     .budget = 2,
-                     .leaf = (uint32_t)what->values[PARAM_MAX_LEAF_SIZE].i,
+    int threads = what->threads;
+    RtSpatial how = {.bins = (int)values[PARAM_BINS].i,
+                     .alpha = values[PARAM_ALPHA].f,
+                     .budget = values[PARAM_BUDGET].f,
+                     .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
                      .traversal = 1,
                      .limit = what->limit};
-    switch ((Build)what->values[PARAM_BUILD].choice) {
+    switch (build) {
     case BINNED: break;
     case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
-    case LBVH: return rt_tree_lbvh(tree, boxes, count, 21, what->threads, error);
-    case PLOC: return rt_tree_ploc(tree, boxes, count, 21, 25, what->threads, error);
-    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, what->threads, error);
+    case LBVH: return rt_tree_lbvh(tree, boxes, count, MORTON_BITS, threads, error);
+    case PLOC: return rt_tree_ploc(tree, boxes, count, MORTON_BITS, PLOC_RADIUS, threads, error);
+    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, threads, error);
     }
-    return rt_tree_topdown(tree, boxes, count, (int)what->values[PARAM_BINS].i, what->threads, error);
+    return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, threads, error);
 }
 
-static RtStatus fill(RtWideTree *self, const RtBuild *what, RtError *error) {
+static RtStatus fill(RtWideTree *self, const RtBuild *what, Build build, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
+    const RtValue *values = what->values;
+    RtWideLayout how = {.leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                        .block_cost = values[PARAM_BLOCK_COST].f,
+                        .huge_pages = values[PARAM_HUGE_PAGES].flag,
+                        .threads = what->threads,
+                        .limit = what->limit};
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(make_tree(&tree, what, error));
-    RtStatus status = rt_tree_reinsert(&tree, (uint32_t)what->values[PARAM_REINSERTION].i, what->threads, error);
-    RtWideLayout how = {(uint32_t)what->values[PARAM_MAX_LEAF_SIZE].i, what->values[PARAM_BLOCK_COST].f, what->values[PARAM_HUGE_PAGES].flag, what->threads,
-                        what->limit};
+    RT_TRY(make_tree(&tree, what, build, error));
+    RtStatus status = rt_tree_reinsert(&tree, (uint32_t)values[PARAM_REINSERTION].i, what->threads, error);
     if (status == RT_OK) status = rt_wide_lay_out(self, &tree, geometry, &how, error);
     rt_tree_clear(&tree);
     return status;
 }
 
+static RtStatus fill_trees(RtWide *self, const RtBuild *what, RtError *error) {
+    Build build = (Build)what->values[PARAM_BUILD].choice;
+    RT_TRY(available(what->values, error));
+    RT_TRY(fill(&self->trees[0], what, build, error));
+    if (self->occluded == &self->trees[0]) return RT_OK;
+    return fill(&self->trees[1], what, BINNED, error);
+}
+
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtValue *values = what->values;
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtWide), &accel, error));
     RtWide *self = (RtWide *)accel;
-    self->nearest = self->occluded = &self->trees[0];
-    self->in_flight = (uint32_t)what->values[PARAM_IN_FLIGHT].i;
-    self->order = what->values[PARAM_ORDER].flag;
-    self->prefetch = what->values[PARAM_PREFETCH].flag;
-    self->packets = what->values[PARAM_PACKETS].flag;
-    self->kernels = &rt_wide_avx512;
-    if (what->values[PARAM_ISA].choice == 1) self->kernels = &rt_wide_portable;
-    if (what->values[PARAM_ISA].choice == 2) self->kernels = &rt_wide_avx2;
-    return rt_accel_built(accel, fill(&self->trees[0], what, error), out);
+    bool two = values[PARAM_BUILD].choice == SPATIAL && values[PARAM_WHOLE].flag;
+    self->nearest = &self->trees[0];
+    self->occluded = &self->trees[two ? 1 : 0];
+    self->kernels = kernels_of((Isa)values[PARAM_ISA].choice);
+    self->in_flight = (uint32_t)values[PARAM_IN_FLIGHT].i;
+    self->order = values[PARAM_ORDER].flag;
+    self->prefetch = values[PARAM_PREFETCH].flag;
+    self->packets = values[PARAM_PACKETS].flag;
+    return rt_accel_built(accel, fill_trees(self, what, error), out);
 }
 
-static void nearest(const RtAccel *a, const RtScratch *s, const RtRay *rays, size_t count, RtHit *hits) {
-    ((const RtWide *)a)->kernels->nearest(a, s, rays, count, hits);
+/* ---- queries: kernels.h, by the instruction set ---- */
+
+static const RtWideKernels *kernels(const RtAccel *accel) {
+    return ((const RtWide *)accel)->kernels;
 }
-static void occluded(const RtAccel *a, const RtScratch *s, const RtRay *rays, size_t count, uint32_t *blockers) {
-    ((const RtWide *)a)->kernels->occluded(a, s, rays, count, blockers);
+
+static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                    RtHit *hits) {
+    kernels(accel)->nearest(accel, scratch, rays, count, hits);
 }
-static void nearest_counted(const RtAccel *a, const RtScratch *s, const RtRay *rays, size_t count, RtHit *hits,
-                            RtTally *tallies) {
-    ((const RtWide *)a)->kernels->nearest_counted(a, s, rays, count, hits, tallies);
+
+static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     uint32_t *blockers) {
+    kernels(accel)->occluded(accel, scratch, rays, count, blockers);
 }
-static void occluded_counted(const RtAccel *a, const RtScratch *s, const RtRay *rays, size_t count, uint32_t *blockers,
-                             RtTally *tallies) {
-    ((const RtWide *)a)->kernels->occluded_counted(a, s, rays, count, blockers, tallies);
+
+static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                            RtHit *hits, RtTally *tallies) {
+    kernels(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
+}
+
+static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                             uint32_t *blockers, RtTally *tallies) {
+    kernels(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
 }
 
 static size_t scratch_bytes(const RtAccel *accel) {
-    return ((const RtWide *)accel)->kernels->scratch_bytes(accel);
+    return kernels(accel)->scratch_bytes(accel);
 }
 
+/* ---- looking at it ---- */
+
+/* Of two trees that for nearest hits, but for the bytes, which are of both. */
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtWide *self = (const RtWide *)accel;
-    const RtWideTree *t = self->nearest;
-    *out = (RtDescription){RT_NO_PREDICTION};
-    out->bytes = t->bytes;
-    out->interior = t->node_count;
-    out->leaves = t->leaf_count;
-    out->references = t->reference_count;
-    out->depth = t->depth;
-    out->predicted_cost = t->cost;
+    rt_wide_describe(self->nearest, out);
+    out->bytes = self->trees[0].bytes + self->trees[1].bytes;
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
-    (void)accel, (void)error;
-    return RT_OK;
+    const RtWide *self = (const RtWide *)accel;
+    RT_TRY(rt_wide_validate(self->nearest, &accel->scene->geometry, error));
+    return self->occluded == self->nearest ? RT_OK
+                                           : rt_wide_validate(self->occluded, &accel->scene->geometry, error);
+}
+
+static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    rt_wide_each_box(((const RtWide *)accel)->nearest, viewer);
 }
 
 const RtAccelOps rt_wide_ops = {
     .name = "wide",
-    .summary = "hierarchy of boxes of width 8",
-    .paper = "Wald et al. 2008",
+    .summary = "hierarchy of boxes eight wide, traced in vectors, many rays at once: the fastest",
+    .paper = "Wald, Benthin & Boulos 2008, Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using "
+             "Multi-branching BVHs, RT'08",
     RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
@@ -126,4 +220,6 @@ const RtAccelOps rt_wide_ops = {
     .scratch_bytes = scratch_bytes,
     .describe = describe,
     .validate = validate,
+    .each_box = each_box,
+    .available = available,
 };

@@ -1,30 +1,33 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The structure behind `wide`: a hierarchy of boxes of width 8, laid out for vectors of eight floats.
+/* The structure behind `wide`: a hierarchy of boxes eight children wide, laid out for vectors of eight
+ * floats.
  *
- * A node holds the boxes of its children plane by plane, so that one subtraction and one multiplication take
- * a ray to one plane of all eight. Leaves hold what they need to be tested by: triangles in blocks of four,
- * vertex by vertex and axis by axis; spheres in blocks of four; anything else as a list of ids.
+ * Nodes and leaves lie in one arena, a node before what is below it. A node holds the boxes of its children
+ * plane by plane, so that one subtraction and one multiplication take a ray to one plane of all eight. A leaf
+ * of triangles holds them in blocks of four, vertex by vertex and axis by axis; a leaf that holds anything
+ * else is a list of ids.
  *
  * Invariants: the box of a child contains the boxes of all below it (of divided objects, of the parts that
- * are below it); children come first, lanes without one after them, with an empty box that no ray meets; a
- * leaf holds 1..RT_WIDE_MAX_LEAF objects; in a block the lanes without an object come last and repeat the
- * last one. Node 0 is the root; a scene without objects has no node. No leaf is deeper than
- * RT_TREE_MAX_DEPTH. */
+ * are below it); children come first in a node, and the lanes after them have an empty box, which no ray
+ * meets; a leaf holds 1..RT_WIDE_MAX_LEAF objects, those of a block first, and the lanes after them are no
+ * triangles. The root is a node, if there is any object; it may have a single child then, which is a leaf. No
+ * leaf is deeper than RT_TREE_MAX_DEPTH. */
 #ifndef RT_ACCEL_WIDE_WIDE_H
 #define RT_ACCEL_WIDE_WIDE_H
 
-#include "accel/accel.h"
-#include "accel/tree/tree.h"
+#include "accel/tree/hierarchy.h"
+#include "accel/tree/split.h"
 
 enum {
-    RT_WIDE = 8,                       /* children of a node at most */
-    RT_WIDE_BLOCK = 4,                 /* objects of a block at most */
-    RT_WIDE_MAX_LEAF = 8,              /* objects of a leaf at most */
-    RT_WIDE_MAX_IN_FLIGHT = 64,        /* rays that are traced at once at most */
+    RT_WIDE = 8,                /* children of a node at most */
+    RT_WIDE_BLOCK = 4,          /* triangles of a block at most */
+    RT_WIDE_MAX_LEAF = 8,       /* objects of a leaf at most */
+    RT_WIDE_MAX_IN_FLIGHT = 64, /* rays that are traced at once at most */
+    RT_WIDE_MAX_BINS = RT_MAX_BINS
 };
 
 /* A child: where it is in the arena, in bytes, a multiple of 32; and in the bits that leaves free what it is
- * and, of a leaf, its number of objects less one. The root is a node at 0. */
+ * and, of a leaf, its number of objects less one. The root is the node at 0. */
 typedef uint32_t RtWideRef;
 typedef enum RtWideKind {
     RT_WIDE_NODE,
@@ -32,8 +35,10 @@ typedef enum RtWideKind {
     RT_WIDE_OBJECTS,   /* a list of anything */
     RT_WIDE_LANDED     /* no place at all, but where a ray goes that has nowhere left to go */
 } RtWideKind;
-#define RT_WIDE_DONE ((RtWideRef)RT_WIDE_LANDED)
-#define RT_WIDE_UNIT 32
+
+#define RT_WIDE_UNIT      32
+#define RT_WIDE_DONE      ((RtWideRef)RT_WIDE_LANDED)
+#define RT_WIDE_MAX_BYTES UINT64_C(0xffffff00)
 
 static inline RtWideRef rt_wide_leaf(RtWideKind kind, uint32_t at, uint32_t count) {
     return at | (count - 1) << 2 | (uint32_t)kind;
@@ -56,38 +61,61 @@ static inline uint32_t rt_wide_count(RtWideRef ref) {
 typedef struct RtWideNode {
     float plane[6][RT_WIDE]; /* lo x, hi x, lo y, hi y, lo z, hi z */
     RtWideRef child[RT_WIDE];
-    uint32_t count; /* of children, 2..8; 1 only of a root that is one leaf */
+    uint32_t count; /* of children */
     uint32_t unused[7];
 } RtWideNode;
 
-_Static_assert(sizeof(RtWideNode) == 256, "a node is four cache lines");
-
-/* Lanes without a triangle have vertices that are not numbers, which no test lets pass. */
 typedef struct RtWideTriangles {
-    float v[3][3][RT_WIDE_BLOCK]; /* by vertex and axis */
-    uint32_t id[RT_WIDE_BLOCK];
+    float v[3][3]
+           [RT_WIDE_BLOCK]; /* by vertex and axis; NaN in lanes without a triangle, which no test lets pass */
+    uint32_t id[RT_WIDE_BLOCK]; /* RT_NO_OBJECT there */
 } RtWideTriangles;
 
 typedef struct RtWideList {
-    uint32_t id[RT_WIDE_MAX_LEAF];
+    uint32_t id[RT_WIDE_MAX_LEAF]; /* RT_NO_OBJECT behind the last */
 } RtWideList;
 
-/* One hierarchy. */
+_Static_assert(sizeof(RtWideNode) == 256, "a node is four cache lines");
+_Static_assert(sizeof(RtWideTriangles) % RT_WIDE_UNIT == 0 && sizeof(RtWideList) % RT_WIDE_UNIT == 0,
+               "what follows a leaf has a place");
+
 typedef struct RtWideTree {
-    char *arena;    /* nodes and leaves, as RtWideRef says */
-    uint64_t bytes; /* of it; 0 without objects */
-    uint32_t node_count, leaf_count, reference_count, depth;
-    bool divided; /* objects may be in several leaves; rays need be thick (accel/surface.h) */
-    double cost;  /* expected, in visits of nodes, of a line through the root's box */
+    char *arena;         /* [bytes] */
+    uint64_t bytes;      /* 0 of no objects */
+    uint32_t node_count; /* 0 of no objects */
+    bool divided;        /* objects may be in several leaves; rays need be thick (accel/surface.h) */
+    double cost;         /* expected, in visits of nodes, of a random line through the root's box */
 } RtWideTree;
 
 static inline const RtWideNode *rt_wide_node(const RtWideTree *tree, RtWideRef ref) {
     return (const RtWideNode *)(const void *)(tree->arena + ref);
 }
 
+/* The first block, or the list, of a leaf. */
 static inline const void *rt_wide_leaf_at(const RtWideTree *tree, RtWideRef ref) {
     return tree->arena + rt_wide_place(ref);
 }
+
+/* How a tree is laid out. */
+typedef struct RtWideLayout {
+    uint32_t leaf_limit; /* objects of a leaf at most */
+    double block_cost;   /* of testing a block, or an object of a list, in visits of nodes */
+    bool huge_pages;
+    int threads;
+    uint64_t limit; /* bytes */
+} RtWideLayout;
+
+/* Lays out a complete tree, which is limited in depth for it. On failure nothing is left behind. */
+RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
+                         RtError *error);
+void rt_wide_clear(RtWideTree *self);
+
+/* For RtAccelOps. */
+void rt_wide_describe(const RtWideTree *self, RtDescription *out);
+RtStatus rt_wide_validate(const RtWideTree *self, const RtGeometry *geometry, RtError *error);
+void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer);
+
+/* ---- the accelerator ---- */
 
 /* The kernels for one instruction set. */
 typedef struct RtWideKernels {
@@ -102,25 +130,11 @@ extern const RtWideKernels rt_wide_portable, rt_wide_avx2, rt_wide_avx512;
 
 typedef struct RtWide {
     RtAccel base;
-    RtWideTree trees[2];              /* the second only where occlusion has one of its own */
-    const RtWideTree *nearest, *occluded;
+    RtWideTree trees[2];                  /* the second only where any-hit rays have one of their own */
+    const RtWideTree *nearest, *occluded; /* of them */
     const RtWideKernels *kernels;
     uint32_t in_flight; /* rays traced at once; 1: one after the other */
     bool order, prefetch, packets;
 } RtWide;
-
-/* How a tree is laid out. */
-typedef struct RtWideLayout {
-    uint32_t leaf_limit;  /* objects of a leaf */
-    double block_cost;    /* of testing a block, or an object of a list, in visits of nodes */
-    bool huge_pages;
-    int threads;
-    uint64_t limit; /* bytes */
-} RtWideLayout;
-
-/* Lays out a complete tree, which is limited in depth for it. On failure nothing is left behind. */
-RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geometry, const RtWideLayout *how,
-                         RtError *error);
-void rt_wide_clear(RtWideTree *self);
 
 #endif

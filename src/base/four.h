@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Four floats at once: x, y, z, and one that does not matter; or one of each vertex of a triangle. What is done with
- * them is done in each lane as with a float alone, to the bit. */
+/* Four floats at once: x, y, z, and one that does not matter; or one of each vertex of a triangle. What is
+ * done with them is done in each lane as with a float alone, to the bit. */
 #ifndef RT_BASE_FOUR_H
 #define RT_BASE_FOUR_H
 

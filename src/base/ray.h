@@ -91,8 +91,8 @@ typedef struct RtPreparedRay {
     const RtRay *original;   /* what it was made from */
     struct RtCrossing *room; /* what hit functions write to (rt_hit_ray); NULL: for boxes alone */
     RtVec3 org, dir;
-    float tmin, tmax;              /* tmax finite: a hit at infinity is none */
-    float inv[4];                  /* 1 / dir, possibly infinite; here and below x, y, z and one more for vectors */
+    float tmin, tmax; /* tmax finite: a hit at infinity is none */
+    float inv[4];     /* 1 / dir, possibly infinite; here and below x, y, z and one more for vectors */
     float org_near[4], org_far[4]; /* origins moved by the thickness */
     uint32_t negative[4];          /* 1 where dir has its sign bit set, -0 included */
     int kx, ky, kz;                /* kz: the axis of largest |dir|; kx, ky the others, right-handed */

@@ -50,10 +50,11 @@ static inline RtFour rt_triangle_vertex(const float *v, size_t axis) {
     return (RtFour){v[0], v[axis], v[2 * axis], v[2 * axis]};
 }
 
-/* The t in [tmin, tmax] at which the ray meets a triangle; a ray in its plane misses it. Coordinate a of vertex i is
- * v[i * vertex + a * axis], so that a triangle among others, coordinate by coordinate, can be tested where it is. */
-static inline bool rt_triangle_hit_strided(const float *v, size_t vertex, size_t axis, const RtPreparedRay *ray,
-                                           float *t) {
+/* The t in [tmin, tmax] at which the ray meets a triangle; a ray in its plane misses it. Coordinate a of
+ * vertex i is v[i * vertex + a * axis], so that a triangle among others, coordinate by coordinate, can be
+ * tested where it is. */
+static inline bool rt_triangle_hit_strided(const float *v, size_t vertex, size_t axis,
+                                           const RtPreparedRay *ray, float *t) {
     const float *org = ray->org.at;
     RtFour z = rt_triangle_along(v, vertex, (size_t)ray->kz * axis) - org[ray->kz];
     RtFour x = rt_triangle_along(v, vertex, (size_t)ray->kx * axis) - org[ray->kx] - ray->shear_x * z;

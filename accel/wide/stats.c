@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Looking at wide hierarchies: they are copied into the plain form of accel/tree/hierarchy.h, which can be
+ * described, drawn and checked; what only this form has is checked here. */
+#include "accel/wide/wide.h"
+
+#include "base/memory.h"
+
+/* ---- the plain form ---- */
+
+static RtBox child_box(const RtWideNode *node, uint32_t lane) {
+    RtBox box;
+    for (int a = 0; a < 3; a++) {
+        box.lo.at[a] = node->plane[2 * a][lane];
+        box.hi.at[a] = node->plane[2 * a + 1][lane];
+    }
+    return box;
+}
+
+static uint32_t id_at(const RtWideTree *self, RtWideRef ref, uint32_t i) {
+    if (rt_wide_kind(ref) == RT_WIDE_OBJECTS) return ((const RtWideList *)rt_wide_leaf_at(self, ref))->id[i];
+    const RtWideTriangles *blocks = rt_wide_leaf_at(self, ref);
+    return blocks[i / RT_WIDE_BLOCK].id[i % RT_WIDE_BLOCK];
+}
+
+/* What is below a reference, counted. */
+typedef struct Sizes {
+    uint32_t nodes, ids;
+} Sizes;
+
+static void measure(const RtWideTree *self, RtWideRef ref, Sizes *sum) {
+    sum->nodes++;
+    if (rt_wide_kind(ref) != RT_WIDE_NODE) {
+        sum->ids += rt_wide_count(ref);
+        return;
+    }
+    const RtWideNode *node = rt_wide_node(self, ref);
+    for (uint32_t i = 0; i < node->count; i++) measure(self, node->child[i], sum);
+}
+
+/* Copies what `ref` is to node `at`, whose box is set. */
+static void copy(const RtWideTree *self, RtHierarchy *to, uint32_t at, RtWideRef ref) {
+    if (rt_wide_kind(ref) != RT_WIDE_NODE) {
+        uint32_t count = rt_wide_count(ref);
+        to->nodes[at].first = to->id_count;
+        to->nodes[at].count = RT_NODE_LEAF | count;
+        for (uint32_t i = 0; i < count; i++) to->ids[to->id_count++] = id_at(self, ref, i);
+        return;
+    }
+    const RtWideNode *node = rt_wide_node(self, ref);
+    uint32_t first = to->node_count;
+    to->nodes[at].first = first;
+    to->nodes[at].count = node->count;
+    to->node_count += node->count;
+    for (uint32_t i = 0; i < node->count; i++) {
+        to->nodes[first + i].box = child_box(node, i);
+        copy(self, to, first + i, node->child[i]);
+    }
+}
+
+/* The same hierarchy in plain form, to be cleared; false where memory is short. */
+static bool flatten(const RtWideTree *self, RtHierarchy *to) {
+    const RtWideNode *root = rt_wide_node(self, 0);
+    RtWideRef top = root->count == 1 ? root->child[0] : 0;
+    Sizes sizes = {0, 0};
+    measure(self, top, &sizes);
+    *to = (RtHierarchy){.width = RT_WIDE,
+                        .leaf_limit = RT_WIDE_MAX_LEAF,
+                        .traversal_cost = 1,
+                        .divided = self->divided,
+                        .nodes = rt_alloc(sizes.nodes, sizeof(RtNode)),
+                        .ids = rt_alloc(sizes.ids, sizeof(uint32_t)),
+                        .node_count = 1};
+    if (!to->nodes || !to->ids) {
+        rt_hierarchy_clear(to);
+        return false;
+    }
+    to->nodes[0].box = RT_EMPTY_BOX;
+    for (uint32_t i = 0; i < root->count; i++) {
+        to->nodes[0].box = rt_box_union(to->nodes[0].box, child_box(root, i));
+    }
+    copy(self, to, 0, top);
+    return true;
+}
+
+/* ---- for the table of operations ---- */
+
+void rt_wide_describe(const RtWideTree *self, RtDescription *out) {
+    RtHierarchy plain;
+    *out = (RtDescription){.bytes = self->bytes, RT_NO_PREDICTION};
+    if (self->node_count == 0 || !flatten(self, &plain)) return;
+    rt_hierarchy_describe(&plain, out);
+    rt_hierarchy_clear(&plain);
+    out->bytes = self->bytes;
+    out->predicted_cost = self->cost;
+}
+
+void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer) {
+    RtHierarchy plain;
+    if (self->node_count == 0 || !flatten(self, &plain)) return;
+    rt_hierarchy_each_box(&plain, viewer);
+    rt_hierarchy_clear(&plain);
+}
+
+/* ---- checking ---- */
+
+typedef struct Check {
+    const RtWideTree *self;
+    const RtGeometry *geometry;
+    RtError *error;
+    uint32_t nodes;
+} Check;
+
+/* That a leaf is in the arena, and the coordinates of its triangles those of the scene. */
+static RtStatus check_leaf(const Check *check, RtWideRef ref) {
+    const RtGeometry *g = check->geometry;
+    uint32_t count = rt_wide_count(ref), at = rt_wide_place(ref);
+    uint32_t blocks = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
+    bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;
+    uint64_t bytes = triangles ? blocks * sizeof(RtWideTriangles) : sizeof(RtWideList);
+    if (rt_wide_kind(ref) == RT_WIDE_LANDED || at + bytes > check->self->bytes)
+        return rt_fail(check->error, RT_MISMATCH, "wide: a leaf at %u is not in the arena", at);
+    const RtWideTriangles *block = rt_wide_leaf_at(check->self, ref);
+    for (uint32_t i = 0; triangles && i < blocks * RT_WIDE_BLOCK; i++, block += i % RT_WIDE_BLOCK == 0) {
+        uint32_t lane = i % RT_WIDE_BLOCK, id = block->id[lane];
+        bool there = i < count && id < g->object_count && rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE;
+        if (there != (i < count))
+            return rt_fail(check->error, RT_MISMATCH, "wide: the leaf at %u holds no triangle in lane %u", at,
+                           i);
+        for (int k = 0; k < 9; k++) {
+            float x = block->v[k / 3][k % 3][lane];
+            if (there ? x == g->triangles[rt_ref_index(g->objects[id])].v[k / 3].at[k % 3] : isnan(x))
+                continue;
+            return rt_fail(check->error, RT_MISMATCH, "wide: lane %u of the leaf at %u is another triangle",
+                           i, at);
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus check_node(Check *check, RtWideRef ref, uint32_t depth) {
+    const RtWideTree *self = check->self;
+    if (depth > RT_TREE_MAX_DEPTH)
+        return rt_fail(check->error, RT_MISMATCH, "wide: node %u is too deep", ref);
+    if (ref % RT_WIDE_UNIT != 0 || ref + sizeof(RtWideNode) > self->bytes)
+        return rt_fail(check->error, RT_MISMATCH, "wide: a node at %u is not in the arena", ref);
+    const RtWideNode *node = rt_wide_node(self, ref);
+    if (++check->nodes > self->node_count)
+        return rt_fail(check->error, RT_MISMATCH, "wide: node %u has two parents", ref);
+    if (node->count < (ref == 0 ? 1 : 2) || node->count > RT_WIDE)
+        return rt_fail(check->error, RT_MISMATCH, "wide: node %u has %u children", ref, node->count);
+    for (uint32_t i = node->count; i < RT_WIDE; i++) {
+        for (int a = 0; a < 3; a++) {
+            if (node->plane[2 * a][i] == INFINITY && node->plane[2 * a + 1][i] == -INFINITY) continue;
+            return rt_fail(check->error, RT_MISMATCH, "wide: lane %u of node %u has a box and no child", i,
+                           ref);
+        }
+    }
+    for (uint32_t i = 0; i < node->count; i++) {
+        bool inner = rt_wide_kind(node->child[i]) == RT_WIDE_NODE;
+        if (inner && node->child[i] <= ref)
+            return rt_fail(check->error, RT_MISMATCH, "wide: node %u has a child before it", ref);
+        RT_TRY(inner ? check_node(check, node->child[i], depth + 1) : check_leaf(check, node->child[i]));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_wide_validate(const RtWideTree *self, const RtGeometry *geometry, RtError *error) {
+    if (geometry->object_count == 0) return RT_OK;
+    Check check = {self, geometry, error, 0};
+    RT_TRY(check_node(&check, 0, 0));
+    if (check.nodes != self->node_count)
+        return rt_fail(error, RT_MISMATCH, "wide: %u of %u nodes are in the tree", check.nodes,
+                       self->node_count);
+    RtHierarchy plain;
+    if (!flatten(self, &plain)) return rt_fail_memory(error, "validating a hierarchy", self->bytes);
+    RtStatus status = rt_hierarchy_validate(&plain, geometry, "wide", error);
+    rt_hierarchy_clear(&plain);
+    return status;
+}
