@@ -39,16 +39,16 @@ enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(floa
 /* Ready for the root. False where the ray is answered already: there is nothing, or the ray is too odd for
  * the boxes of divided objects, and was tested against all. */
 RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
-                        const RtRay *ray, size_t index, bool any, RtTally *tallies) {
+                        const RtRay *ray, size_t index, bool any, RtTally *tally) {
     const RtPreparedRay *r = &f->ray;
     rt_hit_ray(&f->ray, g, ray, scratch->room);
     f->best = RT_MISS;
     f->index = index;
-    f->tally = tallies ? &tallies[ray->kind] : NULL;
+    f->tally = tally;
     if (tree->node_count == 0) return false;
     if (tree->divided) {
         if (!rt_surface_is_near(&f->ray)) {
-            rt_test_all(g, &f->ray, any, &f->best, f->tally);
+            rt_test_all(g, &f->ray, any, &f->best, tally);
             return false;
         }
         rt_surface_thicken(&f->ray, &g->box);

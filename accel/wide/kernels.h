@@ -2,10 +2,10 @@
 /* The kernels of `wide`, included once for each instruction set by a file that has named its table of them,
  * RT_WIDE_KERNELS.
  *
- * Rays are taken as packets of sixteen while they go the same way and that pays; all others are streams.
- * Which pays better is found out as it goes: a block of rays is traced in one way, the next in the other, and
- * by what their visits cost the way for the next ones is chosen. Counted kernels trace no packets: a count
- * belongs to one ray. */
+ * Rays are taken as packets of sixteen while they go the same way and that pays; all others are streams. Which
+ * pays better is found out as it goes: a block of rays is traced in one way, the next in the other, and by what
+ * their visits cost the way for the next ones is chosen. Counted kernels trace no packets: a count belongs to
+ * one ray. */
 #include "accel/wide/packet.h"
 #include "accel/wide/stream.h"
 
@@ -20,73 +20,83 @@ static size_t scratch_bytes(const RtAccel *accel) {
     return sizeof(Scratch);
 }
 
-/* Rays that are traced to compare the ways, and rays for which the better one is chosen. */
-enum { TRIAL = 4 * PACKET, TERM = 64 * PACKET };
+/* Traces rays[first..first + count) of a question, and gives the visits of nodes and leaves. */
+typedef uint64_t Way(const Question *q, size_t first, size_t count);
 
-/* What is left of a stream, and what has been found out. */
-typedef struct Course {
-    const RtWide *self;
-    const RtWideTree *tree;
-    const RtScratch *scratch;
-    const RtRay *rays;
-    Answers to;
-} Course;
-
-RT_KERNEL uint64_t fly_as_stream(const Course *c, size_t first, size_t count) {
-    if (count == 0) return 0;
-    return trace_many(c->self, c->tree, c->scratch, c->rays + first, count, answers_from(c->to, first));
-}
-
-/* As packets, as far as they go the same way; gives the visits. *together: rays in packets. */
-RT_KERNEL uint64_t fly_as_packets(const Course *c, size_t first, size_t count, size_t *together) {
-    Packet *p = &((Scratch *)c->scratch->own)->packet;
-    const RtGeometry *g = &c->self->base.scene->geometry;
+/* As packets, where they go the same way; *together: so many did. The others by `stream`. Gives the visits of
+ * packets. */
+RT_KERNEL uint64_t trace_packets(const Question *q, size_t first, size_t count, size_t *together, bool any,
+                                 Way *stream) {
+    Packet *p = &((Scratch *)q->scratch->own)->packet;
     size_t end = first + count, streamed = first;
     *together = 0;
     p->visits = 0;
-    uint64_t visits = 0;
     for (size_t i = first; i + PACKET <= end; i += PACKET) {
-        if (!take_off_together(p, c->tree, g, c->rays + i)) continue;
-        visits += fly_as_stream(c, streamed, i - streamed);
-        fly_together(c->self, c->tree, p, c->rays + i, !c->to.hits, c->scratch->room);
+        if (!take_off_together(p, q->tree, q->geometry, q->rays + i)) continue;
+        if (streamed < i) stream(q, streamed, i - streamed);
+        fly_together(q->self, q->tree, p, q->rays + i, any, q->scratch->room);
         for (size_t k = 0; k < PACKET; k++) {
-            if (c->to.hits)
-                c->to.hits[i + k] = p->best[k];
+            if (any)
+                q->blockers[i + k] = p->best[k].object;
             else
-                c->to.blockers[i + k] = p->best[k].object;
+                q->hits[i + k] = p->best[k];
         }
         streamed = i + PACKET;
         *together += PACKET;
     }
-    return visits + p->visits + fly_as_stream(c, streamed, end - streamed);
+    if (streamed < end) stream(q, streamed, end - streamed);
+    return p->visits;
+}
+
+/* The ways as functions of their own, so that each stands in the program once. */
+#define DEFINE_WAYS(question, any)                                                                           \
+    static __attribute__((noinline)) uint64_t stream_##question(const Question *q, size_t first,             \
+                                                                size_t count) {                              \
+        return trace_many(q, first, count, any, false);                                                      \
+    }                                                                                                        \
+    static __attribute__((noinline)) uint64_t count_##question(const Question *q, size_t first,              \
+                                                               size_t count) {                               \
+        return trace_many(q, first, count, any, true);                                                       \
+    }                                                                                                        \
+    static __attribute__((noinline)) uint64_t pack_##question(const Question *q, size_t first, size_t count, \
+                                                              size_t *together) {                            \
+        return trace_packets(q, first, count, together, any, stream_##question);                             \
+    }
+DEFINE_WAYS(nearest, false)
+DEFINE_WAYS(occluded, true)
+
+/* Rays that are traced to compare the ways, and rays for which the better one is chosen. */
+enum { TRIAL = 4 * PACKET, TERM = 64 * PACKET };
+
+RT_KERNEL size_t at_most(size_t a, size_t b) {
+    return a < b ? a : b;
 }
 
 RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch, const RtRay *rays,
-                     size_t count, Answers to) {
-    const Course c = {self, tree, scratch, rays, to};
+                     size_t count, RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any, bool counted) {
+    const Question q = {self, tree, &self->base.scene->geometry, scratch, rays, hits, blockers, tallies};
+    Way *stream = any ? counted ? count_occluded : stream_occluded : counted ? count_nearest : stream_nearest;
     if (self->in_flight == 1) {
-        trace_singly(self, tree, scratch, rays, count, to);
+        trace_singly(&q, 0, count, any, counted);
         return;
     }
-    if (!self->packets || to.tallies || tree->node_count == 0 || count < PACKET) {
-        fly_as_stream(&c, 0, count);
+    if (counted || !self->packets || tree->node_count == 0 || count < PACKET) {
+        stream(&q, 0, count);
         return;
     }
     for (size_t i = 0; i < count;) {
-        size_t together, left = count - i, trial = left < TRIAL ? left : TRIAL;
-        uint64_t packed = fly_as_packets(&c, i, trial, &together), streamed = 0;
+        size_t together, trial = at_most(count - i, TRIAL);
+        uint64_t packed = (any ? pack_occluded : pack_nearest)(&q, i, trial, &together), streamed = 0;
         i += trial;
-        left -= trial;
-        if (together == trial && left >= TRIAL) {
-            streamed = fly_as_stream(&c, i, TRIAL);
+        if (together == TRIAL && count - i >= TRIAL) {
+            streamed = stream(&q, i, TRIAL);
             i += TRIAL;
-            left -= TRIAL;
         }
-        size_t term = left < TERM ? left : TERM;
-        if (together == trial && packed < streamed)
-            fly_as_packets(&c, i, term, &together);
+        size_t term = at_most(count - i, TERM);
+        if (packed < streamed)
+            (any ? pack_occluded : pack_nearest)(&q, i, term, &together);
         else
-            fly_as_stream(&c, i, term);
+            stream(&q, i, term);
         i += term;
     }
 }
@@ -94,25 +104,25 @@ RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch
 static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                           RtHit *hits) {
     const RtWide *self = (const RtWide *)accel;
-    trace(self, self->nearest, scratch, rays, count, (Answers){hits, NULL, NULL});
+    trace(self, self->nearest, scratch, rays, count, hits, NULL, NULL, false, false);
 }
 
 static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                             RtHit *hits, RtTally *tallies) {
     const RtWide *self = (const RtWide *)accel;
-    trace(self, self->nearest, scratch, rays, count, (Answers){hits, NULL, tallies});
+    trace(self, self->nearest, scratch, rays, count, hits, NULL, tallies, false, true);
 }
 
 static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                            uint32_t *blockers) {
     const RtWide *self = (const RtWide *)accel;
-    trace(self, self->occluded, scratch, rays, count, (Answers){NULL, blockers, NULL});
+    trace(self, self->occluded, scratch, rays, count, NULL, blockers, NULL, true, false);
 }
 
 static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                              uint32_t *blockers, RtTally *tallies) {
     const RtWide *self = (const RtWide *)accel;
-    trace(self, self->occluded, scratch, rays, count, (Answers){NULL, blockers, tallies});
+    trace(self, self->occluded, scratch, rays, count, NULL, blockers, tallies, true, true);
 }
 
 const RtWideKernels RT_WIDE_KERNELS = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,

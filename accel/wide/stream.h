@@ -15,32 +15,34 @@
 
 #include "accel/wide/flight.h"
 
-/* The answers to a stream: `hits` or `blockers`, and the tallies of the counted kernels. */
-typedef struct Answers {
-    RtHit *hits;
-    uint32_t *blockers;
-    RtTally *tallies;
-} Answers;
+/* What is asked: a stream of rays, and where the answers go. */
+typedef struct Question {
+    const RtWide *self;
+    const RtWideTree *tree;
+    const RtGeometry *geometry;
+    const RtScratch *scratch;
+    const RtRay *rays;
+    RtHit *hits;        /* of `nearest` */
+    uint32_t *blockers; /* of `occluded` */
+    RtTally *tallies;   /* of the counted kernels */
+} Question;
 
-RT_KERNEL Answers answers_from(Answers all, size_t first) {
-    if (all.hits) return (Answers){all.hits + first, NULL, all.tallies};
-    return (Answers){NULL, all.blockers + first, all.tallies};
-}
-
-RT_KERNEL void land(const Flight *f, Answers to) {
+/* ray i of the question is answered by what the flight has found. */
+RT_KERNEL void land(const Question *q, const Flight *f, bool any) {
     RT_COUNT(f->tally, rays, 1);
     RT_COUNT(f->tally, hits, f->best.object != RT_NO_OBJECT);
-    if (to.hits)
-        to.hits[f->index] = f->best;
+    if (any)
+        q->blockers[f->index] = f->best.object;
     else
-        to.blockers[f->index] = f->best.object;
+        q->hits[f->index] = f->best;
 }
 
 /* ---- one ray after the other ---- */
 
-RT_KERNEL void fly_alone(const RtWide *self, const RtWideTree *tree, Flight *f, bool any, RtTally *tally) {
-    const RtGeometry *g = &self->base.scene->geometry;
-    const bool ordered = !any && self->order;
+RT_KERNEL void fly_alone(const Question *q, Flight *f, bool any, bool counted) {
+    const RtWideTree *tree = q->tree;
+    RtTally *tally = counted ? f->tally : NULL;
+    const bool ordered = !any && q->self->order, ahead = q->self->prefetch;
     RtWideRef ref = 0;
     do {
         if (rt_wide_kind(ref) == RT_WIDE_NODE) {
@@ -53,7 +55,7 @@ RT_KERNEL void fly_alone(const RtWide *self, const RtWideTree *tree, Flight *f, 
                 ref = node->child[__builtin_ctz(mask)];
             } else {
                 ref = go_on(f, node, mask, enter, ordered, any);
-                if (mask && self->prefetch) prefetch(tree, f->waiting[f->top - 1]);
+                if (mask && ahead) prefetch(tree, f->waiting[f->top - 1]);
             }
             continue;
         }
@@ -62,7 +64,7 @@ RT_KERNEL void fly_alone(const RtWide *self, const RtWideTree *tree, Flight *f, 
             const RtWideTriangles *blocks = rt_wide_leaf_at(tree, ref);
             uint32_t mask = sieve_leaf(blocks, ref, &f->axes);
             if (test_triangles(blocks, mask, &f->ray, any, &f->best, tally)) return;
-        } else if (test_objects(tree, g, ref, &f->ray, any, &f->best, tally)) {
+        } else if (test_objects(tree, q->geometry, ref, &f->ray, any, &f->best, tally)) {
             return;
         }
         if (!any) narrow(f);
@@ -70,37 +72,32 @@ RT_KERNEL void fly_alone(const RtWide *self, const RtWideTree *tree, Flight *f, 
     } while (ref != RT_WIDE_DONE);
 }
 
-RT_KERNEL void trace_singly(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch,
-                            const RtRay *rays, size_t count, Answers to) {
-    Flight *f = scratch->own;
-    for (size_t i = 0; i < count; i++) {
-        if (take_off(f, tree, &self->base.scene->geometry, scratch, &rays[i], i, !to.hits, to.tallies))
-            fly_alone(self, tree, f, !to.hits, f->tally);
-        land(f, to);
+RT_KERNEL void trace_singly(const Question *q, size_t first, size_t count, bool any, bool counted) {
+    Flight *f = q->scratch->own;
+    for (size_t i = first; i < first + count; i++) {
+        RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
+        if (take_off(f, q->tree, q->geometry, q->scratch, &q->rays[i], i, any, tally)) fly_alone(q, f, any, counted);
+        land(q, f, any);
     }
 }
 
 /* ---- many at once ---- */
 
 typedef struct Traffic {
-    const RtWide *self;
-    const RtWideTree *tree;
-    const RtScratch *scratch;
-    const RtRay *rays;
-    size_t begun, count; /* of the rays */
+    size_t next, end; /* of the question's rays: the first that is not under way, and where they end */
     uint32_t in_flight;
     uint64_t visits;     /* of nodes and leaves, for whoever compares with packets */
-    uint32_t waiting[4]; /* rays that go on to each RtWideKind; RT_WIDE_DONE is a list */
+    uint32_t waiting[4]; /* rays that go on to each RtWideKind */
     Flight *list[4][RT_WIDE_MAX_IN_FLIGHT];
 } Traffic;
 
 /* Enters a flight in a list, if `one` is 1; where it is 0 the entry is written over by the next. */
-RT_KERNEL void enlist(Traffic *t, Flight *f, RtWideRef next, uint32_t one) {
+RT_KERNEL void enlist(Traffic *t, const RtWideTree *tree, Flight *f, RtWideRef next, uint32_t one, bool ahead) {
     uint32_t kind = rt_wide_kind(next), count = t->waiting[kind];
     f->next = next;
     t->list[kind][count] = f;
     t->waiting[kind] = count + one;
-    if (t->self->prefetch) prefetch(t->tree, next);
+    if (ahead) prefetch(tree, next);
 }
 
 /* How many are in a list, which is empty from now on; they stay where they are until as many are entered. */
@@ -110,14 +107,15 @@ RT_KERNEL uint32_t take_list(Traffic *t, RtWideKind kind) {
     return count;
 }
 
-RT_KERNEL void visit_nodes(Traffic *t, bool any, bool counted) {
+RT_KERNEL void visit_nodes(const Question *q, Traffic *t, bool any, bool counted, bool ahead) {
     _Alignas(RT_CACHE_LINE) float enters[RT_WIDE_MAX_IN_FLIGHT][RT_WIDE];
     uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_list(t, RT_WIDE_NODE);
-    const bool ordered = !any && t->self->order;
+    const bool ordered = !any && q->self->order;
+    const RtWideTree tree = *q->tree;
     t->visits += n;
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_NODE][i];
-        const RtWideNode *node = rt_wide_node(t->tree, f->next);
+        const RtWideNode *node = rt_wide_node(&tree, f->next);
         __m256 enter;
         masks[i] = meet(node, f, &enter);
         if (!any) _mm256_store_ps(enters[i], enter);
@@ -125,10 +123,9 @@ RT_KERNEL void visit_nodes(Traffic *t, bool any, bool counted) {
     }
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_NODE][i];
-        const RtWideNode *node = rt_wide_node(t->tree, f->next);
-        enlist(t, f,
-               go_on(f, node, masks[i], any ? _mm256_setzero_ps() : _mm256_load_ps(enters[i]), ordered, any),
-               1);
+        const RtWideNode *node = rt_wide_node(&tree, f->next);
+        __m256 enter = any ? _mm256_setzero_ps() : _mm256_load_ps(enters[i]);
+        enlist(t, &tree, f, go_on(f, node, masks[i], enter, ordered, any), 1, ahead);
     }
 }
 
@@ -139,13 +136,14 @@ typedef struct Suspects {
 } Suspects;
 
 /* Of the rays at leaves of triangles those with suspects, to found[0..result); the others go on. */
-RT_KERNEL uint32_t sieve_leaves(Traffic *t, Suspects *found, bool counted) {
+RT_KERNEL uint32_t sieve_leaves(const Question *q, Traffic *t, Suspects *found, bool counted, bool ahead) {
     uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_list(t, RT_WIDE_TRIANGLES), count = 0;
+    const RtWideTree tree = *q->tree;
     t->visits += n;
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_TRIANGLES][i];
         if (counted) count_leaf(f->tally, f->next);
-        masks[i] = sieve_leaf(rt_wide_leaf_at(t->tree, f->next), f->next, &f->axes);
+        masks[i] = sieve_leaf(rt_wide_leaf_at(&tree, f->next), f->next, &f->axes);
     }
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_TRIANGLES][i];
@@ -154,69 +152,69 @@ RT_KERNEL uint32_t sieve_leaves(Traffic *t, Suspects *found, bool counted) {
         found[count] = (Suspects){f, masks[i]};
         count += !none;
         f->top -= none;
-        enlist(t, f, none ? popped : f->next, none);
+        enlist(t, &tree, f, none ? popped : f->next, none, ahead);
     }
     return count;
 }
 
-RT_KERNEL void leave_leaf(Traffic *t, Flight *f, bool over, bool any) {
+RT_KERNEL void leave_leaf(const Question *q, Traffic *t, Flight *f, bool over, bool any, bool ahead) {
     RtWideRef next = RT_WIDE_DONE;
     if (!over) {
         if (!any) narrow(f);
         next = f->waiting[--f->top];
     }
-    enlist(t, f, next, 1);
+    enlist(t, q->tree, f, next, 1, ahead);
 }
 
 /* Tests the other leaves. */
-RT_KERNEL void visit_objects(Traffic *t, bool any) {
-    const RtGeometry *g = &t->self->base.scene->geometry;
+RT_KERNEL void visit_objects(const Question *q, Traffic *t, bool any, bool counted, bool ahead) {
     uint32_t n = take_list(t, RT_WIDE_OBJECTS);
     t->visits += n;
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_OBJECTS][i];
-        count_leaf(f->tally, f->next);
-        leave_leaf(t, f, test_objects(t->tree, g, f->next, &f->ray, any, &f->best, f->tally), any);
+        RtTally *tally = counted ? f->tally : NULL;
+        count_leaf(tally, f->next);
+        leave_leaf(q, t, f, test_objects(q->tree, q->geometry, f->next, &f->ray, any, &f->best, tally), any, ahead);
     }
 }
 
 /* Sends rays off until one is in flight, or there are no more. */
-RT_KERNEL void send_off(Traffic *t, Flight *f, Answers to) {
-    while (t->begun < t->count) {
-        size_t i = t->begun++;
-        if (take_off(f, t->tree, &t->self->base.scene->geometry, t->scratch, &t->rays[i], i, !to.hits,
-                     to.tallies)) {
+RT_KERNEL void send_off(const Question *q, Traffic *t, Flight *f, bool any, bool counted, bool ahead) {
+    while (t->next < t->end) {
+        size_t i = t->next++;
+        RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
+        if (take_off(f, q->tree, q->geometry, q->scratch, &q->rays[i], i, any, tally)) {
             t->in_flight++;
-            enlist(t, f, 0, 1);
+            enlist(t, q->tree, f, 0, 1, ahead);
             return;
         }
-        land(f, to);
+        land(q, f, any);
     }
 }
 
-RT_KERNEL uint64_t trace_many(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch,
-                              const RtRay *rays, size_t count, Answers to) {
-    const bool any = !to.hits, counted = to.tallies != NULL;
+/* Gives the visits. */
+RT_KERNEL uint64_t trace_many(const Question *q, size_t first, size_t count, bool any, bool counted) {
+    const bool ahead = q->self->prefetch;
     Suspects suspects[RT_WIDE_MAX_IN_FLIGHT];
-    Flight *flights = scratch->own;
-    Traffic t = {self, tree, scratch, rays, .count = count};
-    for (uint32_t i = 0; i < self->in_flight; i++) send_off(&t, &flights[i], to);
+    Flight *flights = q->scratch->own;
+    Traffic t = {.next = first, .end = first + count};
+    for (uint32_t i = 0; i < q->self->in_flight; i++) send_off(q, &t, &flights[i], any, counted, ahead);
     while (t.in_flight > 0) {
-        while (t.waiting[RT_WIDE_NODE] > t.in_flight / 4) visit_nodes(&t, any, counted);
-        uint32_t n = sieve_leaves(&t, suspects, counted);
+        while (t.waiting[RT_WIDE_NODE] > t.in_flight / 4) visit_nodes(q, &t, any, counted, ahead);
+        uint32_t n = sieve_leaves(q, &t, suspects, counted, ahead);
         for (uint32_t i = 0; i < n; i++) {
             Flight *f = suspects[i].flight;
-            const RtWideTriangles *blocks = rt_wide_leaf_at(tree, f->next);
-            leave_leaf(&t, f, test_triangles(blocks, suspects[i].mask, &f->ray, any, &f->best, f->tally),
-                       any);
+            const RtWideTriangles *blocks = rt_wide_leaf_at(q->tree, f->next);
+            bool over = test_triangles(blocks, suspects[i].mask, &f->ray, any, &f->best, counted ? f->tally : NULL);
+            leave_leaf(q, &t, f, over, any, ahead);
         }
-        if (t.waiting[RT_WIDE_OBJECTS]) visit_objects(&t, any);
+        if (t.waiting[RT_WIDE_OBJECTS]) visit_objects(q, &t, any, counted, ahead);
         n = take_list(&t, RT_WIDE_LANDED);
         t.in_flight -= n;
         for (uint32_t i = 0; i < n; i++) {
             Flight *f = t.list[RT_WIDE_LANDED][i];
-            land(f, to);
-            send_off(&t, f, to);
+            land(q, f, any);
+            send_off(q, &t, f, any, counted, ahead);
         }
     }
     return t.visits;
