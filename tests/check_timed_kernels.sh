@@ -23,9 +23,9 @@ objdump --disassemble --no-show-raw-insn "$library" | awk '
     next
 }
 kind == "" { next }
-# addq $1,8(%rdi)   incq (%rax)   lock addq ...   add %rax,8(%rdi)   -- but not n(%rsp): spilled registers
+# addq $1,8(%rdi)   incq (%rax)   lock addq ...   add %rax,8(%rdi)   -- but not n(%rsp) or -n(%rbp): the stack
 /[ \t](addq|subq|incq|decq|adcq)[ \t].*\(/ || /[ \t](add|sub|adc|xadd)[ \t]+%r[a-z0-9]+,[^%]*\(/ {
-    if ($0 ~ /\(%rsp[,)]/) next
+    if ($0 ~ /\(%rsp[,)]/ || $0 ~ /-0x[0-9a-f]+\(%rbp[,)]/) next
     if ($0 ~ /%r[0-9]+[dwb],/) next
     adds[file, kind]++
     if (kind == "timed") print "  " file ": " name ": " $0

@@ -2,10 +2,10 @@
 /* The kernels of `wide`, included once for each instruction set by a file that has named its table of them,
  * RT_WIDE_KERNELS.
  *
- * Rays are taken as packets of sixteen while they go the same way and that pays; all others are streams. Which
- * pays better is found out as it goes: a block of rays is traced in one way, the next in the other, and by what
- * their visits cost the way for the next ones is chosen. Counted kernels trace no packets: a count belongs to
- * one ray. */
+ * Rays are taken as packets of sixteen while they go the same way and that pays; all others are streams.
+ * Which pays better is found out as it goes: a block of rays is traced in one way, the next in the other, and
+ * by what their visits cost the way for the next ones is chosen. Counted kernels trace no packets: a count
+ * belongs to one ray. */
 #include "accel/wide/packet.h"
 #include "accel/wide/stream.h"
 
@@ -21,15 +21,14 @@ static size_t scratch_bytes(const RtAccel *accel) {
 }
 
 /* Traces rays[first..first + count) of a question, and gives the visits of nodes and leaves. */
-typedef uint64_t Way(const Question *q, size_t first, size_t count);
+typedef uint32_t Way(const Question *q, size_t first, size_t count);
 
 /* As packets, where they go the same way; *together: so many did. The others by `stream`. Gives the visits of
  * packets. */
-RT_KERNEL uint64_t trace_packets(const Question *q, size_t first, size_t count, size_t *together, bool any,
+RT_KERNEL uint32_t trace_packets(const Question *q, size_t first, size_t count, size_t *together, bool any,
                                  Way *stream) {
     Packet *p = &((Scratch *)q->scratch->own)->packet;
-    size_t end = first + count, streamed = first;
-    *together = 0;
+    size_t end = first + count, streamed = first, packed = 0;
     p->visits = 0;
     for (size_t i = first; i + PACKET <= end; i += PACKET) {
         if (!take_off_together(p, q->tree, q->geometry, q->rays + i)) continue;
@@ -42,25 +41,26 @@ RT_KERNEL uint64_t trace_packets(const Question *q, size_t first, size_t count, 
                 q->hits[i + k] = p->best[k];
         }
         streamed = i + PACKET;
-        *together += PACKET;
+        packed += PACKET;
     }
     if (streamed < end) stream(q, streamed, end - streamed);
+    *together = packed;
     return p->visits;
 }
 
 /* The ways as functions of their own, so that each stands in the program once. */
 #define DEFINE_WAYS(question, any)                                                                           \
-    static __attribute__((noinline)) uint64_t stream_##question(const Question *q, size_t first,             \
-                                                                size_t count) {                              \
+    static __attribute__((noinline))                                                                         \
+    uint32_t stream_##question##_timed(const Question *q, size_t first, size_t count) {                      \
         return trace_many(q, first, count, any, false);                                                      \
     }                                                                                                        \
-    static __attribute__((noinline)) uint64_t count_##question(const Question *q, size_t first,              \
-                                                               size_t count) {                               \
+    static __attribute__((noinline))                                                                         \
+    uint32_t stream_##question##_counted(const Question *q, size_t first, size_t count) {                    \
         return trace_many(q, first, count, any, true);                                                       \
     }                                                                                                        \
-    static __attribute__((noinline)) uint64_t pack_##question(const Question *q, size_t first, size_t count, \
-                                                              size_t *together) {                            \
-        return trace_packets(q, first, count, together, any, stream_##question);                             \
+    static __attribute__((noinline))                                                                         \
+    uint32_t packets_##question##_timed(const Question *q, size_t first, size_t count, size_t *together) {   \
+        return trace_packets(q, first, count, together, any, stream_##question##_timed);                     \
     }
 DEFINE_WAYS(nearest, false)
 DEFINE_WAYS(occluded, true)
@@ -73,9 +73,12 @@ RT_KERNEL size_t at_most(size_t a, size_t b) {
 }
 
 RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch, const RtRay *rays,
-                     size_t count, RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any, bool counted) {
+                     size_t count, RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any,
+                     bool counted) {
     const Question q = {self, tree, &self->base.scene->geometry, scratch, rays, hits, blockers, tallies};
-    Way *stream = any ? counted ? count_occluded : stream_occluded : counted ? count_nearest : stream_nearest;
+    Way *stream = any       ? counted ? stream_occluded_counted : stream_occluded_timed
+                  : counted ? stream_nearest_counted
+                            : stream_nearest_timed;
     if (self->in_flight == 1) {
         trace_singly(&q, 0, count, any, counted);
         return;
@@ -86,7 +89,8 @@ RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch
     }
     for (size_t i = 0; i < count;) {
         size_t together, trial = at_most(count - i, TRIAL);
-        uint64_t packed = (any ? pack_occluded : pack_nearest)(&q, i, trial, &together), streamed = 0;
+        uint32_t packed = (any ? packets_occluded_timed : packets_nearest_timed)(&q, i, trial, &together),
+                 streamed = 0;
         i += trial;
         if (together == TRIAL && count - i >= TRIAL) {
             streamed = stream(&q, i, TRIAL);
@@ -94,7 +98,7 @@ RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch
         }
         size_t term = at_most(count - i, TERM);
         if (packed < streamed)
-            (any ? pack_occluded : pack_nearest)(&q, i, term, &together);
+            (any ? packets_occluded_timed : packets_nearest_timed)(&q, i, term, &together);
         else
             stream(&q, i, term);
         i += term;

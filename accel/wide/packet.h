@@ -41,7 +41,7 @@ typedef struct Packet {
     uint32_t prepared; /* bit i: ray[i] is */
     RtPreparedRay ray[PACKET];
     Pairs pairs;
-    uint64_t visits; /* of nodes and leaves, in visits of a ray alone */
+    uint32_t visits; /* of nodes and leaves, in visits of a ray alone */
     float enter[RT_WIDE_STACK];
     RtWideRef waiting[RT_WIDE_STACK], parent[RT_WIDE_STACK]; /* a child, and its parent plus its lane */
 } Packet;

@@ -27,10 +27,11 @@ typedef struct Question {
     RtTally *tallies;   /* of the counted kernels */
 } Question;
 
-/* ray i of the question is answered by what the flight has found. */
-RT_KERNEL void land(const Question *q, const Flight *f, bool any) {
-    RT_COUNT(f->tally, rays, 1);
-    RT_COUNT(f->tally, hits, f->best.object != RT_NO_OBJECT);
+/* The ray is answered by what the flight has found. */
+RT_KERNEL void land(const Question *q, const Flight *f, bool any, bool counted) {
+    RtTally *tally = counted ? f->tally : NULL;
+    RT_COUNT(tally, rays, 1);
+    RT_COUNT(tally, hits, f->best.object != RT_NO_OBJECT);
     if (any)
         q->blockers[f->index] = f->best.object;
     else
@@ -76,8 +77,9 @@ RT_KERNEL void trace_singly(const Question *q, size_t first, size_t count, bool 
     Flight *f = q->scratch->own;
     for (size_t i = first; i < first + count; i++) {
         RtTally *tally = counted ? &q->tallies[q->rays[i].kind] : NULL;
-        if (take_off(f, q->tree, q->geometry, q->scratch, &q->rays[i], i, any, tally)) fly_alone(q, f, any, counted);
-        land(q, f, any);
+        if (take_off(f, q->tree, q->geometry, q->scratch, &q->rays[i], i, any, tally))
+            fly_alone(q, f, any, counted);
+        land(q, f, any, counted);
     }
 }
 
@@ -86,13 +88,14 @@ RT_KERNEL void trace_singly(const Question *q, size_t first, size_t count, bool 
 typedef struct Traffic {
     size_t next, end; /* of the question's rays: the first that is not under way, and where they end */
     uint32_t in_flight;
-    uint64_t visits;     /* of nodes and leaves, for whoever compares with packets */
+    uint32_t visits;     /* of nodes and leaves, for whoever compares with packets */
     uint32_t waiting[4]; /* rays that go on to each RtWideKind */
     Flight *list[4][RT_WIDE_MAX_IN_FLIGHT];
 } Traffic;
 
 /* Enters a flight in a list, if `one` is 1; where it is 0 the entry is written over by the next. */
-RT_KERNEL void enlist(Traffic *t, const RtWideTree *tree, Flight *f, RtWideRef next, uint32_t one, bool ahead) {
+RT_KERNEL void enlist(Traffic *t, const RtWideTree *tree, Flight *f, RtWideRef next, uint32_t one,
+                      bool ahead) {
     uint32_t kind = rt_wide_kind(next), count = t->waiting[kind];
     f->next = next;
     t->list[kind][count] = f;
@@ -174,7 +177,8 @@ RT_KERNEL void visit_objects(const Question *q, Traffic *t, bool any, bool count
         Flight *f = t->list[RT_WIDE_OBJECTS][i];
         RtTally *tally = counted ? f->tally : NULL;
         count_leaf(tally, f->next);
-        leave_leaf(q, t, f, test_objects(q->tree, q->geometry, f->next, &f->ray, any, &f->best, tally), any, ahead);
+        leave_leaf(q, t, f, test_objects(q->tree, q->geometry, f->next, &f->ray, any, &f->best, tally), any,
+                   ahead);
     }
 }
 
@@ -188,12 +192,12 @@ RT_KERNEL void send_off(const Question *q, Traffic *t, Flight *f, bool any, bool
             enlist(t, q->tree, f, 0, 1, ahead);
             return;
         }
-        land(q, f, any);
+        land(q, f, any, counted);
     }
 }
 
 /* Gives the visits. */
-RT_KERNEL uint64_t trace_many(const Question *q, size_t first, size_t count, bool any, bool counted) {
+RT_KERNEL uint32_t trace_many(const Question *q, size_t first, size_t count, bool any, bool counted) {
     const bool ahead = q->self->prefetch;
     Suspects suspects[RT_WIDE_MAX_IN_FLIGHT];
     Flight *flights = q->scratch->own;
@@ -205,7 +209,8 @@ RT_KERNEL uint64_t trace_many(const Question *q, size_t first, size_t count, boo
         for (uint32_t i = 0; i < n; i++) {
             Flight *f = suspects[i].flight;
             const RtWideTriangles *blocks = rt_wide_leaf_at(q->tree, f->next);
-            bool over = test_triangles(blocks, suspects[i].mask, &f->ray, any, &f->best, counted ? f->tally : NULL);
+            bool over =
+                test_triangles(blocks, suspects[i].mask, &f->ray, any, &f->best, counted ? f->tally : NULL);
             leave_leaf(q, &t, f, over, any, ahead);
         }
         if (t.waiting[RT_WIDE_OBJECTS]) visit_objects(q, &t, any, counted, ahead);
@@ -213,7 +218,7 @@ RT_KERNEL uint64_t trace_many(const Question *q, size_t first, size_t count, boo
         t.in_flight -= n;
         for (uint32_t i = 0; i < n; i++) {
             Flight *f = t.list[RT_WIDE_LANDED][i];
-            land(q, f, any);
+            land(q, f, any, counted);
             send_off(q, &t, f, any, counted, ahead);
         }
     }

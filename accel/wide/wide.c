@@ -161,23 +161,23 @@ static const RtWideKernels *kernels(const RtAccel *accel) {
     return ((const RtWide *)accel)->kernels;
 }
 
-static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                    RtHit *hits) {
+static void ask_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                        RtHit *hits) {
     kernels(accel)->nearest(accel, scratch, rays, count, hits);
 }
 
-static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *blockers) {
+static void ask_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                         uint32_t *blockers) {
     kernels(accel)->occluded(accel, scratch, rays, count, blockers);
 }
 
-static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, RtTally *tallies) {
+static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                          RtHit *hits, RtTally *tallies) {
     kernels(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
 }
 
-static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *blockers, RtTally *tallies) {
+static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                           uint32_t *blockers, RtTally *tallies) {
     kernels(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
 }
 
@@ -213,10 +213,10 @@ const RtAccelOps rt_wide_ops = {
     RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
-    .nearest = nearest,
-    .occluded = occluded,
-    .nearest_counted = nearest_counted,
-    .occluded_counted = occluded_counted,
+    .nearest = ask_nearest,
+    .occluded = ask_occluded,
+    .nearest_counted = count_nearest,
+    .occluded_counted = count_occluded,
     .scratch_bytes = scratch_bytes,
     .describe = describe,
     .validate = validate,
