@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Instruction sets that kernels are compiled for more than once, and which of them this machine has. Every one
- * gives the same bits: what differs is how many lanes a vector has. */
+/* Instruction sets that kernels are compiled for more than once, and which of them this machine has. Every
+ * one gives the same bits: what differs is how many lanes a vector has. */
 #ifndef RT_ACCEL_ISA_H
 #define RT_ACCEL_ISA_H
 

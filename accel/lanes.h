@@ -2,9 +2,9 @@
 /* Spheres in lanes: which of four, or of eight, can the ray hit at all?
  *
  * rt_sphere_hit turns a ray away where the square of its half chord is not at least 0. Here that square is
- * computed for a sphere per lane, in double, by the same operations in the same order: so the lanes that are left
- * are, bit for bit, those that rt_sphere_hit does not turn away by it, and it is asked about these alone. A lane that
- * holds a NaN is never left.
+ * computed for a sphere per lane, in double, by the same operations in the same order: so the lanes that are
+ * left are, bit for bit, those that rt_sphere_hit does not turn away by it, and it is asked about these
+ * alone. A lane that holds a NaN is never left.
  *
  * For files that are compiled for one instruction set; without AVX2 the lanes go in pairs. */
 #ifndef RT_ACCEL_LANES_H
@@ -41,7 +41,8 @@ typedef float RtFloats4 __attribute__((vector_size(16)));
 /* Bit i: the ray can hit sphere i of 0..N-1. Its centre is spheres[i], spheres[stride + i] and
  * spheres[2 * stride + i], its radius spheres[3 * stride + i]. */
 #define RT_DEFINE_SPHERES_MET(N)                                                                             \
-    static inline uint32_t rt_spheres_met##N(const float *spheres, size_t stride, const RtSphereLine *line) {\
+    static inline uint32_t rt_spheres_met##N(const float *spheres, size_t stride,                            \
+                                             const RtSphereLine *line) {                                     \
         const RtVec3d dir = line->dir;                                                                       \
         RtDoubles##N x = line->org.x - RT_WIDENED(N, spheres);                                               \
         RtDoubles##N y = line->org.y - RT_WIDENED(N, spheres + stride);                                      \

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* brute: tests every object for every ray. It has no structure and gives the answer by its definition, the least
- * (t, id): rt_test_all in accel/kernel.h. It does that many objects and many rays at a time (kernels.h), because every
- * verification waits for it; the answers and the counts are those of rt_test_all, and a test holds it to them. */
+/* brute: tests every object for every ray. It has no structure and gives the answer by its definition, the
+ * least (t, id): rt_test_all in accel/kernel.h. It does that many objects and many rays at a time
+ * (kernels.h), because every verification waits for it; the answers and the counts are those of rt_test_all,
+ * and a test holds it to them. */
 #include "accel/brute/brute.h"
 
 #include "base/memory.h"
@@ -29,7 +30,8 @@ static const RtBruteKernels *kernels_of(const RtAccel *accel) {
     return ((const Brute *)accel)->kernels;
 }
 
-static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count, RtHit *hits) {
+static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                    RtHit *hits) {
     kernels_of(accel)->nearest(accel, scratch, rays, count, hits);
 }
 

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* rt_test_all for many rays, sixteen objects at a time; included once for each instruction set: RT_BRUTE_KERNELS is
- * the name of the table that is defined.
+/* rt_test_all for many rays, sixteen objects at a time; included once for each instruction set:
+ * RT_BRUTE_KERNELS is the name of the table that is defined.
  *
- * Layout: nothing outlives a query. Of a stream a batch of rays is prepared; then, chunk by chunk, spheres and
- * triangles are copied to a desk that fits into the first cache, coordinate by coordinate, an object per lane, and
- * every ray of the batch is tested against the chunk. Lanes without an object hold NaN.
+ * Layout: nothing outlives a query. Of a stream a batch of rays is prepared; then, chunk by chunk, spheres
+ * and triangles are copied to a desk that fits into the first cache, coordinate by coordinate, an object per
+ * lane, and every ray of the batch is tested against the chunk. Lanes without an object hold NaN.
  *
- * The same bits: in lanes objects are only turned away, by the first operations of their hit functions; those that
- * are left are tested by the hit function itself. Of a triangle that is the signs of the edge functions in float32. They
- * differ from those of rt_triangle_hit at most by being no numbers, where a sheared coordinate is none or is infinite;
- * then a weight is one of these too, and t a NaN, which is no hit. Of spheres see accel/lanes.h.
+ * The same bits: in lanes objects are only turned away, by the first operations of their hit functions; those
+ * that are left are tested by the hit function itself. Of a triangle that is the signs of the edge functions
+ * in float32. They differ from those of rt_triangle_hit at most by being no numbers, where a sheared
+ * coordinate is none or is infinite; then a weight is one of these too, and t a NaN, which is no hit. Of
+ * spheres see accel/lanes.h.
  *
- * The same counts: a ray meets objects shape by shape in the order of RT_SHAPES, by ascending id, as in rt_test_all,
- * so it has tested all up to where it stops. */
+ * The same counts: a ray meets objects shape by shape in the order of RT_SHAPES, by ascending id, as in
+ * rt_test_all, so it has tested all up to where it stops. */
 #include "accel/brute/brute.h"
 #include "accel/kernel.h"
 #include "accel/lanes.h"
@@ -50,9 +51,11 @@ typedef struct Desk {
 
 /* Four floats of each of four objects, which are `size` floats apart, to lanes of four rows. */
 RT_KERNEL void transpose(float row[][LANES], size_t lane, const float *from, size_t size) {
-    RtFour a = rt_four(from), b = rt_four(from + size), c = rt_four(from + 2 * size), d = rt_four(from + 3 * size);
+    RtFour a = rt_four(from), b = rt_four(from + size), c = rt_four(from + 2 * size),
+           d = rt_four(from + 3 * size);
     RtFour ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-    RtFour first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5), second = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+    RtFour first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5),
+           second = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
     memcpy(&row[0][lane], &first, sizeof first);
     memcpy(&row[1][lane], &second, sizeof second);
     ab = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
@@ -73,12 +76,14 @@ RT_KERNEL void fill_block(Block *block, const float *from, size_t size, size_t c
         }
     }
     for (; lane < LANES; lane++) {
-        for (size_t row = 0; row < size; row++) block->row[row][lane] = lane < count ? from[lane * size + row] : NAN;
+        for (size_t row = 0; row < size; row++)
+            block->row[row][lane] = lane < count ? from[lane * size + row] : NAN;
     }
 }
 
 RT_KERNEL void fill_chunk(Block *chunk, const float *from, size_t size, uint32_t count) {
-    for (uint32_t i = 0; i < count; i += LANES) fill_block(&chunk[i / LANES], from + i * size, size, count - i);
+    for (uint32_t i = 0; i < count; i += LANES)
+        fill_block(&chunk[i / LANES], from + i * size, size, count - i);
 }
 
 /* ---- a ray and a block ---- */
@@ -111,11 +116,15 @@ RT_KERNEL uint32_t sieve_triangles(const Block *block, const Line *line) {
     for (int i = 0; i < 3; i++) {
         const float(*vertex)[LANES] = block->row + 3 * i;
         RtV16 z = rt_v16_sub(rt_v16_load(vertex[line->z]), line->org_z);
-        x[i] = rt_v16_sub(rt_v16_sub(rt_v16_load(vertex[line->x]), line->org_x), rt_v16_mul(line->shear_x, z));
-        y[i] = rt_v16_sub(rt_v16_sub(rt_v16_load(vertex[line->y]), line->org_y), rt_v16_mul(line->shear_y, z));
+        x[i] =
+            rt_v16_sub(rt_v16_sub(rt_v16_load(vertex[line->x]), line->org_x), rt_v16_mul(line->shear_x, z));
+        y[i] =
+            rt_v16_sub(rt_v16_sub(rt_v16_load(vertex[line->y]), line->org_y), rt_v16_mul(line->shear_y, z));
     }
-    RtV16 u = edge(x[2], y[2], x[1], y[1]), v = edge(x[0], y[0], x[2], y[2]), w = edge(x[1], y[1], x[0], y[0]);
-    RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w), zero = rt_v16_all(0);
+    RtV16 u = edge(x[2], y[2], x[1], y[1]), v = edge(x[0], y[0], x[2], y[2]),
+          w = edge(x[1], y[1], x[0], y[0]);
+    RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w),
+          zero = rt_v16_all(0);
     return rt_v16_at_most(zero, least) | rt_v16_at_most(most, zero);
 }
 
@@ -135,13 +144,14 @@ typedef struct Objects {
 } Objects;
 
 /* Tests objects first..first+count-1, which are the chunk; true when the search is over. */
-RT_KERNEL bool test_chunk(const Desk *desk, const RtGeometry *g, Asking *a, const Objects *objects, uint32_t first,
-                          uint32_t count, bool any, RtTally *tally) {
+RT_KERNEL bool test_chunk(const Desk *desk, const RtGeometry *g, Asking *a, const Objects *objects,
+                          uint32_t first, uint32_t count, bool any, RtTally *tally) {
     Line line;
     make_line(&line, &a->ray);
     for (uint32_t i = 0; i < count; i += LANES) {
         const Block *block = &desk->chunk[i / LANES];
-        uint32_t left = objects->shape == RT_SHAPE_SPHERE ? sieve_spheres(block, &line) : sieve_triangles(block, &line);
+        uint32_t left =
+            objects->shape == RT_SHAPE_SPHERE ? sieve_spheres(block, &line) : sieve_triangles(block, &line);
         for (; left; left &= left - 1) {
             uint32_t index = first + i + (uint32_t)__builtin_ctz(left), id = objects->ids[index];
             float t;
@@ -163,8 +173,8 @@ RT_KERNEL bool test_each(const RtGeometry *g, Asking *a, const Objects *objects,
     return false;
 }
 
-/* Tests all objects of a shape, chunk by chunk where there are lanes for it, and keeps the rays open whose search is
- * not over. */
+/* Tests all objects of a shape, chunk by chunk where there are lanes for it, and keeps the rays open whose
+ * search is not over. */
 RT_KERNEL void test_shape(Desk *desk, const RtGeometry *g, Objects objects, bool any, bool counted) {
     const size_t size = objects.shape == RT_SHAPE_SPHERE ? SPHERE : TRIANGLE;
     const bool in_lanes = objects.shape == RT_SHAPE_SPHERE || objects.shape == RT_SHAPE_TRIANGLE;
@@ -189,8 +199,8 @@ RT_KERNEL void test_shape(Desk *desk, const RtGeometry *g, Objects objects, bool
 
 /* ---- a stream ---- */
 
-RT_KERNEL void begin(Desk *desk, const RtGeometry *g, const RtScratch *scratch, const RtRay *rays, uint32_t count,
-                     RtTally *tallies) {
+RT_KERNEL void begin(Desk *desk, const RtGeometry *g, const RtScratch *scratch, const RtRay *rays,
+                     uint32_t count, RtTally *tallies) {
     for (uint32_t i = 0; i < count; i++) {
         Asking *a = &desk->asking[i];
         rt_hit_ray(&a->ray, g, &rays[i], scratch->room);
@@ -202,8 +212,8 @@ RT_KERNEL void begin(Desk *desk, const RtGeometry *g, const RtScratch *scratch, 
 }
 
 /* Answers go to `hits`, or where any hit will do to `blockers`. */
-RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count, bool any,
-                     RtHit *hits, uint32_t *blockers, RtTally *tallies) {
+RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     bool any, RtHit *hits, uint32_t *blockers, RtTally *tallies) {
     const RtGeometry *g = &accel->scene->geometry;
     Desk *desk = scratch->own;
     for (size_t first = 0; first < count; first += BATCH) {

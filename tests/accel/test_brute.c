@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/brute: what it does in lanes is what rt_test_all does, by every instruction set that this machine has: the
- * hits and the blockers bit for bit, and the counts, whatever the length of a stream. */
+/* accel/brute: what it does in lanes is what rt_test_all does, by every instruction set that this machine
+ * has: the hits and the blockers bit for bit, and the counts, whatever the length of a stream. */
 #include "equivalence_testing.h"
 
 #include "accel/brute/brute.h"
@@ -54,10 +54,12 @@ static void by_definition(const RtGeometry *geometry, Asked *asked) {
 
 static void assert_same(const Asked *right, const Asked *got, bool counted, RtIsa isa, size_t stream) {
     for (size_t i = 0; i < right->count; i++) {
-        if (memcmp(&right->hits[i], &got->hits[i], sizeof(RtHit)) != 0 || right->blockers[i] != got->blockers[i]) {
-            fail_msg("isa %d, streams of %zu, counted %d: ray %zu is answered %u at %a, blocked by %u, not %u at %a, %u",
-                     (int)isa, stream, counted, i, got->hits[i].object, (double)got->hits[i].t, got->blockers[i],
-                     right->hits[i].object, (double)right->hits[i].t, right->blockers[i]);
+        if (memcmp(&right->hits[i], &got->hits[i], sizeof(RtHit)) != 0 ||
+            right->blockers[i] != got->blockers[i]) {
+            fail_msg("isa %d, streams of %zu, counted %d: ray %zu is answered %u at %a, blocked by %u, not "
+                     "%u at %a, %u",
+                     (int)isa, stream, counted, i, got->hits[i].object, (double)got->hits[i].t,
+                     got->blockers[i], right->hits[i].object, (double)right->hits[i].t, right->blockers[i]);
         }
     }
     if (!counted) return;
@@ -65,12 +67,14 @@ static void assert_same(const Asked *right, const Asked *got, bool counted, RtIs
     assert_memory_equal(right->occluded, got->occluded, sizeof right->occluded);
 }
 
-static void by_kernels(const RtBruteKernels *kernels, const RtQuery *query, Asked *asked, size_t stream, bool counted) {
+static void by_kernels(const RtBruteKernels *kernels, const RtQuery *query, Asked *asked, size_t stream,
+                       bool counted) {
     for (size_t first = 0; first < asked->count; first += stream) {
         size_t left = asked->count - first, n = left < stream ? left : stream;
         const RtRay *rays = asked->rays + first;
         if (counted) {
-            kernels->nearest_counted(query->accel, query->scratch, rays, n, asked->hits + first, asked->nearest);
+            kernels->nearest_counted(query->accel, query->scratch, rays, n, asked->hits + first,
+                                     asked->nearest);
             kernels->occluded_counted(query->accel, query->scratch, rays, n, asked->blockers + first,
                                       asked->occluded);
         } else {
@@ -131,16 +135,129 @@ RT_TEST(every_family_of_scenes_is_answered_and_counted_as_defined) {
 }
 
 RT_TEST(every_shape_and_every_remainder_of_lanes_is_answered_and_counted_as_defined) {
-    const char *specs[] = {
-        "random:n=300,shape=mixed",   "random:n=1,shape=triangle",   "random:n=15,shape=triangle", "random:n=17,shape=triangle",
-        "random:n=271,shape=triangle", "random:n=3,shape=sphere",    "random:n=257,shape=sphere",  "random:n=0",
-        "tetra:size=4",               "balls:size=2",                "mount:size=4",               "teapot:size=3"};
+    const char *specs[] = {"random:n=300,shape=mixed",
+                           "random:n=1,shape=triangle",
+                           "random:n=15,shape=triangle",
+                           "random:n=17,shape=triangle",
+                           "random:n=271,shape=triangle",
+                           "random:n=3,shape=sphere",
+                           "random:n=257,shape=sphere",
+                           "random:n=0",
+                           "tetra:size=4",
+                           "balls:size=2",
+                           "mount:size=4",
+                           "teapot:size=3"};
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         RtScene scene;
         assert_ok(rt_scene_open(specs[i], &scene, error));
         assert_scene_is_the_definition(&scene, i, 60);
         rt_scene_clear(&scene);
     }
+}
+
+/* ---- extremes ---- */
+
+/* From up to 2^24 times `size` away to somewhere within it, perhaps along an axis or in a plane of two; of
+ * any length that float32 bears. */
+static RtRay far_ray(RtRandom *random, float size) {
+    RtRay ray;
+    do {
+        RtVec3 from = rt_random_point(random, ldexpf(size, (int)rt_random_below(random, 25)));
+        RtVec3 dir = rt_sub(rt_random_point(random, size), from);
+        uint32_t flat = rt_random_below(random, 16);
+        int length = rt_random_below(random, 4) == 0 ? (int)rt_random_below(random, 250) - 140 : 0;
+        for (int a = 0; a < 3; a++)
+            dir.at[a] = flat >> a & 1 && flat < 8 ? 0 : ldexpf(dir.at[a] / size, length);
+        ray = (RtRay){from, 0, dir, INFINITY, RT_RAY_RANDOM, 0};
+    } while (!rt_ray_is_valid(&ray));
+    return ray;
+}
+
+/* A point of the ray, about where it is nearest to `to`. */
+static RtVec3d point_near(const RtRay *ray, RtVec3 to) {
+    RtVec3d dir = rt_widen(ray->dir), way = rt_subd(rt_widen(to), rt_widen(ray->org));
+    return rt_add_scaledd(rt_widen(ray->org), dir, rt_dotd(way, dir) / rt_dotd(dir, dir));
+}
+
+/* A sphere that the ray touches, but for rounding. */
+static RtSphere touched_sphere(RtRandom *random, const RtRay *ray, float size) {
+    float radius = ldexpf(size * (rt_random_unit(random) + 0.01f), -(int)rt_random_below(random, 20));
+    RtVec3d across = rt_normalized(rt_crossd(rt_widen(ray->dir), rt_random_direction(random)));
+    RtVec3d at = point_near(ray, rt_random_point(random, size));
+    return (RtSphere){rt_narrow(rt_add_scaledd(at, across, (double)radius)), radius};
+}
+
+/* A triangle of which the ray meets an edge, or a vertex, but for rounding. */
+static void touched_triangle(RtRandom *random, const RtRay *ray, float size, RtVec3 v[3]) {
+    double small = ldexp((double)size, -(int)rt_random_below(random, 20));
+    RtVec3d at = point_near(ray, rt_random_point(random, size));
+    for (int i = 0; i < 3; i++) v[i] = rt_narrow(rt_add_scaledd(at, rt_random_direction(random), small));
+    if (rt_random_below(random, 2) == 0)
+        v[1] = rt_narrow(rt_add_scaledd(rt_scaled(at, 2), rt_widen(v[0]), -1));
+    else
+        v[0] = rt_narrow(at);
+}
+
+static void add_touched(RtScene *scene, RtRandom *random, const RtRay *ray, float size) {
+    RtError refusal; /* beyond the largest coordinate: there are others */
+    RtSphere sphere = touched_sphere(random, ray, size);
+    RtVec3 v[3];
+    touched_triangle(random, ray, size, v);
+    if (rt_scene_add_sphere(scene, 0, sphere.center, sphere.radius, &refusal) != RT_OK) return;
+    (void)rt_scene_add_triangle(scene, 0, v, NULL, &refusal);
+}
+
+RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_as_defined) {
+    const float sizes[] = {1, 1e-30f, 1e-12f, 1e6f, 1e16f, 4e17f};
+    enum { RAYS = 500 };
+    RtRay *rays = rt_alloc(RAYS, sizeof(RtRay));
+    assert_non_null(rays);
+    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
+        RtRandom random = rt_random(s, 7);
+        RtScene scene;
+        begin_scene(&scene);
+        for (int i = 0; i < RAYS; i++) {
+            rays[i] = far_ray(&random, sizes[s]);
+            add_touched(&scene, &random, &rays[i], sizes[s]);
+        }
+        assert_ok(rt_scene_finish(&scene, error));
+        assert_true(scene.geometry.triangle_count > RAYS / 4);
+        assert_is_the_definition(&scene, rays, RAYS);
+        rt_scene_clear(&scene);
+    }
+    rt_free(rays);
+}
+
+/* ---- accel/lanes.h ---- */
+
+RT_TEST(spheres_are_left_in_lanes_that_the_hit_function_does_not_turn_away) {
+    RtRandom random = rt_random(5, 5);
+    uint32_t hits = 0, others = 0;
+    for (int round = 0; round < 20000; round++) {
+        RtRay ray = far_ray(&random, 1);
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &RT_EMPTY_BOX);
+        RtSphereLine line = rt_sphere_line(&prepared);
+        float rows[4][8];
+        RtSphere spheres[8];
+        for (int i = 0; i < 8; i++) {
+            spheres[i] = touched_sphere(&random, &ray, 1);
+            for (int a = 0; a < 3; a++) rows[a][i] = spheres[i].center.at[a];
+            rows[3][i] = spheres[i].radius;
+        }
+        uint32_t left = rt_spheres_met8(rows[0], 8, &line);
+        assert_int_equal(left & 15, rt_spheres_met4(rows[0], 8, &line));
+        for (int i = 0; i < 8; i++) {
+            RtBox box = rt_sphere_box(&spheres[i]);
+            float t;
+            bool hit = rt_sphere_hit(&spheres[i], &box, &prepared, &t), is_left = left >> i & 1;
+            assert_true(is_left || !hit);
+            hits += hit;
+            others += !is_left;
+        }
+        rows[round % 4][round % 8] = NAN;
+        assert_int_equal(rt_spheres_met8(rows[0], 8, &line), left & ~(1u << round % 8));
+    }
+    assert_true(hits > 10000 && others > 10000);
 }
 
 RT_TESTS(brute, NULL, assert_nothing_is_kept)
