@@ -260,4 +260,34 @@ RT_TEST(spheres_are_left_in_lanes_that_the_hit_function_does_not_turn_away) {
     assert_true(hits > 10000 && others > 10000);
 }
 
+/* A ray that starts where it touches a sphere about the origin, 3^2 + 4^2 = 5^2, but for a third coordinate
+ * so small that the order of the sum says whether it still does. */
+static RtSphere barely_touched_sphere(RtRandom *random, RtRay *ray) {
+    float k = (float)(1 + rt_random_below(random, 3 << 20)),
+          small = ldexpf(k * rt_random_between(random, 3, 8), -27);
+    uint32_t axis = rt_random_below(random, 3), next = (axis + 1) % 3, last = (axis + 2) % 3;
+    *ray = (RtRay){.tmax = INFINITY, .kind = RT_RAY_RANDOM};
+    ray->org.at[axis] = 3 * k, ray->org.at[next] = 4 * k, ray->org.at[last] = small;
+    ray->dir.at[axis] = -4, ray->dir.at[next] = 3;
+    return (RtSphere){{{0, 0, 0}}, 5 * k};
+}
+
+RT_TEST(spheres_in_lanes_are_summed_in_the_order_of_the_hit_function) {
+    RtRandom random = rt_random(6, 6);
+    uint32_t hits = 0;
+    for (int round = 0; round < 20000; round++) {
+        RtRay ray;
+        RtSphere sphere = barely_touched_sphere(&random, &ray);
+        RtBox box = rt_sphere_box(&sphere);
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &box);
+        RtSphereLine line = rt_sphere_line(&prepared);
+        float rows[4][4], t;
+        for (int i = 0; i < 16; i++) rows[i / 4][i % 4] = i < 12 ? 0 : sphere.radius;
+        bool hit = rt_sphere_hit(&sphere, &box, &prepared, &t);
+        assert_int_equal(rt_spheres_met4(rows[0], 4, &line), hit ? 15 : 0);
+        hits += hit;
+    }
+    assert_true(hits > 1000 && hits < 19000);
+}
+
 RT_TESTS(brute, NULL, assert_nothing_is_kept)
