@@ -37,6 +37,7 @@ typedef struct Block {
 
 typedef struct Asking {
     RtPreparedRay ray;
+    RtSphereLine line; /* where there are spheres */
     RtHit best;
     RtTally *tally;
 } Asking;
@@ -88,11 +89,10 @@ RT_KERNEL void fill_chunk(Block *chunk, const float *from, size_t size, uint32_t
 
 /* ---- a ray and a block ---- */
 
-/* What a ray turns objects away by. */
+/* What a ray turns triangles away by. */
 typedef struct Line {
     RtV16 org_x, org_y, org_z, shear_x, shear_y; /* along the ray's kx, ky and kz */
     int x, y, z;
-    RtSphereLine line;
 } Line;
 
 RT_KERNEL void make_line(Line *line, const RtPreparedRay *ray) {
@@ -104,7 +104,6 @@ RT_KERNEL void make_line(Line *line, const RtPreparedRay *ray) {
     line->org_z = rt_v16_all(ray->org.at[ray->kz]);
     line->shear_x = rt_v16_all(ray->shear_x);
     line->shear_y = rt_v16_all(ray->shear_y);
-    line->line = rt_sphere_line(ray);
 }
 
 RT_KERNEL RtV16 edge(RtV16 ax, RtV16 ay, RtV16 bx, RtV16 by) {
@@ -128,11 +127,6 @@ RT_KERNEL uint32_t sieve_triangles(const Block *block, const Line *line) {
     return rt_v16_at_most(zero, least) | rt_v16_at_most(most, zero);
 }
 
-RT_KERNEL uint32_t sieve_spheres(const Block *block, const Line *line) {
-    const float *from = block->row[0];
-    return rt_spheres_met8(from, LANES, &line->line) | rt_spheres_met8(from + 8, LANES, &line->line) << 8;
-}
-
 /* ---- a batch and a shape ---- */
 
 /* Objects of a shape. */
@@ -150,8 +144,8 @@ RT_KERNEL bool test_chunk(const Desk *desk, const RtGeometry *g, Asking *a, cons
     make_line(&line, &a->ray);
     for (uint32_t i = 0; i < count; i += LANES) {
         const Block *block = &desk->chunk[i / LANES];
-        uint32_t left =
-            objects->shape == RT_SHAPE_SPHERE ? sieve_spheres(block, &line) : sieve_triangles(block, &line);
+        uint32_t left = objects->shape == RT_SHAPE_SPHERE ? rt_spheres_left16(block->row[0], LANES, &a->line)
+                                                          : sieve_triangles(block, &line);
         for (; left; left &= left - 1) {
             uint32_t index = first + i + (uint32_t)__builtin_ctz(left), id = objects->ids[index];
             float t;
@@ -204,6 +198,7 @@ RT_KERNEL void begin(Desk *desk, const RtGeometry *g, const RtScratch *scratch, 
     for (uint32_t i = 0; i < count; i++) {
         Asking *a = &desk->asking[i];
         rt_hit_ray(&a->ray, g, &rays[i], scratch->room);
+        if (g->sphere_count > 0) a->line = rt_sphere_line(&a->ray);
         a->best = RT_MISS;
         a->tally = tallies ? &tallies[rays[i].kind] : NULL;
         desk->open[i] = i;
