@@ -40,13 +40,13 @@ static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay
     kernels_of(accel)->occluded(accel, scratch, rays, count, blockers);
 }
 
-static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, RtTally *tallies) {
+static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                          RtHit *hits, RtTally *tallies) {
     kernels_of(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
 }
 
-static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *blockers, RtTally *tallies) {
+static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                           uint32_t *blockers, RtTally *tallies) {
     kernels_of(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
 }
 
@@ -72,8 +72,8 @@ const RtAccelOps rt_brute_ops = {
     .destroy = destroy,
     .nearest = nearest,
     .occluded = occluded,
-    .nearest_counted = nearest_counted,
-    .occluded_counted = occluded_counted,
+    .nearest_counted = count_nearest,
+    .occluded_counted = count_occluded,
     .scratch_bytes = scratch_bytes,
     .describe = describe,
     .validate = validate,
