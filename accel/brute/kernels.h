@@ -8,9 +8,10 @@
  *
  * The same bits: in lanes objects are only turned away, by the first operations of their hit functions; those
  * that are left are tested by the hit function itself. Of a triangle that is the signs of the edge functions
- * in float32. They differ from those of rt_triangle_hit at most by being no numbers, where a sheared
- * coordinate is none or is infinite; then a weight is one of these too, and t a NaN, which is no hit. Of
- * spheres see accel/lanes.h.
+ * in float32, by the operations of rt_triangle_hit; where all three are numbers it is turned away by both or
+ * by neither. Coordinates below RT_MAX_COORDINATE cannot overflow, so one is no number only where a shear is
+ * infinite or none, of the shortest dir: then weights in double are infinite or NaN too, t is NaN, and the
+ * triangle is not hit. Of spheres see accel/lanes.h.
  *
  * The same counts: a ray meets objects shape by shape in the order of RT_SHAPES, by ascending id, as in
  * rt_test_all, so it has tested all up to where it stops. */
@@ -52,17 +53,14 @@ typedef struct Desk {
 
 /* Four floats of each of four objects, which are `size` floats apart, to lanes of four rows. */
 RT_KERNEL void transpose(float row[][LANES], size_t lane, const float *from, size_t size) {
-    RtFour a = rt_four(from), b = rt_four(from + size), c = rt_four(from + 2 * size),
-           d = rt_four(from + 3 * size);
+    RtFour a = rt_four(from), b = rt_four(from + size);
+    RtFour c = rt_four(from + 2 * size), d = rt_four(from + 3 * size);
     RtFour ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-    RtFour first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5),
-           second = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-    memcpy(&row[0][lane], &first, sizeof first);
-    memcpy(&row[1][lane], &second, sizeof second);
-    ab = __builtin_shufflevector(a, b, 2, 6, 3, 7), cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-    first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5), second = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-    memcpy(&row[2][lane], &first, sizeof first);
-    memcpy(&row[3][lane], &second, sizeof second);
+    RtFour ef = __builtin_shufflevector(a, b, 2, 6, 3, 7), gh = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    RtFour columns[4] = {
+        __builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
+        __builtin_shufflevector(ef, gh, 0, 1, 4, 5), __builtin_shufflevector(ef, gh, 2, 3, 6, 7)};
+    for (size_t i = 0; i < 4; i++) memcpy(&row[i][lane], &columns[i], sizeof columns[i]);
 }
 
 /* `count` objects, 1..16, of `size` floats each. */
@@ -110,20 +108,20 @@ RT_KERNEL RtV16 edge(RtV16 ax, RtV16 ay, RtV16 bx, RtV16 by) {
     return rt_v16_sub(rt_v16_mul(ax, by), rt_v16_mul(ay, bx));
 }
 
+/* Bit i: the edge functions of triangle i are not of different signs. */
 RT_KERNEL uint32_t sieve_triangles(const Block *block, const Line *line) {
     RtV16 x[3], y[3];
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < 3; i++) {
         const float(*vertex)[LANES] = block->row + 3 * i;
         RtV16 z = rt_v16_sub(rt_v16_load(vertex[line->z]), line->org_z);
-        x[i] =
-            rt_v16_sub(rt_v16_sub(rt_v16_load(vertex[line->x]), line->org_x), rt_v16_mul(line->shear_x, z));
-        y[i] =
-            rt_v16_sub(rt_v16_sub(rt_v16_load(vertex[line->y]), line->org_y), rt_v16_mul(line->shear_y, z));
+        x[i] = rt_v16_sub(rt_v16_load(vertex[line->x]), line->org_x);
+        y[i] = rt_v16_sub(rt_v16_load(vertex[line->y]), line->org_y);
+        x[i] = rt_v16_sub(x[i], rt_v16_mul(line->shear_x, z));
+        y[i] = rt_v16_sub(y[i], rt_v16_mul(line->shear_y, z));
     }
-    RtV16 u = edge(x[2], y[2], x[1], y[1]), v = edge(x[0], y[0], x[2], y[2]),
-          w = edge(x[1], y[1], x[0], y[0]);
-    RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w),
-          zero = rt_v16_all(0);
+    RtV16 u = edge(x[2], y[2], x[1], y[1]), v = edge(x[0], y[0], x[2], y[2]);
+    RtV16 w = edge(x[1], y[1], x[0], y[0]), zero = rt_v16_all(0);
+    RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w);
     return rt_v16_at_most(zero, least) | rt_v16_at_most(most, zero);
 }
 
