@@ -19,13 +19,16 @@ objdump --disassemble --no-show-raw-insn "$library" | awk '
     if (kind == "") next
     name = $2; gsub(/[<>:]/, "", name)
     seen[file, kind]++
+    framed = 0
     if (!(file in known)) { known[file] = 1; files[++n] = file }
     next
 }
 kind == "" { next }
-# addq $1,8(%rdi)   incq (%rax)   lock addq ...   add %rax,8(%rdi)   -- but not n(%rsp) or -n(%rbp): the stack
+/[ \t]mov[ \t]+%rsp,%rbp/ { framed = 1 }
+# addq $1,8(%rdi)   incq (%rax)   lock addq ...   add %rax,8(%rdi)   -- but not n(%rsp), nor -n(%rbp) where %rbp is the
+# frame: spilled registers
 /[ \t](addq|subq|incq|decq|adcq)[ \t].*\(/ || /[ \t](add|sub|adc|xadd)[ \t]+%r[a-z0-9]+,[^%]*\(/ {
-    if ($0 ~ /\(%rsp[,)]/ || $0 ~ /-0x[0-9a-f]+\(%rbp[,)]/) next
+    if ($0 ~ /\(%rsp[,)]/ || (framed && $0 ~ /-0x[0-9a-f]+\(%rbp\)/)) next
     if ($0 ~ /%r[0-9]+[dwb],/) next
     adds[file, kind]++
     if (kind == "timed") print "  " file ": " name ": " $0

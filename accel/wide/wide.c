@@ -60,7 +60,7 @@ static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 static bool has(Isa isa) {
     bool avx2 = false, avx512 = false;
-#ifdef RT_WITH_AVX
+#if defined(__x86_64__)
     __builtin_cpu_init();
     avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
     avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
@@ -70,7 +70,7 @@ static bool has(Isa isa) {
 }
 
 static const RtWideKernels *kernels_of(Isa isa) {
-#ifdef RT_WITH_AVX
+#if defined(__x86_64__)
     if (isa == AVX512 || (isa == BEST && has(AVX512))) return &rt_wide_avx512;
     if (isa == AVX2 || (isa == BEST && has(AVX2))) return &rt_wide_avx2;
 #endif

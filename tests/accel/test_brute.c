@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* accel/brute: what it does in lanes is what rt_test_all does, by every instruction set that this machine
+ * has: the hits and the blockers bit for bit, and the counts, whatever the length of a stream. */
+#include "equivalence_testing.h"
+
+#include "accel/brute/brute.h"
+#include "accel/kernel.h"
+#include "accel/lanes.h"
+#include "accel_testing.h"
+#include "base/random.h"
+
+/* What is asked, and what is answered, timed and counted. */
+typedef struct Asked {
+    const RtRay *rays;
+    size_t count;
+    RtHit *hits;
+    uint32_t *blockers;
+    RtTally nearest[RT_RAY_KIND_COUNT], occluded[RT_RAY_KIND_COUNT];
+} Asked;
+
+static void clear(Asked *asked) {
+    rt_free(asked->hits);
+    rt_free(asked->blockers);
+}
+
+static Asked begin_asking(const RtRay *rays, size_t count) {
+    Asked asked = {.rays = rays, .count = count};
+    asked.hits = rt_alloc(count, sizeof(RtHit));
+    asked.blockers = rt_alloc(count, sizeof(uint32_t));
+    assert_true(asked.hits && asked.blockers);
+    return asked;
+}
+
+/* One ray, one object after the other. */
+static void by_definition(const RtGeometry *geometry, Asked *asked) {
+    RtCrossing *room;
+    assert_ok(rt_hit_room(geometry, &room, error));
+    for (size_t i = 0; i < asked->count; i++) {
+        const RtRay *ray = &asked->rays[i];
+        RtPreparedRay prepared;
+        RtHit first = RT_MISS;
+        rt_hit_ray(&prepared, geometry, ray, room);
+        asked->hits[i] = RT_MISS;
+        rt_test_all(geometry, &prepared, false, &asked->hits[i], &asked->nearest[ray->kind]);
+        rt_test_all(geometry, &prepared, true, &first, &asked->occluded[ray->kind]);
+        asked->blockers[i] = first.object;
+        asked->nearest[ray->kind].rays++;
+        asked->nearest[ray->kind].hits += asked->hits[i].object != RT_NO_OBJECT;
+        asked->occluded[ray->kind].rays++;
+        asked->occluded[ray->kind].hits += first.object != RT_NO_OBJECT;
+    }
+    rt_free(room);
+}
+
+static void assert_same(const Asked *right, const Asked *got, bool counted, RtIsa isa, size_t stream) {
+    for (size_t i = 0; i < right->count; i++) {
+        if (memcmp(&right->hits[i], &got->hits[i], sizeof(RtHit)) != 0 ||
+            right->blockers[i] != got->blockers[i]) {
+            fail_msg("isa %d, streams of %zu, counted %d: ray %zu is answered %u at %a, blocked by %u, not "
+                     "%u at %a, %u",
+                     (int)isa, stream, counted, i, got->hits[i].object, (double)got->hits[i].t,
+                     got->blockers[i], right->hits[i].object, (double)right->hits[i].t, right->blockers[i]);
+        }
+    }
+    if (!counted) return;
+    assert_memory_equal(right->nearest, got->nearest, sizeof right->nearest);
+    assert_memory_equal(right->occluded, got->occluded, sizeof right->occluded);
+}
+
+static void by_kernels(const RtBruteKernels *kernels, const RtQuery *query, Asked *asked, size_t stream,
+                       bool counted) {
+    for (size_t first = 0; first < asked->count; first += stream) {
+        size_t left = asked->count - first, n = left < stream ? left : stream;
+        const RtRay *rays = asked->rays + first;
+        if (counted) {
+            kernels->nearest_counted(query->accel, query->scratch, rays, n, asked->hits + first,
+                                     asked->nearest);
+            kernels->occluded_counted(query->accel, query->scratch, rays, n, asked->blockers + first,
+                                      asked->occluded);
+        } else {
+            kernels->nearest(query->accel, query->scratch, rays, n, asked->hits + first);
+            kernels->occluded(query->accel, query->scratch, rays, n, asked->blockers + first);
+        }
+    }
+}
+
+static void assert_is_the_definition(const RtScene *scene, const RtRay *rays, size_t count) {
+    const size_t streams[] = {1, 5, 128, count};
+    Asked right = begin_asking(rays, count);
+    RtAccel *accel;
+    RtQuery query;
+    by_definition(&scene->geometry, &right);
+    assert_ok(rt_accel_open("brute", scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    for (int isa = RT_ISA_PORTABLE; isa <= (int)rt_isa_best(); isa++) {
+        for (size_t s = 0; s < sizeof streams / sizeof streams[0]; s++) {
+            for (int counted = 0; counted < 2; counted++) {
+                Asked got = begin_asking(rays, count);
+                by_kernels(rt_brute_kernels((RtIsa)isa), &query, &got, streams[s], counted);
+                assert_same(&right, &got, counted, (RtIsa)isa, streams[s]);
+                clear(&got);
+            }
+        }
+    }
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    clear(&right);
+}
+
+/* By rays of every family. */
+static void assert_scene_is_the_definition(const RtScene *scene, uint64_t seed, size_t rays) {
+    size_t families = rt_ray_family_count();
+    RtAccel *bvh;
+    RtQuery query;
+    RtRay *all = rt_alloc(families * rays, sizeof(RtRay));
+    assert_non_null(all);
+    assert_ok(rt_accel_open("bvh", scene, &bvh, error));
+    assert_ok(rt_query_init(&query, bvh, error));
+    for (size_t f = 0; f < families; f++) rt_ray_family_fill(f, &query, seed, 0, rays, all + f * rays);
+    rt_query_clear(&query);
+    rt_accel_destroy(bvh);
+    assert_is_the_definition(scene, all, families * rays);
+    rt_free(all);
+}
+
+RT_TEST(every_family_of_scenes_is_answered_and_counted_as_defined) {
+    for (size_t family = 0; family < rt_family_count(); family++) {
+        for (uint64_t seed = 1; seed <= 3; seed++) {
+            RtScene scene;
+            open_family(family, seed, &scene);
+            assert_scene_is_the_definition(&scene, seed, 40);
+            rt_scene_clear(&scene);
+        }
+    }
+}
+
+RT_TEST(every_shape_and_every_remainder_of_lanes_is_answered_and_counted_as_defined) {
+    const char *specs[] = {"random:n=300,shape=mixed",
+                           "random:n=1,shape=triangle",
+                           "random:n=15,shape=triangle",
+                           "random:n=17,shape=triangle",
+                           "random:n=271,shape=triangle",
+                           "random:n=3,shape=sphere",
+                           "random:n=257,shape=sphere",
+                           "random:n=0",
+                           "tetra:size=4",
+                           "balls:size=2",
+                           "mount:size=4",
+                           "teapot:size=3"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        RtScene scene;
+        assert_ok(rt_scene_open(specs[i], &scene, error));
+        assert_scene_is_the_definition(&scene, i, 60);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* ---- extremes ---- */
+
+/* From up to 2^24 times `size` away to somewhere within it, perhaps along an axis or in a plane of two; of
+ * any length that float32 bears. */
+static RtRay far_ray(RtRandom *random, float size) {
+    RtRay ray;
+    do {
+        RtVec3 from = rt_random_point(random, ldexpf(size, (int)rt_random_below(random, 25)));
+        RtVec3 dir = rt_sub(rt_random_point(random, size), from);
+        uint32_t flat = rt_random_below(random, 16);
+        int length = rt_random_below(random, 4) == 0 ? (int)rt_random_below(random, 250) - 140 : 0;
+        for (int a = 0; a < 3; a++)
+            dir.at[a] = flat >> a & 1 && flat < 8 ? 0 : ldexpf(dir.at[a] / size, length);
+        ray = (RtRay){from, 0, dir, INFINITY, RT_RAY_RANDOM, 0};
+    } while (!rt_ray_is_valid(&ray));
+    return ray;
+}
+
+/* A point of the ray, about where it is nearest to `to`. */
+static RtVec3d point_near(const RtRay *ray, RtVec3 to) {
+    RtVec3d dir = rt_widen(ray->dir), way = rt_subd(rt_widen(to), rt_widen(ray->org));
+    return rt_add_scaledd(rt_widen(ray->org), dir, rt_dotd(way, dir) / rt_dotd(dir, dir));
+}
+
+/* A sphere that the ray touches, but for rounding. */
+static RtSphere touched_sphere(RtRandom *random, const RtRay *ray, float size) {
+    float radius = ldexpf(size * (rt_random_unit(random) + 0.01f), -(int)rt_random_below(random, 20));
+    RtVec3d across = rt_normalized(rt_crossd(rt_widen(ray->dir), rt_random_direction(random)));
+    RtVec3d at = point_near(ray, rt_random_point(random, size));
+    return (RtSphere){rt_narrow(rt_add_scaledd(at, across, (double)radius)), radius};
+}
+
+/* A triangle of which the ray meets an edge, or a vertex, but for rounding. */
+static void touched_triangle(RtRandom *random, const RtRay *ray, float size, RtVec3 v[3]) {
+    double small = ldexp((double)size, -(int)rt_random_below(random, 20));
+    RtVec3d at = point_near(ray, rt_random_point(random, size));
+    for (int i = 0; i < 3; i++) v[i] = rt_narrow(rt_add_scaledd(at, rt_random_direction(random), small));
+    if (rt_random_below(random, 2) == 0)
+        v[1] = rt_narrow(rt_add_scaledd(rt_scaled(at, 2), rt_widen(v[0]), -1));
+    else
+        v[0] = rt_narrow(at);
+}
+
+static void add_touched(RtScene *scene, RtRandom *random, const RtRay *ray, float size) {
+    RtError refusal; /* beyond the largest coordinate: there are others */
+    RtSphere sphere = touched_sphere(random, ray, size);
+    RtVec3 v[3];
+    touched_triangle(random, ray, size, v);
+    if (rt_scene_add_sphere(scene, 0, sphere.center, sphere.radius, &refusal) != RT_OK) return;
+    (void)rt_scene_add_triangle(scene, 0, v, NULL, &refusal);
+}
+
+RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_as_defined) {
+    const float sizes[] = {1, 1e-30f, 1e-22f, 1e-12f, 1e6f, 1e16f, 4e17f};
+    enum { RAYS = 500 };
+    RtRay *rays = rt_alloc(RAYS, sizeof(RtRay));
+    assert_non_null(rays);
+    for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
+        RtRandom random = rt_random(s, 7);
+        RtScene scene;
+        begin_scene(&scene);
+        for (int i = 0; i < RAYS; i++) {
+            rays[i] = far_ray(&random, sizes[s]);
+            add_touched(&scene, &random, &rays[i], sizes[s]);
+        }
+        assert_ok(rt_scene_finish(&scene, error));
+        assert_true(scene.geometry.triangle_count > RAYS / 4);
+        assert_is_the_definition(&scene, rays, RAYS);
+        rt_scene_clear(&scene);
+    }
+    rt_free(rays);
+}
+
+/* ---- accel/lanes.h ---- */
+
+/* Where the same sphere with a radius less by a part of its distance would be turned away, the lane is not
+ * left needlessly. */
+static void check_lane(const RtSphere *sphere, const RtPreparedRay *ray, bool left, uint32_t *hits,
+                       uint32_t *misses) {
+    RtBox box = rt_sphere_box(sphere);
+    RtVec3d o = rt_subd(rt_widen(sphere->center), rt_widen(ray->org)), u = rt_normalized(rt_widen(ray->dir));
+    double passed = rt_lengthd(rt_crossd(o, u));
+    float t;
+    bool hit = rt_sphere_hit(sphere, &box, ray, &t);
+    assert_true(left || !hit);
+    if (left) assert_true(passed <= (double)sphere->radius * 1.002 + rt_lengthd(o) * 0x1p-15);
+    *hits += hit;
+    *misses += !left;
+}
+
+RT_TEST(spheres_are_left_in_lanes_that_may_be_hit_and_hardly_any_other) {
+    RtRandom random = rt_random(5, 5);
+    uint32_t hits = 0, misses = 0;
+    for (int round = 0; round < 20000; round++) {
+        RtRay ray = far_ray(&random, 1);
+        RtPreparedRay prepared = rt_ray_prepare(&ray, &RT_EMPTY_BOX);
+        RtSphereLine line = rt_sphere_line(&prepared);
+        float rows[4][16];
+        RtSphere spheres[16];
+        for (int i = 0; i < 16; i++) {
+            spheres[i] = touched_sphere(&random, &ray, 1);
+            if (i % 4 == 3) spheres[i].radius *= 0.997f;
+            for (int a = 0; a < 3; a++) rows[a][i] = spheres[i].center.at[a];
+            rows[3][i] = spheres[i].radius;
+        }
+        uint32_t left = rt_spheres_left16(rows[0], 16, &line);
+        assert_int_equal(left & 255, rt_spheres_left8(rows[0], 16, &line));
+        assert_int_equal(left & 15, rt_spheres_left4(rows[0], 16, &line));
+        for (int i = 0; i < 16; i++) check_lane(&spheres[i], &prepared, left >> i & 1, &hits, &misses);
+        rows[round % 4][round % 16] = NAN;
+        assert_int_equal(rt_spheres_left16(rows[0], 16, &line), left & ~(1u << round % 16));
+    }
+    assert_true(hits > 10000 && misses > 10000);
+}
+
+RT_TESTS(brute, NULL, assert_nothing_is_kept)
