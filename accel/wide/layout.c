@@ -232,7 +232,8 @@ RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geome
     if (!layout.plans) return rt_fail_memory(error, "the plan of a hierarchy", tree->used * sizeof(Plan));
     Weight whole = weigh(&layout, tree->root);
     double area = rt_box_half_area(tree->nodes[tree->root].box);
-    uint64_t bytes = sizeof(RtWideNode) + count_bytes(&layout, tree->root);
+    uint64_t bytes = count_bytes(&layout, tree->root);
+    if (layout.plans[tree->root].choice[0] == LEAF) bytes += sizeof(RtWideNode);
     if (bytes > how->limit || bytes > RT_WIDE_MAX_BYTES) {
         rt_free(layout.plans);
         return refuse(bytes, how->limit, error);
