@@ -146,12 +146,14 @@ static RtWideRef place_leaf(const Layout *layout, uint32_t index) {
     uint32_t ids[RT_WIDE_MAX_LEAF], count = 0, bytes;
     collect(layout, index, ids, &count);
     RtWideKind kind = kind_of(layout, ids, count, &bytes);
-    uint32_t at = (uint32_t)self->bytes, lanes = (count + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK * RT_WIDE_BLOCK;
+    bool triangles = kind == RT_WIDE_TRIANGLES;
+    uint32_t at = (uint32_t)self->bytes,
+             lanes = triangles && count <= RT_WIDE_BLOCK ? RT_WIDE_BLOCK : RT_WIDE_MAX_LEAF;
     char *place = self->arena + at;
     self->bytes += bytes;
     for (uint32_t i = 0; i < lanes; i++) {
         uint32_t id = i < count ? ids[i] : RT_NO_OBJECT, block = i / RT_WIDE_BLOCK, lane = i % RT_WIDE_BLOCK;
-        if (kind == RT_WIDE_TRIANGLES)
+        if (triangles)
             put_triangle(layout, (RtWideTriangles *)(void *)place + block, lane, id);
         else
             ((RtWideList *)(void *)place)->id[i] = id;
@@ -189,6 +191,7 @@ static void place_node(const Layout *layout, uint32_t at, uint32_t index) {
     RtWideNode *node = (RtWideNode *)(layout->self->arena + at);
     layout->self->node_count++;
     node->count = count;
+    memset(node->unused, 0, sizeof node->unused); /* the arena need not have been set */
     for (uint32_t i = 0; i < RT_WIDE; i++) {
         put_box(node, i, i < count ? layout->tree->nodes[children[i]].box : RT_EMPTY_BOX);
         node->child[i] = i < count ? place(layout, children[i]) : RT_WIDE_DONE;
@@ -229,7 +232,8 @@ RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geome
     if (!layout.plans) return rt_fail_memory(error, "the plan of a hierarchy", tree->used * sizeof(Plan));
     Weight whole = weigh(&layout, tree->root);
     double area = rt_box_half_area(tree->nodes[tree->root].box);
-    uint64_t bytes = sizeof(RtWideNode) + count_bytes(&layout, tree->root);
+    uint64_t bytes = count_bytes(&layout, tree->root);
+    if (layout.plans[tree->root].choice[0] == LEAF) bytes += sizeof(RtWideNode);
     if (bytes > how->limit || bytes > RT_WIDE_MAX_BYTES) {
         rt_free(layout.plans);
         return refuse(bytes, how->limit, error);

@@ -119,6 +119,10 @@ static RtStatus check_leaf(const Check *check, RtWideRef ref) {
     uint64_t bytes = triangles ? blocks * sizeof(RtWideTriangles) : sizeof(RtWideList);
     if (rt_wide_kind(ref) == RT_WIDE_LANDED || at + bytes > check->self->bytes)
         return rt_fail(check->error, RT_MISMATCH, "wide: a leaf at %u is not in the arena", at);
+    for (uint32_t i = count; !triangles && i < RT_WIDE_MAX_LEAF; i++) {
+        if (id_at(check->self, ref, i) == RT_NO_OBJECT) continue;
+        return rt_fail(check->error, RT_MISMATCH, "wide: the leaf at %u holds more than its objects", at);
+    }
     const RtWideTriangles *block = rt_wide_leaf_at(check->self, ref);
     for (uint32_t i = 0; triangles && i < blocks * RT_WIDE_BLOCK; i++, block += i % RT_WIDE_BLOCK == 0) {
         uint32_t lane = i % RT_WIDE_BLOCK, id = block->id[lane];
@@ -146,7 +150,8 @@ static RtStatus check_node(Check *check, RtWideRef ref, uint32_t depth) {
     const RtWideNode *node = rt_wide_node(self, ref);
     if (++check->nodes > self->node_count)
         return rt_fail(check->error, RT_MISMATCH, "wide: node %u has two parents", ref);
-    if (node->count < (ref == 0 ? 1 : 2) || node->count > RT_WIDE)
+    bool lone = ref == 0 && rt_wide_kind(node->child[0]) != RT_WIDE_NODE; /* a root may hold a single leaf */
+    if (node->count < (lone ? 1 : 2) || node->count > RT_WIDE)
         return rt_fail(check->error, RT_MISMATCH, "wide: node %u has %u children", ref, node->count);
     for (uint32_t i = node->count; i < RT_WIDE; i++) {
         for (int a = 0; a < 3; a++) {

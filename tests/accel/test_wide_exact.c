@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* accel/wide against brute, bit for bit: rays that go the same way, so that they are traced as packets, and
+ * rays that nearly do; by every instruction set of this machine and at every parameter, in streams of all
+ * lengths; and nothing is allocated meanwhile. */
+#include "wide_testing.h"
+
+#include "base/random.h"
+#include "scenes/open.h"
+
+#include <math.h>
+
+/* ---- bundles of rays ---- */
+
+/* Four packets, as long as what is tried before a way to trace is chosen. */
+enum { BUNDLE = 64, ROUNDS = 6 };
+
+/* What rays are aimed at: a scene, and the boxes that a structure has of it. */
+typedef struct Target {
+    const RtScene *scene;
+    RtRandom random;
+    RtVec3 middle;
+    float size;
+    RtBox boxes[512];
+    uint32_t box_count;
+} Target;
+
+/* A point of an object's box: of a triangle also a vertex, or a point of an edge. */
+static RtVec3 point_on(Target *target, uint32_t id) {
+    const RtGeometry *g = &target->scene->geometry;
+    RtRandom *random = &target->random;
+    if (g->object_count == 0) return rt_random_point(random, 1);
+    RtVec3 p;
+    const RtBox *own = &g->boxes[id];
+    for (int a = 0; a < 3; a++) {
+        p.at[a] = own->lo.at[a] + (own->hi.at[a] - own->lo.at[a]) * rt_random_unit(random);
+    }
+    if (rt_ref_shape(g->objects[id]) != RT_SHAPE_TRIANGLE) return p;
+    const RtVec3 *v = g->triangles[rt_ref_index(g->objects[id])].v;
+    uint32_t pick = rt_random_below(random, 4);
+    float u = pick ? rt_random_unit(random) : 0, w = pick > 1 ? (1 - u) * rt_random_unit(random) : 0;
+    for (int a = 0; a < 3; a++) p.at[a] = v[0].at[a] * (1 - u - w) + v[1].at[a] * u + v[2].at[a] * w;
+    return p;
+}
+
+static RtVec3 any_point(Target *target) {
+    uint32_t count = target->scene->geometry.object_count;
+    return point_on(target, count ? rt_random_below(&target->random, count) : 0);
+}
+
+static RtVec3 outside(Target *target, float sizes) {
+    return rt_add(target->middle,
+                  rt_narrow(rt_scaled(rt_random_direction(&target->random), (double)(sizes * target->size))));
+}
+
+/* From a point, towards what is seen in a small window about another. */
+static void pinhole(Target *target, RtRay *rays, RtVec3 eye, float window) {
+    RtVec3 middle = any_point(target);
+    for (int i = 0; i < BUNDLE; i++) {
+        RtVec3 at = rt_add(middle, rt_random_point(&target->random, window * target->size));
+        rays[i] = (RtRay){eye, 0, rt_sub(at, eye), INFINITY, RT_RAY_PRIMARY, 0};
+    }
+}
+
+static void from_outside(Target *target, RtRay *rays) {
+    pinhole(target, rays, outside(target, 3), 0.02f);
+}
+
+static void from_within(Target *target, RtRay *rays) {
+    pinhole(target, rays, any_point(target), 0.1f);
+}
+
+static void over_the_whole(Target *target, RtRay *rays) { /* signs or the major axis may change */
+    pinhole(target, rays, outside(target, 0.8f), 0.5f);
+}
+
+static void from_far_away(Target *target, RtRay *rays) {
+    pinhole(target, rays, outside(target, 1e5f), 0.01f);
+}
+
+static void at_exact_points(Target *target, RtRay *rays) {
+    pinhole(target, rays, outside(target, 2), 1e-7f);
+}
+
+static void parallel(Target *target, RtRay *rays) {
+    RtVec3 eye = outside(target, 3), dir = rt_sub(any_point(target), eye);
+    for (int i = 0; i < BUNDLE; i++) {
+        RtVec3 from = rt_add(eye, rt_random_point(&target->random, 0.1f * target->size));
+        rays[i] = (RtRay){from, 0, dir, INFINITY, RT_RAY_RANDOM, 0};
+    }
+}
+
+static void all_the_same(Target *target, RtRay *rays) {
+    RtVec3 eye = outside(target, 2);
+    for (int i = 0; i < BUNDLE; i++)
+        rays[i] = (RtRay){eye, 0, rt_sub(target->middle, eye), INFINITY, RT_RAY_RANDOM, 0};
+}
+
+/* Into one octant, but each its own way. */
+static void scattered(Target *target, RtRay *rays) {
+    for (int i = 0; i < BUNDLE; i++) {
+        RtVec3 at = any_point(target), from = at;
+        for (int a = 0; a < 3; a++) from.at[a] -= target->size * (0.01f + rt_random_unit(&target->random));
+        from.x -= target->size; /* x is the major axis */
+        rays[i] = (RtRay){from, 0, rt_sub(at, from), INFINITY, RT_RAY_DIFFUSE, 0};
+    }
+}
+
+static void to_a_light(Target *target, RtRay *rays) {
+    RtVec3 light = outside(target, 1.5f), middle = any_point(target);
+    for (int i = 0; i < BUNDLE; i++) {
+        RtVec3 from = rt_add(middle, rt_random_point(&target->random, 0.05f * target->size));
+        rays[i] = (RtRay){from, 0, rt_sub(light, from), 1, RT_RAY_SHADOW, 0};
+    }
+}
+
+/* With intervals of t that begin or end within the scene. */
+static void bounded(Target *target, RtRay *rays) {
+    pinhole(target, rays, outside(target, 1.2f), 0.05f);
+    for (int i = 0; i < BUNDLE; i++) {
+        rays[i].tmin = rt_random_between(&target->random, 0, 1);
+        rays[i].tmax = rays[i].tmin + rt_random_between(&target->random, 0, 1);
+    }
+}
+
+/* One component is 0, or -0, of all or of one in a packet; the rays start in a plane of a box. */
+static void with_a_zero(Target *target, RtRay *rays) {
+    uint32_t axis = rt_random_below(&target->random, 3), some = rt_random_bits(&target->random);
+    const RtBox *box = target->box_count ? &target->boxes[rt_random_below(&target->random, target->box_count)]
+                                         : &target->scene->geometry.box;
+    RtVec3 eye = outside(target, 2);
+    if (target->box_count) eye.at[axis] = (some & 1 ? box->lo : box->hi).at[axis];
+    pinhole(target, rays, eye, 0.02f);
+    bool negative = signbit(rays[0].dir.at[axis]);
+    for (int i = 0; i < BUNDLE; i++) {
+        if (some & 2 && i % 16 != (int)(some >> 8 & 15)) continue;
+        rays[i].dir.at[axis] = negative != ((some & 4) != 0) ? -0.0f : 0.0f;
+    }
+}
+
+/* All but in a plane of a box, through points of its edges and objects. */
+static void along_a_plane(Target *target, RtRay *rays) {
+    uint32_t axis = rt_random_below(&target->random, 3), some = rt_random_bits(&target->random);
+    pinhole(target, rays, outside(target, some & 4 ? 1 : 100), 0.01f);
+    if (target->box_count == 0) return;
+    const RtBox *box = &target->boxes[rt_random_below(&target->random, target->box_count)];
+    float plane = (some & 1 ? box->lo : box->hi).at[axis];
+    for (int i = 0; i < BUNDLE; i++) {
+        RtVec3 at = rt_add(rays[i].org, rays[i].dir);
+        for (int a = 0; a < 3; a++) {
+            if (a != (int)axis && some & 8)
+                at.at[a] = rt_random_between(&target->random, box->lo.at[a], box->hi.at[a]);
+        }
+        rays[i].org.at[axis] = plane;
+        rays[i].dir = rt_sub(at, rays[i].org);
+        rays[i].dir.at[axis] =
+            (some & 2 ? 1e-9f : -1e-9f) * target->size * (1 + rt_random_unit(&target->random));
+    }
+}
+
+/* So long, or short, that float32 is nearly out of exponents, or that 1 / dir is infinite. */
+static void odd_lengths(Target *target, RtRay *rays) {
+    static const float factors[] = {0x1p-63f, 0x1p-70f, 0x1p-120f, 0x1p-140f, 0x1p63f, 0x1p70f, 0x1p100f};
+    float factor = factors[rt_random_below(&target->random, 7)];
+    pinhole(target, rays, outside(target, 2), 0.02f);
+    for (int i = 0; i < BUNDLE; i++) rays[i].dir = rt_scale(rays[i].dir, factor);
+}
+
+typedef void Bundle(Target *target, RtRay *rays);
+static Bundle *const bundles[] = {from_outside, from_within,   over_the_whole, from_far_away, at_exact_points,
+                                  parallel,     all_the_same,  scattered,      to_a_light,    bounded,
+                                  with_a_zero,  along_a_plane, odd_lengths};
+enum { BUNDLES = sizeof bundles / sizeof bundles[0], RAYS = BUNDLES * ROUNDS * BUNDLE };
+
+/* Rays that are not valid, where a scene is tiny or huge, become one that is. */
+static void make_rays(Target *target, RtRay *rays) {
+    for (int i = 0; i < BUNDLES * ROUNDS; i++) bundles[i % BUNDLES](target, rays + i * BUNDLE);
+    for (int i = 0; i < RAYS; i++) {
+        if (!rt_ray_is_valid(&rays[i]))
+            rays[i] = (RtRay){target->middle, 0, {{1, 1, 1}}, INFINITY, RT_RAY_RANDOM, 0};
+    }
+}
+
+/* ---- brute, and all of wide ---- */
+
+typedef struct Bench {
+    RtScene scene;
+    RtRay rays[2 * RAYS]; /* those of the second half begin and end where those of the first hit */
+    RtHit truth[2 * RAYS];
+    RtHit hits[2 * RAYS];
+    bool blocked[2 * RAYS];
+} Bench;
+
+static void note_box(void *context, const RtBox *box, uint32_t depth) {
+    Target *target = context;
+    (void)depth;
+    if (target->box_count < sizeof target->boxes / sizeof target->boxes[0])
+        target->boxes[target->box_count++] = *box;
+}
+
+static Target aim_at(const RtScene *scene, uint64_t seed) {
+    Target target = {.scene = scene, .random = rt_random(seed, 3), .size = 1};
+    RtWide *wide = make_wide(scene, 0, "build=spatial,alpha=0,budget=4,max_leaf_size=1");
+    wide->base.ops->each_box(&wide->base, (RtBoxViewer){note_box, &target});
+    rt_accel_destroy(&wide->base);
+    if (scene->geometry.object_count == 0) return target;
+    target.middle = rt_box_center(scene->geometry.box);
+    target.size = (float)rt_box_longest_side(scene->geometry.box);
+    return target;
+}
+
+static void set_up(Bench *bench, uint64_t seed) {
+    Target target = aim_at(&bench->scene, seed);
+    RtAccel *brute;
+    RtQuery query;
+    make_rays(&target, bench->rays);
+    assert_ok(rt_accel_open("brute", &bench->scene, &brute, error));
+    assert_ok(rt_query_init(&query, brute, error));
+    rt_nearest(&query, bench->rays, RAYS, bench->truth, NULL);
+    for (int i = 0; i < RAYS; i++) {
+        RtRay *ray = &bench->rays[RAYS + i];
+        *ray = bench->rays[i];
+        if (bench->truth[i].object != RT_NO_OBJECT) ray->tmin = ray->tmax = bench->truth[i].t;
+    }
+    rt_nearest(&query, bench->rays + RAYS, RAYS, bench->truth + RAYS, NULL);
+    rt_query_clear(&query);
+    rt_accel_destroy(brute);
+}
+
+/* The rays again, the `cut`th way to cut them: in lengths that are no packets' in turn, in packets, in what
+ * is tried before a way is chosen, or not at all. */
+static size_t length_of(int cut, size_t turn) {
+    static const size_t lengths[] = {1, 2, 15, 16, 17, 63, 64, 65};
+    return cut == 0 ? lengths[turn % 8] : cut == 1 ? 16 : cut == 2 ? BUNDLE : 2 * RAYS;
+}
+
+static void trace_all(RtQuery *query, Bench *bench, int cut, RtTally *tallies) {
+    for (size_t i = 0, n, turn = 0; i < 2 * RAYS; i += n, turn++) {
+        n = length_of(cut, turn);
+        if (n > 2 * RAYS - i) n = 2 * RAYS - i;
+        rt_nearest(query, bench->rays + i, n, bench->hits + i, tallies);
+        rt_occluded(query, bench->rays + i, n, bench->blocked + i, tallies);
+    }
+}
+
+static void compare(const Bench *bench, const char *what, int cut) {
+    for (size_t i = 0; i < 2 * RAYS; i++) {
+        const RtHit *right = &bench->truth[i], *got = &bench->hits[i];
+        bool any = right->object != RT_NO_OBJECT;
+        if (memcmp(right, got, sizeof *right) == 0 && bench->blocked[i] == any) continue;
+        const RtRay *r = &bench->rays[i];
+        fail_msg(
+            "%s on %s, cut %d, ray %zu, bundle %zu: object %u at %a, blocked %d, not %u at %a; org %a %a %a, "
+            "dir %a %a %a, t %a to %a",
+            what, bench->scene.name, cut, i, i % RAYS / BUNDLE % BUNDLES, got->object, (double)got->t,
+            bench->blocked[i], right->object, (double)right->t, (double)r->org.x, (double)r->org.y,
+            (double)r->org.z, (double)r->dir.x, (double)r->dir.y, (double)r->dir.z, (double)r->tmin,
+            (double)r->tmax);
+    }
+}
+
+/* No allocation but that of the query: one that were made while tracing would fail. */
+static void assert_like_brute(Bench *bench, const RtWide *wide, const char *what) {
+    RtQuery query;
+    RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+    assert_ok(rt_query_init(&query, &wide->base, error));
+    for (int cut = 0; cut < 4; cut++) {
+        rt_alloc_fail_at(1);
+        trace_all(&query, bench, cut, NULL);
+        assert_null(rt_alloc(1, 1)); /* the first one since */
+        compare(bench, what, cut);
+        if (cut != 0) continue;
+        trace_all(&query, bench, cut, tallies);
+        compare(bench, what, cut + 10);
+    }
+    rt_alloc_fail_at(0);
+    rt_query_clear(&query);
+}
+
+static const char *const settings[] = {"",
+                                       "packets=off",
+                                       "in_flight=1",
+                                       "in_flight=2",
+                                       "in_flight=64",
+                                       "order=off",
+                                       "prefetch=off,huge_pages=off",
+                                       "max_leaf_size=1",
+                                       "max_leaf_size=8",
+                                       "max_leaf_size=8,block_cost=0",
+                                       "block_cost=1000",
+                                       "reinsertion=3",
+                                       "build=sweep",
+                                       "build=lbvh",
+                                       "build=ploc",
+                                       "build=spatial",
+                                       "build=spatial,alpha=0,budget=16,max_leaf_size=1,order=off",
+                                       "build=spatial,alpha=0,budget=4,whole=on",
+                                       "build=spatial,alpha=0,in_flight=1"};
+enum { SETTINGS = sizeof settings / sizeof settings[0] };
+
+static void check_all(Bench *bench, uint64_t seed) {
+    char what[RT_MAX_SPEC_CHARS];
+    set_up(bench, seed);
+    for (int isa = 0; isa < INSTRUCTION_SETS; isa++) {
+        for (int s = 0; s < SETTINGS; s++) {
+            RtWide *wide = make_wide(&bench->scene, isa, settings[s]);
+            if (!wide) continue;
+            snprintf(what, sizeof what, "wide:isa=%s,%s", instruction_sets[isa], settings[s]);
+            assert_like_brute(bench, wide, what);
+            rt_accel_destroy(&wide->base);
+        }
+    }
+    rt_scene_clear(&bench->scene);
+}
+
+static void check_scene(const char *spec) {
+    Bench *bench = calloc(1, sizeof *bench);
+    assert_ok(rt_scene_open(spec, &bench->scene, error));
+    check_all(bench, 1);
+    free(bench);
+}
+
+/* ---- scenes ---- */
+
+RT_TEST(triangles_are_hit_as_by_brute) {
+    check_scene("random:n=400,shape=triangle");
+}
+
+RT_TEST(slivers_are_hit_as_by_brute) {
+    check_scene("family:kind=slivers,seed=2");
+}
+
+RT_TEST(a_mesh_far_from_the_zero_of_coordinates_is_hit_as_by_brute) {
+    check_scene("family:kind=mesh-far,seed=3");
+}
+
+RT_TEST(objects_in_planes_of_boxes_are_hit_as_by_brute) {
+    check_scene("family:kind=axis-aligned,seed=1");
+}
+
+RT_TEST(spheres_of_which_some_are_the_same_are_hit_as_by_brute) {
+    check_scene("family:kind=duplicates,seed=1");
+}
+
+RT_TEST(mixed_objects_are_hit_as_by_brute) {
+    check_scene("family:kind=mixed,seed=4");
+}
+
+RT_TEST(tiny_and_huge_objects_are_hit_as_by_brute) {
+    check_scene("family:kind=mixed-tiny,seed=1");
+    check_scene("family:kind=mixed-huge,seed=1");
+}
+
+RT_TEST(csg_trees_are_hit_as_by_brute) {
+    check_scene("family:kind=csg,seed=1");
+}
+
+RT_TEST(scenes_of_no_object_and_of_one_are_answered_as_by_brute) {
+    Bench *bench = calloc(1, sizeof *bench);
+    begin_scene(&bench->scene);
+    assert_ok(rt_scene_finish(&bench->scene, error));
+    check_all(bench, 1);
+    begin_scene(&bench->scene);
+    add_triangle(&bench->scene, rt_vec3(0, 0, 1), rt_vec3(1, 0.25f, 1), rt_vec3(0.5f, 1, 2));
+    assert_ok(rt_scene_finish(&bench->scene, error));
+    check_all(bench, 2);
+    free(bench);
+}
+
+/* Copies of triangles, in planes of boxes, and others that are lines and points. */
+RT_TEST(triangles_without_area_and_copies_of_triangles_are_answered_as_by_brute) {
+    Bench *bench = calloc(1, sizeof *bench);
+    RtRandom random = rt_random(9, 9);
+    begin_scene(&bench->scene);
+    for (int i = 0; i < 120; i++) {
+        RtVec3 a = rt_random_point(&random, 1), b = rt_random_point(&random, 1),
+               c = rt_random_point(&random, 1);
+        a.z = b.z = c.z = (float)(i % 5) - 2;
+        if (i % 4 == 1) c = b;
+        if (i % 4 == 2) c = rt_add(a, rt_scale(rt_sub(b, a), 0.5f));
+        if (i % 16 == 3) c = b = a;
+        for (int copy = 0; copy <= i % 3; copy++) add_triangle(&bench->scene, a, b, c);
+    }
+    assert_ok(rt_scene_finish(&bench->scene, error));
+    check_all(bench, 3);
+    free(bench);
+}
+
+RT_TESTS(wide_exact, NULL, assert_nothing_is_kept)
