@@ -6,14 +6,14 @@
 
 typedef enum RtIsa {
     RT_ISA_PORTABLE, /* whatever the program itself is compiled for */
-    RT_ISA_AVX2,
-    RT_ISA_AVX512, /* F, VL, DQ and BW */
+    RT_ISA_AVX2,     /* and BMI2 */
+    RT_ISA_AVX512,   /* F, VL, DQ and BW */
 } RtIsa;
 
 /* The most that this machine has. */
 static inline RtIsa rt_isa_best(void) {
 #if defined(__x86_64__)
-    if (!__builtin_cpu_supports("avx2")) return RT_ISA_PORTABLE;
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) return RT_ISA_PORTABLE;
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
         return RT_ISA_AVX512;

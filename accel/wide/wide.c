@@ -14,6 +14,7 @@
  * triangle of a leaf, which are tested at once. Counts are those of rays alone, the same for all instruction
  * sets and any number of rays in flight. */
 #include "accel/wide/wide.h"
+#include "accel/isa.h"
 
 #include "base/memory.h"
 
@@ -58,27 +59,23 @@ static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
 /* ---- instruction sets ---- */
 
-static bool has(Isa isa) {
-    bool avx2 = false, avx512 = false;
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
-    avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-#endif
-    return isa == AVX512 ? avx512 : isa == AVX2 ? avx2 : true;
+/* What is asked for. */
+static RtIsa isa_of(const RtValue *values) {
+    switch ((Isa)values[PARAM_ISA].choice) {
+    case BEST: break;
+    case PORTABLE: return RT_ISA_PORTABLE;
+    case AVX2: return RT_ISA_AVX2;
+    case AVX512: return RT_ISA_AVX512;
+    }
+    return rt_isa_best();
 }
 
-static const RtWideKernels *kernels_of(Isa isa) {
-#if defined(__x86_64__)
-    if (isa == AVX512 || (isa == BEST && has(AVX512))) return &rt_wide_avx512;
-    if (isa == AVX2 || (isa == BEST && has(AVX2))) return &rt_wide_avx2;
-#endif
-    return &rt_wide_portable;
+static const RtWideKernels *kernels_of(RtIsa isa) {
+    return isa == RT_ISA_AVX512 ? &rt_wide_avx512 : isa == RT_ISA_AVX2 ? &rt_wide_avx2 : &rt_wide_portable;
 }
 
 static RtStatus available(const RtValue *values, RtError *error) {
-    if (has((Isa)values[PARAM_ISA].choice)) return RT_OK;
+    if (isa_of(values) <= rt_isa_best()) return RT_OK;
     char name[RT_MAX_SPEC_CHARS];
     rt_param_format(&params[PARAM_ISA], values[PARAM_ISA], name, sizeof name);
     return rt_fail(error, RT_NOT_AVAILABLE, "this processor has no %s: leave isa out", name);
@@ -147,7 +144,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     bool two = values[PARAM_BUILD].choice == SPATIAL && values[PARAM_WHOLE].flag;
     self->nearest = &self->trees[0];
     self->occluded = &self->trees[two ? 1 : 0];
-    self->kernels = kernels_of((Isa)values[PARAM_ISA].choice);
+    self->kernels = kernels_of(isa_of(values));
     self->in_flight = (uint32_t)values[PARAM_IN_FLIGHT].i;
     self->order = values[PARAM_ORDER].flag;
     self->prefetch = values[PARAM_PREFETCH].flag;
