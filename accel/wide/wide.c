@@ -171,12 +171,12 @@ static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay
     kernels(accel)->occluded(accel, scratch, rays, count, blockers);
 }
 
-static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+static void counted_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                             RtHit *hits, RtTally *tallies) {
     kernels(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
 }
 
-static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+static void counted_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                              uint32_t *blockers, RtTally *tallies) {
     kernels(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
 }
@@ -215,8 +215,8 @@ const RtAccelOps rt_wide_ops = {
     .destroy = destroy,
     .nearest = nearest,
     .occluded = occluded,
-    .nearest_counted = nearest_counted,
-    .occluded_counted = occluded_counted,
+    .nearest_counted = counted_nearest,
+    .occluded_counted = counted_occluded,
     .scratch_bytes = scratch_bytes,
     .describe = describe,
     .validate = validate,
