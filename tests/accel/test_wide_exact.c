@@ -181,6 +181,22 @@ static void along_planes(Target *target, RtRay *rays) {
     }
 }
 
+/* As slivers ask for: each by itself, and a packet of each, for which it may have no zero. */
+static void at_slivers(Target *target, RtRay *rays) {
+    bool packets = rt_random_below(&target->random, 2);
+    for (int i = 0; i < BUNDLE; i++) {
+        const RtBox *box = &target->boxes[rt_random_below(&target->random, target->box_count)];
+        if (packets && i % 16) {
+            rays[i] = rays[i - 1];
+            rays[i].dir.at[i % 3] *= 1 + 0x1p-22f;
+            continue;
+        }
+        aim_at_slivers(&target->random, target->scene, box, &rays[i]);
+        float *dir = rays[i].dir.at, tiny = 1e-12f * dir[rt_major_axis(rays[i].dir)];
+        for (int a = 0; a < 3 && packets; a++) dir[a] = dir[a] == 0 ? tiny : dir[a];
+    }
+}
+
 /* So long, or short, that float32 is nearly out of exponents, or that 1 / dir is infinite. */
 static void odd_lengths(Target *target, RtRay *rays) {
     static const float factors[] = {0x1p-63f, 0x1p-70f, 0x1p-120f, 0x1p-140f, 0x1p63f, 0x1p70f, 0x1p100f};
@@ -405,6 +421,18 @@ RT_TEST(rays_along_the_planes_that_cut_objects_are_answered_as_by_brute) {
     for (int i = 0; i < 5; i++) {
         assert_ok(rt_scene_open(specs[i], &bench->scene, error));
         set_up(bench, (uint64_t)i, along_planes);
+        check(bench, SETTINGS - DIVIDED);
+        rt_scene_clear(&bench->scene);
+    }
+    free(bench);
+}
+
+RT_TEST(hostile_rays_hit_divided_slivers_as_by_brute) {
+    const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
+    Bench *bench = calloc(1, sizeof *bench);
+    for (int i = 0; i < 6; i++) {
+        bench->scene = make_slivers(160, (uint64_t)i, scales[i], offsets[i]);
+        set_up(bench, (uint64_t)i, at_slivers);
         check(bench, SETTINGS - DIVIDED);
         rt_scene_clear(&bench->scene);
     }
