@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # The timed kernels hold no counting code. Counters are 64-bit words in memory, and counting adds to them; so
-# no function of the library that is called ..._timed may add to a 64-bit word in memory, its own stack apart.
+# no function of the library that is called ..._timed may add to a 64-bit word in memory, its own
+# stack apart (which vectors make it address by %rbp).
 # The functions called ..._counted must: each file's counted kernels show that this script would see it.
 # Optimised x86-64 builds only; elsewhere it is skipped (exit code 77).
 set -eu

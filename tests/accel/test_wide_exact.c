@@ -137,23 +137,63 @@ static void with_a_zero(Target *target, RtRay *rays) {
     }
 }
 
-/* All but in a plane of a box, through points of its edges and objects. */
-static void along_a_plane(Target *target, RtRay *rays) {
-    uint32_t axis = rt_random_below(&target->random, 3), some = rt_random_bits(&target->random);
-    pinhole(target, rays, outside(target, some & 4 ? 1 : 100), 0.01f);
-    if (target->box_count == 0) return;
-    const RtBox *box = &target->boxes[rt_random_below(&target->random, target->box_count)];
-    float plane = (some & 1 ? box->lo : box->hi).at[axis];
-    for (int i = 0; i < BUNDLE; i++) {
-        RtVec3 at = rt_add(rays[i].org, rays[i].dir);
-        for (int a = 0; a < 3; a++) {
-            if (a != (int)axis && some & 8)
-                at.at[a] = rt_random_between(&target->random, box->lo.at[a], box->hi.at[a]);
+/* A point of a triangle, or of its edge, in a plane across an axis; false where none was found. */
+static bool point_in_plane(Target *target, int axis, float plane, RtVec3 *at) {
+    const RtGeometry *g = &target->scene->geometry;
+    for (int tries = 0; tries < 64 && g->triangle_count; tries++) {
+        const RtVec3 *v = g->triangles[rt_random_below(&target->random, g->triangle_count)].v;
+        RtVec3 ends[3];
+        int count = 0;
+        for (int i = 0; i < 3; i++) {
+            RtVec3 a = v[i], b = v[(i + 1) % 3];
+            float u = (plane - a.at[axis]) / (b.at[axis] - a.at[axis]);
+            if (u >= 0 && u <= 1) ends[count++] = rt_add(a, rt_scale(rt_sub(b, a), u));
         }
-        rays[i].org.at[axis] = plane;
-        rays[i].dir = rt_sub(at, rays[i].org);
-        rays[i].dir.at[axis] =
-            (some & 2 ? 1e-9f : -1e-9f) * target->size * (1 + rt_random_unit(&target->random));
+        if (count < 2) continue;
+        float w = tries % 2 ? rt_random_unit(&target->random) : 0;
+        *at = rt_add(ends[0], rt_scale(rt_sub(ends[1], ends[0]), w));
+        at->at[axis] = plane;
+        return true;
+    }
+    return false;
+}
+
+/* All but in the planes that cut objects, where these are: a packet each. */
+static void along_planes(Target *target, RtRay *rays) {
+    from_outside(target, rays); /* where there is no better */
+    for (int packet = 0; packet < BUNDLE && target->box_count; packet += 16) {
+        int axis = (int)rt_random_below(&target->random, 3);
+        uint32_t some = rt_random_bits(&target->random);
+        const RtBox *box = &target->boxes[rt_random_below(&target->random, target->box_count)];
+        RtVec3 at, from;
+        float plane = (some & 1 ? box->lo : box->hi).at[axis];
+        if (!point_in_plane(target, axis, plane, &at)) continue;
+        from = rt_add(at, rt_random_point(&target->random, (some & 2 ? 1.0f : 100.0f) * target->size));
+        if (some & 4) from = rt_vec3(0, 0, 0); /* where rounding the origin makes no ray thicker */
+        from.at[axis] = plane;
+        RtVec3 dir = rt_sub(at, from);
+        for (int i = packet; i < packet + 16; i++) {
+            rays[i] = (RtRay){from, 0, dir, INFINITY, RT_RAY_RANDOM, 0};
+            for (int a = 0; a < 3; a++)
+                rays[i].dir.at[a] *= 1 + rt_random_between(&target->random, 0, 0x1p-20f);
+            rays[i].dir.at[axis] = (some & 8 ? 1e-12f : -1e-12f) * target->size;
+        }
+    }
+}
+
+/* As slivers ask for: each by itself, and a packet of each, for which it may have no zero. */
+static void at_slivers(Target *target, RtRay *rays) {
+    bool packets = rt_random_below(&target->random, 2);
+    for (int i = 0; i < BUNDLE; i++) {
+        const RtBox *box = &target->boxes[rt_random_below(&target->random, target->box_count)];
+        if (packets && i % 16) {
+            rays[i] = rays[i - 1];
+            rays[i].dir.at[i % 3] *= 1 + 0x1p-22f;
+            continue;
+        }
+        aim_at_slivers(&target->random, target->scene, box, &rays[i]);
+        float *dir = rays[i].dir.at, tiny = 1e-12f * dir[rt_major_axis(rays[i].dir)];
+        for (int a = 0; a < 3 && packets; a++) dir[a] = dir[a] == 0 ? tiny : dir[a];
     }
 }
 
@@ -166,14 +206,15 @@ static void odd_lengths(Target *target, RtRay *rays) {
 }
 
 typedef void Bundle(Target *target, RtRay *rays);
-static Bundle *const bundles[] = {from_outside, from_within,   over_the_whole, from_far_away, at_exact_points,
-                                  parallel,     all_the_same,  scattered,      to_a_light,    bounded,
-                                  with_a_zero,  along_a_plane, odd_lengths};
+static Bundle *const bundles[] = {from_outside, from_within,  over_the_whole, from_far_away, at_exact_points,
+                                  parallel,     all_the_same, scattered,      to_a_light,    bounded,
+                                  with_a_zero,  along_planes, odd_lengths};
 enum { BUNDLES = sizeof bundles / sizeof bundles[0], RAYS = BUNDLES * ROUNDS * BUNDLE };
 
 /* Rays that are not valid, where a scene is tiny or huge, become one that is. */
-static void make_rays(Target *target, RtRay *rays) {
-    for (int i = 0; i < BUNDLES * ROUNDS; i++) bundles[i % BUNDLES](target, rays + i * BUNDLE);
+static void make_rays(Target *target, RtRay *rays, Bundle *only) {
+    for (int i = 0; i < BUNDLES * ROUNDS; i++)
+        (only ? only : bundles[i % BUNDLES])(target, rays + i * BUNDLE);
     for (int i = 0; i < RAYS; i++) {
         if (!rt_ray_is_valid(&rays[i]))
             rays[i] = (RtRay){target->middle, 0, {{1, 1, 1}}, INFINITY, RT_RAY_RANDOM, 0};
@@ -208,11 +249,11 @@ static Target aim_at(const RtScene *scene, uint64_t seed) {
     return target;
 }
 
-static void set_up(Bench *bench, uint64_t seed) {
+static void set_up(Bench *bench, uint64_t seed, Bundle *only) {
     Target target = aim_at(&bench->scene, seed);
     RtAccel *brute;
     RtQuery query;
-    make_rays(&target, bench->rays);
+    make_rays(&target, bench->rays, only);
     assert_ok(rt_accel_open("brute", &bench->scene, &brute, error));
     assert_ok(rt_query_init(&query, brute, error));
     rt_nearest(&query, bench->rays, RAYS, bench->truth, NULL);
@@ -295,13 +336,13 @@ static const char *const settings[] = {"",
                                        "build=spatial,alpha=0,budget=16,max_leaf_size=1,order=off",
                                        "build=spatial,alpha=0,budget=4,whole=on",
                                        "build=spatial,alpha=0,in_flight=1"};
-enum { SETTINGS = sizeof settings / sizeof settings[0] };
+enum { SETTINGS = sizeof settings / sizeof settings[0], DIVIDED = 4 /* the last */ };
 
-static void check_all(Bench *bench, uint64_t seed) {
+/* Of the settings those from `first` on. */
+static void check(Bench *bench, int first) {
     char what[RT_MAX_SPEC_CHARS];
-    set_up(bench, seed);
     for (int isa = 0; isa < INSTRUCTION_SETS; isa++) {
-        for (int s = 0; s < SETTINGS; s++) {
+        for (int s = first; s < SETTINGS; s++) {
             RtWide *wide = make_wide(&bench->scene, isa, settings[s]);
             if (!wide) continue;
             snprintf(what, sizeof what, "wide:isa=%s,%s", instruction_sets[isa], settings[s]);
@@ -309,6 +350,11 @@ static void check_all(Bench *bench, uint64_t seed) {
             rt_accel_destroy(&wide->base);
         }
     }
+}
+
+static void check_all(Bench *bench, uint64_t seed) {
+    set_up(bench, seed, NULL);
+    check(bench, 0);
     rt_scene_clear(&bench->scene);
 }
 
@@ -363,6 +409,33 @@ RT_TEST(scenes_of_no_object_and_of_one_are_answered_as_by_brute) {
     add_triangle(&bench->scene, rt_vec3(0, 0, 1), rt_vec3(1, 0.25f, 1), rt_vec3(0.5f, 1, 2));
     assert_ok(rt_scene_finish(&bench->scene, error));
     check_all(bench, 2);
+    free(bench);
+}
+
+/* The wider ray of divided trees is what this asks for, in streams and in packets. */
+RT_TEST(rays_along_the_planes_that_cut_objects_are_answered_as_by_brute) {
+    const char *specs[] = {"random:n=300,shape=triangle", "family:kind=slivers,seed=1",
+                           "family:kind=slivers,seed=5", "family:kind=slivers-scaled,seed=3",
+                           "family:kind=mesh-far,seed=1"};
+    Bench *bench = calloc(1, sizeof *bench);
+    for (int i = 0; i < 5; i++) {
+        assert_ok(rt_scene_open(specs[i], &bench->scene, error));
+        set_up(bench, (uint64_t)i, along_planes);
+        check(bench, SETTINGS - DIVIDED);
+        rt_scene_clear(&bench->scene);
+    }
+    free(bench);
+}
+
+RT_TEST(hostile_rays_hit_divided_slivers_as_by_brute) {
+    const float scales[] = {1, 1, 1, 1e-20f, 1e16f, 0.01f}, offsets[] = {0, 1e6f, 1e5f, 0, 0, -3000};
+    Bench *bench = calloc(1, sizeof *bench);
+    for (int i = 0; i < 6; i++) {
+        bench->scene = make_slivers(160, (uint64_t)i, scales[i], offsets[i]);
+        set_up(bench, (uint64_t)i, at_slivers);
+        check(bench, SETTINGS - DIVIDED);
+        rt_scene_clear(&bench->scene);
+    }
     free(bench);
 }
 

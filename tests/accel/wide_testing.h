@@ -3,7 +3,7 @@
 #ifndef RT_TESTS_WIDE_TESTING_H
 #define RT_TESTS_WIDE_TESTING_H
 
-#include "accel_testing.h"
+#include "slivers_testing.h"
 
 #include "accel/wide/wide.h"
 
@@ -23,11 +23,6 @@ static inline RtWide *make_wide(const RtScene *scene, int isa, const char *setti
     if (status == RT_OK) status = rt_accel_validate(accel, &error);
     if (status != RT_OK) fail_msg("%s: %s", spec, error.message);
     return (RtWide *)accel;
-}
-
-static inline void add_triangle(RtScene *scene, RtVec3 a, RtVec3 b, RtVec3 c) {
-    const RtVec3 v[3] = {a, b, c};
-    assert_ok(rt_scene_add_triangle(scene, 0, v, NULL, error));
 }
 
 #endif

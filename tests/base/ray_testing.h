@@ -9,27 +9,33 @@
 
 #include <string.h>
 
+/* How large coordinates may be: as a rule RT_MAX_COORDINATE; or so little that thickness, too, is denormal.
+ */
+static inline float hostile_size(RtRandom *random) {
+    return rt_random_below(random, 4) ? RT_MAX_COORDINATE : 0x1p-128f;
+}
+
 static inline float hostile_number(RtRandom *random, float most) {
     static const float numbers[] = {0,        -0.0f,     0x1p-149f, -0x1p-149f, 0x1p-126f,     -0x1.8p-130f,
                                     0x1p-70f, -0x1p-70f, 1,         -1,         0x1.000002p0f, 0x1.fffffep-1f,
                                     0x1p24f,  -0x1p24f,  0x1p59f,   -0x1p59f};
     enum { NUMBERS = sizeof numbers / sizeof numbers[0] };
     uint32_t pick = rt_random_below(random, NUMBERS + 16);
-    if (pick >= NUMBERS + 2) return rt_random_between(random, -1, 1);
+    if (pick >= NUMBERS + 2) return rt_minf(most, 1) * rt_random_between(random, -1, 1);
     float number = pick < NUMBERS ? numbers[pick] : pick == NUMBERS ? most : -most;
     return fabsf(number) <= most ? number : most;
 }
 
-static inline RtVec3 hostile_point(RtRandom *random) {
+static inline RtVec3 hostile_point(RtRandom *random, float size) {
     RtVec3 p;
-    for (int a = 0; a < 3; a++) p.at[a] = hostile_number(random, RT_MAX_COORDINATE);
+    for (int a = 0; a < 3; a++) p.at[a] = hostile_number(random, size);
     return p;
 }
 
-static inline RtRay hostile_ray(RtRandom *random) {
+static inline RtRay hostile_ray(RtRandom *random, float size) {
     RtRay ray = {.tmax = INFINITY};
     do {
-        ray.org = hostile_point(random);
+        ray.org = hostile_point(random, size);
         for (int a = 0; a < 3; a++) ray.dir.at[a] = hostile_number(random, FLT_MAX);
         ray.tmin = rt_random_below(random, 4) ? 0 : fabsf(hostile_number(random, 1));
         ray.tmax = rt_random_below(random, 4) ? INFINITY : ray.tmin + fabsf(hostile_number(random, FLT_MAX));
@@ -37,9 +43,9 @@ static inline RtRay hostile_ray(RtRandom *random) {
     return ray;
 }
 
-static inline RtBox hostile_box(RtRandom *random) {
-    RtBox box = rt_box_add_point(RT_EMPTY_BOX, hostile_point(random));
-    return rt_random_below(random, 4) ? rt_box_add_point(box, hostile_point(random)) : box;
+static inline RtBox hostile_box(RtRandom *random, float size) {
+    RtBox box = rt_box_add_point(RT_EMPTY_BOX, hostile_point(random, size));
+    return rt_random_below(random, 4) ? rt_box_add_point(box, hostile_point(random, size)) : box;
 }
 
 /* The same bits, or both no number. */

@@ -10,8 +10,9 @@ enum { TRIES = 200000 };
 RT_TEST(a_ray_is_prepared_as_number_by_number) {
     RtRandom random = rt_random(1, 7);
     for (int i = 0; i < TRIES; i++) {
-        RtRay ray = hostile_ray(&random);
-        RtBox box = i % 64 ? hostile_box(&random) : RT_EMPTY_BOX;
+        float size = hostile_size(&random);
+        RtRay ray = hostile_ray(&random, size);
+        RtBox box = i % 64 ? hostile_box(&random, size) : RT_EMPTY_BOX;
         RtPreparedRay p = rt_ray_prepare(&ray, &box);
         assert_memory_equal(&p.org, &ray.org, sizeof p.org);
         assert_memory_equal(&p.dir, &ray.dir, sizeof p.dir);
@@ -37,8 +38,9 @@ RT_TEST(the_span_within_an_own_box_is_as_number_by_number) {
     RtRandom random = rt_random(2, 7);
     int met = 0;
     for (int i = 0; i < TRIES; i++) {
-        RtRay ray = hostile_ray(&random);
-        RtBox box = hostile_box(&random);
+        float size = hostile_size(&random);
+        RtRay ray = hostile_ray(&random, size);
+        RtBox box = hostile_box(&random, size);
         RtPreparedRay p = rt_ray_prepare(&ray, &box);
         float near, far, near_by_hand, far_by_hand;
         rt_box_own_span(&box, &p, &near, &far);
@@ -54,8 +56,9 @@ RT_TEST(the_span_within_an_own_box_is_as_number_by_number) {
 RT_TEST(a_ray_is_no_longer_in_an_own_box_than_in_one_around_it) {
     RtRandom random = rt_random(3, 7);
     for (int i = 0; i < TRIES; i++) {
-        RtRay ray = hostile_ray(&random);
-        RtBox own = hostile_box(&random), around = rt_box_union(own, hostile_box(&random));
+        float size = hostile_size(&random);
+        RtRay ray = hostile_ray(&random, size);
+        RtBox own = hostile_box(&random, size), around = rt_box_union(own, hostile_box(&random, size));
         RtPreparedRay p = rt_ray_prepare(&ray, &around);
         float near = -INFINITY, far = INFINITY, own_near, own_far;
         rt_box_cut(&around, &p, &near, &far);

@@ -41,11 +41,12 @@ static bool hit_by_hand(const RtTriangle *triangle, const RtRay *ray, float *t) 
     return at >= ray->tmin && at <= ray->tmax && at <= FLT_MAX;
 }
 
-/* In a third of all cases within a unit of the origin; without area in some. */
-static RtTriangle make_triangle(RtRandom *random) {
+/* In a third of all cases all vertices are near to each other, or to 0; without area in some. */
+static RtTriangle make_triangle(RtRandom *random, float size) {
     RtTriangle triangle;
     bool near = rt_random_below(random, 3) == 0;
-    for (int i = 0; i < 3; i++) triangle.v[i] = near ? rt_random_point(random, 1) : hostile_point(random);
+    for (int i = 0; i < 3; i++)
+        triangle.v[i] = near ? rt_random_point(random, rt_minf(size, 1)) : hostile_point(random, size);
     switch (rt_random_below(random, 8)) {
     case 0: triangle.v[2] = triangle.v[1]; break;
     case 1: triangle.v[2] = rt_scale(rt_add(triangle.v[0], triangle.v[1]), 0.5f); break;
@@ -56,8 +57,8 @@ static RtTriangle make_triangle(RtRandom *random) {
 }
 
 /* As it comes, or aimed at a point of an edge, or at a vertex. */
-static RtRay make_ray_at(RtRandom *random, const RtTriangle *triangle) {
-    RtRay ray = hostile_ray(random), aimed = ray;
+static RtRay make_ray_at(RtRandom *random, const RtTriangle *triangle, float size) {
+    RtRay ray = hostile_ray(random, size), aimed = ray;
     uint32_t pick = rt_random_below(random, 4);
     if (pick == 0) return ray;
     float u = pick == 1 ? 1 : rt_random_unit(random), w = pick == 3 ? (1 - u) * rt_random_unit(random) : 0;
@@ -72,8 +73,9 @@ RT_TEST(triangles_are_hit_as_number_by_number_wherever_they_lie) {
     RtRandom random = rt_random(1, 8);
     int hits = 0;
     for (int i = 0; i < TRIES; i++) {
-        RtTriangle triangle = make_triangle(&random);
-        RtRay ray = make_ray_at(&random, &triangle);
+        float size = hostile_size(&random);
+        RtTriangle triangle = make_triangle(&random, size);
+        RtRay ray = make_ray_at(&random, &triangle, size);
         RtBox box = rt_triangle_box(&triangle);
         RtPreparedRay p = rt_ray_prepare(&ray, &box);
         float block[3][3][LANES], t = -1, strided = -1, by_hand = -1;
