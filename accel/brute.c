@@ -27,7 +27,8 @@ RT_DEFINE_KERNELS(Brute, search)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     uint32_t count = accel->scene->geometry.object_count;
-    *out = (RtDescription){.references = count, .predicted_cost = count, .predicted_tests = count};
+    *out = (RtDescription){
+        .references = count, .predicted_cost = count, .predicted_tests = count, RT_NO_QUALITY};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
