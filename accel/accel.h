@@ -48,6 +48,13 @@ typedef struct RtAccel {
     X(predicted_tests, "expected object tests")                                                              \
     X(predicted_steps, "expected steps")
 
+/* What hierarchies of boxes are like beside that (Aila, Karras & Laine 2013; accel/tree/quality.c). NaN
+ * elsewhere. They are in JSON only: tables of counts are those of predictions. Each of X(name, meaning). */
+#define RT_QUALITIES(X)                                                                                      \
+    X(end_point_overlap, "expected cost, at a point of the surface, of nodes that contain it but not its "   \
+                         "object; triangles only")                                                           \
+    X(leaf_count_variability, "standard deviation of the leaves that a random line meets")
+
 /* What a structure looks like. Zero where a figure does not apply. */
 typedef struct RtDescription {
     uint64_t interior;     /* inner nodes */
@@ -59,11 +66,13 @@ typedef struct RtDescription {
     RtTally build;         /* the build_tally. Set by rt_accel_describe */
 #define RT_PREDICTION_FIELD(name, meaning) double name;
     RT_PREDICTIONS(RT_PREDICTION_FIELD)
+    RT_QUALITIES(RT_PREDICTION_FIELD)
 #undef RT_PREDICTION_FIELD
 } RtDescription;
 
-/* Initialises the predictions of an RtDescription as unknown. */
-#define RT_NO_PREDICTION .predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN
+/* Initialise the qualities of an RtDescription, or the predictions too, as unknown. */
+#define RT_NO_QUALITY    .end_point_overlap = NAN, .leaf_count_variability = NAN
+#define RT_NO_PREDICTION .predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN, RT_NO_QUALITY
 
 /* The limit of rt_accel_build. */
 #define RT_ACCEL_MAX_BYTES (UINT64_C(4) << 30)

@@ -75,6 +75,7 @@ void rt_accel_describe(const RtAccel *accel, RtDescription *out) {
         if (own.depth > out->depth) out->depth = own.depth;
 #define COPY_PREDICTION(name, meaning) out->name = own.name;
         RT_PREDICTIONS(COPY_PREDICTION)
+        RT_QUALITIES(COPY_PREDICTION)
 #undef COPY_PREDICTION
     }
 }

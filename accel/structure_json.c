@@ -13,10 +13,11 @@ typedef RtDescription Row;
 #define GETTER(name, meaning) RT_TABLE_GETTER(name, #name, real9, "", meaning, r->name)
 STRUCTURE(RT_TABLE_GETTER)
 RT_PREDICTIONS(GETTER)
+RT_QUALITIES(GETTER)
 
 #define COLUMN(name, meaning) RT_TABLE_COLUMN(name, #name, real9, "", meaning, r->name)
-const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS] = {STRUCTURE(RT_TABLE_COLUMN)
-                                                                      RT_PREDICTIONS(COLUMN)};
+const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS] = {
+    STRUCTURE(RT_TABLE_COLUMN) RT_PREDICTIONS(COLUMN) RT_QUALITIES(COLUMN)};
 
 static const void *build_of(const void *row) {
     return &((const Row *)row)->build;

@@ -6,9 +6,15 @@
 #include "accel/accel.h"
 #include "base/table.h"
 
-/* Of an RtDescription: what it says but for its bytes, the predictions last. */
+/* Of an RtDescription: what it says but for its bytes, the predictions after RT_SHAPE_COLUMNS, the qualities
+ * last. */
 #define RT_PLUS_ONE(name, meaning) +1
-enum { RT_PREDICTION_COUNT = 0 RT_PREDICTIONS(RT_PLUS_ONE), RT_STRUCTURE_COLUMNS = 5 + RT_PREDICTION_COUNT };
+enum {
+    RT_SHAPE_COLUMNS = 5,
+    RT_PREDICTION_COUNT = 0 RT_PREDICTIONS(RT_PLUS_ONE),
+    RT_QUALITY_COUNT = 0 RT_QUALITIES(RT_PLUS_ONE),
+    RT_STRUCTURE_COLUMNS = RT_SHAPE_COLUMNS + RT_PREDICTION_COUNT + RT_QUALITY_COUNT
+};
 #undef RT_PLUS_ONE
 extern const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS];
 

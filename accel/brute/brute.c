@@ -56,7 +56,8 @@ static size_t scratch_bytes(const RtAccel *accel) {
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     uint32_t count = accel->scene->geometry.object_count;
-    *out = (RtDescription){.references = count, .predicted_cost = count, .predicted_tests = count};
+    *out = (RtDescription){
+        .references = count, .predicted_cost = count, .predicted_tests = count, RT_NO_QUALITY};
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

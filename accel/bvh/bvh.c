@@ -175,7 +175,7 @@ static size_t scratch_bytes(const RtAccel *accel) {
 /* ---- looking at it ---- */
 
 static void describe(const RtAccel *accel, RtDescription *out) {
-    rt_hierarchy_describe(&((const RtBvh *)accel)->hierarchy, out);
+    rt_hierarchy_describe(&((const RtBvh *)accel)->hierarchy, &accel->scene->geometry, out);
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {

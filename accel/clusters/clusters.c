@@ -192,7 +192,7 @@ RT_DEFINE_KERNELS(RtClusters, search)
 
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtClusters *self = (const RtClusters *)accel;
-    rt_hierarchy_describe(&self->hierarchy, out);
+    rt_hierarchy_describe(&self->hierarchy, &accel->scene->geometry, out);
     out->bytes += rt_extent_set_bytes(&self->set);
 }
 

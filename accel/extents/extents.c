@@ -81,8 +81,10 @@ static void describe(const RtAccel *accel, RtDescription *out) {
     for (uint32_t id = 0; id < count; id++) {
         sum += rt_extent_half_area(&self->set, id, &accel->scene->geometry.boxes[id]);
     }
-    *out = (RtDescription){
-        .references = count, .bytes = rt_extent_set_bytes(&self->set), .predicted_steps = count};
+    *out = (RtDescription){.references = count,
+                           .bytes = rt_extent_set_bytes(&self->set),
+                           .predicted_steps = count,
+                           RT_NO_QUALITY};
     out->predicted_tests = count == 0 ? 0 : whole > 0 ? sum / whole : (double)NAN;
     out->predicted_cost = out->predicted_tests;
 }

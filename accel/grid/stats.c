@@ -62,7 +62,7 @@ void rt_grid_describe(const RtAccel *accel, RtDescription *out) {
         *out = (RtDescription){RT_NO_PREDICTION};
         return;
     }
-    *out = (RtDescription){.depth = grid->depth};
+    *out = (RtDescription){.depth = grid->depth, RT_NO_QUALITY};
     for (uint32_t i = 0; i < grid->depth; i++) {
         const RtGridLevel *level = &grid->levels[i];
         for (uint32_t v = 0; v < level->voxel_count; v++) {

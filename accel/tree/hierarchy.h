@@ -49,8 +49,13 @@ static inline uint32_t rt_node_fanout(const RtNode *node) {
 RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtError *error);
 void rt_hierarchy_clear(RtHierarchy *self);
 
-/* For RtAccelOps. The predictions are those of boxes. */
-void rt_hierarchy_describe(const RtHierarchy *self, RtDescription *out);
+/* For RtAccelOps. The predictions are those of boxes; the qualities, in object tests and leaves, are sampled
+ * (quality.c), in some 0.1 s where there are a million objects. */
+void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out);
+
+/* quality.c, for describe: sets the qualities. */
+void rt_hierarchy_measure(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out);
+
 void rt_hierarchy_each_box(const RtHierarchy *self, RtBoxViewer viewer);
 
 /* RT_OK, or RT_MISMATCH and the first broken invariant, told of `name`. */

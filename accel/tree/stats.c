@@ -26,13 +26,14 @@ static void add_node(Stats *stats, uint32_t index, uint32_t depth) {
     for (uint32_t i = 0; i < fanout && !leaf; i++) add_node(stats, node->first + i, depth + 1);
 }
 
-void rt_hierarchy_describe(const RtHierarchy *self, RtDescription *out) {
+void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out) {
     *out = (RtDescription){.bytes = self->node_count * sizeof(RtNode) + self->id_count * sizeof(uint32_t),
                            RT_NO_PREDICTION};
     if (self->node_count == 0) return;
     Stats stats = {self, out, 0, 0, 0};
     add_node(&stats, 0, 0);
     double area = rt_box_half_area(self->nodes[0].box);
+    rt_hierarchy_measure(self, geometry, out);
     if (!(area > 0)) return;
     out->predicted_tests = stats.tests / area;
     out->predicted_steps = (stats.inner + stats.leaves) / area;

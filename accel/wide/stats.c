@@ -84,11 +84,12 @@ static bool flatten(const RtWideTree *self, RtHierarchy *to) {
 
 /* ---- for the table of operations ---- */
 
-void rt_wide_describe(const RtWideTree *self, RtDescription *out) {
+/* The qualities are those of the plain hierarchy, whose leaves cost a test an object. */
+void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDescription *out) {
     RtHierarchy plain;
     *out = (RtDescription){.bytes = self->bytes, RT_NO_PREDICTION};
     if (self->node_count == 0 || !flatten(self, &plain)) return;
-    rt_hierarchy_describe(&plain, out);
+    rt_hierarchy_describe(&plain, geometry, out);
     rt_hierarchy_clear(&plain);
     out->bytes = self->bytes;
     out->predicted_cost = self->cost;

@@ -187,7 +187,7 @@ static size_t scratch_bytes(const RtAccel *accel) {
 /* Of two trees that for nearest hits, but for the bytes, which are of both. */
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtWide *self = (const RtWide *)accel;
-    rt_wide_describe(self->nearest, out);
+    rt_wide_describe(self->nearest, &accel->scene->geometry, out);
     out->bytes = self->trees[0].bytes + self->trees[1].bytes;
 }
 

@@ -111,7 +111,7 @@ RtStatus rt_wide_lay_out(RtWideTree *self, RtTree *tree, const RtGeometry *geome
 void rt_wide_clear(RtWideTree *self);
 
 /* For RtAccelOps. */
-void rt_wide_describe(const RtWideTree *self, RtDescription *out);
+void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDescription *out);
 RtStatus rt_wide_validate(const RtWideTree *self, const RtGeometry *geometry, RtError *error);
 void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer);
 

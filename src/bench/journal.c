@@ -156,6 +156,7 @@ static void take_build(RtBuildResult *build, const json_t *object) {
                                    .bytes = get_integer(object, "bytes")};
 #define TAKE_PREDICTION(name, meaning) build->shape.name = get_number(object, #name);
     RT_PREDICTIONS(TAKE_PREDICTION)
+    RT_QUALITIES(TAKE_PREDICTION)
 #undef TAKE_PREDICTION
     take_tally(&build->shape.build, json_object_get(object, "build"));
 }

@@ -117,14 +117,12 @@ static const void *build_of(const void *row) {
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
-enum { SHAPE = RT_STRUCTURE_COLUMNS - RT_PREDICTION_COUNT };
-
 static const RtColumnGroup counts[] = {
     RT_FROM_TO(columns, scene, rays),
     {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},
-    {NULL, rt_structure_columns, SHAPE, structure_of},
+    {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of},
     RT_ONE(columns, bytes),
-    {NULL, rt_structure_columns + SHAPE, RT_PREDICTION_COUNT, structure_of},
+    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
 };
 
 static const RtColumnGroup times[] = {
@@ -132,7 +130,7 @@ static const RtColumnGroup times[] = {
     RT_FROM_TO(columns, threads, ratio_high),
     RT_FROM_TO(columns, build_seconds, bytes),
     RT_FROM_TO(columns, object_tests, differ),
-    {NULL, rt_structure_columns + SHAPE, RT_PREDICTION_COUNT, structure_of},
+    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
 };
 
 static const RtColumnGroup bench[] = {

@@ -84,7 +84,7 @@ RT_TEST(the_budget_is_kept_and_used) {
         const char *spec;
         uint64_t least, most;
     } rows[] = {{"bvh:build=spatial,max_leaf_size=1,budget=1", 2000, 2000},
-                {"bvh:build=spatial,max_leaf_size=1,budget=1.2", 2300, 2400},
+                {"bvh:build=spatial,max_leaf_size=1,budget=1.1", 2050, 2200},
                 {"bvh:build=spatial,max_leaf_size=1,budget=3", 2500, 6000}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         RtBvh *bvh = make_bvh(&scene, rows[i].spec);

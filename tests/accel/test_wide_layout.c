@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The layout of `wide`: one arena for any number of threads, the room that was foreseen, and blocks that are
+ * no emptier than they need be. */
+#include "accel_testing.h"
+#include "scene_testing.h"
+#include "tree_testing.h"
+
+#include "accel/wide/wide.h"
+
+static const RtWideLayout plain = {
+    .leaf_limit = 4, .block_cost = 1, .huge_pages = true, .threads = 1, .limit = UINT64_MAX};
+
+/* Nodes and leaves, from `ref` on, in bytes. */
+static uint64_t bytes_below(const RtWideTree *wide, RtWideRef ref) {
+    uint32_t blocks = (rt_wide_count(ref) + RT_WIDE_BLOCK - 1) / RT_WIDE_BLOCK;
+    if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) return blocks * sizeof(RtWideTriangles);
+    if (rt_wide_kind(ref) == RT_WIDE_OBJECTS) return sizeof(RtWideList);
+    const RtWideNode *node = rt_wide_node(wide, ref);
+    uint64_t sum = sizeof(RtWideNode);
+    for (uint32_t i = 0; i < node->count; i++) sum += bytes_below(wide, node->child[i]);
+    return sum;
+}
+
+/* Without gaps. */
+static RtWideTree lay_out(const RtScene *scene, RtTree *tree, const RtWideLayout *how) {
+    RtWideTree wide;
+    assert_ok(rt_wide_lay_out(&wide, tree, &scene->geometry, how, error));
+    assert_ok(rt_wide_validate(&wide, &scene->geometry, error));
+    assert_int_equal(bytes_below(&wide, 0), wide.bytes);
+    return wide;
+}
+
+/* Large enough for many subtrees to be placed by threads; memory is not as another layout left it. */
+static void assert_same_on_any_threads(const RtScene *scene, RtTree *tree, uint32_t leaf_limit) {
+    RtWideLayout how = plain;
+    how.leaf_limit = leaf_limit;
+    RtWideTree one = lay_out(scene, tree, &how);
+    for (how.threads = 2; how.threads <= 5; how.threads++) {
+        how.huge_pages = how.threads % 2 == 0;
+        RtWideTree other = lay_out(scene, tree, &how);
+        assert_int_equal(one.bytes, other.bytes);
+        assert_int_equal(one.node_count, other.node_count);
+        assert_true(one.cost == other.cost);
+        assert_memory_equal(one.arena, other.arena, one.bytes);
+        rt_wide_clear(&other);
+    }
+    rt_wide_clear(&one);
+    rt_tree_clear(tree);
+}
+
+RT_TEST(the_arena_is_the_same_byte_for_byte_on_any_number_of_threads) {
+    static const char *const scenes[] = {"random:n=20000,shape=triangle", "random:n=20000,shape=mixed"};
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
+        RtScene scene = open_scene(scenes[i]);
+        const RtGeometry *g = &scene.geometry;
+        RtSpatial how = {
+            .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 8, .traversal = 1, .limit = UINT64_MAX};
+        RtTree tree;
+        assert_ok(rt_tree_topdown(&tree, g->boxes, g->object_count, 16, 1, error));
+        assert_same_on_any_threads(&scene, &tree, 4);
+        assert_ok(rt_tree_ploc(&tree, g->boxes, g->object_count, 21, 25, 1, error));
+        assert_same_on_any_threads(&scene, &tree, 8);
+        assert_ok(rt_tree_spatial(&tree, g, &how, 1, error));
+        assert_true(tree.divided);
+        assert_same_on_any_threads(&scene, &tree, 8);
+        rt_scene_clear(&scene);
+    }
+}
+
+RT_TEST(a_leaf_is_next_to_its_node_or_another_leaf) {
+    RtScene scene = open_scene("random:n=5000,shape=mixed");
+    RtTree tree;
+    assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, scene.geometry.object_count, 16, 1, error));
+    RtWideTree wide = lay_out(&scene, &tree, &plain);
+    const RtWideNode *root = rt_wide_node(&wide, 0);
+    uint64_t end = sizeof(RtWideNode);
+    for (int leaves = 1; leaves >= 0; leaves--) {
+        for (uint32_t i = 0; i < root->count; i++) {
+            if ((rt_wide_kind(root->child[i]) != RT_WIDE_NODE) != leaves) continue;
+            assert_int_equal(rt_wide_place(root->child[i]), end);
+            end += bytes_below(&wide, root->child[i]);
+        }
+    }
+    assert_int_equal(end, wide.bytes);
+    rt_wide_clear(&wide);
+    rt_tree_clear(&tree);
+    rt_scene_clear(&scene);
+}
+
+/* Four triangles in a row, with gaps, share a block: halves of them have a little less area, and empty lanes.
+ */
+RT_TEST(a_block_is_filled_where_halves_have_hardly_less_area) {
+    RtScene scene;
+    RtTree tree;
+    begin_scene(&scene);
+    for (int i = 0; i < 16; i++) {
+        float x = 1.1f * (float)i;
+        const RtVec3 vertices[3] = {{x, 0, 0}, {x + 1, 0, 0}, {x, 1, 0}};
+        assert_ok(rt_scene_add_triangle(&scene, 0, vertices, NULL, error));
+    }
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, 16, 0, 1, error));
+    RtWideTree wide = lay_out(&scene, &tree, &plain);
+    assert_int_equal(wide.node_count, 1);
+    assert_int_equal(wide.bytes, sizeof(RtWideNode) + 4 * sizeof(RtWideTriangles));
+    assert_true(fabs(wide.cost - (1 + 4 * 4.3 / 17.5)) < 1e-5);
+    rt_wide_clear(&wide);
+    rt_tree_clear(&tree);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(one_object_is_a_leaf_below_a_root_and_what_takes_too_much_is_refused) {
+    RtScene scene = open_scene("random:n=1,shape=triangle");
+    RtTree tree;
+    RtWideLayout how = plain;
+    assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, 1, 16, 1, error));
+    RtWideTree wide = lay_out(&scene, &tree, &plain);
+    assert_int_equal(wide.node_count, 1);
+    assert_int_equal(wide.bytes, sizeof(RtWideNode) + sizeof(RtWideTriangles));
+    rt_wide_clear(&wide);
+    how.limit = sizeof(RtWideNode) + sizeof(RtWideTriangles) - 1;
+    RtError refusal;
+    assert_int_equal(rt_wide_lay_out(&wide, &tree, &scene.geometry, &how, &refusal), RT_BAD_INPUT);
+    assert_null(wide.arena);
+    assert_true(wide.bytes == 0);
+    rt_tree_clear(&tree);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(every_allocation_may_fail_and_leaves_nothing) {
+    RtScene scene = open_scene("random:n=3000,shape=triangle");
+    RtTree tree;
+    assert_ok(rt_tree_topdown(&tree, scene.geometry.boxes, scene.geometry.object_count, 16, 1, error));
+    int64_t live = rt_alloc_live();
+    RtStatus status = RT_NO_MEMORY;
+    for (uint64_t n = 1; status != RT_OK; n++) {
+        RtWideTree wide;
+        RtError problem;
+        rt_alloc_fail_at(n);
+        status = rt_wide_lay_out(&wide, &tree, &scene.geometry, &plain, &problem);
+        rt_alloc_fail_at(0);
+        assert_true(status == RT_OK ? n > 3 : status == RT_NO_MEMORY);
+        rt_wide_clear(&wide);
+        assert_int_equal(rt_alloc_live(), live);
+    }
+    rt_tree_clear(&tree);
+    rt_scene_clear(&scene);
+}
+
+RT_TESTS(wide_layout, NULL, NULL)
