@@ -378,10 +378,7 @@ static RtWideRef place_leaf(Placer *placer, uint32_t index, uint32_t *at) {
 }
 
 static void put_box(RtWideNode *node, uint32_t lane, RtBox box) {
-    for (int a = 0; a < 3; a++) {
-        node->plane[2 * a][lane] = box.lo.at[a];
-        node->plane[2 * a + 1][lane] = box.hi.at[a];
-    }
+    for (int p = 0; p < 6; p++) node->plane[p][lane] = (p % 2 ? box.hi : box.lo).at[p / 2];
 }
 
 static void place_node(Placer *placer, uint32_t at, uint32_t index);

@@ -49,12 +49,13 @@ static void assert_same_on_any_threads(const RtScene *scene, RtTree *tree, uint3
 }
 
 RT_TEST(the_arena_is_the_same_byte_for_byte_on_any_number_of_threads) {
-    static const char *const scenes[] = {"random:n=20000,shape=triangle", "random:n=20000,shape=mixed"};
+    static const char *const scenes[] = {"random:n=20000,shape=triangle,radius=3",
+                                         "random:n=20000,shape=mixed"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
         RtScene scene = open_scene(scenes[i]);
         const RtGeometry *g = &scene.geometry;
         RtSpatial how = {
-            .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 8, .traversal = 1, .limit = UINT64_MAX};
+            .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 1, .traversal = 1, .limit = UINT64_MAX};
         RtTree tree;
         assert_ok(rt_tree_topdown(&tree, g->boxes, g->object_count, 16, 1, error));
         assert_same_on_any_threads(&scene, &tree, 4);
