@@ -172,7 +172,7 @@ static RtWideRef place(const Layout *layout, uint32_t index) {
 }
 
 static void put_box(RtWideNode *node, uint32_t lane, RtBox box) {
-    for (int a = 0; a < 3; a++) {
+    for (size_t a = 0; a < 3; a++) {
         node->plane[2 * a][lane] = box.lo.at[a];
         node->plane[2 * a + 1][lane] = box.hi.at[a];
     }
