@@ -9,7 +9,7 @@
 
 static RtBox child_box(const RtWideNode *node, uint32_t lane) {
     RtBox box;
-    for (int a = 0; a < 3; a++) {
+    for (size_t a = 0; a < 3; a++) {
         box.lo.at[a] = node->plane[2 * a][lane];
         box.hi.at[a] = node->plane[2 * a + 1][lane];
     }
@@ -155,7 +155,7 @@ static RtStatus check_node(Check *check, RtWideRef ref, uint32_t depth) {
     if (node->count < (lone ? 1 : 2) || node->count > RT_WIDE)
         return rt_fail(check->error, RT_MISMATCH, "wide: node %u has %u children", ref, node->count);
     for (uint32_t i = node->count; i < RT_WIDE; i++) {
-        for (int a = 0; a < 3; a++) {
+        for (size_t a = 0; a < 3; a++) {
             if (node->plane[2 * a][i] == INFINITY && node->plane[2 * a + 1][i] == -INFINITY) continue;
             return rt_fail(check->error, RT_MISMATCH, "wide: lane %u of node %u has a box and no child", i,
                            ref);

@@ -12,7 +12,7 @@
 /* ---- bundles of rays ---- */
 
 /* Four packets, as long as what is tried before a way to trace is chosen. */
-enum { BUNDLE = 64, ROUNDS = 6 };
+enum { BUNDLE = 64, ROUNDS = 3 };
 
 /* What rays are aimed at: a scene, and the boxes that a structure has of it. */
 typedef struct Target {
@@ -209,12 +209,11 @@ typedef void Bundle(Target *target, RtRay *rays);
 static Bundle *const bundles[] = {from_outside, from_within,  over_the_whole, from_far_away, at_exact_points,
                                   parallel,     all_the_same, scattered,      to_a_light,    bounded,
                                   with_a_zero,  along_planes, odd_lengths};
-enum { BUNDLES = sizeof bundles / sizeof bundles[0], RAYS = BUNDLES * ROUNDS * BUNDLE };
+enum { BUNDLES = sizeof bundles / sizeof bundles[0], RAYS = BUNDLES * ROUNDS * BUNDLE, ALL = 2 * RAYS };
 
 /* Rays that are not valid, where a scene is tiny or huge, become one that is. */
 static void make_rays(Target *target, RtRay *rays, Bundle *only) {
-    for (int i = 0; i < BUNDLES * ROUNDS; i++)
-        (only ? only : bundles[i % BUNDLES])(target, rays + i * BUNDLE);
+    for (size_t i = 0; i < RAYS; i += BUNDLE) (only ? only : bundles[i / BUNDLE % BUNDLES])(target, rays + i);
     for (int i = 0; i < RAYS; i++) {
         if (!rt_ray_is_valid(&rays[i]))
             rays[i] = (RtRay){target->middle, 0, {{1, 1, 1}}, INFINITY, RT_RAY_RANDOM, 0};
@@ -225,10 +224,10 @@ static void make_rays(Target *target, RtRay *rays, Bundle *only) {
 
 typedef struct Bench {
     RtScene scene;
-    RtRay rays[2 * RAYS]; /* those of the second half begin and end where those of the first hit */
-    RtHit truth[2 * RAYS];
-    RtHit hits[2 * RAYS];
-    bool blocked[2 * RAYS];
+    RtRay rays[ALL]; /* those of the second half begin and end where those of the first hit */
+    RtHit truth[ALL];
+    RtHit hits[ALL];
+    bool blocked[ALL];
 } Bench;
 
 static void note_box(void *context, const RtBox *box, uint32_t depth) {
@@ -271,20 +270,20 @@ static void set_up(Bench *bench, uint64_t seed, Bundle *only) {
  * is tried before a way is chosen, or not at all. */
 static size_t length_of(int cut, size_t turn) {
     static const size_t lengths[] = {1, 2, 15, 16, 17, 63, 64, 65};
-    return cut == 0 ? lengths[turn % 8] : cut == 1 ? 16 : cut == 2 ? BUNDLE : 2 * RAYS;
+    return cut == 0 ? lengths[turn % 8] : cut == 1 ? 16 : cut == 2 ? BUNDLE : ALL;
 }
 
 static void trace_all(RtQuery *query, Bench *bench, int cut, RtTally *tallies) {
-    for (size_t i = 0, n, turn = 0; i < 2 * RAYS; i += n, turn++) {
+    for (size_t i = 0, n, turn = 0; i < ALL; i += n, turn++) {
         n = length_of(cut, turn);
-        if (n > 2 * RAYS - i) n = 2 * RAYS - i;
+        if (n > ALL - i) n = ALL - i;
         rt_nearest(query, bench->rays + i, n, bench->hits + i, tallies);
         rt_occluded(query, bench->rays + i, n, bench->blocked + i, tallies);
     }
 }
 
 static void compare(const Bench *bench, const char *what, int cut) {
-    for (size_t i = 0; i < 2 * RAYS; i++) {
+    for (size_t i = 0; i < ALL; i++) {
         const RtHit *right = &bench->truth[i], *got = &bench->hits[i];
         bool any = right->object != RT_NO_OBJECT;
         if (memcmp(right, got, sizeof *right) == 0 && bench->blocked[i] == any) continue;

@@ -17,7 +17,7 @@ typedef enum Lie { NO_LIE, T_IN_TIMED, ID_IN_COUNTED, BLOCKED_IN_STREAMS_OF_64, 
 
 typedef struct Liar {
     RtAccel base;
-    RtQuery truth;
+    RtQuery truth; /* asked with the scratch memory of whoever asks the liar */
     Lie lie;
 } Liar;
 
@@ -27,10 +27,8 @@ static RtAccelOps liar_ops;
 
 static void lie_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked, size_t count,
                         RtHit *hits) {
-    (void)scratch;
     const Liar *liar = (const Liar *)accel;
-    RtQuery query = liar->truth;
-    rt_nearest(&query, asked, count, hits, NULL);
+    liar->truth.accel->ops->nearest(liar->truth.accel, scratch, asked, count, hits);
     for (size_t i = 0; i < count; i++) {
         if (liar->lie == T_IN_TIMED && &asked[i] == &rays[1234]) hits[i].t = nextafterf(hits[i].t, 0);
         if (liar->lie == LOST_LAST_RAY && &asked[i] == &rays[LAST]) hits[i] = RT_MISS;
@@ -39,10 +37,9 @@ static void lie_nearest(const RtAccel *accel, const RtScratch *scratch, const Rt
 
 static void lie_nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked,
                                 size_t count, RtHit *hits, RtTally *tallies) {
-    (void)scratch, (void)tallies;
+    (void)tallies;
     const Liar *liar = (const Liar *)accel;
-    RtQuery query = liar->truth;
-    rt_nearest(&query, asked, count, hits, NULL);
+    liar->truth.accel->ops->nearest(liar->truth.accel, scratch, asked, count, hits);
     for (size_t i = 0; i < count; i++) {
         if (liar->lie == ID_IN_COUNTED && &asked[i] == &rays[77]) hits[i].object ^= 1;
     }
@@ -50,9 +47,8 @@ static void lie_nearest_counted(const RtAccel *accel, const RtScratch *scratch, 
 
 static void lie_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked, size_t count,
                          uint32_t *blockers) {
-    (void)scratch;
     const Liar *liar = (const Liar *)accel;
-    liar->truth.accel->ops->occluded(liar->truth.accel, liar->truth.scratch, asked, count, blockers);
+    liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, blockers);
     if (liar->lie == BLOCKED_IN_STREAMS_OF_64 && count == 64) {
         blockers[63] = blockers[63] == RT_NO_OBJECT ? 0 : RT_NO_OBJECT;
     }
@@ -60,9 +56,9 @@ static void lie_occluded(const RtAccel *accel, const RtScratch *scratch, const R
 
 static void lie_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked,
                                  size_t count, uint32_t *blockers, RtTally *tallies) {
-    (void)scratch, (void)tallies;
-    const RtQuery *truth = &((const Liar *)accel)->truth;
-    truth->accel->ops->occluded(truth->accel, truth->scratch, asked, count, blockers);
+    (void)tallies;
+    const Liar *liar = (const Liar *)accel;
+    liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, blockers);
 }
 
 typedef struct Stage {
