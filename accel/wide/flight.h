@@ -36,6 +36,9 @@ typedef struct Flight {
 /* Bytes from a plane of a node to the next, and from a coordinate of a block to the next. */
 enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(float) };
 
+/* Floats from a vertex of a triangle in a block to the next. */
+enum { VERTEX = 3 * RT_WIDE_BLOCK };
+
 /* Ready for the root. False where the ray is answered already: there is nothing, or the ray is too odd for
  * the boxes of divided objects, and was tested against all. */
 RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
@@ -180,8 +183,7 @@ RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, cons
         uint32_t i = (uint32_t)__builtin_ctz(mask), lane = i % RT_WIDE_BLOCK;
         const RtWideTriangles *block = &blocks[i / RT_WIDE_BLOCK];
         float t;
-        if (!rt_triangle_hit_strided(&block->v[0][0][lane], 3 * RT_WIDE_BLOCK, RT_WIDE_BLOCK, ray, &t))
-            continue;
+        if (!rt_triangle_hit_strided(&block->v[0][0][lane], VERTEX, RT_WIDE_BLOCK, ray, &t)) continue;
         RT_COUNT(tally, object_hits, 1);
         if (rt_hit_before(t, block->id[lane], *best)) *best = (RtHit){t, block->id[lane]};
         if (any) return true;

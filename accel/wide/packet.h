@@ -21,16 +21,16 @@ enum { MOST_PAIRS = PACKET * RT_WIDE_MAX_LEAF + PACKET };
 
 /* A ray and a triangle each. */
 typedef struct Pairs {
-    uint32_t count;
     _Alignas(RT_CACHE_LINE) uint32_t ray[MOST_PAIRS];
-    const float
-        *triangle[MOST_PAIRS]; /* the first coordinate of the first vertex; the others as in a block */
+    const float *triangle[MOST_PAIRS]; /* its first coordinate; the others as in a block */
+    uint32_t count;
 } Pairs;
 
 typedef struct Packet {
     _Alignas(RT_CACHE_LINE) float org[3][PACKET];
     float dir[3][PACKET], inv[3][PACKET], org_near[3][PACKET], org_far[3][PACKET];
     float tmin[PACKET], tmax[PACKET], limit[PACKET], shear_x[PACKET], shear_y[PACKET];
+    Pairs pairs;
     bool negative[3];
     uint32_t kx, ky, kz;
     uint32_t near[3], far[3]; /* as of a flight */
@@ -40,7 +40,6 @@ typedef struct Packet {
     RtHit best[PACKET];
     uint32_t prepared; /* bit i: ray[i] is */
     RtPreparedRay ray[PACKET];
-    Pairs pairs;
     uint32_t visits; /* of nodes and leaves, in visits of a ray alone */
     float enter[RT_WIDE_STACK];
     RtWideRef waiting[RT_WIDE_STACK], parent[RT_WIDE_STACK]; /* a child, and its parent plus its lane */
@@ -314,7 +313,7 @@ RT_KERNEL void test_pairs(Packet *p, const RtGeometry *g, const RtRay *rays, boo
             uint32_t i = k + (uint32_t)__builtin_ctz(some), ray = pairs->ray[i], id;
             const float *triangle = pairs->triangle[i];
             memcpy(&id, triangle + place_of(3, 0), sizeof id);
-            if (left < WORTH_A_BATCH && !rt_triangle_hit_strided(triangle, 3 * RT_WIDE_BLOCK, RT_WIDE_BLOCK,
+            if (left < WORTH_A_BATCH && !rt_triangle_hit_strided(triangle, VERTEX, RT_WIDE_BLOCK,
                                                                  prepared(p, ray, g, rays, room), &t[i - k]))
                 continue;
             if (rt_hit_before(t[i - k], id, p->best[ray])) p->best[ray] = (RtHit){t[i - k], id};
