@@ -39,6 +39,31 @@ enum { PLANE = RT_WIDE * sizeof(float), COORDINATE = RT_WIDE_BLOCK * sizeof(floa
 /* Floats from a vertex of a triangle in a block to the next. */
 enum { VERTEX = 3 * RT_WIDE_BLOCK };
 
+/* Objects that are tested one by one, in functions of their own: what stands in each of the many loops here
+ * takes long to compile. */
+static __attribute__((noinline)) bool object_timed(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray,
+                                                   bool any, RtHit *best) {
+    return rt_test_object(g, id, ray, any, best, NULL);
+}
+
+static __attribute__((noinline)) bool object_counted(const RtGeometry *g, uint32_t id,
+                                                     const RtPreparedRay *ray, bool any, RtHit *best,
+                                                     RtTally *tally) {
+    return rt_test_object(g, id, ray, any, best, tally);
+}
+
+RT_KERNEL bool test_object(const RtGeometry *g, uint32_t id, const RtPreparedRay *ray, bool any, RtHit *best,
+                           RtTally *tally) {
+    return tally ? object_counted(g, id, ray, any, best, tally) : object_timed(g, id, ray, any, best);
+}
+
+RT_KERNEL void test_all(const RtGeometry *g, const RtPreparedRay *ray, bool any, RtHit *best,
+                        RtTally *tally) {
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        if (test_object(g, id, ray, any, best, tally)) return;
+    }
+}
+
 /* Ready for the root. False where the ray is answered already: there is nothing, or the ray is too odd for
  * the boxes of divided objects, and was tested against all. */
 RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, const RtScratch *scratch,
@@ -51,7 +76,7 @@ RT_KERNEL bool take_off(Flight *f, const RtWideTree *tree, const RtGeometry *g, 
     if (tree->node_count == 0) return false;
     if (tree->divided) {
         if (!rt_surface_is_near(&f->ray)) {
-            rt_test_all(g, &f->ray, any, &f->best, tally);
+            test_all(g, &f->ray, any, &f->best, tally);
             return false;
         }
         rt_surface_thicken(&f->ray, &g->box);
@@ -196,7 +221,7 @@ RT_KERNEL bool test_objects(const RtWideTree *tree, const RtGeometry *g, RtWideR
                             const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     const RtWideList *list = rt_wide_leaf_at(tree, ref);
     for (uint32_t i = 0; i < rt_wide_count(ref); i++) {
-        if (rt_test_object(g, list->id[i], ray, any, best, tally)) return true;
+        if (test_object(g, list->id[i], ray, any, best, tally)) return true;
     }
     return false;
 }
