@@ -460,7 +460,7 @@ static RtStatus refuse(uint64_t bytes, uint64_t limit, RtError *error) {
 static RtStatus lay_out(Layout *layout, RtTree *tree, RtError *error) {
     RtWideTree *self = layout->self;
     const RtWideLayout *how = layout->how;
-    Weight whole;
+    Weight whole = {0};
     RT_TRY(weigh_all(layout, &whole, error));
     if (whole.too_deep) {
         RT_TRY(rt_tree_limit_depth(tree, error));
