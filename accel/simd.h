@@ -73,7 +73,6 @@ static inline __m256i rt_v8_take(RtV8Order order, __m256i a) {
 
 #if defined(__AVX512F__)
 typedef __m512 RtV16;
-#define RT_V16(op, ...) _mm512_##op##_ps(__VA_ARGS__)
 static inline RtV16 rt_v16_all(float a) {
     return _mm512_set1_ps(a);
 }

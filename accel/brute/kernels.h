@@ -53,13 +53,9 @@ typedef struct Desk {
 
 /* Four floats of each of four objects, which are `size` floats apart, to lanes of four rows. */
 RT_KERNEL void transpose(float row[][LANES], size_t lane, const float *from, size_t size) {
-    RtFour a = rt_four(from), b = rt_four(from + size);
-    RtFour c = rt_four(from + 2 * size), d = rt_four(from + 3 * size);
-    RtFour ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-    RtFour ef = __builtin_shufflevector(a, b, 2, 6, 3, 7), gh = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-    RtFour columns[4] = {
-        __builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
-        __builtin_shufflevector(ef, gh, 0, 1, 4, 5), __builtin_shufflevector(ef, gh, 2, 3, 6, 7)};
+    RtFour columns[4];
+    for (size_t i = 0; i < 4; i++) columns[i] = rt_four(from + i * size);
+    rt_four_transpose(columns);
     for (size_t i = 0; i < 4; i++) memcpy(&row[i][lane], &columns[i], sizeof columns[i]);
 }
 

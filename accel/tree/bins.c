@@ -3,7 +3,7 @@
 
 void rt_bins_init(RtBins *self, uint32_t count, RtBox4 centers) {
     self->lo = centers.lo;
-    self->last = rt_float4((float)(count - 1));
+    self->last = rt_four_all((float)(count - 1));
     for (int axis = 0; axis < 3; axis++) {
         float lo = centers.lo[axis], hi = centers.hi[axis], scale = (float)count / (hi - lo);
         self->scale[axis] = hi > lo && isfinite(scale) ? scale : 0;
@@ -21,12 +21,12 @@ void rt_bins_merge(RtBins *self, const RtBins *other) {
 }
 
 void rt_bins_add(RtBins *self, const RtTreeRef *refs, uint32_t count) {
-    RtFloat4 lo = self->lo, scale = self->scale, last = self->last;
+    RtFour lo = self->lo, scale = self->scale, last = self->last;
     for (uint32_t i = 0; i < count; i++) {
         RtBox4 box = rt_box4_load(&refs[i].box);
         /* Of infinity times 0 the maximum is 0. */
-        RtFloat4 at = rt_max4((rt_box4_center(box) - lo) * scale, rt_float4(0));
-        RtInt4 bin = rt_truncate4(rt_min4(at, last));
+        RtFour at = rt_four_max((rt_box4_center(box) - lo) * scale, rt_four_all(0));
+        RtFourBits bin = rt_four_truncate(rt_four_min(at, last));
         for (int axis = 0; axis < 3; axis++) rt_bin_add(&self->bins[axis][bin[axis]], box, 1);
     }
 }

@@ -11,8 +11,8 @@ typedef struct Slab {
 /* Slab i lies between planes i and i + 1. */
 typedef struct Slabs {
     int count;
-    RtFloat4 lo, scale, last; /* slab of x, nearly: (x - lo) * scale, at most `last` */
-    bool divides[3];          /* else the planes of the axis coincide */
+    RtFour lo, scale, last; /* slab of x, nearly: (x - lo) * scale, at most `last` */
+    bool divides[3];        /* else the planes of the axis coincide */
     float plane[3][RT_MAX_BINS + 1];
     Slab slabs[3][RT_MAX_BINS];
 } Slabs;
@@ -27,8 +27,8 @@ bool rt_ref_part(const RtSlabGroup *group, const RtTreeRef *ref, int axis, float
 static void init(Slabs *self, int count, RtBox4 box) {
     self->count = count;
     self->lo = box.lo;
-    self->scale = rt_float4(0);
-    self->last = rt_float4((float)(count - 1));
+    self->scale = rt_four_all(0);
+    self->last = rt_four_all((float)(count - 1));
     for (int axis = 0; axis < 3; axis++) {
         double lo = (double)box.lo[axis], width = (double)box.hi[axis] - lo;
         self->divides[axis] = (float)(lo + width / count) > box.lo[axis];
@@ -40,9 +40,9 @@ static void init(Slabs *self, int count, RtBox4 box) {
     self->lo[3] = 0;
 }
 
-static RtInt4 slabs_of(const Slabs *self, RtFloat4 point) {
-    RtFloat4 at = rt_max4((point - self->lo) * self->scale, rt_float4(0));
-    return rt_truncate4(rt_min4(at, self->last));
+static RtFourBits slabs_of(const Slabs *self, RtFour point) {
+    RtFour at = rt_four_max((point - self->lo) * self->scale, rt_four_all(0));
+    return rt_four_truncate(rt_four_min(at, self->last));
 }
 
 /* What begins on a plane is in the slab above, what ends there is in that below. */
@@ -63,7 +63,7 @@ static int last_slab(const Slabs *self, int axis, int guess, float x, int first)
 /* ---- chopping ---- */
 
 static bool is_empty(RtBox4 box) {
-    return (rt_at_least4(box.hi, box.lo) & 7) != 7;
+    return (rt_four_at_least(box.hi, box.lo) & 7) != 7;
 }
 
 /* To parts[first..last] what of a triangle is in each slab: its corners there, and where its edges meet the
@@ -71,22 +71,22 @@ static bool is_empty(RtBox4 box) {
 static void chop_triangle(const Slabs *self, int axis, const RtTriangle *triangle, int first, int last,
                           RtBox4 *parts) {
     const float *plane = self->plane[axis];
-    RtFloat4 v[3];
+    RtFour v[3];
     for (int i = first; i <= last; i++) parts[i] = rt_box4_empty();
     for (int k = 0; k < 3; k++) {
-        v[k] = (RtFloat4){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
+        v[k] = (RtFour){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
         float x = triangle->v[k].at[axis];
         int at = first;
         while (at < last && x >= plane[at + 1]) at++;
         parts[at] = rt_box4_add_point(parts[at], v[k]);
     }
     for (int k = 0; k < 3; k++) {
-        RtFloat4 from = v[k], along = v[(k + 1) % 3] - from;
+        RtFour from = v[k], along = v[(k + 1) % 3] - from;
         float a = triangle->v[k].at[axis], b = triangle->v[(k + 1) % 3].at[axis];
         float low = rt_minf(a, b), high = rt_maxf(a, b), inverse = 1 / (b - a);
         for (int i = first + 1; i <= last; i++) {
             if (!(low < plane[i] && plane[i] <= high)) continue;
-            RtFloat4 point = from + along * rt_float4((plane[i] - a) * inverse);
+            RtFour point = from + along * rt_four_all((plane[i] - a) * inverse);
             parts[i - 1] = rt_box4_add_point(parts[i - 1], point);
             parts[i] = rt_box4_add_point(parts[i], point);
         }
@@ -112,7 +112,7 @@ static void chop(Slabs *self, const RtSlabGroup *group, const RtTreeRef *ref, in
     else
         chop_other(self, group, ref, axis, first, last, parts);
     for (int i = first; i <= last; i++) {
-        RtBox4 part = {rt_max4(parts[i].lo, box.lo), rt_min4(parts[i].hi, box.hi)};
+        RtBox4 part = {rt_four_max(parts[i].lo, box.lo), rt_four_min(parts[i].hi, box.hi)};
         if (is_empty(part)) continue;
         slabs[i].box = rt_box4_union(slabs[i].box, part);
         begin = i < begin ? i : begin;
@@ -128,7 +128,7 @@ static void add(Slabs *self, const RtSlabGroup *group) {
     for (uint32_t i = 0; i < group->count; i++) {
         const RtTreeRef *ref = &group->refs[i];
         RtBox4 box = rt_box4_load(&ref->box);
-        RtInt4 from = slabs_of(self, box.lo), to = slabs_of(self, box.hi);
+        RtFourBits from = slabs_of(self, box.lo), to = slabs_of(self, box.hi);
         for (int axis = 0; axis < 3; axis++) {
             if (!self->divides[axis]) continue;
             int first = first_slab(self, axis, from[axis], ref->box.lo.at[axis]);

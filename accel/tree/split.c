@@ -42,7 +42,7 @@ uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins, RtBox4 cente
     centers_of[0] = centers_of[1] = rt_box4_empty();
     for (uint32_t i = 0; i < count; i++) {
         /* refs[left..i) are right: the first of them and this change places, whichever side this is on. */
-        RtFloat4 center = rt_box4_center(rt_box4_load(&refs[i].box));
+        RtFour center = rt_box4_center(rt_box4_load(&refs[i].box));
         RtTreeRef ref = refs[i];
         uint32_t right = rt_side_of(&side, center);
         centers_of[right] = rt_box4_add_point(centers_of[right], center);

@@ -115,7 +115,7 @@ static RtStatus part_chunk(void *context, size_t item, int thread, RtError *erro
     if (!(top->splits[chunk->group].cost < INFINITY)) return RT_OK;
     chunk->centers[0] = chunk->centers[1] = rt_box4_empty();
     for (uint32_t i = 0; i < chunk->count; i++) {
-        RtFloat4 center = rt_box4_center(rt_box4_load(&from[i].box));
+        RtFour center = rt_box4_center(rt_box4_load(&from[i].box));
         uint32_t s = rt_side_of(&side, center);
         chunk->centers[s] = rt_box4_add_point(chunk->centers[s], center);
         into[to[s]++] = from[i];

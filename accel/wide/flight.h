@@ -57,11 +57,22 @@ RT_KERNEL bool test_object(const RtGeometry *g, uint32_t id, const RtPreparedRay
     return tally ? object_counted(g, id, ray, any, best, tally) : object_timed(g, id, ray, any, best);
 }
 
+static __attribute__((noinline)) void all_timed(const RtGeometry *g, const RtPreparedRay *ray, bool any,
+                                                RtHit *best) {
+    rt_test_all(g, ray, any, best, NULL);
+}
+
+static __attribute__((noinline)) void all_counted(const RtGeometry *g, const RtPreparedRay *ray, bool any,
+                                                  RtHit *best, RtTally *tally) {
+    rt_test_all(g, ray, any, best, tally);
+}
+
 RT_KERNEL void test_all(const RtGeometry *g, const RtPreparedRay *ray, bool any, RtHit *best,
                         RtTally *tally) {
-    for (uint32_t id = 0; id < g->object_count; id++) {
-        if (test_object(g, id, ray, any, best, tally)) return;
-    }
+    if (tally)
+        all_counted(g, ray, any, best, tally);
+    else
+        all_timed(g, ray, any, best);
 }
 
 /* Ready for the root. False where the ray is answered already: there is nothing, or the ray is too odd for

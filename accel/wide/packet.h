@@ -60,24 +60,16 @@ RT_KERNEL bool same_signs(const RtRay *a, const RtRay *b) {
     return same;
 }
 
-RT_KERNEL void transpose(__m128 *a, __m128 *b, __m128 *c, __m128 *d) {
-    __m128 ab = _mm_unpacklo_ps(*a, *b), cd = _mm_unpacklo_ps(*c, *d);
-    __m128 high_ab = _mm_unpackhi_ps(*a, *b), high_cd = _mm_unpackhi_ps(*c, *d);
-    *a = _mm_movelh_ps(ab, cd), *b = _mm_movehl_ps(cd, ab);
-    *c = _mm_movelh_ps(high_ab, high_cd), *d = _mm_movehl_ps(high_cd, high_ab);
-}
-
 /* Four fields that follow each other in rays[0..16), field by field. */
 RT_KERNEL void put_fields(const RtRay *rays, size_t offset, float *a, float *b, float *c, float *d) {
     for (int i = 0; i < PACKET; i += 4) {
-        __m128 row[4];
-        for (int k = 0; k < 4; k++)
-            row[k] = _mm_loadu_ps((const float *)(const void *)((const char *)&rays[i + k] + offset));
-        transpose(&row[0], &row[1], &row[2], &row[3]);
-        _mm_store_ps(a + i, row[0]);
-        _mm_store_ps(b + i, row[1]);
-        _mm_store_ps(c + i, row[2]);
-        _mm_store_ps(d + i, row[3]);
+        RtFour row[4];
+        for (int k = 0; k < 4; k++) row[k] = rt_four((const char *)&rays[i + k] + offset);
+        rt_four_transpose(row);
+        memcpy(a + i, &row[0], sizeof row[0]);
+        memcpy(b + i, &row[1], sizeof row[1]);
+        memcpy(c + i, &row[2], sizeof row[2]);
+        memcpy(d + i, &row[3], sizeof row[3]);
     }
 }
 
@@ -88,8 +80,8 @@ RT_KERNEL bool major_axis(Packet *p) {
     uint32_t not_z = rt_v16_at_most(z, x) | rt_v16_at_most(z, y),
              not_y = rt_v16_at_most(y, x) | (~not_z & EVERY);
     p->kz = not_z == 0 ? 2 : not_y == 0 ? 1 : 0;
-    p->kx = 9u >> 2 * p->kz & 3;
-    p->ky = 9u >> 2 * p->kx & 3;
+    p->kx = (uint32_t)rt_next_axis((int)p->kz);
+    p->ky = (uint32_t)rt_next_axis((int)p->kx);
     return is_uniform(not_z) && is_uniform(not_y);
 }
 

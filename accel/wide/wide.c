@@ -27,7 +27,7 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", "binned|sweep|lbvh|ploc|spatial"),                           \
       "how the binary tree is made that is laid out eight wide, as for bvh", "Wald 2007")                    \
-    X(PARAM_BINS, "bins", RT_INT("16", 2, RT_WIDE_MAX_BINS, "2|64"),                                         \
+    X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|64"),                                              \
       "build=binned, spatial: bins along each axis in which split positions are sought", "Wald 2007")        \
     X(PARAM_ALPHA, "alpha", RT_FLOAT("1e-05", 0, 1, "0|0.01"),                                               \
       "build=spatial: objects may be cut where groups overlap by more than this part of the root's area",    \

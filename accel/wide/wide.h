@@ -19,11 +19,10 @@
 #include "accel/tree/split.h"
 
 enum {
-    RT_WIDE = 8,                /* children of a node at most */
-    RT_WIDE_BLOCK = 4,          /* triangles of a block at most */
-    RT_WIDE_MAX_LEAF = 8,       /* objects of a leaf at most */
-    RT_WIDE_MAX_IN_FLIGHT = 64, /* rays that are traced at once at most */
-    RT_WIDE_MAX_BINS = RT_MAX_BINS
+    RT_WIDE = 8,               /* children of a node at most */
+    RT_WIDE_BLOCK = 4,         /* triangles of a block at most */
+    RT_WIDE_MAX_LEAF = 8,      /* objects of a leaf at most */
+    RT_WIDE_MAX_IN_FLIGHT = 64 /* rays that are traced at once at most */
 };
 
 /* A child: where it is in the arena, in bytes, a multiple of 32; and in the bits that leaves free what it is

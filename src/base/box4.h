@@ -1,61 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Boxes in vectors of four float32, for builds, which do little else than unite boxes and compare their
- * areas. The fourth lane holds anything. Every operation gives, lane by lane, the bits of its namesake in
- * box.h; the vectors are those of gcc and clang on every processor, and SSE2 where there is no operator. */
+/* Boxes in vectors of four float32 (four.h), for builds, which do little else than unite boxes and compare
+ * their areas. The fourth lane holds anything. Every operation gives, lane by lane, the bits of its namesake
+ * in box.h; the vectors are those of gcc and clang on every processor, and SSE2 where there is no operator.
+ */
 #ifndef RT_BASE_BOX4_H
 #define RT_BASE_BOX4_H
 
-#include "base/box.h"
-
-#include <stdint.h>
-#include <string.h>
+#include "base/four.h"
 
 #ifdef __SSE2__
 #include <emmintrin.h>
 #endif
 
-typedef float RtFloat4 __attribute__((vector_size(16)));
-typedef int32_t RtInt4 __attribute__((vector_size(16)));
 typedef double RtDouble2 __attribute__((vector_size(16)));
 
 typedef struct RtBox4 {
-    RtFloat4 lo, hi;
+    RtFour lo, hi;
 } RtBox4;
-
-static inline RtFloat4 rt_float4(float x) {
-    return (RtFloat4){x, x, x, x};
-}
-
-static inline RtFloat4 rt_min4(RtFloat4 a, RtFloat4 b) {
-#ifdef __SSE2__
-    return _mm_min_ps(a, b);
-#else
-    return (RtFloat4){rt_minf(a[0], b[0]), rt_minf(a[1], b[1]), rt_minf(a[2], b[2]), rt_minf(a[3], b[3])};
-#endif
-}
-
-static inline RtFloat4 rt_max4(RtFloat4 a, RtFloat4 b) {
-#ifdef __SSE2__
-    return _mm_max_ps(a, b);
-#else
-    return (RtFloat4){rt_maxf(a[0], b[0]), rt_maxf(a[1], b[1]), rt_maxf(a[2], b[2]), rt_maxf(a[3], b[3])};
-#endif
-}
-
-/* The integer parts. */
-static inline RtInt4 rt_truncate4(RtFloat4 a) {
-    return __builtin_convertvector(a, RtInt4);
-}
-
-/* Bit i is set where a[i] >= b[i]. */
-static inline unsigned rt_at_least4(RtFloat4 a, RtFloat4 b) {
-#ifdef __SSE2__
-    return (unsigned)_mm_movemask_ps(_mm_cmpge_ps(a, b));
-#else
-    return (unsigned)(a[0] >= b[0]) | (unsigned)(a[1] >= b[1]) << 1 | (unsigned)(a[2] >= b[2]) << 2 |
-           (unsigned)(a[3] >= b[3]) << 3;
-#endif
-}
 
 static inline RtDouble2 rt_max2(RtDouble2 a, RtDouble2 b) {
 #ifdef __SSE2__
@@ -75,15 +36,11 @@ static inline bool rt_any_at_most2(RtDouble2 a, RtDouble2 b) {
 }
 
 static inline RtBox4 rt_box4_empty(void) {
-    return (RtBox4){rt_float4(INFINITY), rt_float4(-INFINITY)};
+    return (RtBox4){rt_four_all(INFINITY), rt_four_all(-INFINITY)};
 }
 
 static inline RtBox4 rt_box4_load(const RtBox *box) {
-    RtBox4 b; /* lo.xyz hi.x; lo.z hi.xyz */
-    memcpy(&b.lo, box, sizeof b.lo);
-    memcpy(&b.hi, (const char *)box + 8, sizeof b.hi);
-    b.hi = __builtin_shufflevector(b.hi, b.hi, 1, 2, 3, 3);
-    return b;
+    return (RtBox4){rt_four_lo(box), rt_four_hi(box)};
 }
 
 static inline void rt_box4_store(RtBox *box, RtBox4 b) {
@@ -92,15 +49,15 @@ static inline void rt_box4_store(RtBox *box, RtBox4 b) {
 }
 
 static inline RtBox4 rt_box4_union(RtBox4 a, RtBox4 b) {
-    return (RtBox4){rt_min4(a.lo, b.lo), rt_max4(a.hi, b.hi)};
+    return (RtBox4){rt_four_min(a.lo, b.lo), rt_four_max(a.hi, b.hi)};
 }
 
-static inline RtBox4 rt_box4_add_point(RtBox4 a, RtFloat4 p) {
-    return (RtBox4){rt_min4(a.lo, p), rt_max4(a.hi, p)};
+static inline RtBox4 rt_box4_add_point(RtBox4 a, RtFour p) {
+    return (RtBox4){rt_four_min(a.lo, p), rt_four_max(a.hi, p)};
 }
 
-static inline RtFloat4 rt_box4_center(RtBox4 a) {
-    return a.lo * rt_float4(0.5f) + a.hi * rt_float4(0.5f);
+static inline RtFour rt_box4_center(RtBox4 a) {
+    return a.lo * rt_four_all(0.5f) + a.hi * rt_four_all(0.5f);
 }
 
 /* The half areas of two boxes, neither of them empty. */

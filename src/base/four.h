@@ -64,6 +64,33 @@ static inline RtFour rt_four_max(RtFour a, RtFour b) {
 #endif
 }
 
+/* The integer parts. */
+static inline RtFourBits rt_four_truncate(RtFour a) {
+    return __builtin_convertvector(a, RtFourBits);
+}
+
+/* Bit i is set where a[i] >= b[i]. */
+static inline unsigned rt_four_at_least(RtFour a, RtFour b) {
+#if defined(__SSE__)
+    return (unsigned)_mm_movemask_ps(_mm_cmpge_ps((__m128)a, (__m128)b));
+#else
+    return (unsigned)(a[0] >= b[0]) | (unsigned)(a[1] >= b[1]) << 1 | (unsigned)(a[2] >= b[2]) << 2 |
+           (unsigned)(a[3] >= b[3]) << 3;
+#endif
+}
+
+/* Lane k of row i becomes lane i of row k. */
+static inline void rt_four_transpose(RtFour rows[4]) {
+    RtFour a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+    RtFour b = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+    RtFour c = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+    RtFour d = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+    rows[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    rows[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    rows[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    rows[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
 /* b where the sign bit of `sign` is set, else a. */
 static inline RtFour rt_four_pick(RtFourBits sign, RtFour a, RtFour b) {
     RtFourBits mask = sign >> 31;

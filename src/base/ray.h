@@ -143,16 +143,22 @@ static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
     rt_ray_set_thickness(ray, rt_thickness(ray->org, around));
 }
 
+/* By how much an origin moves along each axis for boxes from `lo` to `hi`, towards where the ray comes from:
+ * rt_shift by rt_thickness, with the sign of dir. */
+static inline RtFour rt_four_shift(RtFour lo, RtFour hi, RtFour org, RtFourBits sign) {
+    RtFour farthest = rt_four_max(rt_four_abs(lo - org), rt_four_abs(hi - org));
+    RtFour shift = rt_four_most(farthest) * 0x1p-20f + rt_four_abs(org) * 0x1p-23f;
+    return (RtFour)((RtFourBits)shift ^ sign);
+}
+
 /* To *p. `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness.
  * `room` is for hit functions, and may be NULL where none are asked (rt_hit_ray in shape/geometry.h). */
 static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
                                      struct RtCrossing *room) {
     /* A ray is org, tmin, dir, tmax, and what follows. */
     RtFour org = rt_four(ray), dir = rt_four((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
-    RtFour to_lo = rt_four_abs(rt_four_lo(scene_box) - org), to_hi = rt_four_abs(rt_four_hi(scene_box) - org);
     RtFourBits sign = rt_four_sign(dir), negative = sign < 0;
-    float thickness = rt_four_most(rt_four_max(to_lo, to_hi)) * 0x1p-20f;
-    RtFour shift = (RtFour)((RtFourBits)(thickness + rt_four_abs(org) * 0x1p-23f) ^ sign);
+    RtFour shift = rt_four_shift(rt_four_lo(scene_box), rt_four_hi(scene_box), org, sign);
     RtFour near = org + shift, far = org - shift;
     negative &= 1;
     p->original = ray;
@@ -166,8 +172,8 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     p->tmin = ray->tmin;
     p->tmax = rt_minf(ray->tmax, FLT_MAX);
     p->kz = rt_major_axis(ray->dir);
-    p->kx = 9 >> 2 * p->kz & 3; /* the axis after it: 1, 2, 0 */
-    p->ky = 9 >> 2 * p->kx & 3;
+    p->kx = rt_next_axis(p->kz);
+    p->ky = rt_next_axis(p->kx);
     p->shear_x = p->dir.at[p->kx] * p->inv[p->kz];
     p->shear_y = p->dir.at[p->ky] * p->inv[p->kz];
 }
@@ -205,9 +211,7 @@ static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float 
 static inline void rt_four_own_span(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *near, float *far) {
     RtFour org = rt_four(&ray->org), inv = rt_four(ray->inv); /* and what follows org */
     RtFourBits sign = rt_four_sign(rt_four(&ray->dir));
-    RtFour farthest = rt_four_max(rt_four_abs(lo - org), rt_four_abs(hi - org));
-    RtFour outward = rt_four_most(farthest) * 0x1p-20f + rt_four_abs(org) * 0x1p-23f;
-    RtFour shift = (RtFour)((RtFourBits)outward ^ sign);
+    RtFour shift = rt_four_shift(lo, hi, org, sign);
     RtFour first = (rt_four_pick(sign, lo, hi) - (org + shift)) * inv;
     RtFour second = (rt_four_pick(sign, hi, lo) - (org - shift)) * inv;
     *near = -INFINITY, *far = INFINITY;

@@ -109,4 +109,9 @@ static inline int rt_major_axis(RtVec3 a) {
     return 2 * is_z | ((y > x) & !is_z);
 }
 
+/* 1, 2, 0 for 0, 1, 2, without a branch. */
+static inline int rt_next_axis(int axis) {
+    return 9 >> 2 * axis & 3;
+}
+
 #endif
