@@ -4,7 +4,7 @@
 #ifndef RT_ACCEL_WIDE_SIMD_H
 #define RT_ACCEL_WIDE_SIMD_H
 
-#include <stdint.h>
+#include "base/four.h"
 
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -17,13 +17,35 @@
 #pragma GCC diagnostic pop
 #endif
 
+/* Which of eight lanes: a[i] <= b[i]. */
+#if defined(__AVX512VL__)
+typedef __mmask8 RtV8Mask;
+static inline RtV8Mask rt_v8_within(__m256 a, __m256 b) {
+    return _mm256_cmp_ps_mask(a, b, _CMP_LE_OQ);
+}
+static inline uint32_t rt_v8_bits(RtV8Mask mask) {
+    return mask;
+}
+/* The lesser of a and b in the lanes of the mask, else b. */
+static inline __m256 rt_v8_min_where(RtV8Mask mask, __m256 a, __m256 b) {
+    return _mm256_mask_min_ps(b, mask, a, b);
+}
+#else
+typedef __m256 RtV8Mask;
+static inline RtV8Mask rt_v8_within(__m256 a, __m256 b) {
+    return _mm256_cmp_ps(a, b, _CMP_LE_OQ);
+}
+static inline uint32_t rt_v8_bits(RtV8Mask mask) {
+    return (uint32_t)_mm256_movemask_ps(mask);
+}
+static inline __m256 rt_v8_min_where(RtV8Mask mask, __m256 a, __m256 b) {
+    return _mm256_blendv_ps(b, _mm256_min_ps(a, b), mask);
+}
+#endif
+
 /* Bit i: a[i] <= b[i]. */
 static inline uint32_t rt_v8_at_most(__m256 a, __m256 b) {
-#if defined(__AVX512VL__)
-    return _mm256_cmp_ps_mask(a, b, _CMP_LE_OQ);
-#else
-    return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ));
-#endif
+    return rt_v8_bits(rt_v8_within(a, b));
 }
 
 #if !defined(__AVX512VL__)
@@ -69,6 +91,59 @@ static inline __m256i rt_v8_take(RtV8Order order, __m256i a) {
 }
 #endif
 
+/* ---- eight sets of up to sixty-four ---- */
+
+#if defined(__AVX512F__)
+typedef __m512i RtV8Sets;
+static inline RtV8Sets rt_v8_sets_none(void) {
+    return _mm512_setzero_si512();
+}
+/* Adds `members` to the sets of the mask. */
+static inline void rt_v8_sets_add(RtV8Sets *sets, RtV8Mask mask, uint64_t members) {
+    *sets = _mm512_mask_or_epi64(*sets, mask, *sets, _mm512_set1_epi64((long long)members));
+}
+/* Bit i: set i has members. */
+static inline uint32_t rt_v8_sets_some(const RtV8Sets *sets) {
+    return _mm512_test_epi64_mask(*sets, *sets);
+}
+/* All to to[0..8), 64-byte aligned; those of a mask of lanes, in ascending order, to to[0..8), anywhere. */
+static inline void rt_v8_sets_put(uint64_t *to, const RtV8Sets *sets) {
+    _mm512_store_si512(to, *sets);
+}
+static inline void rt_v8_sets_take(uint64_t *to, uint32_t mask, const RtV8Sets *sets) {
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi64((__mmask8)mask, *sets));
+}
+#else
+typedef struct RtV8Sets {
+    __m256i lo, hi;
+} RtV8Sets;
+static inline RtV8Sets rt_v8_sets_none(void) {
+    return (RtV8Sets){_mm256_setzero_si256(), _mm256_setzero_si256()};
+}
+static inline void rt_v8_sets_add(RtV8Sets *sets, RtV8Mask mask, uint64_t members) {
+    const __m256i all = _mm256_set1_epi64x((long long)members), lanes = _mm256_castps_si256(mask);
+    __m256i lo = _mm256_cvtepi32_epi64(_mm256_castsi256_si128(lanes));
+    __m256i hi = _mm256_cvtepi32_epi64(_mm256_extracti128_si256(lanes, 1));
+    sets->lo = _mm256_or_si256(sets->lo, _mm256_and_si256(lo, all));
+    sets->hi = _mm256_or_si256(sets->hi, _mm256_and_si256(hi, all));
+}
+static inline uint32_t rt_v8_sets_some(const RtV8Sets *sets) {
+    const __m256i zero = _mm256_setzero_si256();
+    __m256d lo = _mm256_castsi256_pd(_mm256_cmpeq_epi64(sets->lo, zero));
+    __m256d hi = _mm256_castsi256_pd(_mm256_cmpeq_epi64(sets->hi, zero));
+    return 255 ^ (uint32_t)(_mm256_movemask_pd(lo) | _mm256_movemask_pd(hi) << 4);
+}
+static inline void rt_v8_sets_put(uint64_t *to, const RtV8Sets *sets) {
+    _mm256_store_si256((__m256i *)to, sets->lo);
+    _mm256_store_si256((__m256i *)(to + 4), sets->hi);
+}
+static inline void rt_v8_sets_take(uint64_t *to, uint32_t mask, const RtV8Sets *sets) {
+    _Alignas(32) uint64_t all[8];
+    rt_v8_sets_put(all, sets);
+    for (; mask; mask &= mask - 1) *to++ = all[__builtin_ctz(mask)];
+}
+#endif
+
 /* ---- sixteen floats ---- */
 
 #if defined(__AVX512F__)
@@ -82,10 +157,14 @@ static inline RtV16 rt_v16_load(const float *a) {
 static inline void rt_v16_store(float *to, RtV16 a) {
     _mm512_store_ps(to, a);
 }
-/* table[index[i]] in lane i, of sixteen. */
-static inline RtV16 rt_v16_lookup(const float *table, const uint32_t *index) {
-    return _mm512_permutexvar_ps(_mm512_load_si512(index), _mm512_load_ps(table));
+static inline RtV16 rt_v16_tile(__m128 a) {
+    return _mm512_broadcast_f32x4(a);
 }
+static inline RtV16 rt_v16_join(const float *a, const float *b, const float *c, const float *d) {
+    __m512 joined = _mm512_insertf32x4(_mm512_castps128_ps512(_mm_load_ps(a)), _mm_load_ps(b), 1);
+    return _mm512_insertf32x4(_mm512_insertf32x4(joined, _mm_load_ps(c), 2), _mm_load_ps(d), 3);
+}
+#define rt_v16_spread(a, i) _mm512_permute_ps(a, 0x55 * (i))
 static inline RtV16 rt_v16_add(RtV16 a, RtV16 b) {
     return _mm512_add_ps(a, b);
 }
@@ -113,11 +192,11 @@ static inline uint32_t rt_v16_at_most(RtV16 a, RtV16 b) {
 static inline uint32_t rt_v16_signs(RtV16 a) {
     return _mm512_movepi32_mask(_mm512_castps_si512(a));
 }
-static inline float rt_v16_least(RtV16 a) {
-    return _mm512_reduce_min_ps(a);
-}
 static inline float rt_v16_most(RtV16 a) {
     return _mm512_reduce_max_ps(a);
+}
+static inline __m256 rt_v16_fold(RtV16 a) {
+    return _mm256_min_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));
 }
 #else
 typedef struct RtV16 {
@@ -144,11 +223,15 @@ static inline void rt_v16_store(float *to, RtV16 a) {
     _mm256_store_ps(to, a.lo);
     _mm256_store_ps(to + 8, a.hi);
 }
-static inline RtV16 rt_v16_lookup(const float *table, const uint32_t *index) {
-    __m256i lo = _mm256_load_si256((const __m256i *)index),
-            hi = _mm256_load_si256((const __m256i *)(index + 8));
-    return (RtV16){_mm256_i32gather_ps(table, lo, 4), _mm256_i32gather_ps(table, hi, 4)};
+static inline RtV16 rt_v16_tile(__m128 a) {
+    return (RtV16){_mm256_set_m128(a, a), _mm256_set_m128(a, a)};
 }
+static inline RtV16 rt_v16_join(const float *a, const float *b, const float *c, const float *d) {
+    return (RtV16){_mm256_set_m128(_mm_load_ps(b), _mm_load_ps(a)),
+                   _mm256_set_m128(_mm_load_ps(d), _mm_load_ps(c))};
+}
+#define rt_v16_spread(a, i)                                                                                  \
+    ((RtV16){_mm256_permute_ps((a).lo, 0x55 * (i)), _mm256_permute_ps((a).hi, 0x55 * (i))})
 static inline RtV16 rt_v16_abs(RtV16 a) {
     const __m256 sign = _mm256_set1_ps(-0.0f);
     return (RtV16){_mm256_andnot_ps(sign, a.lo), _mm256_andnot_ps(sign, a.hi)};
@@ -164,12 +247,80 @@ static inline float rt_v8_least(__m256 a) {
     b = _mm_min_ps(b, _mm_movehl_ps(b, b));
     return _mm_cvtss_f32(_mm_min_ss(b, _mm_shuffle_ps(b, b, 1)));
 }
-static inline float rt_v16_least(RtV16 a) {
-    return rt_v8_least(_mm256_min_ps(a.lo, a.hi));
+static inline __m256 rt_v16_fold(RtV16 a) {
+    return _mm256_min_ps(a.lo, a.hi);
 }
 static inline float rt_v16_most(RtV16 a) {
     const __m256 sign = _mm256_set1_ps(-0.0f);
     return -rt_v8_least(_mm256_xor_ps(_mm256_max_ps(a.lo, a.hi), sign));
+}
+#endif
+
+/* The least of the lanes of each of four vectors. */
+static inline RtFour rt_v16_least4(RtV16 a, RtV16 b, RtV16 c, RtV16 d) {
+    __m256 x = rt_v16_fold(a), y = rt_v16_fold(b), z = rt_v16_fold(c), w = rt_v16_fold(d);
+    __m256d xy = _mm256_castps_pd(_mm256_min_ps(_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y)));
+    __m256d zw = _mm256_castps_pd(_mm256_min_ps(_mm256_unpacklo_ps(z, w), _mm256_unpackhi_ps(z, w)));
+    __m256 all = _mm256_min_ps(_mm256_castpd_ps(_mm256_unpacklo_pd(xy, zw)),
+                               _mm256_castpd_ps(_mm256_unpackhi_pd(xy, zw)));
+    return (RtFour)_mm_min_ps(_mm256_castps256_ps128(all), _mm256_extractf128_ps(all, 1));
+}
+
+/* ---- sixteen words ---- */
+
+#if defined(__AVX512F__)
+typedef __m512i RtW16;
+static inline RtW16 rt_w16_all(uint32_t a) {
+    return _mm512_set1_epi32((int)a);
+}
+static inline RtW16 rt_w16_get(const uint32_t *from) {
+    return _mm512_loadu_si512(from);
+}
+static inline RtW16 rt_w16_of(RtV16 a) {
+    return _mm512_castps_si512(a);
+}
+static inline RtW16 rt_w16_add(RtW16 a, RtW16 b) {
+    return _mm512_add_epi32(a, b);
+}
+/* The lanes of a mask in ascending order to to[0..16), of which the others may be written over. */
+static inline void rt_w16_put_some(uint32_t *to, uint32_t mask, RtW16 a) {
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)mask, a));
+}
+/* table[index[i]] in lane i; an index is less than 2^31. */
+static inline RtV16 rt_v16_lookup(const float *table, RtW16 index) {
+    return _mm512_i32gather_ps(index, table, 4);
+}
+/* The same of a table of sixty-four, 64-byte aligned. */
+static inline RtV16 rt_v16_pick64(const float *table, RtW16 index) {
+    __m512 lo = _mm512_permutex2var_ps(_mm512_load_ps(table), index, _mm512_load_ps(table + 16));
+    __m512 hi = _mm512_permutex2var_ps(_mm512_load_ps(table + 32), index, _mm512_load_ps(table + 48));
+    return _mm512_mask_mov_ps(lo, _mm512_test_epi32_mask(index, _mm512_set1_epi32(32)), hi);
+}
+#else
+typedef struct RtW16 {
+    __m256i lo, hi;
+} RtW16;
+static inline RtW16 rt_w16_all(uint32_t a) {
+    return (RtW16){_mm256_set1_epi32((int)a), _mm256_set1_epi32((int)a)};
+}
+static inline RtW16 rt_w16_get(const uint32_t *from) {
+    return (RtW16){rt_v8_get(from), rt_v8_get(from + 8)};
+}
+static inline RtW16 rt_w16_of(RtV16 a) {
+    return (RtW16){_mm256_castps_si256(a.lo), _mm256_castps_si256(a.hi)};
+}
+static inline RtW16 rt_w16_add(RtW16 a, RtW16 b) {
+    return (RtW16){_mm256_add_epi32(a.lo, b.lo), _mm256_add_epi32(a.hi, b.hi)};
+}
+static inline void rt_w16_put_some(uint32_t *to, uint32_t mask, RtW16 a) {
+    rt_v8_put(to, rt_v8_take(rt_v8_order(mask & 255), a.lo));
+    rt_v8_put(to + __builtin_popcount(mask & 255), rt_v8_take(rt_v8_order(mask >> 8), a.hi));
+}
+static inline RtV16 rt_v16_lookup(const float *table, RtW16 index) {
+    return (RtV16){_mm256_i32gather_ps(table, index.lo, 4), _mm256_i32gather_ps(table, index.hi, 4)};
+}
+static inline RtV16 rt_v16_pick64(const float *table, RtW16 index) {
+    return rt_v16_lookup(table, index);
 }
 #endif
 

@@ -2,17 +2,24 @@
 /* The kernels of `wide`, included once for each instruction set by a file that has named its table of them,
  * RT_WIDE_KERNELS.
  *
- * Rays are taken as packets of sixteen while they go the same way and that pays; all others are streams.
- * Which pays better is found out as it goes: a block of rays is traced in one way, the next in the other, and
- * by what their visits cost the way for the next ones is chosen. Counted kernels trace no packets: a count
- * belongs to one ray. */
-#include "accel/wide/packet.h"
-#include "accel/wide/stream.h"
+ * Rays are traced as packets while these share enough of their visits, else as streams of rays alone. How
+ * much they share is seen when they are, and tried again from time to time. Counted kernels trace no packets:
+ * a count belongs to one ray. */
+#include "accel/wide/packet_way.h"
+
+/* How rays of a kind are traced on. */
+typedef struct Habit {
+    float sharing;  /* rays at a node, on average of late; 0: not known */
+    bool alone;     /* as streams */
+    uint64_t trial; /* rays until packets are tried again */
+} Habit;
 
 /* The scratch memory of a query. */
 typedef struct Scratch {
     Flight flights[RT_WIDE_MAX_IN_FLIGHT];
-    Packet packet;
+    Packet packets[RT_WIDE_MAX_PACKETS];
+    Sorter sorter;
+    Habit habits[RT_RAY_KIND_COUNT];
 } Scratch;
 
 static size_t scratch_bytes(const RtAccel *accel) {
@@ -20,89 +27,71 @@ static size_t scratch_bytes(const RtAccel *accel) {
     return sizeof(Scratch);
 }
 
-/* Traces rays[first..first + count) of a question, and gives the visits of nodes and leaves. */
-typedef uint32_t Way(const Question *q, size_t first, size_t count);
-
-/* As packets, where they go the same way; *together: so many did. The others by `stream`. Gives the visits of
- * packets. */
-RT_KERNEL uint32_t trace_packets(const Question *q, size_t first, size_t count, size_t *together, bool any,
-                                 Way *stream) {
-    Packet *p = &((Scratch *)q->scratch->own)->packet;
-    size_t end = first + count, streamed = first, packed = 0;
-    p->visits = 0;
-    for (size_t i = first; i + PACKET <= end; i += PACKET) {
-        if (!take_off_together(p, q->tree, q->geometry, q->rays + i)) continue;
-        if (streamed < i) stream(q, streamed, i - streamed);
-        fly_together(q->self, q->tree, p, q->rays + i, any, q->scratch->room);
-        for (size_t k = 0; k < PACKET; k++) {
-            if (any)
-                q->blockers[i + k] = p->best[k].object;
-            else
-                q->hits[i + k] = p->best[k];
-        }
-        streamed = i + PACKET;
-        packed += PACKET;
-    }
-    if (streamed < end) stream(q, streamed, end - streamed);
-    *together = packed;
-    return p->visits;
-}
-
 /* The ways as functions of their own, so that each stands in the program once. */
 #define DEFINE_WAYS(question, any)                                                                           \
-    static __attribute__((noinline))                                                                         \
-    uint32_t stream_##question##_timed(const Question *q, size_t first, size_t count) {                      \
-        return trace_many(q, first, count, any, false);                                                      \
+    static __attribute__((noinline)) void stream_##question##_timed(const Question *q, size_t first,         \
+                                                                    size_t count) {                          \
+        trace_many(q, first, count, any, false);                                                             \
+    }                                                                                                        \
+    static __attribute__((noinline)) void stream_##question##_counted(const Question *q, size_t first,       \
+                                                                      size_t count) {                        \
+        trace_many(q, first, count, any, true);                                                              \
     }                                                                                                        \
     static __attribute__((noinline))                                                                         \
-    uint32_t stream_##question##_counted(const Question *q, size_t first, size_t count) {                    \
-        return trace_many(q, first, count, any, true);                                                       \
-    }                                                                                                        \
-    static __attribute__((noinline))                                                                         \
-    uint32_t packets_##question##_timed(const Question *q, size_t first, size_t count, size_t *together) {   \
-        return trace_packets(q, first, count, together, any, stream_##question##_timed);                     \
+    Shared packets_##question(const Question *q, size_t first, size_t count) {                               \
+        Scratch *own = q->scratch->own;                                                                      \
+        return trace_packets(q, own->packets, &own->sorter, first, count, any);                              \
     }
 DEFINE_WAYS(nearest, false)
 DEFINE_WAYS(occluded, true)
 
-/* Rays that are traced to compare the ways, and rays for which the better one is chosen. */
-enum { TRIAL = 4 * PACKET, TERM = 64 * PACKET };
+enum {
+    WINDOW = 4096,      /* rays that are sorted together */
+    TRIAL = 256 * 1024, /* rays traced alone between two trials of packets */
+};
 
-RT_KERNEL size_t at_most(size_t a, size_t b) {
-    return a < b ? a : b;
+/* Streams that ask for any hit need no distances, and are harder to beat. */
+#define WORTH_MORE_ANY 1.5f
+
+/* As packets, as far as these pay; gives how many rays have been. */
+RT_KERNEL size_t trace_together(const Question *q, size_t count, bool any) {
+    Habit *habit = &((Scratch *)q->scratch->own)->habits[q->rays[0].kind];
+    const float worth = q->self->sharing * (any ? WORTH_MORE_ANY : 1);
+    size_t i = 0;
+    if (habit->alone && habit->trial > count) {
+        habit->trial -= count;
+        return 0;
+    }
+    if (habit->alone) habit->sharing = 0;
+    habit->alone = false;
+    while (i < count && !habit->alone) {
+        size_t some = count - i < WINDOW ? count - i : WINDOW;
+        Shared shared = any ? packets_occluded(q, i, some) : packets_nearest(q, i, some);
+        float sharing = (float)shared.rays / (float)(shared.visits + 1);
+        habit->sharing = habit->sharing == 0 ? sharing : 0.875f * habit->sharing + 0.125f * sharing;
+        habit->alone = habit->sharing < worth;
+        habit->trial = TRIAL;
+        i += some;
+    }
+    return i;
 }
 
 RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch, const RtRay *rays,
                      size_t count, RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any,
                      bool counted) {
     const Question q = {self, tree, &self->base.scene->geometry, scratch, rays, hits, blockers, tallies};
-    Way *stream = any       ? counted ? stream_occluded_counted : stream_occluded_timed
-                  : counted ? stream_nearest_counted
-                            : stream_nearest_timed;
+    size_t done = 0;
     if (self->in_flight == 1) {
         trace_singly(&q, 0, count, any, counted);
         return;
     }
-    if (counted || !self->packets || tree->node_count == 0 || count < PACKET) {
-        stream(&q, 0, count);
-        return;
-    }
-    for (size_t i = 0; i < count;) {
-        size_t together, trial = at_most(count - i, TRIAL);
-        uint32_t packed = (any ? packets_occluded_timed : packets_nearest_timed)(&q, i, trial, &together),
-                 streamed = 0;
-        i += trial;
-        if (together == TRIAL && count - i >= TRIAL) {
-            streamed = stream(&q, i, TRIAL);
-            i += TRIAL;
-        }
-        size_t term = at_most(count - i, TERM);
-        if (packed < streamed)
-            (any ? packets_occluded_timed : packets_nearest_timed)(&q, i, term, &together);
-        else
-            stream(&q, i, term);
-        i += term;
-    }
+    if (!counted && self->packets > 0 && tree->node_count > 0 && count >= PACKET)
+        done = trace_together(&q, count, any);
+    if (done == count) return;
+    if (any)
+        (counted ? stream_occluded_counted : stream_occluded_timed)(&q, done, count - done);
+    else
+        (counted ? stream_nearest_counted : stream_nearest_timed)(&q, done, count - done);
 }
 
 static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,

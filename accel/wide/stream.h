@@ -88,7 +88,6 @@ RT_KERNEL void trace_singly(const Question *q, size_t first, size_t count, bool 
 typedef struct Traffic {
     size_t next, end; /* of the question's rays: the first that is not under way, and where they end */
     uint32_t in_flight;
-    uint32_t visits;     /* of nodes and leaves, for whoever compares with packets */
     uint32_t waiting[4]; /* rays that go on to each RtWideKind */
     Flight *list[4][RT_WIDE_MAX_IN_FLIGHT];
 } Traffic;
@@ -115,7 +114,6 @@ RT_KERNEL void visit_nodes(const Question *q, Traffic *t, bool any, bool counted
     uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_list(t, RT_WIDE_NODE);
     const bool ordered = !any && q->self->order;
     const RtWideTree tree = *q->tree;
-    t->visits += n;
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_NODE][i];
         const RtWideNode *node = rt_wide_node(&tree, f->next);
@@ -142,7 +140,6 @@ typedef struct Suspects {
 RT_KERNEL uint32_t sieve_leaves(const Question *q, Traffic *t, Suspects *found, bool counted, bool ahead) {
     uint32_t masks[RT_WIDE_MAX_IN_FLIGHT], n = take_list(t, RT_WIDE_TRIANGLES), count = 0;
     const RtWideTree tree = *q->tree;
-    t->visits += n;
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_TRIANGLES][i];
         if (counted) count_leaf(f->tally, f->next);
@@ -172,7 +169,6 @@ RT_KERNEL void leave_leaf(const Question *q, Traffic *t, Flight *f, bool over, b
 /* Tests the other leaves. */
 RT_KERNEL void visit_objects(const Question *q, Traffic *t, bool any, bool counted, bool ahead) {
     uint32_t n = take_list(t, RT_WIDE_OBJECTS);
-    t->visits += n;
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_OBJECTS][i];
         RtTally *tally = counted ? f->tally : NULL;
@@ -196,8 +192,7 @@ RT_KERNEL void send_off(const Question *q, Traffic *t, Flight *f, bool any, bool
     }
 }
 
-/* Gives the visits. */
-RT_KERNEL uint32_t trace_many(const Question *q, size_t first, size_t count, bool any, bool counted) {
+RT_KERNEL void trace_many(const Question *q, size_t first, size_t count, bool any, bool counted) {
     const bool ahead = q->self->prefetch;
     Suspects suspects[RT_WIDE_MAX_IN_FLIGHT];
     Flight *flights = q->scratch->own;
@@ -222,7 +217,6 @@ RT_KERNEL uint32_t trace_many(const Question *q, size_t first, size_t count, boo
             send_off(q, &t, f, any, counted, ahead);
         }
     }
-    return t.visits;
 }
 
 #endif

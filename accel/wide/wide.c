@@ -48,8 +48,12 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
       "rays of a stream traced at once on a thread; 1: one after the other", "measured")                     \
     X(PARAM_ORDER, "order", RT_FLAG("on"), "the nearest child first; off: the last", "this program")         \
     X(PARAM_PREFETCH, "prefetch", RT_FLAG("on"), "fetch ahead what a ray goes on to", "measured")            \
-    X(PARAM_PACKETS, "packets", RT_FLAG("on"),                                                               \
-      "rays that go the same way are traced sixteen at a time where that pays", "measured")                  \
+    X(PARAM_PACKETS, "packets", RT_INT("8", 0, RT_WIDE_MAX_PACKETS, "0|1|16"),                               \
+      "packets, of up to 64 rays that visit nodes together, traced at once on a thread; 0: none",            \
+      "measured")                                                                                            \
+    X(PARAM_SHARING, "sharing", RT_FLOAT("4", 0, 64, "0|8"),                                                 \
+      "rays that have to share a visit of a node, on average, or no packets are made; 0: always",            \
+      "measured")                                                                                            \
     X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "ask the system for large pages", "measured")           \
     X(PARAM_ISA, "isa", RT_CHOICE("best", "best|portable|avx2|avx512"),                                      \
       "instruction set; changes no answer and no count", "best: of this machine")
@@ -148,7 +152,8 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     self->in_flight = (uint32_t)values[PARAM_IN_FLIGHT].i;
     self->order = values[PARAM_ORDER].flag;
     self->prefetch = values[PARAM_PREFETCH].flag;
-    self->packets = values[PARAM_PACKETS].flag;
+    self->sharing = (float)values[PARAM_SHARING].f;
+    self->packets = (uint32_t)values[PARAM_PACKETS].i;
     return rt_accel_built(accel, fill_trees(self, what, error), out);
 }
 

@@ -19,10 +19,11 @@
 #include "accel/tree/split.h"
 
 enum {
-    RT_WIDE = 8,               /* children of a node at most */
-    RT_WIDE_BLOCK = 4,         /* triangles of a block at most */
-    RT_WIDE_MAX_LEAF = 8,      /* objects of a leaf at most */
-    RT_WIDE_MAX_IN_FLIGHT = 64 /* rays that are traced at once at most */
+    RT_WIDE = 8,                /* children of a node at most */
+    RT_WIDE_BLOCK = 4,          /* triangles of a block at most */
+    RT_WIDE_MAX_LEAF = 8,       /* objects of a leaf at most */
+    RT_WIDE_MAX_IN_FLIGHT = 64, /* rays that are traced at once at most */
+    RT_WIDE_MAX_PACKETS = 16    /* packets of them */
 };
 
 /* A child: where it is in the arena, in bytes, a multiple of 32; and in the bits that leaves free what it is
@@ -133,7 +134,9 @@ typedef struct RtWide {
     const RtWideTree *nearest, *occluded; /* of them */
     const RtWideKernels *kernels;
     uint32_t in_flight; /* rays traced at once; 1: one after the other */
-    bool order, prefetch, packets;
+    uint32_t packets;   /* packets traced at once; 0: none */
+    float sharing;      /* rays that share a visit of a node, on average, for which packets pay */
+    bool order, prefetch;
 } RtWide;
 
 #endif

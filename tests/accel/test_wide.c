@@ -298,8 +298,8 @@ static void count_rays(const RtWide *wide, const RtRay *rays, size_t cut, bool a
 RT_TEST(counts_are_the_same_by_any_instruction_set_and_however_a_stream_is_cut_or_in_flight) {
     const char *scenes[] = {"random:n=300,shape=triangle", "random:n=300,shape=mixed"};
     const char *builds[] = {"binned", "spatial,whole=on"};
-    const char *ways[] = {
-        "", ",in_flight=1", ",in_flight=2", ",in_flight=64", ",packets=off", ",prefetch=off"};
+    const char *ways[] = {"",           ",in_flight=1", ",in_flight=2", ",in_flight=64",
+                          ",packets=0", ",sharing=0",   ",prefetch=off"};
     const size_t cuts[] = {1, 16, 17, 64, COUNTED};
     static RtRay rays[COUNTED];
     make_counted_rays(rays);
@@ -309,7 +309,7 @@ RT_TEST(counts_are_the_same_by_any_instruction_set_and_however_a_stream_is_cut_o
         RtTally first[RT_RAY_KIND_COUNT] = {0};
         assert_ok(rt_scene_open(scenes[variant & 1], &scene, error));
         for (int isa = 0; isa < INSTRUCTION_SETS; isa++) {
-            for (int way = 0; way < 6; way++) {
+            for (int way = 0; way < 7; way++) {
                 char settings[96];
                 snprintf(settings, sizeof settings, "build=%s%s", builds[variant >> 1 & 1], ways[way]);
                 RtWide *wide = make_wide(&scene, isa, settings);

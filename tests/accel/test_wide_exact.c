@@ -317,7 +317,10 @@ static void assert_like_brute(Bench *bench, const RtWide *wide, const char *what
 }
 
 static const char *const settings[] = {"",
-                                       "packets=off",
+                                       "packets=0",
+                                       "sharing=0",
+                                       "packets=1,sharing=0,max_leaf_size=8",
+                                       "packets=16,sharing=0,block_cost=1000",
                                        "in_flight=1",
                                        "in_flight=2",
                                        "in_flight=64",
@@ -334,8 +337,9 @@ static const char *const settings[] = {"",
                                        "build=spatial",
                                        "build=spatial,alpha=0,budget=16,max_leaf_size=1,order=off",
                                        "build=spatial,alpha=0,budget=4,whole=on",
+                                       "build=spatial,alpha=0,sharing=0",
                                        "build=spatial,alpha=0,in_flight=1"};
-enum { SETTINGS = sizeof settings / sizeof settings[0], DIVIDED = 4 /* the last */ };
+enum { SETTINGS = sizeof settings / sizeof settings[0], DIVIDED = 5 /* the last */ };
 
 /* Of the settings those from `first` on. */
 static void check(Bench *bench, int first) {

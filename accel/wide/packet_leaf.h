@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What a packet does at a leaf. Four rays at a time are sieved by four triangles, sixteen pairs in a vector;
+ * what passes waits until there are sixteen pairs to be tested in full, by the operations of rt_triangle_hit.
+ * Their rays go on meanwhile, for nothing at worst. */
+#ifndef RT_ACCEL_WIDE_PACKET_LEAF_H
+#define RT_ACCEL_WIDE_PACKET_LEAF_H
+
+#include "accel/wide/packet.h"
+
+/* The first of a set of rays; PACKET where there is none. */
+RT_KERNEL uint32_t first_ray(uint64_t rays) {
+#if defined(__BMI__)
+    return (uint32_t)_tzcnt_u64(rays);
+#else
+    return rays ? (uint32_t)__builtin_ctzll(rays) : PACKET;
+#endif
+}
+
+RT_KERNEL uint64_t one_ray(uint32_t i) {
+    return UINT64_C(1) << i;
+}
+
+/* ---- triangles, roughly ---- */
+
+/* Where a block has what belongs to a coordinate of a triangle, in floats from the first. */
+RT_KERNEL size_t place_of(int vertex, uint32_t axis) {
+    return ((size_t)vertex * 3 + axis) * RT_WIDE_BLOCK;
+}
+
+/* Adds to the pairs of rays with triangles of a block, which lies `at` floats from the arena's start, those
+ * that sieve_block would let pass. */
+RT_KERNEL void sieve_rays(Packet *p, const RtWideTriangles *block, uint32_t at, uint64_t rays) {
+    static const uint32_t lane[BEAM] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+    const RtV16 zero = rt_v16_all(0);
+    const RtW16 triangles = rt_w16_add(rt_w16_get(lane), rt_w16_all(at));
+    RtV16 x[3], y[3], z[3];
+    for (int i = 0; i < 3; i++) {
+        x[i] = rt_v16_tile(coordinate(block, i, p->kx * COORDINATE));
+        y[i] = rt_v16_tile(coordinate(block, i, p->ky * COORDINATE));
+        z[i] = rt_v16_tile(coordinate(block, i, p->kz * COORDINATE));
+    }
+    uint32_t pairs = p->pair_count;
+    prepare_sieve(p);
+    do {
+        const float *ray[4];
+        for (int k = 0; k < 4; k++) {
+            ray[k] = p->sieve[first_ray(rays)];
+            rays &= rays - 1;
+        }
+        RtV16 place = rt_v16_join(ray[0], ray[1], ray[2], ray[3]);
+        RtV16 more = rt_v16_join(ray[0] + 4, ray[1] + 4, ray[2] + 4, ray[3] + 4);
+        RtV16 org_x = rt_v16_spread(place, 0), org_y = rt_v16_spread(place, 1),
+              org_z = rt_v16_spread(place, 2);
+        RtV16 shear_x = rt_v16_spread(more, 0), shear_y = rt_v16_spread(more, 1), a[3], b[3];
+        for (int i = 0; i < 3; i++) {
+            RtV16 depth = rt_v16_sub(z[i], org_z);
+            a[i] = rt_v16_sub(rt_v16_sub(x[i], org_x), rt_v16_mul(shear_x, depth));
+            b[i] = rt_v16_sub(rt_v16_sub(y[i], org_y), rt_v16_mul(shear_y, depth));
+        }
+        RtV16 u = rt_v16_sub(rt_v16_mul(a[2], b[1]), rt_v16_mul(b[2], a[1]));
+        RtV16 v = rt_v16_sub(rt_v16_mul(a[0], b[2]), rt_v16_mul(b[0], a[2]));
+        RtV16 w = rt_v16_sub(rt_v16_mul(a[1], b[0]), rt_v16_mul(b[1], a[0]));
+        RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w);
+        uint32_t passed = rt_v16_at_most(zero, least) | rt_v16_at_most(most, zero);
+        rt_w16_put_some(&p->pair_ray[pairs], passed, rt_w16_of(rt_v16_spread(more, 2)));
+        rt_w16_put_some(&p->pair_triangle[pairs], passed, triangles);
+        pairs += (uint32_t)__builtin_popcount(passed);
+    } while (rays);
+    p->pair_count = pairs;
+}
+
+/* From so many rays of a beam on a block is tested triangle by triangle. */
+enum { MANY_RAYS = 6 };
+
+/* The same as sieve_rays for rays of beam b, with `count` triangles. */
+RT_KERNEL void sieve_beam(Packet *p, const RtWideTriangles *block, uint32_t at, uint32_t count, uint32_t b,
+                          uint32_t rays) {
+    static const uint32_t lane[BEAM] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const RtV16 zero = rt_v16_all(0);
+    const RtV16 org_x = rt_v16_load(&p->org[p->kx][b * BEAM]), org_y = rt_v16_load(&p->org[p->ky][b * BEAM]),
+                org_z = rt_v16_load(&p->org[p->kz][b * BEAM]);
+    const RtV16 shear_x = rt_v16_load(&p->shear_x[b * BEAM]), shear_y = rt_v16_load(&p->shear_y[b * BEAM]);
+    for (uint32_t k = 0; k < count; k++) {
+        const float *triangle = &block->v[0][0][k];
+        RtV16 x[3], y[3];
+        for (int i = 0; i < 3; i++) {
+            RtV16 depth = rt_v16_sub(rt_v16_all(triangle[place_of(i, p->kz)]), org_z);
+            x[i] = rt_v16_sub(rt_v16_sub(rt_v16_all(triangle[place_of(i, p->kx)]), org_x),
+                              rt_v16_mul(shear_x, depth));
+            y[i] = rt_v16_sub(rt_v16_sub(rt_v16_all(triangle[place_of(i, p->ky)]), org_y),
+                              rt_v16_mul(shear_y, depth));
+        }
+        RtV16 u = rt_v16_sub(rt_v16_mul(x[2], y[1]), rt_v16_mul(y[2], x[1]));
+        RtV16 v = rt_v16_sub(rt_v16_mul(x[0], y[2]), rt_v16_mul(y[0], x[2]));
+        RtV16 w = rt_v16_sub(rt_v16_mul(x[1], y[0]), rt_v16_mul(y[1], x[0]));
+        RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w);
+        uint32_t passed = rays & (rt_v16_at_most(zero, least) | rt_v16_at_most(most, zero));
+        rt_w16_put_some(&p->pair_ray[p->pair_count], passed,
+                        rt_w16_add(rt_w16_get(lane), rt_w16_all(b * BEAM)));
+        rt_w16_put_some(&p->pair_triangle[p->pair_count], passed, rt_w16_all(at + k));
+        p->pair_count += (uint32_t)__builtin_popcount(passed);
+    }
+}
+
+/* ---- triangles, in full ---- */
+
+/* rt_triangle_hit of sixteen pairs, operation by operation: those that hit, and where. */
+static __attribute__((noinline)) uint32_t hit_pairs(const Packet *p, const float *arena, const uint32_t *ray,
+                                                    const uint32_t *triangle, float t[BEAM]) {
+    _Alignas(RT_CACHE_LINE) float x[3][BEAM], y[3][BEAM], z[3][BEAM], major[BEAM];
+    const RtW16 rays = rt_w16_get(ray), triangles = rt_w16_get(triangle);
+    RtV16 org[3], v[3][3];
+    for (int i = 0; i < 3; i++) {
+        for (uint32_t a = 0; a < 3; a++) v[i][a] = rt_v16_lookup(arena + place_of(i, a), triangles);
+    }
+    for (int a = 0; a < 3; a++) org[a] = rt_v16_pick64(p->org[a], rays);
+    RtV16 shear_x = rt_v16_pick64(p->shear_x, rays), shear_y = rt_v16_pick64(p->shear_y, rays);
+    for (int i = 0; i < 3; i++) {
+        RtV16 depth = rt_v16_sub(v[i][p->kz], org[p->kz]);
+        RtV16 across = rt_v16_sub(v[i][p->kx], org[p->kx]), up = rt_v16_sub(v[i][p->ky], org[p->ky]);
+        rt_v16_store(z[i], depth);
+        rt_v16_store(x[i], rt_v16_sub(across, rt_v16_mul(shear_x, depth)));
+        rt_v16_store(y[i], rt_v16_sub(up, rt_v16_mul(shear_y, depth)));
+    }
+    rt_v16_store(major, rt_v16_pick64(p->dir[p->kz], rays));
+    uint32_t hit = 0;
+    for (int k = 0; k < BEAM; k += 4) {
+        const __m256d zero = _mm256_setzero_pd();
+        __m256d a[3], b[3], c[3];
+        for (int i = 0; i < 3; i++) {
+            a[i] = _mm256_cvtps_pd(_mm_load_ps(&x[i][k]));
+            b[i] = _mm256_cvtps_pd(_mm_load_ps(&y[i][k]));
+            c[i] = _mm256_cvtps_pd(_mm_load_ps(&z[i][k]));
+        }
+        __m256d e0 = _mm256_sub_pd(_mm256_mul_pd(a[2], b[1]), _mm256_mul_pd(b[2], a[1]));
+        __m256d e1 = _mm256_sub_pd(_mm256_mul_pd(a[0], b[2]), _mm256_mul_pd(b[0], a[2]));
+        __m256d e2 = _mm256_sub_pd(_mm256_mul_pd(a[1], b[0]), _mm256_mul_pd(b[1], a[0]));
+        __m256d least = _mm256_min_pd(_mm256_min_pd(e0, e1), e2),
+                most = _mm256_max_pd(_mm256_max_pd(e0, e1), e2);
+        __m256d determinant = _mm256_add_pd(_mm256_add_pd(e0, e1), e2);
+        __m256d inside =
+            _mm256_or_pd(_mm256_cmp_pd(least, zero, _CMP_GE_OQ), _mm256_cmp_pd(most, zero, _CMP_LE_OQ));
+        inside = _mm256_and_pd(inside, _mm256_cmp_pd(determinant, zero, _CMP_NEQ_OQ));
+        __m256d depth = _mm256_add_pd(_mm256_mul_pd(e0, c[0]), _mm256_mul_pd(e1, c[1]));
+        depth = _mm256_div_pd(_mm256_add_pd(depth, _mm256_mul_pd(e2, c[2])), determinant);
+        _mm_store_ps(&t[k], _mm256_cvtpd_ps(_mm256_div_pd(depth, _mm256_cvtps_pd(_mm_load_ps(&major[k])))));
+        hit |= (uint32_t)_mm256_movemask_pd(inside) << k;
+    }
+    /* rt_box_admit */
+    RtV16 lo[3], hi[3], farthest = rt_v16_all(0);
+    for (int a = 0; a < 3; a++) {
+        lo[a] = rt_v16_min(rt_v16_min(v[0][a], v[1][a]), v[2][a]);
+        hi[a] = rt_v16_max(rt_v16_max(v[0][a], v[1][a]), v[2][a]);
+        farthest = rt_v16_max(rt_v16_abs(rt_v16_sub(lo[a], org[a])), farthest);
+        farthest = rt_v16_max(rt_v16_abs(rt_v16_sub(hi[a], org[a])), farthest);
+    }
+    RtV16 thickness = rt_v16_mul(farthest, rt_v16_all(0x1p-20f));
+    RtV16 near = rt_v16_all(-INFINITY), far = rt_v16_all(INFINITY), at = rt_v16_load(t);
+    for (int a = 0; a < 3; a++) {
+        RtV16 shift = rt_v16_add(thickness, rt_v16_mul(rt_v16_abs(org[a]), rt_v16_all(0x1p-23f)));
+        RtV16 above = rt_v16_add(org[a], shift), below = rt_v16_sub(org[a], shift),
+              inv = rt_v16_pick64(p->inv[a], rays);
+        RtV16 first = rt_v16_sub(p->negative[a] ? hi[a] : lo[a], p->negative[a] ? below : above);
+        RtV16 second = rt_v16_sub(p->negative[a] ? lo[a] : hi[a], p->negative[a] ? above : below);
+        near = rt_v16_max(rt_v16_mul(first, inv), near);
+        far = rt_v16_min(rt_v16_mul(second, inv), far);
+    }
+    RtV16 clamped = rt_v16_min(far, rt_v16_max(near, at)); /* what is no number stays so, and is no hit */
+    hit &= rt_v16_at_most(near, far) & rt_v16_at_most(rt_v16_pick64(p->tmin, rays), clamped);
+    hit &= rt_v16_at_most(clamped, rt_v16_pick64(p->tmax, rays));
+    rt_v16_store(t, clamped);
+    return hit;
+}
+
+/* What a ray has found, where it may be its answer. */
+RT_KERNEL void take_hit(Packet *p, uint32_t ray, RtHit hit, bool any) {
+    if (rt_hit_before(hit.t, hit.object, p->best[ray])) p->best[ray] = hit;
+    p->limit[ray] = rt_minf(p->best[ray].t, p->limit[ray]);
+    if (any) p->open &= ~one_ray(ray);
+}
+
+RT_KERNEL void limit_beam(Packet *p, uint32_t b) {
+    p->beam[b].limit = rt_v16_most(rt_v16_load(&p->limit[b * BEAM]));
+}
+
+RT_KERNEL uint32_t id_of(const float *triangle) {
+    uint32_t id;
+    memcpy(&id, triangle + place_of(3, 0), sizeof id);
+    return id;
+}
+
+/* Tests the pairs found last, sixteen at a time, while there are at least so many. */
+RT_KERNEL void test_pairs(Packet *p, const RtWideTree *tree, uint32_t least, bool any) {
+    const float *arena = (const float *)(const void *)tree->arena;
+    while (p->pair_count >= least) {
+        _Alignas(RT_CACHE_LINE) float t[BEAM];
+        uint32_t some = p->pair_count < BEAM ? p->pair_count : BEAM, first = p->pair_count - some;
+        for (uint32_t i = first + some; i < first + BEAM; i++) {
+            p->pair_ray[i] = p->pair_ray[first];
+            p->pair_triangle[i] = p->pair_triangle[first];
+        }
+        uint32_t hit = hit_pairs(p, arena, &p->pair_ray[first], &p->pair_triangle[first], t), beams = 0;
+        for (hit &= (1u << some) - 1; hit; hit &= hit - 1) {
+            uint32_t i = (uint32_t)__builtin_ctz(hit), ray = p->pair_ray[first + i];
+            take_hit(p, ray, (RtHit){t[i], id_of(arena + p->pair_triangle[first + i])}, any);
+            beams |= 1u << ray / BEAM;
+        }
+        for (; beams && !any; beams &= beams - 1) limit_beam(p, (uint32_t)__builtin_ctz(beams));
+        p->pair_count = first;
+    }
+}
+
+/* ---- leaves ---- */
+
+RT_KERNEL void visit_list(Packet *p, const Question *q, RtWideRef ref, uint64_t rays, bool any) {
+    for (; rays; rays &= rays - 1) {
+        uint32_t i = first_ray(rays);
+        RtHit best = p->best[i];
+        test_objects(q->tree, q->geometry, ref, prepared(p, q, i), any, &best, NULL);
+        if (best.object != p->best[i].object) take_hit(p, i, best, any);
+    }
+}
+
+RT_KERNEL void visit_block(Packet *p, const RtWideTree *tree, const RtWideTriangles *block, uint32_t count,
+                           uint64_t rays) {
+    uint32_t at = (uint32_t)((const char *)block - tree->arena) / sizeof(float);
+    for (uint32_t b = 0; b < BEAMS; b++) {
+        uint32_t some = (uint32_t)(rays >> b * BEAM) & ((1u << BEAM) - 1);
+        if (__builtin_popcount(some) < MANY_RAYS) continue;
+        sieve_beam(p, block, at, count, b, some);
+        rays &= ~((uint64_t)some << b * BEAM);
+    }
+    if (rays) sieve_rays(p, block, at, rays);
+}
+
+RT_KERNEL void visit_leaf(Packet *p, const Question *q, RtWideRef ref, uint64_t rays, bool any) {
+    if (rt_wide_kind(ref) != RT_WIDE_TRIANGLES) {
+        visit_list(p, q, ref, rays, any);
+        return;
+    }
+    const RtWideTriangles *block = rt_wide_leaf_at(q->tree, ref);
+    uint32_t count = rt_wide_count(ref);
+    for (; count > RT_WIDE_BLOCK; count -= RT_WIDE_BLOCK)
+        visit_block(p, q->tree, block++, RT_WIDE_BLOCK, rays);
+    visit_block(p, q->tree, block, count, rays);
+    test_pairs(p, q->tree, BEAM, any);
+}
+
+#endif
