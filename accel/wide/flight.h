@@ -212,17 +212,62 @@ RT_KERNEL uint32_t sieve_leaf(const RtWideTriangles *blocks, RtWideRef ref, cons
     return mask;
 }
 
-/* Tests those triangles of a leaf in full; true where the search is over. */
-RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, const RtPreparedRay *ray,
-                              bool any, RtHit *best, RtTally *tally) {
+/* What rt_triangle_hit does in double, with four triangles: those whose plane the ray crosses within them,
+ * and where. `major`: dir along kz. */
+RT_KERNEL uint32_t cross(const Sheared *s, __m128 major, __m128 *t) {
+    const __m256d zero = _mm256_setzero_pd();
+    __m256d x[3], y[3], z[3];
+    for (int i = 0; i < 3; i++) {
+        x[i] = _mm256_cvtps_pd(s->x[i]);
+        y[i] = _mm256_cvtps_pd(s->y[i]);
+        z[i] = _mm256_cvtps_pd(s->z[i]);
+    }
+    __m256d u = _mm256_sub_pd(_mm256_mul_pd(x[2], y[1]), _mm256_mul_pd(y[2], x[1]));
+    __m256d v = _mm256_sub_pd(_mm256_mul_pd(x[0], y[2]), _mm256_mul_pd(y[0], x[2]));
+    __m256d w = _mm256_sub_pd(_mm256_mul_pd(x[1], y[0]), _mm256_mul_pd(y[1], x[0]));
+    __m256d least = _mm256_min_pd(_mm256_min_pd(u, v), w), most = _mm256_max_pd(_mm256_max_pd(u, v), w);
+    __m256d determinant = _mm256_add_pd(_mm256_add_pd(u, v), w);
+    __m256d within =
+        _mm256_or_pd(_mm256_cmp_pd(least, zero, _CMP_GE_OQ), _mm256_cmp_pd(most, zero, _CMP_LE_OQ));
+    within = _mm256_and_pd(within, _mm256_cmp_pd(determinant, zero, _CMP_NEQ_OQ));
+    __m256d depth = _mm256_add_pd(_mm256_mul_pd(u, z[0]), _mm256_mul_pd(v, z[1]));
+    depth = _mm256_div_pd(_mm256_add_pd(depth, _mm256_mul_pd(w, z[2])), determinant);
+    *t = _mm256_cvtpd_ps(_mm256_div_pd(depth, _mm256_cvtps_pd(major)));
+    return (uint32_t)_mm256_movemask_pd(within);
+}
+
+/* The last of rt_triangle_hit for one triangle of a block. */
+RT_KERNEL bool admit(const float *triangle, const RtPreparedRay *ray, float *t) {
+    RtFour a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
+    RtFour b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
+    RtFour c = rt_triangle_vertex(triangle + 2 * VERTEX, RT_WIDE_BLOCK);
+    return rt_four_admit(rt_four_min(rt_four_min(a, b), c), rt_four_max(rt_four_max(a, b), c), ray, t);
+}
+
+/* Tests those triangles of a block in full; true where the search is over. */
+RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, const Axes *axes,
+                          const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+    _Alignas(16) float at[RT_WIDE_BLOCK];
+    __m128 t;
+    const Sheared s = shear(block, axes);
+    mask &= cross(&s, _mm_set1_ps(ray->dir.at[ray->kz]), &t);
+    _mm_store_ps(at, t);
     for (; mask; mask &= mask - 1) {
-        uint32_t i = (uint32_t)__builtin_ctz(mask), lane = i % RT_WIDE_BLOCK;
-        const RtWideTriangles *block = &blocks[i / RT_WIDE_BLOCK];
-        float t;
-        if (!rt_triangle_hit_strided(&block->v[0][0][lane], VERTEX, RT_WIDE_BLOCK, ray, &t)) continue;
+        uint32_t lane = (uint32_t)__builtin_ctz(mask);
+        if (!admit(&block->v[0][0][lane], ray, &at[lane])) continue;
         RT_COUNT(tally, object_hits, 1);
-        if (rt_hit_before(t, block->id[lane], *best)) *best = (RtHit){t, block->id[lane]};
+        if (rt_hit_before(at[lane], block->id[lane], *best)) *best = (RtHit){at[lane], block->id[lane]};
         if (any) return true;
+    }
+    return false;
+}
+
+/* The same of a leaf. */
+RT_KERNEL bool test_triangles(const RtWideTriangles *blocks, uint32_t mask, const Axes *axes,
+                              const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
+    for (; mask; mask >>= RT_WIDE_BLOCK, blocks++) {
+        uint32_t some = mask & ((1u << RT_WIDE_BLOCK) - 1);
+        if (some && test_block(blocks, some, axes, ray, any, best, tally)) return true;
     }
     return false;
 }

@@ -80,17 +80,16 @@ RT_KERNEL uint32_t class_of(const RtRay *ray) {
 
 /* The class of sixteen rays; CLASSES where they differ. */
 RT_KERNEL uint32_t class_of_all(const RtRay *rays) {
-    const uint32_t class = class_of(rays);
+    const uint32_t class = class_of(rays), axis = class / 8;
     const RtFour dir = rt_four((const char *)rays + offsetof(RtRay, dir));
-    const RtFourBits axis = (RtFourBits){0, 0, 0, 0} + (int32_t)(class / 8);
-    const RtFourBits others = (RtFourBits){0, 1, 2, 3} != axis;
     RtFourBits signs = {0}, larger = {0};
     for (int i = 0; i < BEAM; i++) {
-        RtFour own = rt_four((const char *)&rays[i] + offsetof(RtRay, dir)), along = rt_four_abs(own);
+        RtFour own = rt_four((const char *)&rays[i] + offsetof(RtRay, dir));
         signs |= (RtFourBits)own ^ (RtFourBits)dir;
-        larger |= along >= __builtin_shuffle(along, axis);
+        larger |= rt_four_abs(own) >= rt_four_all(fabsf(rays[i].dir.at[axis]));
     }
-    const RtFourBits differ = (signs < 0) | (larger & others);
+    larger[axis] = 0;
+    RtFourBits differ = (signs < 0) | larger;
     return differ[0] | differ[1] | differ[2] ? CLASSES : class;
 }
 

@@ -125,26 +125,15 @@ static __attribute__((noinline)) uint32_t hit_pairs(const Packet *p, const float
     rt_v16_store(major, rt_v16_pick64(p->dir[p->kz], rays));
     uint32_t hit = 0;
     for (int k = 0; k < BEAM; k += 4) {
-        const __m256d zero = _mm256_setzero_pd();
-        __m256d a[3], b[3], c[3];
+        Sheared four;
         for (int i = 0; i < 3; i++) {
-            a[i] = _mm256_cvtps_pd(_mm_load_ps(&x[i][k]));
-            b[i] = _mm256_cvtps_pd(_mm_load_ps(&y[i][k]));
-            c[i] = _mm256_cvtps_pd(_mm_load_ps(&z[i][k]));
+            four.x[i] = _mm_load_ps(&x[i][k]);
+            four.y[i] = _mm_load_ps(&y[i][k]);
+            four.z[i] = _mm_load_ps(&z[i][k]);
         }
-        __m256d e0 = _mm256_sub_pd(_mm256_mul_pd(a[2], b[1]), _mm256_mul_pd(b[2], a[1]));
-        __m256d e1 = _mm256_sub_pd(_mm256_mul_pd(a[0], b[2]), _mm256_mul_pd(b[0], a[2]));
-        __m256d e2 = _mm256_sub_pd(_mm256_mul_pd(a[1], b[0]), _mm256_mul_pd(b[1], a[0]));
-        __m256d least = _mm256_min_pd(_mm256_min_pd(e0, e1), e2),
-                most = _mm256_max_pd(_mm256_max_pd(e0, e1), e2);
-        __m256d determinant = _mm256_add_pd(_mm256_add_pd(e0, e1), e2);
-        __m256d inside =
-            _mm256_or_pd(_mm256_cmp_pd(least, zero, _CMP_GE_OQ), _mm256_cmp_pd(most, zero, _CMP_LE_OQ));
-        inside = _mm256_and_pd(inside, _mm256_cmp_pd(determinant, zero, _CMP_NEQ_OQ));
-        __m256d depth = _mm256_add_pd(_mm256_mul_pd(e0, c[0]), _mm256_mul_pd(e1, c[1]));
-        depth = _mm256_div_pd(_mm256_add_pd(depth, _mm256_mul_pd(e2, c[2])), determinant);
-        _mm_store_ps(&t[k], _mm256_cvtpd_ps(_mm256_div_pd(depth, _mm256_cvtps_pd(_mm_load_ps(&major[k])))));
-        hit |= (uint32_t)_mm256_movemask_pd(inside) << k;
+        __m128 at;
+        hit |= cross(&four, _mm_load_ps(&major[k]), &at) << k;
+        _mm_store_ps(&t[k], at);
     }
     /* rt_box_admit */
     RtV16 lo[3], hi[3], farthest = rt_v16_all(0);

@@ -64,7 +64,7 @@ RT_KERNEL void fly_alone(const Question *q, Flight *f, bool any, bool counted) {
         if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
             const RtWideTriangles *blocks = rt_wide_leaf_at(tree, ref);
             uint32_t mask = sieve_leaf(blocks, ref, &f->axes);
-            if (test_triangles(blocks, mask, &f->ray, any, &f->best, tally)) return;
+            if (test_triangles(blocks, mask, &f->axes, &f->ray, any, &f->best, tally)) return;
         } else if (test_objects(tree, q->geometry, ref, &f->ray, any, &f->best, tally)) {
             return;
         }
@@ -204,8 +204,8 @@ RT_KERNEL void trace_many(const Question *q, size_t first, size_t count, bool an
         for (uint32_t i = 0; i < n; i++) {
             Flight *f = suspects[i].flight;
             const RtWideTriangles *blocks = rt_wide_leaf_at(q->tree, f->next);
-            bool over =
-                test_triangles(blocks, suspects[i].mask, &f->ray, any, &f->best, counted ? f->tally : NULL);
+            bool over = test_triangles(blocks, suspects[i].mask, &f->axes, &f->ray, any, &f->best,
+                                       counted ? f->tally : NULL);
             leave_leaf(q, &t, f, over, any, ahead);
         }
         if (t.waiting[RT_WIDE_OBJECTS]) visit_objects(q, &t, any, counted, ahead);
