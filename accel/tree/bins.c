@@ -20,8 +20,9 @@ void rt_bins_merge(RtBins *self, const RtBins *other) {
     }
 }
 
-/* The bins of BATCH references are all found before any is filled: so it is known early what is written where,
- * and the processor need not guess whether a bin that it reads is still being written (a third less time). */
+/* The bins of BATCH references are all found before any is filled: so it is known early what is written
+ * where, and the processor need not guess whether a bin that it reads is still being written (a third less
+ * time). */
 enum { BATCH = 16 };
 
 static void add_batch(RtBins *self, const RtTreeRef *refs, uint32_t count) {
@@ -30,8 +31,7 @@ static void add_batch(RtBins *self, const RtTreeRef *refs, uint32_t count) {
     for (uint32_t i = 0; i < count; i++) {
         __builtin_prefetch(refs + i + RT_REFS_AHEAD);
         /* Of infinity times 0 the maximum is 0. */
-        RtFour at =
-            rt_four_max((rt_box4_center(rt_box4_load(&refs[i].box)) - lo) * scale, rt_four_all(0));
+        RtFour at = rt_four_max((rt_box4_center(rt_box4_load(&refs[i].box)) - lo) * scale, rt_four_all(0));
         bin[i] = rt_four_truncate(rt_four_min(at, last));
     }
     for (uint32_t i = 0; i < count; i++) {

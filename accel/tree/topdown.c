@@ -2,11 +2,11 @@
 /* Trees from the top: medians, or the surface area heuristic in bins.
  *
  * Where the nodes of a subtree stand follows from its number of references, so subtrees are built by threads
- * that know nothing of each other (subtree.h). While there is no group for each thread the top is made level by
- * level: the references of all groups are dealt in chunks, which are binned, and then parted into the other of
- * two rows, by whichever thread comes first. From there on a group is split in its place, and one side of it
- * is left to who has nothing to do. Which references go to which side depends on them alone (split.h), so the
- * tree is that of one thread. */
+ * that know nothing of each other (subtree.h). While there is no group for each thread the top is made level
+ * by level: the references of all groups are dealt in chunks, which are binned, and then parted into the
+ * other of two rows, by whichever thread comes first. From there on a group is split in its place, and one
+ * side of it is left to who has nothing to do. Which references go to which side depends on them alone
+ * (split.h), so the tree is that of one thread. */
 #include "accel/tree/subtree.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -16,8 +16,8 @@
 #include <stdlib.h>
 
 enum {
-    SHARES = 16,     /* a group of no more than such a part of what one thread has to do is not shared */
-    CHUNK = 1 << 13, /* nor one of fewer references */
+    SHARES = 16,      /* a group of no more than such a part of what one thread has to do is not shared */
+    CHUNK = 1 << 13,  /* nor one of fewer references */
     LARGE = 4 * CHUNK /* fewer in all are for one thread */
 };
 
@@ -40,8 +40,8 @@ typedef struct Top {
     const RtBox *boxes;
     RtTreeRef *rows[2]; /* [count] the references, in turns; the second are the nodes, before there are any */
     uint32_t count, row, chunk_size;
-    uint32_t top_limit;   /* groups of no more are not of the top */
-    uint32_t share_limit; /* nor shared */
+    uint32_t top_limit;               /* groups of no more are not of the top */
+    uint32_t share_limit;             /* nor shared */
     RtRefGroup *groups, *next, *done; /* of this level, of the next, and what is left to one thread each */
     RtSplit *splits;                  /* [open] of the groups of this level */
     Chunk *chunks;
@@ -258,8 +258,8 @@ static RtStatus build_on_several(Top *top, int threads, RtError *error) {
     }
     RT_TRY(rt_parallel_for(top->done_count, threads, move_back, top, error));
     qsort(top->done, top->done_count, sizeof(RtRefGroup), larger_first);
-    RT_TRY(rt_parallel_tasks(top->done, top->done_count, sizeof(RtRefGroup), threads, build_group, top,
-                             error));
+    RT_TRY(
+        rt_parallel_tasks(top->done, top->done_count, sizeof(RtRefGroup), threads, build_group, top, error));
     unite_top(top);
     return RT_OK;
 }

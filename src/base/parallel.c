@@ -60,8 +60,8 @@ static void *run_worker(void *argument) {
     return NULL;
 }
 
-/* Calls run(of[i]) for the first of `count` values of `size` bytes on this thread, and for the others on threads
- * of their own. Threads that cannot be had are done without: the others take their work. */
+/* Calls run(of[i]) for the first of `count` values of `size` bytes on this thread, and for the others on
+ * threads of their own. Threads that cannot be had are done without: the others take their work. */
 static RtStatus run_all(void *(*run)(void *), void *of, size_t size, int count, RtError *error) {
     pthread_t *handles = rt_alloc((size_t)count, sizeof(pthread_t));
     if (!handles) return rt_fail_memory(error, "worker threads", (size_t)count * sizeof(pthread_t));

@@ -22,9 +22,10 @@ RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, 
 typedef struct RtTasks RtTasks;
 typedef RtStatus (*RtTaskWork)(void *context, RtTasks *tasks, const void *task, RtError *error);
 
-/* Calls work(context, tasks, task) for each of the `count` values of `size` bytes at `first`, and for each that
- * is added meanwhile, on `threads` threads (0 = all processors), the caller among them, until none is left. A
- * status other than RT_OK stops the handing out; that of the first failure is returned, with its message. */
+/* Calls work(context, tasks, task) for each of the `count` values of `size` bytes at `first`, and for each
+ * that is added meanwhile, on `threads` threads (0 = all processors), the caller among them, until none is
+ * left. A status other than RT_OK stops the handing out; that of the first failure is returned, with its
+ * message. */
 RtStatus rt_parallel_tasks(const void *first, size_t count, size_t size, int threads, RtTaskWork work,
                            void *context, RtError *error);
 
