@@ -25,8 +25,8 @@ bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out) {
 enum { LOWER = 5, UPPER = 10, BOTH = 15, CUT_LOWER = 4, CUT_UPPER = 8 };
 
 /* Without a branch: starts and ends come as if at random. */
-static void set_unless(uint8_t *side, uint8_t to, bool not) {
-    uint8_t kept = (uint8_t)-not;
+static void set_unless(uint8_t *side, uint8_t to, bool not ) {
+    uint8_t kept = (uint8_t) - not ;
     *side = (uint8_t)((*side & kept) | (to & ~kept));
 }
 

@@ -277,7 +277,8 @@ RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *
     RtStatus status = build_top(&s, b, most_aside(&sharing, objects), sharing.limit, error);
     rt_kd_clear(b); /* the lists of the top are dealt */
     if (status == RT_OK)
-        status = rt_parallel_tasks(s.items, s.count, sizeof(Subtree *), threads, build_subtree, &sharing, error);
+        status =
+            rt_parallel_tasks(s.items, s.count, sizeof(Subtree *), threads, build_subtree, &sharing, error);
     *fits = status == RT_OK && all_fits(&s, b);
     if (*fits) status = join(&s, b->kd, threads, error);
     clear(&s);

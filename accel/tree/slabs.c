@@ -84,8 +84,7 @@ static void chop_triangle(const Slabs *self, int axis, const RtTriangle *triangl
                           RtBox4 *parts) {
     const float *plane = self->plane[axis];
     RtFour corner[3], along[3];
-    for (int k = 0; k < 3; k++)
-        corner[k] = (RtFour){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
+    for (int k = 0; k < 3; k++) corner[k] = (RtFour){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
     for (int k = 0; k < 3; k++) along[k] = corner[(k + 1) % 3] - corner[k];
     /* Of edge k in lane k. */
     RtFour from = {triangle->v[0].at[axis], triangle->v[1].at[axis], triangle->v[2].at[axis], 0};
