@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
+#include <assert.h>
 #include <string.h>
 
 typedef struct Subtree Subtree;
@@ -175,6 +176,7 @@ static void place_subtree(Joined *joined, Subtree *item, uint32_t at) {
 
 /* Where all goes: nodes are taken by pairs as their parents come up. */
 static void place(Joined *joined, const Subtrees *s, const RtKd *top, uint32_t node, uint32_t at) {
+    assert(s->of && s->upper);
     if (s->of[node] != NONE) {
         place_subtree(joined, s->items[s->of[node]], at);
         return;

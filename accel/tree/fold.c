@@ -47,7 +47,7 @@ static void weigh_top(Folding *f, uint32_t index, uint32_t depth, void *weight) 
         return;
     }
     const uint32_t *child = f->tree->nodes[index].child;
-    char *sides[2] = {f->waiting + 2 * depth * size, f->waiting + (2 * depth + 1) * size};
+    char *sides[2] = {f->waiting + (size_t)2 * depth * size, f->waiting + ((size_t)2 * depth + 1) * size};
     for (int s = 0; s < 2; s++) weigh_top(f, child[s], depth + 1, sides[s]);
     f->fold->unite(f->fold->context, index, (const void *const[2]){sides[0], sides[1]}, weight);
 }

@@ -16,9 +16,10 @@
 #include <stdlib.h>
 
 enum {
-    SHARES = 16,      /* a group of no more than such a part of what one thread has to do is not shared */
-    CHUNK = 1 << 13,  /* nor one of fewer references */
-    LARGE = 4 * CHUNK /* fewer in all are for one thread */
+    SHARES = 64,       /* a group of no more than such a part of what one thread has to do is not shared */
+    SMALL = 1 << 11,   /* nor one of no more references */
+    CHUNK = 1 << 13,   /* references of a chunk of the top */
+    LARGE = 4 * CHUNK, /* fewer in all are for one thread */
 };
 
 static_assert(sizeof(RtTreeRef) <= sizeof(RtTreeNode), "references fit into the room of the nodes");
@@ -293,9 +294,9 @@ RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int b
     bool one = workers == 1 || bins == 0 || count < LARGE;
     RtSubtreeBuilder builder = {tree, bins};
     Top top = {.b = &builder, .boxes = boxes, .count = count};
-    top.share_limit = one ? count : share > CHUNK ? share : CHUNK;
+    top.share_limit = one ? count : share > SMALL ? share : SMALL;
     top.top_limit = count / workers + count / workers / 2;
-    top.chunk_size = top.share_limit;
+    top.chunk_size = one ? count : CHUNK;
     top.row = one ? 0 : 1; /* so that they are in the first row as a rule when the top is done */
     bool enough = allocate(&top);
     top.rows[1] = (RtTreeRef *)tree->nodes;
