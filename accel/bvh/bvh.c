@@ -14,13 +14,12 @@
 #include "accel/mailbox.h"
 #include "accel/surface.h"
 #include "accel/tree/order.h"
+#include "accel/tree/recipe.h"
 #include "accel/tree/split.h"
 #include "base/memory.h"
 
-typedef enum Build { BINNED, SWEEP, LBVH, PLOC, SPATIAL } Build;
-
 #define PARAMS(X)                                                                                            \
-    X(PARAM_BUILD, "build", RT_CHOICE("binned", "binned|sweep|lbvh|ploc|spatial"),                           \
+    X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
       "SAH in bins; SAH at every centre; halves of Morton codes; nearest in Morton order; SAH in bins with " \
       "planes that cut objects",                                                                             \
       "Wald 2007")                                                                                           \
@@ -54,36 +53,27 @@ static void destroy(RtAccel *accel) {
     rt_free(accel);
 }
 
-static RtStatus make_tree(RtTree *tree, const RtBuild *what, RtError *error) {
-    const RtGeometry *geometry = &what->scene->geometry;
+static RtTreeRecipe recipe_of(const RtBuild *what) {
     const RtValue *values = what->values;
-    const RtBox *boxes = geometry->boxes;
-    uint32_t count = geometry->object_count, bits = (uint32_t)values[PARAM_BITS].i;
-    RtSpatial how = {.bins = (int)values[PARAM_BINS].i,
-                     .alpha = values[PARAM_ALPHA].f,
-                     .budget = values[PARAM_BUDGET].f,
-                     .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                     .traversal = values[PARAM_TRAVERSAL_COST].f,
-                     .limit = what->limit};
-    switch ((Build)values[PARAM_BUILD].choice) {
-    case BINNED: break;
-    case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
-    case LBVH: return rt_tree_lbvh(tree, boxes, count, bits, what->threads, error);
-    case PLOC:
-        return rt_tree_ploc(tree, boxes, count, bits, (uint32_t)values[PARAM_RADIUS].i, what->threads, error);
-    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, what->threads, error);
-    }
-    return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, what->threads, error);
+    return (RtTreeRecipe){.method = (RtTreeMethod)values[PARAM_BUILD].choice,
+                          .bits = (uint32_t)values[PARAM_BITS].i,
+                          .radius = (uint32_t)values[PARAM_RADIUS].i,
+                          .spatial = {.bins = (int)values[PARAM_BINS].i,
+                                      .alpha = values[PARAM_ALPHA].f,
+                                      .budget = values[PARAM_BUDGET].f,
+                                      .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                      .traversal = values[PARAM_TRAVERSAL_COST].f,
+                                      .limit = what->limit},
+                          .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
 static RtStatus fill(RtHierarchy *hierarchy, const RtBuild *what, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
+    RtTreeRecipe recipe = recipe_of(what);
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(make_tree(&tree, what, error));
-    uint32_t rounds = (uint32_t)what->values[PARAM_REINSERTION].i;
-    RtStatus status = rt_tree_reinsert(&tree, rounds, what->threads, error);
-    if (status == RT_OK) status = rt_hierarchy_lay_out(hierarchy, &tree, what->threads, error);
+    RT_TRY(rt_tree_make(&tree, geometry, &recipe, what->threads, error));
+    RtStatus status = rt_hierarchy_lay_out(hierarchy, &tree, what->threads, error);
     rt_tree_clear(&tree);
     return status;
 }

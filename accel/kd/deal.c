@@ -24,6 +24,12 @@ bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out) {
 /* sides[id]: bit c says that child c gets the object's events as they are, bit 2 + c that it lists it. */
 enum { LOWER = 5, UPPER = 10, BOTH = 15, CUT_LOWER = 4, CUT_UPPER = 8 };
 
+/* Without a branch: starts and ends come as if at random. */
+static void set_unless(uint8_t *side, uint8_t to, bool not ) {
+    uint8_t kept = (uint8_t) - not ;
+    *side = (uint8_t)((*side & kept) | (to & ~kept));
+}
+
 static void mark_sides(const RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit *split) {
     const RtKdEvent *events = b->events[split->axis] + cell->events[split->axis].from;
     const uint32_t *ids = b->ids + cell->ids.from;
@@ -36,9 +42,9 @@ static void mark_sides(const RtKdBuilder *b, const RtKdCell *cell, const RtKdSpl
         uint32_t type = rt_kd_event_type(event);
         uint8_t *side = &b->sides[rt_kd_event_object(event)];
         if (event.plane < split->plane) {
-            if (type != RT_KD_START) *side = LOWER;
+            set_unless(side, LOWER, type == RT_KD_START);
         } else if (event.plane > split->plane) {
-            if (type != RT_KD_END) *side = UPPER;
+            set_unless(side, UPPER, type == RT_KD_END);
         } else {
             *side = type == RT_KD_END ? LOWER : type == RT_KD_START ? UPPER : flat;
         }

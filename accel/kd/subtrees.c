@@ -1,33 +1,51 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Subtrees of a kd-tree on all threads. The top is built as on one thread, but a cell of few enough objects
- * is set aside, with a copy of its lists, where it comes up; then each such cell is built on its own; then
- * all is written into one tree in the order in which one thread would have made it. */
+ * is set aside, with a copy of its lists, where it comes up; then each such cell is built on its own, in the
+ * same way while it is large; then all is written into one tree in the order in which one thread would have
+ * made it. */
 #include "accel/kd/kd.h"
 
 #include "base/memory.h"
 #include "base/parallel.h"
 
+#include <assert.h>
 #include <string.h>
 
-/* A cell that was set aside, and the tree below it, of which it is node 0. */
-typedef struct Subtree {
-    RtKd kd;
-    RtKdLedger ledger;
-    RtKdBuilder builder;
-    uint32_t node;                   /* of the top */
-    uint32_t root, nodes_at, ids_at; /* where its root, its other nodes and its ids go */
-} Subtree;
+typedef struct Subtree Subtree;
 
+/* Cells of a tree that were set aside. */
 typedef struct Subtrees {
     Subtree **items; /* [count] */
-    uint32_t *of;    /* [top->node_count] the subtree of a node of the top, or NONE */
-    bool *upper;     /* [top->node_count] the upper child comes first */
-    RtKdNode *nodes; /* of the whole tree */
-    uint32_t *ids;
-    uint32_t count, capacity, of_capacity, upper_capacity, node_count, id_count;
+    uint32_t *of;    /* [node_count of the tree above] the subtree of a node, or NONE */
+    bool *upper;     /* [the same] the upper child comes first */
+    uint32_t count, capacity, of_capacity, upper_capacity;
 } Subtrees;
 
 #define NONE UINT32_MAX
+
+/* A cell that was set aside, and the tree below it, of which it is node 0. */
+struct Subtree {
+    RtKd kd;
+    RtKdLedger ledger;
+    RtKdBuilder builder;
+    Subtrees below;
+    uint32_t objects;
+    uint32_t root, nodes_at, ids_at; /* where its root, its other nodes and its ids go */
+};
+
+/* How work is shared. */
+typedef struct Sharing {
+    uint32_t most;  /* objects of a cell that is no longer shared */
+    uint64_t limit; /* bytes of each subtree */
+} Sharing;
+
+/* The whole tree. */
+typedef struct Joined {
+    RtKdNode *nodes;
+    uint32_t *ids;
+    Subtree **whole; /* [whole_count] subtrees of which nothing was set aside */
+    uint32_t node_count, id_count, whole_count;
+} Joined;
 
 /* ---- the top ---- */
 
@@ -48,7 +66,7 @@ static RtStatus copy_lists(const RtKdBuilder *from, RtKdCell *cell, RtKdBuilder 
     return RT_OK;
 }
 
-static RtStatus set_aside(Subtrees *s, const RtKdBuilder *b, RtKdCell cell, int threads, RtError *error) {
+static RtStatus set_aside(Subtrees *s, const RtKdBuilder *b, RtKdCell cell, uint64_t limit, RtError *error) {
     RT_TRY(rt_reserve(&s->items, &s->capacity, (uint64_t)s->count + 1, sizeof(Subtree *), error));
     Subtree *item = s->items[s->count] = rt_alloc(1, sizeof(Subtree));
     if (!item) return rt_fail_memory(error, "a subtree of a kd-tree", sizeof(Subtree));
@@ -57,17 +75,18 @@ static RtStatus set_aside(Subtrees *s, const RtKdBuilder *b, RtKdCell cell, int 
     item->kd.nodes = NULL;
     item->kd.ids = NULL;
     item->kd.node_count = item->kd.id_count = 0;
-    item->ledger.limit = b->ledger->limit / (uint64_t)rt_thread_count(threads);
+    item->ledger.limit = limit;
     item->builder.kd = &item->kd;
     item->builder.ledger = &item->ledger;
-    item->node = cell.node;
+    item->objects = cell.ids.count;
     RT_TRY(copy_lists(b, &cell, &item->builder, error));
     cell.node = 0;
     item->builder.pending[item->builder.pending_count++] = cell;
     return RT_OK;
 }
 
-static RtStatus build_top(Subtrees *s, RtKdBuilder *b, uint32_t most, int threads, RtError *error) {
+/* Sets aside the cells of no more than `most` objects, with a limit of bytes each. */
+static RtStatus build_top(Subtrees *s, RtKdBuilder *b, uint32_t most, uint64_t limit, RtError *error) {
     while (b->pending_count > 0 && b->ledger->estimate == 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         uint32_t waiting = b->pending_count;
@@ -75,7 +94,7 @@ static RtStatus build_top(Subtrees *s, RtKdBuilder *b, uint32_t most, int thread
         RT_TRY(rt_reserve(&s->upper, &s->upper_capacity, b->kd->node_count, sizeof(bool), error));
         s->of[cell.node] = NONE;
         if (cell.ids.count <= most) {
-            RT_TRY(set_aside(s, b, cell, threads, error));
+            RT_TRY(set_aside(s, b, cell, limit, error));
             continue;
         }
         RT_TRY(rt_kd_divide(b, &cell, error));
@@ -87,16 +106,33 @@ static RtStatus build_top(Subtrees *s, RtKdBuilder *b, uint32_t most, int thread
 
 /* ---- the subtrees ---- */
 
-static RtStatus build_subtree(void *context, size_t index, int thread, RtError *error) {
-    const Subtrees *s = context;
-    Subtree *item = s->items[index];
+/* Large ones set aside what they are split into, for whoever is free. */
+static uint32_t most_aside(const Sharing *sharing, uint32_t objects) {
+    uint32_t part = objects - objects / 4;
+    return part > sharing->most ? part : sharing->most;
+}
+
+static RtStatus add_tasks(RtTasks *tasks, const Subtrees *s, RtError *error) {
+    for (uint32_t i = 0; i < s->count; i++) {
+        if (!rt_tasks_add(tasks, &s->items[i]))
+            return rt_fail_memory(error, "a subtree of a kd-tree", sizeof(Subtree *));
+    }
+    return RT_OK;
+}
+
+static RtStatus build_subtree(void *context, RtTasks *tasks, const void *task, RtError *error) {
+    const Sharing *sharing = context;
+    Subtree *item = *(Subtree *const *)task;
     RtKdBuilder *b = &item->builder;
     uint32_t objects = item->kd.base.scene->geometry.object_count;
-    (void)thread;
     b->sides = rt_alloc_unset(objects, 1);
     if (!b->sides) return rt_fail_memory(error, "building a kd-tree", objects);
     RT_TRY(rt_reserve(&item->kd.nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
     item->kd.node_count = 1;
+    if (item->objects > sharing->most) {
+        RT_TRY(build_top(&item->below, b, most_aside(sharing, item->objects), sharing->limit, error));
+        RT_TRY(add_tasks(tasks, &item->below, error));
+    }
     while (b->pending_count > 0 && item->ledger.estimate == 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(rt_kd_divide(b, &cell, error));
@@ -105,51 +141,69 @@ static RtStatus build_subtree(void *context, size_t index, int thread, RtError *
     return RT_OK;
 }
 
+/* Adds what the subtrees take, and whether none of them was given up. */
+static void add_up(const Subtrees *s, uint64_t *bytes, bool *fits) {
+    for (uint32_t i = 0; i < s->count; i++) {
+        *bytes += s->items[i]->ledger.bytes;
+        *fits &= s->items[i]->ledger.estimate == 0;
+        add_up(&s->items[i]->below, bytes, fits);
+    }
+}
+
 static bool all_fits(const Subtrees *s, const RtKdBuilder *b) {
     uint64_t bytes = b->ledger->bytes;
     bool fits = b->ledger->estimate == 0;
-    for (uint32_t i = 0; i < s->count; i++) {
-        bytes += s->items[i]->ledger.bytes;
-        fits &= s->items[i]->ledger.estimate == 0;
-    }
+    add_up(s, &bytes, &fits);
     return fits && bytes <= b->ledger->limit;
 }
 
 /* ---- one tree ---- */
 
+static void place(Joined *joined, const Subtrees *s, const RtKd *top, uint32_t node, uint32_t at);
+
+static void place_subtree(Joined *joined, Subtree *item, uint32_t at) {
+    if (item->below.count > 0) {
+        place(joined, &item->below, &item->kd, 0, at);
+        return;
+    }
+    item->root = at;
+    item->nodes_at = joined->node_count;
+    item->ids_at = joined->id_count;
+    joined->node_count += item->kd.node_count - 1;
+    joined->id_count += item->kd.id_count;
+    joined->whole[joined->whole_count++] = item;
+}
+
 /* Where all goes: nodes are taken by pairs as their parents come up. */
-static void place(Subtrees *s, const RtKd *top, uint32_t node, uint32_t at) {
+static void place(Joined *joined, const Subtrees *s, const RtKd *top, uint32_t node, uint32_t at) {
+    assert(s->of && s->upper);
     if (s->of[node] != NONE) {
-        Subtree *item = s->items[s->of[node]];
-        item->root = at;
-        item->nodes_at = s->node_count;
-        item->ids_at = s->id_count;
-        s->node_count += item->kd.node_count - 1;
-        s->id_count += item->kd.id_count;
+        place_subtree(joined, s->items[s->of[node]], at);
         return;
     }
     RtKdNode made = top->nodes[node];
     if (rt_kd_is_leaf(&made)) {
         uint32_t length = rt_kd_length(&made);
-        if (length > 0) memcpy(s->ids + s->id_count, top->ids + made.first, length * sizeof(uint32_t));
-        made.first = s->id_count;
-        s->id_count += length;
-        s->nodes[at] = made;
+        if (length > 0)
+            memcpy(joined->ids + joined->id_count, top->ids + made.first, length * sizeof(uint32_t));
+        made.first = joined->id_count;
+        joined->id_count += length;
+        joined->nodes[at] = made;
         return;
     }
-    uint32_t child = rt_kd_child(&made), pair = s->node_count;
+    uint32_t child = rt_kd_child(&made), pair = joined->node_count;
     made.link = pair << 2 | rt_kd_axis(&made);
-    s->nodes[at] = made;
-    s->node_count += 2;
+    joined->nodes[at] = made;
+    joined->node_count += 2;
     for (uint32_t c = 0; c < 2; c++) {
         uint32_t next = c ^ (uint32_t)s->upper[node];
-        place(s, top, child + next, pair + next);
+        place(joined, s, top, child + next, pair + next);
     }
 }
 
 static RtStatus copy_subtree(void *context, size_t index, int thread, RtError *error) {
-    const Subtrees *s = context;
-    const Subtree *item = s->items[index];
+    const Joined *joined = context;
+    const Subtree *item = joined->whole[index];
     (void)thread;
     (void)error;
     for (uint32_t i = 0; i < item->kd.node_count; i++) {
@@ -158,43 +212,56 @@ static RtStatus copy_subtree(void *context, size_t index, int thread, RtError *e
             node.first += item->ids_at;
         else
             node.link = (rt_kd_child(&node) - 1 + item->nodes_at) << 2 | rt_kd_axis(&node);
-        s->nodes[i == 0 ? item->root : item->nodes_at + i - 1] = node;
+        joined->nodes[i == 0 ? item->root : item->nodes_at + i - 1] = node;
     }
     if (item->kd.id_count > 0)
-        memcpy(s->ids + item->ids_at, item->kd.ids, item->kd.id_count * sizeof(uint32_t));
+        memcpy(joined->ids + item->ids_at, item->kd.ids, item->kd.id_count * sizeof(uint32_t));
     return RT_OK;
 }
 
-static RtStatus join(Subtrees *s, RtKd *kd, int threads, RtError *error) {
-    uint64_t nodes = kd->node_count, ids = kd->id_count;
+/* Adds the numbers of nodes, ids and subtrees. */
+static void count(const Subtrees *s, uint64_t *nodes, uint64_t *ids, uint32_t *subtrees) {
+    *subtrees += s->count;
     for (uint32_t i = 0; i < s->count; i++) {
-        nodes += s->items[i]->kd.node_count - 1;
-        ids += s->items[i]->kd.id_count;
+        *nodes += s->items[i]->kd.node_count - 1;
+        *ids += s->items[i]->kd.id_count;
+        count(&s->items[i]->below, nodes, ids, subtrees);
     }
+}
+
+static RtStatus join(const Subtrees *s, RtKd *kd, int threads, RtError *error) {
+    uint64_t nodes = kd->node_count, ids = kd->id_count;
+    uint32_t subtrees = 0;
+    count(s, &nodes, &ids, &subtrees);
     if (nodes > UINT32_MAX || ids > UINT32_MAX)
         return rt_fail(error, RT_BAD_INPUT, "a kd-tree holds no more than %u nodes and entries of lists",
                        UINT32_MAX);
-    s->nodes = rt_alloc_unset((size_t)nodes, sizeof(RtKdNode));
-    s->ids = rt_alloc_unset((size_t)ids, sizeof(uint32_t));
-    if (!s->nodes || !s->ids)
-        return rt_fail_memory(error, "the nodes of a kd-tree",
-                              (size_t)nodes * sizeof(RtKdNode) + (size_t)ids * sizeof(uint32_t));
-    s->node_count = 1;
-    place(s, kd, 0, 0);
-    RT_TRY(rt_parallel_for(s->count, threads, copy_subtree, s, error));
-    rt_free(kd->nodes);
-    rt_free(kd->ids);
-    kd->nodes = s->nodes;
-    kd->ids = s->ids;
-    kd->node_count = s->node_count;
-    kd->id_count = s->id_count;
-    s->nodes = NULL;
-    s->ids = NULL;
+    Joined joined = {.nodes = rt_alloc_unset((size_t)nodes, sizeof(RtKdNode)),
+                     .ids = rt_alloc_unset((size_t)ids, sizeof(uint32_t)),
+                     .whole = rt_alloc(subtrees, sizeof(Subtree *)),
+                     .node_count = 1};
+    RtStatus status = RT_OK;
+    if (joined.nodes && joined.ids && joined.whole) {
+        place(&joined, s, kd, 0, 0);
+        status = rt_parallel_for(joined.whole_count, threads, copy_subtree, &joined, error);
+    } else {
+        status = rt_fail_memory(error, "the nodes of a kd-tree",
+                                (size_t)nodes * sizeof(RtKdNode) + (size_t)ids * sizeof(uint32_t));
+    }
+    rt_free(joined.whole);
+    rt_free(status == RT_OK ? kd->nodes : joined.nodes);
+    rt_free(status == RT_OK ? kd->ids : joined.ids);
+    if (status != RT_OK) return status;
+    kd->nodes = joined.nodes;
+    kd->ids = joined.ids;
+    kd->node_count = joined.node_count;
+    kd->id_count = joined.id_count;
     return RT_OK;
 }
 
 static void clear(Subtrees *s) {
     for (uint32_t i = 0; i < s->count; i++) {
+        clear(&s->items[i]->below);
         rt_kd_clear(&s->items[i]->builder);
         rt_free(s->items[i]->kd.nodes);
         rt_free(s->items[i]->kd.ids);
@@ -203,15 +270,17 @@ static void clear(Subtrees *s) {
     rt_free(s->items);
     rt_free(s->of);
     rt_free(s->upper);
-    rt_free(s->nodes);
-    rt_free(s->ids);
 }
 
 RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *fits, RtError *error) {
+    Sharing sharing = {most, b->ledger->limit / (uint64_t)rt_thread_count(threads)};
     Subtrees s = {.items = NULL};
-    RtStatus status = build_top(&s, b, most, threads, error);
+    uint32_t objects = b->kd->base.scene->geometry.object_count;
+    RtStatus status = build_top(&s, b, most_aside(&sharing, objects), sharing.limit, error);
     rt_kd_clear(b); /* the lists of the top are dealt */
-    if (status == RT_OK) status = rt_parallel_for(s.count, threads, build_subtree, &s, error);
+    if (status == RT_OK)
+        status =
+            rt_parallel_tasks(s.items, s.count, sizeof(Subtree *), threads, build_subtree, &sharing, error);
     *fits = status == RT_OK && all_fits(&s, b);
     if (*fits) status = join(&s, b->kd, threads, error);
     clear(&s);

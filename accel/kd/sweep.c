@@ -14,8 +14,8 @@ typedef struct Sweep {
     RtKdSplit best;
 } Sweep;
 
-static inline __attribute__((always_inline)) void consider(Sweep *s, float plane, double below, double above,
-                                                           bool planar_upper) {
+static inline __attribute__((always_inline)) void consider(Sweep *s, float plane, int32_t below,
+                                                           int32_t above, bool planar_upper) {
     double lower = ((double)plane - s->lo) * s->across + s->face;
     double upper = (s->hi - (double)plane) * s->across + s->face;
     double cost = s->visit + (below * lower + above * upper);
@@ -28,7 +28,7 @@ static inline __attribute__((always_inline)) void consider(Sweep *s, float plane
 
 /* `planars` parts lie in the plane; `below` and `above` others. On a face of the cell only the plane's own
  * cell is cut off, and everything else is on the other side. */
-static void consider_planars(Sweep *s, float plane, double below, double above, double planars) {
+static void consider_planars(Sweep *s, float plane, int32_t below, int32_t above, int32_t planars) {
     if ((double)plane == s->lo) {
         consider(s, plane, planars, above, false);
     } else if ((double)plane == s->hi) {
@@ -40,14 +40,15 @@ static void consider_planars(Sweep *s, float plane, double below, double above, 
 }
 
 /* Each end is passed before its plane is considered, each start after. Of several at one plane the last end
- * and the first start see all of them, and the others see more objects and cost no less. */
+ * and the first start see all of them, and the others see more objects and cost no less. Starts and ends come
+ * as if at random: they are counted without a branch. */
 static void sweep(Sweep *s, const RtKdEvent *events, uint32_t count, uint32_t objects) {
-    double below = objects, above = objects;
+    int32_t below = (int32_t)objects, above = (int32_t)objects;
     for (uint32_t i = 0; i < count; i++) below -= events[i].what >= RT_KD_PLANAR;
     for (uint32_t i = 0; i < count; i++) {
         RtKdEvent event = events[i];
         if (rt_kd_event_type(event) == RT_KD_PLANAR) {
-            uint32_t planars = 1;
+            int32_t planars = 1;
             while (i + 1 < count && events[i + 1].plane == event.plane &&
                    rt_kd_event_type(events[i + 1]) == RT_KD_PLANAR) {
                 planars++;

@@ -9,7 +9,10 @@
 
 #include "base/box4.h"
 
-enum { RT_MAX_BINS = 64 };
+enum {
+    RT_MAX_BINS = 64,
+    RT_REFS_AHEAD = 32 /* so far ahead references that are read in a row are fetched */
+};
 
 typedef struct RtTreeRef {
     _Alignas(32) RtBox box; /* so that none lies across two lines of the cache */

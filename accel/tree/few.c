@@ -67,6 +67,10 @@ RtSplit rt_few_split(const RtFew *self, uint32_t begin, uint32_t count) {
 
 void rt_few_part(RtFew *self, uint32_t begin, uint32_t count, const RtSplit *split) {
     uint64_t is_left = 0;
+    if (count == 2) { /* of one alone the first order will do */
+        memcpy(self->order[0] + begin, self->order[split->axis] + begin, 2);
+        return;
+    }
     for (uint32_t i = 0; i < split->left; i++) is_left |= UINT64_C(1) << self->order[split->axis][begin + i];
     for (int axis = 0; axis < 3; axis++) {
         uint8_t *order = self->order[axis] + begin, right[RT_MAX_BINS];

@@ -19,7 +19,7 @@ void rt_few_init(RtFew *self, const RtTreeRef *refs, uint32_t count);
  * centres coincide. The left side is the first `left` in the order of the split's axis. */
 RtSplit rt_few_split(const RtFew *self, uint32_t begin, uint32_t count);
 
-/* Parts them: the left side comes first along all axes. */
+/* Parts them: the left side comes first along all axes; along the first, where there are but two. */
 void rt_few_part(RtFew *self, uint32_t begin, uint32_t count, const RtSplit *split);
 
 #endif

@@ -2,20 +2,16 @@
 /* From a binary tree of references to the nodes that are traced: which subtrees become leaves, which nodes
  * are opened into their parent. */
 #include "accel/tree/hierarchy.h"
-
+#include "accel/tree/fold.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
 #include <assert.h>
 
-/* The top of the tree goes so far down; what hangs below is for one thread each. */
-enum { TOP_LEVELS = 9, MAX_PARTS = 1 << TOP_LEVELS };
-
 /* What a subtree holds, and what it costs to trace: area times object tests and visits of inner nodes. */
 typedef struct Weight {
     uint32_t references, leaves;
     double cost;
-    bool too_deep; /* it reaches below RT_TREE_MAX_DEPTH; the rest is not known then */
 } Weight;
 
 /* Nodes and ids that are taken. */
@@ -23,11 +19,9 @@ typedef struct Taken {
     uint32_t nodes, ids;
 } Taken;
 
-/* A subtree below the top. */
+/* Where a part of the tree goes. */
 typedef struct Part {
-    uint32_t index, levels; /* its root; and how many more there may be below it */
-    Weight weight;
-    uint32_t node; /* where its root is placed; unset if it lies in a leaf */
+    uint32_t node; /* its root; unset if it lies in a leaf */
     Taken taken;   /* what is taken before it */
     bool placed;
 } Part;
@@ -35,72 +29,48 @@ typedef struct Part {
 typedef struct Layout {
     RtHierarchy *self;
     const RtTree *tree;
-    bool *leaf;  /* [tree->used] by node of the tree: it becomes a leaf, unless it lies below one */
-    Part *parts; /* [part_count] from left to right */
-    uint32_t part_count, next;
+    bool *leaf; /* [tree->used] by node of the tree: it becomes a leaf, unless it lies below one */
+    RtFoldParts weighed;
+    Part *parts; /* [weighed.count] */
+    uint32_t next;
 } Layout;
 
 static Weight weight_of_leaf(Layout *layout, uint32_t index) {
     layout->leaf[index] = true;
-    return (Weight){1, 1, rt_box_half_area(layout->tree->nodes[index].box), false};
+    return (Weight){1, 1, rt_box_half_area(layout->tree->nodes[index].box)};
 }
 
 /* A subtree of few enough references becomes a leaf where that costs no more. */
-static Weight weight_of_both(Layout *layout, uint32_t index, Weight left, Weight right) {
+static Weight weight_of_both(Layout *layout, uint32_t index, const Weight *left, const Weight *right) {
     double area = rt_box_half_area(layout->tree->nodes[index].box);
-    Weight inner = {left.references + right.references, left.leaves + right.leaves,
-                    layout->self->traversal_cost * area + left.cost + right.cost,
-                    left.too_deep || right.too_deep};
-    Weight leaf = {inner.references, 1, area * inner.references, inner.too_deep};
+    Weight inner = {left->references + right->references, left->leaves + right->leaves,
+                    layout->self->traversal_cost * area + left->cost + right->cost};
+    Weight leaf = {inner.references, 1, area * inner.references};
     bool better = leaf.references <= layout->self->leaf_limit && leaf.cost <= inner.cost;
     layout->leaf[index] = better;
     return better ? leaf : inner;
 }
 
-static Weight weigh(Layout *layout, uint32_t index, uint32_t levels) {
-    if (rt_tree_is_leaf(layout->tree, index)) return weight_of_leaf(layout, index);
-    if (levels == 0) return (Weight){.too_deep = true};
-    const uint32_t *child = layout->tree->nodes[index].child;
-    Weight left = weigh(layout, child[0], levels - 1), right = weigh(layout, child[1], levels - 1);
-    return weight_of_both(layout, index, left, right);
-}
-
-static RtStatus weigh_part(void *context, size_t item, int thread, RtError *error) {
-    Layout *layout = context;
-    Part *part = &layout->parts[item];
-    (void)thread;
-    (void)error;
-    part->weight = weigh(layout, part->index, part->levels);
-    return RT_OK;
-}
-
-static bool is_top(const Layout *layout, uint32_t index, uint32_t depth) {
-    return depth < TOP_LEVELS && !rt_tree_is_leaf(layout->tree, index);
-}
-
-static void list_parts(Layout *layout, uint32_t index, uint32_t depth) {
-    const uint32_t *child = layout->tree->nodes[index].child;
-    if (!is_top(layout, index, depth)) {
-        layout->parts[layout->part_count++] = (Part){.index = index, .levels = RT_TREE_MAX_DEPTH - depth};
-        return;
+static bool weigh(Layout *layout, uint32_t index, uint32_t levels, Weight *weight) {
+    if (rt_tree_is_leaf(layout->tree, index)) {
+        *weight = weight_of_leaf(layout, index);
+        return true;
     }
-    for (int s = 0; s < 2; s++) list_parts(layout, child[s], depth + 1);
-}
-
-/* Of the parts in turn. */
-static Weight weigh_top(Layout *layout, uint32_t index, uint32_t depth) {
-    if (!is_top(layout, index, depth)) return layout->parts[layout->next++].weight;
     const uint32_t *child = layout->tree->nodes[index].child;
-    Weight left = weigh_top(layout, child[0], depth + 1), right = weigh_top(layout, child[1], depth + 1);
-    return weight_of_both(layout, index, left, right);
+    Weight left, right;
+    if (levels == 0 || !weigh(layout, child[0], levels - 1, &left) ||
+        !weigh(layout, child[1], levels - 1, &right))
+        return false;
+    *weight = weight_of_both(layout, index, &left, &right);
+    return true;
 }
 
-static RtStatus weigh_all(Layout *layout, int threads, Weight *whole, RtError *error) {
-    layout->part_count = layout->next = 0;
-    list_parts(layout, layout->tree->root, 0);
-    RT_TRY(rt_parallel_for(layout->part_count, threads, weigh_part, layout, error));
-    *whole = weigh_top(layout, layout->tree->root, 0);
-    return RT_OK;
+static bool weigh_part(void *context, uint32_t index, uint32_t levels, void *weight) {
+    return weigh(context, index, levels, weight);
+}
+
+static void weigh_node(void *context, uint32_t index, const void *const sides[2], void *weight) {
+    *(Weight *)weight = weight_of_both(context, index, sides[0], sides[1]);
 }
 
 /* The children of a wide node: the largest that is no leaf is opened in its place, until there are
@@ -170,14 +140,14 @@ static RtStatus place_part(void *context, size_t item, int thread, RtError *erro
     Taken taken = part->taken;
     (void)thread;
     (void)error;
-    if (part->placed) place(layout, part->node, part->index, &taken);
+    if (part->placed) place(layout, part->node, layout->weighed.index[item], &taken);
     return RT_OK;
 }
 
 /* Passes by the parts of a subtree. */
 static void skip_parts(Layout *layout, uint32_t index, uint32_t depth) {
     const uint32_t *child = layout->tree->nodes[index].child;
-    if (!is_top(layout, index, depth)) {
+    if (!rt_fold_is_top(layout->tree, index, depth)) {
         layout->next++;
         return;
     }
@@ -186,13 +156,14 @@ static void skip_parts(Layout *layout, uint32_t index, uint32_t depth) {
 
 /* Of pairs, none of them divided: what the parts take is known before. */
 static void place_top(Layout *layout, uint32_t node_index, uint32_t index, uint32_t depth, Taken *taken) {
-    if (!is_top(layout, index, depth)) {
+    if (!rt_fold_is_top(layout->tree, index, depth)) {
+        const Weight *weight = (const Weight *)(const void *)layout->weighed.weights + layout->next;
         Part *part = &layout->parts[layout->next++];
         part->node = node_index;
         part->taken = *taken;
         part->placed = true;
-        taken->nodes += 2 * part->weight.leaves - 2;
-        taken->ids += part->weight.references;
+        taken->nodes += 2 * weight->leaves - 2;
+        taken->ids += weight->references;
         return;
     }
     const RtNode *node = &layout->self->nodes[node_index];
@@ -212,9 +183,8 @@ static RtStatus place_all(Layout *layout, int threads, RtError *error) {
     if (self->width > 2 || self->divided) {
         place(layout, 0, root, &taken);
     } else {
-        layout->next = 0;
         place_top(layout, 0, root, 0, &taken);
-        RT_TRY(rt_parallel_for(layout->part_count, threads, place_part, layout, error));
+        RT_TRY(rt_parallel_for(layout->weighed.count, threads, place_part, layout, error));
     }
     self->node_count = taken.nodes;
     self->id_count = taken.ids;
@@ -223,12 +193,9 @@ static RtStatus place_all(Layout *layout, int threads, RtError *error) {
 
 static RtStatus lay_out(Layout *layout, RtTree *tree, int threads, RtError *error) {
     RtHierarchy *self = layout->self;
+    RtFold fold = {sizeof(Weight), weigh_part, weigh_node, layout};
     Weight whole;
-    RT_TRY(weigh_all(layout, threads, &whole, error));
-    if (whole.too_deep) {
-        RT_TRY(rt_tree_limit_depth(tree, error));
-        RT_TRY(weigh_all(layout, threads, &whole, error));
-    }
+    RT_TRY(rt_tree_fold(tree, &fold, threads, &layout->weighed, &whole, error));
     size_t most = 2 * (size_t)whole.leaves - 1;
     self->nodes = rt_alloc_unset(most, sizeof(RtNode));
     self->ids = rt_alloc_unset(whole.references, sizeof(uint32_t));
@@ -243,12 +210,13 @@ RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtEr
     Layout layout = {.self = self,
                      .tree = tree,
                      .leaf = rt_alloc_unset(tree->used, sizeof(bool)),
-                     .parts = rt_alloc(MAX_PARTS, sizeof(Part))};
+                     .parts = rt_alloc(RT_FOLD_MAX_PARTS, sizeof(Part))};
     RtStatus status = layout.leaf && layout.parts
                           ? lay_out(&layout, tree, threads, error)
                           : rt_fail_memory(error, "the leaves of a hierarchy", tree->used * sizeof(bool));
     rt_free(layout.leaf);
     rt_free(layout.parts);
+    rt_fold_parts_clear(&layout.weighed);
     if (status != RT_OK) rt_hierarchy_clear(self);
     return status;
 }

@@ -169,29 +169,41 @@ static RtStatus run_round(Rounds *r, uint32_t round, int threads, RtError *error
     return RT_OK;
 }
 
-/* Neighbours in the row are neighbours in memory, as far as can be. */
-static RtStatus init_in_order(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, int threads,
-                              RtError *error) {
-    RtKeyed *order = rt_order_morton(boxes, count, bits, threads);
-    if (!order) return rt_fail_memory(error, "Morton codes", 2 * (size_t)count * sizeof(RtKeyed));
-    RtStatus status = rt_tree_init(tree, count, error);
-    for (uint32_t i = 0; status == RT_OK && i < count; i++) {
-        uint32_t id = order[i].id;
-        rt_tree_set_leaf(tree, rt_tree_take(tree), boxes[id], id);
+/* What rounds begin with. Neighbours in the row are neighbours in memory, as far as can be. */
+typedef struct Start {
+    const Rounds *rounds;
+    const RtKeyed *order;
+    const RtBox *boxes;
+} Start;
+
+static RtStatus set_leaves(void *context, size_t chunk, int thread, RtError *error) {
+    const Start *start = context;
+    const Rounds *r = start->rounds;
+    (void)thread;
+    (void)error;
+    for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
+        uint32_t id = start->order[i].id;
+        rt_tree_set_leaf(r->tree, i, start->boxes[id], id);
+        r->row[i] = (Cluster){rt_box4_load(&start->boxes[id]), i};
     }
-    rt_free(order);
-    return status;
+    return RT_OK;
 }
 
-static RtStatus run_rounds(Rounds *r, int threads, RtError *error) {
-    for (uint32_t i = 0; i < r->count; i++) r->row[i] = (Cluster){rt_box4_load(&r->tree->nodes[i].box), i};
-    for (uint32_t round = 0; r->count > 1; round++) RT_TRY(run_round(r, round, threads, error));
-    return RT_OK;
+static RtStatus run_rounds(Rounds *r, const RtBox *boxes, uint32_t bits, int threads, RtError *error) {
+    RtKeyed *order = rt_order_morton(boxes, r->count, bits, threads);
+    if (!order) return rt_fail_memory(error, "Morton codes", 2 * (size_t)r->count * sizeof(RtKeyed));
+    Start start = {r, order, boxes};
+    RtStatus status = rt_parallel_for((r->count + CHUNK - 1) / CHUNK, threads, set_leaves, &start, error);
+    rt_free(order);
+    r->tree->used = r->count;
+    for (uint32_t round = 0; status == RT_OK && r->count > 1; round++)
+        status = run_round(r, round, threads, error);
+    return status;
 }
 
 RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t bits, uint32_t radius,
                       int threads, RtError *error) {
-    RT_TRY(init_in_order(tree, boxes, count, bits, threads, error));
+    RT_TRY(rt_tree_init(tree, count, error));
     Rounds r = {tree,
                 rt_alloc_unset(count, sizeof(Cluster)),
                 rt_alloc_unset(count, sizeof(Cluster)),
@@ -201,7 +213,7 @@ RtStatus rt_tree_ploc(RtTree *tree, const RtBox *boxes, uint32_t count, uint32_t
                 count,
                 radius};
     bool enough = r.row && r.next && r.distance && r.nearest && r.left;
-    RtStatus status = enough ? run_rounds(&r, threads, error)
+    RtStatus status = enough ? run_rounds(&r, boxes, bits, threads, error)
                              : rt_fail_memory(error, "a row of clusters", (size_t)count * sizeof(Cluster));
     rt_free(r.row);
     rt_free(r.next);

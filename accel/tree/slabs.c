@@ -66,30 +66,43 @@ static bool is_empty(RtBox4 box) {
     return (rt_four_at_least(box.hi, box.lo) & 7) != 7;
 }
 
+/* -INFINITY in the lanes where `held` is true, which lets a point through below, INFINITY elsewhere. */
+static RtFour gate_of(RtFourBits held) {
+    return rt_four_pick(held, rt_four_all(INFINITY), rt_four_all(-INFINITY));
+}
+
+/* Adds a point, or nothing where the gate is INFINITY, without a branch. */
+static RtBox4 add_gated(RtBox4 box, RtFour point, float gate) {
+    RtFour off = rt_four_all(gate);
+    return (RtBox4){rt_four_min(box.lo, rt_four_max(point, off)),
+                    rt_four_max(box.hi, rt_four_min(point, -off))};
+}
+
 /* To parts[first..last] what of a triangle is in each slab: its corners there, and where its edges meet the
- * planes. */
+ * planes. Which those are is as good as random: no branch hangs on it. */
 static void chop_triangle(const Slabs *self, int axis, const RtTriangle *triangle, int first, int last,
                           RtBox4 *parts) {
     const float *plane = self->plane[axis];
-    RtFour v[3];
-    for (int i = first; i <= last; i++) parts[i] = rt_box4_empty();
-    for (int k = 0; k < 3; k++) {
-        v[k] = (RtFour){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
-        float x = triangle->v[k].at[axis];
-        int at = first;
-        while (at < last && x >= plane[at + 1]) at++;
-        parts[at] = rt_box4_add_point(parts[at], v[k]);
-    }
-    for (int k = 0; k < 3; k++) {
-        RtFour from = v[k], along = v[(k + 1) % 3] - from;
-        float a = triangle->v[k].at[axis], b = triangle->v[(k + 1) % 3].at[axis];
-        float low = rt_minf(a, b), high = rt_maxf(a, b), inverse = 1 / (b - a);
-        for (int i = first + 1; i <= last; i++) {
-            if (!(low < plane[i] && plane[i] <= high)) continue;
-            RtFour point = from + along * rt_four_all((plane[i] - a) * inverse);
-            parts[i - 1] = rt_box4_add_point(parts[i - 1], point);
-            parts[i] = rt_box4_add_point(parts[i], point);
-        }
+    RtFour corner[3], along[3];
+    for (int k = 0; k < 3; k++) corner[k] = (RtFour){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
+    for (int k = 0; k < 3; k++) along[k] = corner[(k + 1) % 3] - corner[k];
+    /* Of edge k in lane k. */
+    RtFour from = {triangle->v[0].at[axis], triangle->v[1].at[axis], triangle->v[2].at[axis], 0};
+    RtFour to = __builtin_shufflevector(from, from, 1, 2, 0, 3);
+    RtFour low = rt_four_min(from, to), high = rt_four_max(from, to), inverse = rt_four_all(1) / (to - from);
+    RtBox4 below = rt_box4_empty(); /* what meets the plane below the slab */
+    RtFour lower = rt_four_all(-INFINITY);
+    for (int i = first; i <= last; i++) {
+        RtFour upper = rt_four_all(i < last ? plane[i + 1] : INFINITY);
+        RtFour here = gate_of((from >= lower) & (from < upper)), at = (upper - from) * inverse;
+        RtFour meets = gate_of((low < upper) & (upper <= high));
+        RtBox4 above = rt_box4_empty();
+        for (int k = 0; k < 3; k++) below = add_gated(below, corner[k], here[k]);
+        for (int k = 0; k < 3 && i < last; k++)
+            above = add_gated(above, corner[k] + along[k] * rt_four_all(at[k]), meets[k]);
+        parts[i] = rt_box4_union(below, above);
+        below = above;
+        lower = upper;
     }
 }
 

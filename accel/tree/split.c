@@ -39,17 +39,19 @@ uint32_t rt_split_binned(RtTreeRef *refs, uint32_t count, int bins, RtBox4 cente
     if (!(split.cost < INFINITY)) return 0;
     RtSide side = rt_bins_side(&b, &split);
     uint32_t left = 0;
-    centers_of[0] = centers_of[1] = rt_box4_empty();
+    RtBox4 sides[2] = {rt_box4_empty(), rt_box4_empty()};
     for (uint32_t i = 0; i < count; i++) {
+        __builtin_prefetch(refs + i + RT_REFS_AHEAD);
         /* refs[left..i) are right: the first of them and this change places, whichever side this is on. */
         RtFour center = rt_box4_center(rt_box4_load(&refs[i].box));
         RtTreeRef ref = refs[i];
         uint32_t right = rt_side_of(&side, center);
-        centers_of[right] = rt_box4_add_point(centers_of[right], center);
+        sides[right] = rt_box4_add_point(sides[right], center);
         refs[i] = refs[left];
         refs[left] = ref;
         left += 1 - right;
     }
+    memcpy(centers_of, sides, sizeof sides);
     return left;
 }
 

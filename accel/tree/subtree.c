@@ -19,10 +19,9 @@ RtBox4 rt_subtree_unite(const RtSubtreeBuilder *b, uint32_t node, uint32_t left,
 
 static RtBox4 build_sides(const RtSubtreeBuilder *b, const RtRefGroup *group, uint32_t left,
                           const RtBox4 centers[2]) {
-    RtRefGroup sides[2] = {
-        {group->refs, left, group->node + 1, group->depth + 1, centers[0]},
-        {group->refs + left, group->count - left, group->node + 2 * left, group->depth + 1, centers[1]}};
+    RtRefGroup sides[2];
     RtBox4 box[2];
+    rt_group_sides(group, left, centers, sides);
     for (int s = 0; s < 2; s++) box[s] = rt_subtree_build(b, sides[s]);
     return rt_subtree_unite(b, group->node, left, box);
 }

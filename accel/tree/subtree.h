@@ -20,6 +20,14 @@ typedef struct RtRefGroup {
     RtBox4 centers; /* the box about all centres */
 } RtRefGroup;
 
+/* The sides of a group that was split: its first `left` references, and the others, with these centres. */
+static inline void rt_group_sides(const RtRefGroup *group, uint32_t left, const RtBox4 centers[2],
+                                  RtRefGroup sides[2]) {
+    sides[0] = (RtRefGroup){group->refs, left, group->node + 1, group->depth + 1, centers[0]};
+    sides[1] = (RtRefGroup){group->refs + left, group->count - left, group->node + 2 * left, group->depth + 1,
+                            centers[1]};
+}
+
 /* Makes the nodes, and gives the box about all. */
 RtBox4 rt_subtree_build(const RtSubtreeBuilder *b, RtRefGroup group);
 

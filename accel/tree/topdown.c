@@ -2,21 +2,24 @@
 /* Trees from the top: medians, or the surface area heuristic in bins.
  *
  * Where the nodes of a subtree stand follows from its number of references, so subtrees are built by threads
- * that know nothing of each other (subtree.h). The top, until there are subtrees enough for all, is made
- * level by level: the references of all its groups are dealt in chunks, which are binned, and then parted
- * into the other of two rows, by whichever thread comes first. Which references go to which side depends on
- * them alone (split.h), so the tree is that of one thread. */
+ * that know nothing of each other (subtree.h). While there is no group for each thread the top is made level
+ * by level: the references of all groups are dealt in chunks, which are binned, and then parted into the
+ * other of two rows, by whichever thread comes first. From there on a group is split in its place, and one
+ * side of it is left to who has nothing to do. Which references go to which side depends on them alone
+ * (split.h), so the tree is that of one thread. */
 #include "accel/tree/subtree.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
 #include <assert.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 enum {
-    SHARES = 16,     /* the top ends where groups are no more than such a part of what one thread has to do */
-    CHUNK = 1 << 13, /* references, at least */
-    LARGE = 4 * CHUNK /* fewer are for one thread */
+    SHARES = 64,       /* a group of no more than such a part of what one thread has to do is not shared */
+    SMALL = 1 << 11,   /* nor one of no more references */
+    CHUNK = 1 << 13,   /* references of a chunk of the top */
+    LARGE = 4 * CHUNK, /* fewer in all are for one thread */
 };
 
 static_assert(sizeof(RtTreeRef) <= sizeof(RtTreeNode), "references fit into the room of the nodes");
@@ -37,12 +40,15 @@ typedef struct Top {
     const RtSubtreeBuilder *b;
     const RtBox *boxes;
     RtTreeRef *rows[2]; /* [count] the references, in turns; the second are the nodes, before there are any */
-    uint32_t count, row, limit, chunk_size;
+    uint32_t count, row, chunk_size;
+    uint32_t top_limit;               /* groups of no more are not of the top */
+    uint32_t share_limit;             /* nor shared */
     RtRefGroup *groups, *next, *done; /* of this level, of the next, and what is left to one thread each */
     RtSplit *splits;                  /* [open] of the groups of this level */
     Chunk *chunks;
     TopNode *nodes; /* parents before their children */
-    uint32_t open, next_count, done_count, chunk_count, node_count;
+    uint32_t open, next_count, done_count, chunk_count;
+    _Atomic uint32_t node_count;
 } Top;
 
 /* Deals the references of all open groups. */
@@ -62,7 +68,7 @@ static void deal(Top *top) {
 static RtStatus make_refs(void *context, size_t item, int thread, RtError *error) {
     Top *top = context;
     Chunk *chunk = &top->chunks[item];
-    RtTreeRef *refs = top->rows[0] + chunk->first;
+    RtTreeRef *refs = top->rows[top->row] + chunk->first;
     (void)thread;
     (void)error;
     for (uint32_t i = 0; i < chunk->count; i++)
@@ -109,27 +115,35 @@ static RtStatus part_chunk(void *context, size_t item, int thread, RtError *erro
     const RtTreeRef *from = group->refs + chunk->first;
     RtTreeRef *into = top->rows[1 - top->row] + (group->refs - top->rows[top->row]);
     RtSide side = rt_bins_side(&chunk->bins, &top->splits[chunk->group]);
-    uint32_t to[2] = {chunk->to[0], chunk->to[1]};
+    uint32_t left = chunk->to[0], right = chunk->to[1];
+    RtBox4 centers[2] = {rt_box4_empty(), rt_box4_empty()};
     (void)thread;
     (void)error;
     if (!(top->splits[chunk->group].cost < INFINITY)) return RT_OK;
-    chunk->centers[0] = chunk->centers[1] = rt_box4_empty();
     for (uint32_t i = 0; i < chunk->count; i++) {
+        __builtin_prefetch(from + i + RT_REFS_AHEAD);
         RtFour center = rt_box4_center(rt_box4_load(&from[i].box));
         uint32_t s = rt_side_of(&side, center);
-        chunk->centers[s] = rt_box4_add_point(chunk->centers[s], center);
-        into[to[s]++] = from[i];
+        centers[s] = rt_box4_add_point(centers[s], center);
+        into[s ? right : left] = from[i];
+        left += 1 - s;
+        right += s;
     }
+    memcpy(chunk->centers, centers, sizeof centers);
     return RT_OK;
 }
 
-/* A group is open while it is large and can be split by bins. */
+/* A group is open while it is of the top and can be split by bins. */
 static void add_group(Top *top, RtRefGroup group) {
-    bool large = group.count > top->limit && group.depth < RT_TREE_MEDIAN_DEPTH;
+    bool large = group.count > top->top_limit && group.depth < RT_TREE_MEDIAN_DEPTH;
     if (large)
         top->next[top->next_count++] = group;
     else
         top->done[top->done_count++] = group;
+}
+
+static void add_node(Top *top, uint32_t node, uint32_t left) {
+    top->nodes[atomic_fetch_add(&top->node_count, 1)] = (TopNode){node, left};
 }
 
 /* The sides of what was split are the groups of the next level. */
@@ -149,7 +163,7 @@ static void descend(Top *top) {
             continue;
         }
         RtTreeRef *refs = into + (group->refs - from);
-        top->nodes[top->node_count++] = (TopNode){group->node, split->left};
+        add_node(top, group->node, split->left);
         add_group(top, (RtRefGroup){refs, split->left, group->node + 1, group->depth + 1, centers[0]});
         add_group(top, (RtRefGroup){refs + split->left, group->count - split->left,
                                     group->node + 2 * split->left, group->depth + 1, centers[1]});
@@ -165,20 +179,31 @@ static void descend(Top *top) {
 static RtStatus move_back(void *context, size_t item, int thread, RtError *error) {
     Top *top = context;
     RtRefGroup *group = &top->done[item];
+    size_t first = (size_t)(group->refs - top->rows[group->depth % 2 == 1 ? 0 : 1]);
     (void)thread;
     (void)error;
-    if (group->depth % 2 == 0) return RT_OK;
-    RtTreeRef *refs = top->rows[0] + (group->refs - top->rows[1]);
-    memcpy(refs, group->refs, group->count * sizeof(RtTreeRef));
-    group->refs = refs;
+    if (group->depth % 2 == 1) return RT_OK;
+    memcpy(top->rows[0] + first, group->refs, group->count * sizeof(RtTreeRef));
+    group->refs = top->rows[0] + first;
     return RT_OK;
 }
 
-static RtStatus build_group(void *context, size_t item, int thread, RtError *error) {
+/* Splits a group while it is large, and leaves the right sides to others. */
+static RtStatus build_group(void *context, RtTasks *tasks, const void *task, RtError *error) {
     Top *top = context;
-    (void)thread;
+    RtRefGroup group = *(const RtRefGroup *)task;
     (void)error;
-    rt_subtree_build(top->b, top->done[item]);
+    while (group.count > top->share_limit && group.depth < RT_TREE_MEDIAN_DEPTH) {
+        RtBox4 centers[2];
+        uint32_t left = rt_split_binned(group.refs, group.count, top->b->bins, group.centers, centers);
+        if (left == 0) break;
+        RtRefGroup sides[2];
+        rt_group_sides(&group, left, centers, sides);
+        if (!rt_tasks_add(tasks, &sides[1])) rt_subtree_build(top->b, sides[1]);
+        add_node(top, group.node, left);
+        group = sides[0];
+    }
+    rt_subtree_build(top->b, group);
     return RT_OK;
 }
 
@@ -190,17 +215,41 @@ static int larger_first(const void *a, const void *b) {
     return x->node < y->node ? -1 : x->node > y->node;
 }
 
-static RtStatus build_top(Top *top, int threads, RtError *error) {
-    top->groups[0] = (RtRefGroup){top->rows[0], top->count, 0, 0, rt_box4_empty()};
+/* Below comes first: subtrees are runs. */
+static int lower_first(const void *a, const void *b) {
+    const TopNode *x = a, *y = b;
+    return x->node > y->node ? -1 : x->node < y->node;
+}
+
+static void unite_top(Top *top) {
+    const RtTreeNode *nodes = top->b->tree->nodes;
+    qsort(top->nodes, top->node_count, sizeof(TopNode), lower_first);
+    for (uint32_t i = 0; i < top->node_count; i++) {
+        uint32_t node = top->nodes[i].node, left = top->nodes[i].left;
+        RtBox4 box[2] = {rt_box4_load(&nodes[node + 1].box), rt_box4_load(&nodes[node + 2 * left].box)};
+        rt_subtree_unite(top->b, node, left, box);
+    }
+}
+
+/* The references, and the group of them all. */
+static RtStatus begin(Top *top, int threads, RtError *error) {
+    top->groups[0] = (RtRefGroup){top->rows[top->row], top->count, 0, 0, rt_box4_empty()};
     top->open = 1;
     deal(top);
     RT_TRY(rt_parallel_for(top->chunk_count, threads, make_refs, top, error));
     for (uint32_t c = 0; c < top->chunk_count; c++)
         top->groups[0].centers = rt_box4_union(top->groups[0].centers, top->chunks[c].centers[0]);
-    if (top->limit >= top->count) {
-        top->done[top->done_count++] = top->groups[0];
-        top->open = 0;
-    }
+    return RT_OK;
+}
+
+static RtStatus build_on_one(Top *top, RtError *error) {
+    RT_TRY(begin(top, 1, error));
+    rt_subtree_build(top->b, top->groups[0]);
+    return RT_OK;
+}
+
+static RtStatus build_on_several(Top *top, int threads, RtError *error) {
+    RT_TRY(begin(top, threads, error));
     while (top->open > 0) {
         deal(top);
         RT_TRY(rt_parallel_for(top->chunk_count, threads, fill_chunk, top, error));
@@ -208,20 +257,16 @@ static RtStatus build_top(Top *top, int threads, RtError *error) {
         RT_TRY(rt_parallel_for(top->chunk_count, threads, part_chunk, top, error));
         descend(top);
     }
-    qsort(top->done, top->done_count, sizeof(RtRefGroup), larger_first);
     RT_TRY(rt_parallel_for(top->done_count, threads, move_back, top, error));
-    RT_TRY(rt_parallel_for(top->done_count, threads, build_group, top, error));
-    const RtTreeNode *nodes = top->b->tree->nodes;
-    for (uint32_t i = top->node_count; i-- > 0;) {
-        uint32_t node = top->nodes[i].node, left = top->nodes[i].left;
-        RtBox4 box[2] = {rt_box4_load(&nodes[node + 1].box), rt_box4_load(&nodes[node + 2 * left].box)};
-        rt_subtree_unite(top->b, node, left, box);
-    }
+    qsort(top->done, top->done_count, sizeof(RtRefGroup), larger_first);
+    RT_TRY(
+        rt_parallel_tasks(top->done, top->done_count, sizeof(RtRefGroup), threads, build_group, top, error));
+    unite_top(top);
     return RT_OK;
 }
 
 static bool allocate(Top *top) {
-    size_t open = top->count / top->limit + 1, nodes = open * RT_TREE_MEDIAN_DEPTH;
+    size_t open = top->count / top->share_limit + 1, nodes = open * RT_TREE_MEDIAN_DEPTH;
     top->rows[0] = rt_alloc_unset(top->count, sizeof(RtTreeRef));
     top->groups = rt_alloc(2 * open, sizeof(RtRefGroup));
     top->next = rt_alloc(2 * open, sizeof(RtRefGroup));
@@ -245,17 +290,20 @@ static void clear(Top *top) {
 RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int bins, int threads,
                          RtError *error) {
     RT_TRY(rt_tree_init(tree, count, error));
-    uint32_t shares = SHARES * (uint32_t)rt_thread_count(threads);
-    bool one = shares == SHARES || bins == 0 || count < LARGE;
+    uint32_t workers = (uint32_t)rt_thread_count(threads), share = count / (SHARES * workers);
+    bool one = workers == 1 || bins == 0 || count < LARGE;
     RtSubtreeBuilder builder = {tree, bins};
     Top top = {.b = &builder, .boxes = boxes, .count = count};
-    top.limit = one ? count : count / shares > CHUNK ? count / shares : CHUNK;
-    top.chunk_size = top.limit;
+    top.share_limit = one ? count : share > SMALL ? share : SMALL;
+    top.top_limit = count / workers + count / workers / 2;
+    top.chunk_size = one ? count : CHUNK;
+    top.row = one ? 0 : 1; /* so that they are in the first row as a rule when the top is done */
     bool enough = allocate(&top);
     top.rows[1] = (RtTreeRef *)tree->nodes;
     tree->used = tree->capacity;
-    RtStatus status = enough ? build_top(&top, one ? 1 : threads, error)
-                             : rt_fail_memory(error, "a tree from the top", count * sizeof(RtTreeRef));
+    RtStatus status = !enough ? rt_fail_memory(error, "a tree from the top", count * sizeof(RtTreeRef))
+                      : one   ? build_on_one(&top, error)
+                              : build_on_several(&top, threads, error);
     clear(&top);
     if (status != RT_OK) rt_tree_clear(tree);
     return status;

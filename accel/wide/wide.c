@@ -15,17 +15,17 @@
  * sets and any number of rays in flight. */
 #include "accel/wide/wide.h"
 #include "accel/isa.h"
+#include "accel/tree/recipe.h"
 
 #include "base/memory.h"
 
-typedef enum Build { BINNED, SWEEP, LBVH, PLOC, SPATIAL } Build;
 typedef enum Isa { BEST, PORTABLE, AVX2, AVX512 } Isa;
 
 /* What `bvh` has as parameters. */
 enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
 
 #define PARAMS(X)                                                                                            \
-    X(PARAM_BUILD, "build", RT_CHOICE("binned", "binned|sweep|lbvh|ploc|spatial"),                           \
+    X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \
       "how the binary tree is made that is laid out eight wide, as for bvh", "Wald 2007")                    \
     X(PARAM_BINS, "bins", RT_INT("16", 2, RT_MAX_BINS, "2|64"),                                              \
       "build=binned, spatial: bins along each axis in which split positions are sought", "Wald 2007")        \
@@ -93,29 +93,21 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-static RtStatus make_tree(RtTree *tree, const RtBuild *what, Build build, RtError *error) {
-    const RtGeometry *geometry = &what->scene->geometry;
+static RtTreeRecipe recipe_of(const RtBuild *what, RtTreeMethod method) {
     const RtValue *values = what->values;
-    const RtBox *boxes = geometry->boxes;
-    uint32_t count = geometry->object_count;
-    int threads = what->threads;
-    RtSpatial how = {.bins = (int)values[PARAM_BINS].i,
-                     .alpha = values[PARAM_ALPHA].f,
-                     .budget = values[PARAM_BUDGET].f,
-                     .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                     .traversal = 1,
-                     .limit = what->limit};
-    switch (build) {
-    case BINNED: break;
-    case SWEEP: return rt_tree_sweep(tree, boxes, count, error);
-    case LBVH: return rt_tree_lbvh(tree, boxes, count, MORTON_BITS, threads, error);
-    case PLOC: return rt_tree_ploc(tree, boxes, count, MORTON_BITS, PLOC_RADIUS, threads, error);
-    case SPATIAL: return rt_tree_spatial(tree, geometry, &how, threads, error);
-    }
-    return rt_tree_topdown(tree, boxes, count, (int)values[PARAM_BINS].i, threads, error);
+    return (RtTreeRecipe){.method = method,
+                          .bits = MORTON_BITS,
+                          .radius = PLOC_RADIUS,
+                          .spatial = {.bins = (int)values[PARAM_BINS].i,
+                                      .alpha = values[PARAM_ALPHA].f,
+                                      .budget = values[PARAM_BUDGET].f,
+                                      .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                      .traversal = 1,
+                                      .limit = what->limit},
+                          .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
-static RtStatus fill(RtWideTree *self, const RtBuild *what, Build build, RtError *error) {
+static RtStatus fill(RtWideTree *self, const RtBuild *what, RtTreeMethod method, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
     const RtValue *values = what->values;
     RtWideLayout how = {.leaf_limit = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
@@ -123,21 +115,21 @@ static RtStatus fill(RtWideTree *self, const RtBuild *what, Build build, RtError
                         .huge_pages = values[PARAM_HUGE_PAGES].flag,
                         .threads = what->threads,
                         .limit = what->limit};
+    RtTreeRecipe recipe = recipe_of(what, method);
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(make_tree(&tree, what, build, error));
-    RtStatus status = rt_tree_reinsert(&tree, (uint32_t)values[PARAM_REINSERTION].i, what->threads, error);
-    if (status == RT_OK) status = rt_wide_lay_out(self, &tree, geometry, &how, error);
+    RT_TRY(rt_tree_make(&tree, geometry, &recipe, what->threads, error));
+    RtStatus status = rt_wide_lay_out(self, &tree, geometry, &how, error);
     rt_tree_clear(&tree);
     return status;
 }
 
 static RtStatus fill_trees(RtWide *self, const RtBuild *what, RtError *error) {
-    Build build = (Build)what->values[PARAM_BUILD].choice;
+    RtTreeMethod method = (RtTreeMethod)what->values[PARAM_BUILD].choice;
     RT_TRY(available(what->values, error));
-    RT_TRY(fill(&self->trees[0], what, build, error));
+    RT_TRY(fill(&self->trees[0], what, method, error));
     if (self->occluded == &self->trees[0]) return RT_OK;
-    return fill(&self->trees[1], what, BINNED, error);
+    return fill(&self->trees[1], what, RT_TREE_BINNED, error);
 }
 
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
@@ -145,7 +137,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtWide), &accel, error));
     RtWide *self = (RtWide *)accel;
-    bool two = values[PARAM_BUILD].choice == SPATIAL && values[PARAM_WHOLE].flag;
+    bool two = values[PARAM_BUILD].choice == RT_TREE_SPATIAL && values[PARAM_WHOLE].flag;
     self->nearest = &self->trees[0];
     self->occluded = &self->trees[two ? 1 : 0];
     self->kernels = kernels_of(isa_of(values));

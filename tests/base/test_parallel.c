@@ -78,4 +78,84 @@ RT_TEST(memory_that_cannot_be_had_is_a_status) {
     assert_int_equal(rt_alloc_live(), live);
 }
 
+/* ---- tasks that make tasks ---- */
+
+/* A range is halved until it is one item. */
+typedef struct Range {
+    uint32_t first, count;
+} Range;
+
+static RtStatus halve(void *context, RtTasks *tasks, const void *task, RtError *error) {
+    Count *count = context;
+    Range range = *(const Range *)task;
+    while (range.count > 1) {
+        Range half = {range.first + range.count / 2, range.count - range.count / 2};
+        if (!rt_tasks_add(tasks, &half)) return rt_fail_memory(error, "half a range", sizeof half);
+        range.count /= 2;
+    }
+    if (range.first >= count->fails_from) return rt_fail(error, RT_BAD_INPUT, "item %u", range.first);
+    count->visits[range.first]++;
+    return RT_OK;
+}
+
+static RtStatus halve_all(Count *count, int threads, RtError *error) {
+    const Range ranges[2] = {{0, ITEMS / 3}, {ITEMS / 3, ITEMS - ITEMS / 3}};
+    return rt_parallel_tasks(ranges, 2, sizeof(Range), threads, halve, count, error);
+}
+
+RT_TEST(tasks_and_what_they_make_are_worked_on_once_by_any_number_of_threads) {
+    const int threads[] = {0, 1, 2, 7, 64};
+    for (size_t i = 0; i < sizeof threads / sizeof threads[0]; i++) {
+        Count count = {.fails_from = ITEMS};
+        assert_ok(halve_all(&count, threads[i], error));
+        for (size_t k = 0; k < ITEMS; k++) assert_int_equal(count.visits[k], 1);
+    }
+}
+
+RT_TEST(no_tasks_are_no_work) {
+    Count count = {.fails_from = 0};
+    assert_ok(rt_parallel_tasks(NULL, 0, sizeof(Range), 3, halve, &count, error));
+}
+
+RT_TEST(a_task_that_fails_stops_the_others_and_is_reported) {
+    for (int threads = 1; threads <= 8; threads *= 2) {
+        Count count = {.fails_from = ITEMS / 2};
+        RtError error;
+        assert_int_equal(halve_all(&count, threads, &error), RT_BAD_INPUT);
+        assert_memory_equal(error.message, "item ", 5);
+        for (size_t k = ITEMS / 2; k < ITEMS; k++) assert_int_equal(count.visits[k], 0);
+    }
+}
+
+/* Of one thread the order is known: the oldest first. */
+static RtStatus list_order(void *context, RtTasks *tasks, const void *task, RtError *error) {
+    Count *count = context;
+    uint32_t item = *(const uint32_t *)task, more = 2 * item + 2;
+    (void)error;
+    count->visits[count->threads++] = item;
+    for (uint32_t next = more - 1; next <= more && more < 100; next++)
+        assert_true(rt_tasks_add(tasks, &next));
+    return RT_OK;
+}
+
+RT_TEST(the_oldest_task_comes_first) {
+    Count count = {.threads = 0};
+    uint32_t root = 0;
+    assert_ok(rt_parallel_tasks(&root, 1, sizeof root, 1, list_order, &count, error));
+    assert_int_equal(count.threads, 99);
+    for (uint32_t i = 0; i < 99; i++) assert_int_equal(count.visits[i], i);
+}
+
+RT_TEST(memory_that_tasks_cannot_have_is_a_status) {
+    int64_t live = rt_alloc_live();
+    for (uint64_t n = 1; n <= 5; n++) {
+        Count count = {.fails_from = ITEMS};
+        RtError error;
+        rt_alloc_fail_at(n);
+        assert_int_equal(halve_all(&count, 2, &error), RT_NO_MEMORY);
+    }
+    rt_alloc_fail_at(0);
+    assert_int_equal(rt_alloc_live(), live);
+}
+
 RT_TESTS(parallel, NULL, NULL)
