@@ -17,6 +17,7 @@
 #include "accel/tree/fold.h"
 #include "base/memory.h"
 
+#include <math.h>
 #include <string.h>
 
 /* What a lane without a triangle costs, of a block. A block costs the same however full it is, so the least
@@ -30,6 +31,7 @@
 typedef struct Weight {
     float cost[RT_WIDE];
     uint32_t units[RT_WIDE];
+    float surface; /* of the objects, roughly: surface_of */
     uint32_t references;
     uint32_t shapes; /* bits 1 << RtShape */
 } Weight;
@@ -67,8 +69,23 @@ static float area_of(const RtWidePlan *self, uint32_t index) {
     return (float)rt_box_half_area(self->tree->nodes[index].box);
 }
 
+/* The area of a triangle that has a box, if it is as large as it may be; half the surface of what fills a box
+ * is not far from that. */
+static float surface_of(const RtBox *box) {
+    RtVec3 d = rt_sub(box->hi, box->lo);
+    double xy = (double)d.x * (double)d.y, yz = (double)d.y * (double)d.z, zx = (double)d.z * (double)d.x;
+    return (float)(0.5 * sqrt(xy * xy + yz * yz + zx * zx));
+}
+
+/* A line through a box of half area `area` hits surface / area objects on average, so at least one with a
+ * chance near surface / (surface + area); cost / area is what asking takes. */
+static float promise_of(float surface, float area, float cost) {
+    return area > 0 && cost > 0 ? surface / (surface + area) * (area / cost) : 0;
+}
+
 static void weigh_reference(const RtWidePlan *self, uint32_t index, Weight *own) {
     own->references = 1;
+    own->surface = surface_of(&self->tree->nodes[index].box);
     own->shapes = 1u << rt_wide_shape_of(self, self->tree->nodes[index].child[1]);
     RtWideLeafSize size = rt_wide_leaf_size(1, own->shapes);
     float cost = leaf_cost(self, area_of(self, index), size);
@@ -133,6 +150,7 @@ static void weigh_pair(const RtWidePlan *self, uint32_t index, const Weight *sid
     }
     chosen->choice[1] = two ? 1 : RT_WIDE_FEWER;
     chosen->units = own->units[0];
+    chosen->promise = promise_of(own->surface, area, own->cost[0]);
 }
 
 static void weigh_both(const RtWidePlan *self, uint32_t index, const Weight *sides[2], Weight *own) {
@@ -140,6 +158,7 @@ static void weigh_both(const RtWidePlan *self, uint32_t index, const Weight *sid
     float area = area_of(self, index), split[RT_WIDE];
     int32_t left[RT_WIDE];
     own->references = sides[0]->references + sides[1]->references;
+    own->surface = sides[0]->surface + sides[1]->surface;
     own->shapes = sides[0]->shapes | sides[1]->shapes;
     if (own->references == 2) {
         weigh_pair(self, index, sides, own);
@@ -160,6 +179,7 @@ static void weigh_both(const RtWidePlan *self, uint32_t index, const Weight *sid
         chosen->choice[k] = fewer ? RT_WIDE_FEWER : (uint8_t)left[k];
     }
     chosen->units = own->units[0];
+    chosen->promise = promise_of(own->surface, area, own->cost[0]);
 }
 
 static bool weigh(const RtWidePlan *self, uint32_t index, uint32_t levels, Weight *own) {
@@ -226,6 +246,27 @@ static void open_children(const RtWidePlan *self, uint32_t index, uint32_t most,
     open_children(self, child[1], most - left, children, count);
 }
 
+static float promise_of_child(const RtWidePlan *self, uint32_t index) {
+    if (!rt_tree_is_leaf(self->tree, index)) return self->choices[index].promise;
+    Weight own;
+    weigh_reference(self, index, &own);
+    return promise_of(own.surface, area_of(self, index), own.cost[0]);
+}
+
+static void sort_by_promise(const RtWidePlan *self, uint32_t *children, uint32_t count) {
+    float promise[RT_WIDE];
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t child = children[i], j = i;
+        float own = promise_of_child(self, child);
+        for (; j > 0 && own < promise[j - 1]; j--) {
+            children[j] = children[j - 1];
+            promise[j] = promise[j - 1];
+        }
+        children[j] = child;
+        promise[j] = own;
+    }
+}
+
 uint32_t rt_wide_children_of(const RtWidePlan *self, uint32_t index, uint32_t children[RT_WIDE]) {
     uint32_t count = 0;
     if (rt_wide_becomes_leaf(self, index)) {
@@ -236,5 +277,6 @@ uint32_t rt_wide_children_of(const RtWidePlan *self, uint32_t index, uint32_t ch
     uint32_t left = self->choices[index].choice[0];
     open_children(self, child[0], left, children, &count);
     open_children(self, child[1], RT_WIDE - left, children, &count);
+    sort_by_promise(self, children, count);
     return count;
 }
