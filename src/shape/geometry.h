@@ -150,7 +150,7 @@ double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direct
 void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]);
 
 /* The hit functions of what is no triangle: a function of its own, which compiles once. */
-static inline __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, uint32_t id,
+static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, uint32_t id,
                                                    const RtPreparedRay *ray, float *t, RtTally *tally) {
     RtRef ref = geometry->objects[id];
     uint32_t index = rt_ref_index(ref);
