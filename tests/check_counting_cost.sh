@@ -21,38 +21,37 @@ member() {
     awk -v name="\"$1\":" '/"counts"/ || name == "\"rays\":" { on = 1 } on && $1 == name { print $2 + 0; exit }' "$work/json"
 }
 
-# costs KERNEL: address and instructions for each instruction of such a kernel, calls added to who makes them; and
-# "calls N", how often it was entered. Addresses and lines of callgrind are relative to those of the line before.
+# costs KERNEL ACCELERATOR: address and instructions for each instruction of the kernel, calls added to who makes them; and
+# "calls N", how often it was entered. Other accelerators have kernels of the same name, in other files. Addresses of
+# callgrind are relative to those of the line before.
 costs() {
-    awk -v kernel="$1'" '
+    awk -v kernel="$1'" -v file="/accel/$2[/.]" '
     function hex(text,   i, value) {
         for (i = 3; i <= length(text); i++) value = 16 * value + index("0123456789abcdef", substr(text, i, 1)) - 1
         return value
     }
+    function number(line, names,   part) { # of "(number) name", where the name is there the first time only
+        split(line, part, /[(] *|[)] */)
+        if (part[3] != "") names[part[2]] = part[3]
+        return part[2]
+    }
+    /^(fl|fi|fe|cfi|cfl)=/ { source = number($0, files); if (/^fl/) within = files[source] ~ file; next }
     /^fn=/ {
-        split($0, part, /[(] *|[)] */)
-        if (part[3] != "") names[part[2]] = part[3]
-        name = names[part[2]]
-        inside = index(name, kernel) == 1 && name ~ /run_pass/
+        id = number($0, names)
+        inside = within && index(names[id], kernel) == 1 && names[id] ~ /run_pass/
+        if (inside) own[id]
         next
     }
-    /^cfn=/ {
-        split($0, part, /[(] *|[)] */)
-        if (part[3] != "") names[part[2]] = part[3]
-        called = names[part[2]]
-        next
-    }
-    /^calls=/ {
-        if (index(called, kernel) == 1 && called ~ /run_pass/ && !inside) { split($1, part, "="); calls += part[2] }
-        next
-    }
+    /^cfn=/ { called = number($0, names); next }
+    /^calls=/ { split($1, part, "="); calls[called] += part[2]; next }
     /^(0x|[-+*])/ {
         address = $1 ~ /^0x/ ? hex($1) : $1 == "*" ? address : address + $1
         if (inside) cost[address] += $3
     }
     END {
         for (address in cost) printf "%d %d\n", address, cost[address]
-        print "calls", calls + 0
+        for (id in own) sum += calls[id]
+        print "calls", sum + 0
     }' "$work/callgrind"
 }
 
@@ -81,8 +80,8 @@ for kind in ${kinds//,/ }; do
             cat "$work/log"
             exit 1
         }
-        read -r timed test setup step timed_calls <<<"$(costs "${question}_timed" | parts)"
-        read -r counted _ _ _ counted_calls <<<"$(costs "${question}_counted" | parts)"
+        read -r timed test setup step timed_calls <<<"$(costs "${question}_timed" "${spec%%:*}" | parts)"
+        read -r counted _ _ _ counted_calls <<<"$(costs "${question}_counted" "${spec%%:*}" | parts)"
         row=$(awk -v timed="$timed" -v test="$test" -v setup="$setup" -v step="$step" -v counted="$counted" \
             -v passes="$timed_calls/$counted_calls" -v rays="$(member rays)" -v steps="$(member steps)" \
             -v tests="$(member object_tests)" 'BEGIN {

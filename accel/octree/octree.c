@@ -74,27 +74,35 @@ typedef struct Waiting {
     uint32_t node, depth;
 } Waiting;
 
-/* A ray's x, y, z: the fourth lane is the third again, so that it never holds what is slow to compute with. */
+/* What crossings are computed from. The fourth lane is the third again, so that it never holds what is slow to
+ * compute with. */
+typedef struct Line {
+    RtFour org_near, org_far, inv;
+    RtFourBits sign;
+} Line;
+
 RT_KERNEL RtFour three(const void *at) {
     RtFour four = rt_four(at);
     return __builtin_shufflevector(four, four, 0, 1, 2, 2);
 }
 
+RT_KERNEL Line line_of(const RtPreparedRay *ray) {
+    return (Line){three(ray->org_near), three(ray->org_far), three(ray->inv), rt_four_sign(three(&ray->dir))};
+}
+
 /* The lanes of the axes on which child `place` is the upper one, from `high`, the others from `low`. */
 RT_KERNEL RtFour choose(uint32_t place, RtFour low, RtFour high) {
-    static const RtFourBits upper[8] = {{0, 0, 0, 0},   {-1, 0, 0, 0},  {0, -1, 0, 0},  {-1, -1, 0, 0},
+    static const RtFourBits upper[8] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
                                         {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
     return rt_four_pick(upper[place], low, high);
 }
 
 /* Cuts a node, in which the ray is from `near` to `far` on each axis, at its split. */
-RT_KERNEL Planes cut(const RtPreparedRay *ray, RtVec3 split, RtFour near, RtFour far) {
-    RtFour at = __builtin_shufflevector(rt_four_all(split.x), (RtFour){split.y, split.z, 0, 0}, 0, 4, 5, 5);
-    RtFour first = (at - three(ray->org_near)) * three(ray->inv);
-    RtFour last = (at - three(ray->org_far)) * three(ray->inv);
-    RtFourBits sign = rt_four_sign(three(ray->dir.at));
-    return (Planes){rt_four_pick(sign, near, first), rt_four_pick(sign, first, near),
-                    rt_four_pick(sign, last, far), rt_four_pick(sign, far, last)};
+RT_KERNEL Planes cut(const Line *line, const RtVec3 *split, RtFour near, RtFour far) {
+    RtFour at = three(split); /* and what follows it in the node */
+    RtFour first = (at - line->org_near) * line->inv, last = (at - line->org_far) * line->inv;
+    return (Planes){rt_four_pick(line->sign, near, first), rt_four_pick(line->sign, first, near),
+                    rt_four_pick(line->sign, last, far), rt_four_pick(line->sign, far, last)};
 }
 
 /* Where the ray enters or leaves four children, lower or upper ones along z; `least` or `most` of it. */
@@ -131,10 +139,12 @@ RT_KERNEL uint32_t push_children(const Planes *planes, uint32_t first, uint32_t 
 
 RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPreparedRay *ray, bool any,
                        RtHit *best, RtTally *tally) {
+    const Line line = line_of(ray);
     Planes visited[RT_OCTREE_DEPTH_LIMIT]; /* by depth */
     Waiting stack[MAX_STACK], at = {.depth = 0};
     uint32_t stacked = 0;
     RtFour near, far;
+    float limit = rt_limit(ray, best);
     const RtBox *root = &self->boxes[0];
     for (int a = 0; a < 3; a++) {
         near[a] = near_crossing(ray, a, rt_box_side(root, ray->first[a]));
@@ -152,15 +162,16 @@ RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPrepare
                 far = choose(place, p->low_far, p->high_far);
             }
             Planes *own = &visited[at.depth];
-            *own = cut(ray, node->split, near, far);
-            stacked += push_children(own, node->first, at.depth + 1, ray, rt_limit(ray, best), stack + stacked);
-        } else if (visit_leaf(self, mailbox, node, ray, any, best, tally)) {
-            return;
+            *own = cut(&line, &node->split, near, far);
+            stacked += push_children(own, node->first, at.depth + 1, ray, limit, stack + stacked);
+        } else {
+            if (visit_leaf(self, mailbox, node, ray, any, best, tally)) return;
+            limit = rt_limit(ray, best);
         }
         do {
             if (stacked == 0) return;
             at = stack[--stacked];
-        } while (at.enter > rt_limit(ray, best));
+        } while (at.enter > limit);
     }
 }
 
