@@ -149,14 +149,13 @@ double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direct
  * normal; those of its largest solid for a CSG tree. */
 void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]);
 
-/* The hit functions of what is no triangle: a function of its own, which compiles once. */
+/* The hit functions of what is neither triangle nor sphere: out of line, for they take many registers. */
 static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, uint32_t id,
                                                    const RtPreparedRay *ray, float *t, RtTally *tally) {
     RtRef ref = geometry->objects[id];
     uint32_t index = rt_ref_index(ref);
     const RtBox *own = &geometry->boxes[id];
     switch (rt_ref_shape(ref)) {
-    case RT_SHAPE_SPHERE: return rt_sphere_hit(&geometry->spheres[index], own, ray, t);
     case RT_SHAPE_POLYGON: {
         const RtPolygon *polygon = &geometry->polygons[index];
         return rt_polygon_hit(polygon, geometry->polygon_vertices + polygon->first, own, ray, t);
@@ -164,6 +163,7 @@ static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, u
     case RT_SHAPE_CONE: return rt_cone_hit(&geometry->cones[index], own, ray, t);
     case RT_SHAPE_CSG: return rt_csg_hit(&geometry->forest, &geometry->csgs[index], ray, t, tally);
     case RT_SHAPE_TRIANGLE:
+    case RT_SHAPE_SPHERE:
     case RT_SHAPE_COUNT: break;
     }
     return false;
@@ -176,8 +176,11 @@ static inline __attribute__((always_inline)) bool rt_object_hit(const RtGeometry
                                                                 const RtPreparedRay *ray, float *t,
                                                                 RtTally *tally) {
     RtRef ref = geometry->objects[id];
-    if (rt_ref_shape(ref) != RT_SHAPE_TRIANGLE) return rt_rarer_hit(geometry, id, ray, t, tally);
-    return rt_triangle_hit(&geometry->triangles[rt_ref_index(ref)], ray, t);
+    uint32_t index = rt_ref_index(ref);
+    if (rt_ref_shape(ref) == RT_SHAPE_TRIANGLE) return rt_triangle_hit(&geometry->triangles[index], ray, t);
+    if (rt_ref_shape(ref) == RT_SHAPE_SPHERE)
+        return rt_sphere_hit(&geometry->spheres[index], &geometry->boxes[id], ray, t);
+    return rt_rarer_hit(geometry, id, ray, t, tally);
 }
 
 #endif
