@@ -51,10 +51,14 @@ RT_KERNEL uint32_t near_side(const RtPreparedRay *ray, int axis) {
     return ray->negative[axis] ? rt_octree_upper(axis) : rt_octree_lower(axis);
 }
 
+RT_KERNEL void count_leaf(bool empty, RtTally *tally) {
+    RT_COUNT(tally, leaf_steps, 1);
+    RT_COUNT(tally, empty_steps, empty);
+}
+
 RT_KERNEL bool visit_leaf(const RtOctree *self, RtMailbox *mailbox, const RtOctreeNode *leaf,
                           const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
-    RT_COUNT(tally, leaf_steps, 1);
-    RT_COUNT(tally, empty_steps, leaf->count == 0);
+    count_leaf(leaf->count == 0, tally);
     return rt_test_list(&self->base.scene->geometry, mailbox, self->ids + leaf->first, leaf->count, ray, any,
                         best, tally);
 }
@@ -68,10 +72,12 @@ typedef struct Planes {
     RtFour low_near, high_near, low_far, high_far;
 } Planes;
 
-/* A node that waits: a child of the node of this depth that is being visited. */
+/* A node that waits. */
 typedef struct Waiting {
     float enter;
-    uint32_t node, depth;
+    uint32_t node;
+    uint16_t depth;
+    bool empty; /* a leaf without an object, which need not be fetched from memory to be a step */
 } Waiting;
 
 /* What crossings are computed from. The fourth lane is the third again, so that it never holds what is slow to
@@ -121,7 +127,7 @@ RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFour en
 
 /* Puts the children that the ray meets onto the stack, the one it enters first on top, of those that it enters
  * at once the last; gives their number. All eight are asked at once. */
-RT_KERNEL uint32_t push_children(const Planes *planes, uint32_t first, uint32_t depth,
+RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node, uint32_t depth,
                                  const RtPreparedRay *ray, float limit, Waiting *stack) {
     RtFour enter[2], leave[2];
     span_children(planes, ray->tmin, limit, enter, leave);
@@ -132,7 +138,7 @@ RT_KERNEL uint32_t push_children(const Planes *planes, uint32_t first, uint32_t 
     for (; children; children &= children - 1) {
         uint32_t place = (uint32_t)__builtin_ctz(children), i = pushed++;
         for (; i > 0 && stack[i - 1].enter < enters[place]; i--) stack[i] = stack[i - 1];
-        stack[i] = (Waiting){enters[place], first + place, depth};
+        stack[i] = (Waiting){enters[place], node->first + place, (uint16_t)depth, node->count >> place & 1};
     }
     return pushed;
 }
@@ -154,7 +160,9 @@ RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPrepare
     for (;;) {
         const RtOctreeNode *node = &self->nodes[at.node];
         RT_COUNT(tally, steps, 1);
-        if (node->count == RT_OCTREE_INNER) {
+        if (at.empty) {
+            count_leaf(true, tally);
+        } else if (rt_octree_is_inner(node)) {
             if (at.node > 0) {
                 const Planes *p = &visited[at.depth - 1];
                 uint32_t place = rt_octree_place(at.node);
@@ -163,7 +171,7 @@ RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPrepare
             }
             Planes *own = &visited[at.depth];
             *own = cut(&line, &node->split, near, far);
-            stacked += push_children(own, node->first, at.depth + 1, ray, limit, stack + stacked);
+            stacked += push_children(own, node, at.depth + 1, ray, limit, stack + stacked);
         } else {
             if (visit_leaf(self, mailbox, node, ray, any, best, tally)) return;
             limit = rt_limit(ray, best);
@@ -245,7 +253,7 @@ RT_KERNEL bool enter_leaves(const RtOctree *self, RtMailbox *mailbox, const Cros
     for (;;) {
         const RtOctreeNode *node = &self->nodes[index];
         RT_COUNT(tally, steps, 1);
-        if (node->count == RT_OCTREE_INNER) {
+        if (rt_octree_is_inner(node)) {
             uint32_t children = children_at(ray, node, at);
             for (; children; children &= children - 1) {
                 stack[stacked++] = node->first + (uint32_t)__builtin_ctz(children);
