@@ -197,10 +197,15 @@ RT_KERNEL bool next_voxel(const Walk *walk, Moment *moment, uint32_t *voxel) {
     return true;
 }
 
+/* Most moments have one voxel alone, walk->voxel: of the axis just crossed no interval but the last counts, and
+ * the other two have one. */
+RT_KERNEL bool several_voxels(const Walk *walk) {
+    const Axis *entered = &walk->axes[walk->entered];
+    return walk->spread > entered->hi - entered->lo;
+}
+
 /* ---- one level ---- */
 
-/* Most moments have one voxel: in the last interval of each axis, for of the axis just crossed no other counts
- * and the other two have no other. */
 RT_KERNEL void walk_flat(const RtGrid *self, RtMailbox *mailbox, float t, const RtPreparedRay *ray, bool any,
                          RtHit *best, RtTally *tally) {
     const RtGridLevel *level = &self->levels[0];
@@ -208,19 +213,17 @@ RT_KERNEL void walk_flat(const RtGrid *self, RtMailbox *mailbox, float t, const 
     uint32_t voxel;
     begin_walk(&walk, level->blocks, ray, t);
     Moment moment = begin_moment(&walk, true);
-    bool several = true;
-    do {
-        if (!several) {
-            if (visit_voxel(self, level, mailbox, walk.voxel, ray, any, best, tally)) return;
-        } else {
-            while (next_voxel(&walk, &moment, &voxel)) {
-                if (visit_voxel(self, level, mailbox, voxel, ray, any, best, tally)) return;
-            }
+    for (;;) {
+        while (next_voxel(&walk, &moment, &voxel)) {
+            if (visit_voxel(self, level, mailbox, voxel, ray, any, best, tally)) return;
         }
-        if (!next_moment(&walk, rt_limit(ray, best))) return;
-        several = walk.spread > walk.axes[walk.entered].hi - walk.axes[walk.entered].lo;
-        if (several) moment = begin_moment(&walk, false);
-    } while (true);
+        do {
+            if (!next_moment(&walk, rt_limit(ray, best))) return;
+            if (several_voxels(&walk)) break;
+            if (visit_voxel(self, level, mailbox, walk.voxel, ray, any, best, tally)) return;
+        } while (true);
+        moment = begin_moment(&walk, false);
+    }
 }
 
 /* ---- several levels ---- */
