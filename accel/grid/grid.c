@@ -40,8 +40,8 @@ static size_t scratch_bytes(const RtAccel *accel) {
     return grid->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
 }
 
-/* One axis of a walk. Intervals are numbered along the ray: 0 is the first it can meet, and lies between planes
- * 0 and 1. Steps and strides are negative (modulo 2^32) where the ray runs against the axis. */
+/* One axis of a walk. Intervals are numbered along the ray: 0 is the first it can meet, and lies between
+ * planes 0 and 1. Steps and strides are negative (modulo 2^32) where the ray runs against the axis. */
 typedef struct Axis {
     const float *planes; /* plane i is planes[i * step] */
     int32_t step;
@@ -125,7 +125,8 @@ RT_KERNEL bool retire_axis(Walk *walk, Axis *axis, float t) {
     return true;
 }
 
-/* The same of all axes. Nearly always it is the axis crossed last that has something to drop, and no other. */
+/* The same of all axes. Nearly always it is the axis crossed last that has something to drop, and no other.
+ */
 RT_KERNEL bool retire(Walk *walk, float t) {
     Axis *axes = walk->axes;
     if (!retire_axis(walk, &axes[walk->entered], t)) return false;
@@ -197,8 +198,8 @@ RT_KERNEL bool next_voxel(const Walk *walk, Moment *moment, uint32_t *voxel) {
     return true;
 }
 
-/* Most moments have one voxel alone, walk->voxel: of the axis just crossed no interval but the last counts, and
- * the other two have one. */
+/* Most moments have one voxel alone, walk->voxel: of the axis just crossed no interval but the last counts,
+ * and the other two have one. */
 RT_KERNEL bool several_voxels(const Walk *walk) {
     const Axis *entered = &walk->axes[walk->entered];
     return walk->spread > entered->hi - entered->lo;

@@ -65,8 +65,8 @@ RT_KERNEL bool visit_leaf(const RtOctree *self, RtMailbox *mailbox, const RtOctr
 
 /* ---- parametric ---- */
 
-/* An inner node that is being visited: when the ray crosses the planes of its children, lanes x, y, z. On each
- * axis it is in the children below the split from low_near to low_far, in those above from high_near to
+/* An inner node that is being visited: when the ray crosses the planes of its children, lanes x, y, z. On
+ * each axis it is in the children below the split from low_near to low_far, in those above from high_near to
  * high_far. */
 typedef struct Planes {
     RtFour low_near, high_near, low_far, high_far;
@@ -80,8 +80,8 @@ typedef struct Waiting {
     bool empty; /* a leaf without an object, which need not be fetched from memory to be a step */
 } Waiting;
 
-/* What crossings are computed from. The fourth lane is the third again, so that it never holds what is slow to
- * compute with. */
+/* What crossings are computed from. The fourth lane is the third again, so that it never holds what is slow
+ * to compute with. */
 typedef struct Line {
     RtFour org_near, org_far, inv;
     RtFourBits sign;
@@ -125,8 +125,8 @@ RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFour en
     leave[1] = rt_four_min(__builtin_shufflevector(p->high_far, p->high_far, 2, 2, 2, 2), to);
 }
 
-/* Puts the children that the ray meets onto the stack, the one it enters first on top, of those that it enters
- * at once the last; gives their number. All eight are asked at once. */
+/* Puts the children that the ray meets onto the stack, the one it enters first on top, of those that it
+ * enters at once the last; gives their number. All eight are asked at once. */
 RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node, uint32_t depth,
                                  const RtPreparedRay *ray, float limit, Waiting *stack) {
     RtFour enter[2], leave[2];

@@ -83,8 +83,7 @@ static RtStatus check_place(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     uint32_t parent = tree->nodes[index].parent;
     const RtOctreeNode *above = &tree->nodes[parent];
-    if (parent >= index || !rt_octree_is_inner(above) ||
-        above->first != index - rt_octree_place(index)) {
+    if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_place(index)) {
         return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent", index);
     }
     RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_place(index));

@@ -95,9 +95,9 @@ typedef struct RtPreparedRay {
     float inv[4];     /* 1 / dir, possibly infinite; here and below x, y, z and one more for vectors */
     float org_near[4], org_far[4]; /* origins moved by the thickness */
     uint32_t negative[4];          /* 1 where dir has its sign bit set, -0 included */
-    uint32_t first[4], last[4];    /* where in a box the sides are that it crosses first and last: rt_box_side */
-    int kx, ky, kz;                /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
-    float shear_x, shear_y;        /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
+    uint32_t first[4], last[4]; /* where in a box the sides are that it crosses first and last: rt_box_side */
+    int kx, ky, kz;             /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
+    float shear_x, shear_y;     /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
 } RtPreparedRay;
 
 static inline bool rt_ray_is_valid(const RtRay *ray) {
@@ -161,7 +161,8 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     RtFourBits sign = rt_four_sign(dir), negative = sign < 0;
     RtFour shift = rt_four_shift(rt_four_lo(scene_box), rt_four_hi(scene_box), org, sign);
     RtFour near = org + shift, far = org - shift;
-    RtFourBits first = (RtFourBits){0, 4, 8, 8} + (negative & 12), last = (RtFourBits){12, 16, 20, 20} - (negative & 12);
+    RtFourBits first = (RtFourBits){0, 4, 8, 8} + (negative & 12),
+               last = (RtFourBits){12, 16, 20, 20} - (negative & 12);
     negative &= 1;
     p->original = ray;
     p->room = room;
@@ -189,8 +190,8 @@ static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_
     return p;
 }
 
-/* A side of a box, so many bytes from its beginning. Which of two a ray crosses first is looked up, not asked:
- * of rays in all directions no one could predict that branch. */
+/* A side of a box, so many bytes from its beginning. Which of two a ray crosses first is looked up, not
+ * asked: of rays in all directions no one could predict that branch. */
 static inline float rt_box_side(const RtBox *box, uint32_t place) {
     float at;
     memcpy(&at, (const char *)box + place, sizeof at);

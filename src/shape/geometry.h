@@ -172,9 +172,8 @@ static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, u
 /* The hit function of every object: true if the ray (of rt_hit_ray) meets object `id` at some t in [tmin,
  * tmax], the first of which goes to *t. The same bits of t for the same ray and object, whatever was found
  * before. `tally` may be NULL; it counts what is tested inside of CSG trees. */
-static inline __attribute__((always_inline)) bool rt_object_hit(const RtGeometry *geometry, uint32_t id,
-                                                                const RtPreparedRay *ray, float *t,
-                                                                RtTally *tally) {
+static inline __attribute__((always_inline)) bool
+rt_object_hit(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, float *t, RtTally *tally) {
     RtRef ref = geometry->objects[id];
     uint32_t index = rt_ref_index(ref);
     if (rt_ref_shape(ref) == RT_SHAPE_TRIANGLE) return rt_triangle_hit(&geometry->triangles[index], ray, t);
