@@ -62,11 +62,11 @@ typedef struct Walk {
 } Walk;
 
 RT_KERNEL float near_crossing(const Axis *axis, uint32_t i) {
-    return (axis->planes[(int32_t)i * axis->step] - axis->near_org) * axis->inv;
+    return (axis->planes[(ptrdiff_t)i * axis->step] - axis->near_org) * axis->inv;
 }
 
 RT_KERNEL float far_crossing(const Axis *axis, uint32_t i) {
-    return (axis->planes[(int32_t)(i + 1) * axis->step] - axis->far_org) * axis->inv;
+    return (axis->planes[(ptrdiff_t)(i + 1) * axis->step] - axis->far_org) * axis->inv;
 }
 
 /* A crossing is NaN where the ray lies exactly in the moved plane: then it is in the interval, always. */

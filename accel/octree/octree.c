@@ -111,7 +111,8 @@ RT_KERNEL Planes cut(const Line *line, const RtVec3 *split, RtFour near, RtFour 
                     rt_four_pick(line->sign, last, far), rt_four_pick(line->sign, far, last)};
 }
 
-/* Where the ray enters or leaves four children, lower or upper ones along z; `least` or `most` of it. */
+/* Where the ray enters and leaves the eight children, by their places: [0] those below the split along z, [1]
+ * those above. */
 RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFour enter[2], RtFour leave[2]) {
     RtFour near = __builtin_shufflevector(p->low_near, p->high_near, 0, 4, 1, 5);
     RtFour far = __builtin_shufflevector(p->low_far, p->high_far, 0, 4, 1, 5);
