@@ -211,6 +211,17 @@ refuses 'missing/x\.csv.*No such file' $bench --accel bvh --csv missing/x.csv
 does $bench --accel all --json
 does $bench --accel brute --ray-stride 3 --accel bvh --baseline bvh --count-only
 does $bench --accel bvh --rays diffuse,occlusion
+# What it says of a second is what it says of a ray, times rays a second.
+timeout 60 "$program" $bench --accel kd --accel grid --rays primary,shadow --json >seconds.json
+awk -F '[":, ]+' '
+    { value[$2] = $3 }
+    $2 == "mtests_per_s" {
+        rows++
+        of_steps = value["msteps_per_s"] * value["rays"] / value["steps"] / value["mrays_per_s"]
+        of_tests = value["mtests_per_s"] * value["rays"] / value["object_tests"] / value["mrays_per_s"]
+        if (!(of_steps > 0.9999 && of_steps < 1.0001 && of_tests > 0.9999 && of_tests < 1.0001)) exit 1
+    }
+    END { exit rows != 4 }' seconds.json || complain "bench --json: steps and tests a second are not those of a ray"
 
 refuses 'EXPERIMENT is missing' run
 refuses 'nope\.yaml: .*No such file' run nope.yaml

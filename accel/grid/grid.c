@@ -40,22 +40,33 @@ static size_t scratch_bytes(const RtAccel *accel) {
     return grid->mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
 }
 
-/* One axis of the walk. Intervals are numbered along the ray: 0 is the first it can meet. */
+/* One axis of a walk. Intervals are numbered along the ray: 0 is the first it can meet, and lies between
+ * planes 0 and 1. Steps and strides are negative (modulo 2^32) where the ray runs against the axis. */
 typedef struct Axis {
-    const float *planes;
+    const float *planes; /* plane i is planes[i * step] */
+    int32_t step;
+    uint32_t stride;    /* from voxel to voxel */
     uint32_t n, lo, hi; /* current intervals, lo..hi */
-    bool mirrored;      /* the ray runs against the axis */
     float near_org, far_org, inv;
     float enter; /* when interval hi + 1 is entered: near(hi + 1), or INFINITY beyond the last */
     float leave; /* when interval lo is left: far(lo) */
 } Axis;
 
+/* The walk through one block. */
+typedef struct Walk {
+    Axis axes[3];
+    uint32_t voxel;  /* in the intervals hi of the three axes */
+    uint32_t spread; /* current intervals, three of them not counted */
+    int entered;     /* the axis that was crossed last; at first, when none was, any */
+    float t;         /* when that was */
+} Walk;
+
 RT_KERNEL float near_crossing(const Axis *axis, uint32_t i) {
-    return (axis->planes[axis->mirrored ? axis->n - i : i] - axis->near_org) * axis->inv;
+    return (axis->planes[(ptrdiff_t)i * axis->step] - axis->near_org) * axis->inv;
 }
 
 RT_KERNEL float far_crossing(const Axis *axis, uint32_t i) {
-    return (axis->planes[axis->mirrored ? axis->n - 1 - i : i + 1] - axis->far_org) * axis->inv;
+    return (axis->planes[(ptrdiff_t)(i + 1) * axis->step] - axis->far_org) * axis->inv;
 }
 
 /* A crossing is NaN where the ray lies exactly in the moved plane: then it is in the interval, always. */
@@ -63,33 +74,65 @@ RT_KERNEL void update_enter(Axis *axis) {
     axis->enter = axis->hi + 1 < axis->n ? near_crossing(axis, axis->hi + 1) : INFINITY;
 }
 
-/* The intervals that the ray is in at `t`. */
-RT_KERNEL Axis start_axis(const RtGridBlock *block, const RtPreparedRay *ray, int a, float t) {
-    Axis axis = {.planes = block->planes[a],
-                 .n = block->n[a],
-                 .mirrored = ray->negative[a],
+/* The intervals that the ray is in at `t`, of voxels that are `stride` apart. */
+RT_KERNEL Axis start_axis(const RtGridBlock *block, const RtPreparedRay *ray, int a, uint32_t stride,
+                          float t) {
+    const float *planes = block->planes[a];
+    const uint32_t n = block->n[a];
+    const bool mirrored = ray->negative[a];
+    Axis axis = {.planes = mirrored ? planes + n : planes,
+                 .step = mirrored ? -1 : 1,
+                 .stride = mirrored ? 0 - stride : stride,
+                 .n = n,
                  .near_org = ray->org_near[a],
                  .far_org = ray->org_far[a],
                  .inv = ray->inv[a]};
-    float width = axis.planes[axis.n] - axis.planes[0];
-    float at = (ray->org.at[a] + t * ray->dir.at[a] - axis.planes[0]) / width * (float)axis.n;
-    uint32_t guess = at > 0 ? (uint32_t)rt_minf(at, (float)(axis.n - 1)) : 0;
-    axis.lo = axis.mirrored ? axis.n - 1 - guess : guess;
+    float at = (ray->org.at[a] + t * ray->dir.at[a] - planes[0]) / (planes[n] - planes[0]) * (float)n;
+    uint32_t guess = at > 0 ? (uint32_t)rt_minf(at, (float)(n - 1)) : 0;
+    axis.lo = mirrored ? n - 1 - guess : guess;
     while (axis.lo > 0 && !(far_crossing(&axis, axis.lo - 1) < t)) axis.lo--;
-    while (axis.lo + 1 < axis.n && far_crossing(&axis, axis.lo) < t) axis.lo++;
+    while (axis.lo + 1 < n && far_crossing(&axis, axis.lo) < t) axis.lo++;
     axis.hi = axis.lo;
-    while (axis.hi + 1 < axis.n && !(near_crossing(&axis, axis.hi + 1) > t)) axis.hi++;
+    while (axis.hi + 1 < n && !(near_crossing(&axis, axis.hi + 1) > t)) axis.hi++;
     axis.leave = far_crossing(&axis, axis.lo);
     update_enter(&axis);
     return axis;
 }
 
-/* Drops the intervals that the ray has left before `t`; false if none remains. */
-RT_KERNEL bool retire(Axis *axis, float t) {
+RT_KERNEL void begin_walk(Walk *walk, const RtGridBlock *block, const RtPreparedRay *ray, float t) {
+    uint32_t stride = 1;
+    walk->voxel = block->voxel;
+    walk->spread = 0;
+    walk->entered = 0;
+    walk->t = t;
+    for (int a = 0; a < 3; a++) {
+        Axis *axis = &walk->axes[a];
+        *axis = start_axis(block, ray, a, stride, t);
+        walk->voxel += stride * (ray->negative[a] ? axis->n - 1 - axis->hi : axis->hi);
+        walk->spread += axis->hi - axis->lo;
+        stride *= axis->n;
+    }
+}
+
+/* Drops the intervals of an axis that the ray has left before `t`; false if none remains. */
+RT_KERNEL bool retire_axis(Walk *walk, Axis *axis, float t) {
     while (axis->leave < t) {
         if (axis->lo == axis->hi) return false;
         axis->lo++;
+        walk->spread--;
         axis->leave = far_crossing(axis, axis->lo);
+    }
+    return true;
+}
+
+/* The same of all axes. Nearly always it is the axis crossed last that has something to drop, and no other.
+ */
+RT_KERNEL bool retire(Walk *walk, float t) {
+    Axis *axes = walk->axes;
+    if (!retire_axis(walk, &axes[walk->entered], t)) return false;
+    if (!(rt_minf(axes[0].leave, rt_minf(axes[1].leave, rt_minf(axes[2].leave, INFINITY))) < t)) return true;
+    for (int a = 0; a < 3; a++) {
+        if (!retire_axis(walk, &axes[a], t)) return false;
     }
     return true;
 }
@@ -100,132 +143,114 @@ RT_KERNEL int next_axis(const Axis axes[3]) {
                                           : (axes[1].enter <= axes[2].enter ? 1 : 2);
 }
 
-RT_KERNEL void enter_next(Axis *axis) {
+/* Goes to the moment at which the next interval is entered; false where the walk is over, or that comes after
+ * `limit`. */
+RT_KERNEL bool next_moment(Walk *walk, float limit) {
+    int next = next_axis(walk->axes);
+    Axis *axis = &walk->axes[next];
+    walk->t = axis->enter;
+    if (walk->t > limit || !retire(walk, walk->t)) return false;
+    walk->entered = next;
+    walk->voxel += axis->stride;
+    walk->spread++;
     axis->hi++;
     update_enter(axis);
-}
-
-/* The voxel that lies in the intervals i of the three axes, as a number in its block: rt_grid_voxel_at by
- * what the axes know. */
-RT_KERNEL size_t voxel_in(const Axis axes[3], const uint32_t i[3]) {
-    uint32_t at[3];
-    for (int a = 0; a < 3; a++) at[a] = axes[a].mirrored ? axes[a].n - 1 - i[a] : i[a];
-    return ((size_t)at[2] * axes[1].n + at[1]) * axes[0].n + at[0];
+    return true;
 }
 
 RT_KERNEL bool visit_voxel(const RtGrid *self, const RtGridLevel *level, RtMailbox *mailbox, size_t voxel,
                            const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
-    uint32_t from = level->first[voxel], to = level->first[voxel + 1];
+    uint32_t first = level->first[voxel], count = level->first[voxel + 1] - first;
     RT_COUNT(tally, steps, 1);
     RT_COUNT(tally, leaf_steps, 1);
-    RT_COUNT(tally, empty_steps, from == to);
-    return rt_test_list(&self->base.scene->geometry, mailbox, level->ids + from, to - from, ray, any, best,
+    RT_COUNT(tally, empty_steps, count == 0);
+    return rt_test_list(&self->base.scene->geometry, mailbox, level->ids + first, count, ray, any, best,
                         tally);
+}
+
+/* Several voxels at a moment: those in the intervals from..hi of the axes, on the axis just crossed the last
+ * alone. The next is in the intervals i; none is left where i[2] is beyond. */
+typedef struct Moment {
+    uint32_t from[3], i[3];
+} Moment;
+
+RT_KERNEL Moment begin_moment(const Walk *walk, bool begins) {
+    Moment moment;
+    for (int a = 0; a < 3; a++) {
+        const Axis *axis = &walk->axes[a];
+        moment.i[a] = moment.from[a] = a == walk->entered && !begins ? axis->hi : axis->lo;
+    }
+    return moment;
+}
+
+/* The next voxel of this moment; false where there is none. */
+RT_KERNEL bool next_voxel(const Walk *walk, Moment *moment, uint32_t *voxel) {
+    const Axis *axes = walk->axes;
+    uint32_t *i = moment->i;
+    if (i[2] > axes[2].hi) return false;
+    *voxel = walk->voxel;
+    for (int a = 0; a < 3; a++) *voxel -= (axes[a].hi - i[a]) * axes[a].stride;
+    if (++i[0] <= axes[0].hi) return true;
+    i[0] = moment->from[0];
+    if (++i[1] <= axes[1].hi) return true;
+    i[1] = moment->from[1];
+    i[2]++;
+    return true;
+}
+
+/* Most moments have one voxel alone, walk->voxel: of the axis just crossed no interval but the last counts,
+ * and the other two have one. */
+RT_KERNEL bool several_voxels(const Walk *walk) {
+    const Axis *entered = &walk->axes[walk->entered];
+    return walk->spread > entered->hi - entered->lo;
 }
 
 /* ---- one level ---- */
 
-/* Visits the voxels of all current intervals, but of axis `entered` only the newest. */
-RT_KERNEL bool visit_current(const RtGrid *self, RtMailbox *mailbox, const Axis axes[3], int entered,
-                             const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
-    const RtGridLevel *level = &self->levels[0];
-    uint32_t from[3], i[3];
-    for (int a = 0; a < 3; a++) from[a] = a == entered ? axes[a].hi : axes[a].lo;
-    for (i[2] = from[2]; i[2] <= axes[2].hi; i[2]++) {
-        for (i[1] = from[1]; i[1] <= axes[1].hi; i[1]++) {
-            for (i[0] = from[0]; i[0] <= axes[0].hi; i[0]++) {
-                size_t voxel = voxel_in(axes, i);
-                if (visit_voxel(self, level, mailbox, voxel, ray, any, best, tally)) return true;
-            }
-        }
-    }
-    return false;
-}
-
 RT_KERNEL void walk_flat(const RtGrid *self, RtMailbox *mailbox, float t, const RtPreparedRay *ray, bool any,
                          RtHit *best, RtTally *tally) {
-    Axis axes[3];
-    int entered = -1;
-    for (int a = 0; a < 3; a++) axes[a] = start_axis(self->levels[0].blocks, ray, a, t);
+    const RtGridLevel *level = &self->levels[0];
+    Walk walk;
+    uint32_t voxel;
+    begin_walk(&walk, level->blocks, ray, t);
+    Moment moment = begin_moment(&walk, true);
     for (;;) {
-        if (visit_current(self, mailbox, axes, entered, ray, any, best, tally)) return;
-        entered = next_axis(axes);
-        t = axes[entered].enter;
-        if (t > rt_limit(ray, best)) return;
-        for (int a = 0; a < 3; a++) {
-            if (!retire(&axes[a], t)) return;
+        while (next_voxel(&walk, &moment, &voxel)) {
+            if (visit_voxel(self, level, mailbox, voxel, ray, any, best, tally)) return;
         }
-        enter_next(&axes[entered]);
+        do {
+            if (!next_moment(&walk, rt_limit(ray, best))) return;
+            if (several_voxels(&walk)) break;
+            if (visit_voxel(self, level, mailbox, walk.voxel, ray, any, best, tally)) return;
+        } while (true);
+        moment = begin_moment(&walk, false);
     }
 }
 
 /* ---- several levels ---- */
 
-/* The walk through one block, that of each level on a stack. Of the voxels to visit at moment t, those in the
- * intervals from..hi of the axes, the next is in the intervals i; none is left where i[2] is beyond. */
-typedef struct Walk {
-    Axis axes[3];
-    uint32_t voxel; /* the first of the block */
-    uint32_t from[3], i[3];
-    int entered; /* the axis that was crossed last, or -1 */
-    float t;
-} Walk;
-
-RT_KERNEL void begin_moment(Walk *walk) {
-    for (int a = 0; a < 3; a++) {
-        walk->i[a] = walk->from[a] = a == walk->entered ? walk->axes[a].hi : walk->axes[a].lo;
-    }
-}
-
-RT_KERNEL void begin_walk(Walk *walk, const RtGridBlock *block, const RtPreparedRay *ray, float t) {
-    walk->voxel = block->voxel;
-    walk->entered = -1;
-    walk->t = t;
-    for (int a = 0; a < 3; a++) walk->axes[a] = start_axis(block, ray, a, t);
-    begin_moment(walk);
-}
-
-/* What walk_flat does between two moments; false where the walk is over. One function for both would cost
- * walk_flat 3 %, for reasons of the compiler's. */
-RT_KERNEL bool next_moment(Walk *walk, const RtPreparedRay *ray, const RtHit *best) {
-    walk->entered = next_axis(walk->axes);
-    walk->t = walk->axes[walk->entered].enter;
-    if (walk->t > rt_limit(ray, best)) return false;
-    for (int a = 0; a < 3; a++) {
-        if (!retire(&walk->axes[a], walk->t)) return false;
-    }
-    enter_next(&walk->axes[walk->entered]);
-    return true;
-}
-
-/* The next voxel of this moment; false where there is none. */
-RT_KERNEL bool next_voxel(Walk *walk, size_t *voxel) {
-    uint32_t *i = walk->i;
-    if (i[2] > walk->axes[2].hi) return false;
-    *voxel = walk->voxel + voxel_in(walk->axes, i);
-    if (++i[0] <= walk->axes[0].hi) return true;
-    i[0] = walk->from[0];
-    if (++i[1] <= walk->axes[1].hi) return true;
-    i[1] = walk->from[1];
-    i[2]++;
-    return true;
-}
+/* A walk on the stack, where it is interrupted by that through a voxel. */
+typedef struct Interrupted {
+    Walk walk;
+    Moment moment;
+} Interrupted;
 
 RT_KERNEL void walk_nested(const RtGrid *self, RtMailbox *mailbox, float t, const RtPreparedRay *ray,
                            bool any, RtHit *best, RtTally *tally) {
-    Walk stack[RT_GRID_MAX_LEVELS], *walk = stack;
+    Interrupted stack[RT_GRID_MAX_LEVELS], *at = stack;
     const RtGridLevel *level = self->levels;
     RT_COUNT(tally, steps, 1);
-    begin_walk(walk, level->blocks, ray, t);
+    begin_walk(&at->walk, level->blocks, ray, t);
+    at->moment = begin_moment(&at->walk, true);
     for (;;) {
-        size_t voxel;
-        if (!next_voxel(walk, &voxel)) {
-            if (next_moment(walk, ray, best)) {
-                begin_moment(walk);
-            } else if (walk == stack) {
+        uint32_t voxel;
+        if (!next_voxel(&at->walk, &at->moment, &voxel)) {
+            if (next_moment(&at->walk, rt_limit(ray, best))) {
+                at->moment = begin_moment(&at->walk, false);
+            } else if (at == stack) {
                 return;
             } else {
-                walk--;
+                at--;
                 level--;
             }
             continue;
@@ -236,8 +261,9 @@ RT_KERNEL void walk_nested(const RtGrid *self, RtMailbox *mailbox, float t, cons
         } else {
             RT_COUNT(tally, steps, 1);
             level++;
-            begin_walk(walk + 1, &level->blocks[inner], ray, walk->t);
-            walk++;
+            begin_walk(&at[1].walk, &level->blocks[inner], ray, at->walk.t);
+            at++;
+            at->moment = begin_moment(&at->walk, true);
         }
     }
 }

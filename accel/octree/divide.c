@@ -147,12 +147,16 @@ RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *id
         uint32_t children = rt_octree_sides(&cell, split, &object);
         for (uint32_t c = 0; c < 8; c++) length[c] += children >> c & 1;
     }
-    for (uint32_t c = 0; c < 8; c++) total += length[c];
+    uint32_t empty = 0; /* too few to be divided again: these are leaves */
+    for (uint32_t c = 0; c < 8; c++) {
+        total += length[c];
+        empty |= (uint32_t)(length[c] == 0) << c;
+    }
     RT_TRY(make_room(b, 8, 0, total, error));
     RtOctreeNode *node = &tree->nodes[index];
     node->split = split;
     node->first = tree->node_count;
-    node->count = RT_OCTREE_INNER;
+    node->count = RT_OCTREE_INNER | empty;
     for (uint32_t c = 0; c < 8; c++) {
         tree->boxes[tree->node_count] = rt_octree_child_box(cell, split, c);
         tree->nodes[tree->node_count++] =

@@ -51,82 +51,136 @@ RT_KERNEL uint32_t near_side(const RtPreparedRay *ray, int axis) {
     return ray->negative[axis] ? rt_octree_upper(axis) : rt_octree_lower(axis);
 }
 
+RT_KERNEL void count_leaf(bool empty, RtTally *tally) {
+    RT_COUNT(tally, leaf_steps, 1);
+    RT_COUNT(tally, empty_steps, empty);
+}
+
 RT_KERNEL bool visit_leaf(const RtOctree *self, RtMailbox *mailbox, const RtOctreeNode *leaf,
                           const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
-    RT_COUNT(tally, leaf_steps, 1);
-    RT_COUNT(tally, empty_steps, leaf->count == 0);
+    count_leaf(leaf->count == 0, tally);
     return rt_test_list(&self->base.scene->geometry, mailbox, self->ids + leaf->first, leaf->count, ray, any,
                         best, tally);
 }
 
 /* ---- parametric ---- */
 
-/* A node with the crossings of its planes. */
-typedef struct Span {
-    uint32_t node;
-    float enter, near[3], far[3];
-} Span;
+/* An inner node that is being visited: when the ray crosses the planes of its children, lanes x, y, z. On
+ * each axis it is in the children below the split from low_near to low_far, in those above from high_near to
+ * high_far. */
+typedef struct Planes {
+    RtFour low_near, high_near, low_far, high_far;
+} Planes;
 
-RT_KERNEL bool span_meets(Span *span, float tmin, float limit) {
-    float near = tmin, far = limit;
-    for (int a = 0; a < 3; a++) {
-        near = rt_maxf(span->near[a], near);
-        far = rt_minf(span->far[a], far);
-    }
-    span->enter = near;
-    return near <= far;
+/* A node that waits. */
+typedef struct Waiting {
+    float enter;
+    uint32_t node;
+    uint16_t depth;
+    bool empty; /* a leaf without an object, which need not be fetched from memory to be a step */
+} Waiting;
+
+/* What crossings are computed from. The fourth lane is the third again, so that it never holds what is slow
+ * to compute with. */
+typedef struct Line {
+    RtFour org_near, org_far, inv;
+    RtFourBits sign;
+} Line;
+
+RT_KERNEL RtFour three(const void *at) {
+    RtFour four = rt_four(at);
+    return __builtin_shufflevector(four, four, 0, 1, 2, 2);
 }
 
-/* Puts the children that the ray meets onto the stack, the one it enters first on top; gives their number. */
-RT_KERNEL uint32_t push_children(const RtOctree *self, const RtPreparedRay *ray, const Span *parent,
-                                 float limit, Span *stack) {
-    const RtOctreeNode *node = &self->nodes[parent->node];
-    float near[3], far[3];
-    uint32_t children = 0xff, pushed = 0;
-    for (int a = 0; a < 3; a++) {
-        near[a] = near_crossing(ray, a, node->split.at[a]);
-        far[a] = far_crossing(ray, a, node->split.at[a]);
-        if (far[a] < parent->enter) children &= ~near_side(ray, a);
-        if (near[a] > limit) children &= near_side(ray, a);
-    }
+RT_KERNEL Line line_of(const RtPreparedRay *ray) {
+    return (Line){three(ray->org_near), three(ray->org_far), three(ray->inv), rt_four_sign(three(&ray->dir))};
+}
+
+/* The lanes of the axes on which child `place` is the upper one, from `high`, the others from `low`. */
+RT_KERNEL RtFour choose(uint32_t place, RtFour low, RtFour high) {
+    static const RtFourBits upper[8] = {{0, 0, 0, 0},   {-1, 0, 0, 0},   {0, -1, 0, 0},   {-1, -1, 0, 0},
+                                        {0, 0, -1, -1}, {-1, 0, -1, -1}, {0, -1, -1, -1}, {-1, -1, -1, -1}};
+    return rt_four_pick(upper[place], low, high);
+}
+
+/* Cuts a node, in which the ray is from `near` to `far` on each axis, at its split. */
+RT_KERNEL Planes cut(const Line *line, const RtVec3 *split, RtFour near, RtFour far) {
+    RtFour at = three(split); /* and what follows it in the node */
+    RtFour first = (at - line->org_near) * line->inv, last = (at - line->org_far) * line->inv;
+    return (Planes){rt_four_pick(line->sign, near, first), rt_four_pick(line->sign, first, near),
+                    rt_four_pick(line->sign, last, far), rt_four_pick(line->sign, far, last)};
+}
+
+/* Where the ray enters and leaves the eight children, by their places: [0] those below the split along z, [1]
+ * those above. */
+RT_KERNEL void span_children(const Planes *p, float tmin, float limit, RtFour enter[2], RtFour leave[2]) {
+    RtFour near = __builtin_shufflevector(p->low_near, p->high_near, 0, 4, 1, 5);
+    RtFour far = __builtin_shufflevector(p->low_far, p->high_far, 0, 4, 1, 5);
+    RtFour from = rt_four_max(__builtin_shufflevector(near, near, 0, 1, 0, 1), rt_four_all(tmin));
+    RtFour to = rt_four_min(__builtin_shufflevector(far, far, 0, 1, 0, 1), rt_four_all(limit));
+    from = rt_four_max(__builtin_shufflevector(near, near, 2, 2, 3, 3), from);
+    to = rt_four_min(__builtin_shufflevector(far, far, 2, 2, 3, 3), to);
+    enter[0] = rt_four_max(__builtin_shufflevector(p->low_near, p->low_near, 2, 2, 2, 2), from);
+    enter[1] = rt_four_max(__builtin_shufflevector(p->high_near, p->high_near, 2, 2, 2, 2), from);
+    leave[0] = rt_four_min(__builtin_shufflevector(p->low_far, p->low_far, 2, 2, 2, 2), to);
+    leave[1] = rt_four_min(__builtin_shufflevector(p->high_far, p->high_far, 2, 2, 2, 2), to);
+}
+
+/* Puts the children that the ray meets onto the stack, the one it enters first on top, of those that it
+ * enters at once the last; gives their number. All eight are asked at once. */
+RT_KERNEL uint32_t push_children(const Planes *planes, const RtOctreeNode *node, uint32_t depth,
+                                 const RtPreparedRay *ray, float limit, Waiting *stack) {
+    RtFour enter[2], leave[2];
+    span_children(planes, ray->tmin, limit, enter, leave);
+    uint32_t children = rt_four_at_least(leave[0], enter[0]) | rt_four_at_least(leave[1], enter[1]) << 4;
+    float enters[8];
+    uint32_t pushed = 0;
+    memcpy(enters, enter, sizeof enters);
     for (; children; children &= children - 1) {
-        uint32_t place = (uint32_t)__builtin_ctz(children), i = pushed;
-        Span child = {.node = node->first + place};
-        for (int a = 0; a < 3; a++) {
-            bool first = near_side(ray, a) >> place & 1;
-            child.near[a] = first ? parent->near[a] : near[a];
-            child.far[a] = first ? far[a] : parent->far[a];
-        }
-        if (!span_meets(&child, ray->tmin, limit)) continue;
-        for (; i > 0 && stack[i - 1].enter < child.enter; i--) stack[i] = stack[i - 1];
-        stack[i] = child;
-        pushed++;
+        uint32_t place = (uint32_t)__builtin_ctz(children), i = pushed++;
+        for (; i > 0 && stack[i - 1].enter < enters[place]; i--) stack[i] = stack[i - 1];
+        stack[i] = (Waiting){enters[place], node->first + place, (uint16_t)depth, node->count >> place & 1};
     }
     return pushed;
 }
 
 RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPreparedRay *ray, bool any,
                        RtHit *best, RtTally *tally) {
-    Span stack[MAX_STACK], span = {.node = 0};
+    const Line line = line_of(ray);
+    Planes visited[RT_OCTREE_DEPTH_LIMIT]; /* by depth */
+    Waiting stack[MAX_STACK], at = {.depth = 0};
     uint32_t stacked = 0;
+    RtFour near, far;
+    float limit = rt_limit(ray, best);
+    const RtBox *root = &self->boxes[0];
     for (int a = 0; a < 3; a++) {
-        const RtBox *root = &self->boxes[0];
-        span.near[a] = near_crossing(ray, a, (ray->negative[a] ? root->hi : root->lo).at[a]);
-        span.far[a] = far_crossing(ray, a, (ray->negative[a] ? root->lo : root->hi).at[a]);
+        near[a] = near_crossing(ray, a, rt_box_side(root, ray->first[a]));
+        far[a] = far_crossing(ray, a, rt_box_side(root, ray->last[a]));
     }
-    if (!span_meets(&span, ray->tmin, rt_limit(ray, best))) return;
+    near[3] = near[2], far[3] = far[2];
     for (;;) {
-        const RtOctreeNode *node = &self->nodes[span.node];
+        const RtOctreeNode *node = &self->nodes[at.node];
         RT_COUNT(tally, steps, 1);
-        if (node->count == RT_OCTREE_INNER) {
-            stacked += push_children(self, ray, &span, rt_limit(ray, best), stack + stacked);
-        } else if (visit_leaf(self, mailbox, node, ray, any, best, tally)) {
-            return;
+        if (at.empty) {
+            count_leaf(true, tally);
+        } else if (rt_octree_is_inner(node)) {
+            if (at.node > 0) {
+                const Planes *p = &visited[at.depth - 1];
+                uint32_t place = rt_octree_place(at.node);
+                near = choose(place, p->low_near, p->high_near);
+                far = choose(place, p->low_far, p->high_far);
+            }
+            Planes *own = &visited[at.depth];
+            *own = cut(&line, &node->split, near, far);
+            stacked += push_children(own, node, at.depth + 1, ray, limit, stack + stacked);
+        } else {
+            if (visit_leaf(self, mailbox, node, ray, any, best, tally)) return;
+            limit = rt_limit(ray, best);
         }
         do {
             if (stacked == 0) return;
-            span = stack[--stacked];
-        } while (span.enter > rt_limit(ray, best));
+            at = stack[--stacked];
+        } while (at.enter > limit);
     }
 }
 
@@ -200,7 +254,7 @@ RT_KERNEL bool enter_leaves(const RtOctree *self, RtMailbox *mailbox, const Cros
     for (;;) {
         const RtOctreeNode *node = &self->nodes[index];
         RT_COUNT(tally, steps, 1);
-        if (node->count == RT_OCTREE_INNER) {
+        if (rt_octree_is_inner(node)) {
             uint32_t children = children_at(ray, node, at);
             for (; children; children &= children - 1) {
                 stack[stacked++] = node->first + (uint32_t)__builtin_ctz(children);

@@ -47,8 +47,8 @@ enum { RT_OCTREE_POINTS, RT_OCTREE_NEIGHBOURS, RT_OCTREE_PARAMETRIC };
 
 enum { RT_OCTREE_DEPTH_LIMIT = 20 };
 
-/* RtOctreeNode.count of an inner node. */
-#define RT_OCTREE_INNER UINT32_MAX
+/* RtOctreeNode.count of an inner node, and which of its children are leaves without an object, as bits. */
+#define RT_OCTREE_INNER UINT32_C(0xffffff00)
 
 /* What a node takes: itself and its cell. */
 #define RT_OCTREE_NODE_BYTES (sizeof(RtOctreeNode) + sizeof(RtBox))
@@ -56,7 +56,7 @@ enum { RT_OCTREE_DEPTH_LIMIT = 20 };
 typedef struct RtOctreeNode {
     RtVec3 split;    /* inner: the planes between its children */
     uint32_t first;  /* inner: the first of its children; leaf: the first of its ids */
-    uint32_t count;  /* leaf: length of its list */
+    uint32_t count;  /* leaf: length of its list; inner: RT_OCTREE_INNER, and its empty children */
     uint32_t parent; /* 0 for the root */
 } RtOctreeNode;
 
@@ -70,6 +70,10 @@ typedef struct RtOctree {
     bool mailbox, cut_filled;
     double slack, flat; /* how objects' boxes are grown: rt_octree_grown */
 } RtOctree;
+
+static inline bool rt_octree_is_inner(const RtOctreeNode *node) {
+    return node->count >= RT_OCTREE_INNER;
+}
 
 /* build.c */
 RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error);

@@ -37,7 +37,7 @@ static double seeking_steps(const RtOctree *tree, uint32_t leaf) {
 static double steps_to(const RtOctree *tree, uint32_t index) {
     double area = rt_box_half_area(tree->boxes[index]);
     if (tree->traversal == RT_OCTREE_PARAMETRIC) return area;
-    if (tree->nodes[index].count == RT_OCTREE_INNER) return 0;
+    if (rt_octree_is_inner(&tree->nodes[index])) return 0;
     return tree->traversal == RT_OCTREE_POINTS ? area * (depth_of(tree, index) + 1)
                                                : seeking_steps(tree, index) / 2;
 }
@@ -52,7 +52,7 @@ void rt_octree_describe(const RtAccel *accel, RtDescription *out) {
     double tests = 0, steps = 0, area = rt_box_half_area(tree->boxes[0]);
     for (uint32_t i = 0; i < tree->node_count; i++) {
         const RtOctreeNode *node = &tree->nodes[i];
-        bool leaf = node->count != RT_OCTREE_INNER;
+        bool leaf = !rt_octree_is_inner(node);
         out->interior += !leaf;
         out->leaves += leaf;
         out->empty_leaves += node->count == 0;
@@ -83,8 +83,7 @@ static RtStatus check_place(const Check *check, uint32_t index) {
     const RtOctree *tree = check->tree;
     uint32_t parent = tree->nodes[index].parent;
     const RtOctreeNode *above = &tree->nodes[parent];
-    if (parent >= index || above->count != RT_OCTREE_INNER ||
-        above->first != index - rt_octree_place(index)) {
+    if (parent >= index || !rt_octree_is_inner(above) || above->first != index - rt_octree_place(index)) {
         return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent", index);
     }
     RtBox cell = rt_octree_child_box(tree->boxes[parent], above->split, rt_octree_place(index));
@@ -114,9 +113,15 @@ static RtStatus check_inner(const Check *check, uint32_t index) {
                        index);
     }
     for (uint32_t place = 0; place < 8; place++) {
-        if (tree->nodes[node->first + place].parent == index) continue;
-        return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent",
-                       node->first + place);
+        const RtOctreeNode *child = &tree->nodes[node->first + place];
+        if (child->parent != index) {
+            return rt_fail(check->error, RT_MISMATCH, "octree: node %u is no child of its parent",
+                           node->first + place);
+        }
+        if ((node->count >> place & 1) != (child->count == 0)) {
+            return rt_fail(check->error, RT_MISMATCH, "octree: node %u is not as empty as its parent says",
+                           node->first + place);
+        }
     }
     return RT_OK;
 }
@@ -153,7 +158,7 @@ static RtStatus check_list(const Check *check, uint32_t index) {
 /* Leaves that must list an object with this box. */
 static uint64_t leaves_touched(const RtOctree *tree, uint32_t index, const RtBox *object) {
     const RtOctreeNode *node = &tree->nodes[index];
-    if (node->count != RT_OCTREE_INNER) return 1;
+    if (!rt_octree_is_inner(node)) return 1;
     uint32_t children = rt_octree_sides(&tree->boxes[index], node->split, object);
     uint64_t touched = 0;
     for (uint32_t place = 0; place < 8; place++) {
@@ -166,7 +171,7 @@ static RtStatus check_all(const Check *check) {
     const RtOctree *tree = check->tree;
     for (uint32_t i = 0; i < tree->node_count; i++) {
         if (i > 0) RT_TRY(check_place(check, i));
-        bool leaf = tree->nodes[i].count != RT_OCTREE_INNER;
+        bool leaf = !rt_octree_is_inner(&tree->nodes[i]);
         RT_TRY(leaf ? check_list(check, i) : check_inner(check, i));
     }
     for (uint32_t id = 0; id < check->geometry->object_count; id++) {

@@ -99,8 +99,12 @@ static inline RtFour rt_four_pick(RtFourBits sign, RtFour a, RtFour b) {
 
 /* Whether a comparison of x, y and z held in any of them. */
 static inline bool rt_four_any(RtFourBits held) {
+#if defined(__SSE__)
+    return (_mm_movemask_ps((__m128)held) & 7) != 0;
+#else
     RtFourHalves halves = (RtFourHalves)(held & (RtFourBits){-1, -1, -1, 0});
     return (halves[0] | halves[1]) != 0;
+#endif
 }
 
 /* The largest of x, y and z, none of which is NaN. */

@@ -95,8 +95,9 @@ typedef struct RtPreparedRay {
     float inv[4];     /* 1 / dir, possibly infinite; here and below x, y, z and one more for vectors */
     float org_near[4], org_far[4]; /* origins moved by the thickness */
     uint32_t negative[4];          /* 1 where dir has its sign bit set, -0 included */
-    int kx, ky, kz;                /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
-    float shear_x, shear_y;        /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
+    uint32_t first[4], last[4]; /* where in a box the sides are that it crosses first and last: rt_box_side */
+    int kx, ky, kz;             /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
+    float shear_x, shear_y;     /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
 } RtPreparedRay;
 
 static inline bool rt_ray_is_valid(const RtRay *ray) {
@@ -160,6 +161,8 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     RtFourBits sign = rt_four_sign(dir), negative = sign < 0;
     RtFour shift = rt_four_shift(rt_four_lo(scene_box), rt_four_hi(scene_box), org, sign);
     RtFour near = org + shift, far = org - shift;
+    RtFourBits first = (RtFourBits){0, 4, 8, 8} + (negative & 12),
+               last = (RtFourBits){12, 16, 20, 20} - (negative & 12);
     negative &= 1;
     p->original = ray;
     p->room = room;
@@ -169,6 +172,8 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     memcpy(p->org_near, &near, sizeof p->org_near);
     memcpy(p->org_far, &far, sizeof p->org_far);
     memcpy(p->negative, &negative, sizeof p->negative);
+    memcpy(p->first, &first, sizeof p->first);
+    memcpy(p->last, &last, sizeof p->last);
     p->tmin = ray->tmin;
     p->tmax = rt_minf(ray->tmax, FLT_MAX);
     p->kz = rt_major_axis(ray->dir);
@@ -185,13 +190,21 @@ static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_
     return p;
 }
 
+/* A side of a box, so many bytes from its beginning. Which of two a ray crosses first is looked up, not
+ * asked: of rays in all directions no one could predict that branch. */
+static inline float rt_box_side(const RtBox *box, uint32_t place) {
+    float at;
+    memcpy(&at, (const char *)box + place, sizeof at);
+    return at;
+}
+
 /* The slab test (Kay & Kajiya 1986): brings [*near, *far] down to where the thick ray is within the box; none
  * is left where *near > *far. Where dir is 0, inv is infinite: the crossings are -inf or +inf, or NaN for an
  * origin exactly on a moved plane, and NaN is passed over: such a ray counts as inside. */
 static inline void rt_box_cut(const RtBox *box, const RtPreparedRay *ray, float *near, float *far) {
     for (int a = 0; a < 3; a++) {
-        float first = ((ray->negative[a] ? box->hi : box->lo).at[a] - ray->org_near[a]) * ray->inv[a];
-        float second = ((ray->negative[a] ? box->lo : box->hi).at[a] - ray->org_far[a]) * ray->inv[a];
+        float first = (rt_box_side(box, ray->first[a]) - ray->org_near[a]) * ray->inv[a];
+        float second = (rt_box_side(box, ray->last[a]) - ray->org_far[a]) * ray->inv[a];
         *near = rt_maxf(first, *near);
         *far = rt_minf(second, *far);
     }

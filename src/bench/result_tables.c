@@ -113,7 +113,12 @@ static const void *build_of(const void *row) {
     X(interval, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                        \
     X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
     X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
-    X(min_ns, "min ns", figure, "ns", "smallest time per ray", TIMED(1e9 * r->cell->seconds.least))
+    X(min_ns, "min ns", figure, "ns", "smallest time per ray", TIMED(1e9 * r->cell->seconds.least))          \
+    X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps a second: mrays_per_s by steps per ray",      \
+      1e-6 * r->all.steps / r->all.seconds)                                                                  \
+    X(mtests_per_s, "mtests_per_s", real6, "million/s",                                                      \
+      "object tests a second: mrays_per_s by object tests per ray",                                          \
+      1e-6 * r->all.object_tests / r->all.seconds)
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -141,7 +146,9 @@ static const RtColumnGroup bench[] = {
     {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},
     {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},
     {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of},
-    RT_FROM_TO(columns, mrays_per_s, ratio_high),
+    RT_ONE(columns, mrays_per_s),
+    RT_FROM_TO(columns, msteps_per_s, mtests_per_s),
+    RT_FROM_TO(columns, baseline, ratio_high),
     RT_ONE(columns, coverage),
 };
 

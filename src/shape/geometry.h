@@ -149,26 +149,37 @@ double rt_object_support(const RtGeometry *geometry, uint32_t id, RtVec3d direct
  * normal; those of its largest solid for a CSG tree. */
 void rt_object_frame(const RtGeometry *geometry, uint32_t id, RtVec3d axes[3]);
 
-/* The hit function of every object: true if the ray (of rt_hit_ray) meets object `id` at some t in [tmin,
- * tmax], the first of which goes to *t. The same bits of t for the same ray and object, whatever was found
- * before. `tally` may be NULL; it counts what is tested inside of CSG trees. */
-static inline bool rt_object_hit(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, float *t,
-                                 RtTally *tally) {
+/* The hit functions of what is neither triangle nor sphere: out of line, for they take many registers. */
+static __attribute__((noinline)) bool rt_rarer_hit(const RtGeometry *geometry, uint32_t id,
+                                                   const RtPreparedRay *ray, float *t, RtTally *tally) {
     RtRef ref = geometry->objects[id];
     uint32_t index = rt_ref_index(ref);
     const RtBox *own = &geometry->boxes[id];
     switch (rt_ref_shape(ref)) {
-    case RT_SHAPE_TRIANGLE: return rt_triangle_hit(&geometry->triangles[index], ray, t);
-    case RT_SHAPE_SPHERE: return rt_sphere_hit(&geometry->spheres[index], own, ray, t);
     case RT_SHAPE_POLYGON: {
         const RtPolygon *polygon = &geometry->polygons[index];
         return rt_polygon_hit(polygon, geometry->polygon_vertices + polygon->first, own, ray, t);
     }
     case RT_SHAPE_CONE: return rt_cone_hit(&geometry->cones[index], own, ray, t);
     case RT_SHAPE_CSG: return rt_csg_hit(&geometry->forest, &geometry->csgs[index], ray, t, tally);
+    case RT_SHAPE_TRIANGLE:
+    case RT_SHAPE_SPHERE:
     case RT_SHAPE_COUNT: break;
     }
     return false;
+}
+
+/* The hit function of every object: true if the ray (of rt_hit_ray) meets object `id` at some t in [tmin,
+ * tmax], the first of which goes to *t. The same bits of t for the same ray and object, whatever was found
+ * before. `tally` may be NULL; it counts what is tested inside of CSG trees. */
+static inline __attribute__((always_inline)) bool
+rt_object_hit(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray, float *t, RtTally *tally) {
+    RtRef ref = geometry->objects[id];
+    uint32_t index = rt_ref_index(ref);
+    if (rt_ref_shape(ref) == RT_SHAPE_TRIANGLE) return rt_triangle_hit(&geometry->triangles[index], ray, t);
+    if (rt_ref_shape(ref) == RT_SHAPE_SPHERE)
+        return rt_sphere_hit(&geometry->spheres[index], &geometry->boxes[id], ray, t);
+    return rt_rarer_hit(geometry, id, ray, t, tally);
 }
 
 #endif

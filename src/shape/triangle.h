@@ -39,15 +39,16 @@ RtVec3d rt_triangle_normal(const RtTriangle *triangle);
 /* Barycentric weights of v[0], v[1], v[2] at `point` in the plane of the triangle; they sum to 1. */
 RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
 
-/* A coordinate of each vertex. */
+/* A coordinate of each vertex, and 0: a lane that is loaded with what does not matter takes a shuffle more.
+ */
 static inline RtFour rt_triangle_along(const float *v, size_t vertex, size_t axis) {
     v += axis;
-    return (RtFour){v[0], v[vertex], v[2 * vertex], v[2 * vertex]};
+    return (RtFour){v[0], v[vertex], v[2 * vertex], 0};
 }
 
-/* A vertex. */
+/* A vertex, and 0. */
 static inline RtFour rt_triangle_vertex(const float *v, size_t axis) {
-    return (RtFour){v[0], v[axis], v[2 * axis], v[2 * axis]};
+    return (RtFour){v[0], v[axis], v[2 * axis], 0};
 }
 
 /* The t in [tmin, tmax] at which the ray meets a triangle; a ray in its plane misses it. Coordinate a of

@@ -93,7 +93,7 @@ RT_TEST(slack_grows_the_boxes_of_objects) {
 /* The first leaf, from the root on, with `least` objects or more. */
 static uint32_t find_leaf(const RtOctree *tree, uint32_t least) {
     uint32_t i = 0;
-    while (tree->nodes[i].count == RT_OCTREE_INNER || tree->nodes[i].count < least) i++;
+    while (rt_octree_is_inner(&tree->nodes[i]) || tree->nodes[i].count < least) i++;
     return i;
 }
 
@@ -114,6 +114,10 @@ RT_TEST(validate_names_each_invariant_that_is_broken) {
     *root = saved;
     root->split.y = 100;
     assert_broken(&tree->base, "outside its cell");
+    *root = saved;
+
+    root->count ^= 1;
+    assert_broken(&tree->base, "not as empty as its parent says");
     *root = saved;
 
     tree->nodes[1].parent = 9;
