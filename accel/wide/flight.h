@@ -240,7 +240,7 @@ RT_KERNEL uint32_t cross(const Sheared *s, __m128 major, __m128 *t) {
 RT_KERNEL bool admit(const float *triangle, const RtPreparedRay *ray, float *t) {
     RtFour a = rt_triangle_vertex(triangle, RT_WIDE_BLOCK);
     RtFour b = rt_triangle_vertex(triangle + VERTEX, RT_WIDE_BLOCK);
-    RtFour c = rt_triangle_vertex(triangle + 2 * VERTEX, RT_WIDE_BLOCK);
+    RtFour c = rt_triangle_vertex(triangle + (size_t)2 * VERTEX, RT_WIDE_BLOCK);
     return rt_four_admit(rt_four_min(rt_four_min(a, b), c), rt_four_max(rt_four_max(a, b), c), ray, t);
 }
 

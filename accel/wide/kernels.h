@@ -9,7 +9,7 @@
 
 /* How rays of a kind are traced on. */
 typedef struct Habit {
-    float sharing;  /* rays at a node, on average of late; 0: not known */
+    float sharing;  /* rays at a node, on average of late; 0: none traced yet */
     bool alone;     /* as streams */
     uint64_t trial; /* rays until packets are tried again */
 } Habit;
@@ -38,7 +38,7 @@ static size_t scratch_bytes(const RtAccel *accel) {
         trace_many(q, first, count, any, true);                                                              \
     }                                                                                                        \
     static __attribute__((noinline))                                                                         \
-    Shared packets_##question(const Question *q, size_t first, size_t count) {                               \
+    Shared packets_##question##_timed(const Question *q, size_t first, size_t count) {                       \
         Scratch *own = q->scratch->own;                                                                      \
         return trace_packets(q, own->packets, &own->sorter, first, count, any);                              \
     }
@@ -51,7 +51,7 @@ enum {
 };
 
 /* Streams that ask for any hit need no distances, and are harder to beat. */
-#define WORTH_MORE_ANY 1.5f
+#define WORTH_MORE_ANY 1.2f
 
 /* As packets, as far as these pay; gives how many rays have been. */
 RT_KERNEL size_t trace_together(const Question *q, size_t count, bool any) {
@@ -62,13 +62,14 @@ RT_KERNEL size_t trace_together(const Question *q, size_t count, bool any) {
         habit->trial -= count;
         return 0;
     }
-    if (habit->alone) habit->sharing = 0;
+    /* A trial begins with hope, which a single window does not end. */
+    if (habit->alone || habit->sharing == 0) habit->sharing = 1.5f * worth;
     habit->alone = false;
     while (i < count && !habit->alone) {
         size_t some = count - i < WINDOW ? count - i : WINDOW;
-        Shared shared = any ? packets_occluded(q, i, some) : packets_nearest(q, i, some);
+        Shared shared = any ? packets_occluded_timed(q, i, some) : packets_nearest_timed(q, i, some);
         float sharing = (float)shared.rays / (float)(shared.visits + 1);
-        habit->sharing = habit->sharing == 0 ? sharing : 0.875f * habit->sharing + 0.125f * sharing;
+        habit->sharing += 0.25f * (sharing - habit->sharing);
         habit->alone = habit->sharing < worth;
         habit->trial = TRIAL;
         i += some;

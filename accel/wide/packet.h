@@ -39,28 +39,26 @@ typedef struct Packet {
     _Alignas(RT_CACHE_LINE) float org[3][PACKET];
     float dir[3][PACKET], inv[3][PACKET], org_near[3][PACKET], org_far[3][PACKET];
     float tmin[PACKET], tmax[PACKET], shear_x[PACKET], shear_y[PACKET];
-    float limit[PACKET]; /* the best t so far, or tmax */
+    float limit[PACKET];                /* the best t so far, or tmax */
+    uint32_t pair_ray[MOST_PAIRS];      /* [pair_count] that wait to be tested in full, */
+    uint32_t pair_triangle[MOST_PAIRS]; /* and where in the arena their coordinates begin, in floats */
     /* Ray by ray what triangles are sieved by: the origin by kx, ky and kz, nothing; the shear, the ray's
      * number, nothing. What stands behind the last is hit by no triangle. */
     float sieve[PACKET + 1][8];
-    bool sieve_ready;
     Beam beam[BEAMS];
-    bool negative[3];
-    uint32_t kx, ky, kz, near[3], far[3]; /* as of a flight */
-    uint32_t count, index[PACKET];        /* of rays, and which of the question's they are */
     RtHit best[PACKET];
+    RtPreparedRay ray[PACKET];
     uint64_t open;     /* bit i: ray i still looks for an answer */
     uint64_t prepared; /* bit i: ray[i] is */
-    RtPreparedRay ray[PACKET];
-    _Alignas(RT_CACHE_LINE) uint32_t pair_ray[MOST_PAIRS];
-    uint32_t pair_triangle[MOST_PAIRS]; /* where in the arena, in floats, its first coordinate is */
-    uint32_t pair_count;
-    uint32_t top; /* entries of the stack */
-    RtWideRef next;
-    uint64_t going; /* the rays that go on to `next` */
-    float enter[RT_WIDE_STACK];
-    RtWideRef waiting[RT_WIDE_STACK];
+    uint64_t going;    /* the rays that go on to `next` */
     uint64_t rays[RT_WIDE_STACK];
+    float enter[RT_WIDE_STACK];
+    RtWideRef waiting[RT_WIDE_STACK], next;
+    uint32_t top; /* entries of the stack */
+    uint32_t pair_count;
+    uint32_t count, index[PACKET];        /* of rays, and which of the question's they are */
+    uint32_t kx, ky, kz, near[3], far[3]; /* as of a flight */
+    bool negative[3], sieve_ready;
 } Packet;
 
 /* The rays of each class that wait for a packet of their own; and those of the question not yet sorted. */
@@ -69,6 +67,11 @@ typedef struct Sorter {
     uint32_t class; /* then: the first that may still have rays */
     uint32_t count[CLASSES], list[CLASSES][PACKET + BEAM];
 } Sorter;
+
+/* The number of a beam's first ray. */
+RT_KERNEL size_t first_of(uint32_t beam) {
+    return (size_t)beam * BEAM;
+}
 
 /* ---- sorting ---- */
 
@@ -159,15 +162,16 @@ RT_KERNEL RtV16 negated(RtV16 a, bool so) {
 RT_KERNEL void bound_beam(Packet *p, uint32_t b) {
     Beam *beam = &p->beam[b];
     RtV16 near[3], far[3], least[3], most[3], zero = rt_v16_all(0);
-    RtV16 x = rt_v16_load(&p->shear_x[b * BEAM]), y = rt_v16_load(&p->shear_y[b * BEAM]);
+    RtV16 x = rt_v16_load(&p->shear_x[first_of(b)]), y = rt_v16_load(&p->shear_y[first_of(b)]);
     for (int a = 0; a < 3; a++) {
-        least[a] = rt_v16_load(&p->inv[a][b * BEAM]);
+        least[a] = rt_v16_load(&p->inv[a][first_of(b)]);
         most[a] = rt_v16_sub(zero, least[a]);
-        near[a] = negated(rt_v16_load(&p->org_near[a][b * BEAM]), !p->negative[a]);
-        far[a] = negated(rt_v16_load(&p->org_far[a][b * BEAM]), p->negative[a]);
+        near[a] = negated(rt_v16_load(&p->org_near[a][first_of(b)]), !p->negative[a]);
+        far[a] = negated(rt_v16_load(&p->org_far[a][first_of(b)]), p->negative[a]);
     }
-    RtFour first = rt_v16_least4(near[0], near[1], near[2], rt_v16_load(&p->tmin[b * BEAM]));
-    RtFour last = rt_v16_least4(far[0], far[1], far[2], rt_v16_sub(zero, rt_v16_load(&p->limit[b * BEAM])));
+    RtFour first = rt_v16_least4(near[0], near[1], near[2], rt_v16_load(&p->tmin[first_of(b)]));
+    RtFour last =
+        rt_v16_least4(far[0], far[1], far[2], rt_v16_sub(zero, rt_v16_load(&p->limit[first_of(b)])));
     RtFour lo = rt_v16_least4(least[0], least[1], least[2], x);
     RtFour hi = rt_v16_least4(most[0], most[1], most[2], rt_v16_sub(zero, x));
     RtFour up = rt_v16_least4(y, rt_v16_sub(zero, y), y, y);
@@ -214,7 +218,7 @@ RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Question *q, uint32_t i
 RT_KERNEL void answer_odd_rays(Packet *p, const Question *q, bool any) {
     uint64_t odd = 0;
     for (uint32_t b = 0; b < BEAMS; b++) {
-        RtV16 longest = rt_v16_abs(rt_v16_load(&p->dir[p->kz][b * BEAM]));
+        RtV16 longest = rt_v16_abs(rt_v16_load(&p->dir[p->kz][first_of(b)]));
         uint32_t near = rt_v16_at_most(rt_v16_all(0x1p-64f), longest) &
                         rt_v16_at_most(longest, rt_v16_all(0x1p64f)); /* rt_surface_is_near */
         odd |= (uint64_t)(near ^ ((1u << BEAM) - 1)) << b * BEAM;

@@ -77,9 +77,11 @@ RT_KERNEL void sieve_beam(Packet *p, const RtWideTriangles *block, uint32_t at, 
                           uint32_t rays) {
     static const uint32_t lane[BEAM] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const RtV16 zero = rt_v16_all(0);
-    const RtV16 org_x = rt_v16_load(&p->org[p->kx][b * BEAM]), org_y = rt_v16_load(&p->org[p->ky][b * BEAM]),
-                org_z = rt_v16_load(&p->org[p->kz][b * BEAM]);
-    const RtV16 shear_x = rt_v16_load(&p->shear_x[b * BEAM]), shear_y = rt_v16_load(&p->shear_y[b * BEAM]);
+    const RtV16 org_x = rt_v16_load(&p->org[p->kx][first_of(b)]),
+                org_y = rt_v16_load(&p->org[p->ky][first_of(b)]),
+                org_z = rt_v16_load(&p->org[p->kz][first_of(b)]);
+    const RtV16 shear_x = rt_v16_load(&p->shear_x[first_of(b)]),
+                shear_y = rt_v16_load(&p->shear_y[first_of(b)]);
     for (uint32_t k = 0; k < count; k++) {
         const float *triangle = &block->v[0][0][k];
         RtV16 x[3], y[3];
@@ -169,7 +171,7 @@ RT_KERNEL void take_hit(Packet *p, uint32_t ray, RtHit hit, bool any) {
 }
 
 RT_KERNEL void limit_beam(Packet *p, uint32_t b) {
-    p->beam[b].limit = rt_v16_most(rt_v16_load(&p->limit[b * BEAM]));
+    p->beam[b].limit = rt_v16_most(rt_v16_load(&p->limit[first_of(b)]));
 }
 
 RT_KERNEL uint32_t id_of(const float *triangle) {

@@ -104,7 +104,7 @@ RT_KERNEL bool visit_node(Packet *p, const RtWideNode *node, uint64_t rays, bool
 RT_KERNEL uint64_t not_beyond(const Packet *p, uint64_t rays, float enter) {
     uint64_t not = 0;
     for (uint32_t b = 0; b < BEAMS; b++)
-        not |= (uint64_t)rt_v16_at_most(rt_v16_all(enter), rt_v16_load(&p->limit[b * BEAM])) << b * BEAM;
+        not |= (uint64_t)rt_v16_at_most(rt_v16_all(enter), rt_v16_load(&p->limit[first_of(b)])) << b * BEAM;
     return rays & not ;
 }
 

@@ -2,12 +2,12 @@
 /* wide: a hierarchy of boxes eight children wide, traced in vectors, many rays at once.
  *
  * Papers: Wald, Benthin & Boulos 2008, "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using
- * Multi-branching BVHs" (nodes of many children, tested at once); and those named in layout.c, stream.h and
- * packet.h. The layout and its invariants are in wide.h. A tree of references is made by the methods of
- * accel/tree/tree.h, as for `bvh`.
+ * Multi-branching BVHs" (nodes of many children, tested at once); and those named in plan.h, plan.c,
+ * stream.h and packet.h. The layout and its invariants are in wide.h. A tree of references is made by the
+ * methods of accel/tree/tree.h, as for `bvh`.
  *
  * Exact, because boxes are tested by the operations of rt_box_hit and hits found by those of rt_triangle_hit,
- * lane by lane; what a packet's interval turns away each of its rays would (packet.h). In which order
+ * lane by lane; what a beam's interval turns away each of its rays would (packet.h). In which order
  * children are visited is free.
  *
  * Counting: an extent test per child of a node visited; a step per node and per leaf; an object test per
@@ -51,7 +51,7 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
     X(PARAM_PACKETS, "packets", RT_INT("8", 0, RT_WIDE_MAX_PACKETS, "0|1|16"),                               \
       "packets, of up to 64 rays that visit nodes together, traced at once on a thread; 0: none",            \
       "measured")                                                                                            \
-    X(PARAM_SHARING, "sharing", RT_FLOAT("4", 0, 64, "0|8"),                                                 \
+    X(PARAM_SHARING, "sharing", RT_FLOAT("5", 0, 64, "0|8"),                                                 \
       "rays that have to share a visit of a node, on average, or no packets are made; 0: always",            \
       "measured")                                                                                            \
     X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "ask the system for large pages", "measured")           \
