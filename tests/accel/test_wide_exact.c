@@ -205,10 +205,39 @@ static void odd_lengths(Target *target, RtRay *rays) {
     for (int i = 0; i < BUNDLE; i++) rays[i].dir = rt_scale(rays[i].dir, factor);
 }
 
+/* Nearly along an axis, and so short that 1 / dir is infinite along the others, though the ray moves along
+ * them too; and that some of the t are. A tree that divides objects has them elsewhere than such rays look.
+ */
+static void short_along_an_axis(Target *target, RtRay *rays) {
+    RtRandom *random = &target->random;
+    uint32_t axis = rt_random_below(random, 3);
+    float length = target->size * (rt_random_below(random, 4) ? 0.3f : 6);
+    for (int i = 0; i < BUNDLE; i++) {
+        RtVec3 at = any_point(target), dir;
+        for (uint32_t a = 0; a < 3; a++) dir.at[a] = a == axis ? 1 : rt_random_between(random, 0.01f, 0.2f);
+        rays[i] = (RtRay){
+            rt_sub(at, rt_scale(dir, length)), 0, rt_scale(dir, 0x1p-126f), INFINITY, RT_RAY_RANDOM, 0};
+    }
+}
+
+/* Sixteen at a time whose first has one longest component and the others another that is as long. */
+static void with_ties_of_axes(Target *target, RtRay *rays) {
+    RtRandom *random = &target->random;
+    for (int i = 0; i < BUNDLE; i++) {
+        uint32_t axis = (uint32_t)(i / 16) % 3, other = (axis + 1 + rt_random_below(random, 2)) % 3;
+        RtVec3 at = any_point(target), dir;
+        for (int a = 0; a < 3; a++) dir.at[a] = target->size * rt_random_between(random, 0.1f, 0.9f);
+        dir.at[axis] = target->size;
+        if (i % 16) dir.at[other] = target->size;
+        rays[i] = (RtRay){rt_sub(at, dir), 0, dir, INFINITY, RT_RAY_RANDOM, 0};
+    }
+}
+
 typedef void Bundle(Target *target, RtRay *rays);
-static Bundle *const bundles[] = {from_outside, from_within,  over_the_whole, from_far_away, at_exact_points,
-                                  parallel,     all_the_same, scattered,      to_a_light,    bounded,
-                                  with_a_zero,  along_planes, odd_lengths};
+static Bundle *const bundles[] = {
+    from_outside, from_within,  over_the_whole, from_far_away,       at_exact_points,
+    parallel,     all_the_same, scattered,      to_a_light,          bounded,
+    with_a_zero,  along_planes, odd_lengths,    short_along_an_axis, with_ties_of_axes};
 enum { BUNDLES = sizeof bundles / sizeof bundles[0], RAYS = BUNDLES * ROUNDS * BUNDLE, ALL = 2 * RAYS };
 
 /* Rays that are not valid, where a scene is tiny or huge, become one that is. */
@@ -338,8 +367,9 @@ static const char *const settings[] = {"",
                                        "build=spatial,alpha=0,budget=16,max_leaf_size=1,order=off",
                                        "build=spatial,alpha=0,budget=4,whole=on",
                                        "build=spatial,alpha=0,sharing=0",
+                                       "build=spatial,alpha=0,budget=16,max_leaf_size=1,sharing=0",
                                        "build=spatial,alpha=0,in_flight=1"};
-enum { SETTINGS = sizeof settings / sizeof settings[0], DIVIDED = 5 /* the last */ };
+enum { SETTINGS = sizeof settings / sizeof settings[0], DIVIDED = 6 /* the last */ };
 
 /* Of the settings those from `first` on. */
 static void check(Bench *bench, int first) {
@@ -427,6 +457,15 @@ RT_TEST(rays_along_the_planes_that_cut_objects_are_answered_as_by_brute) {
         check(bench, SETTINGS - DIVIDED);
         rt_scene_clear(&bench->scene);
     }
+    free(bench);
+}
+
+RT_TEST(rays_too_short_for_the_boxes_of_divided_objects_are_answered_as_by_brute) {
+    Bench *bench = calloc(1, sizeof *bench);
+    assert_ok(rt_scene_open("random:n=400,shape=triangle,radius=0.4", &bench->scene, error));
+    set_up(bench, 1, short_along_an_axis);
+    check(bench, SETTINGS - DIVIDED);
+    rt_scene_clear(&bench->scene);
     free(bench);
 }
 
