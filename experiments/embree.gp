@@ -25,7 +25,7 @@ do for [s = 1:n_scenes] {
   set title word(scenes, s) font ",14" textcolor rgb ink
   if (s == 1) {
     set ylabel "throughput / Embree's best" textcolor rgb ink
-    set key at screen 0.985, screen 0.98 right top horizontal samplen 2 textcolor rgb ink
+    set key at screen 0.985, screen 0.98 right top vertical maxrows 1 samplen 2 textcolor rgb ink
   } else { unset key; unset ylabel }
   plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
        for [i = 1:n_ours] a = int(word(ours, i)) "times.csv" \
