@@ -12,8 +12,8 @@
  *
  * which is done for free by using one origin for near planes and another for far planes (the idea is in Woop,
  * Benthin & Wald 2013, "Watertight Ray/Triangle Intersection", section 3.4). The origin moves along each axis
- * by 2^-23 |org| more (rt_shift), for otherwise the rounding of the sum would swallow the thickness where a
- * scene lies far from the zero of coordinates.
+ * by 2^-23 |org| more (rt_four_shift), for otherwise the rounding of the sum would swallow the thickness
+ * where a scene lies far from the zero of coordinates.
  *
  * Why pruning is exact. The crossings (plane - org') * inv are monotone in the plane, in float32 as in the
  * real numbers, and the thickness grows with the box. So for b inside B, with the thickness of B or of
@@ -117,39 +117,32 @@ static inline bool rt_hit_before(float t, uint32_t object, RtHit best) {
     return t < best.t || (t == best.t && object < best.object);
 }
 
-static inline float rt_thickness(RtVec3 org, const RtBox *box) {
-    float most = 0;
-    for (int a = 0; a < 3; a++) {
-        most = rt_maxf(fabsf(box->lo.at[a] - org.at[a]), most);
-        most = rt_maxf(fabsf(box->hi.at[a] - org.at[a]), most);
-    }
-    return most * 0x1p-20f;
+static inline float rt_four_thickness(RtFour lo, RtFour hi, RtFour org) {
+    return rt_four_most(rt_four_max(rt_four_abs(lo - org), rt_four_abs(hi - org))) * 0x1p-20f;
 }
 
-/* By how much an origin moves along an axis at which it is `org`; grows with the thickness. */
-static inline float rt_shift(float thickness, float org) {
-    return thickness + fabsf(org) * 0x1p-23f;
+static inline float rt_thickness(RtVec3 org, const RtBox *box) {
+    return rt_four_thickness(rt_four_lo(box), rt_four_hi(box), (RtFour){org.x, org.y, org.z, org.z});
+}
+
+/* By how much an origin moves along each axis for a thickness, towards where the ray comes from, of which
+ * `sign` has the sign bits. */
+static inline RtFour rt_four_shift(float thickness, RtFour org, RtFourBits sign) {
+    RtFour shift = thickness + rt_four_abs(org) * 0x1p-23f;
+    return (RtFour)((RtFourBits)shift ^ sign);
 }
 
 static inline void rt_ray_set_thickness(RtPreparedRay *ray, float thickness) {
-    for (int a = 0; a < 3; a++) {
-        float org = ray->org.at[a], shift = rt_shift(thickness, org);
-        ray->org_near[a] = ray->negative[a] ? org - shift : org + shift;
-        ray->org_far[a] = ray->negative[a] ? org + shift : org - shift;
-    }
+    RtFour org = rt_four(&ray->org); /* and what follows, here and below */
+    RtFour shift = rt_four_shift(thickness, org, rt_four_sign(rt_four(&ray->dir)));
+    RtFour near = org + shift, far = org - shift;
+    memcpy(ray->org_near, &near, sizeof ray->org_near);
+    memcpy(ray->org_far, &far, sizeof ray->org_far);
 }
 
 /* Gives the ray the thickness for boxes inside `around`. */
 static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
     rt_ray_set_thickness(ray, rt_thickness(ray->org, around));
-}
-
-/* By how much an origin moves along each axis for boxes from `lo` to `hi`, towards where the ray comes from:
- * rt_shift by rt_thickness, with the sign of dir. */
-static inline RtFour rt_four_shift(RtFour lo, RtFour hi, RtFour org, RtFourBits sign) {
-    RtFour farthest = rt_four_max(rt_four_abs(lo - org), rt_four_abs(hi - org));
-    RtFour shift = rt_four_most(farthest) * 0x1p-20f + rt_four_abs(org) * 0x1p-23f;
-    return (RtFour)((RtFourBits)shift ^ sign);
 }
 
 /* To *p. `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness.
@@ -159,7 +152,8 @@ static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const R
     /* A ray is org, tmin, dir, tmax, and what follows. */
     RtFour org = rt_four(ray), dir = rt_four((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
     RtFourBits sign = rt_four_sign(dir), negative = sign < 0;
-    RtFour shift = rt_four_shift(rt_four_lo(scene_box), rt_four_hi(scene_box), org, sign);
+    RtFour shift =
+        rt_four_shift(rt_four_thickness(rt_four_lo(scene_box), rt_four_hi(scene_box), org), org, sign);
     RtFour near = org + shift, far = org - shift;
     RtFourBits first = (RtFourBits){0, 4, 8, 8} + (negative & 12),
                last = (RtFourBits){12, 16, 20, 20} - (negative & 12);
@@ -224,7 +218,7 @@ static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float 
 static inline void rt_four_own_span(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *near, float *far) {
     RtFour org = rt_four(&ray->org), inv = rt_four(ray->inv); /* and what follows org */
     RtFourBits sign = rt_four_sign(rt_four(&ray->dir));
-    RtFour shift = rt_four_shift(lo, hi, org, sign);
+    RtFour shift = rt_four_shift(rt_four_thickness(lo, hi, org), org, sign);
     RtFour first = (rt_four_pick(sign, lo, hi) - (org + shift)) * inv;
     RtFour second = (rt_four_pick(sign, hi, lo) - (org - shift)) * inv;
     *near = -INFINITY, *far = INFINITY;
