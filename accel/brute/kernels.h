@@ -18,7 +18,7 @@
 #include "accel/brute/brute.h"
 #include "accel/kernel.h"
 #include "accel/lanes.h"
-#include "accel/simd.h"
+#include "accel/sieve.h"
 
 enum {
     BATCH = 128, /* rays */
@@ -85,40 +85,32 @@ RT_KERNEL void fill_chunk(Block *chunk, const float *from, size_t size, uint32_t
 
 /* What a ray turns triangles away by. */
 typedef struct Line {
-    RtV16 org_x, org_y, org_z, shear_x, shear_y; /* along the ray's kx, ky and kz */
-    int x, y, z;
+    RtSieveLine lanes;
+    int x, y, z; /* the ray's kx, ky and kz */
 } Line;
 
 RT_KERNEL void make_line(Line *line, const RtPreparedRay *ray) {
     line->x = ray->kx;
     line->y = ray->ky;
     line->z = ray->kz;
-    line->org_x = rt_v16_all(ray->org.at[ray->kx]);
-    line->org_y = rt_v16_all(ray->org.at[ray->ky]);
-    line->org_z = rt_v16_all(ray->org.at[ray->kz]);
-    line->shear_x = rt_v16_all(ray->shear_x);
-    line->shear_y = rt_v16_all(ray->shear_y);
-}
-
-RT_KERNEL RtV16 edge(RtV16 ax, RtV16 ay, RtV16 bx, RtV16 by) {
-    return rt_v16_sub(rt_v16_mul(ax, by), rt_v16_mul(ay, bx));
+    line->lanes.org_x = rt_v16_all(ray->org.at[ray->kx]);
+    line->lanes.org_y = rt_v16_all(ray->org.at[ray->ky]);
+    line->lanes.org_z = rt_v16_all(ray->org.at[ray->kz]);
+    line->lanes.shear_x = rt_v16_all(ray->shear_x);
+    line->lanes.shear_y = rt_v16_all(ray->shear_y);
 }
 
 /* Bit i: the edge functions of triangle i are not of different signs. */
 RT_KERNEL uint32_t sieve_triangles(const Block *block, const Line *line) {
-    RtV16 x[3], y[3];
+    RtV16 x[3], y[3], z[3];
     for (size_t i = 0; i < 3; i++) {
         const float(*vertex)[LANES] = block->row + 3 * i;
-        RtV16 z = rt_v16_sub(rt_v16_load(vertex[line->z]), line->org_z);
-        x[i] = rt_v16_sub(rt_v16_load(vertex[line->x]), line->org_x);
-        y[i] = rt_v16_sub(rt_v16_load(vertex[line->y]), line->org_y);
-        x[i] = rt_v16_sub(x[i], rt_v16_mul(line->shear_x, z));
-        y[i] = rt_v16_sub(y[i], rt_v16_mul(line->shear_y, z));
+        x[i] = rt_v16_load(vertex[line->x]);
+        y[i] = rt_v16_load(vertex[line->y]);
+        z[i] = rt_v16_load(vertex[line->z]);
     }
-    RtV16 u = edge(x[2], y[2], x[1], y[1]), v = edge(x[0], y[0], x[2], y[2]);
-    RtV16 w = edge(x[1], y[1], x[0], y[0]), zero = rt_v16_all(0);
-    RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w);
-    return rt_v16_at_most(zero, least) | rt_v16_at_most(most, zero);
+    rt_sieve_shear(&line->lanes, x, y, z);
+    return rt_sieve(x, y);
 }
 
 /* ---- a batch and a shape ---- */

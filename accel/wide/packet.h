@@ -73,6 +73,19 @@ RT_KERNEL size_t first_of(uint32_t beam) {
     return (size_t)beam * BEAM;
 }
 
+/* The first of a set of rays; PACKET where there is none. */
+RT_KERNEL uint32_t first_ray(uint64_t rays) {
+#if defined(__BMI__)
+    return (uint32_t)_tzcnt_u64(rays);
+#else
+    return rays ? (uint32_t)__builtin_ctzll(rays) : PACKET;
+#endif
+}
+
+RT_KERNEL uint64_t one_ray(uint32_t i) {
+    return UINT64_C(1) << i;
+}
+
 /* ---- sorting ---- */
 
 RT_KERNEL uint32_t class_of(const RtRay *ray) {
@@ -209,8 +222,9 @@ RT_KERNEL void prepare_sieve(Packet *p) {
 
 /* Ray i with what hit functions ask for. */
 RT_KERNEL const RtPreparedRay *prepared(Packet *p, const Question *q, uint32_t i) {
-    if (!(p->prepared >> i & 1)) rt_hit_ray(&p->ray[i], q->geometry, &q->rays[p->index[i]], q->scratch->room);
-    p->prepared |= UINT64_C(1) << i;
+    if (!(p->prepared & one_ray(i)))
+        rt_hit_ray(&p->ray[i], q->geometry, &q->rays[p->index[i]], q->scratch->room);
+    p->prepared |= one_ray(i);
     return &p->ray[i];
 }
 
@@ -224,9 +238,9 @@ RT_KERNEL void answer_odd_rays(Packet *p, const Question *q, bool any) {
         odd |= (uint64_t)(near ^ ((1u << BEAM) - 1)) << b * BEAM;
     }
     for (odd &= p->open; odd; odd &= odd - 1) {
-        uint32_t i = (uint32_t)__builtin_ctzll(odd);
+        uint32_t i = first_ray(odd);
         test_all(q->geometry, prepared(p, q, i), any, &p->best[i], NULL);
-        p->open &= ~(UINT64_C(1) << i);
+        p->open &= ~one_ray(i);
     }
 }
 

@@ -5,20 +5,8 @@
 #ifndef RT_ACCEL_WIDE_PACKET_LEAF_H
 #define RT_ACCEL_WIDE_PACKET_LEAF_H
 
+#include "accel/sieve.h"
 #include "accel/wide/packet.h"
-
-/* The first of a set of rays; PACKET where there is none. */
-RT_KERNEL uint32_t first_ray(uint64_t rays) {
-#if defined(__BMI__)
-    return (uint32_t)_tzcnt_u64(rays);
-#else
-    return rays ? (uint32_t)__builtin_ctzll(rays) : PACKET;
-#endif
-}
-
-RT_KERNEL uint64_t one_ray(uint32_t i) {
-    return UINT64_C(1) << i;
-}
 
 /* ---- triangles, roughly ---- */
 
@@ -31,7 +19,6 @@ RT_KERNEL size_t place_of(int vertex, uint32_t axis) {
  * that sieve_block would let pass. */
 RT_KERNEL void sieve_rays(Packet *p, const RtWideTriangles *block, uint32_t at, uint64_t rays) {
     static const uint32_t lane[BEAM] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
-    const RtV16 zero = rt_v16_all(0);
     const RtW16 triangles = rt_w16_add(rt_w16_get(lane), rt_w16_all(at));
     RtV16 x[3], y[3], z[3];
     for (int i = 0; i < 3; i++) {
@@ -49,19 +36,11 @@ RT_KERNEL void sieve_rays(Packet *p, const RtWideTriangles *block, uint32_t at, 
         }
         RtV16 place = rt_v16_join(ray[0], ray[1], ray[2], ray[3]);
         RtV16 more = rt_v16_join(ray[0] + 4, ray[1] + 4, ray[2] + 4, ray[3] + 4);
-        RtV16 org_x = rt_v16_spread(place, 0), org_y = rt_v16_spread(place, 1),
-              org_z = rt_v16_spread(place, 2);
-        RtV16 shear_x = rt_v16_spread(more, 0), shear_y = rt_v16_spread(more, 1), a[3], b[3];
-        for (int i = 0; i < 3; i++) {
-            RtV16 depth = rt_v16_sub(z[i], org_z);
-            a[i] = rt_v16_sub(rt_v16_sub(x[i], org_x), rt_v16_mul(shear_x, depth));
-            b[i] = rt_v16_sub(rt_v16_sub(y[i], org_y), rt_v16_mul(shear_y, depth));
-        }
-        RtV16 u = rt_v16_sub(rt_v16_mul(a[2], b[1]), rt_v16_mul(b[2], a[1]));
-        RtV16 v = rt_v16_sub(rt_v16_mul(a[0], b[2]), rt_v16_mul(b[0], a[2]));
-        RtV16 w = rt_v16_sub(rt_v16_mul(a[1], b[0]), rt_v16_mul(b[1], a[0]));
-        RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w);
-        uint32_t passed = rt_v16_at_most(zero, least) | rt_v16_at_most(most, zero);
+        RtSieveLine line = {rt_v16_spread(place, 0), rt_v16_spread(place, 1), rt_v16_spread(place, 2),
+                            rt_v16_spread(more, 0), rt_v16_spread(more, 1)};
+        RtV16 a[3] = {x[0], x[1], x[2]}, b[3] = {y[0], y[1], y[2]}, c[3] = {z[0], z[1], z[2]};
+        rt_sieve_shear(&line, a, b, c);
+        uint32_t passed = rt_sieve(a, b);
         rt_w16_put_some(&p->pair_ray[pairs], passed, rt_w16_of(rt_v16_spread(more, 2)));
         rt_w16_put_some(&p->pair_triangle[pairs], passed, triangles);
         pairs += (uint32_t)__builtin_popcount(passed);
@@ -76,27 +55,20 @@ enum { MANY_RAYS = 6 };
 RT_KERNEL void sieve_beam(Packet *p, const RtWideTriangles *block, uint32_t at, uint32_t count, uint32_t b,
                           uint32_t rays) {
     static const uint32_t lane[BEAM] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const RtV16 zero = rt_v16_all(0);
-    const RtV16 org_x = rt_v16_load(&p->org[p->kx][first_of(b)]),
-                org_y = rt_v16_load(&p->org[p->ky][first_of(b)]),
-                org_z = rt_v16_load(&p->org[p->kz][first_of(b)]);
-    const RtV16 shear_x = rt_v16_load(&p->shear_x[first_of(b)]),
-                shear_y = rt_v16_load(&p->shear_y[first_of(b)]);
+    const RtSieveLine line = {rt_v16_load(&p->org[p->kx][first_of(b)]),
+                              rt_v16_load(&p->org[p->ky][first_of(b)]),
+                              rt_v16_load(&p->org[p->kz][first_of(b)]), rt_v16_load(&p->shear_x[first_of(b)]),
+                              rt_v16_load(&p->shear_y[first_of(b)])};
     for (uint32_t k = 0; k < count; k++) {
         const float *triangle = &block->v[0][0][k];
-        RtV16 x[3], y[3];
+        RtV16 x[3], y[3], z[3];
         for (int i = 0; i < 3; i++) {
-            RtV16 depth = rt_v16_sub(rt_v16_all(triangle[place_of(i, p->kz)]), org_z);
-            x[i] = rt_v16_sub(rt_v16_sub(rt_v16_all(triangle[place_of(i, p->kx)]), org_x),
-                              rt_v16_mul(shear_x, depth));
-            y[i] = rt_v16_sub(rt_v16_sub(rt_v16_all(triangle[place_of(i, p->ky)]), org_y),
-                              rt_v16_mul(shear_y, depth));
+            x[i] = rt_v16_all(triangle[place_of(i, p->kx)]);
+            y[i] = rt_v16_all(triangle[place_of(i, p->ky)]);
+            z[i] = rt_v16_all(triangle[place_of(i, p->kz)]);
         }
-        RtV16 u = rt_v16_sub(rt_v16_mul(x[2], y[1]), rt_v16_mul(y[2], x[1]));
-        RtV16 v = rt_v16_sub(rt_v16_mul(x[0], y[2]), rt_v16_mul(y[0], x[2]));
-        RtV16 w = rt_v16_sub(rt_v16_mul(x[1], y[0]), rt_v16_mul(y[1], x[0]));
-        RtV16 least = rt_v16_min(rt_v16_min(u, v), w), most = rt_v16_max(rt_v16_max(u, v), w);
-        uint32_t passed = rays & (rt_v16_at_most(zero, least) | rt_v16_at_most(most, zero));
+        rt_sieve_shear(&line, x, y, z);
+        uint32_t passed = rays & rt_sieve(x, y);
         rt_w16_put_some(&p->pair_ray[p->pair_count], passed,
                         rt_w16_add(rt_w16_get(lane), rt_w16_all(b * BEAM)));
         rt_w16_put_some(&p->pair_triangle[p->pair_count], passed, rt_w16_all(at + k));

@@ -11,7 +11,7 @@
 
 /* ---- bundles of rays ---- */
 
-/* Four packets, as long as what is tried before a way to trace is chosen. */
+/* As many rays as a packet holds. */
 enum { BUNDLE = 64, ROUNDS = 3 };
 
 /* What rays are aimed at: a scene, and the boxes that a structure has of it. */
