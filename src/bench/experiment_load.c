@@ -49,19 +49,20 @@ static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit
 
 /* ---- parts ---- */
 
-static RtStatus read_workload(const RtYaml *y, const RtYamlNode *n, const char *folder, RtWorkload *workload,
-                              RtError *error) {
+static RtStatus read_workloads(const RtYaml *y, const RtYamlNode *n, uint32_t entry, RtExperiment *experiment,
+                               RtError *error) {
     const char *spec = "";
+    RtWorkload like = {.entry = entry, .depth = RT_DEFAULT_DEPTH};
     RT_TRY(rt_yaml_keys(y, n, "scene label? size? corners? light_from_outside? depth? optional?"));
     RT_TRY(rt_yaml_text(y, n, "scene", RT_MAX_SCENE_NAME - 1, &spec));
-    RT_TRY(rt_yaml_place(y, rt_workload_set_scene(workload, spec, folder, error), n, "scene"));
-    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, workload->label));
-    workload->depth = RT_DEFAULT_DEPTH;
-    RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &workload->depth));
-    RT_TRY(read_size(y, n, &workload->width, &workload->height));
-    RT_TRY(read_flag(y, n, "corners", &workload->corners));
-    RT_TRY(read_flag(y, n, "light_from_outside", &workload->light_from_outside));
-    return read_flag(y, n, "optional", &workload->optional);
+    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
+    RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &like.depth));
+    RT_TRY(read_size(y, n, &like.width, &like.height));
+    RT_TRY(read_flag(y, n, "corners", &like.corners));
+    RT_TRY(read_flag(y, n, "light_from_outside", &like.light_from_outside));
+    RT_TRY(read_flag(y, n, "optional", &like.optional));
+    RtStatus status = rt_experiment_add_scenes(experiment, &like, spec, experiment->folder, error);
+    return rt_yaml_place(y, status, n, "scene");
 }
 
 /* Leaves the candidate out on all workloads that its `scenes` do not name; none named: on none. */
@@ -72,27 +73,28 @@ static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExp
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
         const char *label = "";
         RT_TRY(rt_yaml_text(y, n, NULL, RT_MAX_LABEL - 1, &label));
-        uint32_t workload = rt_workload_find(experiment, label);
-        if (workload == experiment->workload_count) {
-            return rt_yaml_fail(y, n, "'%s' is not the label of one of the scenes", label);
+        bool found = false;
+        for (uint32_t t = 0; t < experiment->workload_count; t++) {
+            const RtWorkload *workload = &experiment->workloads[t];
+            if (strcmp(workload->label, label) != 0 && strcmp(workload->base, label) != 0) continue;
+            on |= UINT32_C(1) << t;
+            found = true;
         }
-        on |= UINT32_C(1) << workload;
+        if (!found) return rt_yaml_fail(y, n, "'%s' is not the label of one of the scenes", label);
     }
     candidate->left_out = list ? ~on : 0;
     return RT_OK;
 }
 
-static RtStatus read_candidate(const RtYaml *y, const RtYamlNode *n, const RtExperiment *experiment,
-                               RtCandidate *candidate) {
-    const char *spec = "";
+static RtStatus read_candidates(const RtYaml *y, const RtYamlNode *n, uint32_t entry,
+                                RtExperiment *experiment, RtError *error) {
+    RtCandidate like = {.entry = entry, .ray_stride = 1};
     RT_TRY(rt_yaml_keys(y, n, "accel label? ray_stride? scenes?"));
-    RT_TRY(rt_yaml_text(y, n, "accel", RT_MAX_SPEC_CHARS - 1, &spec));
-    snprintf(candidate->spec, RT_MAX_SPEC_CHARS, "%s", spec);
-    snprintf(candidate->label, RT_MAX_LABEL, "%s", spec);
-    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, candidate->label));
-    candidate->ray_stride = 1;
-    RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &candidate->ray_stride));
-    return read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, candidate);
+    RT_TRY(rt_yaml_copy(y, n, "accel", RT_MAX_SPEC_CHARS, like.spec));
+    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
+    RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &like.ray_stride));
+    RT_TRY(read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, &like));
+    return rt_yaml_place(y, rt_experiment_add_accels(experiment, &like, error), n, "accel");
 }
 
 static RtStatus read_tolerances(const RtYaml *y, const RtYamlNode *n, double tolerance[RT_COLUMN_COUNT]) {
@@ -178,14 +180,13 @@ static RtStatus read_quick(const RtYaml *y, const RtYamlNode *n, bool quick, RtE
 static RtStatus read_lists(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment, RtError *error) {
     const RtYamlNode *scenes = rt_yaml_get(y, n, "scenes"), *accels = rt_yaml_get(y, n, "accelerators");
     RT_TRY(rt_yaml_list(y, scenes, NULL, 1, RT_MAX_WORKLOADS, "scenes"));
-    for (const RtYamlNode *e = rt_yaml_first(scenes); e != rt_yaml_end(scenes); e += e->size) {
-        RtWorkload *workload = &experiment->workloads[experiment->workload_count++];
-        RT_TRY(read_workload(y, e, experiment->folder, workload, error));
-    }
+    uint32_t entry = 0;
+    for (const RtYamlNode *e = rt_yaml_first(scenes); e != rt_yaml_end(scenes); e += e->size)
+        RT_TRY(read_workloads(y, e, entry++, experiment, error));
     RT_TRY(rt_yaml_list(y, accels, NULL, 1, RT_MAX_CANDIDATES, "accelerators"));
-    for (const RtYamlNode *e = rt_yaml_first(accels); e != rt_yaml_end(accels); e += e->size) {
-        RT_TRY(read_candidate(y, e, experiment, &experiment->candidates[experiment->candidate_count++]));
-    }
+    entry = 0;
+    for (const RtYamlNode *e = rt_yaml_first(accels); e != rt_yaml_end(accels); e += e->size)
+        RT_TRY(read_candidates(y, e, entry++, experiment, error));
     RT_TRY(read_rays(y, rt_yaml_get(y, n, "rays"), experiment, error));
     return read_labels(y, n, "plots", RT_MAX_PLOTS, experiment->plots, &experiment->plot_count);
 }

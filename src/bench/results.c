@@ -69,7 +69,8 @@ static void add(Mean *mean, double value, double weight) {
 }
 
 RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0}, baseline = {0};
+    Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0}, baseline = {0}, low = {0},
+         high = {0};
     uint64_t rays = 0;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         RtRayKind kind = (RtRayKind)k;
@@ -82,6 +83,8 @@ RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t c
         add(&steps, rt_cell_per_ray(results, workload, candidate, kind, tally->steps), weight);
         if (!cell->timed) continue;
         add(&seconds, cell->seconds.median, weight);
+        add(&low, cell->seconds.low, weight);
+        add(&high, cell->seconds.high, weight);
         add(&baseline, cell->ratio.median * cell->seconds.median, weight);
     }
     /* 0 / 0 is NAN: not known. */
@@ -90,5 +93,7 @@ RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t c
                      .extent_tests = extent_tests.sum / extent_tests.weight,
                      .steps = steps.sum / steps.weight,
                      .seconds = seconds.sum / seconds.weight,
-                     .ratio = baseline.sum / seconds.sum};
+                     .ratio = baseline.sum / seconds.sum,
+                     .seconds_low = low.sum / low.weight,
+                     .seconds_high = high.sum / high.weight};
 }

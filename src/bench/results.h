@@ -65,6 +65,8 @@ typedef struct RtTotal {
     double object_tests, extent_tests, steps; /* a ray */
     double seconds;                           /* a ray */
     double ratio;                             /* of throughput to the baseline's on the same rays */
+    double seconds_low,
+        seconds_high; /* ends of the intervals of all kinds, weighted alike: rather too wide */
 } RtTotal;
 
 RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate);

@@ -2,6 +2,7 @@
 #include "report/plot.h"
 
 #include "base/memory.h"
+#include "report/sweep_plot.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -180,14 +181,17 @@ static RtStatus settle(const char *directory, bool keep, RtError *error) {
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
-    char program[] = "gnuplot", *arguments[MOST_ARGUMENTS] = {program};
-    if (experiment->plot_count == 0) return RT_OK;
+    char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp", *arguments[MOST_ARGUMENTS] = {program};
+    const bool sweeps = rt_sweep_plots_needed(experiment);
+    if (experiment->plot_count == 0 && !sweeps) return RT_OK;
     settle(directory, false, NULL); /* of a drawing that was cut short */
     RT_TRY(write_names(results, directory, error));
+    if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
         snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
         arguments[i + 1] = paths[i];
     }
+    if (sweeps) arguments[1] = sweep_script;
     RtStatus status = run_gnuplot(arguments, directory, error);
     if (status != RT_OK) {
         settle(directory, false, NULL);
