@@ -14,6 +14,8 @@
 #define RT_MAX_WORKLOADS   32
 #define RT_MAX_CANDIDATES  256
 #define RT_MAX_PLOTS       8
+#define RT_MAX_CLAIMS      64
+#define RT_MAX_CLAIM       256
 #define RT_MAX_RAYS_A_KIND UINT64_C(100000000)
 
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
@@ -76,6 +78,9 @@ typedef struct RtPublishedSetup {
 typedef struct RtExperiment {
     char name[RT_MAX_LABEL];
     char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
+    char finding[RT_MAX_TEXT];                /* what was learnt, or "" */
+    char claims[RT_MAX_CLAIMS][RT_MAX_CLAIM]; /* bench/claims.h */
+    uint32_t claim_count;
     RtWorkload workloads[RT_MAX_WORKLOADS];
     uint32_t workload_count;
     RtCandidate candidates[RT_MAX_CANDIDATES];
@@ -101,7 +106,7 @@ typedef struct RtExperiment {
     bool quick;               /* the smaller variant, for a first look */
     char path[RT_MAX_PATH];   /* of the YAML; "" where there is none */
     char folder[RT_MAX_PATH]; /* of the YAML */
-    uint64_t fingerprint;     /* of the YAML's bytes */
+    uint64_t fingerprint;     /* of the YAML's bytes, without finding and expect, which change no result */
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds but occlusion, which is diffuse once more, and the defaults: limit

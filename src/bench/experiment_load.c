@@ -3,6 +3,7 @@
  * What is wrong with a value is told here; what does not go together, by rt_experiment_check. */
 #include "base/memory.h"
 #include "base/yaml.h"
+#include "bench/claims.h"
 #include "bench/experiment.h"
 #include "render/frame.h"
 
@@ -191,6 +192,18 @@ static RtStatus read_lists(const RtYaml *y, const RtYamlNode *n, RtExperiment *e
     return read_labels(y, n, "plots", RT_MAX_PLOTS, experiment->plots, &experiment->plot_count);
 }
 
+static RtStatus read_claims(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment,
+                            RtError *error) {
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_CLAIMS, "claims"));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        RtClaim claim;
+        char *text = experiment->claims[experiment->claim_count++];
+        RT_TRY(rt_yaml_copy(y, n, NULL, RT_MAX_CLAIM, text));
+        RT_TRY(rt_yaml_place(y, rt_claim_parse(experiment, text, &claim, error), n, NULL));
+    }
+    return RT_OK;
+}
+
 /* Gives a failure of rt_experiment_check its place: `where` is "name", or "scenes[3]". */
 static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
     char key[RT_MAX_LABEL];
@@ -207,10 +220,11 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_keys(
         y, n,
         "name question prediction scenes accelerators baseline? rays? limit? coherent_run? rounds? "
-        "milliseconds? seed? count_only? published? quick? plots?"));
+        "milliseconds? seed? count_only? published? quick? plots? expect? finding?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
     RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));
+    RT_TRY(rt_yaml_copy(y, n, "finding", RT_MAX_TEXT, experiment->finding));
     RT_TRY(read_scale(y, n, &experiment->limit, &experiment->rounds, &experiment->milliseconds));
     RT_TRY(rt_yaml_u64(y, n, "coherent_run", 1, RT_MAX_RAYS_A_KIND, &experiment->coherent_run));
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
@@ -223,7 +237,44 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     experiment->quick = quick;
     char where[RT_MAX_LABEL] = "";
     RtStatus status = rt_experiment_check(experiment, where, error);
-    return place(y, status, where);
+    RT_TRY(place(y, status, where));
+    return read_claims(y, rt_yaml_get(y, n, "expect"), experiment, error);
+}
+
+/* ---- what the results depend on ---- */
+
+/* Where line number `line` begins. */
+static size_t begin_of(const char *text, size_t length, uint32_t line) {
+    size_t at = 0;
+    for (; line > 1 && at < length; at++) line -= text[at] == '\n';
+    return at;
+}
+
+/* Of the text without the lines of `finding` and `expect`, which are written, or written better, when the
+ * results are there. Those that share a line with another key count. */
+static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length) {
+    XXH3_state_t *state = XXH3_createState();
+    size_t from = 0;
+    if (!state) return XXH3_64bits(text, length);
+    XXH3_64bits_reset(state);
+    const RtYamlNode *end = rt_yaml_end(y->nodes);
+    for (const RtYamlNode *key = rt_yaml_first(y->nodes); key != end;) {
+        const RtYamlNode *next = key + key->size;
+        next += next->size;
+        const char *name = rt_yaml_text_of(y, key);
+        size_t begin = begin_of(text, length, key->line);
+        size_t behind = next == end ? length : begin_of(text, length, next->line);
+        bool apart = key->column == 1 && behind > begin;
+        if (apart && (strcmp(name, "finding") == 0 || strcmp(name, "expect") == 0)) {
+            XXH3_64bits_update(state, text + from, begin - from);
+            from = behind;
+        }
+        key = next;
+    }
+    XXH3_64bits_update(state, text + from, length - from);
+    uint64_t fingerprint = XXH3_64bits_digest(state);
+    XXH3_freeState(state);
+    return fingerprint;
 }
 
 RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
@@ -236,8 +287,9 @@ RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool qui
     strcpy(experiment->path, path);
     rt_path_folder(path, experiment->folder);
     RT_TRY(rt_file_read(path, RT_YAML_MAX_BYTES, &text, &length, error));
-    experiment->fingerprint = XXH3_64bits(text, length);
     RtStatus status = rt_yaml_parse(&yaml, path, text, length, error);
+    bool mapping = status == RT_OK && yaml.nodes->kind == RT_YAML_MAPPING;
+    if (mapping) experiment->fingerprint = fingerprint_of(&yaml, text, length);
     rt_free(text);
     RT_TRY(status);
     status = read_experiment(&yaml, quick, experiment, error);

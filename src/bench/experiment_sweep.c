@@ -68,6 +68,13 @@ RtStatus rt_experiment_add_scenes(RtExperiment *experiment, const RtWorkload *li
 
 /* ---- accelerators ---- */
 
+/* Specs that are cut to labels may become alike. */
+static bool is_taken(const RtExperiment *experiment, const RtCandidate *candidate) {
+    const RtCandidate *other = experiment->candidates;
+    while (strcmp(other->label, candidate->label) != 0) other++;
+    return other != candidate;
+}
+
 static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, const RtSweep *sweep, uint32_t i,
                           RtError *error) {
     if (experiment->candidate_count == RT_MAX_CANDIDATES) {
@@ -84,12 +91,10 @@ static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, con
         return label_one(candidate->label, like->label, &candidate->swept, error);
     }
     rt_sweep_base(sweep, candidate->base, RT_MAX_LABEL);
-    if (strlen(spec) < RT_MAX_LABEL) {
-        strcpy(candidate->label, spec);
-    } else {
+    snprintf(candidate->label, RT_MAX_LABEL, "%.*s", RT_MAX_LABEL - 1, spec);
+    if (strlen(spec) >= RT_MAX_LABEL && is_taken(experiment, candidate))
         snprintf(candidate->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, spec,
                  experiment->candidate_count);
-    }
     return RT_OK;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: an experiment, from its YAML to a result directory. */
 #include "base/memory.h"
+#include "bench/claims.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
@@ -10,12 +11,12 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OPT_RESUME = 256, OPT_FORCE, OPT_QUICK };
+enum { OPT_RESUME = 256, OPT_FORCE, OPT_QUICK, OPT_STRICT };
 
 typedef struct Options {
     const char *path, *out;
     RtStart start;
-    bool quick;
+    bool quick, strict;
     int threads, timing;
 } Options;
 
@@ -32,6 +33,7 @@ static const struct argp_option options[] = {
      "counting on all; on several, wall time is compared",
      0},
     {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
+    {"strict", OPT_STRICT, 0, 0, "Exit code 1 where a claim of the experiment (`expect`) does not hold", 0},
     {0}};
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
@@ -42,6 +44,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case OPT_FORCE: o->start = RT_START_ANEW; return 0;
     case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
     case OPT_QUICK: o->quick = true; return 0;
+    case OPT_STRICT: o->strict = true; return 0;
     case ARGP_KEY_ARG:
         if (o->path) argp_error(state, "one EXPERIMENT at a time; '%s' is a second one", argument);
         o->path = argument;
@@ -69,8 +72,10 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     rt_progress_end(&progress);
     if (status == RT_OK) {
         rt_print_results(&results, RT_TOTALS, stdout);
+        rt_claims_print(&results, stdout);
         rt_null_sentence(&results, sentence);
         printf("\n%s%sReport: %s/report.html\n", sentence, *sentence ? "\n" : "", how.directory);
+        if (o->strict) status = rt_claims_check(&results, error);
     }
     rt_results_clear(&results);
     return status;
@@ -87,7 +92,8 @@ int rt_command_run(int argc, char **argv) {
                                   "finished or not, is refused without --resume or --force; so is one that "
                                   "another process writes into."
                                   "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
-                                  "gnuplot there is a note), or a published figure is missed. "
+                                  "gnuplot there is a note), a published figure is missed, or with "
+                                  "--strict a claim does not hold. "
                                   "experiments/README.md says how to write an experiment."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
