@@ -98,6 +98,8 @@ typedef struct RtExperiment {
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
     uint32_t milliseconds; /* a short set is repeated within a round until it takes this long; 0: once */
     uint64_t seed;
+    double limit_seconds;     /* a cell that would take longer is left out; 0: none is */
+    uint64_t limit_megabytes; /* a structure that takes more, also while it is built, is left out; 0: none */
     char plots[RT_MAX_PLOTS]
               [RT_MAX_LABEL]; /* gnuplot scripts seen from the YAML, run in this order in one go */
     uint32_t plot_count;

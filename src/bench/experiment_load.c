@@ -48,6 +48,15 @@ static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit
     return rt_yaml_u32(y, n, "milliseconds", 0, 60000, milliseconds);
 }
 
+static RtStatus read_limits(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
+    RT_TRY(rt_yaml_keys(y, n, "seconds? megabytes?"));
+    RT_TRY(rt_yaml_double(y, n, "seconds", &experiment->limit_seconds));
+    RT_TRY(rt_yaml_u64(y, n, "megabytes", 1, 1000000000, &experiment->limit_megabytes));
+    if (!rt_yaml_get(y, n, "seconds") || experiment->limit_seconds > 0) return RT_OK;
+    return rt_yaml_fail(y, rt_yaml_get(y, n, "seconds"), "invalid value '%g': expected more than 0",
+                        experiment->limit_seconds);
+}
+
 /* ---- parts ---- */
 
 static RtStatus read_workloads(const RtYaml *y, const RtYamlNode *n, uint32_t entry, RtExperiment *experiment,
@@ -220,12 +229,13 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_keys(
         y, n,
         "name question prediction scenes accelerators baseline? rays? limit? coherent_run? rounds? "
-        "milliseconds? seed? count_only? published? quick? plots? expect? finding?"));
+        "milliseconds? seed? count_only? published? quick? plots? expect? finding? limits?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
     RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));
     RT_TRY(rt_yaml_copy(y, n, "finding", RT_MAX_TEXT, experiment->finding));
     RT_TRY(read_scale(y, n, &experiment->limit, &experiment->rounds, &experiment->milliseconds));
+    if (rt_yaml_get(y, n, "limits")) RT_TRY(read_limits(y, rt_yaml_get(y, n, "limits"), experiment));
     RT_TRY(rt_yaml_u64(y, n, "coherent_run", 1, RT_MAX_RAYS_A_KIND, &experiment->coherent_run));
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));

@@ -11,10 +11,10 @@
 
 /* ---- to JSON ---- */
 
-static json_t *header_json(const RtExperiment *experiment) {
-    return json_pack("{s:s, s:o, s:b, s:s}", "experiment", experiment->name, "hash",
+static json_t *header_json(const RtExperiment *experiment, const RtOnly *only) {
+    return json_pack("{s:s, s:o, s:b, s:s, s:i, s:i}", "experiment", experiment->name, "hash",
                      rt_json_hex(experiment->fingerprint), "quick", experiment->quick, "build",
-                     rt_build_identity());
+                     rt_build_identity(), "shard", (int)only->shard, "shards", (int)only->shards);
 }
 
 static json_t *workload_json(const RtWorkloadResult *workload) {
@@ -76,15 +76,21 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_TIME:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
                          time_json(experiment, cell));
+    case RT_EVENT_TOO_LARGE:
+        return json_pack("{s:s, s:s, s:s}", "scene", scene, "accel", accel, "too_large",
+                         rt_build_at(results, event->workload, event->candidate)->limit);
+    case RT_EVENT_TOO_LONG:
+        return json_pack("{s:s, s:s, s:s, s:s}", "scene", scene, "accel", accel, "kind", kind, "too_long",
+                         cell->limit);
     }
     return NULL;
 }
 
 /* ---- writing ---- */
 
-RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
-                         RtError *error) {
-    json_t *header = resume ? NULL : header_json(experiment);
+RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment,
+                         const RtOnly *only, bool resume, RtError *error) {
+    json_t *header = resume ? NULL : header_json(experiment, only);
     if (!resume && !header) return rt_fail_memory(error, path, 0);
     RtStatus status = rt_json_lines_open(journal, path, header, error);
     json_decref(header);
@@ -196,14 +202,18 @@ static void take_line(RtResults *results, const json_t *line) {
     if (candidate > experiment->candidate_count) return;
     if ((object = json_object_get(line, "built")))
         take_build(rt_build_at(results, workload, candidate), object);
+    const char *limit = json_string_value(json_object_get(line, "too_large"));
+    if (limit) snprintf(rt_build_at(results, workload, candidate)->limit, RT_MAX_LIMIT, "%s", limit);
     if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;
     RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
+    limit = json_string_value(json_object_get(line, "too_long"));
+    if (limit) snprintf(cell->limit, RT_MAX_LIMIT, "%s", limit);
     if ((object = json_object_get(line, "timed"))) take_time(experiment, workload, cell, object);
 }
 
 static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,
-                             bool same_build, RtError *error) {
+                             const RtOnly *only, RtError *error) {
     const char *build = json_string_value(json_object_get(line, "build"));
     const char *name = json_string_value(json_object_get(line, "experiment"));
     bool quick = json_is_true(json_object_get(line, "quick"));
@@ -220,7 +230,15 @@ static RtStatus check_header(const char *path, const json_t *line, const RtExper
             "%s: this is a run %s --quick: start over and lose it with --force, or give another --out", path,
             quick ? "with" : "without");
     }
-    if (!same_build || (build && strcmp(build, rt_build_identity()) == 0)) return RT_OK;
+    uint64_t shard = get_integer(line, "shard"), shards = get_integer(line, "shards");
+    if (only && (shard != only->shard || shards != only->shards)) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: this is a run with another --shard (%d/%d): start over and lose it with --force, or "
+            "give another --out",
+            path, (int)shard, (int)shards);
+    }
+    if (!only || (build && strcmp(build, rt_build_identity()) == 0)) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
         "%s: this run was begun by another build (%s; this is %s): start over and lose it with --force, or "
@@ -228,10 +246,10 @@ static RtStatus check_header(const char *path, const json_t *line, const RtExper
         path, build ? build : "unknown", rt_build_identity());
 }
 
-RtStatus rt_journal_load(const char *path, RtResults *results, bool same_build, RtError *error) {
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, RtError *error) {
     json_t *lines;
     RT_TRY(rt_json_lines_load(path, &lines, error));
-    RtStatus status = check_header(path, json_array_get(lines, 0), results->experiment, same_build, error);
+    RtStatus status = check_header(path, json_array_get(lines, 0), results->experiment, only, error);
     for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
         take_line(results, json_array_get(lines, i));
     }

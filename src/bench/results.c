@@ -50,6 +50,23 @@ void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddl
     }
 }
 
+void rt_print_limits(const RtResults *results, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            const char *scene = experiment->workloads[t].label, *accel = experiment->candidates[c].label;
+            const RtBuildResult *build = rt_build_at(results, t, c);
+            if (*build->limit) fprintf(out, "Left out: %s on %s: %s\n", accel, scene, build->limit);
+            for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+                const RtCell *cell = rt_cell_at(results, t, c, (RtRayKind)k);
+                if (!*cell->limit) continue;
+                fprintf(out, "Left out: %s on %s, %s rays: %s\n", accel, scene,
+                        rt_ray_kind_name((RtRayKind)k), cell->limit);
+            }
+        }
+    }
+}
+
 double rt_cell_per_ray(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind,
                        uint64_t counter) {
     const RtCell *cell = rt_cell_at(results, workload, candidate, kind);

@@ -8,6 +8,10 @@
 #include "bench/experiment.h"
 #include "bench/statistics.h"
 
+#include <stdio.h>
+
+#define RT_MAX_LIMIT 64
+
 typedef struct RtWorkloadResult {
     bool known;   /* the scene was opened and its rays recorded */
     bool skipped; /* optional, and its file is missing */
@@ -22,13 +26,15 @@ typedef struct RtBuildResult {
     bool known, exact, counts;    /* as in RtAccel */
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
     double seconds;               /* median of up to three builds */
+    char limit[RT_MAX_LIMIT];     /* which limit it went beyond, so that no cell of it is measured; else "" */
     RtDescription shape;
 } RtBuildResult;
 
 typedef struct RtCell {
     bool counted, timed;
-    RtTally tally;   /* tally.rays: of the thinned set */
-    uint64_t differ; /* answers unlike the baseline's; of an exact accelerator always 0 */
+    char limit[RT_MAX_LIMIT]; /* which limit it would go beyond, so that it is not measured; else "" */
+    RtTally tally;            /* tally.rays: of the thinned set */
+    uint64_t differ;          /* answers unlike the baseline's; of an exact accelerator always 0 */
     uint32_t rounds;
     int threads;        /* of the timing */
     RtEstimate seconds; /* a ray: processor time on one thread, wall time on several */
@@ -57,6 +63,9 @@ const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidat
 
 /* How many of the null runs there are, and how many of them have an interval with 1 inside. */
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
+
+/* A line for each limit that was hit, and what was left out; nothing where there is none. */
+void rt_print_limits(const RtResults *results, FILE *out);
 
 /* What a candidate's cells of one workload add up to. Per ray means per ray of all kinds together, each kind
  * with the weight of its unthinned set, so that thinned and full measurements compare. NAN where unknown. */

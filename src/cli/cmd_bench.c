@@ -237,7 +237,7 @@ static RtStatus bench(Options *o, RtError *error) {
     RT_TRY(rt_experiment_add_scenes(experiment, &o->like, o->scene, "", error));
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    RtProgress progress = rt_progress_begin(experiment, o->workload.count_only ? 1 : 2);
+    RtProgress progress = rt_progress_begin(&o->workload);
     o->workload.observer = rt_progress_observer(&progress);
     RtResults results;
     RtStatus status = rt_results_init(&results, experiment, error);

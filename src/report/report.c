@@ -232,7 +232,9 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
         rt_html_put(out, rt_tally_meaning(i));
         fputs("</dd>\n", out);
     }
-    fputs("</dl></details>\n<details open><summary>Manifest</summary><dl>", out);
+    fputs("</dl></details>\n<pre class=\"meta\">", out);
+    rt_print_limits(results, out);
+    fputs("</pre>\n<details open><summary>Manifest</summary><dl>", out);
     put_members(out, manifest);
     put_members(out, json_object_get(manifest, "machine"));
     fputs("</dl></details>\n", out);
