@@ -50,11 +50,13 @@ static json_t *estimate_json(const RtEstimate *e) {
     return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
 }
 
-static json_t *time_json(const RtExperiment *experiment, const RtCell *cell) {
-    return json_pack("{s:I, s:I, s:i, s:o, s:o, s:o, s:s}", "rays", (json_int_t)cell->tally.rays, "rounds",
-                     (json_int_t)cell->rounds, "threads", cell->threads, "seconds",
-                     estimate_json(&cell->seconds), "wall", estimate_json(&cell->wall), "ratio",
-                     estimate_json(&cell->ratio), "baseline", rt_candidate_label(experiment, cell->baseline));
+static json_t *time_json(const RtResults *results, const RtCell *cell) {
+    const RtMachine *machine = &results->machines[cell->machine];
+    return json_pack(
+        "{s:I, s:I, s:i, s:o, s:o, s:o, s:s, s:s, s:s}", "rays", (json_int_t)cell->tally.rays, "rounds",
+        (json_int_t)cell->rounds, "threads", cell->threads, "seconds", estimate_json(&cell->seconds), "wall",
+        estimate_json(&cell->wall), "ratio", estimate_json(&cell->ratio), "baseline",
+        rt_candidate_label(results->experiment, cell->baseline), "host", machine->host, "cpu", machine->cpu);
 }
 
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
@@ -75,7 +77,7 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
                          count_json(cell));
     case RT_EVENT_TIME:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
-                         time_json(experiment, cell));
+                         time_json(results, cell));
     case RT_EVENT_TOO_LARGE:
         return json_pack("{s:s, s:s, s:s}", "scene", scene, "accel", accel, "too_large",
                          rt_build_at(results, event->workload, event->candidate)->limit);
@@ -173,7 +175,17 @@ static void take_count(RtCell *cell, const json_t *object) {
     take_tally(&cell->tally, object);
 }
 
-static void take_time(const RtExperiment *experiment, uint32_t workload, RtCell *cell, const json_t *object) {
+static void take_text(char *out, size_t room, const json_t *object, const char *key) {
+    const char *text = json_string_value(json_object_get(object, key));
+    snprintf(out, room, "%s", text ? text : "");
+}
+
+static void take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object) {
+    const RtExperiment *experiment = results->experiment;
+    RtMachine machine;
+    take_text(machine.host, sizeof machine.host, object, "host");
+    take_text(machine.cpu, sizeof machine.cpu, object, "cpu");
+    cell->machine = rt_results_machine(results, &machine);
     const char *baseline = json_string_value(json_object_get(object, "baseline"));
     uint32_t c = rt_candidate_find(experiment, baseline ? baseline : "", workload);
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
@@ -209,7 +221,7 @@ static void take_line(RtResults *results, const json_t *line) {
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
     limit = json_string_value(json_object_get(line, "too_long"));
     if (limit) snprintf(cell->limit, RT_MAX_LIMIT, "%s", limit);
-    if ((object = json_object_get(line, "timed"))) take_time(experiment, workload, cell, object);
+    if ((object = json_object_get(line, "timed"))) take_time(results, workload, cell, object);
 }
 
 static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,

@@ -107,6 +107,8 @@ static const void *build_of(const void *row) {
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
       known(r->cell->tally.steps, r->all.steps))                                                             \
     X(differ, "differ", integer, "", "answers unlike the baseline's; 0 if exact", r->cell->differ)           \
+    X(host, "host", text, "", "the machine that timed it", r->results->machines[r->cell->machine].host)      \
+    X(cpu, "cpu", text, "", "its processor", r->results->machines[r->cell->machine].cpu)                     \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
     X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
     X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->all.steps)                                   \
@@ -138,6 +140,7 @@ static const RtColumnGroup times[] = {
     RT_FROM_TO(columns, build_seconds, bytes),
     RT_FROM_TO(columns, object_tests, differ),
     {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+    RT_FROM_TO(columns, host, cpu),
 };
 
 static const RtColumnGroup bench[] = {

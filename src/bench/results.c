@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <string.h>
 
 RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error) {
     size_t workloads = experiment->workload_count, builds = workloads * (experiment->candidate_count + 1);
@@ -11,7 +12,9 @@ RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtE
     results->workloads = rt_alloc(workloads, sizeof(RtWorkloadResult));
     results->builds = rt_alloc(builds, sizeof(RtBuildResult));
     results->cells = rt_alloc(builds * RT_RAY_KIND_COUNT, sizeof(RtCell));
-    if (results->workloads && results->builds && results->cells) return RT_OK;
+    results->machines = rt_alloc(RT_MAX_MACHINES, sizeof(RtMachine));
+    results->machine_count = 1;
+    if (results->workloads && results->builds && results->cells && results->machines) return RT_OK;
     return rt_fail_memory(error, "the results", builds * RT_RAY_KIND_COUNT * sizeof(RtCell));
 }
 
@@ -19,7 +22,19 @@ void rt_results_clear(RtResults *results) {
     rt_free(results->workloads);
     rt_free(results->builds);
     rt_free(results->cells);
+    rt_free(results->machines);
     *results = (RtResults){0};
+}
+
+uint32_t rt_results_machine(RtResults *results, const RtMachine *machine) {
+    uint32_t m = 0;
+    for (; m < results->machine_count; m++) {
+        const RtMachine *known = &results->machines[m];
+        if (strcmp(known->host, machine->host) == 0 && strcmp(known->cpu, machine->cpu) == 0) return m;
+    }
+    if (m == RT_MAX_MACHINES) return 0;
+    results->machines[results->machine_count++] = *machine;
+    return m;
 }
 
 static size_t build_index(const RtResults *results, uint32_t workload, uint32_t candidate) {

@@ -37,22 +37,34 @@ typedef struct RtCell {
     uint64_t differ;          /* answers unlike the baseline's; of an exact accelerator always 0 */
     uint32_t rounds;
     int threads;        /* of the timing */
+    uint32_t machine;   /* that timed it: one of RtResults.machines */
     RtEstimate seconds; /* a ray: processor time on one thread, wall time on several */
     RtEstimate wall;    /* a ray, on the wall clock */
     RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
     uint32_t baseline; /* the candidate that is: where there are several, the fastest of them on these rays */
 } RtCell;
 
+/* Where cells were timed. */
+#define RT_MAX_MACHINES 256
+typedef struct RtMachine {
+    char host[64], cpu[128]; /* "": not known */
+} RtMachine;
+
 typedef struct RtResults {
     const RtExperiment *experiment; /* borrowed */
     RtWorkloadResult *workloads;    /* [workload_count] */
     RtBuildResult *builds;          /* see rt_build_at */
     RtCell *cells;                  /* see rt_cell_at */
+    RtMachine *machines;            /* [RT_MAX_MACHINES]; the first is not known */
+    uint32_t machine_count;
 } RtResults;
 
 /* All unknown. Clear with rt_results_clear, also after a failure. */
 RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error);
 void rt_results_clear(RtResults *results);
+
+/* The place of a machine among those of the results, which it joins; 0 where they are too many. */
+uint32_t rt_results_machine(RtResults *results, const RtMachine *machine);
 
 /* Places in the arrays; candidate = candidate_count is the null run. */
 RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t candidate);
