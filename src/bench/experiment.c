@@ -3,7 +3,6 @@
 
 #include "bench/earlier.h"
 
-#include <ctype.h>
 #include <string.h>
 
 void rt_experiment_init(RtExperiment *experiment) {
@@ -17,10 +16,6 @@ void rt_experiment_init(RtExperiment *experiment) {
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         if (k != RT_RAY_OCCLUSION) experiment->kinds[experiment->kind_count++] = (RtRayKind)k;
     }
-}
-
-bool rt_may_label(char c) {
-    return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
 }
 
 /* ---- the baseline ---- */

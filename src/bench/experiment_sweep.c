@@ -2,9 +2,14 @@
 /* The scenes and accelerators of an experiment, one by one, from specs that may stand for several. */
 #include "bench/experiment.h"
 
+#include <ctype.h>
 #include <string.h>
 
 /* ---- labels ---- */
+
+bool rt_may_label(char c) {
+    return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
+}
 
 /* Puts what was swept behind the label that all have in common. */
 static RtStatus label_one(char label[RT_MAX_LABEL], const char *base, const RtSwept *swept, RtError *error) {

@@ -23,7 +23,4 @@ RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory,
  * fails: then the plots are what they were before. */
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error);
 
-/* The colour of a candidate, "#rrggbb". */
-const char *rt_candidate_color(uint32_t candidate);
-
 #endif

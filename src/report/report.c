@@ -7,7 +7,7 @@
 #include "bench/claims.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
-#include "report/plot.h"
+#include "report/color.h"
 
 #include <inttypes.h>
 #include <math.h>

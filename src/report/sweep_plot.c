@@ -2,7 +2,7 @@
 #include "report/sweep_plot.h"
 
 #include "base/memory.h"
-#include "report/plot.h"
+#include "report/color.h"
 #include "style_gp.h"
 
 #include <math.h>

@@ -182,7 +182,7 @@ RT_TEST_IN_PLACE(a_cell_that_would_take_too_long_is_not_begun) {
     write_changed(place, "small.yaml", long_experiment, "n=200|400\", label: cloud, size: 24x24",
                   "n=200|100000\", label: cloud, size: 100x100");
     char *text = read_in(place, "small.yaml");
-    write_changed(place, "small.yaml", text, "limit: 300", "limits: {seconds: 2}\nlimit: 10000");
+    write_changed(place, "small.yaml", text, "limit: 300", "limits: {seconds: 0.5}\nlimit: 10000");
     rt_free(text);
     text = read_in(place, "small.yaml");
     write_changed(place, "small.yaml", text, ", ray_stride: 10", "");
