@@ -30,6 +30,10 @@ RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t siz
 /* Bytes of memory in this machine. */
 uint64_t rt_memory_size(void);
 
+/* From now on at most `bytes` more are handed out than are now; 0: as many as there are. What other libraries
+ * allocate is not counted. */
+void rt_memory_limit(uint64_t bytes);
+
 /* For tests: the allocation `n` calls from now fails (1 = the next); 0 switches this off. */
 void rt_alloc_fail_at(uint64_t n);
 

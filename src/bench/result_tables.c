@@ -3,8 +3,10 @@
 
 #include "accel/structure_json.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 typedef RtResultRow Row;
 
@@ -105,6 +107,8 @@ static const void *build_of(const void *row) {
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
       known(r->cell->tally.steps, r->all.steps))                                                             \
     X(differ, "differ", integer, "", "answers unlike the baseline's; 0 if exact", r->cell->differ)           \
+    X(host, "host", text, "", "the machine that timed it", r->results->machines[r->cell->machine].host)      \
+    X(cpu, "cpu", text, "", "its processor", r->results->machines[r->cell->machine].cpu)                     \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
     X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
     X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->all.steps)                                   \
@@ -136,6 +140,7 @@ static const RtColumnGroup times[] = {
     RT_FROM_TO(columns, build_seconds, bytes),
     RT_FROM_TO(columns, object_tests, differ),
     {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+    RT_FROM_TO(columns, host, cpu),
 };
 
 static const RtColumnGroup bench[] = {
@@ -190,12 +195,12 @@ static double per_ray(const Row *r, uint64_t counter) {
 static RtTotal all_of(const Row *r) {
     const RtTally *tally = &r->cell->tally;
     if (r->which == RT_TOTALS) return rt_results_total(r->results, r->workload, r->candidate);
-    return (RtTotal){tally->rays,
-                     per_ray(r, tally->object_tests),
-                     per_ray(r, tally->extent_tests),
-                     per_ray(r, tally->steps),
-                     TIMED(r->cell->seconds.median),
-                     TIMED(r->cell->ratio.median)};
+    return (RtTotal){.rays = tally->rays,
+                     .object_tests = per_ray(r, tally->object_tests),
+                     .extent_tests = per_ray(r, tally->extent_tests),
+                     .steps = per_ray(r, tally->steps),
+                     .seconds = TIMED(r->cell->seconds.median),
+                     .ratio = TIMED(r->cell->ratio.median)};
 }
 
 static const void *row_at(void *context, size_t i) {
@@ -219,6 +224,39 @@ static const void *row_at(void *context, size_t i) {
     return r;
 }
 
+/* ---- what is swept ---- */
+
+static RtField get_swept(const void *row, const RtTableColumn *column) {
+    const Row *r = row;
+    const RtSweptKey *key = &r->swept[column->key];
+    const char *value = rt_swept_of(r->results->experiment, key, r->workload, r->candidate);
+    double number;
+    if (!value || !key->number) return rt_field_text(value);
+    return rt_swept_number(value, &number) ? rt_field_real(number) : rt_field_missing();
+}
+
+/* A column for each swept parameter at the end, where those of all experiments are alike up to there. */
+static void add_swept(RtTable *table, Row *row) {
+    row->swept_count = rt_experiment_swept(row->results->experiment, row->swept);
+    for (uint32_t i = 0; i < row->swept_count; i++) {
+        const RtSweptKey *key = &row->swept[i];
+        char *name = row->swept_names[i];
+        snprintf(name, sizeof row->swept_names[i], "%s.%s", key->scene ? "scene" : "accel", key->key);
+        row->swept_columns[i] = (RtTableColumn){.id = name,
+                                                .name = name,
+                                                .unit = "",
+                                                .meaning = "the swept parameter",
+                                                .get = get_swept,
+                                                .form = key->number ? RT_FORM_real9 : RT_FORM_text,
+                                                .key = (int)i};
+    }
+    if (!row->swept_count) return;
+    assert(table->group_count < RT_MAX_RESULT_GROUPS);
+    memcpy(row->groups, table->groups, table->group_count * sizeof *row->groups);
+    row->groups[table->group_count++] = (RtColumnGroup){NULL, row->swept_columns, row->swept_count, NULL};
+    table->groups = row->groups;
+}
+
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
         [RT_COUNTS] = {RT_GROUPS(counts)}, [RT_TIMES] = {RT_GROUPS(times)},
@@ -234,6 +272,7 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     table.row = row_at;
     table.context = row;
     row->which = which;
+    if (which <= RT_BENCH) add_swept(&table, row);
     return table;
 }
 

@@ -2,6 +2,7 @@
 /* The timing of one kind of rays in a workload. */
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "bench/machine.h"
 #include "bench/workload_state.h"
 
 #include <math.h>
@@ -89,7 +90,8 @@ static uint32_t pick_rival(const RtWorkloadState *workload, const Contest *conte
 /* Takes what was timed into the cells. */
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Contest *contest,
                            RtError *error) {
-    uint32_t rounds = contest->rounds;
+    const RtMachine here = rt_machine_here();
+    uint32_t rounds = contest->rounds, machine = rt_results_machine(workload->results, &here);
     for (uint32_t c = 0; c < workload->count; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         if (!workload->accels[c] || cell->timed) continue;
@@ -99,6 +101,7 @@ static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Cont
         cell->timed = true;
         cell->rounds = rounds;
         cell->threads = rt_thread_count(workload->options->timing);
+        cell->machine = machine;
         cell->tally.rays = own->set->count;
         cell->seconds = rt_estimate(own->seconds, rounds);
         cell->wall = rt_estimate(own->wall, rounds);

@@ -33,6 +33,7 @@ enum {
 typedef struct Options {
     RtExperiment *experiment;
     const char *scene, *baseline, *csv;
+    RtWorkload like; /* for all that the scene stands for */
     RtWorkloadOptions workload;
     bool json;
 } Options;
@@ -40,7 +41,8 @@ typedef struct Options {
 static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0,
      "An accelerator, NAME[:KEY=VALUE,...]; once per accelerator. `all`: every one, at "
-     "its defaults",
+     "its defaults. A VALUE may be a list, 1|4|16, or a range, 1..9+2 (in steps of 2) or 1..64*2 (each twice "
+     "the one before): then it is an accelerator for each, of several such VALUEs each with each",
      0},
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
      "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
@@ -76,22 +78,16 @@ static const struct argp_option options[] = {
 
 /* ---- options ---- */
 
+/* All that the spec stands for. */
 static void add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    if (experiment->candidate_count == RT_MAX_CANDIDATES) {
-        argp_error(state, "--accel: at most %d may be given", RT_MAX_CANDIDATES);
-    }
+    RtError error;
+    RtCandidate like = {.entry = experiment->candidate_count, .ray_stride = 1};
     if (strlen(text) >= RT_MAX_SPEC_CHARS) {
         argp_error(state, "--accel: a spec has at most %d characters", RT_MAX_SPEC_CHARS - 1);
     }
-    RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
-    candidate->ray_stride = 1;
-    strcpy(candidate->spec, text);
-    if (strlen(text) < RT_MAX_LABEL) {
-        strcpy(candidate->label, text);
-    } else {
-        snprintf(candidate->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, text,
-                 experiment->candidate_count);
-    }
+    strcpy(like.spec, text);
+    if (rt_experiment_add_accels(experiment, &like, &error) != RT_OK)
+        argp_error(state, "--accel: %s", error.message);
 }
 
 static void add_accels(RtExperiment *experiment, const char *text, struct argp_state *state) {
@@ -103,6 +99,14 @@ static void add_accels(RtExperiment *experiment, const char *text, struct argp_s
         char spec[RT_MAX_SPEC_CHARS];
         rt_spread_spec(rt_accel_at(i), 0, spec);
         add_accel(experiment, spec, state);
+    }
+}
+
+/* Of all that the preceding --accel stands for. */
+static void set_ray_stride(RtExperiment *experiment, uint64_t stride) {
+    uint32_t last = experiment->candidate_count - 1, entry = experiment->candidates[last].entry;
+    for (uint32_t c = 0; c <= last; c++) {
+        if (experiment->candidates[c].entry == entry) experiment->candidates[c].ray_stride = stride;
     }
 }
 
@@ -141,8 +145,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'a': add_accels(e, argument, state); return 0;
     case OPT_RAY_STRIDE:
         if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
-        e->candidates[e->candidate_count - 1].ray_stride =
-            (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
+        set_ray_stride(
+            e, (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND));
         return 0;
     case OPT_RAYS: parse_kinds(e, argument, state); return 0;
     case OPT_LIMIT:
@@ -160,10 +164,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case OPT_THREADS:
         o->workload.threads = o->workload.timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
         return 0;
-    case OPT_SIZE: rt_cli_size(state, argument, &e->workloads[0].width, &e->workloads[0].height); return 0;
-    case OPT_CORNERS: e->workloads[0].corners = true; return 0;
+    case OPT_SIZE: rt_cli_size(state, argument, &o->like.width, &o->like.height); return 0;
+    case OPT_CORNERS: o->like.corners = true; return 0;
     case OPT_DEPTH:
-        e->workloads[0].depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH);
+        o->like.depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH);
         return 0;
     case OPT_COUNT_ONLY: o->workload.count_only = true; return 0;
     case OPT_CSV: o->csv = argument; return 0;
@@ -184,11 +188,23 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 /* ---- output ---- */
 
+/* Appends the rows of one scene. */
+static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
+    RtResultRow row = {.results = results, .workload = workload};
+    RtTable table = rt_result_table(which, &row);
+    json_t *rows = rt_table_json(&table);
+    json_array_extend(array, rows);
+    json_decref(rows);
+}
+
 static void print_json(const RtResults *results) {
-    RtResultRow row = {.results = results}, null = row;
-    RtTable rows = rt_result_table(RT_BENCH, &row), nulls = rt_result_table(RT_NULL_RUNS, &null);
-    rt_cli_print_json(json_pack("{s:o, s:o, s:o}", "machine", rt_machine_json(), "rows", rt_table_json(&rows),
-                                "null_runs", rt_table_json(&nulls)));
+    json_t *rows = json_array(), *nulls = json_array();
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        extend(rows, results, RT_BENCH, t);
+        extend(nulls, results, RT_NULL_RUNS, t);
+    }
+    rt_cli_print_json(
+        json_pack("{s:o, s:o, s:o}", "machine", rt_machine_json(), "rows", rows, "null_runs", nulls));
 }
 
 static RtStatus write_csv(const RtResults *results, const Options *o, RtError *error) {
@@ -218,14 +234,15 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
 static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
     RtExperiment *experiment = o->experiment;
-    RT_TRY(rt_workload_set_scene(&experiment->workloads[0], o->scene, "", error));
+    RT_TRY(rt_experiment_add_scenes(experiment, &o->like, o->scene, "", error));
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    RtProgress progress = rt_progress_begin(experiment, o->workload.count_only ? 1 : 2);
+    RtProgress progress = rt_progress_begin(&o->workload);
     o->workload.observer = rt_progress_observer(&progress);
     RtResults results;
     RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = rt_workload_run(&results, 0, &o->workload, error);
+    for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
+        status = rt_workload_run(&results, t, &o->workload, error);
     rt_progress_end(&progress);
     if (status == RT_OK) status = report(&results, o, error);
     rt_results_clear(&results);
@@ -240,17 +257,19 @@ int rt_command_bench(int argc, char **argv) {
         return rt_cli_fail(&error);
     }
     rt_experiment_init(o.experiment);
-    o.experiment->workload_count = 1;
     o.experiment->coherent_run = 256;
-    o.experiment->workloads[0].depth = RT_DEFAULT_DEPTH;
+    o.like.depth = RT_DEFAULT_DEPTH;
     const struct argp argp = {
         .options = options,
         .parser = parse_option,
         .args_doc = "SCENE",
         .doc = "Count and time accelerators on the rays of one scene, and compare them."
-               "\vSCENE is a file or a built-in, as in balls:size=3. Every accelerator gets the "
+               "\vSCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote "
+               "what "
+               "your shell would take for its own: | and *). Every accelerator gets the "
                "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
-               "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100"};
+               "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
+               "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'"};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtStatus status = bench(&o, &error);
     rt_free(o.experiment);

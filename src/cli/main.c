@@ -17,6 +17,7 @@ static const RtCommand commands[] = {
     {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
     {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench},
     {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run},
+    {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge},
     {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot},
     {"report", "DIR", "write the report of a result directory again", rt_command_report},
     {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce},

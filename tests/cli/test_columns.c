@@ -107,7 +107,15 @@ static void print_document(FILE *out) {
         "not\n"
         "known is empty in CSV and null in JSON. In JSON a name with a dot is that of a member of an "
         "object;\n"
-        "yes is true, no is false, and an interval is an object of its three parts.\n",
+        "yes is true, no is false, and an interval is an object of its three parts.\n"
+        "\n"
+        "Where an experiment sweeps parameters, `counts.csv`, `times.csv` and the rows of `bench --json` "
+        "have a "
+        "column more\n"
+        "for each of them, at the end: `scene.KEY` for a parameter of scenes, `accel.KEY` for one of "
+        "accelerators, as in\n"
+        "`accel.density`; empty where the row has no such parameter. All other columns are the same for "
+        "every experiment.\n",
         out);
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.section = &sections[i]};
