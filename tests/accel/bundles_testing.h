@@ -4,7 +4,7 @@
 #ifndef RT_TESTS_BUNDLES_TESTING_H
 #define RT_TESTS_BUNDLES_TESTING_H
 
-#include "testing.h"
+#include "slivers_testing.h"
 
 #include "base/random.h"
 #include "scene/scene.h"

@@ -7,8 +7,6 @@
 
 #include "scenes/open.h"
 
-#include <math.h>
-
 /* ---- brute, and all of wide ---- */
 
 typedef struct Bench {
