@@ -44,13 +44,21 @@ enum {
     TRIAL = 256 * 1024, /* rays traced alone between two trials of packets */
 };
 
-/* Streams that ask for any hit need no distances, and are harder to beat. */
-#define WORTH_MORE_ANY 1.2f
+/* How much more than asked for rays must share. Streams that ask for any hit need no distances, and are
+ * harder to beat. Without AVX2 what packets gather is gathered word by word: they pay for nearest hits of
+ * rays that share much, and for any hit nowhere to speak of. */
+#if defined(__AVX2__)
+#define WORTH_NEAREST 1.0f
+#define WORTH_ANY     1.2f
+#else
+#define WORTH_NEAREST 1.6f
+#define WORTH_ANY     13.0f
+#endif
 
 /* As packets, as far as these pay; gives how many rays have been. */
 RT_KERNEL size_t trace_together(const Question *q, size_t count, bool any) {
     Habit *habit = &((Scratch *)q->scratch->own)->habits[q->rays[0].kind];
-    const float worth = q->self->sharing * (any ? WORTH_MORE_ANY : 1);
+    const float worth = q->self->sharing * (any ? WORTH_ANY : WORTH_NEAREST);
     size_t i = 0;
     if (habit->alone && habit->trial > count) {
         habit->trial -= count;
