@@ -76,14 +76,16 @@ unset print
 # ---- drawing ----
 
 eval svg("4-trees", 1100, 420)
-set multiplot layout 1, n_families margins screen 0.055, 0.985, 0.14, 0.86 spacing screen 0.025, 0.1
+set multiplot layout 1, n_families margins screen 0.06, 0.985, 0.15, 0.9 spacing screen 0.02, 0.1
 set grid xtics ytics
-set xrange [0 : 1]; set yrange [0.4 : 1]
+set border 3; set xtics nomirror; set ytics nomirror
+set xrange [0 : 1]; set yrange [0.5 : 1]
 set samples 101
 kind_hue(k) = word("#222222 #c1543c #2f6f9f #3a8a4d", k)
 do for [f = 1:n_families] {
   set title word(families, f) textcolor rgb ink font ",14"
   set xlabel "α: weight of end-point overlap; the cost has 1 - α" textcolor rgb ink
+  set format y (f == 1 ? "%g" : "")
   set ylabel (f == 1 ? "correlation with ns per ray" : "") textcolor rgb ink
   if (f == 1) { set key left bottom font ",12" textcolor rgb ink samplen 1.5 } else { unset key }
   plot for [k = 1:n_kinds] mean(f, k, x, 0) with lines linewidth 2 linecolor rgb kind_hue(k) title word(kinds, k), \
