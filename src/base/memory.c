@@ -73,7 +73,7 @@ RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t siz
     if (grown < needed) grown = needed;
     if (grown < 16) grown = 16;
     if (grown > UINT32_MAX) grown = UINT32_MAX;
-    void *block = rt_alloc((size_t)grown, size);
+    void *block = rt_alloc_unset((size_t)grown, size);
     if (!block) return rt_fail_memory(error, "a growing array", (size_t)grown * size);
     /* The caller's pointer is read and written as bytes: it is no void pointer, and may not be taken for
      * one. */

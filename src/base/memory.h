@@ -24,7 +24,7 @@ void rt_free(void *block);
 
 /* Makes room for `needed` elements in a growing array. `array` is the address of a pointer, of any type, to
  * `*capacity` elements of `size` bytes each (or of NULL); the block is replaced by a larger one with the same
- * contents. On failure nothing changes. */
+ * contents; nothing beyond them is set. On failure nothing changes. */
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
 
 /* Bytes of memory in this machine. */

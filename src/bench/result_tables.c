@@ -131,7 +131,7 @@ static const RtColumnGroup counts[] = {
     {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},
     {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of},
     RT_ONE(columns, bytes),
-    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},
 };
 
 static const RtColumnGroup times[] = {
@@ -139,7 +139,7 @@ static const RtColumnGroup times[] = {
     RT_FROM_TO(columns, threads, ratio_high),
     RT_FROM_TO(columns, build_seconds, bytes),
     RT_FROM_TO(columns, object_tests, differ),
-    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},
     RT_FROM_TO(columns, host, cpu),
 };
 
