@@ -19,8 +19,7 @@ const RtParam rt_item_params[RT_ITEM_PARAM_COUNT] = {
     {"settle", RT_FLAG("on"),
      "ask hit functions while building, where the projection leaves a sample undecided",
      "this program; off is Weghorst, Hooper & Greenberg 1984"},
-    {"isa", RT_CHOICE("best", "best|portable|avx2|avx512"), "instruction set; changes no answer and no count",
-     "best: of this machine"},
+    {RT_ISA_PARAM},
 };
 
 enum {
@@ -36,7 +35,7 @@ typedef struct Share {
     size_t end[KINDS];
     uint32_t *around; /* triangles that are left to footprints */
     size_t around_count;
-    size_t *tile; /* [tiles]: how many of its objects are in each, then where they go */
+    size_t *tile; /* [tiles * RT_ITEM_CLASSES]: how many of its objects are there, then where they go */
 } Share;
 
 /* An object that is not flat, to be drawn front to back. */
@@ -63,6 +62,7 @@ typedef struct Builder {
     size_t *first; /* [tiles + 1] into `entries` */
     RtRef *entries;
     Easel **easel; /* [shares], each of the thread that uses it */
+    float nearer[RT_ITEM_CLASSES - 1];
 } Builder;
 
 /* ---- placing ---- */
@@ -80,11 +80,17 @@ static void place_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemPlace
     RtItemFootprint at;
     if (!rt_item_footprint(buffer, id, &at)) return;
     RtItemPlace *to = &places[(*placed)++];
-    to->object = buffer->base.scene->geometry.objects[id];
+    to->object = buffer->isa.base.scene->geometry.objects[id];
+    to->class = 0;
     for (int a = 0; a < 2; a++) {
         to->lo[a] = (uint16_t)(at.lo[a] / RT_ITEM_TILE);
         to->hi[a] = (uint16_t)(at.hi[a] / RT_ITEM_TILE);
     }
+}
+
+/* Tile after tile, class after class. */
+static size_t slot_of(uint32_t across, uint32_t x, uint32_t y, const RtItemPlace *place) {
+    return ((size_t)y * across + x) * RT_ITEM_CLASSES + place->class;
 }
 
 /* Is it kept apart? */
@@ -99,7 +105,8 @@ static void count_places(const Builder *b, Share *share) {
         const RtItemPlace *place = &share->places[i];
         if (is_large(share, i)) continue;
         for (uint32_t y = place->lo[1]; y <= place->hi[1]; y++) {
-            for (uint32_t x = place->lo[0]; x <= place->hi[0]; x++) share->tile[(size_t)y * across + x]++;
+            for (uint32_t x = place->lo[0]; x <= place->hi[0]; x++)
+                share->tile[slot_of(across, x, y, place)]++;
         }
     }
 }
@@ -113,7 +120,7 @@ static RtStatus place_share(void *context, size_t item, int thread, RtError *err
     (void)thread;
     Builder *b = context;
     const RtItemBuffer *buffer = b->buffer;
-    const RtGeometry *g = &buffer->base.scene->geometry;
+    const RtGeometry *g = &buffer->isa.base.scene->geometry;
     Share *share = &b->share[item];
     size_t first = begin_of(g->triangle_count, (int)item, b->shares);
     size_t end = begin_of(g->triangle_count, (int)item + 1, b->shares);
@@ -124,12 +131,12 @@ static RtStatus place_share(void *context, size_t item, int thread, RtError *err
     for (size_t id = first_id; id < end_id; id++) most += !is_triangle(g, id);
     share->places = rt_alloc_unset(most, sizeof(RtItemPlace));
     share->around = rt_alloc_unset(end - first, sizeof(uint32_t));
-    share->tile = rt_alloc(b->tiles, sizeof(size_t));
+    share->tile = rt_alloc(b->tiles * RT_ITEM_CLASSES, sizeof(size_t));
     if (!share->places || !share->around || !share->tile)
         return rt_fail_memory(error, "an item buffer", most * sizeof(RtItemPlace));
     if (end > first) {
-        buffer->kernels->place(buffer, (uint32_t)first, (uint32_t)(end - first), share->places, &placed,
-                               share->around, &share->around_count);
+        buffer->painting->place(buffer, (uint32_t)first, (uint32_t)(end - first), b->nearer, share->places,
+                                &placed, share->around, &share->around_count);
     }
     share->end[TRIANGLES] = placed;
     for (size_t i = 0; i < share->around_count; i++)
@@ -174,11 +181,11 @@ static RtStatus number_entries(Builder *b, RtError *error) {
     size_t sum = 0;
     b->first = rt_alloc(b->tiles + 1, sizeof(size_t));
     if (!b->first) return rt_fail_memory(error, "an item buffer", b->tiles * sizeof(size_t));
-    for (size_t tile = 0; tile < b->tiles; tile++) {
-        b->first[tile] = sum;
+    for (size_t slot = 0; slot < b->tiles * RT_ITEM_CLASSES; slot++) {
+        if (slot % RT_ITEM_CLASSES == 0) b->first[slot / RT_ITEM_CLASSES] = sum;
         for (int k = 0; k < b->shares; k++) {
-            size_t count = b->share[k].tile[tile];
-            b->share[k].tile[tile] = sum;
+            size_t count = b->share[k].tile[slot];
+            b->share[k].tile[slot] = sum;
             sum += count;
         }
     }
@@ -197,10 +204,34 @@ static RtStatus fill_share(void *context, size_t item, int thread, RtError *erro
         if (is_large(share, i)) continue;
         for (uint32_t y = place->lo[1]; y <= place->hi[1]; y++) {
             for (uint32_t x = place->lo[0]; x <= place->hi[0]; x++)
-                b->entries[share->tile[(size_t)y * across + x]++] = place->object;
+                b->entries[share->tile[slot_of(across, x, y, place)]++] = place->object;
         }
     }
     return RT_OK;
+}
+
+/* ---- classes of depth ---- */
+
+static int compare_descending(const void *a, const void *b) {
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x < y) - (x > y);
+}
+
+/* Divides triangles evenly, by some of them. */
+static void choose_classes(Builder *b) {
+    enum { SOME = 1024 };
+    const RtItemBuffer *buffer = b->buffer;
+    const RtGeometry *g = &buffer->isa.base.scene->geometry;
+    float w[SOME];
+    uint32_t count = 0;
+    for (uint64_t i = 0; i < SOME && i < g->triangle_count; i++) {
+        uint64_t at = g->triangle_count < SOME ? i : i * g->triangle_count / SOME;
+        double depth = rt_dotd(rt_subd(rt_widen(g->triangles[at].v[0]), buffer->view.eye), buffer->aim.depth);
+        if (depth > 0) w[count++] = (float)(1 / depth);
+    }
+    qsort(w, count, sizeof *w, compare_descending);
+    for (uint32_t i = 0; i < RT_ITEM_CLASSES - 1; i++)
+        b->nearer[i] = count > 0 ? w[(i + 1) * count / RT_ITEM_CLASSES] : 0;
 }
 
 /* ---- drawing ---- */
@@ -212,7 +243,7 @@ static RtStatus make_easel(const Builder *b, Easel **out, RtError *error) {
     easel->painter.buffer = b->buffer;
     easel->large = rt_alloc_unset(b->large_count, sizeof(RtRef));
     if (!easel->large) return rt_fail_memory(error, "an item buffer", b->large_count * sizeof(RtRef));
-    return rt_hit_room(&b->buffer->base.scene->geometry, &easel->painter.room, error);
+    return rt_hit_room(&b->buffer->isa.base.scene->geometry, &easel->painter.room, error);
 }
 
 static void free_easel(Easel *easel) {
@@ -241,7 +272,7 @@ static RtStatus add_curved(Easel *easel, const RtRef *objects, size_t count, uin
     for (size_t i = 0; i < count; i++) {
         if (rt_ref_shape(objects[i]) == RT_SHAPE_TRIANGLE) continue;
         RtItemFootprint at;
-        uint32_t id = id_of(&buffer->base.scene->geometry, objects[i]);
+        uint32_t id = id_of(&buffer->isa.base.scene->geometry, objects[i]);
         if (!rt_item_footprint(buffer, id, &at)) continue;
         RT_TRY(rt_reserve(&easel->curved, &easel->curved_room, *found + UINT64_C(1), sizeof(Curved), error));
         easel->curved[(*found)++] = (Curved){at.near, id};
@@ -259,7 +290,7 @@ static RtStatus draw_tile(void *context, size_t item, int thread, RtError *error
     Builder *b = context;
     if (!b->easel[thread]) RT_TRY(make_easel(b, &b->easel[thread], error));
     Easel *easel = b->easel[thread];
-    const RtItemKernels *kernels = b->buffer->kernels;
+    const RtItemPainting *painting = b->buffer->painting;
     const RtRef *own = b->entries + b->first[item];
     size_t across = rt_item_tiles_across(b->buffer), large = 0, count = b->first[item + 1] - b->first[item];
     uint32_t x = (uint32_t)(item % across), y = (uint32_t)(item / across), curved = 0;
@@ -269,8 +300,8 @@ static RtStatus draw_tile(void *context, size_t item, int thread, RtError *error
         easel->large[large++] = place->object;
     }
     rt_item_begin_tile(&easel->painter, item);
-    kernels->paint(&easel->painter, easel->large, large);
-    kernels->paint(&easel->painter, own, count);
+    painting->paint(&easel->painter, easel->large, large);
+    painting->paint(&easel->painter, own, count);
     RT_TRY(add_curved(easel, easel->large, large, &curved, error));
     RT_TRY(add_curved(easel, own, count, &curved, error));
     qsort(easel->curved, curved, sizeof(Curved), compare_curved);
@@ -285,13 +316,14 @@ static RtStatus draw_all(Builder *b, int threads, RtError *error) {
     b->share = rt_alloc((size_t)b->shares, sizeof(Share));
     b->easel = rt_alloc((size_t)b->shares, sizeof(Easel *));
     if (!b->share || !b->easel) return rt_fail_memory(error, "an item buffer", sizeof(Share));
+    choose_classes(b);
     RT_TRY(rt_parallel_for((size_t)b->shares, threads, place_share, b, error));
     RT_TRY(collect_large(b, error));
     RT_TRY(number_entries(b, error));
     RT_TRY(rt_parallel_for((size_t)b->shares, threads, fill_share, b, error));
     RT_TRY(rt_parallel_for(b->tiles, threads, draw_tile, b, error));
     for (int k = 0; k < b->shares; k++) {
-        if (b->easel[k]) rt_tally_add(&b->buffer->base.build_tally, &b->easel[k]->painter.tally);
+        if (b->easel[k]) rt_tally_add(&b->buffer->isa.base.build_tally, &b->easel[k]->painter.tally);
     }
     return RT_OK;
 }
@@ -315,7 +347,7 @@ static void clear_builder(Builder *b) {
 static RtStatus refuse_size(const RtItemBuffer *buffer, RtError *error) {
     const RtSampling *s = &buffer->view.sampling;
     double a_sample = sizeof(uint32_t), most = (double)RT_ACCEL_MAX_BYTES;
-    double rest = (double)buffer->base.scene->geometry.object_count * sizeof(RtItemPlace) +
+    double rest = (double)buffer->isa.base.scene->geometry.object_count * sizeof(RtItemPlace) +
                   ((double)s->columns + s->rows) * sizeof(RtItemTerm);
     double bytes = (double)s->columns * s->rows * a_sample;
     if (bytes + rest <= most) return RT_OK;
@@ -354,7 +386,8 @@ static RtStatus make_terms(RtItemBuffer *buffer, RtError *error) {
 }
 
 static RtStatus fill(RtItemBuffer *buffer, int threads, RtError *error) {
-    RT_TRY(rt_view_init(&buffer->view, &buffer->base.scene->camera, buffer->base.scene->sampling, error));
+    RT_TRY(rt_view_init(&buffer->view, &buffer->isa.base.scene->camera, buffer->isa.base.scene->sampling,
+                        error));
     RT_TRY(refuse_size(buffer, error));
     rt_item_aim(buffer);
     RT_TRY(make_terms(buffer, error));
@@ -378,29 +411,13 @@ void rt_item_destroy(RtAccel *accel) {
     rt_free(buffer);
 }
 
-/* ---- instruction sets ---- */
-
-typedef enum Isa { BEST, PORTABLE, AVX2, AVX512 } Isa;
-
-/* What is asked for. */
-static RtIsa isa_of(const RtValue *values) {
-    switch ((Isa)values[RT_ITEM_ISA].choice) {
-    case BEST: break;
-    case PORTABLE: return RT_ISA_PORTABLE;
-    case AVX2: return RT_ISA_AVX2;
-    case AVX512: return RT_ISA_AVX512;
-    }
-    return rt_isa_best();
-}
-
 RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtItemBuffer), &accel, error));
     RtItemBuffer *buffer = (RtItemBuffer *)accel;
-    RtIsa isa = isa_of(what->values);
+    RtIsa isa = rt_isa_asked(what->values[RT_ITEM_ISA]);
     buffer->settle = what->values[RT_ITEM_SETTLE].flag;
-    buffer->kernels = isa == RT_ISA_AVX512 ? &rt_item_avx512
-                      : isa == RT_ISA_AVX2 ? &rt_item_avx2
-                                           : &rt_item_portable;
+    buffer->isa.kernels = RT_KERNELS_FOR(item, isa);
+    buffer->painting = RT_KERNELS_FOR(item_painting, isa);
     return rt_accel_built(accel, fill(buffer, what->threads, error), out);
 }

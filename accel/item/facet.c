@@ -85,7 +85,7 @@ static bool put_depth(const RtItemPainter *p, RtVec3d normal, double height, dou
 
 bool rt_item_polygon(const RtItemPainter *p, uint32_t id, const RtItemFootprint *footprint,
                      RtItemFacets *facet, uint32_t *count) {
-    const RtGeometry *g = &p->buffer->base.scene->geometry;
+    const RtGeometry *g = &p->buffer->isa.base.scene->geometry;
     if (rt_ref_shape(g->objects[id]) != RT_SHAPE_POLYGON) return false;
     const RtPolygon *polygon = &g->polygons[rt_ref_index(g->objects[id])];
     const RtVec3 *vertices = g->polygon_vertices + polygon->first;

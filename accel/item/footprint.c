@@ -119,7 +119,7 @@ bool rt_item_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemFootprint 
         *footprint = (RtItemFootprint){{0, 0}, {s->columns - 1, s->rows - 1}, tmin};
         return true;
     }
-    Bounds b = project_box(buffer, &buffer->base.scene->geometry.boxes[id], (double)tmin * (1 - blur));
+    Bounds b = project_box(buffer, &buffer->isa.base.scene->geometry.boxes[id], (double)tmin * (1 - blur));
     if (!samples_between(b.lo[0] - blur, b.hi[0] + blur, s->columns, s->corners, &footprint->lo[0],
                          &footprint->hi[0]) ||
         !samples_between(b.lo[1] - blur, b.hi[1] + blur, s->rows, s->corners, &footprint->lo[1],

@@ -8,20 +8,11 @@
  * Exact: the object's own hit function says whether and where it is hit, and no other object is hit before.
  * Rays of samples that are undecided, or whose object is missed, and rays that are not bit for bit those of
  * the samples are passed on. */
-#include "accel/item/raster.h"
-#include "accel/kernel.h"
+#include "accel/item/item.h"
 
-static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                    RtHit *hits) {
-    ((const RtItemBuffer *)accel)->kernels->nearest(accel, scratch, rays, count, hits);
+static RtStatus available(const RtValue *values, RtError *error) {
+    return rt_isa_available(values[RT_ITEM_ISA], error);
 }
-
-static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, RtTally *tallies) {
-    ((const RtItemBuffer *)accel)->kernels->nearest_counted(accel, scratch, rays, count, hits, tallies);
-}
-
-RT_REFUSE_QUESTION(occluded, uint32_t)
 
 const RtAccelOps rt_item_ops = {
     .name = "item",
@@ -32,10 +23,8 @@ const RtAccelOps rt_item_ops = {
     .kinds = 1u << RT_RAY_PRIMARY,
     .build = rt_item_build,
     .destroy = rt_item_destroy,
-    .nearest = nearest,
-    .occluded = occluded_timed,
-    .nearest_counted = nearest_counted,
-    .occluded_counted = occluded_counted,
+    RT_ISA_OPS,
     .describe = rt_item_describe,
     .validate = rt_item_validate,
+    .available = available,
 };

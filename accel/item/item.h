@@ -19,9 +19,11 @@
 enum { RT_ITEM_SETTLE, RT_ITEM_ISA, RT_ITEM_PARAM_COUNT };
 extern const RtParam rt_item_params[RT_ITEM_PARAM_COUNT];
 
+RT_DECLARE_KERNELS(item);
+
 #define RT_ITEM_UNDECIDED (UINT32_MAX - 1)
 
-typedef struct RtItemKernels RtItemKernels;
+typedef struct RtItemPainting RtItemPainting;
 
 /* A vector in double, and a fourth component. */
 typedef struct RtItemTerm {
@@ -38,10 +40,10 @@ typedef struct RtItemAim {
 } RtItemAim;
 
 typedef struct RtItemBuffer {
-    RtAccel base;
+    RtIsaAccel isa;
+    const RtItemPainting *painting;
     RtView view;
     bool settle;
-    const RtItemKernels *kernels;
     uint32_t *samples; /* [rows * columns] */
     /* The dir of a sample's ray is columns[column] + rows[row], rounded to float32; the fourth component is
      * its tmax. */

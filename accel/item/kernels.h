@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What item does in vectors, included once for each instruction set: RT_ITEM_KERNELS is the name of the table
- * that is defined. Placing triangles and drawing facets (raster.h says why nothing is missed), and answering
- * primary rays. */
+/* What item does in vectors, included once for each instruction set (accel/isa.h): placing triangles and
+ * drawing facets (raster.h says why nothing is missed), and answering primary rays. */
 #include "accel/item/raster.h"
 #include "accel/pairs.h"
 
@@ -12,6 +11,7 @@ typedef struct Lens {
     RtV16 eye[3], x[3], y[3], depth[3];
     RtV16 reach[2];     /* how far an error of 1 in a direction reaches, in samples */
     RtV16 last[2];      /* the last column and row */
+    RtV16 nearer;       /* w may be larger by this part of |P| / depth */
     RtV16 most_oblique; /* |P| / depth, up to which a triangle is placed here */
 } Lens;
 
@@ -31,6 +31,7 @@ RT_KERNEL void make_lens(Lens *lens, const RtItemBuffer *buffer) {
     lens->reach[1] = rt_v16_all((float)((aim->scale[1] + s->rows) * aim->longest));
     lens->last[0] = rt_v16_all((float)(s->columns - 1));
     lens->last[1] = rt_v16_all((float)(s->rows - 1));
+    lens->nearer = rt_v16_all((float)(0x1p-16 * aim->longest));
     lens->most_oblique = rt_v16_all(aim->blur <= RT_ITEM_MOST_BLUR ? MOST_OBLIQUE : -1);
 }
 
@@ -67,7 +68,8 @@ RT_KERNEL void bound(const Lens *lens, RtV16 v[3][3], Bounds *b) {
         b->hi[1] = i == 0 ? row : rt_v16_max(b->hi[1], row);
         b->most = i == 0 ? w : rt_v16_max(b->most, w);
     }
-    b->most = rt_v16_mul(b->most, rt_v16_all(1 + 0x1p-8f));
+    RtV16 more = rt_v16_add(rt_v16_all(1), rt_v16_mul(oblique, lens->nearer));
+    b->most = rt_v16_mul(b->most, more);
     RtV16 part =
         rt_v16_mul(rt_v16_add(rt_v16_all(0x1p-17f), rt_v16_mul(oblique, rt_v16_all(0x1p-20f))), oblique);
     for (int i = 0; i < 2; i++) {
@@ -77,10 +79,18 @@ RT_KERNEL void bound(const Lens *lens, RtV16 v[3][3], Bounds *b) {
     }
 }
 
-static void place(const RtItemBuffer *buffer, uint32_t first, uint32_t count, RtItemPlace *places,
-                  size_t *placed, uint32_t *around, size_t *left) {
-    const RtGeometry *g = &buffer->base.scene->geometry;
-    _Alignas(64) int32_t lo[2][RT_ITEM_FACETS], hi[2][RT_ITEM_FACETS];
+RT_KERNEL void put_classes(const Bounds *b, const float *nearer, int32_t class[RT_ITEM_FACETS]) {
+    const RtV16 zero = rt_v16_all(0), one = rt_v16_all(1);
+    RtV16 sum = zero;
+    for (int i = 0; i < RT_ITEM_CLASSES - 1; i++)
+        sum = rt_v16_add(sum, rt_v16_pick(rt_v16_below(b->most, rt_v16_all(nearer[i])), zero, one));
+    rt_v16_truncate(class, sum);
+}
+
+static void place(const RtItemBuffer *buffer, uint32_t first, uint32_t count, const float *nearer,
+                  RtItemPlace *places, size_t *placed, uint32_t *around, size_t *left) {
+    const RtGeometry *g = &buffer->isa.base.scene->geometry;
+    _Alignas(64) int32_t lo[2][RT_ITEM_FACETS], hi[2][RT_ITEM_FACETS], class[RT_ITEM_FACETS];
     Lens lens;
     make_lens(&lens, buffer);
     for (uint32_t i = 0; i < count; i += RT_ITEM_FACETS) {
@@ -98,10 +108,12 @@ static void place(const RtItemBuffer *buffer, uint32_t first, uint32_t count, Rt
             rt_v16_truncate(lo[a], b.lo[a]);
             rt_v16_truncate(hi[a], b.hi[a]);
         }
+        if (seen) put_classes(&b, nearer, class);
         for (; seen; seen &= seen - 1) {
             uint32_t k = (uint32_t)__builtin_ctz(seen);
             RtItemPlace *to = &places[(*placed)++];
             to->object = rt_ref(RT_SHAPE_TRIANGLE, first + i + k);
+            to->class = (uint16_t) class[k];
             for (int a = 0; a < 2; a++) {
                 to->lo[a] = (uint16_t)((uint32_t)lo[a][k] / RT_ITEM_TILE);
                 to->hi[a] = (uint16_t)((uint32_t)hi[a][k] / RT_ITEM_TILE);
@@ -236,38 +248,13 @@ static void place_around(const RtItemPainter *p, const RtItemFootprint *at, RtIt
     if (!(f->doubt[1][k] * f->most[k] < 0x1p-4f)) f->most[k] = INFINITY;
 }
 
-RT_KERNEL void make_facets(const RtItemPainter *painter, const Lens *lens, const uint32_t *triangles,
-                           uint32_t count, RtItemFacets *f) {
-    const RtGeometry *g = &painter->buffer->base.scene->geometry;
-    const RtTriangle *at[RT_ITEM_FACETS];
-    RtV16 v[3][3];
-    Bounds b;
-    for (uint32_t k = 0; k < RT_ITEM_FACETS; k++) at[k] = &g->triangles[triangles[k < count ? k : 0]];
-    for (uint32_t k = 0; k < count; k++) f->id[k] = g->triangle_ids[triangles[k]];
-    rt_pairs_gather(at, v);
-    make_half(painter, v, 0, f);
-    if (count > 8) make_half(painter, v, 1, f);
-    bound(lens, v, &b);
-    const RtV16 corner[2] = {rt_v16_all((float)painter->column), rt_v16_all((float)painter->row)};
-    for (int a = 0; a < 2; a++) {
-        rt_v16_truncate(f->lo[a], rt_v16_sub(b.lo[a], corner[a]));
-        rt_v16_truncate(f->hi[a], rt_v16_sub(b.hi[a], corner[a]));
-    }
-    rt_v16_store(f->most, b.most);
-    uint32_t around = ~b.known & ((1u << count) - 1);
-    for (; around; around &= around - 1) {
-        uint32_t k = (uint32_t)__builtin_ctz(around);
-        RtItemFootprint footprint;
-        rt_item_footprint(painter->buffer, f->id[k], &footprint);
-        place_around(painter, &footprint, f, k);
-    }
-}
-
 /* ---- drawing facets ---- */
 
 /* Columns and rows of the samples of a block, in the tile. */
 typedef struct Grid {
     RtV16 along[RT_ITEM_TILE / RT_ITEM_BLOCK][2];
+    RtV16
+        blocks[1 + RT_ITEM_BLOCKS / RT_ITEM_LANES]; /* columns of the first samples of sixteen blocks; rows */
 } Grid;
 
 RT_KERNEL void make_grid(Grid *grid) {
@@ -279,6 +266,15 @@ RT_KERNEL void make_grid(Grid *grid) {
         }
         grid->along[i][0] = rt_v16_load(at[0]);
         grid->along[i][1] = rt_v16_load(at[1]);
+    }
+    for (int i = 0; i < RT_ITEM_BLOCKS / RT_ITEM_LANES; i++) {
+        for (int k = 0; k < RT_ITEM_LANES; k++) {
+            int block = i * RT_ITEM_LANES + k, across = RT_ITEM_TILE / RT_ITEM_BLOCK;
+            at[0][k] = (float)(block % across * RT_ITEM_BLOCK);
+            at[1][k] = (float)(block / across * RT_ITEM_BLOCK);
+        }
+        grid->blocks[0] = rt_v16_load(at[0]);
+        grid->blocks[1 + i] = rt_v16_load(at[1]);
     }
 }
 
@@ -335,6 +331,56 @@ RT_KERNEL void paint_block(RtItemPainter *p, uint32_t block, const RtItemFacets 
     }
 }
 
+/* Of facets of triangles those that may hold a sample: all that are seen at more than two columns or rows,
+ * and of the others, sixteen at a time, those whose edges let one pass. */
+RT_KERNEL uint32_t hold_some(const RtItemFacets *f, const Bounds *b, const RtV16 corner[2]) {
+    const RtV16 one = rt_v16_all(1);
+    RtV16 doubt =
+        rt_v16_add(rt_v16_load(f->doubt[0]), rt_v16_mul(rt_v16_load(f->doubt[1]), rt_v16_load(f->most)));
+    RtV16 minus = rt_v16_sub(rt_v16_all(0), doubt), start[2];
+    uint32_t some = 0, wide[2];
+    for (int a = 0; a < 2; a++) {
+        start[a] = rt_v16_sub(b->lo[a], corner[a]);
+        RtV16 more = rt_v16_sub(b->hi[a], b->lo[a]);
+        wide[a] = rt_v16_at_most(one, more);
+        some |= ~rt_v16_at_most(more, one);
+    }
+    for (int i = 0; i < 4; i++) {
+        RtV16 column = i & 1 ? rt_v16_add(start[0], one) : start[0];
+        RtV16 row = i & 2 ? rt_v16_add(start[1], one) : start[1];
+        uint32_t in = (i & 1 ? wide[0] : ~0u) & (i & 2 ? wide[1] : ~0u);
+        for (int e = 0; e < 3; e++) {
+            RtV16 edge = rt_v16_mul(rt_v16_load(f->edge[e][1]), column);
+            edge = rt_v16_add(rt_v16_add(rt_v16_load(f->edge[e][0]), edge),
+                              rt_v16_mul(rt_v16_load(f->edge[e][2]), row));
+            in &= ~rt_v16_bits(rt_v16_below(edge, minus));
+        }
+        some |= in;
+    }
+    return some;
+}
+
+/* From so many blocks on it is looked first which of them a facet is in. */
+enum { MANY_BLOCKS = 4 };
+
+/* Bit i: facet k may be seen in block i. An edge is largest in a block at the corner on its inner side. */
+RT_KERNEL uint64_t blocks_of(const RtItemPainter *p, const Grid *grid, const RtItemFacets *f, uint32_t k,
+                             uint32_t edges) {
+    const float last = RT_ITEM_BLOCK - 1;
+    const RtV16 least = rt_v16_all(-(f->doubt[0][k] + f->doubt[1][k] * f->most[k]));
+    uint64_t open = 0;
+    for (int i = 0; i < RT_ITEM_BLOCKS / RT_ITEM_LANES; i++) {
+        uint32_t in = rt_v16_at_most(rt_v16_load(&p->tile.least[i * RT_ITEM_LANES]), rt_v16_all(f->most[k]));
+        for (uint32_t e = 0; e < edges; e++) {
+            RtV16 edge = function(f->edge[e], k, grid->blocks[0], grid->blocks[1 + i]);
+            float more = last * (rt_maxf(f->edge[e][1][k], 0) + rt_maxf(f->edge[e][2][k], 0));
+            in &= ~rt_v16_bits(rt_v16_below(rt_v16_add(edge, rt_v16_all(more)), least));
+        }
+        open |= (uint64_t)(in & 0xffff) << i * RT_ITEM_LANES;
+    }
+    return open;
+}
+
 RT_KERNEL void paint_one(RtItemPainter *p, const Grid *grid, const RtItemFacets *f, uint32_t k,
                          uint32_t edges) {
     static const uint32_t from[2][RT_ITEM_BLOCK] = {{0xffff, 0xeeee, 0xcccc, 0x8888},
@@ -346,16 +392,61 @@ RT_KERNEL void paint_one(RtItemPainter *p, const Grid *grid, const RtItemFacets 
         lo[a] = f->lo[a][k] > 0 ? f->lo[a][k] : 0;
         hi[a] = f->hi[a][k] < RT_ITEM_TILE - 1 ? f->hi[a][k] : RT_ITEM_TILE - 1;
     }
+    int32_t blocks = (hi[0] / RT_ITEM_BLOCK - lo[0] / RT_ITEM_BLOCK + 1) *
+                     (hi[1] / RT_ITEM_BLOCK - lo[1] / RT_ITEM_BLOCK + 1);
+    uint64_t open = blocks < MANY_BLOCKS ? ~UINT64_C(0) : blocks_of(p, grid, f, k, edges);
     for (int32_t y = lo[1] / RT_ITEM_BLOCK; y <= hi[1] / RT_ITEM_BLOCK; y++) {
         uint32_t rows = y == lo[1] / RT_ITEM_BLOCK ? from[1][lo[1] % RT_ITEM_BLOCK] : 0xffff;
         if (y == hi[1] / RT_ITEM_BLOCK) rows &= to[1][hi[1] % RT_ITEM_BLOCK];
         for (int32_t x = lo[0] / RT_ITEM_BLOCK; x <= hi[0] / RT_ITEM_BLOCK; x++) {
             uint32_t block = (uint32_t)(y * (RT_ITEM_TILE / RT_ITEM_BLOCK) + x), lanes = rows;
-            if (f->most[k] < p->tile.least[block]) continue;
+            if (!(open >> block & 1) || f->most[k] < p->tile.least[block]) continue;
             if (x == lo[0] / RT_ITEM_BLOCK) lanes &= from[0][lo[0] % RT_ITEM_BLOCK];
             if (x == hi[0] / RT_ITEM_BLOCK) lanes &= to[0][hi[0] % RT_ITEM_BLOCK];
             paint_block(p, block, f, k, edges, lanes, grid->along[x][0], grid->along[y][1]);
         }
+    }
+}
+
+/* The least w of the tile: what is less is hidden everywhere. */
+RT_KERNEL float farthest(const RtItemTile *tile) {
+    RtV16 least = rt_v16_load(tile->least);
+    for (int i = RT_ITEM_LANES; i < RT_ITEM_BLOCKS; i += RT_ITEM_LANES)
+        least = rt_v16_min(least, rt_v16_load(&tile->least[i]));
+    return rt_v16_least(least);
+}
+
+RT_KERNEL void paint_some(RtItemPainter *painter, const Lens *lens, const Grid *grid,
+                          const uint32_t *triangles, uint32_t count, RtItemFacets *f) {
+    const RtGeometry *g = &painter->buffer->isa.base.scene->geometry;
+    const RtV16 corner[2] = {rt_v16_all((float)painter->column), rt_v16_all((float)painter->row)};
+    const RtTriangle *at[RT_ITEM_FACETS];
+    RtV16 v[3][3];
+    Bounds b;
+    for (uint32_t k = 0; k < RT_ITEM_FACETS; k++) at[k] = &g->triangles[triangles[k < count ? k : 0]];
+    rt_pairs_gather(at, v);
+    bound(lens, v, &b);
+    uint32_t there = (1u << count) - 1, around = ~b.known & there;
+    there &= around | rt_v16_at_most(rt_v16_all(farthest(&painter->tile)), b.most);
+    if (!there) return;
+    make_half(painter, v, 0, f);
+    if (there >> 8) make_half(painter, v, 1, f);
+    for (int a = 0; a < 2; a++) {
+        rt_v16_truncate(f->lo[a], rt_v16_sub(b.lo[a], corner[a]));
+        rt_v16_truncate(f->hi[a], rt_v16_sub(b.hi[a], corner[a]));
+    }
+    rt_v16_store(f->most, b.most);
+    there &= around | hold_some(f, &b, corner);
+    for (; around; around &= around - 1) {
+        uint32_t k = (uint32_t)__builtin_ctz(around);
+        RtItemFootprint footprint;
+        rt_item_footprint(painter->buffer, g->triangle_ids[triangles[k]], &footprint);
+        place_around(painter, &footprint, f, k);
+    }
+    for (; there; there &= there - 1) {
+        uint32_t k = (uint32_t)__builtin_ctz(there);
+        f->id[k] = g->triangle_ids[triangles[k]];
+        paint_one(painter, grid, f, k, 3);
     }
 }
 
@@ -370,9 +461,7 @@ static void paint(RtItemPainter *painter, const RtRef *objects, size_t count) {
         for (; i < count && some < RT_ITEM_FACETS; i++) {
             if (rt_ref_shape(objects[i]) == RT_SHAPE_TRIANGLE) triangles[some++] = rt_ref_index(objects[i]);
         }
-        if (some == 0) break;
-        make_facets(painter, &lens, triangles, some, &facets);
-        for (uint32_t k = 0; k < some; k++) paint_one(painter, &grid, &facets, k, 3);
+        if (some > 0) paint_some(painter, &lens, &grid, triangles, some, &facets);
     }
 }
 
@@ -417,7 +506,7 @@ RT_KERNEL void pass_waiting(Question *q) {
     Passed *p = &q->passed;
     RtHit hits[PASSED];
     if (q->tallies) q->tallies[RT_RAY_PRIMARY].passed_on += p->count;
-    rt_hand_down_nearest(&q->buffer->base, q->scratch, p->ray, p->count, hits, q->tallies);
+    rt_hand_down_nearest(&q->buffer->isa.base, q->scratch, p->ray, p->count, hits, q->tallies);
     for (uint32_t i = 0; i < p->count; i++) q->hits[p->place[i]] = hits[i];
     p->count = 0;
 }
@@ -557,5 +646,6 @@ RT_KERNEL void see_all(const RtAccel *accel, const RtScratch *scratch, const RtR
 }
 
 RT_DEFINE_BOTH(nearest, RtHit, see_all)
-
-const RtItemKernels RT_ITEM_KERNELS = {place, paint, paint_facet, nearest_timed, nearest_counted};
+RT_REFUSE_QUESTION(occluded, uint32_t)
+RT_DEFINE_KERNEL_TABLE(0);
+const RtItemPainting RT_PAINTING = {place, paint, paint_facet};

@@ -13,26 +13,6 @@ typedef struct Span {
     float t; /* where its hit function was asked, else -1 */
 } Span;
 
-void rt_item_begin_tile(RtItemPainter *p, size_t at) {
-    const RtSampling *s = &p->buffer->view.sampling;
-    uint32_t across = rt_item_tiles_across(p->buffer);
-    p->column = (uint32_t)(at % across) * RT_ITEM_TILE;
-    p->row = (uint32_t)(at / across) * RT_ITEM_TILE;
-    p->columns = s->columns - p->column < RT_ITEM_TILE ? s->columns - p->column : RT_ITEM_TILE;
-    p->rows = s->rows - p->row < RT_ITEM_TILE ? s->rows - p->row : RT_ITEM_TILE;
-    p->nearest = rt_float_above((1 + 0x1p-20) / (double)(float)p->buffer->view.near);
-    for (uint32_t block = 0; block < RT_ITEM_BLOCKS; block++) {
-        p->tile.least[block] = -1;
-        for (uint32_t lane = 0; lane < RT_ITEM_LANES; lane++) {
-            p->tile.id[block][lane] = RT_NO_OBJECT;
-            p->tile.lo[block][lane] = p->tile.hi[block][lane] = -1;
-            p->tile.t[block][lane] = p->tile.other[block][lane] = -1;
-        }
-    }
-}
-
-/* ---- one sample ---- */
-
 static uint32_t column_of(const RtItemPainter *p, uint32_t block, uint32_t lane) {
     return p->column + block % (RT_ITEM_TILE / RT_ITEM_BLOCK) * RT_ITEM_BLOCK + lane % RT_ITEM_BLOCK;
 }
@@ -41,10 +21,44 @@ static uint32_t row_of(const RtItemPainter *p, uint32_t block, uint32_t lane) {
     return p->row + block / (RT_ITEM_TILE / RT_ITEM_BLOCK) * RT_ITEM_BLOCK + lane / RT_ITEM_BLOCK;
 }
 
+/* What is not in the image is as if it were hidden. */
+static void hide_outside(RtItemPainter *p, uint32_t block) {
+    RtItemTile *tile = &p->tile;
+    tile->least[block] = INFINITY;
+    for (uint32_t lane = 0; lane < RT_ITEM_LANES; lane++) {
+        if (column_of(p, block, lane) >= p->column + p->columns || row_of(p, block, lane) >= p->row + p->rows)
+            tile->lo[block][lane] = tile->hi[block][lane] = INFINITY;
+        tile->least[block] = rt_minf(tile->lo[block][lane], tile->least[block]);
+    }
+}
+
+void rt_item_begin_tile(RtItemPainter *p, size_t at) {
+    const RtSampling *s = &p->buffer->view.sampling;
+    uint32_t across = rt_item_tiles_across(p->buffer);
+    p->column = (uint32_t)(at % across) * RT_ITEM_TILE;
+    p->row = (uint32_t)(at / across) * RT_ITEM_TILE;
+    p->columns = s->columns - p->column < RT_ITEM_TILE ? s->columns - p->column : RT_ITEM_TILE;
+    p->rows = s->rows - p->row < RT_ITEM_TILE ? s->rows - p->row : RT_ITEM_TILE;
+    p->nearest = rt_float_above((1 + 0x1p-20) / (double)(float)p->buffer->view.near);
+    RtItemTile *tile = &p->tile;
+    const bool whole = p->columns == RT_ITEM_TILE && p->rows == RT_ITEM_TILE;
+    for (uint32_t block = 0; block < RT_ITEM_BLOCKS; block++) {
+        for (uint32_t lane = 0; lane < RT_ITEM_LANES; lane++) {
+            tile->id[block][lane] = RT_NO_OBJECT;
+            tile->lo[block][lane] = tile->hi[block][lane] = -1;
+            tile->t[block][lane] = tile->other[block][lane] = -1;
+        }
+        tile->least[block] = -1;
+        if (!whole) hide_outside(p, block);
+    }
+}
+
+/* ---- one sample ---- */
+
 /* Makes a span exact; false if the ray misses the object. */
 static bool ask(RtItemPainter *p, uint32_t block, uint32_t lane, uint32_t id, Span *span) {
     if (span->t >= 0) return true;
-    const RtGeometry *g = &p->buffer->base.scene->geometry;
+    const RtGeometry *g = &p->buffer->isa.base.scene->geometry;
     RtRay ray = rt_view_ray(&p->buffer->view, column_of(p, block, lane), row_of(p, block, lane));
     RtPreparedRay prepared;
     rt_hit_ray(&prepared, g, &ray, p->room);
@@ -122,7 +136,7 @@ void rt_item_paint_curved(RtItemPainter *p, uint32_t id) {
     uint32_t edges;
     if (!rt_item_footprint(p->buffer, id, &at)) return;
     if (rt_item_polygon(p, id, &at, &facet, &edges))
-        p->buffer->kernels->paint_facet(p, &facet, edges);
+        p->buffer->painting->paint_facet(p, &facet, edges);
     else
         paint_footprint(p, id, &at);
 }
@@ -132,13 +146,16 @@ void rt_item_paint_curved(RtItemPainter *p, uint32_t id) {
 /* Where the nearest object is not known for certain, none is named. */
 void rt_item_end_tile(RtItemPainter *p) {
     const RtItemTile *tile = &p->tile;
-    for (uint32_t block = 0; block < RT_ITEM_BLOCKS; block++) {
-        for (uint32_t lane = 0; lane < RT_ITEM_LANES; lane++) {
-            uint32_t column = column_of(p, block, lane), row = row_of(p, block, lane);
-            if (column >= p->column + p->columns || row >= p->row + p->rows) continue;
-            bool open = tile->other[block][lane] >= 0 && tile->other[block][lane] >= tile->lo[block][lane];
-            p->buffer->samples[(size_t)row * p->buffer->view.sampling.columns + column] =
-                open ? RT_ITEM_UNDECIDED : tile->id[block][lane];
+    const size_t columns = p->buffer->view.sampling.columns;
+    uint32_t *corner = p->buffer->samples + (size_t)p->row * columns + p->column;
+    for (uint32_t row = 0; row < p->rows; row++) {
+        uint32_t first = row / RT_ITEM_BLOCK * (RT_ITEM_TILE / RT_ITEM_BLOCK);
+        for (uint32_t column = 0; column < p->columns; column++) {
+            uint32_t block = first + column / RT_ITEM_BLOCK;
+            uint32_t lane = row % RT_ITEM_BLOCK * RT_ITEM_BLOCK + column % RT_ITEM_BLOCK;
+            float other = tile->other[block][lane];
+            bool open = other >= 0 && other >= tile->lo[block][lane];
+            corner[row * columns + column] = open ? RT_ITEM_UNDECIDED : tile->id[block][lane];
         }
     }
 }

@@ -33,6 +33,7 @@ enum {
     RT_ITEM_BLOCKS = RT_ITEM_TILE * RT_ITEM_TILE / (RT_ITEM_LANES), /* of a tile */
     RT_ITEM_MAX_EDGES = 16,                                         /* of a facet */
     RT_ITEM_FACETS = 16,                                            /* made at once */
+    RT_ITEM_CLASSES = 8                                             /* of depth, drawn near ones first */
 };
 
 /* What is known of each sample of a tile, while it is drawn: block after block, row after row in a block.
@@ -43,7 +44,7 @@ typedef struct RtItemTile {
     float hi[RT_ITEM_BLOCKS][RT_ITEM_LANES];
     float t[RT_ITEM_BLOCKS][RT_ITEM_LANES];     /* its t, where a hit function was asked, else -1 */
     float other[RT_ITEM_BLOCKS][RT_ITEM_LANES]; /* no other is hit at a w above; -1 for nowhere */
-    float least[RT_ITEM_BLOCKS];                /* of lo in the block */
+    _Alignas(64) float least[RT_ITEM_BLOCKS];   /* of lo in the block */
 } RtItemTile;
 
 /* A thread that draws tiles. */
@@ -73,6 +74,7 @@ typedef struct RtItemFacets {
 typedef struct RtItemPlace {
     RtRef object;
     uint16_t lo[2], hi[2];
+    uint16_t class; /* 0..RT_ITEM_CLASSES - 1, the nearest first */
 } RtItemPlace;
 
 /* paint.c */
@@ -106,19 +108,18 @@ bool rt_item_polygon(const RtItemPainter *painter, uint32_t id, const RtItemFoot
                      RtItemFacets *facets, uint32_t *count);
 
 /* kernels.h, once for each instruction set */
-struct RtItemKernels {
+struct RtItemPainting {
     /* The places of triangles first..first + count - 1 that may be seen, to places[*placed..); *placed is
-     * brought forward. Those around the eye are left to rt_item_footprint: to around[0..*left). */
-    void (*place)(const RtItemBuffer *buffer, uint32_t first, uint32_t count, RtItemPlace *places,
-                  size_t *placed, uint32_t *around, size_t *left);
+     * brought forward. Those around the eye are left to rt_item_footprint: to around[0..*left). `nearer`
+     * [RT_ITEM_CLASSES - 1], descending, divides them into classes by their w. */
+    void (*place)(const RtItemBuffer *buffer, uint32_t first, uint32_t count, const float *nearer,
+                  RtItemPlace *places, size_t *placed, uint32_t *around, size_t *left);
     /* Draws those of objects[0..count) that are triangles. */
     void (*paint)(RtItemPainter *painter, const RtRef *objects, size_t count);
     /* Draws a facet of lane 0. */
     void (*paint_facet)(RtItemPainter *painter, const RtItemFacets *facets, uint32_t edges);
-    RtNearestKernel *nearest;
-    RtNearestCounted *nearest_counted;
 };
 
-extern const RtItemKernels rt_item_portable, rt_item_avx2, rt_item_avx512;
+extern const RtItemPainting rt_item_painting_portable, rt_item_painting_avx2, rt_item_painting_avx512;
 
 #endif

@@ -23,7 +23,7 @@ void rt_item_describe(const RtAccel *accel, RtDescription *out) {
 /* No object but the sample's own is hit before it, if that is hit at all. */
 static RtStatus check_sample(const RtItemBuffer *buffer, uint32_t column, uint32_t row, RtCrossing *room,
                              RtError *error) {
-    const RtGeometry *g = &buffer->base.scene->geometry;
+    const RtGeometry *g = &buffer->isa.base.scene->geometry;
     RtRay ray = rt_view_ray(&buffer->view, column, row);
     uint32_t named = buffer->samples[ray.source];
     RtPreparedRay prepared;
