@@ -115,6 +115,63 @@ RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit
     return status;
 }
 
+/* ---- ray by ray ---- */
+
+/* What a chunk of rays costs, each asked by itself. */
+typedef struct RowsPass {
+    Pass pass;
+    RtTally *rows; /* [set->count] */
+} RowsPass;
+
+static RtStatus count_rows(void *context, size_t item, int thread, RtError *error) {
+    (void)error;
+    RowsPass *work = context;
+    const RtRaySet *set = work->pass.set;
+    RtQuery *query = &work->pass.queries[thread];
+    rt_query_begin(query);
+    for (size_t i = item * CHUNK; i < set->count && i < (item + 1) * CHUNK; i++) {
+        RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+        RtHit hit;
+        bool blocked;
+        if (work->pass.blocked) {
+            rt_occluded(query, &set->rays[i], 1, &blocked, tallies);
+        } else {
+            rt_nearest(query, &set->rays[i], 1, &hit, tallies);
+        }
+        work->rows[i] = tallies[set->kind];
+    }
+    return RT_OK;
+}
+
+RtStatus rt_measure_rows(const RtAccel *accel, const RtRaySet *set, int threads, RtRows *rows,
+                         RtError *error) {
+    RowsPass work;
+    *rows = (RtRows){.count = set->count, .tallies = rt_alloc(set->count, sizeof(RtTally))};
+    if (!rows->tallies) return rt_fail_memory(error, "the counts of rays", set->count * sizeof(RtTally));
+    work.rows = rows->tallies;
+    RtStatus status = pass_init(&work.pass, accel, set, threads, false, error);
+    if (status == RT_OK) status = run_pass(&work.pass, error);
+    if (status == RT_OK) {
+        size_t chunks = (set->count + CHUNK - 1) / CHUNK;
+        status = rt_parallel_for(chunks, work.pass.threads, count_rows, &work, error);
+    }
+    if (status == RT_OK) {
+        rows->hits = work.pass.hits;
+        rows->blocked = work.pass.blocked;
+        work.pass.hits = NULL;
+        work.pass.blocked = NULL;
+    }
+    pass_clear(&work.pass);
+    return status;
+}
+
+void rt_rows_clear(RtRows *rows) {
+    rt_free(rows->hits);
+    rt_free(rows->blocked);
+    rt_free(rows->tallies);
+    *rows = (RtRows){0};
+}
+
 /* ---- timing ---- */
 
 static RtStatus run_runner(void *context, RtError *error) {

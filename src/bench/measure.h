@@ -24,6 +24,21 @@ typedef struct RtCount {
 RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
                           RtCount *count, RtError *error);
 
+/* What each ray of a set met and cost, row by row. */
+typedef struct RtRows {
+    uint64_t count;
+    RtHit *hits;      /* [count] owned; NULL where the kind is asked for any hit */
+    bool *blocked;    /* [count] owned; NULL where it is not */
+    RtTally *tallies; /* [count] owned */
+} RtRows;
+
+/* Answers as the timed kernel gives them to streams, and counts of each ray asked by itself, one after the
+ * other: they sum to those of rt_measure_count unless an accelerator has the rays of a stream share what they
+ * do. Clear with rt_rows_clear, also after a failure. */
+RtStatus rt_measure_rows(const RtAccel *accel, const RtRaySet *set, int threads, RtRows *rows,
+                         RtError *error);
+void rt_rows_clear(RtRows *rows);
+
 /* ---- timing ---- */
 
 /* One of the things that are timed against each other: an accelerator on its rays. */

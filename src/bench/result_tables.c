@@ -22,6 +22,10 @@ static RtField label_of(const Row *r) {
     return field;
 }
 
+static const char *kind_of(const Row *r) {
+    return rt_experiment_kind_name(r->results->experiment, r->kind);
+}
+
 static RtField ratio_of(const Row *r) {
     bool ends = r->which != RT_TOTALS;
     return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN,
@@ -67,7 +71,7 @@ static const void *build_of(const void *row) {
     X(height, "height", integer, "pixels", "height of the frame", r->scene->height)                          \
     X(corners, "corners", flag, "", "samples at pixel corners, not centres", r->setup->corners)              \
     X(depth, "depth", integer, "", "levels of the ray tree, the primary ray being one", r->setup->depth)     \
-    X(kind, "kind", text, "", "kind of the rays", rt_ray_kind_name(r->kind))                                 \
+    X(kind, "kind", text, "", "kind of the rays", kind_of(r))                                                \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment; (again): a null run",      \
@@ -253,9 +257,13 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
         RtResultRow row = {.results = results, .workload = t};
         RtTable table = rt_result_table(which, &row);
         if (!workload->known) continue;
-        fprintf(out, "\n%s: %" PRIu32 " objects, %" PRIu32 "x%" PRIu32 ", depth %" PRIu32,
-                experiment->workloads[t].label, workload->objects, workload->width, workload->height,
-                experiment->workloads[t].depth);
+        fprintf(out, "\n%s: %" PRIu32 " objects, ", experiment->workloads[t].label, workload->objects);
+        if (*experiment->rays_from) {
+            fprintf(out, "rays of %s", experiment->rays_from);
+        } else {
+            fprintf(out, "%" PRIu32 "x%" PRIu32 ", depth %" PRIu32, workload->width, workload->height,
+                    experiment->workloads[t].depth);
+        }
         if (which == RT_CELLS && rt_cell_at(results, t, experiment->baseline, experiment->kinds[0])->timed) {
             rt_interval_title(experiment, title);
             fprintf(out, "; intervals of %s", title);

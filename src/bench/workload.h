@@ -4,6 +4,7 @@
 #ifndef RT_BENCH_WORKLOAD_H
 #define RT_BENCH_WORKLOAD_H
 
+#include "bench/rayset.h"
 #include "bench/results.h"
 
 typedef enum RtEventKind {
@@ -32,11 +33,23 @@ typedef struct RtWorkloadOptions {
     int threads;     /* of recording, building and counting: 0 = all processors; changes no count */
     int timing;      /* threads of the timing, 1 as a rule */
     bool count_only; /* no timing */
+    /* Files for what each ray met and cost (bench/ray_file.h), or NULL: of an experiment of one workload, one
+     * candidate without a stride, and one kind of rays. */
+    const char *hits, *counts;
     RtObserver observer;
 } RtWorkloadOptions;
 
+/* Records the rays of workload number `index` on its scene, whose sampling it sets: at most the experiment's
+ * limit of each of its kinds, to sets[RT_RAY_KIND_COUNT]; or, where it has rays of a file, reads those.
+ * *reference is the exact accelerator that recorded them. Destroy and clear both, also after a failure. */
+RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
+                            RtAccel **reference, RtRaySet *sets, RtError *error);
+
 /* Whether nothing is unknown of the experiment's workload number `index`. */
 bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options);
+
+/* Opens the scene of a workload, which has to be there. The caller's: rt_scene_clear. */
+RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error);
 
 /* Opens its scene, which is the caller's: rt_scene_clear. Where it is optional and missing, it is empty, and
  * the workload is skipped with a notice. */

@@ -6,7 +6,7 @@
 #include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
-#include "render/frame.h"
+#include "cli/recording.h"
 #include "verify/spread.h"
 
 #include <argp.h>
@@ -14,24 +14,20 @@
 #include <string.h>
 
 enum {
-    OPT_RAYS = 256,
-    OPT_ROUNDS,
+    OPT_ROUNDS = 256,
     OPT_BASELINE,
     OPT_THREADS,
-    OPT_SIZE,
-    OPT_CORNERS,
-    OPT_DEPTH,
     OPT_COUNT_ONLY,
     OPT_CSV,
     OPT_JSON,
-    OPT_SEED,
-    OPT_LIMIT,
-    OPT_COHERENT_RUN,
-    OPT_RAY_STRIDE
+    OPT_RAY_STRIDE,
+    OPT_RAYS_FROM,
+    OPT_HITS,
+    OPT_COUNTS
 };
 
 typedef struct Options {
-    RtExperiment *experiment;
+    RtRecordingOptions recording;
     const char *scene, *baseline, *csv;
     RtWorkloadOptions workload;
     bool json;
@@ -44,13 +40,6 @@ static const struct argp_option options[] = {
      0},
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
      "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
-    {"rays", OPT_RAYS, "KIND,...", 0,
-     "Ray kinds: primary, shadow, reflection, transmission, diffuse, random; and occlusion, the diffuse rays "
-     "asked for any hit (all but occlusion)",
-     0},
-    {"limit", OPT_LIMIT, "N", 0, "At most N rays of a kind; a larger set is thinned evenly (100000)", 0},
-    {"coherent-run", OPT_COHERENT_RUN, "N", 0,
-     "Neighbouring rays kept together where a set is thinned, for packets and caches (256)", 0},
     {"baseline", OPT_BASELINE, "SPEC", 0,
      "The accelerator that ratios refer to (the first); or NAME:best, the fastest of several settings for "
      "each "
@@ -58,20 +47,31 @@ static const struct argp_option options[] = {
      0},
     {"rounds", OPT_ROUNDS, "N", 0,
      "Timing rounds, each in an order drawn anew (10); at least 6 for intervals of 95 %", 0},
-    {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays and of orders (1)", 0},
     {"threads", OPT_THREADS, "N", 0,
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
      "counting on all; on several, wall time is compared",
      0},
-    {"size", OPT_SIZE, "WxH", 0, "Size of the frame whose rays are recorded (the camera's)", 0},
-    {"corners", OPT_CORNERS, 0, 0, "Sample pixel corners, (W+1) x (H+1) rays", 0},
-    {"depth", OPT_DEPTH, "N", 0, "Levels of the ray tree, the primary ray being the first (5)", 0},
     {"count-only", OPT_COUNT_ONLY, 0, 0, "Count, do not time", 0},
     {"csv", OPT_CSV, "FILE", 0,
      "Also write a row per cell to FILE, in the columns of times.csv; with "
      "--count-only of counts.csv",
      0},
+    {"hits", OPT_HITS, "FILE.npy", 0,
+     "Also write what each ray met, for NumPy, a row per ray: t and object (inf and -1 for a miss); of "
+     "shadow and "
+     "occlusion rays whether anything lies on them. With one --accel and one kind of --rays",
+     0},
+    {"counts", OPT_COUNTS, "FILE.npy", 0,
+     "Also write what each ray cost, a row per ray and a field per counter, each ray asked by itself: where "
+     "rays "
+     "share visits (wide) rows sum to more than the table shows",
+     0},
     {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
+    {"rays-from", OPT_RAYS_FROM, "FILE.npy", 0,
+     "Measure with the rays of FILE, an array of float32 of shape (N, 8) as `raytally rays` writes it, in "
+     "place of "
+     "recorded ones; --rays says what they ask for: nearest, or occlusion (any hit)",
+     2},
     {0}};
 
 /* ---- options ---- */
@@ -120,51 +120,50 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
     }
 }
 
-static void parse_kinds(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    experiment->kind_count = 0;
-    for (size_t length; *text; text += length + (text[length] == ',')) {
-        char name[RT_MAX_NAME];
-        RtError error;
-        length = strcspn(text, ",");
-        snprintf(name, sizeof name, "%.*s", (int)length, text);
-        if (experiment->kind_count == RT_RAY_KIND_COUNT) argp_error(state, "--rays: a kind is given twice");
-        RtRayKind *kind = &experiment->kinds[experiment->kind_count++];
-        if (rt_ray_kind_parse(name, kind, &error) != RT_OK) argp_error(state, "--rays: %s", error.message);
+/* Rows of rays belong to one accelerator and one kind, and no file is written over another. */
+static void check_rows(const Options *o, struct argp_state *state) {
+    const RtExperiment *e = o->recording.experiment;
+    const char *const files[] = {o->workload.hits, o->workload.counts, o->csv,
+                                 *e->rays_from ? e->rays_from : NULL};
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < i; k++) {
+            if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
+                argp_error(state, "'%s' is named twice: each file needs a name of its own", files[i]);
+        }
     }
-    if (!experiment->kind_count) argp_error(state, "--rays: give at least one kind");
+    if (!o->workload.hits && !o->workload.counts) return;
+    if (e->candidate_count != 1 || e->candidates[0].ray_stride != 1) {
+        argp_error(state,
+                   "--hits and --counts are of one accelerator: give one --accel, and no --ray-stride or "
+                   "other --baseline");
+    }
+    if (e->kind_count != 1) argp_error(state, "--hits and --counts are of one kind of rays: --rays KIND");
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     Options *o = state->input;
-    RtExperiment *e = o->experiment;
+    RtExperiment *e = o->recording.experiment;
     switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &o->recording; return 0;
     case 'a': add_accels(e, argument, state); return 0;
     case OPT_RAY_STRIDE:
         if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
         e->candidates[e->candidate_count - 1].ray_stride =
             (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
         return 0;
-    case OPT_RAYS: parse_kinds(e, argument, state); return 0;
-    case OPT_LIMIT:
-        e->limit = (uint64_t)rt_cli_integer(state, "--limit", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
-        return 0;
-    case OPT_COHERENT_RUN:
-        e->coherent_run =
-            (uint64_t)rt_cli_integer(state, "--coherent-run", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
-        return 0;
     case OPT_BASELINE: o->baseline = argument; return 0;
     case OPT_ROUNDS:
         e->rounds = (uint32_t)rt_cli_integer(state, "--rounds", argument, 1, RT_MAX_ROUNDS);
         return 0;
-    case OPT_SEED: e->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
     case OPT_THREADS:
         o->workload.threads = o->workload.timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
         return 0;
-    case OPT_SIZE: rt_cli_size(state, argument, &e->workloads[0].width, &e->workloads[0].height); return 0;
-    case OPT_CORNERS: e->workloads[0].corners = true; return 0;
-    case OPT_DEPTH:
-        e->workloads[0].depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH);
+    case OPT_RAYS_FROM:
+        if (strlen(argument) >= RT_MAX_PATH) argp_error(state, "--rays-from: the path is too long");
+        strcpy(e->rays_from, argument);
         return 0;
+    case OPT_HITS: o->workload.hits = argument; return 0;
+    case OPT_COUNTS: o->workload.counts = argument; return 0;
     case OPT_COUNT_ONLY: o->workload.count_only = true; return 0;
     case OPT_CSV: o->csv = argument; return 0;
     case OPT_JSON: o->json = true; return 0;
@@ -177,6 +176,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
             argp_error(state, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists");
         if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
         if (o->baseline) set_baseline(e, o->baseline, state);
+        rt_recording_finish(&o->recording, state);
+        check_rows(o, state);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -217,7 +218,7 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
 
 static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
-    RtExperiment *experiment = o->experiment;
+    RtExperiment *experiment = o->recording.experiment;
     RT_TRY(rt_workload_set_scene(&experiment->workloads[0], o->scene, "", error));
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
@@ -233,16 +234,14 @@ static RtStatus bench(Options *o, RtError *error) {
 }
 
 int rt_command_bench(int argc, char **argv) {
-    Options o = {.experiment = rt_alloc(1, sizeof(RtExperiment)), .workload = {.timing = 1}};
+    Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment))}, .workload = {.timing = 1}};
     RtError error;
-    if (!o.experiment) {
+    if (!o.recording.experiment) {
         rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
         return rt_cli_fail(&error);
     }
-    rt_experiment_init(o.experiment);
-    o.experiment->workload_count = 1;
-    o.experiment->coherent_run = 256;
-    o.experiment->workloads[0].depth = RT_DEFAULT_DEPTH;
+    rt_recording_init(o.recording.experiment);
+    const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
     const struct argp argp = {
         .options = options,
         .parser = parse_option,
@@ -250,9 +249,11 @@ int rt_command_bench(int argc, char **argv) {
         .doc = "Count and time accelerators on the rays of one scene, and compare them."
                "\vSCENE is a file or a built-in, as in balls:size=3. Every accelerator gets the "
                "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
-               "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100"};
+               "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
+               "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy",
+        .children = children};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtStatus status = bench(&o, &error);
-    rt_free(o.experiment);
+    rt_free(o.recording.experiment);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

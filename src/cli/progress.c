@@ -31,7 +31,7 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
             experiment->workloads[event->workload].label);
     if (event->what != RT_EVENT_WORKLOAD)
         fprintf(stderr, " %s", rt_candidate_label(experiment, event->candidate));
-    if (cell) fprintf(stderr, " %s", rt_ray_kind_name(event->kind));
+    if (cell) fprintf(stderr, " %s", rt_experiment_kind_name(experiment, event->kind));
     fprintf(stderr, event->what == RT_EVENT_WORKLOAD ? ": rays recorded"
                     : event->what == RT_EVENT_BUILD  ? ": built"
                     : event->what == RT_EVENT_COUNT  ? ": counted"

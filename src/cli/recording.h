@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Options of commands that record rays: which, how many, of what frame. A child parser of argp. */
+#ifndef RT_CLI_RECORDING_H
+#define RT_CLI_RECORDING_H
+
+#include "bench/experiment.h"
+
+#include <argp.h>
+
+/* The input of the parser. */
+typedef struct RtRecordingOptions {
+    RtExperiment *experiment; /* of one workload, to be filled */
+    bool one_kind;            /* one kind of rays, primary ones unless another is asked for */
+    const char *kinds;        /* as given, or NULL */
+    const char *frame;        /* an option that was given and is about recorded rays alone, or NULL */
+} RtRecordingOptions;
+
+extern const struct argp rt_recording_argp;
+
+/* Initialises the experiment for one scene, with what `bench` measures. */
+void rt_recording_init(RtExperiment *experiment);
+
+/* To be called at ARGP_KEY_END of the parent: the kinds of rays mean something else where rays are of a file.
+ */
+void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state);
+
+#endif
