@@ -199,6 +199,9 @@ refuses "'bvh:best' is neither a spec" $bench --accel bvh --baseline bvh:best
 refuses "no ray kind 'sideways'.*primary" $bench --accel bvh --rays sideways
 refuses 'primary.*twice' $bench --accel bvh --rays primary,primary
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 1000000000
+refuses "until: invalid value '1'.*1%" $bench --accel bvh --until 1
+refuses 'patience.*1\.\.' $bench --accel bvh --until 1% --patience 0
+does $bench --accel bvh --until 100%
 refuses 'limit.*1\.\.' $bench --accel bvh --limit 0
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 0
 refuses 'coherent-run.*1\.\.' $bench --accel bvh --coherent-run 0

@@ -9,6 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+static const char *const each_names[RT_EACH_COUNT] = {"each_seconds", "each_wall", "each_baseline"};
+
 /* ---- to JSON ---- */
 
 static json_t *header_json(const RtExperiment *experiment) {
@@ -50,11 +52,22 @@ static json_t *estimate_json(const RtEstimate *e) {
     return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
 }
 
+static json_t *rounds_json(const RtCell *cell, RtEach each) {
+    json_t *list = json_array();
+    for (uint32_t r = 0; r < cell->rounds; r++) {
+        json_array_append_new(list, json_real(rt_cell_rounds(cell, each)[r]));
+    }
+    return list;
+}
+
 static json_t *time_json(const RtExperiment *experiment, const RtCell *cell) {
-    return json_pack("{s:I, s:I, s:i, s:o, s:o, s:o, s:s}", "rays", (json_int_t)cell->tally.rays, "rounds",
-                     (json_int_t)cell->rounds, "threads", cell->threads, "seconds",
-                     estimate_json(&cell->seconds), "wall", estimate_json(&cell->wall), "ratio",
-                     estimate_json(&cell->ratio), "baseline", rt_candidate_label(experiment, cell->baseline));
+    return json_pack(
+        "{s:I, s:I, s:i, s:o, s:o, s:o, s:s, s:o, s:o, s:o}", "rays", (json_int_t)cell->tally.rays, "rounds",
+        (json_int_t)cell->rounds, "threads", cell->threads, "seconds", estimate_json(&cell->seconds), "wall",
+        estimate_json(&cell->wall), "ratio", estimate_json(&cell->ratio), "baseline",
+        rt_candidate_label(experiment, cell->baseline), each_names[RT_EACH_SECONDS],
+        rounds_json(cell, RT_EACH_SECONDS), each_names[RT_EACH_WALL], rounds_json(cell, RT_EACH_WALL),
+        each_names[RT_EACH_BASELINE], rounds_json(cell, RT_EACH_BASELINE));
 }
 
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
@@ -167,7 +180,24 @@ static void take_count(RtCell *cell, const json_t *object) {
     take_tally(&cell->tally, object);
 }
 
-static void take_time(const RtExperiment *experiment, uint32_t workload, RtCell *cell, const json_t *object) {
+/* Journals of earlier versions have no times of rounds. */
+static RtStatus take_rounds(RtCell *cell, const json_t *object, RtError *error) {
+    for (int i = 0; i < RT_EACH_COUNT; i++) {
+        size_t count = json_array_size(json_object_get(object, each_names[i]));
+        if (count != cell->rounds || count == 0 || count > RT_MAX_ROUNDS) return RT_OK;
+    }
+    RT_TRY(rt_cell_make_rounds(cell, error));
+    for (int i = 0; i < RT_EACH_COUNT; i++) {
+        const json_t *list = json_object_get(object, each_names[i]);
+        for (uint32_t r = 0; r < cell->rounds; r++) {
+            rt_cell_rounds(cell, (RtEach)i)[r] = json_number_value(json_array_get(list, r));
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus take_time(const RtExperiment *experiment, uint32_t workload, RtCell *cell,
+                          const json_t *object, RtError *error) {
     const char *baseline = json_string_value(json_object_get(object, "baseline"));
     uint32_t c = rt_candidate_find(experiment, baseline ? baseline : "", workload);
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
@@ -178,10 +208,11 @@ static void take_time(const RtExperiment *experiment, uint32_t workload, RtCell 
     cell->seconds = get_estimate(object, "seconds");
     cell->wall = get_estimate(object, "wall");
     cell->ratio = get_estimate(object, "ratio");
+    return take_rounds(cell, object, error);
 }
 
 /* Places a line where its labels say; lines about what the experiment does not have are passed over. */
-static void take_line(RtResults *results, const json_t *line) {
+static RtStatus take_line(RtResults *results, const json_t *line, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     const char *scene = json_string_value(json_object_get(line, "scene"));
     const char *accel = json_string_value(json_object_get(line, "accel"));
@@ -189,17 +220,18 @@ static void take_line(RtResults *results, const json_t *line) {
     const json_t *object;
     RtRayKind kind = RT_RAY_PRIMARY;
     uint32_t workload = scene ? rt_workload_find(experiment, scene) : experiment->workload_count;
-    if (workload == experiment->workload_count) return;
+    if (workload == experiment->workload_count) return RT_OK;
     if ((object = json_object_get(line, "workload"))) take_workload(&results->workloads[workload], object);
-    if (!accel) return;
+    if (!accel) return RT_OK;
     uint32_t candidate = rt_candidate_find(experiment, accel, workload);
-    if (candidate > experiment->candidate_count) return;
+    if (candidate > experiment->candidate_count) return RT_OK;
     if ((object = json_object_get(line, "built")))
         take_build(rt_build_at(results, workload, candidate), object);
-    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;
+    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return RT_OK;
     RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
-    if ((object = json_object_get(line, "timed"))) take_time(experiment, workload, cell, object);
+    object = json_object_get(line, "timed");
+    return object ? take_time(experiment, workload, cell, object, error) : RT_OK;
 }
 
 static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,
@@ -233,7 +265,7 @@ RtStatus rt_journal_load(const char *path, RtResults *results, bool same_build, 
     RT_TRY(rt_json_lines_load(path, &lines, error));
     RtStatus status = check_header(path, json_array_get(lines, 0), results->experiment, same_build, error);
     for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
-        take_line(results, json_array_get(lines, i));
+        status = take_line(results, json_array_get(lines, i), error);
     }
     json_decref(lines);
     return status;

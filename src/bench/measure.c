@@ -178,7 +178,8 @@ static RtStatus run_runner(void *context, RtError *error) {
     return run_pass(context, error);
 }
 
-RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, RtError *error) {
+RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
+                         RtError *error) {
     Pass *passes = rt_alloc(count, sizeof(Pass));
     RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
     RtStatus status = RT_OK;
@@ -192,8 +193,7 @@ RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *tim
                                 .seconds = timed[i].seconds,
                                 .wall = timed[i].wall};
     }
-    const RtRounds rounds = {timing->rounds, timing->least, timing->seed};
-    if (status == RT_OK) status = rt_rounds_run(runners, count, &rounds, error);
+    if (status == RT_OK) status = rt_rounds_run(runners, count, &timing->rounds, done, error);
     for (size_t i = 0; passes && i < count; i++) pass_clear(&passes[i]);
     rt_free(passes);
     rt_free(runners);

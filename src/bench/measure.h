@@ -45,19 +45,18 @@ void rt_rows_clear(RtRows *rows);
 typedef struct RtTimed {
     const RtAccel *accel;
     const RtRaySet *set; /* not empty */
-    double *seconds;     /* [rounds] out: seconds a ray, by the clock of the comparison */
-    double *wall;        /* [rounds] out: seconds a ray on the wall clock, all threads together */
+    double *seconds;     /* [rounds.most] out: seconds a ray, by the clock of the comparison */
+    double *wall;        /* [rounds.most] out: seconds a ray on the wall clock, all threads together */
 } RtTimed;
 
 typedef struct RtTiming {
-    uint32_t rounds; /* 1..RT_MAX_ROUNDS, after one more that warms up */
-    double least;    /* seconds: short sets are repeated within a round until they take this long */
-    int threads;     /* 1: the clock of the comparison is the thread's processor time; more: the wall's;
-                        0 = all processors */
-    uint64_t seed;   /* of the order */
+    RtRounds rounds;
+    int threads; /* 1: the clock of the comparison is the thread's processor time; more: the wall's;
+                    0 = all processors */
 } RtTiming;
 
-/* Times timed[0..count) in interleaved rounds (rounds.h). */
-RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, RtError *error);
+/* Times timed[0..count) in interleaved rounds (rounds.h), as many as *done gets. */
+RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
+                         RtError *error);
 
 #endif

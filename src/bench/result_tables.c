@@ -58,6 +58,10 @@ static const void *build_of(const void *row) {
     return &((const Row *)row)->build->shape.build;
 }
 
+static double each_ns(const Row *r, RtEach each) {
+    return 1e9 * rt_cell_rounds(r->cell, each)[r->round];
+}
+
 /* ---- columns ---- */
 
 #define TIMED(figure) (r->cell->timed ? (figure) : (double)NAN)
@@ -122,7 +126,14 @@ static const void *build_of(const void *row) {
       1e-6 * r->all.steps / r->all.seconds)                                                                  \
     X(mtests_per_s, "mtests_per_s", real6, "million/s",                                                      \
       "object tests a second: mrays_per_s by object tests per ray",                                          \
-      1e-6 * r->all.object_tests / r->all.seconds)
+      1e-6 * r->all.object_tests / r->all.seconds)                                                           \
+    X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
+    X(round_ns, "ns", real6, "ns", "processor time per ray in it, by the clock on several threads",          \
+      each_ns(r, RT_EACH_SECONDS))                                                                           \
+    X(round_wall_ns, "wall_ns", real6, "ns", "time per ray by the clock", each_ns(r, RT_EACH_WALL))          \
+    X(round_baseline_ns, "baseline_ns", real6, "ns",                                                         \
+      "the baseline's in this round, on the same rays, as round_ns; over that, the ratio",                   \
+      each_ns(r, RT_EACH_BASELINE))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -140,6 +151,14 @@ static const RtColumnGroup times[] = {
     RT_FROM_TO(columns, build_seconds, bytes),
     RT_FROM_TO(columns, object_tests, differ),
     {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+};
+
+static const RtColumnGroup each_round[] = {
+    RT_ONE(columns, scene),
+    RT_ONE(columns, kind),
+    RT_ONE(columns, accel),
+    RT_ONE(columns, baseline),
+    RT_FROM_TO(columns, round, round_baseline_ns),
 };
 
 static const RtColumnGroup bench[] = {
@@ -174,10 +193,18 @@ static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, r
 
 /* A workload after the other, in each an accelerator after the other, the null run last, in each all kinds;
  * for the eye and bench, of one workload, a kind after the other. */
+static bool is_by_workload(RtResultTable which) {
+    return which <= RT_ROUNDS;
+}
+
 static void find(Row *r, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const size_t kinds = e->kind_count, candidates = e->candidate_count + 1;
-    bool by_workload = r->which <= RT_TIMES;
+    bool by_workload = is_by_workload(r->which);
+    if (r->which == RT_ROUNDS) {
+        r->round = (uint32_t)(i % RT_MAX_ROUNDS);
+        i /= RT_MAX_ROUNDS;
+    }
     r->kind = e->kinds[by_workload ? i % kinds : i / candidates];
     r->candidate = (uint32_t)((by_workload ? i / kinds : i) % candidates);
     if (by_workload) r->workload = (uint32_t)(i / kinds / candidates);
@@ -212,6 +239,7 @@ static const void *row_at(void *context, size_t i) {
     const bool there[RT_RESULT_TABLE_COUNT] = {
         [RT_COUNTS] = counted && r->build->counts,
         [RT_TIMES] = timed,
+        [RT_ROUNDS] = timed && r->cell->each && r->round < r->cell->rounds,
         [RT_BENCH] = counted && !null,
         [RT_NULL_RUNS] = timed && null,
         [RT_CELLS] = (counted || timed) && !lost,
@@ -225,16 +253,17 @@ static const void *row_at(void *context, size_t i) {
 
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
-        [RT_COUNTS] = {RT_GROUPS(counts)}, [RT_TIMES] = {RT_GROUPS(times)},
-        [RT_BENCH] = {RT_GROUPS(bench)},   [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},
-        [RT_CELLS] = {RT_GROUPS(cells)},   [RT_CELLS_MORE] = {RT_GROUPS(cells)},
-        [RT_TOTALS] = {RT_GROUPS(totals)},
+        [RT_COUNTS] = {RT_GROUPS(counts)},       [RT_TIMES] = {RT_GROUPS(times)},
+        [RT_ROUNDS] = {RT_GROUPS(each_round)},       [RT_BENCH] = {RT_GROUPS(bench)},
+        [RT_NULL_RUNS] = {RT_GROUPS(null_runs)}, [RT_CELLS] = {RT_GROUPS(cells)},
+        [RT_CELLS_MORE] = {RT_GROUPS(cells)},    [RT_TOTALS] = {RT_GROUPS(totals)},
     };
     const RtExperiment *e = row->results->experiment;
-    const size_t workloads = which <= RT_TIMES ? e->workload_count : 1;
+    const size_t workloads = is_by_workload(which) ? e->workload_count : 1;
     RtTable table = tables[which];
     if (which == RT_CELLS) table.group_count -= 3;
     table.row_count = workloads * (e->candidate_count + 1) * e->kind_count;
+    if (which == RT_ROUNDS) table.row_count *= RT_MAX_ROUNDS;
     table.row = row_at;
     table.context = row;
     row->which = which;

@@ -15,6 +15,8 @@ typedef enum RtResultTable {
      * seconds, bytes; and tests and steps as counted here, which for an accelerator that is not in counts.csv
      * may be others elsewhere. */
     RT_TIMES,
+    /* rounds.csv: a row per round of a timed cell, null runs included. */
+    RT_ROUNDS,
     RT_BENCH,      /* "rows" of bench --json: of each cell that was counted */
     RT_NULL_RUNS,  /* "null_runs" there */
     RT_CELLS,      /* for the eye: one workload by accelerator and ray kind; of a best of only the best */
@@ -30,6 +32,7 @@ typedef struct RtResultRow {
     uint32_t workload; /* of tables for the eye, and of bench: the one that they show */
     uint32_t candidate;
     RtRayKind kind;
+    uint32_t round; /* of RT_ROUNDS */
     const RtWorkload *setup;
     const RtWorkloadResult *scene;
     const RtBuildResult *build;

@@ -63,6 +63,10 @@ bool rt_estimate_holds(const RtEstimate *estimate, double value) {
     return estimate->low <= value && value <= estimate->high;
 }
 
+double rt_estimate_width(const RtEstimate *estimate) {
+    return fmax(estimate->high - estimate->median, estimate->median - estimate->low) / estimate->median;
+}
+
 RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t count) {
     double ratios[RT_MAX_ROUNDS];
     assert(count >= 1 && count <= RT_MAX_ROUNDS);

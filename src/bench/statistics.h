@@ -32,6 +32,9 @@ typedef struct RtEstimate {
 /* Is `value` within the interval? Of the numbers as they are, however many digits of them are shown. */
 bool rt_estimate_holds(const RtEstimate *estimate, double value);
 
+/* How far its ends lie from the median, the farther one, as a part of the median. */
+double rt_estimate_width(const RtEstimate *estimate);
+
 /* The middle of values[0..count), 1 <= count <= RT_MAX_ROUNDS; the mean of the middle two if count is
  * even. */
 double rt_median(const double *values, uint32_t count);

@@ -33,6 +33,9 @@ typedef struct RtWorkloadOptions {
     int threads;     /* of recording, building and counting: 0 = all processors; changes no count */
     int timing;      /* threads of the timing, 1 as a rule */
     bool count_only; /* no timing */
+    double until; /* rounds go on until all intervals of ratios lie this near to their medians, as a part of
+                     them: 0.01; 0: as many rounds as the experiment says */
+    double patience; /* seconds that a kind of rays on a scene may take until then */
     /* Files for what each ray met and cost (bench/ray_file.h), or NULL: of an experiment of one workload, one
      * candidate without a stride, and one kind of rays. */
     const char *hits, *counts;

@@ -23,7 +23,9 @@ enum {
     OPT_RAY_STRIDE,
     OPT_RAYS_FROM,
     OPT_HITS,
-    OPT_COUNTS
+    OPT_COUNTS,
+    OPT_UNTIL,
+    OPT_PATIENCE
 };
 
 typedef struct Options {
@@ -47,6 +49,7 @@ static const struct argp_option options[] = {
      0},
     {"rounds", OPT_ROUNDS, "N", 0,
      "Timing rounds, each in an order drawn anew (10); at least 6 for intervals of 95 %", 0},
+    RT_UNTIL_OPTIONS(OPT_UNTIL, OPT_PATIENCE),
     {"threads", OPT_THREADS, "N", 0,
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
      "counting on all; on several, wall time is compared",
@@ -164,6 +167,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         return 0;
     case OPT_HITS: o->workload.hits = argument; return 0;
     case OPT_COUNTS: o->workload.counts = argument; return 0;
+    case OPT_UNTIL: o->workload.until = rt_cli_percent(state, "--until", argument); return 0;
+    case OPT_PATIENCE:
+        o->workload.patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
+        return 0;
     case OPT_COUNT_ONLY: o->workload.count_only = true; return 0;
     case OPT_CSV: o->csv = argument; return 0;
     case OPT_JSON: o->json = true; return 0;
@@ -176,6 +183,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
             argp_error(state, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists");
         if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
         if (o->baseline) set_baseline(e, o->baseline, state);
+        if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
         rt_recording_finish(&o->recording, state);
         check_rows(o, state);
         return 0;
@@ -234,7 +242,8 @@ static RtStatus bench(Options *o, RtError *error) {
 }
 
 int rt_command_bench(int argc, char **argv) {
-    Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment))}, .workload = {.timing = 1}};
+    Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment))},
+                 .workload = {.timing = 1, .patience = RT_PATIENCE}};
     RtError error;
     if (!o.recording.experiment) {
         rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));

@@ -10,13 +10,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OPT_RESUME = 256, OPT_FORCE, OPT_QUICK };
+enum { OPT_RESUME = 256, OPT_FORCE, OPT_QUICK, OPT_UNTIL, OPT_PATIENCE };
 
 typedef struct Options {
     const char *path, *out;
     RtStart start;
     bool quick;
     int threads, timing;
+    double until, patience;
 } Options;
 
 static const struct argp_option options[] = {
@@ -31,6 +32,7 @@ static const struct argp_option options[] = {
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
      "counting on all; on several, wall time is compared",
      0},
+    RT_UNTIL_OPTIONS(OPT_UNTIL, OPT_PATIENCE),
     {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
     {0}};
 
@@ -41,6 +43,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case OPT_RESUME: o->start = RT_START_RESUME; return 0;
     case OPT_FORCE: o->start = RT_START_ANEW; return 0;
     case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
+    case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
+    case OPT_PATIENCE:
+        o->patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
+        return 0;
     case OPT_QUICK: o->quick = true; return 0;
     case ARGP_KEY_ARG:
         if (o->path) argp_error(state, "one EXPERIMENT at a time; '%s' is a second one", argument);
@@ -57,12 +63,15 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     char directory[RT_MAX_PATH], sentence[RT_MAX_SENTENCE];
     RtResults results;
     RT_TRY(rt_experiment_load(experiment, o->path, o->quick, error));
+    if (o->until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     snprintf(directory, sizeof directory, "results/%s", experiment->name);
     RtProgress progress = rt_progress_begin(experiment, experiment->count_only ? 1 : 2);
     RtRunOptions how = {.directory = o->out ? o->out : directory,
                         .start = o->start,
                         .workload = {.threads = o->threads,
                                      .timing = o->timing,
+                                     .until = o->until,
+                                     .patience = o->patience,
                                      .observer = rt_progress_observer(&progress)}};
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = rt_run_experiment(&results, &how, error);
@@ -77,7 +86,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
 }
 
 int rt_command_run(int argc, char **argv) {
-    Options o = {.timing = 1};
+    Options o = {.timing = 1, .patience = RT_PATIENCE};
     const struct argp argp = {.options = options,
                               .parser = parse_option,
                               .args_doc = "EXPERIMENT.yaml",

@@ -38,7 +38,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 9 };
+enum { SECTIONS = 10 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -46,6 +46,7 @@ static void list(Section sections[SECTIONS]) {
     const Section all[SECTIONS] = {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
         {"times.csv", true, NULL, of_results(RT_TIMES)},
+        {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
         {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},
         {"best.csv", true, "results/havran-1999/best.csv", of_published(RT_BEST)},
         {"verify.csv", true, "results/verify/verify.csv", verify_csv},
