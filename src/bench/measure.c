@@ -178,24 +178,34 @@ static RtStatus run_runner(void *context, RtError *error) {
     return run_pass(context, error);
 }
 
+RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
+    Pass *pass = rt_alloc(1, sizeof(Pass));
+    *runner = (RtRunner){.run = run_runner,
+                         .context = pass,
+                         .work = (double)timed->set->count,
+                         .parallel = rt_thread_count(threads) > 1,
+                         .seconds = timed->seconds,
+                         .wall = timed->wall};
+    if (!pass) return rt_fail_memory(error, "a pass", sizeof(Pass));
+    return pass_init(pass, timed->accel, timed->set, threads, false, error);
+}
+
+void rt_runner_close(RtRunner *runner) {
+    if (runner->context) pass_clear(runner->context);
+    rt_free(runner->context);
+    *runner = (RtRunner){0};
+}
+
 RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error) {
-    Pass *passes = rt_alloc(count, sizeof(Pass));
     RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
+    if (!runners) return rt_fail_memory(error, "the rounds", count * sizeof(RtRunner));
     RtStatus status = RT_OK;
-    if (!passes || !runners) status = rt_fail_memory(error, "the rounds", count * sizeof(Pass));
     for (size_t i = 0; status == RT_OK && i < count; i++) {
-        status = pass_init(&passes[i], timed[i].accel, timed[i].set, timing->threads, false, error);
-        runners[i] = (RtRunner){.run = run_runner,
-                                .context = &passes[i],
-                                .work = (double)timed[i].set->count,
-                                .parallel = passes[i].threads > 1,
-                                .seconds = timed[i].seconds,
-                                .wall = timed[i].wall};
+        status = rt_runner_open(&runners[i], &timed[i], timing->threads, error);
     }
     if (status == RT_OK) status = rt_rounds_run(runners, count, &timing->rounds, done, error);
-    for (size_t i = 0; passes && i < count; i++) pass_clear(&passes[i]);
-    rt_free(passes);
+    for (size_t i = 0; i < count; i++) rt_runner_close(&runners[i]);
     rt_free(runners);
     return status;
 }

@@ -55,6 +55,11 @@ typedef struct RtTiming {
                     0 = all processors */
 } RtTiming;
 
+/* Makes a runner of it, whose run is one pass over the rays, on `threads` threads; for rt_runner_close, also
+ * after a failure. */
+RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error);
+void rt_runner_close(RtRunner *runner);
+
 /* Times timed[0..count) in interleaved rounds (rounds.h), as many as *done gets. */
 RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
                          RtError *error);

@@ -254,7 +254,7 @@ static const void *row_at(void *context, size_t i) {
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
         [RT_COUNTS] = {RT_GROUPS(counts)},       [RT_TIMES] = {RT_GROUPS(times)},
-        [RT_ROUNDS] = {RT_GROUPS(each_round)},       [RT_BENCH] = {RT_GROUPS(bench)},
+        [RT_ROUNDS] = {RT_GROUPS(each_round)},   [RT_BENCH] = {RT_GROUPS(bench)},
         [RT_NULL_RUNS] = {RT_GROUPS(null_runs)}, [RT_CELLS] = {RT_GROUPS(cells)},
         [RT_CELLS_MORE] = {RT_GROUPS(cells)},    [RT_TOTALS] = {RT_GROUPS(totals)},
     };

@@ -232,7 +232,11 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     RtStatus status = deal_shares(workload, &workload->sets[kind], error);
     if (status == RT_OK) status = count_kind(workload, kind, error);
     if (status == RT_OK) status = save_rows(workload, kind, error);
-    if (status == RT_OK && !workload->count_only) status = rt_workload_time(workload, kind, error);
+    if (status == RT_OK && workload->options->timer) {
+        status = workload->options->timer(workload->options->timer_context, workload, kind, error);
+    } else if (status == RT_OK && !workload->count_only) {
+        status = rt_workload_time(workload, kind, error);
+    }
     rt_free(workload->answers);
     workload->answers = NULL;
     return status;
@@ -251,7 +255,7 @@ static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWork
     RtWorkloadState workload = {
         .results = results, .experiment = results->experiment, .options = options, .index = index};
     workload.count_only = options->count_only || workload.experiment->count_only;
-    workload.count = workload.experiment->candidate_count + !workload.count_only;
+    workload.count = workload.experiment->candidate_count + (!workload.count_only && !options->timer);
     return workload;
 }
 

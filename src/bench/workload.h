@@ -29,6 +29,8 @@ typedef struct RtObserver {
     void (*notice)(void *context, const char *message);
 } RtObserver;
 
+struct RtWorkloadState; /* bench/workload_state.h */
+
 typedef struct RtWorkloadOptions {
     int threads;     /* of recording, building and counting: 0 = all processors; changes no count */
     int timing;      /* threads of the timing, 1 as a rule */
@@ -40,6 +42,10 @@ typedef struct RtWorkloadOptions {
      * candidate without a stride, and one kind of rays. */
     const char *hits, *counts;
     RtObserver observer;
+    /* Takes the place of the timing of one kind of rays, and of the null run, which there is none of; or
+     * NULL. */
+    RtStatus (*timer)(void *context, struct RtWorkloadState *workload, RtRayKind kind, RtError *error);
+    void *timer_context;
 } RtWorkloadOptions;
 
 /* Records the rays of workload number `index` on its scene, whose sampling it sets: at most the experiment's

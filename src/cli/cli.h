@@ -26,6 +26,7 @@ int rt_command_render(int argc, char **argv);
 int rt_command_verify(int argc, char **argv);
 int rt_command_bench(int argc, char **argv);
 int rt_command_rays(int argc, char **argv);
+int rt_command_compare(int argc, char **argv);
 int rt_command_run(int argc, char **argv);
 int rt_command_plot(int argc, char **argv);
 int rt_command_report(int argc, char **argv);

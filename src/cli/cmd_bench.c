@@ -97,7 +97,7 @@ static void add_accel(RtExperiment *experiment, const char *text, struct argp_st
     }
 }
 
-static void add_accels(RtExperiment *experiment, const char *text, struct argp_state *state) {
+void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_state *state) {
     if (strcmp(text, "all") != 0) {
         add_accel(experiment, text, state);
         return;
@@ -148,7 +148,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     RtExperiment *e = o->recording.experiment;
     switch (key) {
     case ARGP_KEY_INIT: state->child_inputs[0] = &o->recording; return 0;
-    case 'a': add_accels(e, argument, state); return 0;
+    case 'a': rt_cli_add_accels(e, argument, state); return 0;
     case OPT_RAY_STRIDE:
         if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
         e->candidates[e->candidate_count - 1].ray_stride =

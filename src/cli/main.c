@@ -16,6 +16,8 @@ static const RtCommand commands[] = {
      rt_command_render},
     {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
     {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench},
+    {"compare", "BEFORE AFTER", "faster or slower: two results, or two programs run in turns",
+     rt_command_compare},
     {"rays", "SCENE", "write rays of a scene for NumPy; bench and verify take such files", rt_command_rays},
     {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run},
     {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot},

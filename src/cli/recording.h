@@ -24,4 +24,8 @@ void rt_recording_init(RtExperiment *experiment);
  */
 void rt_recording_finish(const RtRecordingOptions *o, struct argp_state *state);
 
+/* Adds an accelerator as --accel takes it, or for `all` every one; argp_error's exit where it does not fit.
+ */
+void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_state *state);
+
 #endif
