@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
  * workload that leaves no directory behind. */
+#include "base/json.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "bench/machine.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
@@ -196,8 +198,20 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 static void print_json(const RtResults *results) {
     RtResultRow row = {.results = results}, null = row;
     RtTable rows = rt_result_table(RT_BENCH, &row), nulls = rt_result_table(RT_NULL_RUNS, &null);
-    rt_cli_print_json(json_pack("{s:o, s:o, s:o}", "machine", rt_machine_json(), "rows", rt_table_json(&rows),
-                                "null_runs", rt_table_json(&nulls)));
+    const RtExperiment *e = results->experiment;
+    const RtWorkload *setup = &e->workloads[0];
+    const RtWorkloadResult *scene = &results->workloads[0];
+    const bool given = *e->rays_from;
+    json_t *rays = given ? json_pack("{s:s}", "from", e->rays_from)
+                         : json_pack("{s:I, s:I, s:b, s:I, s:I, s:I}", "width", (json_int_t)scene->width,
+                                     "height", (json_int_t)scene->height, "corners", setup->corners, "depth",
+                                     (json_int_t)setup->depth, "limit", (json_int_t)e->limit, "coherent_run",
+                                     (json_int_t)e->coherent_run);
+    rt_cli_print_json(
+        json_pack("{s:o, s:s, s:I, s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scene",
+                  setup->spec, "objects", (json_int_t)scene->objects, "scene_hash", rt_json_hex(scene->scene),
+                  "recorded", rays, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
+                  rt_baseline_label(e), "rows", rt_table_json(&rows), "null_runs", rt_table_json(&nulls)));
 }
 
 static RtStatus write_csv(const RtResults *results, const Options *o, RtError *error) {
@@ -217,7 +231,9 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
         char sentence[RT_MAX_SENTENCE];
         rt_print_results(results, RT_CELLS, stdout);
         rt_null_sentence(results, sentence);
-        if (sentence[0]) printf("\n%s\n", sentence);
+        if (!sentence[0]) return RT_OK;
+        putchar('\n');
+        rt_print_wrapped(sentence, stdout);
     }
     return RT_OK;
 }
