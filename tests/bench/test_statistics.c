@@ -136,7 +136,6 @@ RT_TEST(as_many_rounds_are_taken_as_so_many_cells_ask_for) {
     assert_int_equal(rt_rounds_for(0.95), 9);
     assert_int_equal(rt_rounds_for(rt_coverage_of_each(10)), 13);
     assert_int_equal(rt_rounds_for(rt_coverage_of_each(100)), 17);
-    assert_int_equal(rt_rounds_for(1), RT_MAX_ROUNDS);
 }
 
 /* Rounds of `cells` cells with a spread of half a percent about `truth`; how many of them say what is so. */
