@@ -19,8 +19,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-extern char **environ;
-
 enum { MOST_LINE = 256 }; /* characters of a request, and of an answer that is a number */
 
 /* ---- the worker ---- */

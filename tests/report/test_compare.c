@@ -87,12 +87,14 @@ RT_TEST_IN_PLACE(what_is_faster_slower_or_counts_otherwise_is_said_of_the_cell) 
     scale(&sides, 0, RT_RAY_PRIMARY, 1.1);
     scale(&sides, 1, RT_RAY_PRIMARY, 0.9);
     scale(&sides, 1, RT_RAY_RANDOM, 1.03);
+    scale(&sides, 0, RT_RAY_RANDOM, 0.97);
     after_cell(&sides, 0, RT_RAY_RANDOM)->tally.steps++;
     sides.comparison.margin = 0.05;
     assert_ok(rt_compare_results(&sides.results[0], &sides.results[1], &sides.comparison, error));
     assert_int_equal(compared(&sides, "bvh", "primary")->change, RT_CHANGE_SLOWER);
     assert_int_equal(compared(&sides, "grid", "primary")->change, RT_CHANGE_FASTER);
     assert_int_equal(compared(&sides, "grid", "random")->change, RT_CHANGE_NONE); /* within the margin */
+    assert_int_equal(compared(&sides, "bvh", "random")->change, RT_CHANGE_NONE);
     const RtEstimate ratio = compared(&sides, "bvh", "primary")->ratio;
     assert_true(rt_estimate_holds(&ratio, 1 / 1.1) && rt_estimate_width(&ratio) < 0.012);
     assert_int_equal(rt_comparison_changed(&sides.comparison), 1);
