@@ -238,7 +238,13 @@ done
 for says in '"seed": 9' '"rounds": 2' '"width": 8' '"baseline": "bvh"' '"ns_low": [0-9]' '"straddles_1": [tf]'; do
     grep -q "$says" seconds.json || complain "bench --json: does not say '$says'"
 done
+"$program" bench 'balls:size=1|2' --size 8x8 --rounds 2 --accel bvh --rays primary --json >seconds.json
+for says in '"scene": "balls:size=1"' '"scene": "balls:size=2"'; do
+    [ "$(grep -c "$says" seconds.json)" = 3 ] || complain "bench --json: scenes, rows and null runs are not each of $says"
+done
 rm table seconds.json
+refuses '--hits and --counts are of one scene' bench 'balls:size=1|2' --accel bvh --rays primary --size 8x8 --hits hits.npy
+refuses 'one SCENE at a time' rays 'balls:size=1|2' --size 8x8 -o rays.npy
 
 for subject in '' 'a' 'a b c' 'a b --with c' 'a b --accel bvh' 'a b --until 1%' 'a b --rounds 9' 'a b --size 8x8'; do
     refuses 'raytally compare: ' compare $subject

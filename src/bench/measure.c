@@ -37,9 +37,9 @@ static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set,
     pass->queries = rt_alloc((size_t)pass->threads, sizeof *pass->queries);
     if (counted) pass->tallies = rt_alloc((size_t)pass->threads, sizeof *pass->tallies);
     if (rt_ray_kind_is_occlusion(set->kind)) {
-        pass->blocked = rt_alloc(count, answer);
+        pass->blocked = rt_alloc_unset(count, answer);
     } else {
-        pass->hits = rt_alloc(count, answer);
+        pass->hits = rt_alloc_unset(count, answer);
     }
     if (!pass->queries || (counted && !pass->tallies) || (!pass->hits && !pass->blocked)) {
         return rt_fail_memory(error, "the answers to a ray set", count * answer);

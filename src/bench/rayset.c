@@ -38,7 +38,7 @@ static uint64_t stream_of(RtRayKind kind, uint64_t index) {
 }
 
 RtStatus rt_rayset_init(RtRaySet *set, RtRayKind kind, uint64_t count, RtError *error) {
-    *set = (RtRaySet){.kind = kind, .count = count, .rays = rt_alloc(count, sizeof(RtRay))};
+    *set = (RtRaySet){.kind = kind, .count = count, .rays = rt_alloc_unset(count, sizeof(RtRay))};
     return set->rays ? RT_OK : rt_fail_memory(error, "a ray set", count * sizeof(RtRay));
 }
 

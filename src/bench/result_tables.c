@@ -3,6 +3,7 @@
 
 #include "accel/structure_json.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -126,6 +127,8 @@ static double each_ns(const Row *r, RtEach each) {
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
       known(r->cell->tally.steps, r->all.steps))                                                             \
     X(differ, "differ", integer, "", "answers unlike the baseline's; 0 if exact", r->cell->differ)           \
+    X(host, "host", text, "", "the machine that timed it", r->results->machines[r->cell->machine].host)      \
+    X(cpu, "cpu", text, "", "its processor", r->results->machines[r->cell->machine].cpu)                     \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
     X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
     X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->all.steps)                                   \
@@ -161,7 +164,7 @@ static const RtColumnGroup counts[] = {
     {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},
     {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of},
     RT_ONE(columns, bytes),
-    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},
 };
 
 static const RtColumnGroup times[] = {
@@ -169,7 +172,8 @@ static const RtColumnGroup times[] = {
     RT_FROM_TO(columns, threads, ratio_high),
     RT_FROM_TO(columns, build_seconds, bytes),
     RT_FROM_TO(columns, object_tests, differ),
-    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},
+    RT_FROM_TO(columns, host, cpu),
 };
 
 static const RtColumnGroup each_round[] = {
@@ -193,8 +197,8 @@ static const RtColumnGroup bench[] = {
     RT_FROM_TO(columns, baseline, ratio_high),
 };
 
-static const RtColumnGroup null_runs[] = {RT_ONE(columns, kind), RT_FROM_TO(columns, accel, spec),
-                                          RT_ONE(columns, rays),
+static const RtColumnGroup null_runs[] = {RT_ONE(columns, scene_spec), RT_ONE(columns, kind),
+                                          RT_FROM_TO(columns, accel, spec), RT_ONE(columns, rays),
                                           RT_FROM_TO(columns, build_seconds, straddles_1)};
 
 static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, eye_ratio)};
@@ -243,12 +247,12 @@ static double per_ray(const Row *r, uint64_t counter) {
 static RtTotal all_of(const Row *r) {
     const RtTally *tally = &r->cell->tally;
     if (r->which == RT_TOTALS) return rt_results_total(r->results, r->workload, r->candidate);
-    return (RtTotal){tally->rays,
-                     per_ray(r, tally->object_tests),
-                     per_ray(r, tally->extent_tests),
-                     per_ray(r, tally->steps),
-                     TIMED(r->cell->seconds.median),
-                     TIMED(r->cell->ratio.median)};
+    return (RtTotal){.rays = tally->rays,
+                     .object_tests = per_ray(r, tally->object_tests),
+                     .extent_tests = per_ray(r, tally->extent_tests),
+                     .steps = per_ray(r, tally->steps),
+                     .seconds = TIMED(r->cell->seconds.median),
+                     .ratio = TIMED(r->cell->ratio.median)};
 }
 
 /* One of the baseline's candidates that is not the fastest of them on these rays. */
@@ -288,6 +292,39 @@ static const void *row_at(void *context, size_t i) {
     return r;
 }
 
+/* ---- what is swept ---- */
+
+static RtField get_swept(const void *row, const RtTableColumn *column) {
+    const Row *r = row;
+    const RtSweptKey *key = &r->swept[column->key];
+    const char *value = rt_swept_of(r->results->experiment, key, r->workload, r->candidate);
+    double number;
+    if (!value || !key->number) return rt_field_text(value);
+    return rt_swept_number(value, &number) ? rt_field_real(number) : rt_field_missing();
+}
+
+/* A column for each swept parameter at the end, where those of all experiments are alike up to there. */
+static void add_swept(RtTable *table, Row *row) {
+    row->swept_count = rt_experiment_swept(row->results->experiment, row->swept);
+    for (uint32_t i = 0; i < row->swept_count; i++) {
+        const RtSweptKey *key = &row->swept[i];
+        char *name = row->swept_names[i];
+        snprintf(name, sizeof row->swept_names[i], "%s.%s", key->scene ? "scene" : "accel", key->key);
+        row->swept_columns[i] = (RtTableColumn){.id = name,
+                                                .name = name,
+                                                .unit = "",
+                                                .meaning = "the swept parameter",
+                                                .get = get_swept,
+                                                .form = key->number ? RT_FORM_real9 : RT_FORM_text,
+                                                .key = (int)i};
+    }
+    if (!row->swept_count) return;
+    assert(table->group_count < RT_MAX_RESULT_GROUPS);
+    memcpy(row->groups, table->groups, table->group_count * sizeof *row->groups);
+    row->groups[table->group_count++] = (RtColumnGroup){NULL, row->swept_columns, row->swept_count, NULL};
+    table->groups = row->groups;
+}
+
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
         [RT_COUNTS] = {RT_GROUPS(counts)},         [RT_TIMES] = {RT_GROUPS(times)},
@@ -304,5 +341,6 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     table.row = row_at;
     table.context = row;
     row->which = which;
+    if (which <= RT_BENCH) add_swept(&table, row);
     return table;
 }

@@ -26,6 +26,8 @@ typedef enum RtResultTable {
     RT_RESULT_TABLE_COUNT
 } RtResultTable;
 
+#define RT_MAX_RESULT_GROUPS 16
+
 /* The row at hand. */
 typedef struct RtResultRow {
     const RtResults *results;
@@ -39,6 +41,12 @@ typedef struct RtResultRow {
     const RtBuildResult *build;
     const RtCell *cell;
     RtTotal all; /* of the cell, or of RT_TOTALS */
+    uint32_t swept_count;
+    RtSweptKey swept[RT_MAX_SWEPT_KEYS]; /* what the experiment sweeps */
+    char swept_names[RT_MAX_SWEPT_KEYS]
+                    [RT_MAX_NAME + 8]; /* and its columns, at the end of CSV and of bench */
+    RtTableColumn swept_columns[RT_MAX_SWEPT_KEYS];
+    RtColumnGroup groups[RT_MAX_RESULT_GROUPS];
 } RtResultRow;
 
 /* `row` stays where it is as long as the table, which alone uses it, with its results, and for the eye its

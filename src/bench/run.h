@@ -47,6 +47,9 @@ RtStatus rt_run_begin(RtRun *run, RtError *error);
 /* Begins the journal, or goes on with it, and fills the results. */
 RtStatus rt_run_measure(RtRun *run, RtError *error);
 
+/* Whether nothing is left to measure, of which `only` may leave much. */
+bool rt_run_is_complete(const RtRun *run);
+
 void rt_run_close(RtRun *run);
 
 /* For those who add to the directory: a path in it, a CSV file in it, and a word to whoever looks on. */

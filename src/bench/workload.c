@@ -19,14 +19,16 @@ static const double CHEAP_BUILD = 0.25; /* seconds */
 /* ---- what is left to do ---- */
 
 static bool runs(const RtWorkloadState *workload, uint32_t candidate) {
-    return rt_candidate_runs(workload->experiment, candidate, workload->index);
+    return rt_candidate_runs(workload->experiment, candidate, workload->index) &&
+           rt_only_accel(&workload->options->only, workload->experiment, candidate) &&
+           !*rt_build_at(workload->results, workload->index, candidate)->limit;
 }
 
 static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         bool null = c == workload->experiment->candidate_count;
-        if (!runs(workload, c)) continue;
+        if (!runs(workload, c) || *cell->limit) continue;
         if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
     }
     return true;
@@ -34,12 +36,14 @@ static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
 
 static bool workload_is_done(const RtWorkloadState *workload) {
     const RtWorkloadResult *result = &workload->results->workloads[workload->index];
+    if (!rt_only_scene(&workload->options->only, workload->experiment, workload->index)) return true;
     if (result->skipped || !result->known) return result->skipped;
     for (uint32_t c = 0; c < workload->count; c++) {
         if (runs(workload, c) && !rt_build_at(workload->results, workload->index, c)->known) return false;
     }
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RtRayKind kind = workload->experiment->kinds[k];
+        if (!rt_only_kind(&workload->options->only, kind)) continue;
         if (result->rays[kind] && !kind_is_done(workload, kind)) return false;
     }
     return true;
@@ -95,17 +99,41 @@ static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel
     return RT_OK;
 }
 
+/* Builds a candidate within the limits; says in result->limit, without keeping it, which it went beyond. */
+static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec *spec, double *seconds,
+                             RtError *error) {
+    const RtExperiment *experiment = workload->experiment;
+    RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
+    rt_memory_limit(1000000 * experiment->limit_megabytes);
+    RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
+    rt_memory_limit(0);
+    if (status != RT_OK && (status != RT_NO_MEMORY || !experiment->limit_megabytes)) return status;
+    if (status == RT_NO_MEMORY) {
+        snprintf(result->limit, RT_MAX_LIMIT, "its structure takes more than %llu MB",
+                 (unsigned long long)experiment->limit_megabytes);
+    } else if (experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds) {
+        snprintf(result->limit, RT_MAX_LIMIT, "building takes %.3g s, more than %g s", *seconds,
+                 experiment->limit_seconds);
+    } else {
+        return RT_OK;
+    }
+    rt_accel_destroy(workload->built[c]);
+    workload->built[c] = NULL;
+    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, RT_RAY_PRIMARY, result->limit, error);
+}
+
 static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
     for (uint32_t c = 0; c < workload->count; c++) {
         RtSpec spec;
-        double seconds;
+        double seconds = 0;
         RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
         if (!runs(workload, c)) continue;
         RT_TRY(rt_spec_parse(workload->experiment->candidates[rt_workload_origin(workload, c)].spec, &spec,
                              error));
-        RT_TRY(build_one(workload, &spec, &workload->accels[c], &seconds, error));
+        RT_TRY(build_within(workload, c, &spec, &seconds, error));
+        if (!workload->built[c]) continue;
         if (result->known) continue;
-        const RtAccel *accel = workload->accels[c];
+        const RtAccel *accel = workload->built[c];
         *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
         result->seconds = seconds;
         rt_spec_format(&spec, result->spec);
@@ -227,9 +255,20 @@ static RtStatus save_rows(const RtWorkloadState *workload, RtRayKind kind, RtErr
 
 /* ---- all of it ---- */
 
+/* Those that are not known to go beyond a limit. */
+static void choose_accels(RtWorkloadState *workload, RtRayKind kind) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        workload->accels[c] = *cell->limit ? NULL : workload->built[c];
+    }
+}
+
 static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     if (workload->sets[kind].count == 0 || kind_is_done(workload, kind)) return RT_OK;
+    if (!rt_only_kind(&workload->options->only, kind)) return RT_OK;
+    choose_accels(workload, kind);
     RtStatus status = deal_shares(workload, &workload->sets[kind], error);
+    if (status == RT_OK) status = rt_workload_check_limits(workload, kind, error);
     if (status == RT_OK) status = count_kind(workload, kind, error);
     if (status == RT_OK) status = save_rows(workload, kind, error);
     if (status == RT_OK && workload->options->timer) {
@@ -292,15 +331,17 @@ RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloa
     RtWorkloadState workload = state_of(results, index, options);
     workload.scene = scene;
     if (workload_is_done(&workload)) return RT_OK;
+    workload.built = rt_alloc(workload.count, sizeof(RtAccel *));
     workload.accels = rt_alloc(workload.count, sizeof(RtAccel *));
     workload.shares = rt_alloc(workload.count, sizeof(RtWorkloadShare));
     RtStatus status = RT_OK;
-    if (!workload.accels || !workload.shares)
+    if (!workload.built || !workload.accels || !workload.shares)
         status = rt_fail_memory(error, "a workload", workload.count * sizeof(RtWorkloadShare));
     if (status == RT_OK) status = measure(&workload, error);
-    for (uint32_t c = 0; workload.accels && c < workload.count; c++) rt_accel_destroy(workload.accels[c]);
+    for (uint32_t c = 0; workload.built && c < workload.count; c++) rt_accel_destroy(workload.built[c]);
     rt_accel_destroy(workload.reference);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&workload.sets[k]);
+    rt_free(workload.built);
     rt_free(workload.accels);
     rt_free(workload.shares);
     return status;

@@ -8,10 +8,12 @@
 #include "bench/results.h"
 
 typedef enum RtEventKind {
-    RT_EVENT_WORKLOAD, /* results->workloads[workload] is known */
-    RT_EVENT_BUILD,    /* the build of `candidate` is known */
-    RT_EVENT_COUNT,    /* the cell is counted */
-    RT_EVENT_TIME      /* the cell is timed */
+    RT_EVENT_WORKLOAD,  /* results->workloads[workload] is known */
+    RT_EVENT_BUILD,     /* the build of `candidate` is known */
+    RT_EVENT_COUNT,     /* the cell is counted */
+    RT_EVENT_TIME,      /* the cell is timed */
+    RT_EVENT_TOO_LARGE, /* the structure of `candidate` went beyond a limit */
+    RT_EVENT_TOO_LONG   /* the cell would go beyond a limit */
 } RtEventKind;
 
 /* Which part of the results was just filled. */
@@ -29,12 +31,23 @@ typedef struct RtObserver {
     void (*notice)(void *context, const char *message);
 } RtObserver;
 
+/* A part of an experiment: one scene, or one accelerator on it, or one kind of rays, by labels or what labels
+ * of a sweep have in common; NULL for all. What ratios refer to is always measured, too. */
+typedef struct RtOnly {
+    const char *scene, *accel, *kind;
+    uint32_t shard, shards; /* of the scenes those that fall to one of several machines, 1..shards; 0: all */
+} RtOnly;
+
+bool rt_only_scene(const RtOnly *only, const RtExperiment *experiment, uint32_t workload);
+bool rt_only_accel(const RtOnly *only, const RtExperiment *experiment, uint32_t candidate);
+bool rt_only_kind(const RtOnly *only, RtRayKind kind);
 struct RtWorkloadState; /* bench/workload_state.h */
 
 typedef struct RtWorkloadOptions {
     int threads;     /* of recording, building and counting: 0 = all processors; changes no count */
     int timing;      /* threads of the timing, 1 as a rule */
     bool count_only; /* no timing */
+    RtOnly only;
     double until; /* rounds go on until all intervals of ratios lie this near to their medians, as a part of
                      them: 0.01; 0: as many rounds as the experiment says */
     double patience; /* seconds that a kind of rays on a scene may take until then */

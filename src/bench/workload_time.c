@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "bench/machine.h"
 #include "bench/workload_state.h"
 
 #include <math.h>
@@ -152,7 +153,8 @@ static void tell_width(const Contest *contest) {
 /* Takes what was timed into the cells. */
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Contest *contest,
                            RtError *error) {
-    uint32_t rounds = contest->rounds;
+    const RtMachine here = rt_machine_here();
+    uint32_t rounds = contest->rounds, machine = rt_results_machine(workload->results, &here);
     for (uint32_t c = 0; c < workload->count; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         if (!workload->accels[c] || cell->timed) continue;
@@ -166,6 +168,7 @@ static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Cont
         memcpy(rt_cell_rounds(cell, RT_EACH_BASELINE), rival->seconds, rounds * sizeof(double));
         cell->timed = true;
         cell->threads = rt_thread_count(workload->options->timing);
+        cell->machine = machine;
         cell->tally.rays = own->set->count;
         cell->seconds = rt_estimate(own->seconds, rounds);
         cell->wall = rt_estimate(own->wall, rounds);

@@ -28,6 +28,7 @@ int rt_command_bench(int argc, char **argv);
 int rt_command_rays(int argc, char **argv);
 int rt_command_compare(int argc, char **argv);
 int rt_command_run(int argc, char **argv);
+int rt_command_merge(int argc, char **argv);
 int rt_command_plot(int argc, char **argv);
 int rt_command_report(int argc, char **argv);
 int rt_command_reproduce(int argc, char **argv);

@@ -40,7 +40,8 @@ typedef struct Options {
 static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0,
      "An accelerator, NAME[:KEY=VALUE,...]; once per accelerator. `all`: every one, at "
-     "its defaults",
+     "its defaults. A VALUE may be a list, 1|4|16, or a range, 1..9+2 (in steps of 2) or 1..64*2 (each twice "
+     "the one before): then it is an accelerator for each, of several such VALUEs each with each",
      0},
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
      "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
@@ -81,22 +82,16 @@ static const struct argp_option options[] = {
 
 /* ---- options ---- */
 
+/* All that the spec stands for. */
 static void add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    if (experiment->candidate_count == RT_MAX_CANDIDATES) {
-        argp_error(state, "--accel: at most %d may be given", RT_MAX_CANDIDATES);
-    }
+    RtError error;
+    RtCandidate like = {.entry = experiment->candidate_count, .ray_stride = 1};
     if (strlen(text) >= RT_MAX_SPEC_CHARS) {
         argp_error(state, "--accel: a spec has at most %d characters", RT_MAX_SPEC_CHARS - 1);
     }
-    RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
-    candidate->ray_stride = 1;
-    strcpy(candidate->spec, text);
-    if (strlen(text) < RT_MAX_LABEL) {
-        strcpy(candidate->label, text);
-    } else {
-        snprintf(candidate->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, text,
-                 experiment->candidate_count);
-    }
+    strcpy(like.spec, text);
+    if (rt_experiment_add_accels(experiment, &like, &error) != RT_OK)
+        argp_error(state, "--accel: %s", error.message);
 }
 
 void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_state *state) {
@@ -108,6 +103,14 @@ void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_s
         char spec[RT_MAX_SPEC_CHARS];
         rt_spread_spec(rt_accel_at(i), 0, spec);
         add_accel(experiment, spec, state);
+    }
+}
+
+/* Of all that the preceding --accel stands for. */
+static void set_ray_stride(RtExperiment *experiment, uint64_t stride) {
+    uint32_t last = experiment->candidate_count - 1, entry = experiment->candidates[last].entry;
+    for (uint32_t c = 0; c <= last; c++) {
+        if (experiment->candidates[c].entry == entry) experiment->candidates[c].ray_stride = stride;
     }
 }
 
@@ -153,8 +156,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'a': rt_cli_add_accels(e, argument, state); return 0;
     case OPT_RAY_STRIDE:
         if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
-        e->candidates[e->candidate_count - 1].ray_stride =
-            (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
+        set_ray_stride(
+            e, (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND));
         return 0;
     case OPT_BASELINE: o->baseline = argument; return 0;
     case OPT_ROUNDS:
@@ -195,23 +198,41 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 /* ---- output ---- */
 
-static void print_json(const RtResults *results) {
-    RtResultRow row = {.results = results}, null = row;
-    RtTable rows = rt_result_table(RT_BENCH, &row), nulls = rt_result_table(RT_NULL_RUNS, &null);
+/* Appends the rows of one scene. */
+static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
+    RtResultRow row = {.results = results, .workload = workload};
+    RtTable table = rt_result_table(which, &row);
+    json_t *rows = rt_table_json(&table);
+    json_array_extend(array, rows);
+    json_decref(rows);
+}
+
+/* One scene, and what was recorded of it. */
+static json_t *scene_json(const RtResults *results, uint32_t workload) {
     const RtExperiment *e = results->experiment;
-    const RtWorkload *setup = &e->workloads[0];
-    const RtWorkloadResult *scene = &results->workloads[0];
+    const RtWorkload *setup = &e->workloads[workload];
+    const RtWorkloadResult *scene = &results->workloads[workload];
     const bool given = *e->rays_from;
     json_t *rays = given ? json_pack("{s:s}", "from", e->rays_from)
                          : json_pack("{s:I, s:I, s:b, s:I, s:I, s:I}", "width", (json_int_t)scene->width,
                                      "height", (json_int_t)scene->height, "corners", setup->corners, "depth",
                                      (json_int_t)setup->depth, "limit", (json_int_t)e->limit, "coherent_run",
                                      (json_int_t)e->coherent_run);
-    rt_cli_print_json(
-        json_pack("{s:o, s:s, s:I, s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scene",
-                  setup->spec, "objects", (json_int_t)scene->objects, "scene_hash", rt_json_hex(scene->scene),
-                  "recorded", rays, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
-                  rt_baseline_label(e), "rows", rt_table_json(&rows), "null_runs", rt_table_json(&nulls)));
+    return json_pack("{s:s, s:I, s:o, s:o}", "scene", setup->spec, "objects", (json_int_t)scene->objects,
+                     "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
+}
+
+static void print_json(const RtResults *results) {
+    const RtExperiment *e = results->experiment;
+    json_t *scenes = json_array(), *rows = json_array(), *nulls = json_array();
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        json_array_append_new(scenes, scene_json(results, t));
+        extend(rows, results, RT_BENCH, t);
+        extend(nulls, results, RT_NULL_RUNS, t);
+    }
+    rt_cli_print_json(json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes",
+                                scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds,
+                                "baseline", rt_baseline_label(e), "rows", rows, "null_runs", nulls));
 }
 
 static RtStatus write_csv(const RtResults *results, const Options *o, RtError *error) {
@@ -243,14 +264,18 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
 static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
     RtExperiment *experiment = o->recording.experiment;
-    RT_TRY(rt_workload_set_scene(&experiment->workloads[0], o->scene, "", error));
+    RT_TRY(rt_experiment_add_scenes(experiment, &o->recording.like, o->scene, "", error));
+    if (experiment->workload_count > 1 && (o->workload.hits || o->workload.counts))
+        return rt_fail(error, RT_BAD_INPUT, "--hits and --counts are of one scene: '%s' is %u", o->scene,
+                       experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    RtProgress progress = rt_progress_begin(experiment, o->workload.count_only ? 1 : 2);
+    RtProgress progress = rt_progress_begin(&o->workload);
     o->workload.observer = rt_progress_observer(&progress);
     RtResults results;
     RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = rt_workload_run(&results, 0, &o->workload, error);
+    for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
+        status = rt_workload_run(&results, t, &o->workload, error);
     rt_progress_end(&progress);
     if (status == RT_OK) status = report(&results, o, error);
     rt_results_clear(&results);
@@ -265,16 +290,19 @@ int rt_command_bench(int argc, char **argv) {
         rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
         return rt_cli_fail(&error);
     }
-    rt_recording_init(o.recording.experiment);
+    rt_recording_init(&o.recording);
     const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
     const struct argp argp = {
         .options = options,
         .parser = parse_option,
         .args_doc = "SCENE",
         .doc = "Count and time accelerators on the rays of one scene, and compare them."
-               "\vSCENE is a file or a built-in, as in balls:size=3. Every accelerator gets the "
+               "\vSCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote "
+               "what "
+               "your shell would take for its own: | and *). Every accelerator gets the "
                "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
                "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
+               "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
                "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy",
         .children = children};
     argp_parse(&argp, argc, argv, 0, 0, &o);

@@ -119,7 +119,7 @@ static RtStatus load(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
     if (e->candidate_count == 0) return rt_experiment_load(e, o->subjects[0], o->quick, error);
     strcpy(e->name, "compare");
-    RT_TRY(rt_workload_set_scene(&e->workloads[0], o->subjects[0], "", error));
+    RT_TRY(rt_experiment_add_scenes(e, &o->recording.like, o->subjects[0], "", error));
     return rt_experiment_check(e, where, error);
 }
 
@@ -215,7 +215,7 @@ int rt_command_compare(int argc, char **argv) {
         rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
         return rt_cli_fail(&error);
     }
-    rt_recording_init(o.recording.experiment);
+    rt_recording_init(&o.recording);
     const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
     const struct argp argp = {
         .options = options,

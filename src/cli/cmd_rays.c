@@ -56,7 +56,9 @@ static RtStatus record(const Options *o, RtError *error) {
     RtScene scene;
     RtAccel *reference = NULL;
     RtRaySet sets[RT_RAY_KIND_COUNT] = {0};
-    RT_TRY(rt_workload_set_scene(&e->workloads[0], o->scene, "", error));
+    RT_TRY(rt_experiment_add_scenes(e, &o->recording.like, o->scene, "", error));
+    if (e->workload_count > 1)
+        return rt_fail(error, RT_BAD_INPUT, "one SCENE at a time: '%s' is %u", o->scene, e->workload_count);
     RT_TRY(rt_workload_open_scene(&e->workloads[0], &scene, error));
     RtStatus status = rt_workload_record(e, 0, o->threads, &scene, &reference, sets, error);
     if (status == RT_OK) status = save(o, &sets[e->kinds[0]], error);
@@ -73,7 +75,7 @@ int rt_command_rays(int argc, char **argv) {
         rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
         return rt_cli_fail(&error);
     }
-    rt_recording_init(o.recording.experiment);
+    rt_recording_init(&o.recording);
     const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 0}, {0}};
     const struct argp argp = {
         .options = options,

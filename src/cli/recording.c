@@ -27,7 +27,6 @@ static const struct argp_option options[] = {
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     RtRecordingOptions *o = state->input;
     RtExperiment *e = o->experiment;
-    RtWorkload *workload = &e->workloads[0];
     const int64_t most = (int64_t)RT_MAX_RAYS_A_KIND;
     switch (key) {
     case OPT_RAYS: o->kinds = argument; return 0;
@@ -42,15 +41,15 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         return 0;
     case OPT_SIZE:
         o->frame = "--size";
-        rt_cli_size(state, argument, &workload->width, &workload->height);
+        rt_cli_size(state, argument, &o->like.width, &o->like.height);
         return 0;
     case OPT_CORNERS:
         o->frame = "--corners";
-        workload->corners = true;
+        o->like.corners = true;
         return 0;
     case OPT_DEPTH:
         o->frame = "--depth";
-        workload->depth = (uint32_t)rt_cli_integer(state, o->frame, argument, 1, RT_MAX_DEPTH);
+        o->like.depth = (uint32_t)rt_cli_integer(state, o->frame, argument, 1, RT_MAX_DEPTH);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -58,11 +57,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 const struct argp rt_recording_argp = {.options = options, .parser = parse_option};
 
-void rt_recording_init(RtExperiment *experiment) {
-    rt_experiment_init(experiment);
-    experiment->workload_count = 1;
-    experiment->coherent_run = 256;
-    experiment->workloads[0].depth = RT_DEFAULT_DEPTH;
+void rt_recording_init(RtRecordingOptions *o) {
+    rt_experiment_init(o->experiment);
+    o->experiment->coherent_run = 256;
+    o->like.depth = RT_DEFAULT_DEPTH;
 }
 
 static void parse_kinds(RtExperiment *experiment, const char *text, struct argp_state *state) {

@@ -9,7 +9,8 @@
 
 /* The input of the parser. */
 typedef struct RtRecordingOptions {
-    RtExperiment *experiment; /* of one workload, to be filled */
+    RtExperiment *experiment; /* to be filled; its scenes are left to be added */
+    RtWorkload like;          /* for all that the scene stands for (rt_experiment_add_scenes) */
     bool one_kind;            /* one kind of rays, primary ones unless another is asked for */
     const char *kinds;        /* as given, or NULL */
     const char *frame;        /* an option that was given and is about recorded rays alone, or NULL */
@@ -17,8 +18,8 @@ typedef struct RtRecordingOptions {
 
 extern const struct argp rt_recording_argp;
 
-/* Initialises the experiment for one scene, with what `bench` measures. */
-void rt_recording_init(RtExperiment *experiment);
+/* Initialises its experiment, without scenes, and `like` with what `bench` measures. */
+void rt_recording_init(RtRecordingOptions *o);
 
 /* To be called at ARGP_KEY_END of the parent: the kinds of rays mean something else where rays are of a file.
  */
