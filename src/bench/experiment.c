@@ -18,6 +18,31 @@ void rt_experiment_init(RtExperiment *experiment) {
     }
 }
 
+/* ---- rays of a file ---- */
+
+/* Random rays are those that nothing is known of. */
+static const struct {
+    const char *name;
+    RtRayKind kind;
+} given[] = {{"nearest", RT_RAY_RANDOM}, {"occlusion", RT_RAY_OCCLUSION}};
+
+RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error) {
+    for (int i = 0; i < 2; i++) {
+        *kind = given[i].kind;
+        if (strcmp(given[i].name, name) == 0) return RT_OK;
+    }
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "rays of a file are asked for the nearest hit, or for any: nearest or occlusion, not '%.40s'", name);
+}
+
+const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind) {
+    for (int i = 0; i < 2 && *experiment->rays_from; i++) {
+        if (given[i].kind == kind) return given[i].name;
+    }
+    return rt_ray_kind_name(kind);
+}
+
 /* ---- the baseline ---- */
 
 /* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without the commas that

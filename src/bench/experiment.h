@@ -104,11 +104,13 @@ typedef struct RtExperiment {
               [RT_MAX_LABEL]; /* gnuplot scripts seen from the YAML, run in this order in one go */
     uint32_t plot_count;
     RtPublishedSetup published;
-    bool count_only;          /* nothing is timed */
-    bool quick;               /* the smaller variant, for a first look */
-    char path[RT_MAX_PATH];   /* of the YAML; "" where there is none */
-    char folder[RT_MAX_PATH]; /* of the YAML */
-    uint64_t fingerprint;     /* of the YAML's bytes, without finding and expect, which change no result */
+    char rays_from[RT_MAX_PATH]; /* a file of rays (bench/ray_file.h) of the one kind, in place of recorded
+                                    ones; or "" */
+    bool count_only;             /* nothing is timed */
+    bool quick;                  /* the smaller variant, for a first look */
+    char path[RT_MAX_PATH];      /* of the YAML; "" where there is none */
+    char folder[RT_MAX_PATH];    /* of the YAML */
+    uint64_t fingerprint;        /* of the YAML's bytes, without finding and expect, which change no result */
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds but occlusion, which is diffuse once more, and the defaults: limit
@@ -118,6 +120,11 @@ void rt_experiment_init(RtExperiment *experiment);
 /* Reads the YAML at `path`. Whatever is wrong (unknown keys, specs that do not parse, labels used twice, a
  * baseline that is no candidate) is told with its line. `quick` applies the overrides under `quick:`. */
 RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error);
+
+/* What rays of a file may be: asked for the nearest hit, or for any. They stand under these names in tables,
+ * where recorded ones have theirs. */
+RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error);
+const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind);
 
 /* Whether candidate `c`, which may be the null run (candidate_count), is measured on workload `t`. */
 bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);

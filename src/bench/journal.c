@@ -9,6 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+static const char *const each_names[RT_EACH_COUNT] = {"each_seconds", "each_wall", "each_baseline"};
+
 /* ---- to JSON ---- */
 
 static json_t *header_json(const RtExperiment *experiment, const RtOnly *only) {
@@ -50,13 +52,25 @@ static json_t *estimate_json(const RtEstimate *e) {
     return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
 }
 
+static json_t *rounds_json(const RtCell *cell, RtEach each) {
+    json_t *list = json_array();
+    for (uint32_t r = 0; r < cell->rounds; r++) {
+        json_array_append_new(list, json_real(rt_cell_rounds(cell, each)[r]));
+    }
+    return list;
+}
+
 static json_t *time_json(const RtResults *results, const RtCell *cell) {
     const RtMachine *machine = &results->machines[cell->machine];
-    return json_pack(
+    json_t *object = json_pack(
         "{s:I, s:I, s:i, s:o, s:o, s:o, s:s, s:s, s:s}", "rays", (json_int_t)cell->tally.rays, "rounds",
         (json_int_t)cell->rounds, "threads", cell->threads, "seconds", estimate_json(&cell->seconds), "wall",
         estimate_json(&cell->wall), "ratio", estimate_json(&cell->ratio), "baseline",
         rt_candidate_label(results->experiment, cell->baseline), "host", machine->host, "cpu", machine->cpu);
+    for (int i = 0; i < RT_EACH_COUNT && cell->each; i++) {
+        json_object_set_new(object, each_names[i], rounds_json(cell, (RtEach)i));
+    }
+    return object;
 }
 
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
@@ -175,12 +189,29 @@ static void take_count(RtCell *cell, const json_t *object) {
     take_tally(&cell->tally, object);
 }
 
+/* Journals of earlier versions have no times of rounds. */
+static RtStatus take_rounds(RtCell *cell, const json_t *object, RtError *error) {
+    for (int i = 0; i < RT_EACH_COUNT; i++) {
+        size_t count = json_array_size(json_object_get(object, each_names[i]));
+        if (count != cell->rounds || count == 0 || count > RT_MAX_ROUNDS) return RT_OK;
+    }
+    RT_TRY(rt_cell_make_rounds(cell, error));
+    for (int i = 0; i < RT_EACH_COUNT; i++) {
+        const json_t *list = json_object_get(object, each_names[i]);
+        for (uint32_t r = 0; r < cell->rounds; r++) {
+            rt_cell_rounds(cell, (RtEach)i)[r] = json_number_value(json_array_get(list, r));
+        }
+    }
+    return RT_OK;
+}
+
 static void take_text(char *out, size_t room, const json_t *object, const char *key) {
     const char *text = json_string_value(json_object_get(object, key));
     snprintf(out, room, "%s", text ? text : "");
 }
 
-static void take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object) {
+static RtStatus take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object,
+                          RtError *error) {
     const RtExperiment *experiment = results->experiment;
     RtMachine machine;
     take_text(machine.host, sizeof machine.host, object, "host");
@@ -196,10 +227,11 @@ static void take_time(RtResults *results, uint32_t workload, RtCell *cell, const
     cell->seconds = get_estimate(object, "seconds");
     cell->wall = get_estimate(object, "wall");
     cell->ratio = get_estimate(object, "ratio");
+    return take_rounds(cell, object, error);
 }
 
 /* Places a line where its labels say; lines about what the experiment does not have are passed over. */
-static void take_line(RtResults *results, const json_t *line) {
+static RtStatus take_line(RtResults *results, const json_t *line, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     const char *scene = json_string_value(json_object_get(line, "scene"));
     const char *accel = json_string_value(json_object_get(line, "accel"));
@@ -207,21 +239,22 @@ static void take_line(RtResults *results, const json_t *line) {
     const json_t *object;
     RtRayKind kind = RT_RAY_PRIMARY;
     uint32_t workload = scene ? rt_workload_find(experiment, scene) : experiment->workload_count;
-    if (workload == experiment->workload_count) return;
+    if (workload == experiment->workload_count) return RT_OK;
     if ((object = json_object_get(line, "workload"))) take_workload(&results->workloads[workload], object);
-    if (!accel) return;
+    if (!accel) return RT_OK;
     uint32_t candidate = rt_candidate_find(experiment, accel, workload);
-    if (candidate > experiment->candidate_count) return;
+    if (candidate > experiment->candidate_count) return RT_OK;
     if ((object = json_object_get(line, "built")))
         take_build(rt_build_at(results, workload, candidate), object);
     const char *limit = json_string_value(json_object_get(line, "too_large"));
     if (limit) snprintf(rt_build_at(results, workload, candidate)->limit, RT_MAX_LIMIT, "%s", limit);
-    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;
+    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return RT_OK;
     RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
     limit = json_string_value(json_object_get(line, "too_long"));
     if (limit) snprintf(cell->limit, RT_MAX_LIMIT, "%s", limit);
-    if ((object = json_object_get(line, "timed"))) take_time(results, workload, cell, object);
+    object = json_object_get(line, "timed");
+    return object ? take_time(results, workload, cell, object, error) : RT_OK;
 }
 
 static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,
@@ -263,7 +296,7 @@ RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *onl
     RT_TRY(rt_json_lines_load(path, &lines, error));
     RtStatus status = check_header(path, json_array_get(lines, 0), results->experiment, only, error);
     for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
-        take_line(results, json_array_get(lines, i));
+        status = take_line(results, json_array_get(lines, i), error);
     }
     json_decref(lines);
     return status;

@@ -19,6 +19,10 @@ RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtE
 }
 
 void rt_results_clear(RtResults *results) {
+    const RtExperiment *e = results->experiment;
+    size_t cells =
+        results->cells ? e->workload_count * (e->candidate_count + 1) * (size_t)RT_RAY_KIND_COUNT : 0;
+    for (size_t i = 0; i < cells; i++) rt_free(results->cells[i].each);
     rt_free(results->workloads);
     rt_free(results->builds);
     rt_free(results->cells);
@@ -47,6 +51,16 @@ RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t
 
 RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
     return &results->cells[build_index(results, workload, candidate) * RT_RAY_KIND_COUNT + (size_t)kind];
+}
+
+RtStatus rt_cell_make_rounds(RtCell *cell, RtError *error) {
+    rt_free(cell->each);
+    cell->each = rt_alloc((size_t)RT_EACH_COUNT * cell->rounds, sizeof(double));
+    return cell->each ? RT_OK : rt_fail_memory(error, "the times of rounds", cell->rounds * sizeof(double));
+}
+
+double *rt_cell_rounds(const RtCell *cell, RtEach each) {
+    return cell->each + (size_t)each * cell->rounds;
 }
 
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate) {

@@ -30,6 +30,10 @@ typedef struct RtBuildResult {
     RtDescription shape;
 } RtBuildResult;
 
+/* Times of each round, seconds a ray: by the clock of the comparison, on the wall clock, and the baseline's
+ * on the same rays, by the clock of the comparison. */
+typedef enum RtEach { RT_EACH_SECONDS, RT_EACH_WALL, RT_EACH_BASELINE, RT_EACH_COUNT } RtEach;
+
 typedef struct RtCell {
     bool counted, timed;
     char limit[RT_MAX_LIMIT]; /* which limit it would go beyond, so that it is not measured; else "" */
@@ -41,6 +45,7 @@ typedef struct RtCell {
     RtEstimate seconds; /* a ray: processor time on one thread, wall time on several */
     RtEstimate wall;    /* a ray, on the wall clock */
     RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
+    double *each;       /* [RT_EACH_COUNT][rounds] owned: every round's time; NULL: not kept */
     uint32_t baseline; /* the candidate that is: where there are several, the fastest of them on these rays */
 } RtCell;
 
@@ -69,6 +74,10 @@ uint32_t rt_results_machine(RtResults *results, const RtMachine *machine);
 /* Places in the arrays; candidate = candidate_count is the null run. */
 RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t candidate);
 RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
+
+/* Room for the times of the cell's `rounds` rounds; and those of one sort, [rounds]. */
+RtStatus rt_cell_make_rounds(RtCell *cell, RtError *error);
+double *rt_cell_rounds(const RtCell *cell, RtEach each);
 
 /* The candidate's label, that of the baseline and " (again)" for the null run. */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);

@@ -138,7 +138,9 @@ static RtStatus write_tables(const RtRun *run, RtError *error) {
     RT_TRY(rt_run_write_table(run, "counts.csv", &counts, error));
     if (run->experiment->count_only) return RT_OK;
     RtTable times = rt_result_table(RT_TIMES, &row);
-    return rt_run_write_table(run, "times.csv", &times, error);
+    RT_TRY(rt_run_write_table(run, "times.csv", &times, error));
+    RtTable rounds = rt_result_table(RT_ROUNDS, &row);
+    return rt_run_write_table(run, "rounds.csv", &rounds, error);
 }
 
 static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,

@@ -4,6 +4,7 @@
 #ifndef RT_BENCH_WORKLOAD_H
 #define RT_BENCH_WORKLOAD_H
 
+#include "bench/rayset.h"
 #include "bench/results.h"
 
 typedef enum RtEventKind {
@@ -40,17 +41,37 @@ typedef struct RtOnly {
 bool rt_only_scene(const RtOnly *only, const RtExperiment *experiment, uint32_t workload);
 bool rt_only_accel(const RtOnly *only, const RtExperiment *experiment, uint32_t candidate);
 bool rt_only_kind(const RtOnly *only, RtRayKind kind);
+struct RtWorkloadState; /* bench/workload_state.h */
 
 typedef struct RtWorkloadOptions {
     int threads;     /* of recording, building and counting: 0 = all processors; changes no count */
     int timing;      /* threads of the timing, 1 as a rule */
     bool count_only; /* no timing */
     RtOnly only;
+    double until; /* rounds go on until all intervals of ratios lie this near to their medians, as a part of
+                     them: 0.01; 0: as many rounds as the experiment says */
+    double patience; /* seconds that a kind of rays on a scene may take until then */
+    /* Files for what each ray met and cost (bench/ray_file.h), or NULL: of an experiment of one workload, one
+     * candidate without a stride, and one kind of rays. */
+    const char *hits, *counts;
     RtObserver observer;
+    /* Takes the place of the timing of one kind of rays, and of the null run, which there is none of; or
+     * NULL. */
+    RtStatus (*timer)(void *context, struct RtWorkloadState *workload, RtRayKind kind, RtError *error);
+    void *timer_context;
 } RtWorkloadOptions;
+
+/* Records the rays of workload number `index` on its scene, whose sampling it sets: at most the experiment's
+ * limit of each of its kinds, to sets[RT_RAY_KIND_COUNT]; or, where it has rays of a file, reads those.
+ * *reference is the exact accelerator that recorded them. Destroy and clear both, also after a failure. */
+RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
+                            RtAccel **reference, RtRaySet *sets, RtError *error);
 
 /* Whether nothing is unknown of the experiment's workload number `index`. */
 bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options);
+
+/* Opens the scene of a workload, which has to be there. The caller's: rt_scene_clear. */
+RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error);
 
 /* Opens its scene, which is the caller's: rt_scene_clear. Where it is optional and missing, it is empty, and
  * the workload is skipped with a notice. */

@@ -12,7 +12,17 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OPT_RESUME = 256, OPT_FORCE, OPT_QUICK, OPT_STRICT, OPT_DRY_RUN, OPT_ONLY, OPT_SHARD };
+enum {
+    OPT_RESUME = 256,
+    OPT_FORCE,
+    OPT_QUICK,
+    OPT_STRICT,
+    OPT_DRY_RUN,
+    OPT_ONLY,
+    OPT_SHARD,
+    OPT_UNTIL,
+    OPT_PATIENCE
+};
 
 typedef struct Options {
     const char *path, *out;
@@ -21,6 +31,7 @@ typedef struct Options {
     char only_text[3 * RT_MAX_LABEL];
     RtOnly only;
     int threads, timing;
+    double until, patience;
 } Options;
 
 static const struct argp_option options[] = {
@@ -35,6 +46,7 @@ static const struct argp_option options[] = {
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
      "counting on all; on several, wall time is compared",
      0},
+    RT_UNTIL_OPTIONS(OPT_UNTIL, OPT_PATIENCE),
     {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
     {"strict", OPT_STRICT, 0, 0, "Exit code 1 where a claim of the experiment (`expect`) does not hold", 0},
     {"dry-run", OPT_DRY_RUN, 0, 0,
@@ -79,6 +91,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case OPT_RESUME: o->start = RT_START_RESUME; return 0;
     case OPT_FORCE: o->start = RT_START_ANEW; return 0;
     case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
+    case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
+    case OPT_PATIENCE:
+        o->patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
+        return 0;
     case OPT_QUICK: o->quick = true; return 0;
     case OPT_STRICT: o->strict = true; return 0;
     case OPT_DRY_RUN: o->dry = true; return 0;
@@ -159,11 +175,13 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
 
 /* The command that goes on. */
 static void go_on(const Options *o, const char *directory, char *out, size_t room) {
-    char threads[32] = "", shard[32] = "";
+    char threads[32] = "", shard[32] = "", until[64] = "";
     if (o->timing != 1 || o->threads) snprintf(threads, sizeof threads, " --threads %d", o->threads);
     if (o->only.shards) snprintf(shard, sizeof shard, " --shard %u/%u", o->only.shard, o->only.shards);
-    snprintf(out, room, "raytally run %s --out %s%s%s%s --resume", o->path, directory,
-             o->quick ? " --quick" : "", threads, shard);
+    if (o->until > 0)
+        snprintf(until, sizeof until, " --until %g%% --patience %g", 100 * o->until, o->patience);
+    snprintf(out, room, "raytally run %s --out %s%s%s%s%s --resume", o->path, directory,
+             o->quick ? " --quick" : "", threads, shard, until);
 }
 
 static void print_all(const RtResults *results, const char *directory, bool report) {
@@ -194,6 +212,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     RtResults results;
     RT_TRY(rt_experiment_load(experiment, o->path, o->quick, error));
     RT_TRY(check_only(experiment, &o->only, error));
+    if (o->until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->only.shards)
         snprintf(directory, sizeof directory, "results/%s-%u-of-%u", experiment->name, o->only.shard,
                  o->only.shards);
@@ -202,7 +221,11 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     RtRunOptions how = {
         .directory = o->out ? o->out : directory,
         .start = o->start,
-        .workload = {.threads = o->threads, .timing = o->timing, .only = o->only},
+        .workload = {.threads = o->threads,
+                     .timing = o->timing,
+                     .only = o->only,
+                     .until = o->until,
+                     .patience = o->patience},
     };
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = o->dry ? dry_run(&results, &how, error) : measure(o, &results, &how, error);
@@ -211,7 +234,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
 }
 
 int rt_command_run(int argc, char **argv) {
-    Options o = {.timing = 1};
+    Options o = {.timing = 1, .patience = RT_PATIENCE};
     const struct argp argp = {.options = options,
                               .parser = parse_option,
                               .args_doc = "EXPERIMENT.yaml",

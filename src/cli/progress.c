@@ -60,7 +60,7 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
     snprintf(progress->doing, sizeof progress->doing, "%s%s%s%s%s: %s",
              experiment->workloads[event->workload].label, scene ? "" : " ",
              scene ? "" : rt_candidate_label(experiment, event->candidate), scene || build ? "" : " ",
-             scene || build ? "" : rt_ray_kind_name(event->kind), what[event->what]);
+             scene || build ? "" : rt_experiment_kind_name(experiment, event->kind), what[event->what]);
 }
 
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {

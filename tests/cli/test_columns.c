@@ -6,6 +6,7 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "bench/compare.h"
 #include "bench/extents_table.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
@@ -31,6 +32,12 @@ static RtTable of_published(RtPublishedTable which) {
     return rt_published_table(which, &cursor);
 }
 
+static RtTable of_comparison(void) {
+    static const RtComparison comparison = {0};
+    static RtComparedRow row = {.comparison = &comparison};
+    return rt_comparison_table(&row, true);
+}
+
 typedef struct Section {
     const char *title;
     bool csv;
@@ -38,7 +45,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 9 };
+enum { SECTIONS = 11 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -46,11 +53,13 @@ static void list(Section sections[SECTIONS]) {
     const Section all[SECTIONS] = {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
         {"times.csv", true, NULL, of_results(RT_TIMES)},
+        {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
         {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},
         {"best.csv", true, "results/havran-1999/best.csv", of_published(RT_BEST)},
         {"verify.csv", true, "results/verify/verify.csv", verify_csv},
         {"bench --json: rows", false, NULL, of_results(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, of_results(RT_NULL_RUNS)},
+        {"compare --json: cells", false, NULL, of_comparison()},
         {"verify --json: rows", false, NULL, verify_json},
         {"info --extents --json: extents.rows", false, NULL, extents},
     };
