@@ -218,7 +218,9 @@ static inline RtV16 rt_v16_ceil(RtV16 a) {
 static inline void rt_v16_truncate(int32_t *to, RtV16 a) {
     _mm512_store_si512(to, _mm512_cvttps_epi32(a));
 }
-#define rt_v16_half(a, half) _mm512_extractf32x8_ps(a, half)
+static inline __m256 rt_v16_half(RtV16 a, int half) {
+    return half ? _mm512_extractf32x8_ps(a, 1) : _mm512_castps512_ps256(a);
+}
 static inline RtV16 rt_v16_halves(__m256 lo, __m256 hi) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(lo), hi, 1);
 }
@@ -316,7 +318,9 @@ static inline void rt_v16_truncate(int32_t *to, RtV16 a) {
     rt_v8_put(to + 8, _mm256_cvttps_epi32(a.hi));
 }
 /* The lower eight, 0, or the upper, 1; and of both. */
-#define rt_v16_half(a, half) ((half) ? (a).hi : (a).lo)
+static inline __m256 rt_v16_half(RtV16 a, int half) {
+    return half ? a.hi : a.lo;
+}
 static inline RtV16 rt_v16_halves(__m256 lo, __m256 hi) {
     return (RtV16){lo, hi};
 }

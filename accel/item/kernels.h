@@ -170,12 +170,12 @@ RT_KERNEL D8 project8(const RtItemAim *aim, D8 q) {
 }
 
 /* `of` times `scale`, as the coefficients of (1, column, row) from the corner of the tile. */
-RT_KERNEL void put_function(float to[3][RT_ITEM_FACETS], int half, const RtItemPainter *p, D8 of,
+RT_KERNEL void put_function(float to[3][RT_ITEM_FACETS], size_t at, const RtItemPainter *p, D8 of,
                             RtD8 scale) {
     RtD8 corner = rt_d8_add(rt_d8_add(times8(of.at[0], p->column), times8(of.at[1], p->row)), of.at[2]);
-    rt_d8_put(&to[0][8 * half], rt_d8_mul(corner, scale));
-    rt_d8_put(&to[1][8 * half], rt_d8_mul(of.at[0], scale));
-    rt_d8_put(&to[2][8 * half], rt_d8_mul(of.at[1], scale));
+    rt_d8_put(&to[0][at], rt_d8_mul(corner, scale));
+    rt_d8_put(&to[1][at], rt_d8_mul(of.at[0], scale));
+    rt_d8_put(&to[2][at], rt_d8_mul(of.at[1], scale));
 }
 
 /* At least the length of the gradient of `of`, in units of slope, by a few per cent more. */
@@ -189,6 +189,7 @@ RT_KERNEL void make_half(const RtItemPainter *painter, RtV16 v[3][3], int half, 
     const RtItemAim *aim = &painter->buffer->aim;
     const double g = aim->longest, b = 0x1.01p-24 * g, product = aim->scale[0] * aim->scale[1] * g * g;
     const double coarse = 1 / fmin(aim->scale[0], aim->scale[1]);
+    const size_t at = half ? 8 : 0;
     D8 vertex[3];
     for (int i = 0; i < 3; i++) {
         for (int a = 0; a < 3; a++) vertex[i].at[a] = rt_d8_of(rt_v16_half(v[i][a], half));
@@ -215,25 +216,25 @@ RT_KERNEL void make_half(const RtItemPainter *painter, RtV16 v[3][3], int half, 
         D8 edge = cross8(p[i], d[i]);
         RtD8 scale = rt_d8_div(rt_d8_all(1), gradient8(aim, edge));
         steep = rt_d8_max(scale, steep);
-        put_function(f->edge[i], half, painter, edge, rt_d8_sign(scale, height));
+        put_function(f->edge[i], at, painter, edge, rt_d8_sign(scale, height));
     }
     RtD8 rounding = rt_d8_mul(times8(rt_d8_mul(far, lengths), 0x1p-40 * product), steep);
-    rt_d8_put(&f->doubt[0][8 * half], rt_d8_add(rounding, rt_d8_all(1.25 * g * b + 0x1p-14 * coarse)));
-    rt_d8_put(&f->doubt[1][8 * half], times8(far, 1.25 * g * 0.65 * 0x1p-20));
+    rt_d8_put(&f->doubt[0][at], rt_d8_add(rounding, rt_d8_all(1.25 * g * b + 0x1p-14 * coarse)));
+    rt_d8_put(&f->doubt[1][at], times8(far, 1.25 * g * 0.65 * 0x1p-20));
 
     RtD8 inverse = rt_d8_div(rt_d8_all(1), height);
-    put_function(f->depth, half, painter, normal, inverse);
+    put_function(f->depth, at, painter, normal, inverse);
     RtD8 slope = times8(rt_d8_mul(gradient8(aim, normal), rt_d8_abs(inverse)), g), e = times8(far, 0x1p-19);
     RtD8 none = rt_d8_add(times8(slope, 2 * b + 0x1p-13 * coarse), times8(rt_d8_div(rough, far), 4));
     RtD8 once = rt_d8_add(times8(rt_d8_add(rt_d8_mul(e, slope), rt_d8_all(b)), 2), times8(rough, 4));
-    rt_d8_put(&f->spread[0][8 * half], none);
-    rt_d8_put(&f->spread[1][8 * half], rt_d8_add(once, rt_d8_all(0x1p-19)));
-    rt_d8_put(&f->spread[2][8 * half], times8(e, 2));
+    rt_d8_put(&f->spread[0][at], none);
+    rt_d8_put(&f->spread[1][at], rt_d8_add(once, rt_d8_all(0x1p-19)));
+    rt_d8_put(&f->spread[2][at], times8(e, 2));
 
     /* Not known from which side it is seen: its edges say nothing either. */
     uint32_t known = rt_d8_at_most(rough, rt_d8_all(0x1p-4));
-    for (int k = 0; k < 8; k++) {
-        if (!(known >> k & 1)) f->doubt[0][8 * half + k] = f->spread[0][8 * half + k] = INFINITY;
+    for (size_t k = 0; k < 8; k++) {
+        if (!(known >> k & 1)) f->doubt[0][at + k] = f->spread[0][at + k] = INFINITY;
     }
 }
 
@@ -261,17 +262,19 @@ RT_KERNEL void make_grid(Grid *grid) {
     _Alignas(64) float at[2][RT_ITEM_LANES];
     for (int i = 0; i < RT_ITEM_TILE / RT_ITEM_BLOCK; i++) {
         for (int k = 0; k < RT_ITEM_LANES; k++) {
+            const int down = k / RT_ITEM_BLOCK;
             at[0][k] = (float)(i * RT_ITEM_BLOCK + k % RT_ITEM_BLOCK);
-            at[1][k] = (float)(i * RT_ITEM_BLOCK + k / RT_ITEM_BLOCK);
+            at[1][k] = (float)(i * RT_ITEM_BLOCK + down);
         }
         grid->along[i][0] = rt_v16_load(at[0]);
         grid->along[i][1] = rt_v16_load(at[1]);
     }
     for (int i = 0; i < RT_ITEM_BLOCKS / RT_ITEM_LANES; i++) {
         for (int k = 0; k < RT_ITEM_LANES; k++) {
-            int block = i * RT_ITEM_LANES + k, across = RT_ITEM_TILE / RT_ITEM_BLOCK;
+            const int block = i * RT_ITEM_LANES + k, across = RT_ITEM_TILE / RT_ITEM_BLOCK;
+            const int row = block / across * RT_ITEM_BLOCK;
             at[0][k] = (float)(block % across * RT_ITEM_BLOCK);
-            at[1][k] = (float)(block / across * RT_ITEM_BLOCK);
+            at[1][k] = (float)row;
         }
         grid->blocks[0] = rt_v16_load(at[0]);
         grid->blocks[1 + i] = rt_v16_load(at[1]);
@@ -369,7 +372,7 @@ RT_KERNEL uint64_t blocks_of(const RtItemPainter *p, const Grid *grid, const RtI
     const float last = RT_ITEM_BLOCK - 1;
     const RtV16 least = rt_v16_all(-(f->doubt[0][k] + f->doubt[1][k] * f->most[k]));
     uint64_t open = 0;
-    for (int i = 0; i < RT_ITEM_BLOCKS / RT_ITEM_LANES; i++) {
+    for (size_t i = 0; i < RT_ITEM_BLOCKS / RT_ITEM_LANES; i++) {
         uint32_t in = rt_v16_at_most(rt_v16_load(&p->tile.least[i * RT_ITEM_LANES]), rt_v16_all(f->most[k]));
         for (uint32_t e = 0; e < edges; e++) {
             RtV16 edge = function(f->edge[e], k, grid->blocks[0], grid->blocks[1 + i]);

@@ -49,8 +49,8 @@ typedef struct RtItemTile {
 
 /* A thread that draws tiles. */
 typedef struct RtItemPainter {
-    const RtItemBuffer *buffer;
     RtItemTile tile;
+    const RtItemBuffer *buffer;
     uint32_t column, row;   /* the tile's upper left sample */
     uint32_t columns, rows; /* of it that are in the image */
     RtCrossing *room;       /* of hit functions */
