@@ -505,33 +505,33 @@ typedef struct Question {
     Passed passed;
 } Question;
 
-RT_KERNEL void pass_waiting(Question *q) {
+RT_KERNEL void pass_waiting(Question *q, RtTally *tallies) {
     Passed *p = &q->passed;
     RtHit hits[PASSED];
-    if (q->tallies) q->tallies[RT_RAY_PRIMARY].passed_on += p->count;
-    rt_hand_down_nearest(&q->buffer->isa.base, q->scratch, p->ray, p->count, hits, q->tallies);
+    if (tallies) tallies[RT_RAY_PRIMARY].passed_on += p->count;
+    rt_hand_down_nearest(&q->buffer->isa.base, q->scratch, p->ray, p->count, hits, tallies);
     for (uint32_t i = 0; i < p->count; i++) q->hits[p->place[i]] = hits[i];
     p->count = 0;
 }
 
-RT_KERNEL void pass_on(Question *q, size_t i) {
+RT_KERNEL void pass_on(Question *q, size_t i, RtTally *tallies) {
     Passed *p = &q->passed;
     p->ray[p->count] = q->rays[i];
     p->place[p->count++] = i;
-    if (p->count == PASSED) pass_waiting(q);
+    if (p->count == PASSED) pass_waiting(q, tallies);
 }
 
 /* The object that its sample names is hit, or, against all expectation, missed. */
-RT_KERNEL void answer(Question *q, size_t i, RtHit hit) {
-    RtTally *tally = q->tallies ? &q->tallies[RT_RAY_PRIMARY] : NULL;
+RT_KERNEL void answer(Question *q, size_t i, RtHit hit, RtTally *tallies) {
+    RtTally *tally = tallies ? &tallies[RT_RAY_PRIMARY] : NULL;
     if (hit.object == RT_NO_OBJECT)
-        pass_on(q, i);
+        pass_on(q, i, tallies);
     else
         q->hits[i] = rt_answer_nearest(hit, tally);
 }
 
 /* Tests up to sixteen rays, all from the eye. */
-RT_KERNEL void test_waiting(Question *q) {
+RT_KERNEL void test_waiting(Question *q, RtTally *tallies) {
     const RtItemBuffer *buffer = q->buffer;
     Waiting *w = &q->waiting;
     _Alignas(64) float t[RT_ITEM_LANES];
@@ -549,12 +549,12 @@ RT_KERNEL void test_waiting(Question *q) {
     rt_pairs_gather(w->triangle, pairs.v);
     uint32_t hit = rt_pairs_hit(&pairs, &at);
     rt_v16_store(t, at);
-    if (q->tallies) {
-        q->tallies[RT_RAY_PRIMARY].object_tests += w->count;
-        q->tallies[RT_RAY_PRIMARY].object_hits += (uint32_t)__builtin_popcount(hit & ((1u << w->count) - 1));
+    if (tallies) {
+        tallies[RT_RAY_PRIMARY].object_tests += w->count;
+        tallies[RT_RAY_PRIMARY].object_hits += (uint32_t)__builtin_popcount(hit & ((1u << w->count) - 1));
     }
     for (uint32_t k = 0; k < w->count; k++)
-        answer(q, w->ray[k], hit >> k & 1 ? (RtHit){t[k], w->id[k]} : RT_MISS);
+        answer(q, w->ray[k], hit >> k & 1 ? (RtHit){t[k], w->id[k]} : RT_MISS, tallies);
     w->count = 0;
 }
 
@@ -589,7 +589,6 @@ RT_KERNEL void see(const RtAccel *accel, const RtScratch *scratch, const RtRay *
     q.scratch = scratch;
     q.rays = rays;
     q.hits = hits;
-    q.tallies = tallies;
     q.reciprocal = UINT64_MAX / self->view.sampling.columns + 1;
     q.waiting.count = q.passed.count = 0;
     const bool mixed = g->triangle_count < g->object_count;
@@ -598,7 +597,7 @@ RT_KERNEL void see(const RtAccel *accel, const RtScratch *scratch, const RtRay *
     for (size_t i = 0; i < count; i++) {
         const RtRay *ray = &rays[i];
         if (!is_of_sample(self, ray, org, q.reciprocal)) {
-            pass_on(&q, i);
+            pass_on(&q, i, tallies);
             continue;
         }
         uint32_t id = self->samples[ray->source], triangle = id;
@@ -607,7 +606,7 @@ RT_KERNEL void see(const RtAccel *accel, const RtScratch *scratch, const RtRay *
         if (id == RT_NO_OBJECT) {
             hits[i] = rt_answer_nearest(RT_MISS, tally);
         } else if (id == RT_ITEM_UNDECIDED) {
-            pass_on(&q, i);
+            pass_on(&q, i, tallies);
         } else if (mixed ? is_triangle(g, id, &triangle) : true) {
             Waiting *w = &q.waiting;
             const RtTriangle *at = &g->triangles[triangle];
@@ -617,17 +616,17 @@ RT_KERNEL void see(const RtAccel *accel, const RtScratch *scratch, const RtRay *
             w->dir[w->count] = ray->dir.at;
             w->id[w->count] = id;
             w->ray[w->count++] = (uint32_t)i;
-            if (w->count == RT_ITEM_LANES) test_waiting(&q);
+            if (w->count == RT_ITEM_LANES) test_waiting(&q, tallies);
         } else {
             RtPreparedRay prepared;
             RtHit hit = RT_MISS;
             rt_hit_ray(&prepared, g, ray, scratch->room);
             rt_test_object(g, id, &prepared, false, &hit, tally);
-            answer(&q, i, hit);
+            answer(&q, i, hit, tallies);
         }
     }
-    if (q.waiting.count > 0) test_waiting(&q);
-    if (q.passed.count > 0) pass_waiting(&q);
+    if (q.waiting.count > 0) test_waiting(&q, tallies);
+    if (q.passed.count > 0) pass_waiting(&q, tallies);
 }
 
 /* Rays looked at before they are answered: they are read from memory once. */
