@@ -304,7 +304,7 @@ static RtStatus draw_tile(void *context, size_t item, int thread, RtError *error
     painting->paint(&easel->painter, own, count);
     RT_TRY(add_curved(easel, easel->large, large, &curved, error));
     RT_TRY(add_curved(easel, own, count, &curved, error));
-    qsort(easel->curved, curved, sizeof(Curved), compare_curved);
+    if (curved > 0) qsort(easel->curved, curved, sizeof(Curved), compare_curved);
     for (uint32_t i = 0; i < curved; i++) rt_item_paint_curved(&easel->painter, easel->curved[i].id);
     rt_item_end_tile(&easel->painter);
     return RT_OK;
