@@ -1,45 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building a light buffer: objects in order of depth, the covers of cells, and the lists in two passes.
- *
- * Why the lists are complete. A hit on an object at t means (base/ray.h) that the ray's point at t is in the
- * object's box but for the thickness and a few roundings: 2^-20 of the distance from the ray's origin, 2^-22
- * of the length of dir, 2^-22 of the coordinates. dir is the difference of light and origin in float32, so
- * the ray's point is off the true segment by another 2^-24 of its length. For origins inside `domain` all of
- * these are below
- *
- *     margin = 2^-18 * reach + 2^-20 * farthest,
- *
- * with reach the largest side of the box around domain and light, and farthest its largest coordinate. So the
- * true segment meets the box grown by the margin, at a depth between 0 and that of the origin, and in the
- * cell of the segment's direction, whose u and w are known to 2^-22. A sphere's hit function computes in
- * double: the distance of the line from its centre is at most its radius + 2^-24 of the distance from the
- * origin. */
+/* Building a light buffer: margins, grids and how fine they are, near lists; then light by light what falls
+ * into the tiles (bins.c) and their lists (tile.c). */
 #include "accel/light/light.h"
 
 #include "base/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT] = {RT_LIGHT_PARAMS(RT_PARAM_ENTRY)};
-
-static int compare_entries(const void *a, const void *b) {
-    const RtLightEntry *x = a, *y = b;
-    if (x->depth != y->depth) return x->depth < y->depth ? -1 : 1;
-    return x->id < y->id ? -1 : x->id > y->id;
-}
-
-uint32_t rt_light_order(const RtLightBuffer *buffer, uint32_t light, int face, RtLightEntry *order) {
-    uint32_t count = 0;
-    for (uint32_t id = 0; id < buffer->base.scene->geometry.object_count; id++) {
-        RtLightFootprint footprint;
-        if (rt_light_is_near(buffer, light, id)) continue;
-        if (!rt_light_footprint(buffer, light, face, id, &footprint)) continue;
-        order[count++] = (RtLightEntry){footprint.depth, id};
-    }
-    qsort(order, count, sizeof *order, compare_entries);
-    return count;
-}
 
 /* ---- margins ---- */
 
@@ -55,210 +23,202 @@ static RtBox choose_domain(const RtScene *scene) {
     return box;
 }
 
-static RtStatus make_margins(RtLightBuffer *buffer, RtError *error) {
+static RtStatus make_cubes(RtLightBuffer *buffer, RtError *error) {
     const RtScene *scene = buffer->base.scene;
-    buffer->margin = rt_alloc(scene->light_count, sizeof(double));
-    if (!buffer->margin) return rt_fail_memory(error, "a light buffer", scene->light_count * sizeof(double));
+    buffer->cubes = rt_alloc(scene->light_count, sizeof(RtLightCube));
+    if (!buffer->cubes)
+        return rt_fail_memory(error, "a light buffer", scene->light_count * sizeof(RtLightCube));
     buffer->domain = choose_domain(scene);
     for (uint32_t i = 0; i < scene->light_count; i++) {
         RtBox all = rt_box_add_point(buffer->domain, scene->lights[i].position);
-        buffer->margin[i] = 0x1p-18 * rt_box_longest_side(all) + 0x1p-20 * rt_box_largest_coordinate(all);
+        buffer->cubes[i].margin =
+            0x1p-18 * rt_box_longest_side(all) + 0x1p-20 * rt_box_largest_coordinate(all);
     }
     return RT_OK;
 }
 
-/* ---- lists ---- */
+/* ---- how fine ---- */
 
-/* One face of one light, its objects in order. */
-typedef struct Face {
-    RtLightBuffer *buffer;
-    uint32_t light;
-    int face;
-    size_t first_cell;
-    const RtLightEntry *order;
-    uint32_t count;
-} Face;
+/* The part of a face that sees the scene, and what is known of the objects seen there. */
+typedef struct Outlook {
+    RtLightView view;
+    double objects, sides, areas; /* sums of 1, width + height, and width * height, in u and w */
+} Outlook;
 
-static void cover_cells(const Face *f) {
-    RtLightBuffer *buffer = f->buffer;
-    for (uint32_t i = 0; i < f->count; i++) {
-        uint32_t id = f->order[i].id;
-        RtLightFootprint at;
-        rt_light_footprint(buffer, f->light, f->face, id, &at);
-        for (uint32_t row = at.lo[1]; row <= at.hi[1]; row++) {
-            for (uint32_t column = at.lo[0]; column <= at.hi[0]; column++) {
-                RtLightCover *cover = &buffer->covers[f->first_cell + (size_t)row * buffer->n + column];
-                float depth;
-                if (cover->depth <= at.depth) continue;
-                if (!rt_light_covers(buffer, f->light, f->face, id, column, row, &depth)) continue;
-                if (depth < cover->depth) *cover = (RtLightCover){depth, id};
-            }
-        }
-    }
-}
+enum { SAMPLE = 4096 };
 
-/* Adds 1 to slot[k] for every cell k of the face that an object belongs to; where there are entries, stores
- * the object at the slot before. Called twice: to count the lists, and to fill them. */
-static void scatter(const Face *f, uint32_t *slot, uint64_t *sum) {
-    RtLightBuffer *buffer = f->buffer;
-    for (uint32_t i = 0; i < f->count; i++) {
-        RtLightEntry entry = f->order[i];
-        RtLightFootprint at;
-        rt_light_footprint(buffer, f->light, f->face, entry.id, &at);
-        for (uint32_t row = at.lo[1]; row <= at.hi[1]; row++) {
-            for (uint32_t column = at.lo[0]; column <= at.hi[0]; column++) {
-                size_t cell = f->first_cell + (size_t)row * buffer->n + column;
-                if (buffer->covers && entry.depth > buffer->covers[cell].depth) continue;
-                if (!rt_light_touches(buffer, f->light, f->face, entry.id, column, row)) continue;
-                if (buffer->entries) buffer->entries[slot[cell]] = entry;
-                slot[cell]++;
-                ++*sum;
-            }
-        }
-    }
-}
-
-typedef enum Pass { COVER, COUNT, FILL } Pass;
-
-static uint64_t go_over_faces(RtLightBuffer *buffer, RtLightEntry *order, Pass pass) {
-    uint64_t sum = 0;
-    for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
+/* From every kth object. */
+static void look_at_objects(const RtLightBuffer *buffer, uint32_t light, Outlook outlooks[6]) {
+    const RtGeometry *g = &buffer->base.scene->geometry;
+    uint32_t stride = g->object_count / SAMPLE + 1;
+    for (uint32_t id = 0; id < g->object_count; id += stride) {
+        if (rt_light_is_near(buffer, light, id)) continue;
         for (int face = 0; face < 6; face++) {
-            Face f = {buffer, light, face, rt_light_face(buffer, light, face), order, 0};
-            f.count = rt_light_order(buffer, light, face, order);
-            if (pass == COVER) {
-                cover_cells(&f);
-            } else {
-                scatter(&f, buffer->first, &sum);
-            }
+            Outlook *o = &outlooks[face];
+            RtLightView v;
+            if (o->view.far <= 0 || !rt_light_view(buffer, light, face, &g->boxes[id], &v)) continue;
+            double width = v.hi[0] - v.lo[0], height = v.hi[1] - v.lo[1];
+            o->objects += stride;
+            o->sides += stride * (width + height);
+            o->areas += stride * width * height;
         }
     }
-    return sum;
 }
 
-/* Sums over all footprints, from one pass over the objects. */
-typedef struct Extent {
-    double cells, sides, count; /* width * height, width + height, 1; in cells */
-    double near;                /* entries of near lists */
-} Extent;
-
-static Extent measure_footprints(const RtLightBuffer *buffer) {
-    const RtScene *scene = buffer->base.scene;
-    Extent sum = {0};
-    for (uint32_t light = 0; light < scene->light_count; light++) {
-        for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
-            RtLightFootprint at;
-            bool near = rt_light_is_near(buffer, light, id);
-            sum.near += near;
-            for (int face = 0; !near && face < 6; face++) {
-                if (!rt_light_footprint(buffer, light, face, id, &at)) continue;
-                double width = at.hi[0] - at.lo[0] + 1.0, height = at.hi[1] - at.lo[1] + 1.0;
-                sum.cells += width * height;
-                sum.sides += width + height;
-                sum.count += 1;
-            }
-        }
+/* Cells per 1 of u and w. An object of width x and height y is in about
+ *
+ *     (x scale + 1) (y scale + 1)
+ *
+ * cells, of which x y scale^2 are the share of its area: what is above that, in relation to it, is what fine
+ * cells bring down, and memory and time of the build what they cost. */
+static double choose_scale(const Outlook *o, double margin) {
+    const double surplus = 1.5, most_cells = 0x1p22, cells_an_object = 8;
+    double width = o->view.hi[0] - o->view.lo[0], height = o->view.hi[1] - o->view.lo[1];
+    double fine = 0x1p-6 / (0x1p-19 + 4 * margin / fmax(o->view.far, margin)); /* cells 64 times as wide as errors */
+    double longer = fmax(width, height), scale = 64 / longer;
+    if (o->areas > 0) {
+        double a = surplus * o->areas;
+        scale = (o->sides + sqrt(o->sides * o->sides + 4 * a * o->objects)) / (2 * a);
     }
-    return sum;
+    double most = fmin(most_cells, 4096 + cells_an_object * o->objects);
+    scale = fmin(scale, sqrt(most / (width * height)));
+    scale = fmin(scale, fine);
+    scale = fmin(scale, 4095 / longer);
+    return fmax(scale, 1 / longer);
 }
 
-/* At least as many list entries as there will be with n cells along an edge, at most as many as asked for:
- * what is within k cells is within k n / asked of the wider ones, and these may be cut at both ends. */
-static double bound_references(const RtLightBuffer *buffer, const Extent *sum, uint32_t n) {
-    double part = (double)n / buffer->n, cut = n < buffer->n ? 2 : 0;
-    return sum->near + part * part * sum->cells + part * cut * sum->sides + cut * cut * sum->count;
+static void make_grid(const RtLightBuffer *buffer, const Outlook *o, double cells, double margin,
+                      RtLightGrid *grid) {
+    *grid = (RtLightGrid){.columns = 0};
+    if (o->view.far <= 0) return;
+    double width = o->view.hi[0] - o->view.lo[0], height = o->view.hi[1] - o->view.lo[1];
+    double scale = cells > 0 ? cells / fmax(width, height) : choose_scale(o, margin);
+    (void)buffer;
+    grid->u = rt_float_below(o->view.lo[0]);
+    grid->w = rt_float_below(o->view.lo[1]);
+    grid->scale = (float)scale;
+    /* Never a cell too few: what rounding adds is less than half of one. */
+    grid->columns = (uint32_t)fmax(ceil((o->view.hi[0] - (double)grid->u) * (double)grid->scale - 0x1p-8), 1);
+    grid->rows = (uint32_t)fmax(ceil((o->view.hi[1] - (double)grid->w) * (double)grid->scale - 0x1p-8), 1);
+    grid->across = (grid->columns + RT_LIGHT_TILE - 1) / RT_LIGHT_TILE;
+    grid->depth = rt_float_below(o->view.near);
+    grid->depth_scale = (float)((RT_LIGHT_DEPTHS - 1) / (o->view.far - (double)grid->depth));
 }
 
-/* Bytes of the arrays, and of one query's memory; infinite if list entries cannot be numbered. */
-static double bound_bytes(const RtLightBuffer *buffer, const Extent *sum, uint32_t n) {
-    double references = bound_references(buffer, sum, n);
-    size_t a_cell = sizeof(uint32_t) + (buffer->full_occlusion ? sizeof(RtLightCover) : 0) +
-                    (buffer->cache ? sizeof(RtLightMemory) : 0);
-    if (!(references < UINT32_MAX)) return INFINITY;
-    return 6.0 * n * n * buffer->base.scene->light_count * (double)a_cell +
-           references * (double)sizeof(RtLightEntry);
+static double tiles_of(const RtLightGrid *grid) {
+    return (double)grid->across * ((grid->rows + RT_LIGHT_TILE - 1) / RT_LIGHT_TILE);
 }
 
-/* Before anything is made or gone over: a cell too many costs time as well. */
-static RtStatus refuse_size(const RtLightBuffer *buffer, RtError *error) {
-    const double most = (double)RT_ACCEL_MAX_BYTES;
-    Extent sum = measure_footprints(buffer);
-    if (bound_bytes(buffer, &sum, buffer->n) <= most) return RT_OK;
-    uint32_t fits = 1, too_many = buffer->n;
+/* Sets the grids of a light for `cells` along the longer edge, 0 to choose; gives the number of tiles. */
+static double make_grids(RtLightBuffer *buffer, uint32_t light, const Outlook outlooks[6], double cells) {
+    RtLightCube *cube = &buffer->cubes[light];
+    double tiles = 0;
+    for (int face = 0; face < 6; face++) {
+        RtLightGrid *grid = &cube->grids[face];
+        make_grid(buffer, &outlooks[face], cells, cube->margin, grid);
+        grid->first_tile = (uint32_t)tiles;
+        tiles += grid->columns > 0 ? tiles_of(grid) : 0;
+    }
+    cube->tile_count = (uint32_t)tiles;
+    return tiles;
+}
+
+/* ---- how many fit ---- */
+
+/* A buffer must have room for so much: a list's place, and two entries. */
+enum { LEAST_OF_CELL = sizeof(uint32_t) + 2 * sizeof(RtLightEntry) };
+
+static double make_all_grids(RtLightBuffer *buffer, const Outlook *outlooks, double cells) {
+    double tiles = 0;
+    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++)
+        tiles += make_grids(buffer, i, outlooks + 6 * (size_t)i, cells);
+    return tiles * RT_LIGHT_TILE_CELLS;
+}
+
+/* Grids of all lights; where they are to be chosen, as many cells as there is room for. */
+static RtStatus fit_grids(RtLightBuffer *buffer, const Outlook *outlooks, double limit, double *cells,
+                          RtError *error) {
+    uint32_t lights = buffer->base.scene->light_count, fits = 0, too_many = 4097;
+    *cells = make_all_grids(buffer, outlooks, buffer->cells);
+    if (*cells * LEAST_OF_CELL <= limit) return RT_OK;
+    if (buffer->cells > 0) too_many = buffer->cells;
     while (too_many - fits > 1) {
         uint32_t n = fits + (too_many - fits) / 2;
-        *(bound_bytes(buffer, &sum, n) <= most ? &fits : &too_many) = n;
+        *(make_all_grids(buffer, outlooks, n) * LEAST_OF_CELL <= limit ? &fits : &too_many) = n;
     }
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "a light buffer of %u x %u cells a face for %u lights with up to %.3g list entries would take "
-        "more than %.0f GiB: cells=%u would fit",
-        buffer->n, buffer->n, buffer->base.scene->light_count, bound_references(buffer, &sum, buffer->n),
-        most / 0x1p30, fits);
+    if (buffer->cells == 0 && fits > 0) {
+        *cells = make_all_grids(buffer, outlooks, fits);
+        return RT_OK;
+    }
+    return rt_fail(error, RT_BAD_INPUT,
+                   "a light buffer of %u cells along the edge of a face for %u lights would take more than %.3g "
+                   "GiB: cells=%u would fit",
+                   buffer->cells, lights, limit / 0x1p30, fits);
 }
 
-static RtStatus make_near_lists(RtLightBuffer *buffer, RtError *error) {
+static RtStatus choose_grids(RtLightBuffer *buffer, double limit, double *cells, RtError *error) {
     const RtScene *scene = buffer->base.scene;
-    buffer->near_first = rt_alloc(scene->light_count + (size_t)1, sizeof(uint32_t));
-    if (!buffer->near_first)
-        return rt_fail_memory(error, "a light buffer", scene->light_count * sizeof(uint32_t));
-    for (int fill = 0; fill < 2; fill++) {
-        uint64_t count = 0;
-        for (uint32_t light = 0; light < scene->light_count; light++) {
-            for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
-                if (!rt_light_is_near(buffer, light, id)) continue;
-                if (fill) buffer->near[count] = id;
-                count++;
-            }
-            buffer->near_first[light + 1] = (uint32_t)count;
+    Outlook *outlooks = rt_alloc(6 * (size_t)scene->light_count, sizeof(Outlook));
+    if (!outlooks) return rt_fail_memory(error, "a light buffer", 6 * scene->light_count * sizeof(Outlook));
+    for (uint32_t i = 0; scene->geometry.object_count > 0 && i < scene->light_count; i++) {
+        for (int face = 0; face < 6; face++) {
+            RtLightView *view = &outlooks[6 * i + (uint32_t)face].view;
+            if (!rt_light_view(buffer, i, face, &scene->geometry.box, view)) view->far = 0;
         }
-        if (fill) break;
-        buffer->near = rt_alloc(count, sizeof(uint32_t));
-        if (!buffer->near)
-            return rt_fail_memory(error, "the lists of a light buffer", count * sizeof(uint32_t));
+        look_at_objects(buffer, i, outlooks + 6 * (size_t)i);
     }
-    return RT_OK;
+    RtStatus status = fit_grids(buffer, outlooks, limit, cells, error);
+    rt_free(outlooks);
+    return status;
 }
 
-static RtStatus make_lists(RtLightBuffer *buffer, RtLightEntry *order, RtError *error) {
-    size_t cells = rt_light_cell_count(buffer);
-    buffer->first = rt_alloc(cells + 1, sizeof(uint32_t));
-    if (buffer->full_occlusion) buffer->covers = rt_alloc(cells, sizeof(RtLightCover));
-    if (!buffer->first || (buffer->full_occlusion && !buffer->covers)) {
-        return rt_fail_memory(error, "the cells of a light buffer", cells * (4 + sizeof(RtLightCover)));
+/* ---- near lists ---- */
+
+static RtStatus make_near_list(RtLightBuffer *buffer, uint32_t light, RtError *error) {
+    const RtGeometry *g = &buffer->base.scene->geometry;
+    RtLightCube *cube = &buffer->cubes[light];
+    uint32_t capacity = 0;
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        if (!rt_light_is_near(buffer, light, id)) continue;
+        RT_TRY(rt_reserve(&cube->near, &capacity, cube->near_count + UINT64_C(1), sizeof(uint32_t), error));
+        cube->near[cube->near_count++] = id;
     }
-    if (buffer->covers) {
-        for (size_t i = 0; i < cells; i++) buffer->covers[i] = (RtLightCover){INFINITY, RT_NO_OBJECT};
-        go_over_faces(buffer, order, COVER);
-    }
-    uint64_t references = go_over_faces(buffer, order, COUNT);
-    buffer->entries = rt_alloc(references, sizeof(RtLightEntry));
-    if (!buffer->entries) {
-        return rt_fail_memory(error, "the lists of a light buffer", references * sizeof(RtLightEntry));
-    }
-    /* Ends of lists; the fill pass, after which first[k] is the end of list k: shift by one. */
-    uint32_t sum = 0;
-    for (size_t i = 0; i <= cells; i++) {
-        uint32_t length = buffer->first[i];
-        buffer->first[i] = sum;
-        sum += length;
-    }
-    go_over_faces(buffer, order, FILL);
-    memmove(buffer->first + 1, buffer->first, cells * sizeof(uint32_t));
-    buffer->first[0] = 0;
     return RT_OK;
 }
 
 /* ---- build and destroy ---- */
 
+static RtStatus make_light(RtLightBuffer *buffer, uint32_t light, uint32_t most_of_tile, int threads,
+                           RtError *error) {
+    RtLightBins bins = {NULL, NULL};
+    RtStatus status = make_near_list(buffer, light, error);
+    if (status == RT_OK) status = rt_light_fill_bins(buffer, light, threads, &bins, error);
+    if (status == RT_OK) status = rt_light_make_lists(buffer, light, &bins, most_of_tile, threads, error);
+    rt_free(bins.first);
+    rt_free(bins.objects);
+    buffer->cubes[light].serves = status == RT_OK;
+    return status;
+}
+
+static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError *error) {
+    double cells = 0, limit = (double)what->limit;
+    RT_TRY(choose_grids(buffer, limit, &cells, error));
+    double most = (limit - cells * (double)sizeof(uint32_t)) / sizeof(RtLightEntry);
+    most = fmin(most, 0x1p30) * RT_LIGHT_TILE_CELLS / fmax(cells, 1);
+    uint32_t most_of_tile = (uint32_t)fmin(most, 0x1p30);
+    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++)
+        RT_TRY(make_light(buffer, i, most_of_tile, what->threads, error));
+    return RT_OK;
+}
+
 void rt_light_destroy(RtAccel *accel) {
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
-    rt_free(buffer->margin);
-    rt_free(buffer->first);
-    rt_free(buffer->entries);
-    rt_free(buffer->covers);
-    rt_free(buffer->near_first);
-    rt_free(buffer->near);
+    for (uint32_t i = 0; buffer->cubes && i < accel->scene->light_count; i++) {
+        rt_free(buffer->cubes[i].first);
+        rt_free(buffer->cubes[i].entries);
+        rt_free(buffer->cubes[i].near);
+    }
+    rt_free(buffer->cubes);
     rt_free(buffer);
 }
 
@@ -267,17 +227,12 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtLightBuffer), &accel, error));
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
-    buffer->n = (uint32_t)values[RT_LIGHT_CELLS].i;
+    buffer->cells = (uint32_t)values[RT_LIGHT_CELLS].i;
+    buffer->longest = (uint32_t)values[RT_LIGHT_LONGEST].i;
     buffer->full_occlusion = values[RT_LIGHT_FULL_OCCLUSION].flag;
     buffer->extents = values[RT_LIGHT_EXTENTS].flag;
-    buffer->cache = values[RT_LIGHT_CACHE].flag;
-    uint32_t objects = what->scene->geometry.object_count;
-    RtLightEntry *order = rt_alloc(objects, sizeof *order);
-    RtStatus status = order ? RT_OK : rt_fail_memory(error, "a light buffer", objects * sizeof *order);
-    if (status == RT_OK) status = make_margins(buffer, error);
-    if (status == RT_OK) status = refuse_size(buffer, error);
-    if (status == RT_OK) status = make_near_lists(buffer, error);
-    if (status == RT_OK) status = make_lists(buffer, order, error);
-    rt_free(order);
+    buffer->kernels = rt_light_kernels(rt_isa_best());
+    RtStatus status = make_cubes(buffer, error);
+    if (status == RT_OK) status = make_lights(buffer, what, error);
     return rt_accel_built(accel, status, out);
 }

@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Answering shadow rays in streams; included once for each instruction set: RT_LIGHT_KERNELS is the name of
+ * the table that is defined.
+ *
+ * Of a stream a block of rays is taken at a time, light by light. First each ray finds its cell, sixteen in
+ * lanes. Then the rays that have a list go through it in rounds, an entry a round: those whose entry is not
+ * deeper and has them in its box make pairs of a ray and an object, which are tested in lanes where they are
+ * triangles. Who is blocked, or at the end of its list, drops out. What a ray does depends on no other, so
+ * that counts are the same in streams of any length. Rays at the end of a list that was cut, and those that
+ * are not exactly what a shadow ray is, are passed on together.
+ *
+ * A step is an entry looked at that is not deeper than the ray; an extent test is that of its box. */
+#include "accel/light/light.h"
+#include "accel/light/raster.h"
+
+#include <string.h>
+
+enum { BLOCK = 1024 };
+
+/* Rays on their way through lists: number in the block, the next entry and the end, key. */
+typedef struct Way {
+    uint32_t ray[BLOCK + 16], at[BLOCK + 16], end[BLOCK + 16], key[BLOCK + 16];
+} Way;
+
+typedef struct Stream {
+    Way way;
+    uint32_t pair_ray[BLOCK + 16], pair_object[BLOCK + 16];
+    uint32_t passed[BLOCK + 16], passed_count;
+    uint32_t passed_blockers[BLOCK];
+    RtRay passed_rays[BLOCK];
+} Stream;
+
+/* What all rays of a block share. */
+typedef struct Asking {
+    const RtLightBuffer *self;
+    const RtScratch *scratch;
+    Stream *stream;
+    const RtRay *rays;
+    uint32_t *blockers;
+    RtTally *tally;
+} Asking;
+
+/* ---- from rays to cells ---- */
+
+/* Sixteen rays to one light, or fewer. */
+typedef struct Sixteen {
+    const RtRay *ray[16];
+    RtV16 org[3], dir[3], tmax;
+} Sixteen;
+
+RT_KERNEL void load_rays(const Asking *a, const uint32_t *order, uint32_t count, Sixteen *s) {
+    const float *from[16];
+    RtV16 four[4];
+    for (uint32_t i = 0; i < 16; i++) {
+        s->ray[i] = &a->rays[order[i < count ? i : 0]];
+        from[i] = &s->ray[i]->org.x;
+    }
+    rt_v16_columns(from, four);
+    for (int k = 0; k < 3; k++) s->org[k] = four[k];
+    for (int i = 0; i < 16; i++) from[i] = &s->ray[i]->dir.x;
+    rt_v16_columns(from, four);
+    for (int k = 0; k < 3; k++) s->dir[k] = four[k];
+    s->tmax = four[3];
+}
+
+RT_KERNEL uint32_t equal(RtV16 a, RtV16 b) {
+    return rt_v16_at_most(a, b) & rt_v16_at_most(b, a);
+}
+
+/* Those that the lists are made for. */
+RT_KERNEL uint32_t to_light(const RtLightBuffer *self, uint32_t light, const Sixteen *s) {
+    const RtVec3 position = self->base.scene->lights[light].position;
+    uint32_t good = rt_v16_at_most(s->tmax, rt_v16_all(1));
+    for (int a = 0; a < 3; a++) {
+        good &= equal(s->dir[a], rt_v16_sub(rt_v16_all(position.at[a]), s->org[a]));
+        good &= rt_v16_at_most(rt_v16_all(self->domain.lo.at[a]), s->org[a]);
+        good &= rt_v16_at_most(s->org[a], rt_v16_all(self->domain.hi.at[a]));
+    }
+    return good;
+}
+
+/* Puts the rays of `lanes`, which see the light from its face, on their way. */
+RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const Sixteen *s, uint32_t lanes,
+                               const uint32_t *order, Way *way, uint32_t count) {
+    const RtLightGrid *grid = &cube->grids[face];
+    const int z = face / 2, x = (z + 1) % 3, y = (z + 2) % 3;
+    const RtV16 zero = rt_v16_all(0), scale = rt_v16_all(grid->scale);
+    if (grid->columns == 0) return count;
+    RtV16 inv = rt_v16_div(rt_v16_all(1), s->dir[z]);
+    RtV16 u = rt_v16_mul(s->dir[x], inv), w = rt_v16_mul(s->dir[y], inv);
+    if (face % 2 == 0) u = rt_v16_sub(zero, u), w = rt_v16_sub(zero, w);
+    u = rt_v16_mul(rt_v16_sub(u, rt_v16_all(grid->u)), scale);
+    w = rt_v16_mul(rt_v16_sub(w, rt_v16_all(grid->w)), scale);
+    lanes &= rt_v16_at_most(zero, u) & ~rt_v16_at_most(rt_v16_all((float)grid->columns), u);
+    lanes &= rt_v16_at_most(zero, w) & ~rt_v16_at_most(rt_v16_all((float)grid->rows), w);
+    if (!lanes) return count;
+
+    const RtV16 last_u = rt_v16_all((float)(grid->columns - 1)), last_w = rt_v16_all((float)(grid->rows - 1));
+    RtW16 column = rt_w16_truncate(rt_v16_min(rt_v16_max(u, zero), last_u));
+    RtW16 row = rt_w16_truncate(rt_v16_min(rt_v16_max(w, zero), last_w));
+    const RtW16 in_tile = rt_w16_all(RT_LIGHT_TILE - 1), seven = rt_w16_all(7);
+    RtV16 tile_row = rt_v16_of_words(rt_w16_right(row, 5)); /* exact in float32 */
+    RtW16 cell = rt_w16_truncate(rt_v16_mul(tile_row, rt_v16_all((float)grid->across)));
+    cell = rt_w16_add(rt_w16_add(cell, rt_w16_right(column, 5)), rt_w16_all(grid->first_tile));
+    cell = rt_w16_or(rt_w16_left(cell, 5), rt_w16_and(row, in_tile));
+    cell = rt_w16_or(rt_w16_left(cell, 5), rt_w16_and(column, in_tile));
+    cell = rt_w16_pick(lanes, rt_w16_all(0), cell);
+    RtW16 at = rt_w16_lookup(cube->first, cell), end = rt_w16_lookup(cube->first + 1, cell);
+    lanes &= rt_w16_below(at, end);
+
+    RtV16 depth = rt_v16_abs(s->dir[z]);
+    depth = rt_v16_add(depth, rt_v16_mul(depth, rt_v16_all(0x1p-22f)));
+    depth = rt_v16_mul(rt_v16_sub(depth, rt_v16_all(grid->depth)), rt_v16_all(grid->depth_scale));
+    depth = rt_v16_min(rt_v16_max(depth, zero), rt_v16_all(RT_LIGHT_DEPTHS - 1));
+    const RtV16 eight = rt_v16_all(8);
+    RtW16 sub_x = rt_w16_truncate(rt_v16_mul(rt_v16_sub(u, rt_v16_of_words(column)), eight));
+    RtW16 sub_y = rt_w16_truncate(rt_v16_mul(rt_v16_sub(w, rt_v16_of_words(row)), eight));
+    RtW16 key = rt_w16_or(rt_w16_left(rt_w16_truncate(depth), 16), rt_w16_all(RT_LIGHT_DEEP | RT_LIGHT_BOXED));
+    key = rt_w16_or(key, rt_w16_or(sub_x, rt_w16_left(rt_w16_sub(seven, sub_x), 4)));
+    key = rt_w16_or(key, rt_w16_left(rt_w16_or(sub_y, rt_w16_left(rt_w16_sub(seven, sub_y), 4)), 8));
+
+    rt_w16_put_some(way->ray + count, lanes, rt_w16_get(order));
+    rt_w16_put_some(way->at + count, lanes, at);
+    rt_w16_put_some(way->end + count, lanes, end);
+    rt_w16_put_some(way->key + count, lanes, key);
+    return count + (uint32_t)__builtin_popcount(lanes);
+}
+
+/* Tests the objects that touch the light; gives the rays that are left. */
+RT_KERNEL uint32_t test_near(const Asking *a, const RtLightCube *cube, const Sixteen *s, uint32_t lanes,
+                             const uint32_t *order) {
+    const RtGeometry *g = &a->self->base.scene->geometry;
+    uint32_t left = lanes;
+    for (; lanes; lanes &= lanes - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(lanes);
+        RtPreparedRay prepared;
+        RtHit hit = RT_MISS;
+        rt_hit_ray(&prepared, g, s->ray[i], a->scratch->room);
+        for (uint32_t k = 0; k < cube->near_count && hit.object == RT_NO_OBJECT; k++) {
+            RT_COUNT(a->tally, steps, 1);
+            rt_test_object(g, cube->near[k], &prepared, true, &hit, a->tally);
+        }
+        if (hit.object == RT_NO_OBJECT) continue;
+        a->blockers[order[i]] = hit.object;
+        left &= ~(1u << i);
+    }
+    return left;
+}
+
+/* All rays order[0..count) to a light; gives how many are on their way. */
+RT_KERNEL uint32_t begin_light(const Asking *a, uint32_t light, const uint32_t *order, uint32_t count) {
+    const RtLightCube *cube = &a->self->cubes[light];
+    Stream *stream = a->stream;
+    uint32_t on_way = 0;
+    for (uint32_t first = 0; first < count; first += 16) {
+        _Alignas(64) uint32_t padded[16];
+        const uint32_t *some = order + first;
+        uint32_t n = count - first < 16 ? count - first : 16, lanes = (1u << n) - 1;
+        if (n < 16) some = memcpy(padded, some, n * sizeof *some);
+        Sixteen s;
+        load_rays(a, some, n, &s);
+        uint32_t good = lanes & to_light(a->self, light, &s);
+        for (uint32_t bad = lanes & ~good; bad; bad &= bad - 1)
+            stream->passed[stream->passed_count++] = some[__builtin_ctz(bad)];
+        if (cube->near_count > 0) good = test_near(a, cube, &s, good, some);
+        /* rt_major_axis: the first of the largest. */
+        RtV16 size[3];
+        for (int k = 0; k < 3; k++) size[k] = rt_v16_abs(s.dir[k]);
+        uint32_t z = ~rt_v16_at_most(size[2], rt_v16_max(size[0], size[1]));
+        uint32_t y = ~rt_v16_at_most(size[1], size[0]) & ~z;
+        const uint32_t axis[3] = {~z & ~y, y, z};
+        for (int face = 0; face < 6; face++) {
+            uint32_t down = rt_v16_signs(s.dir[face / 2]);
+            uint32_t here = good & axis[face / 2] & (face % 2 ? down : ~down);
+            if (here) on_way = enter_cells(cube, face, &s, here, some, &stream->way, on_way);
+        }
+    }
+    return on_way;
+}
+
+/* ---- a round ---- */
+
+/* Tests pairs first..first+count-1, at most sixteen, of triangles. */
+RT_KERNEL void test_pairs(const Asking *a, uint32_t first, uint32_t count) {
+    const RtGeometry *g = &a->self->base.scene->geometry;
+    const uint32_t *ray = a->stream->pair_ray + first, *object = a->stream->pair_object + first;
+    const RtTriangle *triangles[16];
+    RtPairs pairs;
+    Sixteen s;
+    RtV16 t;
+    for (uint32_t i = 0; i < 16; i++)
+        triangles[i] = &g->triangles[rt_ref_index(object[i < count ? i : 0])];
+    load_rays(a, ray, count, &s);
+    for (int k = 0; k < 3; k++) pairs.org[k] = s.org[k], pairs.dir[k] = s.dir[k];
+    _Alignas(64) float tmin[16];
+    for (int i = 0; i < 16; i++) tmin[i] = s.ray[i]->tmin;
+    pairs.tmin = rt_v16_load(tmin);
+    pairs.tmax = s.tmax;
+    rt_pairs_gather(triangles, pairs.v);
+    uint32_t hit = rt_pairs_hit(&pairs, &t) & ((1u << count) - 1);
+    RT_COUNT(a->tally, object_hits, __builtin_popcount(hit));
+    for (; hit; hit &= hit - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(hit);
+        a->blockers[ray[i]] = g->triangle_ids[rt_ref_index(object[i])];
+    }
+}
+
+/* Objects of other shapes, and triangles among them. */
+RT_KERNEL void test_others(const Asking *a, uint32_t count) {
+    const RtGeometry *g = &a->self->base.scene->geometry;
+    const uint32_t *ray = a->stream->pair_ray, *object = a->stream->pair_object;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t id = rt_light_id_of(g, object[i]);
+        RtPreparedRay prepared;
+        RtHit hit = RT_MISS;
+        rt_hit_ray(&prepared, g, &a->rays[ray[i]], a->scratch->room);
+        if (rt_test_object(g, id, &prepared, true, &hit, a->tally)) a->blockers[ray[i]] = id;
+    }
+}
+
+/* Every ray on its way looks at an entry; gives how many are left. */
+RT_KERNEL uint32_t take_round(const Asking *a, const RtLightEntry *entries, uint32_t count, bool all_triangles) {
+    Stream *stream = a->stream;
+    Way *way = &stream->way;
+    const RtW16 beyond = rt_w16_all(RT_LIGHT_BEYOND), one = rt_w16_all(1), none = rt_w16_all(0);
+    const uint32_t fields = a->self->extents ? RT_LIGHT_DEEP | RT_LIGHT_BOXED : RT_LIGHT_DEEP;
+    uint32_t left = 0, pairs = 0;
+    for (uint32_t first = 0; first < count; first += 16) {
+        uint32_t lanes = count - first < 16 ? (1u << (count - first)) - 1 : 0xffff;
+        RtW16 ray = rt_w16_get(way->ray + first), at = rt_w16_get(way->at + first);
+        RtW16 end = rt_w16_get(way->end + first), key = rt_w16_get(way->key + first);
+        ray = rt_w16_pick(lanes, none, ray);
+        at = rt_w16_pick(lanes, none, at);
+        lanes &= rt_w16_equal(rt_w16_lookup(a->blockers, ray), rt_w16_all(RT_NO_OBJECT));
+        RtW16 object = rt_w16_lookup_pair(&entries[0].object, at);
+        RtW16 over = rt_w16_sub(key, rt_w16_lookup_pair(&entries[0].key, at));
+        lanes &= rt_w16_below(over, none); /* the entry is not deeper */
+        uint32_t ends = lanes & rt_w16_equal(object, beyond);
+        lanes &= ~ends;
+        for (uint32_t bits = ends; bits; bits &= bits - 1)
+            stream->passed[stream->passed_count++] = way->ray[first + (uint32_t)__builtin_ctz(bits)];
+        RT_COUNT(a->tally, steps, __builtin_popcount(lanes));
+        if (a->self->extents) RT_COUNT(a->tally, extent_tests, __builtin_popcount(lanes));
+        uint32_t met = lanes & rt_w16_equal(rt_w16_and(over, rt_w16_all(fields)), rt_w16_all(fields));
+        rt_w16_put_some(stream->pair_ray + pairs, met, ray);
+        rt_w16_put_some(stream->pair_object + pairs, met, object);
+        pairs += (uint32_t)__builtin_popcount(met);
+        at = rt_w16_add(at, one);
+        lanes &= rt_w16_below(at, end);
+        rt_w16_put_some(way->ray + left, lanes, ray);
+        rt_w16_put_some(way->at + left, lanes, at);
+        rt_w16_put_some(way->end + left, lanes, end);
+        rt_w16_put_some(way->key + left, lanes, key);
+        left += (uint32_t)__builtin_popcount(lanes);
+    }
+    if (all_triangles) {
+        RT_COUNT(a->tally, object_tests, pairs);
+        for (uint32_t i = 0; i < pairs; i += 16) test_pairs(a, i, pairs - i < 16 ? pairs - i : 16);
+    } else {
+        test_others(a, pairs);
+    }
+    return left;
+}
+
+/* ---- streams ---- */
+
+RT_KERNEL void pass_on(const Asking *a, RtTally *tallies) {
+    Stream *stream = a->stream;
+    uint32_t count = stream->passed_count;
+    if (count == 0) return;
+    RT_COUNT(a->tally, passed_on, count);
+    for (uint32_t i = 0; i < count; i++) stream->passed_rays[i] = a->rays[stream->passed[i]];
+    rt_hand_down_occluded(&a->self->base, a->scratch, stream->passed_rays, count, stream->passed_blockers,
+                          tallies);
+    for (uint32_t i = 0; i < count; i++) a->blockers[stream->passed[i]] = stream->passed_blockers[i];
+}
+
+/* Rays by light: those of lights[0] first, in their order. Gives how many are of it; the others are put
+ * behind, to be gone over again. */
+RT_KERNEL uint32_t gather_light(const RtRay *rays, uint32_t *order, uint32_t count, uint32_t *others,
+                                uint32_t *other_count) {
+    uint32_t light = rays[order[0]].source, same = 0, other = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t ray = order[i];
+        bool is_same = rays[ray].source == light;
+        others[other] = ray;
+        order[same] = ray;
+        same += is_same;
+        other += !is_same;
+    }
+    *other_count = other;
+    return same;
+}
+
+/* A block of shadow rays. */
+RT_KERNEL void shade_block(Asking *a, uint32_t count, RtTally *tallies) {
+    const RtScene *scene = a->self->base.scene;
+    const bool all_triangles = scene->geometry.triangle_count == scene->geometry.object_count;
+    Stream *stream = a->stream;
+    uint32_t two[2][BLOCK], *order = two[0], *others = two[1];
+    stream->passed_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        order[i] = i;
+        a->blockers[i] = RT_NO_OBJECT;
+    }
+    for (uint32_t left = count; left > 0;) {
+        uint32_t light = a->rays[order[0]].source, rest;
+        uint32_t n = gather_light(a->rays, order, left, others, &rest);
+        if (light < scene->light_count && a->self->cubes[light].serves) {
+            uint32_t on_way = begin_light(a, light, order, n);
+            while (on_way > 0) on_way = take_round(a, a->self->cubes[light].entries, on_way, all_triangles);
+        } else {
+            memcpy(stream->passed + stream->passed_count, order, n * sizeof *order);
+            stream->passed_count += n;
+        }
+        left = rest;
+        uint32_t *swap = order;
+        order = others;
+        others = swap;
+    }
+    uint32_t hits = 0;
+    if (a->tally) {
+        for (uint32_t i = 0; i < count; i++) hits += a->blockers[i] != RT_NO_OBJECT;
+    }
+    pass_on(a, tallies);
+    RT_COUNT(a->tally, rays, count - stream->passed_count);
+    RT_COUNT(a->tally, hits, hits);
+}
+
+RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                            uint32_t *blockers, RtTally *tallies) {
+    for (size_t i = 0, next; i < count; i = next) {
+        for (next = i; next < count && rays[next].kind != RT_RAY_SHADOW; next++) {
+        }
+        if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, blockers + i, tallies);
+        i = next;
+        while (next < count && next - i < BLOCK && rays[next].kind == RT_RAY_SHADOW) next++;
+        if (next == i) continue;
+        Asking a = {(const RtLightBuffer *)accel, scratch, scratch->own, rays + i, blockers + i,
+                    tallies ? &tallies[RT_RAY_SHADOW] : NULL};
+        shade_block(&a, (uint32_t)(next - i), tallies);
+    }
+}
+
+RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
+
+const RtLightKernels RT_LIGHT_KERNELS = {occluded_timed, occluded_counted, sizeof(Stream),
+                                         place, cover, draw, cover_outline, draw_outline};
