@@ -160,9 +160,10 @@ static inline void rt_v16_store(float *to, RtV16 a) {
 static inline RtV16 rt_v16_tile(__m128 a) {
     return _mm512_broadcast_f32x4(a);
 }
+/* Four floats from each place, which need not be aligned. */
 static inline RtV16 rt_v16_join(const float *a, const float *b, const float *c, const float *d) {
-    __m512 joined = _mm512_insertf32x4(_mm512_castps128_ps512(_mm_load_ps(a)), _mm_load_ps(b), 1);
-    return _mm512_insertf32x4(_mm512_insertf32x4(joined, _mm_load_ps(c), 2), _mm_load_ps(d), 3);
+    __m512 joined = _mm512_insertf32x4(_mm512_castps128_ps512(_mm_loadu_ps(a)), _mm_loadu_ps(b), 1);
+    return _mm512_insertf32x4(_mm512_insertf32x4(joined, _mm_loadu_ps(c), 2), _mm_loadu_ps(d), 3);
 }
 #define rt_v16_spread(a, i) _mm512_permute_ps(a, 0x55 * (i))
 static inline RtV16 rt_v16_add(RtV16 a, RtV16 b) {
@@ -192,6 +193,27 @@ static inline uint32_t rt_v16_at_most(RtV16 a, RtV16 b) {
 static inline uint32_t rt_v16_signs(RtV16 a) {
     return _mm512_movepi32_mask(_mm512_castps_si512(a));
 }
+typedef __mmask16 RtSet16;
+static inline RtSet16 rt_v16_below(RtV16 a, RtV16 b) {
+    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+}
+static inline RtSet16 rt_v16_negative(RtV16 a) {
+    return _mm512_movepi32_mask(_mm512_castps_si512(a));
+}
+static inline RtV16 rt_v16_pick(RtSet16 set, RtV16 a, RtV16 b) {
+    return _mm512_mask_mov_ps(a, set, b);
+}
+#define rt_v16_half(a, half) _mm512_extractf32x8_ps(a, half)
+static inline RtV16 rt_v16_halves(__m256 lo, __m256 hi) {
+    return _mm512_insertf32x8(_mm512_castps256_ps512(lo), hi, 1);
+}
+static inline RtV16 rt_v16_unpack_lo(RtV16 a, RtV16 b) {
+    return _mm512_unpacklo_ps(a, b);
+}
+static inline RtV16 rt_v16_unpack_hi(RtV16 a, RtV16 b) {
+    return _mm512_unpackhi_ps(a, b);
+}
+#define rt_v16_shuffle(a, b, order) _mm512_shuffle_ps(a, b, order)
 static inline float rt_v16_most(RtV16 a) {
     return _mm512_reduce_max_ps(a);
 }
@@ -227,8 +249,8 @@ static inline RtV16 rt_v16_tile(__m128 a) {
     return (RtV16){_mm256_set_m128(a, a), _mm256_set_m128(a, a)};
 }
 static inline RtV16 rt_v16_join(const float *a, const float *b, const float *c, const float *d) {
-    return (RtV16){_mm256_set_m128(_mm_load_ps(b), _mm_load_ps(a)),
-                   _mm256_set_m128(_mm_load_ps(d), _mm_load_ps(c))};
+    return (RtV16){_mm256_set_m128(_mm_loadu_ps(b), _mm_loadu_ps(a)),
+                   _mm256_set_m128(_mm_loadu_ps(d), _mm_loadu_ps(c))};
 }
 #define rt_v16_spread(a, i)                                                                                  \
     ((RtV16){_mm256_permute_ps((a).lo, 0x55 * (i)), _mm256_permute_ps((a).hi, 0x55 * (i))})
@@ -242,6 +264,32 @@ static inline uint32_t rt_v16_at_most(RtV16 a, RtV16 b) {
 static inline uint32_t rt_v16_signs(RtV16 a) {
     return (uint32_t)_mm256_movemask_ps(a.lo) | (uint32_t)_mm256_movemask_ps(a.hi) << 8;
 }
+/* Some of sixteen lanes: those with the sign bit set. */
+typedef RtV16 RtSet16;
+/* Those where a < b; those with the sign bit set; and b in the lanes of a set, else a. */
+static inline RtSet16 rt_v16_below(RtV16 a, RtV16 b) {
+    return (RtSet16){_mm256_cmp_ps(a.lo, b.lo, _CMP_LT_OQ), _mm256_cmp_ps(a.hi, b.hi, _CMP_LT_OQ)};
+}
+static inline RtSet16 rt_v16_negative(RtV16 a) {
+    return a;
+}
+static inline RtV16 rt_v16_pick(RtSet16 set, RtV16 a, RtV16 b) {
+    return (RtV16){_mm256_blendv_ps(a.lo, b.lo, set.lo), _mm256_blendv_ps(a.hi, b.hi, set.hi)};
+}
+/* The lower eight, 0, or the upper, 1; and of both. */
+#define rt_v16_half(a, half) ((half) ? (a).hi : (a).lo)
+static inline RtV16 rt_v16_halves(__m256 lo, __m256 hi) {
+    return (RtV16){lo, hi};
+}
+/* As of SSE, four lanes at a time. */
+static inline RtV16 rt_v16_unpack_lo(RtV16 a, RtV16 b) {
+    return (RtV16){_mm256_unpacklo_ps(a.lo, b.lo), _mm256_unpacklo_ps(a.hi, b.hi)};
+}
+static inline RtV16 rt_v16_unpack_hi(RtV16 a, RtV16 b) {
+    return (RtV16){_mm256_unpackhi_ps(a.lo, b.lo), _mm256_unpackhi_ps(a.hi, b.hi)};
+}
+#define rt_v16_shuffle(a, b, order)                                                                          \
+    ((RtV16){_mm256_shuffle_ps((a).lo, (b).lo, order), _mm256_shuffle_ps((a).hi, (b).hi, order)})
 static inline float rt_v8_least(__m256 a) {
     __m128 b = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
     b = _mm_min_ps(b, _mm_movehl_ps(b, b));
@@ -265,6 +313,76 @@ static inline RtFour rt_v16_least4(RtV16 a, RtV16 b, RtV16 c, RtV16 d) {
                                _mm256_castpd_ps(_mm256_unpackhi_pd(xy, zw)));
     return (RtFour)_mm_min_ps(_mm256_castps256_ps128(all), _mm256_extractf128_ps(all, 1));
 }
+
+/* Column k, of 4, of the sixteen places, from each of which four floats are read, to columns[k]. */
+static inline void rt_v16_columns(const float *const from[16], RtV16 columns[4]) {
+    RtV16 r[4];
+    for (int i = 0; i < 4; i++) r[i] = rt_v16_join(from[i], from[4 + i], from[8 + i], from[12 + i]);
+    RtV16 a = rt_v16_unpack_lo(r[0], r[1]), b = rt_v16_unpack_lo(r[2], r[3]);
+    RtV16 c = rt_v16_unpack_hi(r[0], r[1]), d = rt_v16_unpack_hi(r[2], r[3]);
+    columns[0] = rt_v16_shuffle(a, b, 0x44);
+    columns[1] = rt_v16_shuffle(a, b, 0xee);
+    columns[2] = rt_v16_shuffle(c, d, 0x44);
+    columns[3] = rt_v16_shuffle(c, d, 0xee);
+}
+
+/* ---- eight doubles ---- */
+
+#if defined(__AVX512F__)
+typedef __m512d RtD8;
+#define RT_D8_PAIR(name)                                                                                     \
+    static inline RtD8 rt_d8_##name(RtD8 a, RtD8 b) {                                                        \
+        return _mm512_##name##_pd(a, b);                                                                     \
+    }
+static inline RtD8 rt_d8_all(double a) {
+    return _mm512_set1_pd(a);
+}
+static inline RtD8 rt_d8_of(__m256 a) {
+    return _mm512_cvtps_pd(a);
+}
+static inline __m256 rt_d8_narrow(RtD8 a) {
+    return _mm512_cvtpd_ps(a);
+}
+static inline uint32_t rt_d8_at_most(RtD8 a, RtD8 b) {
+    return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
+}
+static inline uint32_t rt_d8_differ(RtD8 a, RtD8 b) {
+    return _mm512_cmp_pd_mask(a, b, _CMP_NEQ_OQ);
+}
+#else
+typedef struct RtD8 {
+    __m256d lo, hi;
+} RtD8;
+#define RT_D8_PAIR(name)                                                                                     \
+    static inline RtD8 rt_d8_##name(RtD8 a, RtD8 b) {                                                        \
+        return (RtD8){_mm256_##name##_pd(a.lo, b.lo), _mm256_##name##_pd(a.hi, b.hi)};                       \
+    }
+static inline RtD8 rt_d8_all(double a) {
+    return (RtD8){_mm256_set1_pd(a), _mm256_set1_pd(a)};
+}
+static inline RtD8 rt_d8_of(__m256 a) {
+    return (RtD8){_mm256_cvtps_pd(_mm256_castps256_ps128(a)), _mm256_cvtps_pd(_mm256_extractf128_ps(a, 1))};
+}
+static inline __m256 rt_d8_narrow(RtD8 a) {
+    return _mm256_set_m128(_mm256_cvtpd_ps(a.hi), _mm256_cvtpd_ps(a.lo));
+}
+/* Bit i: a[i] <= b[i]; and both are numbers and differ. */
+static inline uint32_t rt_d8_at_most(RtD8 a, RtD8 b) {
+    return (uint32_t)_mm256_movemask_pd(_mm256_cmp_pd(a.lo, b.lo, _CMP_LE_OQ)) |
+           (uint32_t)_mm256_movemask_pd(_mm256_cmp_pd(a.hi, b.hi, _CMP_LE_OQ)) << 4;
+}
+static inline uint32_t rt_d8_differ(RtD8 a, RtD8 b) {
+    return (uint32_t)_mm256_movemask_pd(_mm256_cmp_pd(a.lo, b.lo, _CMP_NEQ_OQ)) |
+           (uint32_t)_mm256_movemask_pd(_mm256_cmp_pd(a.hi, b.hi, _CMP_NEQ_OQ)) << 4;
+}
+#endif
+RT_D8_PAIR(add)
+RT_D8_PAIR(sub)
+RT_D8_PAIR(mul)
+RT_D8_PAIR(div)
+RT_D8_PAIR(min)
+RT_D8_PAIR(max)
+#undef RT_D8_PAIR
 
 /* ---- sixteen words ---- */
 

@@ -5,7 +5,7 @@
 #ifndef RT_ACCEL_WIDE_PACKET_LEAF_H
 #define RT_ACCEL_WIDE_PACKET_LEAF_H
 
-#include "accel/sieve.h"
+#include "accel/pairs.h"
 #include "accel/wide/packet.h"
 
 /* ---- triangles, roughly ---- */
@@ -78,60 +78,32 @@ RT_KERNEL void sieve_beam(Packet *p, const RtWideTriangles *block, uint32_t at, 
 
 /* ---- triangles, in full ---- */
 
-/* rt_triangle_hit of sixteen pairs, operation by operation: those that hit, and where. */
+/* rt_triangle_hit of sixteen pairs: those that hit, and where. */
 static __attribute__((noinline)) uint32_t hit_pairs(const Packet *p, const float *arena, const uint32_t *ray,
                                                     const uint32_t *triangle, float t[BEAM]) {
-    _Alignas(RT_CACHE_LINE) float x[3][BEAM], y[3][BEAM], z[3][BEAM], major[BEAM];
     const RtW16 rays = rt_w16_get(ray), triangles = rt_w16_get(triangle);
-    RtV16 org[3], v[3][3];
+    RtPairsRays of = {.tmin = rt_v16_pick64(p->tmin, rays), .tmax = rt_v16_pick64(p->tmax, rays)};
+    RtV16 v[3][3], at;
     for (int i = 0; i < 3; i++) {
         for (uint32_t a = 0; a < 3; a++) v[i][a] = rt_v16_lookup(arena + place_of(i, a), triangles);
     }
-    for (int a = 0; a < 3; a++) org[a] = rt_v16_pick64(p->org[a], rays);
-    RtV16 shear_x = rt_v16_pick64(p->shear_x, rays), shear_y = rt_v16_pick64(p->shear_y, rays);
+    for (int a = 0; a < 3; a++) {
+        of.org[a] = rt_v16_pick64(p->org[a], rays);
+        of.inv[a] = rt_v16_pick64(p->inv[a], rays);
+        of.negative[a] = rt_v16_negative(rt_v16_all(p->negative[a] ? -1 : 1));
+    }
+    const RtSieveLine line = {of.org[p->kx], of.org[p->ky], of.org[p->kz], rt_v16_pick64(p->shear_x, rays),
+                              rt_v16_pick64(p->shear_y, rays)};
+    RtPairsSheared s;
     for (int i = 0; i < 3; i++) {
-        RtV16 depth = rt_v16_sub(v[i][p->kz], org[p->kz]);
-        RtV16 across = rt_v16_sub(v[i][p->kx], org[p->kx]), up = rt_v16_sub(v[i][p->ky], org[p->ky]);
-        rt_v16_store(z[i], depth);
-        rt_v16_store(x[i], rt_v16_sub(across, rt_v16_mul(shear_x, depth)));
-        rt_v16_store(y[i], rt_v16_sub(up, rt_v16_mul(shear_y, depth)));
+        s.x[i] = v[i][p->kx];
+        s.y[i] = v[i][p->ky];
+        s.z[i] = v[i][p->kz];
     }
-    rt_v16_store(major, rt_v16_pick64(p->dir[p->kz], rays));
-    uint32_t hit = 0;
-    for (int k = 0; k < BEAM; k += 4) {
-        Sheared four;
-        for (int i = 0; i < 3; i++) {
-            four.x[i] = _mm_load_ps(&x[i][k]);
-            four.y[i] = _mm_load_ps(&y[i][k]);
-            four.z[i] = _mm_load_ps(&z[i][k]);
-        }
-        __m128 at;
-        hit |= cross(&four, _mm_load_ps(&major[k]), &at) << k;
-        _mm_store_ps(&t[k], at);
-    }
-    /* rt_box_admit */
-    RtV16 lo[3], hi[3], farthest = rt_v16_all(0);
-    for (int a = 0; a < 3; a++) {
-        lo[a] = rt_v16_min(rt_v16_min(v[0][a], v[1][a]), v[2][a]);
-        hi[a] = rt_v16_max(rt_v16_max(v[0][a], v[1][a]), v[2][a]);
-        farthest = rt_v16_max(rt_v16_abs(rt_v16_sub(lo[a], org[a])), farthest);
-        farthest = rt_v16_max(rt_v16_abs(rt_v16_sub(hi[a], org[a])), farthest);
-    }
-    RtV16 thickness = rt_v16_mul(farthest, rt_v16_all(0x1p-20f));
-    RtV16 near = rt_v16_all(-INFINITY), far = rt_v16_all(INFINITY), at = rt_v16_load(t);
-    for (int a = 0; a < 3; a++) {
-        RtV16 shift = rt_v16_add(thickness, rt_v16_mul(rt_v16_abs(org[a]), rt_v16_all(0x1p-23f)));
-        RtV16 above = rt_v16_add(org[a], shift), below = rt_v16_sub(org[a], shift),
-              inv = rt_v16_pick64(p->inv[a], rays);
-        RtV16 first = rt_v16_sub(p->negative[a] ? hi[a] : lo[a], p->negative[a] ? below : above);
-        RtV16 second = rt_v16_sub(p->negative[a] ? lo[a] : hi[a], p->negative[a] ? above : below);
-        near = rt_v16_max(rt_v16_mul(first, inv), near);
-        far = rt_v16_min(rt_v16_mul(second, inv), far);
-    }
-    RtV16 clamped = rt_v16_min(far, rt_v16_max(near, at)); /* what is no number stays so, and is no hit */
-    hit &= rt_v16_at_most(near, far) & rt_v16_at_most(rt_v16_pick64(p->tmin, rays), clamped);
-    hit &= rt_v16_at_most(clamped, rt_v16_pick64(p->tmax, rays));
-    rt_v16_store(t, clamped);
+    rt_sieve_shear(&line, s.x, s.y, s.z);
+    uint32_t hit = rt_pairs_cross(&s, rt_v16_pick64(p->dir[p->kz], rays), &at);
+    hit = rt_pairs_admit(&of, v, hit, &at);
+    rt_v16_store(t, at);
     return hit;
 }
 
