@@ -97,12 +97,51 @@ bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const 
 /* What is lost in float32 where cells are counted, in cells. */
 #define SLACK 0x1p-6
 
+/* The vertices of a flat object; NULL of another. A point hit is within *warp of their hull. */
+static const RtVec3 *vertices_of(const RtGeometry *g, uint32_t id, uint32_t *count, double *warp) {
+    uint32_t index = rt_ref_index(g->objects[id]);
+    *count = 3;
+    *warp = 0;
+    if (rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE) return g->triangles[index].v;
+    if (rt_ref_shape(g->objects[id]) != RT_SHAPE_POLYGON) return NULL;
+    *count = g->polygons[index].count;
+    *warp = (double)g->polygons[index].warp;
+    return g->polygon_vertices + g->polygons[index].first;
+}
+
+/* Of a flat object that is all in front of the light less than its box is seen: the hull of its vertices, each
+ * grown by the margin. False if it is not on the face. */
+static bool narrow_view(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
+                        RtLightView *view) {
+    uint32_t count;
+    double warp, least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+    const RtVec3 *vertices = vertices_of(&buffer->base.scene->geometry, id, &count, &warp);
+    double grow = buffer->cubes[light].margin + warp;
+    for (uint32_t i = 0; vertices && i < count; i++) {
+        RtVec3d at = offset(buffer, light, face, vertices[i]);
+        if (!(at.z > 2 * grow)) return true;
+        for (int k = 0; k < 2; k++) {
+            double lo, hi;
+            quotients(at.at[k] - grow, at.at[k] + grow, at.z - grow, at.z + grow, &lo, &hi);
+            least[k] = fmin(lo, least[k]);
+            most[k] = fmax(hi, most[k]);
+        }
+    }
+    for (int k = 0; vertices && k < 2; k++) {
+        view->lo[k] = fmax(least[k] - RT_LIGHT_EDGE, view->lo[k]);
+        view->hi[k] = fmin(most[k] + RT_LIGHT_EDGE, view->hi[k]);
+        if (!(view->lo[k] <= view->hi[k])) return false;
+    }
+    return true;
+}
+
 bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
                         RtLightFootprint *footprint) {
     const RtLightGrid *grid = &buffer->cubes[light].grids[face];
     RtLightView view;
     if (grid->columns == 0) return false;
     if (!rt_light_view(buffer, light, face, &buffer->base.scene->geometry.boxes[id], &view)) return false;
+    if (!narrow_view(buffer, light, face, id, &view)) return false;
     for (int k = 0; k < 2; k++) {
         double corner = (double)(k ? grid->w : grid->u), scale = (double)grid->scale;
         uint32_t count = k ? grid->rows : grid->columns;
@@ -153,22 +192,20 @@ static void add_edges(RtLightOutline *o, const RtLightGrid *grid, uint32_t colum
             hi = fmax(hi, at);
         }
         double slack = 2 * grow * (norm(side) + 0x1p-20 * norm(a) * norm(b)), line[3];
-        bool positive = lo > -slack;
-        if (!positive && !(hi < slack)) {
-            o->covers = false;
-            continue;
-        }
-        if (!positive) side = rt_scaled(side, -1);
+        bool positive = lo > -slack, negative = hi < slack;
         in_cells(grid, column, row, side, line);
         double unit = fabs(line[0]) + fabs(line[1]);
-        if (!(unit > 0x1p-60 * norm(side))) {
-            o->covers = false;
-            continue;
+        o->covers = o->covers && positive != negative && unit > 0x1p-60 * norm(side);
+        if (!(unit > 0x1p-60 * norm(side))) continue;
+        if (o->covers) narrow(line, (positive ? 1 : -1) / unit, o->inside[i]);
+        /* What is seen edge on is on both sides. */
+        double around = across_cell(grid, side) + 2 * slack / least_depth;
+        around += 0x1p-20 * (fabs(line[2]) + around + unit * 2 * RT_LIGHT_TILE);
+        for (int sign = -1; sign <= 1; sign += 2) {
+            if (!(sign > 0 ? positive : negative)) continue;
+            const double part[3] = {sign * line[0], sign * line[1], sign * line[2] + around};
+            narrow(part, 1 / unit, o->parts[o->count++]);
         }
-        narrow(line, 1 / unit, o->inside[o->count]);
-        line[2] += across_cell(grid, side) + 2 * slack / least_depth;
-        line[2] += 0x1p-20 * (fabs(line[2]) + unit * 2 * RT_LIGHT_TILE);
-        narrow(line, 1 / unit, o->parts[o->count++]);
     }
 }
 
@@ -193,27 +230,21 @@ void rt_light_outline(const RtLightBuffer *buffer, uint32_t light, int face, uin
                       const RtLightFootprint *at, uint32_t column, uint32_t row, RtLightOutline *o) {
     const RtGeometry *g = &buffer->base.scene->geometry;
     const RtLightGrid *grid = &buffer->cubes[light].grids[face];
-    uint32_t index = rt_ref_index(g->objects[id]), count = 3;
-    double grow = buffer->cubes[light].margin, warp = 0;
+    uint32_t count;
+    double grow = buffer->cubes[light].margin, warp;
     RtVec3d offsets[RT_LIGHT_MAX_EDGES], normal, point;
-    const RtVec3 *vertices = g->triangles[index].v;
-    *o = (RtLightOutline){.covers = true, .slope = {0, 0, INFINITY}};
-    bool polygon = rt_ref_shape(g->objects[id]) == RT_SHAPE_POLYGON;
-    if (polygon) {
-        vertices = g->polygon_vertices + g->polygons[index].first;
-        count = g->polygons[index].count;
-        warp = (double)g->polygons[index].warp;
-    }
-    o->covers = count <= RT_LIGHT_MAX_EDGES;
+    const RtVec3 *vertices = vertices_of(g, id, &count, &warp);
+    *o = (RtLightOutline){.covers = count <= RT_LIGHT_MAX_EDGES, .edges = count, .slope = {0, 0, INFINITY}};
     if (o->covers && at->near > 0) {
         for (uint32_t i = 0; i < count; i++) offsets[i] = offset(buffer, light, face, vertices[i]);
         add_edges(o, grid, column, row, offsets, count, grow + warp, (double)at->near);
     } else {
         o->covers = false;
     }
-    if (polygon) {
-        normal = face_axes(face, g->polygons[index].normal);
-        point = rt_light_offset(buffer, light, face, g->polygons[index].center);
+    if (rt_ref_shape(g->objects[id]) == RT_SHAPE_POLYGON) {
+        const RtPolygon *polygon = &g->polygons[rt_ref_index(g->objects[id])];
+        normal = face_axes(face, polygon->normal);
+        point = rt_light_offset(buffer, light, face, polygon->center);
     } else {
         point = offset(buffer, light, face, vertices[0]);
         RtVec3d b = rt_subd(offset(buffer, light, face, vertices[1]), point);

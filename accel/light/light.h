@@ -146,9 +146,10 @@ bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, u
  * points there are no less deep than 1 / (slope . (x, y, 1)), unless that is above `far`, nor than `near`. */
 typedef struct RtLightOutline {
     uint32_t count;
-    float parts[RT_LIGHT_MAX_EDGES][3];
+    float parts[2 * RT_LIGHT_MAX_EDGES][3];
     float slope[3];
-    bool covers; /* what is within all `inside`, at depth 1 / (face . (x, y, 1)), is covered */
+    bool covers; /* what is within inside[0..edges) is covered, at depth 1 / (face . (x, y, 1)) */
+    uint32_t edges;
     float inside[RT_LIGHT_MAX_EDGES][3];
     float face[3];
 } RtLightOutline;

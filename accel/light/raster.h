@@ -174,9 +174,11 @@ typedef struct Small {
     uint32_t sub_lo[2][16], sub_hi[2][16]; /* in eighths, 0 at the corner of the tile: words */
 } Small;
 
-/* a, rounded down, where it is above -2^20. */
+/* a, rounded down; of less than 2^31. */
 RT_KERNEL RtW16 floor16(RtV16 a) {
-    return rt_w16_sub(rt_w16_truncate(rt_v16_add(a, rt_v16_all(0x1p20f))), rt_w16_all(1u << 20));
+    RtW16 whole = rt_w16_truncate(a);
+    uint32_t above = ~rt_v16_at_most(rt_v16_of_words(whole), a) & 0xffff;
+    return rt_w16_pick(above, whole, rt_w16_sub(whole, rt_w16_all(1)));
 }
 
 RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles, uint32_t count,
@@ -355,7 +357,7 @@ static void cover_outline(const RtLightOutline *outline, const RtLightFootprint 
         for (int column = lo[0]; column <= hi[0]; column += 16) {
             RtV16 x = rt_v16_add(rt_v16_load(lane_number), rt_v16_all((float)column));
             uint32_t in = first_lanes(hi[0] - column + 1);
-            for (uint32_t e = 0; e < outline->count; e++) {
+            for (uint32_t e = 0; e < outline->edges; e++) {
                 in &= rt_v16_at_most(rt_v16_all(0), line_at(outline->inside[e], x, (float)row));
             }
             _Alignas(64) float depth[16];

@@ -77,7 +77,7 @@ static bool is_seen(const RtLightBuffer *buffer, uint32_t light, int face, uint3
         if ((line[0] + line[1]) * 0.5f + line[2] < 0x1p-5f) return false;
     }
     float slope = (outline.slope[0] + outline.slope[1]) * 0.5f + outline.slope[2];
-    if (slope > 0) *depth = rt_maxf(*depth, rt_minf(1 / slope, at->far));
+    *depth = rt_maxf(*depth, 1 / rt_maxf(slope, 1 / at->far));
     *depth *= 1 + 0x1p-18f;
     return true;
 }
