@@ -31,7 +31,7 @@ static void place_object(const Binning *b, Chunk *chunk, uint32_t id, int face_f
     for (int face = face_from; face <= face_to; face++) {
         if (!rt_light_footprint(b->buffer, b->light, face, id, &at)) continue;
         chunk->places[chunk->count++] =
-            (RtLightPlace){.object = b->buffer->base.scene->geometry.objects[id] | RT_LIGHT_LARGE_BIT,
+            (RtLightPlace){.object = b->buffer->base.scene->geometry.objects[id] | RT_LIGHT_ALONE,
                            .lo = {(uint16_t)at.lo[0], (uint16_t)at.lo[1]},
                            .hi = {(uint16_t)at.hi[0], (uint16_t)at.hi[1]},
                            .face = (uint8_t)face};
@@ -44,12 +44,11 @@ static void place_triangles(const Binning *b, Chunk *chunk, uint32_t first, uint
     RtLightPlace found[6 * 16];
     uint32_t found_count = b->buffer->kernels->place(b->buffer, b->light, first, count, found);
     for (uint32_t i = 0; i < found_count; i++) {
-        if (found[i].how == RT_LIGHT_UNKNOWN) {
+        if (!found[i].drawn) {
             place_object(b, chunk, g->triangle_ids[found[i].object], found[i].face, found[i].face);
             continue;
         }
         found[i].object = rt_ref(RT_SHAPE_TRIANGLE, found[i].object);
-        if (found[i].how == RT_LIGHT_LARGE) found[i].object |= RT_LIGHT_LARGE_BIT;
         chunk->places[chunk->count++] = found[i];
     }
 }
@@ -57,11 +56,9 @@ static void place_triangles(const Binning *b, Chunk *chunk, uint32_t first, uint
 /* Calls `visit` code for each tile of a place. */
 #define EACH_TILE(buffer, light, place, tile)                                                                \
     const RtLightGrid *grid = &(buffer)->cubes[light].grids[(place)->face];                                  \
-    for (uint32_t tile_row = (place)->lo[1] / RT_LIGHT_TILE; tile_row <= (place)->hi[1] / RT_LIGHT_TILE;     \
-         tile_row++)                                                                                         \
-        for (uint32_t tile_column = (place)->lo[0] / RT_LIGHT_TILE,                                          \
-                      tile = grid->first_tile + tile_row * grid->across + tile_column;                       \
-             tile_column <= (place)->hi[0] / RT_LIGHT_TILE; tile_column++, tile++)
+    for (uint32_t row = (place)->lo[1]; row <= (place)->hi[1]; row++)                                        \
+        for (uint32_t column = (place)->lo[0], tile = grid->first_tile + row * grid->columns + column;       \
+             column <= (place)->hi[0]; column++, tile++)
 
 /* Objects are numbered shape by shape, triangles first. */
 static uint32_t other_object(const RtGeometry *g, uint32_t number) {

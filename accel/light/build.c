@@ -37,90 +37,65 @@ static RtStatus make_cubes(RtLightBuffer *buffer, RtError *error) {
     return RT_OK;
 }
 
-/* ---- how fine ---- */
+/* ---- tiles ---- */
 
-/* The part of a face that sees the scene, and what is known of the objects seen there. */
+/* The part of a face that sees the scene, and how many objects are seen there. */
 typedef struct Outlook {
-    RtLightView view;
-    double objects, sides, areas; /* sums of 1, width + height, and width * height, in u and w */
+    RtLightView view; /* far: 0 where nothing is seen */
+    double objects;
 } Outlook;
-
-enum { SAMPLE = 4096 };
 
 /* From every kth object. */
 static void look_at_objects(const RtLightBuffer *buffer, uint32_t light, Outlook outlooks[6]) {
+    enum { SAMPLE = 2048 };
     const RtGeometry *g = &buffer->base.scene->geometry;
     uint32_t stride = g->object_count / SAMPLE + 1;
-    for (uint32_t id = 0; id < g->object_count; id += stride) {
-        if (rt_light_is_near(buffer, light, id)) continue;
-        for (int face = 0; face < 6; face++) {
-            Outlook *o = &outlooks[face];
-            RtLightView v;
-            if (o->view.far <= 0 || !rt_light_view(buffer, light, face, &g->boxes[id], &v)) continue;
-            double width = v.hi[0] - v.lo[0], height = v.hi[1] - v.lo[1];
-            o->objects += stride;
-            o->sides += stride * (width + height);
-            o->areas += stride * width * height;
+    for (int face = 0; g->object_count > 0 && face < 6; face++) {
+        Outlook *o = &outlooks[face];
+        RtLightView v;
+        if (!rt_light_view(buffer, light, face, &g->box, &o->view)) {
+            o->view.far = 0;
+            continue;
         }
+        for (uint32_t id = 0; id < g->object_count; id += stride)
+            o->objects += rt_light_view(buffer, light, face, &g->boxes[id], &v) ? stride : 0;
     }
 }
 
-/* Cells per 1 of u and w. An object of width x and height y is in about
- *
- *     (x scale + 1) (y scale + 1)
- *
- * cells, of which x y scale^2 are the share of its area: what is above that, in relation to it, is what fine
- * cells bring down, and memory and time of the build what they cost. */
-static double choose_scale(const Outlook *o, double margin) {
-    const double surplus = 1.5, most_cells = 0x1p22, cells_an_object = 8;
+/* Tiles of about so many objects, of which a third may be in front. */
+enum { OBJECTS_OF_TILE = 192, MOST_TILES = 256, CELLS_OF_TILE = 32 };
+
+/* How many tiles there are along the longer edge, and how fine they may be. `cells`: how many of them are
+ * asked for along it, or 0. */
+static void divide(const Outlook *o, double cells, double margin, RtLightGrid *grid) {
     double width = o->view.hi[0] - o->view.lo[0], height = o->view.hi[1] - o->view.lo[1];
-    double fine = 0x1p-6 / (0x1p-19 + 4 * margin / fmax(o->view.far, margin)); /* cells 64 times as wide as errors */
-    double longer = fmax(width, height), scale = 64 / longer;
-    if (o->areas > 0) {
-        double a = surplus * o->areas;
-        scale = (o->sides + sqrt(o->sides * o->sides + 4 * a * o->objects)) / (2 * a);
+    double longer = fmax(width, height), tiles;
+    if (cells > 0) {
+        tiles = ceil(cells / CELLS_OF_TILE);
+        grid->least = grid->finest = (uint32_t)ceil(cells / tiles);
+    } else {
+        tiles = floor(longer * sqrt(o->objects / OBJECTS_OF_TILE / (width * height)));
+        tiles = fmin(fmax(tiles, 1), MOST_TILES);
+        /* Cells 16 times as wide as what they grow by. */
+        double narrowest = 16 * (0x1p-18 + 8 * margin / (o->view.near + o->view.far));
+        grid->least = 1;
+        grid->finest = (uint32_t)fmin(fmax(longer / tiles / narrowest, 1), RT_LIGHT_FINEST);
     }
-    double most = fmin(most_cells, 4096 + cells_an_object * o->objects);
-    scale = fmin(scale, sqrt(most / (width * height)));
-    scale = fmin(scale, fine);
-    scale = fmin(scale, 4095 / longer);
-    return fmax(scale, 1 / longer);
+    grid->scale = (float)(tiles / longer);
 }
 
-static void make_grid(const RtLightBuffer *buffer, const Outlook *o, double cells, double margin,
-                      RtLightGrid *grid) {
+static void make_grid(const Outlook *o, double cells, double margin, RtLightGrid *grid) {
     *grid = (RtLightGrid){.columns = 0};
     if (o->view.far <= 0) return;
-    double width = o->view.hi[0] - o->view.lo[0], height = o->view.hi[1] - o->view.lo[1];
-    double scale = cells > 0 ? cells / fmax(width, height) : choose_scale(o, margin);
-    (void)buffer;
+    divide(o, cells, margin, grid);
     grid->u = rt_float_below(o->view.lo[0]);
     grid->w = rt_float_below(o->view.lo[1]);
-    grid->scale = (float)scale;
-    /* Never a cell too few: what rounding adds is less than half of one. */
-    grid->columns = (uint32_t)fmax(ceil((o->view.hi[0] - (double)grid->u) * (double)grid->scale - 0x1p-8), 1);
-    grid->rows = (uint32_t)fmax(ceil((o->view.hi[1] - (double)grid->w) * (double)grid->scale - 0x1p-8), 1);
-    grid->across = (grid->columns + RT_LIGHT_TILE - 1) / RT_LIGHT_TILE;
+    /* Views have an EDGE to spare: what rounding adds does not make a tile more. */
+    double scale = (double)grid->scale;
+    grid->columns = (uint32_t)fmax(ceil((o->view.hi[0] - (double)grid->u) * scale - 0x1p-20), 1);
+    grid->rows = (uint32_t)fmax(ceil((o->view.hi[1] - (double)grid->w) * scale - 0x1p-20), 1);
     grid->depth = rt_float_below(o->view.near);
     grid->depth_scale = (float)((RT_LIGHT_DEPTHS - 1) / (o->view.far - (double)grid->depth));
-}
-
-static double tiles_of(const RtLightGrid *grid) {
-    return (double)grid->across * ((grid->rows + RT_LIGHT_TILE - 1) / RT_LIGHT_TILE);
-}
-
-/* Sets the grids of a light for `cells` along the longer edge, 0 to choose; gives the number of tiles. */
-static double make_grids(RtLightBuffer *buffer, uint32_t light, const Outlook outlooks[6], double cells) {
-    RtLightCube *cube = &buffer->cubes[light];
-    double tiles = 0;
-    for (int face = 0; face < 6; face++) {
-        RtLightGrid *grid = &cube->grids[face];
-        make_grid(buffer, &outlooks[face], cells, cube->margin, grid);
-        grid->first_tile = (uint32_t)tiles;
-        tiles += grid->columns > 0 ? tiles_of(grid) : 0;
-    }
-    cube->tile_count = (uint32_t)tiles;
-    return tiles;
 }
 
 /* ---- how many fit ---- */
@@ -128,45 +103,61 @@ static double make_grids(RtLightBuffer *buffer, uint32_t light, const Outlook ou
 /* A buffer must have room for so much: a list's place, and two entries. */
 enum { LEAST_OF_CELL = sizeof(uint32_t) + 2 * sizeof(RtLightEntry) };
 
-static double make_all_grids(RtLightBuffer *buffer, const Outlook *outlooks, double cells) {
-    double tiles = 0;
-    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++)
-        tiles += make_grids(buffer, i, outlooks + 6 * (size_t)i, cells);
-    return tiles * RT_LIGHT_TILE_CELLS;
+/* Sets the grids of all lights for `cells` along the longer edge, 0 to choose; gives the cells there are at
+ * most. */
+static double make_grids(RtLightBuffer *buffer, const Outlook *outlooks, double cells) {
+    double all = 0;
+    for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
+        RtLightCube *cube = &buffer->cubes[light];
+        double tiles = 0;
+        for (uint32_t face = 0; face < 6; face++) {
+            RtLightGrid *grid = &cube->grids[face];
+            make_grid(&outlooks[6 * (size_t)light + face], cells, cube->margin, grid);
+            grid->first_tile = (uint32_t)tiles;
+            tiles += (double)grid->columns * grid->rows;
+            all += (double)grid->columns * grid->rows * grid->finest * grid->finest;
+        }
+        cube->tile_count = (uint32_t)tiles;
+    }
+    return all;
 }
 
-/* Grids of all lights; where they are to be chosen, as many cells as there is room for. */
+/* Makes tiles less fine where they are chosen, so that all fit. */
+static double make_coarser(RtLightBuffer *buffer, double part) {
+    double all = 0;
+    for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
+        for (int face = 0; face < 6; face++) {
+            RtLightGrid *grid = &buffer->cubes[light].grids[face];
+            grid->finest = (uint32_t)fmax(grid->finest * sqrt(part), 1);
+            all += (double)grid->columns * grid->rows * grid->finest * grid->finest;
+        }
+    }
+    return all;
+}
+
 static RtStatus fit_grids(RtLightBuffer *buffer, const Outlook *outlooks, double limit, double *cells,
                           RtError *error) {
-    uint32_t lights = buffer->base.scene->light_count, fits = 0, too_many = 4097;
-    *cells = make_all_grids(buffer, outlooks, buffer->cells);
-    if (*cells * LEAST_OF_CELL <= limit) return RT_OK;
-    if (buffer->cells > 0) too_many = buffer->cells;
+    uint32_t fits = 0, too_many = buffer->cells;
+    double most = limit / LEAST_OF_CELL;
+    *cells = make_grids(buffer, outlooks, buffer->cells);
+    if (*cells > most && buffer->cells == 0) *cells = make_coarser(buffer, most / *cells);
+    if (*cells <= most) return RT_OK;
     while (too_many - fits > 1) {
         uint32_t n = fits + (too_many - fits) / 2;
-        *(make_all_grids(buffer, outlooks, n) * LEAST_OF_CELL <= limit ? &fits : &too_many) = n;
-    }
-    if (buffer->cells == 0 && fits > 0) {
-        *cells = make_all_grids(buffer, outlooks, fits);
-        return RT_OK;
+        *(make_grids(buffer, outlooks, n) <= most ? &fits : &too_many) = n;
     }
     return rt_fail(error, RT_BAD_INPUT,
                    "a light buffer of %u cells along the edge of a face for %u lights would take more than %.3g "
                    "GiB: cells=%u would fit",
-                   buffer->cells, lights, limit / 0x1p30, fits);
+                   buffer->cells, buffer->base.scene->light_count, limit / 0x1p30, fits);
 }
 
 static RtStatus choose_grids(RtLightBuffer *buffer, double limit, double *cells, RtError *error) {
     const RtScene *scene = buffer->base.scene;
     Outlook *outlooks = rt_alloc(6 * (size_t)scene->light_count, sizeof(Outlook));
     if (!outlooks) return rt_fail_memory(error, "a light buffer", 6 * scene->light_count * sizeof(Outlook));
-    for (uint32_t i = 0; scene->geometry.object_count > 0 && i < scene->light_count; i++) {
-        for (int face = 0; face < 6; face++) {
-            RtLightView *view = &outlooks[6 * i + (uint32_t)face].view;
-            if (!rt_light_view(buffer, i, face, &scene->geometry.box, view)) view->far = 0;
-        }
+    for (uint32_t i = 0; i < scene->light_count; i++)
         look_at_objects(buffer, i, outlooks + 6 * (size_t)i);
-    }
     RtStatus status = fit_grids(buffer, outlooks, limit, cells, error);
     rt_free(outlooks);
     return status;
@@ -203,9 +194,9 @@ static RtStatus make_light(RtLightBuffer *buffer, uint32_t light, uint32_t most_
 static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError *error) {
     double cells = 0, limit = (double)what->limit;
     RT_TRY(choose_grids(buffer, limit, &cells, error));
-    double most = (limit - cells * (double)sizeof(uint32_t)) / sizeof(RtLightEntry);
-    most = fmin(most, 0x1p30) * RT_LIGHT_TILE_CELLS / fmax(cells, 1);
-    uint32_t most_of_tile = (uint32_t)fmin(most, 0x1p30);
+    double entries = (limit - cells * (double)sizeof(uint32_t)) / sizeof(RtLightEntry), tiles = 1;
+    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++) tiles += buffer->cubes[i].tile_count;
+    uint32_t most_of_tile = (uint32_t)(fmin(entries, 0x1p30) / tiles);
     for (uint32_t i = 0; i < buffer->base.scene->light_count; i++)
         RT_TRY(make_light(buffer, i, most_of_tile, what->threads, error));
     return RT_OK;
@@ -214,6 +205,7 @@ static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError 
 void rt_light_destroy(RtAccel *accel) {
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
     for (uint32_t i = 0; buffer->cubes && i < accel->scene->light_count; i++) {
+        rt_free(buffer->cubes[i].tiles);
         rt_free(buffer->cubes[i].first);
         rt_free(buffer->cubes[i].entries);
         rt_free(buffer->cubes[i].near);

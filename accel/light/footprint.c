@@ -94,7 +94,7 @@ bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const 
     return true;
 }
 
-/* What is lost in float32 where cells are counted, in cells. */
+/* What is lost in float32 where cells or tiles are counted, as a part of one. */
 #define SLACK 0x1p-6
 
 /* The vertices of a flat object; NULL of another. A point hit is within *warp of their hull. */
@@ -149,12 +149,40 @@ bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, u
         if (hi < 0 || lo >= count) return false;
         footprint->lo[k] = lo > 0 ? (uint32_t)lo : 0;
         footprint->hi[k] = hi < count ? (uint32_t)hi : count - 1;
-        footprint->sub_lo[k] = (float)fmax(lo, -1);
-        footprint->sub_hi[k] = (float)fmin(hi, count + 1.0);
+        footprint->least[k] = (float)((view.lo[k] - corner) * scale);
+        footprint->most[k] = (float)((view.hi[k] - corner) * scale);
     }
     footprint->near = rt_float_below(view.near);
     footprint->far = rt_float_above(view.far);
     return true;
+}
+
+RtLightCells rt_light_cells(const RtLightTile *tile, const RtLightFootprint *footprint) {
+    RtLightCells at;
+    for (int k = 0; k < 2; k++) {
+        double from = k ? tile->row : tile->column, n = tile->n;
+        double lo = ((double)footprint->least[k] - from) * n - SLACK;
+        double hi = ((double)footprint->most[k] - from) * n + SLACK;
+        lo = fmin(fmax(lo, -1), n + 1);
+        hi = fmin(fmax(hi, -1), n + 1);
+        at.lo[k] = (int32_t)fmax(floor(lo), 0);
+        at.hi[k] = (int32_t)fmin(floor(hi), n - 1);
+        at.sub_lo[k] = (int32_t)floor(8 * lo);
+        at.sub_hi[k] = (int32_t)floor(8 * hi);
+    }
+    return at;
+}
+
+/* What cells of a tile are on its face: direction (u, w) of its corner, and cells per 1 of it. */
+typedef struct Frame {
+    double u, w, scale;
+} Frame;
+
+static Frame frame_of(const RtLightTile *tile) {
+    const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
+    double scale = (double)grid->scale;
+    return (Frame){(double)grid->u + tile->column / scale, (double)grid->w + tile->row / scale,
+                   scale * tile->n};
 }
 
 /* ---- flat objects ---- */
@@ -163,12 +191,11 @@ static double norm(RtVec3d v) {
     return fabs(v.x) + fabs(v.y) + fabs(v.z);
 }
 
-/* v . (u, w, 1) in columns and rows from the corner of a tile. */
-static void in_cells(const RtLightGrid *grid, uint32_t column, uint32_t row, RtVec3d v, double out[3]) {
-    double scale = (double)grid->scale;
-    out[0] = v.x / scale;
-    out[1] = v.y / scale;
-    out[2] = v.x * ((double)grid->u + column / scale) + v.y * ((double)grid->w + row / scale) + v.z;
+/* v . (u, w, 1) in columns and rows. */
+static void in_cells(const Frame *frame, RtVec3d v, double out[3]) {
+    out[0] = v.x / frame->scale;
+    out[1] = v.y / frame->scale;
+    out[2] = v.x * frame->u + v.y * frame->w + v.z;
 }
 
 static void narrow(const double from[3], double by, float to[3]) {
@@ -176,13 +203,13 @@ static void narrow(const double from[3], double by, float to[3]) {
 }
 
 /* How much v . (u, w, 1) changes from the middle of a cell to its borders, and a little beyond. */
-static double across_cell(const RtLightGrid *grid, RtVec3d v) {
-    return (fabs(v.x) + fabs(v.y)) * ((0.5 + SLACK) / (double)grid->scale + RT_LIGHT_EDGE);
+static double across_cell(const Frame *frame, RtVec3d v) {
+    return (fabs(v.x) + fabs(v.y)) * ((0.5 + SLACK) / frame->scale + RT_LIGHT_EDGE);
 }
 
 /* Adds the lines through the edges. */
-static void add_edges(RtLightOutline *o, const RtLightGrid *grid, uint32_t column, uint32_t row,
-                      const RtVec3d *vertices, uint32_t count, double grow, double least_depth) {
+static void add_edges(RtLightOutline *o, const Frame *frame, const RtVec3d *vertices, uint32_t count,
+                      double grow, double least_depth) {
     for (uint32_t i = 0; i < count; i++) {
         RtVec3d a = vertices[i], b = vertices[(i + 1) % count], side = rt_crossd(a, b);
         double lo = 0, hi = 0;
@@ -193,14 +220,14 @@ static void add_edges(RtLightOutline *o, const RtLightGrid *grid, uint32_t colum
         }
         double slack = 2 * grow * (norm(side) + 0x1p-20 * norm(a) * norm(b)), line[3];
         bool positive = lo > -slack, negative = hi < slack;
-        in_cells(grid, column, row, side, line);
+        in_cells(frame, side, line);
         double unit = fabs(line[0]) + fabs(line[1]);
         o->covers = o->covers && positive != negative && unit > 0x1p-60 * norm(side);
         if (!(unit > 0x1p-60 * norm(side))) continue;
         if (o->covers) narrow(line, (positive ? 1 : -1) / unit, o->inside[i]);
         /* What is seen edge on is on both sides. */
-        double around = across_cell(grid, side) + 2 * slack / least_depth;
-        around += 0x1p-20 * (fabs(line[2]) + around + unit * 2 * RT_LIGHT_TILE);
+        double around = across_cell(frame, side) + 2 * slack / least_depth;
+        around += 0x1p-20 * (fabs(line[2]) + around + unit * 2 * RT_LIGHT_FINEST);
         for (int sign = -1; sign <= 1; sign += 2) {
             if (!(sign > 0 ? positive : negative)) continue;
             const double part[3] = {sign * line[0], sign * line[1], sign * line[2] + around};
@@ -210,26 +237,27 @@ static void add_edges(RtLightOutline *o, const RtLightGrid *grid, uint32_t colum
 }
 
 /* The plane through `point`. */
-static void add_plane(RtLightOutline *o, const RtLightGrid *grid, uint32_t column, uint32_t row,
-                      RtVec3d point, RtVec3d normal, double grow) {
+static void add_plane(RtLightOutline *o, const Frame *frame, RtVec3d point, RtVec3d normal, double grow) {
     double at = rt_dotd(normal, point), plane[3];
     if (at < 0) normal = rt_scaled(normal, -1), at = -at;
     double least = at - 2 * grow * norm(normal) - 0x1p-40 * norm(normal) * norm(point);
-    in_cells(grid, column, row, normal, plane);
+    in_cells(frame, normal, plane);
     if (!(least > 0.25 * at)) {
         o->covers = false;
         return;
     }
     narrow(plane, 1 / at, o->face);
-    plane[2] += across_cell(grid, normal);
-    plane[2] += 0x1p-20 * (fabs(plane[2]) + 2 * RT_LIGHT_TILE * (fabs(plane[0]) + fabs(plane[1])));
+    plane[2] += across_cell(frame, normal);
+    plane[2] += 0x1p-20 * (fabs(plane[2]) + 2 * RT_LIGHT_FINEST * (fabs(plane[0]) + fabs(plane[1])));
     narrow(plane, 1 / least, o->slope);
 }
 
-void rt_light_outline(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
-                      const RtLightFootprint *at, uint32_t column, uint32_t row, RtLightOutline *o) {
+void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at, RtLightOutline *o) {
+    const RtLightBuffer *buffer = tile->buffer;
     const RtGeometry *g = &buffer->base.scene->geometry;
-    const RtLightGrid *grid = &buffer->cubes[light].grids[face];
+    const Frame frame = frame_of(tile);
+    const uint32_t light = tile->light;
+    const int face = tile->face;
     uint32_t count;
     double grow = buffer->cubes[light].margin, warp;
     RtVec3d offsets[RT_LIGHT_MAX_EDGES], normal, point;
@@ -237,7 +265,7 @@ void rt_light_outline(const RtLightBuffer *buffer, uint32_t light, int face, uin
     *o = (RtLightOutline){.covers = count <= RT_LIGHT_MAX_EDGES, .edges = count, .slope = {0, 0, INFINITY}};
     if (o->covers && at->near > 0) {
         for (uint32_t i = 0; i < count; i++) offsets[i] = offset(buffer, light, face, vertices[i]);
-        add_edges(o, grid, column, row, offsets, count, grow + warp, (double)at->near);
+        add_edges(o, &frame, offsets, count, grow + warp, (double)at->near);
     } else {
         o->covers = false;
     }
@@ -251,15 +279,14 @@ void rt_light_outline(const RtLightBuffer *buffer, uint32_t light, int face, uin
         normal = rt_crossd(b, rt_subd(offset(buffer, light, face, vertices[2]), point));
         grow += 0x1p-40 * norm(point);
     }
-    add_plane(o, grid, column, row, point, normal, grow);
+    add_plane(o, &frame, point, normal, grow);
 }
 
 /* ---- round objects ---- */
 
-/* The direction of column + x, row + y, at depth 1. */
-static RtVec3d direction(const RtLightGrid *grid, double x, double y) {
-    double scale = (double)grid->scale;
-    return rt_vec3d((double)grid->u + x / scale, (double)grid->w + y / scale, 1);
+/* The direction of column x, row y, at depth 1. */
+static RtVec3d direction(const Frame *frame, double x, double y) {
+    return rt_vec3d(frame->u + x / frame->scale, frame->w + y / frame->scale, 1);
 }
 
 /* Squared distance of a point from the line through the light along `axis`. */
@@ -268,24 +295,24 @@ static double distance_squared(RtVec3d point, RtVec3d axis) {
     return rt_dotd(across, across) / rt_dotd(axis, axis);
 }
 
-bool rt_light_touches(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
-                      uint32_t row) {
-    const RtLightGrid *grid = &buffer->cubes[light].grids[face];
+bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row) {
+    const RtLightBuffer *buffer = tile->buffer;
+    const Frame frame = frame_of(tile);
     RtBall ball = rt_object_ball(&buffer->base.scene->geometry, id);
-    RtVec3d center = rt_light_offset(buffer, light, face, ball.center);
-    double radius = ball.radius + 2 * buffer->cubes[light].margin;
-    double half = 1.5 * ((0.5 + SLACK) / (double)grid->scale + RT_LIGHT_EDGE); /* above sqrt(2) */
+    RtVec3d center = rt_light_offset(buffer, tile->light, tile->face, ball.center);
+    double radius = ball.radius + 2 * buffer->cubes[tile->light].margin;
+    double half = 1.5 * ((0.5 + SLACK) / frame.scale + RT_LIGHT_EDGE); /* above sqrt(2) */
     double reach = radius + half * (center.z + radius); /* a ball's points are at most so deep */
-    return distance_squared(center, direction(grid, column + 0.5, row + 0.5)) <= reach * reach;
+    return distance_squared(center, direction(&frame, column + 0.5, row + 0.5)) <= reach * reach;
 }
 
-bool rt_light_covers(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
-                     uint32_t row, float *depth) {
-    const RtGeometry *g = &buffer->base.scene->geometry;
+bool rt_light_covers(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row, float *depth) {
+    const RtGeometry *g = &tile->buffer->base.scene->geometry;
     if (rt_ref_shape(g->objects[id]) != RT_SHAPE_SPHERE) return false;
     const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
-    RtVec3d center = offset(buffer, light, face, sphere->center);
-    RtVec3d corner = direction(&buffer->cubes[light].grids[face], column, row);
+    const Frame frame = frame_of(tile);
+    RtVec3d center = offset(tile->buffer, tile->light, tile->face, sphere->center);
+    RtVec3d corner = direction(&frame, column, row);
     double radius = (double)sphere->radius;
     if (!(rt_dotd(center, corner) > 0) || !(distance_squared(center, corner) < radius * radius)) return false;
     *depth = (float)center.z;

@@ -79,6 +79,10 @@ RT_KERNEL uint32_t to_light(const RtLightBuffer *self, uint32_t light, const Six
     return good;
 }
 
+RT_KERNEL RtV16 whole(RtV16 a) {
+    return rt_v16_of_words(rt_w16_truncate(a));
+}
+
 /* Puts the rays of `lanes`, which see the light from its face, on their way. */
 RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const Sixteen *s, uint32_t lanes,
                                const uint32_t *order, Way *way, uint32_t count) {
@@ -95,16 +99,20 @@ RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const Sixteen 
     lanes &= rt_v16_at_most(zero, w) & ~rt_v16_at_most(rt_v16_all((float)grid->rows), w);
     if (!lanes) return count;
 
-    const RtV16 last_u = rt_v16_all((float)(grid->columns - 1)), last_w = rt_v16_all((float)(grid->rows - 1));
-    RtW16 column = rt_w16_truncate(rt_v16_min(rt_v16_max(u, zero), last_u));
-    RtW16 row = rt_w16_truncate(rt_v16_min(rt_v16_max(w, zero), last_w));
-    const RtW16 in_tile = rt_w16_all(RT_LIGHT_TILE - 1), seven = rt_w16_all(7);
-    RtV16 tile_row = rt_v16_of_words(rt_w16_right(row, 5)); /* exact in float32 */
-    RtW16 cell = rt_w16_truncate(rt_v16_mul(tile_row, rt_v16_all((float)grid->across)));
-    cell = rt_w16_add(rt_w16_add(cell, rt_w16_right(column, 5)), rt_w16_all(grid->first_tile));
-    cell = rt_w16_or(rt_w16_left(cell, 5), rt_w16_and(row, in_tile));
-    cell = rt_w16_or(rt_w16_left(cell, 5), rt_w16_and(column, in_tile));
-    cell = rt_w16_pick(lanes, rt_w16_all(0), cell);
+    /* The tile, and then the cell: products of small whole numbers are exact. */
+    const RtW16 none = rt_w16_all(0), seven = rt_w16_all(7);
+    RtV16 column = whole(u), row = whole(w);
+    RtW16 tile = rt_w16_truncate(rt_v16_add(rt_v16_mul(row, rt_v16_all((float)grid->columns)), column));
+    tile = rt_w16_pick(lanes, none, rt_w16_add(tile, rt_w16_all(grid->first_tile)));
+    tile = rt_w16_lookup(cube->tiles, tile);
+    RtV16 n = rt_v16_of_words(rt_w16_and(tile, rt_w16_all(63)));
+    u = rt_v16_mul(rt_v16_sub(u, column), n);
+    w = rt_v16_mul(rt_v16_sub(w, row), n);
+    RtV16 last = rt_v16_sub(n, rt_v16_all(1)); /* what is just below n may be rounded to it */
+    column = rt_v16_min(whole(u), last);
+    row = rt_v16_min(whole(w), last);
+    RtW16 cell = rt_w16_truncate(rt_v16_add(rt_v16_mul(row, n), column));
+    cell = rt_w16_pick(lanes, none, rt_w16_add(cell, rt_w16_right(tile, 6)));
     RtW16 at = rt_w16_lookup(cube->first, cell), end = rt_w16_lookup(cube->first + 1, cell);
     lanes &= rt_w16_below(at, end);
 
@@ -113,8 +121,8 @@ RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const Sixteen 
     depth = rt_v16_mul(rt_v16_sub(depth, rt_v16_all(grid->depth)), rt_v16_all(grid->depth_scale));
     depth = rt_v16_min(rt_v16_max(depth, zero), rt_v16_all(RT_LIGHT_DEPTHS - 1));
     const RtV16 eight = rt_v16_all(8);
-    RtW16 sub_x = rt_w16_truncate(rt_v16_mul(rt_v16_sub(u, rt_v16_of_words(column)), eight));
-    RtW16 sub_y = rt_w16_truncate(rt_v16_mul(rt_v16_sub(w, rt_v16_of_words(row)), eight));
+    RtW16 sub_x = rt_w16_least(rt_w16_truncate(rt_v16_mul(rt_v16_sub(u, column), eight)), seven);
+    RtW16 sub_y = rt_w16_least(rt_w16_truncate(rt_v16_mul(rt_v16_sub(w, row), eight)), seven);
     RtW16 key = rt_w16_or(rt_w16_left(rt_w16_truncate(depth), 16), rt_w16_all(RT_LIGHT_DEEP | RT_LIGHT_BOXED));
     key = rt_w16_or(key, rt_w16_or(sub_x, rt_w16_left(rt_w16_sub(seven, sub_x), 4)));
     key = rt_w16_or(key, rt_w16_left(rt_w16_or(sub_y, rt_w16_left(rt_w16_sub(seven, sub_y), 4)), 8));
@@ -123,7 +131,9 @@ RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const Sixteen 
     rt_w16_put_some(way->at + count, lanes, at);
     rt_w16_put_some(way->end + count, lanes, end);
     rt_w16_put_some(way->key + count, lanes, key);
-    return count + (uint32_t)__builtin_popcount(lanes);
+    uint32_t after = count + (uint32_t)__builtin_popcount(lanes);
+    for (uint32_t i = count; i < after; i++) __builtin_prefetch(&cube->entries[way->at[i]]);
+    return after;
 }
 
 /* Tests the objects that touch the light; gives the rays that are left. */
@@ -220,6 +230,7 @@ RT_KERNEL void test_others(const Asking *a, uint32_t count) {
 
 /* Every ray on its way looks at an entry; gives how many are left. */
 RT_KERNEL uint32_t take_round(const Asking *a, const RtLightEntry *entries, uint32_t count, bool all_triangles) {
+    const RtGeometry *g = &a->self->base.scene->geometry;
     Stream *stream = a->stream;
     Way *way = &stream->way;
     const RtW16 beyond = rt_w16_all(RT_LIGHT_BEYOND), one = rt_w16_all(1), none = rt_w16_all(0);
@@ -244,7 +255,15 @@ RT_KERNEL uint32_t take_round(const Asking *a, const RtLightEntry *entries, uint
         uint32_t met = lanes & rt_w16_equal(rt_w16_and(over, rt_w16_all(fields)), rt_w16_all(fields));
         rt_w16_put_some(stream->pair_ray + pairs, met, ray);
         rt_w16_put_some(stream->pair_object + pairs, met, object);
-        pairs += (uint32_t)__builtin_popcount(met);
+        uint32_t after = pairs + (uint32_t)__builtin_popcount(met);
+        if (all_triangles) {
+            for (; pairs < after; pairs++) {
+                const RtTriangle *t = &g->triangles[rt_ref_index(stream->pair_object[pairs])];
+                __builtin_prefetch(t);
+                __builtin_prefetch(&t->v[2].z);
+            }
+        }
+        pairs = after;
         at = rt_w16_add(at, one);
         lanes &= rt_w16_below(at, end);
         rt_w16_put_some(way->ray + left, lanes, ray);

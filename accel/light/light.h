@@ -4,11 +4,12 @@
  * Around each light stands a cube of six faces, one per axis and direction: face 2 a + 1 looks from the light
  * along +a, 2 a along -a. A point at offset v from the light belongs to the face of its largest |v.at[a]|,
  * its depth, and lies on it at u = v.at[b] / depth, w = v.at[c] / depth, both in [-1, 1], with b, c the axes
- * after a. On each face lies a grid of square cells, over the rectangle in which the scene is seen; what
- * is outside is lit. Cell (column, row) has u in grid.u + [column, column + 1] / grid.scale, w alike.
+ * after a. On each face lies a grid of square tiles, over the rectangle in which the scene is seen; what is
+ * outside is lit. Tile (column, row) has u in grid.u + [column, column + 1] / grid.scale, w alike, and n x n
+ * cells of equal width, n being as large as the objects seen there are small.
  *
- * Layout: cells are in tiles of 32 x 32, tile after tile of a face, face after face; in a tile row after row.
- * The list of cell k of a light is entries[first[k]..first[k + 1]), ascending by key, then by object. A key
+ * Layout: tiles are face after face, row after row; tiles[k] is the number of the first cell of tile k, times
+ * 64, plus its n; in a tile cells are row after row. The list of cell k of a light is entries[first[k]..first[k + 1]), ascending by key, then by object. A key
  * holds, from the highest bit: a 0; 15 bits of depth, rounded down; and four times a 0 and 3 bits, the box
  * around the object in the cell, in eighths of a cell: 7 - most row, least row, 7 - most column, least
  * column. A list that was cut ends in an entry RT_LIGHT_BEYOND: what is as deep or deeper may be missing.
@@ -26,13 +27,13 @@
 
 #define RT_LIGHT_PARAMS(X)                                                                                   \
     X(RT_LIGHT_CELLS, "cells", RT_INT("0", 0, 4096, "1|7|256"),                                              \
-      "cells along the longer edge of the part of a face that sees the scene; 0: from the sizes of objects", \
+      "cells along the longer edge of the part of a face that sees the scene; 0: as fine as the objects",    \
       "this program; Haines & Greenberg 1986 use 20 to 200")                                                 \
     X(RT_LIGHT_FULL_OCCLUSION, "full_occlusion", RT_FLAG("on"),                                              \
       "end a list where the whole cell is likely to be covered", "Haines & Greenberg 1986, of one object")   \
     X(RT_LIGHT_EXTENTS, "extents", RT_FLAG("on"),                                                            \
       "test the box around an object in the cell, to an eighth of it, before the object", "this program")    \
-    X(RT_LIGHT_LONGEST, "longest", RT_INT("64", 1, 65535, "2"),                                              \
+    X(RT_LIGHT_LONGEST, "longest", RT_INT("64", 1, 65534, "2"),                                              \
       "entries of a list; what lies deeper is passed on", "measured")
 
 enum { RT_LIGHT_PARAMS(RT_PARAM_INDEX) RT_LIGHT_PARAM_COUNT };
@@ -52,14 +53,15 @@ typedef struct RtLightEntry {
 #define RT_LIGHT_BOXED 0x00008888u
 #define RT_LIGHT_DEPTHS 32768 /* that a key can hold */
 
-enum { RT_LIGHT_TILE = 32, RT_LIGHT_TILE_CELLS = RT_LIGHT_TILE * RT_LIGHT_TILE };
+/* The most cells along the edge of a tile, and in a tile. */
+enum { RT_LIGHT_FINEST = 63, RT_LIGHT_TILE_CELLS = RT_LIGHT_FINEST * RT_LIGHT_FINEST };
 
 typedef struct RtLightGrid {
-    float u, w, scale;        /* the corner of cell (0, 0); cells per 1 of u and w */
+    float u, w, scale;        /* the corner of tile (0, 0); tiles per 1 of u and w */
     float depth, depth_scale; /* the least depth there is, and steps of a key's depth per 1 */
-    uint32_t columns, rows;   /* cells; 0: nothing is seen on this face */
-    uint32_t across;          /* tiles in a row */
+    uint32_t columns, rows;   /* tiles; 0: nothing is seen on this face */
     uint32_t first_tile;      /* of the light's */
+    uint32_t least, finest;   /* cells along the edge of a tile: no fewer, no more */
 } RtLightGrid;
 
 /* What one light sees. */
@@ -67,9 +69,10 @@ typedef struct RtLightCube {
     RtLightGrid grids[6];
     double margin;       /* by which boxes grow: see footprint.c */
     bool serves;         /* else all its rays are passed on, and there are no lists */
-    uint32_t tile_count; /* of all faces */
-    uint32_t *first;     /* [tile_count * RT_LIGHT_TILE_CELLS + 1] */
-    RtLightEntry *entries; /* [first[...last]] */
+    uint32_t tile_count, cell_count; /* of all faces */
+    uint32_t *tiles;                 /* [tile_count] */
+    uint32_t *first;                 /* [cell_count + 1] */
+    RtLightEntry *entries;           /* [first[cell_count]] */
     uint32_t near_count;
     uint32_t *near; /* [near_count] ids */
 } RtLightCube;
@@ -95,11 +98,22 @@ static inline uint32_t rt_light_depth_key(const RtLightGrid *grid, float depth) 
     return step > 0 ? (step < RT_LIGHT_DEPTHS - 1 ? (uint32_t)step : RT_LIGHT_DEPTHS - 1) : 0;
 }
 
-/* The cell of a light at a column and a row. */
-static inline uint32_t rt_light_cell(const RtLightGrid *grid, uint32_t column, uint32_t row) {
-    uint32_t tile = grid->first_tile + row / RT_LIGHT_TILE * grid->across + column / RT_LIGHT_TILE;
-    return tile * RT_LIGHT_TILE_CELLS + row % RT_LIGHT_TILE * RT_LIGHT_TILE + column % RT_LIGHT_TILE;
+/* Cells along the edge of a tile, and its first cell. */
+static inline uint32_t rt_light_fineness(uint32_t tile) {
+    return tile & 63;
 }
+static inline uint32_t rt_light_first_cell(uint32_t tile) {
+    return tile >> 6;
+}
+
+/* A tile of a light. */
+typedef struct RtLightTile {
+    const RtLightBuffer *buffer;
+    uint32_t light;
+    int face;
+    uint32_t column, row; /* in the grid of the face */
+    uint32_t n;           /* cells along its edge */
+} RtLightTile;
 
 /* The id of an entry's object. */
 static inline uint32_t rt_light_id_of(const RtGeometry *g, RtRef object) {
@@ -127,17 +141,24 @@ typedef struct RtLightView {
 } RtLightView;
 bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const RtBox *box, RtLightView *view);
 
-/* The cells of a face that an object may be seen in from the light, columns lo[0]..hi[0] of rows
+/* The tiles of a face that an object may be seen in from the light, columns lo[0]..hi[0] of rows
  * lo[1]..hi[1]. */
 typedef struct RtLightFootprint {
     uint32_t lo[2], hi[2];
-    float sub_lo[2], sub_hi[2]; /* the same in parts of cells */
-    float near, far;            /* depths, rounded outward */
+    float least[2], most[2]; /* the same in parts of tiles */
+    float near, far;         /* depths, rounded outward */
 } RtLightFootprint;
 
 /* False if there are none. Not to be asked of objects that touch the light. */
 bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
                         RtLightFootprint *footprint);
+
+/* The cells of a footprint in a tile; none where lo > hi. And its box in eighths of cells of the tile. */
+typedef struct RtLightCells {
+    int32_t lo[2], hi[2];
+    int32_t sub_lo[2], sub_hi[2];
+} RtLightCells;
+RtLightCells rt_light_cells(const RtLightTile *tile, const RtLightFootprint *footprint);
 
 #define RT_LIGHT_MAX_EDGES 8
 
@@ -154,38 +175,34 @@ typedef struct RtLightOutline {
     float face[3];
 } RtLightOutline;
 
-/* Of a flat object, for the tile at (column, row); another has no parts, and its cells are to be asked about
- * one by one. */
-void rt_light_outline(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
-                      const RtLightFootprint *at, uint32_t column, uint32_t row, RtLightOutline *outline);
+/* Of a flat object, in cells of the tile; another has no parts, and its cells are to be asked about one by
+ * one. */
+void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at,
+                      RtLightOutline *outline);
 
-/* Of an object that is not flat: may it be seen in a cell of its footprint? And does it hide all that is
- * behind it in the direction of the corner (column, row)? Then *depth is where it ends. */
-bool rt_light_touches(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
-                      uint32_t row);
-bool rt_light_covers(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
-                     uint32_t row, float *depth);
+/* Of an object that is not flat: may it be seen in a cell of the tile? And does it hide all that is behind it
+ * in the direction of the lower corner of cell (column, row)? Then *depth is where. */
+bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row);
+bool rt_light_covers(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row, float *depth);
 
 /* ---- kernels.h and raster.h, for each instruction set ---- */
 
 /* Where triangles are seen, in lanes. */
 typedef struct RtLightPlace {
-    uint32_t object; /* RtRef, or index of a triangle */
-    uint16_t lo[2], hi[2];
-    uint8_t face, how; /* RtLightHow */
+    uint32_t object;       /* RtRef, or index of a triangle */
+    uint16_t lo[2], hi[2]; /* tiles */
+    uint8_t face;
+    bool drawn; /* can be drawn in lanes; else the footprint is to be asked for */
 } RtLightPlace;
-
-/* LARGE and UNKNOWN ones are asked about one by one, footprint and all. */
-typedef enum RtLightHow { RT_LIGHT_SMALL, RT_LIGHT_LARGE, RT_LIGHT_UNKNOWN } RtLightHow;
 
 /* A small triangle has a footprint of at most so many cells squared. */
 enum { RT_LIGHT_SMALL_CELLS = 8 };
 
 /* A tile on its way: what the cells may see. */
 typedef struct RtLightDesk {
-    float corner[RT_LIGHT_TILE + 4][RT_LIGHT_TILE + 8]; /* depth that is covered there, INFINITY for none */
-    float cover[RT_LIGHT_TILE + 4][RT_LIGHT_TILE + 16]; /* depth beyond which a cell is covered */
-    uint64_t cut[RT_LIGHT_TILE + 4]; /* by row, bit by column: something deeper was left out */
+    float corner[RT_LIGHT_FINEST + 5][RT_LIGHT_FINEST + 17]; /* depth that is covered there, or INFINITY */
+    float cover[RT_LIGHT_FINEST + 5][RT_LIGHT_FINEST + 17];  /* depth beyond which a cell is covered */
+    uint64_t cut[RT_LIGHT_FINEST + 5]; /* by row, bit by column: something deeper was left out */
     /* Candidates in runs of one object: cell of the tile, and key. */
     uint32_t *cell, *key;
     uint32_t count, cell_capacity, key_capacity;
@@ -196,14 +213,6 @@ typedef struct RtLightDesk {
 /* What a small triangle adds at most, and what is written beyond. */
 enum { RT_LIGHT_SMALL_ROOM = RT_LIGHT_SMALL_CELLS * RT_LIGHT_SMALL_CELLS + 16 };
 
-/* A tile to be drawn on. */
-typedef struct RtLightTile {
-    const RtLightBuffer *buffer;
-    uint32_t light;
-    int face;
-    uint32_t column, row; /* of its first cell */
-} RtLightTile;
-
 struct RtLightKernels {
     RtOccludedKernel *occluded;
     RtOccludedCounted *occluded_counted;
@@ -213,15 +222,14 @@ struct RtLightKernels {
      * how many that are. */
     uint32_t (*place)(const RtLightBuffer *buffer, uint32_t light, uint32_t first, uint32_t count,
                       RtLightPlace *places);
-    /* Up to sixteen small triangles: the corners they cover; and their candidates, for which there is
-     * room. */
-    void (*cover)(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk);
-    void (*draw)(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk);
+    /* Of up to sixteen triangles those that are small in the tile: the corners they cover; and their
+     * candidates, for which there is room. Gives those that are not. */
+    uint32_t (*cover)(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk);
+    uint32_t (*draw)(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk);
     /* The same of one object by its outline: `room` for all cells of the tile. */
-    void (*cover_outline)(const RtLightOutline *outline, const RtLightFootprint *at, const RtLightTile *tile,
-                          RtLightDesk *desk);
-    void (*draw_outline)(const RtLightOutline *outline, const RtLightFootprint *at, const RtLightTile *tile,
-                         RtRef object, RtLightDesk *desk);
+    void (*cover_outline)(const RtLightOutline *outline, const RtLightCells *at, RtLightDesk *desk);
+    void (*draw_outline)(const RtLightTile *tile, const RtLightOutline *outline, const RtLightFootprint *from,
+                         const RtLightCells *at, RtRef object, RtLightDesk *desk);
 };
 
 extern const RtLightKernels rt_light_portable, rt_light_avx2, rt_light_avx512;
@@ -232,10 +240,10 @@ const RtLightKernels *rt_light_kernels(RtIsa isa);
 /* ---- bins.c ---- */
 
 /* What falls into the tiles of a light: objects[first[k]..first[k + 1]) into tile k. */
-#define RT_LIGHT_LARGE_BIT 0x80000000u /* of a triangle that is not small; of all other objects */
+#define RT_LIGHT_ALONE 0x80000000u /* of what is not drawn in lanes */
 typedef struct RtLightBins {
     uint32_t *first;   /* [tiles + 1] */
-    uint32_t *objects; /* [first[tiles]] RtRef and RT_LIGHT_LARGE_BIT */
+    uint32_t *objects; /* [first[tiles]] RtRef and RT_LIGHT_ALONE */
 } RtLightBins;
 
 RtStatus rt_light_fill_bins(const RtLightBuffer *buffer, uint32_t light, int threads, RtLightBins *bins,

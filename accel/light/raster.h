@@ -5,8 +5,8 @@
  *
  * Projection. An offset from the light is off by 2^-24 of itself, which the margin m = 1.25 * margin makes up
  * for. Only triangles at a depth of 16 m or more, and with |u|, |w| <= 2, are drawn here. Their u and w are
- * off by 2^-24 each for both offsets, the quotient, the difference from grid.u and the product with
- * grid.scale, of numbers of at most 4: less than 2^-19 - RT_LIGHT_EDGE. What lies within m of them is at most
+ * off by 2^-24 each for both offsets, the quotient, the difference from grid.u, the product with grid.scale
+ * and that with the cells of a tile, of numbers of at most 4: less than 2^-18 - RT_LIGHT_EDGE. What lies within m of them is at most
  * 4 m / depth away in u and w, since (m + |u| m) / (depth - m) is less. So much, and an EDGE, and SLACK cells
  * for the lines below, the rectangle around the projected triangle grows; and so much a line must be away
  * from a cell.
@@ -87,9 +87,9 @@ RT_KERNEL uint32_t seen_on(const Eye *eye, int face, RtV16 v[3][3]) {
     return seen;
 }
 
-/* `column`, `row`: what x and y are from. */
-RT_KERNEL void project(const Eye *eye, const RtLightGrid *grid, int face, float column, float row,
-                       RtV16 v[3][3], Projected *p) {
+/* In n x n cells of a tile; column and row are the first of them. */
+RT_KERNEL void project(const Eye *eye, const RtLightGrid *grid, int face, uint32_t n, uint32_t column,
+                       uint32_t row, RtV16 v[3][3], Projected *p) {
     const RtV16 m = eye->margin;
     RtV16 z[3], side[2][3];
     turn_to_face(face, v, z, side);
@@ -102,14 +102,14 @@ RT_KERNEL void project(const Eye *eye, const RtLightGrid *grid, int face, float 
         p->drawn &= rt_v16_at_most(rt_v16_abs(side[0][i]), wide);
         p->drawn &= rt_v16_at_most(rt_v16_abs(side[1][i]), wide);
     }
-    const RtV16 scale = rt_v16_all(grid->scale), most_cells = rt_v16_all(0x1p13f);
+    const RtV16 scale = rt_v16_all(grid->scale * (float)n), most_cells = rt_v16_all(0x1p13f);
     RtV16 grow = rt_v16_div(rt_v16_mul(m, rt_v16_all(4)), rt_v16_max(nearest, m));
-    grow = rt_v16_add(rt_v16_all(0x1p-19f), grow);
+    grow = rt_v16_add(rt_v16_all(0x1p-18f), grow);
     p->grow = rt_v16_add(rt_v16_mul(scale, grow), rt_v16_all(RT_LIGHT_SLACK));
     p->small = p->drawn;
     for (int k = 0; k < 2; k++) {
         RtV16 *to = k ? p->y : p->x;
-        const RtV16 origin = rt_v16_all(k ? grid->w : grid->u), from = rt_v16_all(k ? row : column);
+        const RtV16 origin = rt_v16_all(k ? grid->w : grid->u), from = rt_v16_all((float)(k ? row : column));
         for (int i = 0; i < 3; i++) {
             to[i] = rt_v16_mul(rt_v16_sub(rt_v16_div(side[k][i], z[i]), origin), scale);
             to[i] = rt_v16_sub(to[i], from);
@@ -138,7 +138,7 @@ static uint32_t place(const RtLightBuffer *buffer, uint32_t light, uint32_t firs
         uint32_t seen = seen_on(&eye, face, v) & ((1u << count) - 1);
         if (!seen) continue;
         Projected p;
-        project(&eye, grid, face, 0, 0, v, &p);
+        project(&eye, grid, face, 1, 0, 0, v, &p);
         _Alignas(64) uint32_t lo[2][16], hi[2][16];
         for (int k = 0; k < 2; k++) {
             const RtV16 zero = rt_v16_all(0), cells = rt_v16_all((float)(k ? grid->rows : grid->columns));
@@ -149,14 +149,11 @@ static uint32_t place(const RtLightBuffer *buffer, uint32_t light, uint32_t firs
         }
         for (; seen; seen &= seen - 1) {
             uint32_t i = (uint32_t)__builtin_ctz(seen), bit = 1u << i;
-            RtLightHow how = p.small & bit   ? RT_LIGHT_SMALL
-                             : p.drawn & bit ? RT_LIGHT_LARGE
-                                             : RT_LIGHT_UNKNOWN;
             places[found++] = (RtLightPlace){.object = first + i,
                                              .lo = {(uint16_t)lo[0][i], (uint16_t)lo[1][i]},
                                              .hi = {(uint16_t)hi[0][i], (uint16_t)hi[1][i]},
                                              .face = (uint8_t)face,
-                                             .how = (uint8_t)how};
+                                             .drawn = (p.drawn & bit) != 0};
         }
     }
     return found;
@@ -171,7 +168,8 @@ typedef struct Small {
     float near[16], far[16];
     uint32_t depth[16];
     uint32_t lo[2][16], hi[2][16];     /* cells of the tile; none where lo > hi */
-    uint32_t sub_lo[2][16], sub_hi[2][16]; /* in eighths, 0 at the corner of the tile: words */
+    uint32_t sub_lo[2][16], sub_hi[2][16]; /* in eighths, 0 at the corner of the tile */
+    uint32_t large;                        /* those that are not small */
 } Small;
 
 /* a, rounded down; of less than 2^31. */
@@ -192,7 +190,8 @@ RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles,
     for (uint32_t i = 0; i < 16; i++)
         at[i] = &buffer->base.scene->geometry.triangles[triangles[i < count ? i : 0]];
     offsets_of(&eye, at, v);
-    project(&eye, grid, tile->face, (float)tile->column, (float)tile->row, v, &p);
+    project(&eye, grid, tile->face, tile->n, tile->column * tile->n, tile->row * tile->n, v, &p);
+    s->large = ~p.small & ((1u << count) - 1);
 
     RtV16 abx = rt_v16_sub(p.x[1], p.x[0]), aby = rt_v16_sub(p.y[1], p.y[0]);
     RtV16 acx = rt_v16_sub(p.x[2], p.x[0]), acy = rt_v16_sub(p.y[2], p.y[0]);
@@ -215,12 +214,10 @@ RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles,
     rt_v16_store(s->near, p.near);
     rt_v16_store(s->far, p.far);
     for (int k = 0; k < 2; k++) {
-        uint32_t left = (k ? grid->rows : grid->columns) - (k ? tile->row : tile->column);
         RtW16 lo = floor16(p.lo[k]), hi = floor16(p.hi[k]);
         /* The rectangle may miss the tile: then lo > hi, below or above. */
-        uint32_t last = left < RT_LIGHT_TILE ? left - 1 : RT_LIGHT_TILE - 1;
         rt_w16_put(s->lo[k], rt_w16_most(lo, rt_w16_all(0)));
-        rt_w16_put(s->hi[k], rt_w16_least(hi, rt_w16_all(last)));
+        rt_w16_put(s->hi[k], rt_w16_least(hi, rt_w16_all(tile->n - 1)));
         rt_w16_put(s->sub_lo[k], floor16(rt_v16_mul(p.lo[k], rt_v16_all(8))));
         rt_w16_put(s->sub_hi[k], floor16(rt_v16_mul(p.hi[k], rt_v16_all(8))));
     }
@@ -231,8 +228,6 @@ static const float lane_column[16] __attribute__((aligned(64))) = {0, 1, 2, 3, 0
                                                                    0, 1, 2, 3, 0, 1, 2, 3};
 static const float lane_row[16] __attribute__((aligned(64))) = {0, 0, 0, 0, 1, 1, 1, 1,
                                                                 2, 2, 2, 2, 3, 3, 3, 3};
-static const uint32_t lane_cell[16] __attribute__((aligned(64))) = {0,  1,  2,  3,  32, 33, 34, 35,
-                                                                    64, 65, 66, 67, 96, 97, 98, 99};
 
 /* The lanes of the first `columns` columns and `rows` rows of 4 x 4. */
 RT_KERNEL uint32_t lanes_of(uint32_t columns, uint32_t rows) {
@@ -251,10 +246,11 @@ RT_KERNEL uint32_t inside_lines(const Small *s, uint32_t i, RtV16 x, RtV16 y, bo
     return rt_v16_at_most(rt_v16_all(0), worst);
 }
 
-static void cover(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk) {
+static uint32_t cover(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk) {
     Small s;
     prepare_small(tile, triangles, count, &s);
     for (uint32_t i = 0; i < count; i++) {
+        if (s.large >> i & 1) continue;
         /* Corners of cells within the rectangle, borders of the tile included. */
         int lo[2], hi[2];
         for (int k = 0; k < 2; k++) {
@@ -275,6 +271,7 @@ static void cover(const RtLightTile *tile, const uint32_t *triangles, uint32_t c
             }
         }
     }
+    return s.large;
 }
 
 /* Keys of cells at column, row of which the object's box is from sub_lo to sub_hi. */
@@ -299,10 +296,11 @@ RT_KERNEL void add_cells(RtLightDesk *desk, uint32_t in, RtW16 cell, RtW16 key) 
     desk->count += (uint32_t)__builtin_popcount(in);
 }
 
-static void draw(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk) {
+static uint32_t draw(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk) {
     Small s;
     prepare_small(tile, triangles, count, &s);
     for (uint32_t i = 0; i < count; i++) {
+        if (s.large >> i & 1) continue;
         const uint32_t sub_lo[2] = {s.sub_lo[0][i], s.sub_lo[1][i]}, before = desk->count;
         const uint32_t sub_hi[2] = {s.sub_hi[0][i], s.sub_hi[1][i]};
         const int last_column = (int)s.hi[0][i], last_row = (int)s.hi[1][i];
@@ -323,12 +321,13 @@ static void draw(const RtLightTile *tile, const uint32_t *triangles, uint32_t co
                 if (!in) continue;
                 RtW16 x8 = rt_w16_left(rt_w16_truncate(x), 3), y8 = rt_w16_left(rt_w16_truncate(y), 3);
                 RtW16 key = rt_w16_or(box_key(x8, y8, sub_lo, sub_hi), rt_w16_all(s.depth[i] << 16));
-                uint32_t cell = (uint32_t)(row * RT_LIGHT_TILE + column);
-                add_cells(desk, in, rt_w16_add(rt_w16_get(lane_cell), rt_w16_all(cell)), key);
+                RtV16 cell = rt_v16_add(rt_v16_mul(y, rt_v16_all((float)tile->n)), x); /* exact */
+                add_cells(desk, in, rt_w16_truncate(cell), key);
             }
         }
         add_run(desk, rt_ref(RT_SHAPE_TRIANGLE, triangles[i]), before);
     }
+    return s.large;
 }
 
 /* ---- sixteen cells of a row, and one object ---- */
@@ -344,19 +343,13 @@ RT_KERNEL uint32_t first_lanes(int count) {
     return count < 16 ? (1u << count) - 1 : 0xffff;
 }
 
-static void cover_outline(const RtLightOutline *outline, const RtLightFootprint *at, const RtLightTile *tile,
-                          RtLightDesk *desk) {
+static void cover_outline(const RtLightOutline *outline, const RtLightCells *at, RtLightDesk *desk) {
     if (!outline->covers) return;
-    int lo[2], hi[2];
-    for (int k = 0; k < 2; k++) {
-        uint32_t from = k ? tile->row : tile->column;
-        lo[k] = at->lo[k] > from ? (int)(at->lo[k] - from) : 0;
-        hi[k] = at->hi[k] + 1 < from + RT_LIGHT_TILE ? (int)(at->hi[k] + 1 - from) : RT_LIGHT_TILE;
-    }
-    for (int row = lo[1]; row <= hi[1]; row++) {
-        for (int column = lo[0]; column <= hi[0]; column += 16) {
+    const int last = at->hi[0] + 1; /* a cell more: its corner is that of the cell before, too */
+    for (int row = at->lo[1]; row <= at->hi[1] + 1; row++) {
+        for (int column = at->lo[0]; column <= last; column += 16) {
             RtV16 x = rt_v16_add(rt_v16_load(lane_number), rt_v16_all((float)column));
-            uint32_t in = first_lanes(hi[0] - column + 1);
+            uint32_t in = first_lanes(last - column + 1);
             for (uint32_t e = 0; e < outline->edges; e++) {
                 in &= rt_v16_at_most(rt_v16_all(0), line_at(outline->inside[e], x, (float)row));
             }
@@ -371,25 +364,18 @@ static void cover_outline(const RtLightOutline *outline, const RtLightFootprint 
     }
 }
 
-static void draw_outline(const RtLightOutline *outline, const RtLightFootprint *at, const RtLightTile *tile,
-                         RtRef object, RtLightDesk *desk) {
+static void draw_outline(const RtLightTile *tile, const RtLightOutline *outline, const RtLightFootprint *from,
+                         const RtLightCells *at, RtRef object, RtLightDesk *desk) {
     const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
-    const uint32_t before = desk->count;
-    int lo[2], hi[2];
-    uint32_t sub_lo[2], sub_hi[2];
-    for (int k = 0; k < 2; k++) {
-        uint32_t from = k ? tile->row : tile->column;
-        lo[k] = at->lo[k] > from ? (int)(at->lo[k] - from) : 0;
-        hi[k] = at->hi[k] < from + RT_LIGHT_TILE ? (int)(at->hi[k] - from) : RT_LIGHT_TILE - 1;
-        sub_lo[k] = (uint32_t)(int)floorf((at->sub_lo[k] - (float)from) * 8);
-        sub_hi[k] = (uint32_t)(int)floorf((at->sub_hi[k] - (float)from) * 8);
-    }
-    const RtV16 nearest = rt_v16_all(at->near), flattest = rt_v16_all(1 / at->far);
-    for (int row = lo[1]; row <= hi[1]; row++) {
-        for (int column = lo[0]; column <= hi[0]; column += 16) {
+    const uint32_t before = desk->count, n = tile->n;
+    const uint32_t sub_lo[2] = {(uint32_t)at->sub_lo[0], (uint32_t)at->sub_lo[1]};
+    const uint32_t sub_hi[2] = {(uint32_t)at->sub_hi[0], (uint32_t)at->sub_hi[1]};
+    const RtV16 nearest = rt_v16_all(from->near), flattest = rt_v16_all(1 / from->far);
+    for (int row = at->lo[1]; row <= at->hi[1]; row++) {
+        for (int column = at->lo[0]; column <= at->hi[0]; column += 16) {
             RtV16 x = rt_v16_add(rt_v16_load(lane_number), rt_v16_all((float)column));
             RtV16 middle = rt_v16_add(x, rt_v16_all(0.5f));
-            uint32_t in = first_lanes(hi[0] - column + 1);
+            uint32_t in = first_lanes(at->hi[0] - column + 1);
             for (uint32_t e = 0; e < outline->count; e++) {
                 in &= rt_v16_at_most(rt_v16_all(0), line_at(outline->parts[e], middle, (float)row + 0.5f));
             }
@@ -406,7 +392,7 @@ static void draw_outline(const RtLightOutline *outline, const RtLightFootprint *
             RtW16 column8 = rt_w16_left(rt_w16_truncate(x), 3);
             RtW16 key = box_key(column8, rt_w16_all((uint32_t)row * 8), sub_lo, sub_hi);
             key = rt_w16_or(key, rt_w16_left(rt_w16_truncate(step), 16));
-            RtW16 cell = rt_w16_add(rt_w16_truncate(x), rt_w16_all((uint32_t)row * RT_LIGHT_TILE));
+            RtW16 cell = rt_w16_add(rt_w16_truncate(x), rt_w16_all((uint32_t)row * n));
             add_cells(desk, in, cell, key);
         }
     }

@@ -4,11 +4,6 @@
 
 #include "base/memory.h"
 
-static size_t cells_of(const RtLightCube *cube) {
-    return (size_t)cube->tile_count * RT_LIGHT_TILE_CELLS;
-}
-
-/* Cells are counted as far as they are in a grid: tiles may be wider. */
 void rt_light_describe(const RtAccel *accel, RtDescription *out) {
     const RtLightBuffer *buffer = (const RtLightBuffer *)accel;
     *out = (RtDescription){RT_NO_PREDICTION};
@@ -17,19 +12,12 @@ void rt_light_describe(const RtAccel *accel, RtDescription *out) {
         out->bytes += sizeof *cube + cube->near_count * sizeof(uint32_t);
         out->references += cube->near_count;
         if (!cube->serves) continue;
-        uint32_t entries = cube->first[cells_of(cube)];
-        out->references += entries;
-        out->bytes += (cells_of(cube) + 1) * sizeof(uint32_t) + entries * sizeof(RtLightEntry);
-        for (int face = 0; face < 6; face++) {
-            const RtLightGrid *grid = &cube->grids[face];
-            out->leaves += (uint64_t)grid->columns * grid->rows;
-            for (uint32_t row = 0; row < grid->rows; row++) {
-                for (uint32_t column = 0; column < grid->columns; column++) {
-                    uint32_t cell = rt_light_cell(grid, column, row);
-                    out->empty_leaves += cube->first[cell] == cube->first[cell + 1];
-                }
-            }
-        }
+        out->leaves += cube->cell_count;
+        out->references += cube->first[cube->cell_count];
+        out->bytes += (cube->cell_count + (size_t)1 + cube->tile_count) * sizeof(uint32_t) +
+                      cube->first[cube->cell_count] * sizeof(RtLightEntry);
+        for (uint32_t i = 0; i < cube->cell_count; i++)
+            out->empty_leaves += cube->first[i] == cube->first[i + 1];
     }
 }
 
@@ -40,9 +28,9 @@ static uint32_t depth_of(uint32_t key) {
 }
 
 static RtStatus check_order(const RtLightCube *cube, uint32_t light, uint32_t objects, RtError *error) {
-    for (size_t cell = 0; cell < cells_of(cube); cell++) {
+    for (uint32_t cell = 0; cell < cube->cell_count; cell++) {
         if (cube->first[cell] > cube->first[cell + 1]) {
-            return rt_fail(error, RT_MISMATCH, "light: list %zu of light %u ends before it begins", cell,
+            return rt_fail(error, RT_MISMATCH, "light: list %u of light %u ends before it begins", cell,
                            light);
         }
         for (uint32_t i = cube->first[cell]; i < cube->first[cell + 1]; i++) {
@@ -55,31 +43,63 @@ static RtStatus check_order(const RtLightCube *cube, uint32_t light, uint32_t ob
             }
             if (good && !last) good = depth_of(entry->key) <= depth_of(entry[1].key);
             if (good) continue;
-            return rt_fail(error, RT_MISMATCH, "light: list %zu of light %u is not in order", cell, light);
+            return rt_fail(error, RT_MISMATCH, "light: list %u of light %u is not in order", cell, light);
         }
     }
     return RT_OK;
 }
 
-/* May the object be in the cell? Then *depth is the least it may have there. As for the lists, of which not
- * one may have less. */
-static bool is_seen(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
-                    const RtLightFootprint *at, uint32_t column, uint32_t row, float *depth) {
-    RtShape shape = rt_ref_shape(buffer->base.scene->geometry.objects[id]);
+/* Is the object certainly in the list of a cell? Then *depth is the least that it may have there. As for the
+ * lists, but for what they allow for rounding. */
+static bool is_seen(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at,
+                    const RtLightOutline *outline, uint32_t column, uint32_t row, float *depth) {
+    RtShape shape = rt_ref_shape(tile->buffer->base.scene->geometry.objects[id]);
+    float x = (float)column + 0.5f, y = (float)row + 0.5f;
     *depth = at->near;
     if (shape != RT_SHAPE_TRIANGLE && shape != RT_SHAPE_POLYGON)
-        return rt_light_touches(buffer, light, face, id, column, row);
-    RtLightOutline outline;
-    rt_light_outline(buffer, light, face, id, at, column, row, &outline);
-    for (uint32_t i = 0; i < outline.count; i++) {
-        const float *line = outline.parts[i];
-        /* Beyond what lists allow for rounding. */
-        if ((line[0] + line[1]) * 0.5f + line[2] < 0x1p-5f) return false;
+        return rt_light_touches(tile, id, column, row);
+    for (uint32_t i = 0; i < outline->count; i++) {
+        const float *line = outline->parts[i];
+        if (line[0] * x + line[1] * y + line[2] < 0x1p-5f) return false;
     }
-    float slope = (outline.slope[0] + outline.slope[1]) * 0.5f + outline.slope[2];
-    *depth = rt_maxf(*depth, 1 / rt_maxf(slope, 1 / at->far));
-    *depth *= 1 + 0x1p-18f;
+    float slope = outline->slope[0] * x + outline->slope[1] * y + outline->slope[2];
+    *depth = rt_maxf(*depth, 1 / rt_maxf(slope, 1 / at->far)) * (1 + 0x1p-18f);
     return true;
+}
+
+/* Is the object in the list of a cell, not deeper than that, or was the list cut before? */
+static bool is_listed(const RtLightCube *cube, uint32_t cell, RtRef object, uint32_t depth) {
+    for (uint32_t i = cube->first[cell]; i < cube->first[cell + 1]; i++) {
+        const RtLightEntry *entry = &cube->entries[i];
+        if (depth_of(entry->key) > depth) return false;
+        if (entry->object == object || entry->object == RT_LIGHT_BEYOND) return true;
+    }
+    return false;
+}
+
+static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFootprint *from,
+                           RtError *error) {
+    const RtLightBuffer *buffer = tile->buffer;
+    const RtLightCube *cube = &buffer->cubes[tile->light];
+    const RtLightGrid *grid = &cube->grids[tile->face];
+    const RtLightCells at = rt_light_cells(tile, from);
+    RtRef object = buffer->base.scene->geometry.objects[id];
+    RtShape shape = rt_ref_shape(object);
+    RtLightOutline outline;
+    if (shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON) rt_light_outline(tile, id, from, &outline);
+    uint32_t first = rt_light_first_cell(cube->tiles[grid->first_tile + tile->row * grid->columns + tile->column]);
+    for (uint32_t row = (uint32_t)at.lo[1]; (int32_t)row <= at.hi[1]; row++) {
+        for (uint32_t column = (uint32_t)at.lo[0]; (int32_t)column <= at.hi[0]; column++) {
+            float near;
+            if (!is_seen(tile, id, from, &outline, column, row, &near)) continue;
+            if (is_listed(cube, first + row * tile->n + column, object, rt_light_depth_key(grid, near))) continue;
+            return rt_fail(error, RT_MISMATCH,
+                           "light: the list of cell %u,%u of tile %u,%u of face %d of light %u lacks object %u "
+                           "at depth %g",
+                           column, row, tile->column, tile->row, tile->face, tile->light, id, (double)near);
+        }
+    }
+    return RT_OK;
 }
 
 static RtStatus check_object(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
@@ -90,18 +110,9 @@ static RtStatus check_object(const RtLightBuffer *buffer, uint32_t light, int fa
     if (!rt_light_footprint(buffer, light, face, id, &at)) return RT_OK;
     for (uint32_t row = at.lo[1]; row <= at.hi[1]; row++) {
         for (uint32_t column = at.lo[0]; column <= at.hi[0]; column++) {
-            uint32_t cell = rt_light_cell(grid, column, row), i = cube->first[cell];
-            float near;
-            if (!is_seen(buffer, light, face, id, &at, column, row, &near)) continue;
-            uint32_t depth = rt_light_depth_key(grid, near);
-            for (; i < cube->first[cell + 1] && depth_of(cube->entries[i].key) <= depth; i++) {
-                RtRef object = cube->entries[i].object;
-                if (object == buffer->base.scene->geometry.objects[id] || object == RT_LIGHT_BEYOND) break;
-            }
-            if (i < cube->first[cell + 1] && depth_of(cube->entries[i].key) <= depth) continue;
-            return rt_fail(error, RT_MISMATCH,
-                           "light: the list of cell %u,%u of face %d of light %u lacks object %u at depth %g",
-                           column, row, face, light, id, (double)near);
+            uint32_t n = rt_light_fineness(cube->tiles[grid->first_tile + row * grid->columns + column]);
+            const RtLightTile tile = {buffer, light, face, column, row, n};
+            RT_TRY(check_tile(&tile, id, &at, error));
         }
     }
     return RT_OK;

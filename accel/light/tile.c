@@ -17,17 +17,20 @@
 /* What one thread has made. */
 typedef struct Worker {
     RtLightDesk desk;
-    RtLightEntry *sorted; /* [sorted_capacity]: the candidates of a tile */
+    uint32_t end[RT_LIGHT_TILE_CELLS + 2]; /* of lists in `sorted` */
+    RtLightEntry *sorted;                  /* [sorted_capacity]: the candidates of a tile */
     uint32_t sorted_capacity;
     RtLightEntry *entries; /* of all tiles of this thread */
     uint32_t count, capacity;
+    uint16_t *lengths; /* of the lists of all their cells */
+    uint32_t cell_count, cell_capacity;
 } Worker;
 
-/* Where the lists of a tile are until they have their place. */
+/* Where the lists of a tile are until they have their place; then their place. */
 typedef struct Made {
-    uint32_t first, count;
+    uint32_t first, count, first_cell, n;
     int thread;
-    uint32_t place; /* of the first among all */
+    uint32_t place, cell_place;
 } Made;
 
 typedef struct Drawing {
@@ -38,6 +41,37 @@ typedef struct Drawing {
     Made *made; /* [tiles] */
 } Drawing;
 
+/* ---- how fine ---- */
+
+/* An object of width x and height y, in tiles, is in about (n x + 1) (n y + 1) cells of a tile, of which
+ * n^2 x y are the share of its area. What is above that, in relation to it, is what fine cells bring down, and
+ * memory and time of the build what they cost. From some of the tile's objects. */
+static uint32_t choose_fineness(RtLightTile *tile, const uint32_t *objects, uint32_t count) {
+    enum { SAMPLE = 12 };
+    const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
+    const double surplus = 1.0;
+    double sides = 0, areas = 0, seen = 0, part = (double)count / (count < SAMPLE ? count : SAMPLE);
+    for (uint32_t i = 0; i < count && i < SAMPLE; i++) {
+        uint32_t object = objects[count < SAMPLE ? i : (uint32_t)((uint64_t)i * count / SAMPLE)] & ~RT_LIGHT_ALONE;
+        RtLightFootprint at;
+        uint32_t id = rt_light_id_of(&tile->buffer->base.scene->geometry, object);
+        if (!rt_light_footprint(tile->buffer, tile->light, tile->face, id, &at)) continue;
+        double size[2];
+        for (int k = 0; k < 2; k++) {
+            double from = k ? tile->row : tile->column;
+            size[k] = fmin((double)at.most[k], from + 1) - fmax((double)at.least[k], from);
+            size[k] = fmax(size[k], 0x1p-10);
+        }
+        sides += part * (size[0] + size[1]);
+        areas += part * size[0] * size[1];
+        seen += part;
+    }
+    double n = (sides + sqrt(sides * sides + 4 * surplus * areas * seen)) / fmax(2 * surplus * areas, 0x1p-20);
+    n = fmin(n, 1 + 3 * sqrt((double)count)); /* nine cells an object */
+    n = fmin(fmax(n, grid->least), grid->finest);
+    return (uint32_t)n;
+}
+
 /* ---- drawing ---- */
 
 static RtLightTile tile_at(const RtLightBuffer *buffer, uint32_t light, uint32_t tile) {
@@ -46,50 +80,33 @@ static RtLightTile tile_at(const RtLightBuffer *buffer, uint32_t light, uint32_t
     while (cube->grids[face].columns == 0 || cube->grids[face].first_tile > tile) face--;
     const RtLightGrid *grid = &cube->grids[face];
     tile -= grid->first_tile;
-    return (RtLightTile){buffer, light, face, tile % grid->across * RT_LIGHT_TILE,
-                         tile / grid->across * RT_LIGHT_TILE};
+    return (RtLightTile){buffer, light, face, tile % grid->columns, tile / grid->columns, 1};
 }
 
 static bool is_flat(RtRef object) {
     return rt_ref_shape(object) == RT_SHAPE_TRIANGLE || rt_ref_shape(object) == RT_SHAPE_POLYGON;
 }
 
-/* The part of a footprint in a tile, `more` cells wider above. */
-static void cut_to_tile(const RtLightFootprint *at, const RtLightTile *tile, uint32_t more, uint32_t lo[2],
-                        uint32_t hi[2]) {
-    for (int k = 0; k < 2; k++) {
-        uint32_t from = k ? tile->row : tile->column, end = from + RT_LIGHT_TILE - 1 + more;
-        lo[k] = at->lo[k] > from ? at->lo[k] : from;
-        hi[k] = at->hi[k] + more < end ? at->hi[k] + more : end;
-    }
-}
-
-static void cover_round(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at, RtLightDesk *desk) {
-    uint32_t lo[2], hi[2];
-    cut_to_tile(at, tile, 1, lo, hi);
-    for (uint32_t row = lo[1]; row <= hi[1]; row++) {
-        for (uint32_t column = lo[0]; column <= hi[0]; column++) {
-            float depth, *corner = &desk->corner[row - tile->row][column - tile->column];
-            if (!rt_light_covers(tile->buffer, tile->light, tile->face, id, column, row, &depth)) continue;
+static void cover_round(const RtLightTile *tile, uint32_t id, const RtLightCells *at, RtLightDesk *desk) {
+    for (int row = at->lo[1]; row <= at->hi[1] + 1; row++) {
+        for (int column = at->lo[0]; column <= at->hi[0] + 1; column++) {
+            float depth, *corner = &desk->corner[row][column];
+            if (!rt_light_covers(tile, id, (uint32_t)column, (uint32_t)row, &depth)) continue;
             *corner = rt_minf(depth, *corner);
         }
     }
 }
 
 /* Objects with curves by what their cells say of each. */
-static void draw_round(const RtLightTile *tile, uint32_t id, RtRef object, const RtLightFootprint *at,
-                       RtLightDesk *desk) {
-    uint32_t lo[2], hi[2], cells = 0, before = desk->count;
+static void draw_round(const RtLightTile *tile, uint32_t id, RtRef object, const RtLightFootprint *from,
+                       const RtLightCells *at, RtLightDesk *desk) {
+    uint32_t cells = 0, before = desk->count;
     const RtLightOutline nothing = {.slope = {0, 0, INFINITY}};
-    cut_to_tile(at, tile, 0, lo, hi);
-    tile->buffer->kernels->draw_outline(&nothing, at, tile, object, desk);
+    tile->buffer->kernels->draw_outline(tile, &nothing, from, at, object, desk);
     if (desk->count == before) return;
     for (uint32_t i = before; i < desk->count; i++) {
         uint32_t cell = desk->cell[i];
-        if (!rt_light_touches(tile->buffer, tile->light, tile->face, id, tile->column + cell % RT_LIGHT_TILE,
-                              tile->row + cell / RT_LIGHT_TILE)) {
-            continue;
-        }
+        if (!rt_light_touches(tile, id, cell % tile->n, cell / tile->n)) continue;
         desk->cell[before + cells] = cell;
         desk->key[before + cells++] = desk->key[i];
     }
@@ -105,56 +122,71 @@ static RtStatus make_room(RtLightDesk *desk, uint32_t cells, RtError *error) {
                       error);
 }
 
-static RtStatus take_large(const RtLightTile *tile, RtRef object, bool cover, RtLightDesk *desk,
+static RtStatus take_alone(const RtLightTile *tile, RtRef object, bool cover, RtLightDesk *desk,
                            RtError *error) {
     const RtLightBuffer *buffer = tile->buffer;
     uint32_t id = rt_light_id_of(&buffer->base.scene->geometry, object);
-    RtLightFootprint at;
+    RtLightFootprint from;
     RtLightOutline outline;
-    if (!rt_light_footprint(buffer, tile->light, tile->face, id, &at)) return RT_OK;
+    if (!rt_light_footprint(buffer, tile->light, tile->face, id, &from)) return RT_OK;
+    const RtLightCells at = rt_light_cells(tile, &from);
+    if (at.lo[0] > at.hi[0] || at.lo[1] > at.hi[1]) return RT_OK;
     if (!cover) RT_TRY(make_room(desk, RT_LIGHT_TILE_CELLS + 16, error));
     if (is_flat(object)) {
-        rt_light_outline(buffer, tile->light, tile->face, id, &at, tile->column, tile->row, &outline);
+        rt_light_outline(tile, id, &from, &outline);
         if (cover) {
-            buffer->kernels->cover_outline(&outline, &at, tile, desk);
+            buffer->kernels->cover_outline(&outline, &at, desk);
         } else {
-            buffer->kernels->draw_outline(&outline, &at, tile, object, desk);
+            buffer->kernels->draw_outline(tile, &outline, &from, &at, object, desk);
         }
     } else if (cover) {
         cover_round(tile, id, &at, desk);
     } else {
-        draw_round(tile, id, object, &at, desk);
+        draw_round(tile, id, object, &from, &at, desk);
     }
     return RT_OK;
 }
 
-/* Covers the tile's corners with all its objects, or draws them. */
+/* Covers the tile's corners with up to sixteen triangles, or draws them. */
+static RtStatus take_sixteen(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, bool cover,
+                             RtLightDesk *desk, RtError *error) {
+    const RtLightKernels *kernels = tile->buffer->kernels;
+    if (!cover) RT_TRY(make_room(desk, 16 * RT_LIGHT_SMALL_ROOM, error));
+    uint32_t large = (cover ? kernels->cover : kernels->draw)(tile, triangles, count, desk);
+    for (; large; large &= large - 1) {
+        RtRef object = rt_ref(RT_SHAPE_TRIANGLE, triangles[__builtin_ctz(large)]);
+        RT_TRY(take_alone(tile, object, cover, desk, error));
+    }
+    return RT_OK;
+}
+
+/* The same of all its objects. */
 static RtStatus go_over(const RtLightTile *tile, const uint32_t *objects, uint32_t count, bool cover,
                         RtLightDesk *desk, RtError *error) {
-    const RtLightKernels *kernels = tile->buffer->kernels;
-    uint32_t small[16], waiting = 0;
+    uint32_t waiting[16], number = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (objects[i] & RT_LIGHT_LARGE_BIT) {
-            RT_TRY(take_large(tile, objects[i] & ~RT_LIGHT_LARGE_BIT, cover, desk, error));
-        } else {
-            small[waiting++] = rt_ref_index(objects[i]);
+        if (objects[i] & RT_LIGHT_ALONE) {
+            RT_TRY(take_alone(tile, objects[i] & ~RT_LIGHT_ALONE, cover, desk, error));
+            continue;
         }
-        if (waiting < 16 && i + 1 < count) continue;
-        if (!cover) RT_TRY(make_room(desk, 16 * RT_LIGHT_SMALL_ROOM, error));
-        if (waiting > 0) (cover ? kernels->cover : kernels->draw)(tile, small, waiting, desk);
-        waiting = 0;
+        waiting[number++] = rt_ref_index(objects[i]);
+        if (number < 16) continue;
+        RT_TRY(take_sixteen(tile, waiting, number, cover, desk, error));
+        number = 0;
     }
-    return RT_OK;
+    return number > 0 ? take_sixteen(tile, waiting, number, cover, desk, error) : RT_OK;
 }
 
-/* From corners to cells. */
-static void cover_cells(RtLightDesk *desk) {
-    for (int row = 0; row < RT_LIGHT_TILE; row++) {
-        for (int column = 0; column < RT_LIGHT_TILE; column++) {
+/* From corners to cells. `step` is one of a key's depth: a ray from what covers a cell is not to be beyond it
+ * by rounding. */
+static void cover_cells(const RtLightTile *tile, RtLightDesk *desk) {
+    const float step = 2 / tile->buffer->cubes[tile->light].grids[tile->face].depth_scale;
+    for (uint32_t row = 0; row < tile->n; row++) {
+        for (uint32_t column = 0; column < tile->n; column++) {
             const float *a = &desk->corner[row][column], *b = &desk->corner[row + 1][column];
             float least = rt_minf(rt_minf(a[0], a[1]), rt_minf(b[0], b[1]));
             float most = rt_maxf(rt_maxf(a[0], a[1]), rt_maxf(b[0], b[1]));
-            desk->cover[row][column] = most < INFINITY ? most + 0.5f * (most - least) : INFINITY;
+            desk->cover[row][column] = most < INFINITY ? most + 0.5f * (most - least) + step : INFINITY;
         }
     }
 }
@@ -180,20 +212,20 @@ static void sort_list(RtLightEntry *list, uint32_t count) {
     }
 }
 
-/* Candidates by cell to worker->sorted; end[i + 1] becomes the end of the list of cell i, end[0] 0. */
-static RtStatus sort_candidates(Worker *worker, uint32_t end[RT_LIGHT_TILE_CELLS + 2], RtError *error) {
+/* Candidates by cell to worker->sorted: list i is from end[i] to end[i + 1]. */
+static RtStatus sort_candidates(Worker *worker, uint32_t cells, RtError *error) {
     const RtLightDesk *desk = &worker->desk;
+    uint32_t *end = worker->end;
     RT_TRY(rt_reserve(&worker->sorted, &worker->sorted_capacity, desk->count, sizeof(RtLightEntry), error));
-    memset(end, 0, (RT_LIGHT_TILE_CELLS + 2) * sizeof *end);
+    memset(end, 0, (cells + 2) * sizeof *end);
     for (uint32_t i = 0; i < desk->count; i++) end[desk->cell[i] + 2]++;
-    for (uint32_t i = 2; i < RT_LIGHT_TILE_CELLS + 2; i++) end[i] += end[i - 1];
+    for (uint32_t i = 2; i < cells + 2; i++) end[i] += end[i - 1];
     for (uint32_t run = 0, i = 0; run < desk->run_count; run++) {
         for (uint32_t last = i + desk->runs[run].key; i < last; i++) {
             worker->sorted[end[desk->cell[i] + 1]++] = (RtLightEntry){desk->key[i], desk->runs[run].object};
         }
     }
-    for (uint32_t i = 0; i < RT_LIGHT_TILE_CELLS; i++)
-        sort_list(worker->sorted + end[i], end[i + 1] - end[i]);
+    for (uint32_t i = 0; i < cells; i++) sort_list(worker->sorted + end[i], end[i + 1] - end[i]);
     return RT_OK;
 }
 
@@ -202,10 +234,10 @@ static uint32_t depth_bits(uint32_t key) {
 }
 
 /* How long a tile's lists may be for it to have at most `most` entries. */
-static uint32_t longest_that_fits(const uint32_t *end, uint32_t longest, uint32_t most) {
+static uint32_t longest_that_fits(const uint32_t *end, uint32_t cells, uint32_t longest, uint32_t most) {
     for (; longest > 1; longest /= 2) {
         uint64_t sum = 0;
-        for (uint32_t i = 0; i < RT_LIGHT_TILE_CELLS; i++) {
+        for (uint32_t i = 0; i < cells; i++) {
             uint32_t length = end[i + 1] - end[i];
             sum += (uint64_t)(length < longest ? length : longest) + 1;
         }
@@ -214,94 +246,107 @@ static uint32_t longest_that_fits(const uint32_t *end, uint32_t longest, uint32_
     return longest;
 }
 
-/* The lists to worker->entries; lengths of lists to lengths[0..RT_LIGHT_TILE_CELLS). */
-static RtStatus keep_lists(const Drawing *d, const RtLightGrid *grid, Worker *worker, const uint32_t *end,
-                           uint32_t *lengths, RtError *error) {
+/* The lists to worker->entries, and their lengths. */
+static RtStatus keep_lists(const Drawing *d, const RtLightTile *tile, Worker *worker, RtError *error) {
+    const RtLightGrid *grid = &d->buffer->cubes[d->light].grids[tile->face];
     const RtLightDesk *desk = &worker->desk;
-    uint32_t longest = longest_that_fits(end, d->buffer->longest, d->most);
-    RT_TRY(rt_reserve(&worker->entries, &worker->capacity,
-                      worker->count + (uint64_t)desk->count + RT_LIGHT_TILE_CELLS, sizeof(RtLightEntry), error));
-    for (uint32_t i = 0; i < RT_LIGHT_TILE_CELLS; i++) {
+    const uint32_t cells = tile->n * tile->n, *end = worker->end;
+    uint32_t longest = longest_that_fits(end, cells, d->buffer->longest, d->most);
+    RT_TRY(rt_reserve(&worker->entries, &worker->capacity, worker->count + (uint64_t)desk->count + cells,
+                      sizeof(RtLightEntry), error));
+    for (uint32_t i = 0; i < cells; i++) {
         const RtLightEntry *list = worker->sorted + end[i];
         uint32_t count = end[i + 1] - end[i], kept = count < longest ? count : longest;
-        uint32_t row = i / RT_LIGHT_TILE, column = i % RT_LIGHT_TILE;
+        uint32_t row = i / tile->n, column = i % tile->n;
         bool cut = desk->cut[row] >> column & 1;
         uint32_t beyond = cut ? rt_light_depth_key(grid, desk->cover[row][column]) << 16 : 0;
         if (kept < count) beyond = depth_bits(list[kept].key), cut = true;
         if (kept > 0) memcpy(worker->entries + worker->count, list, kept * sizeof *list);
         worker->count += kept;
         if (cut) worker->entries[worker->count++] = (RtLightEntry){beyond, RT_LIGHT_BEYOND};
-        lengths[i] = kept + cut;
+        worker->lengths[worker->cell_count++] = (uint16_t)(kept + cut);
     }
     return RT_OK;
 }
 
-static RtStatus make_tile(void *context, size_t item, int thread, RtError *error) {
-    Drawing *d = context;
-    RtLightCube *cube = &d->buffer->cubes[d->light];
-    Worker *worker = &d->workers[thread];
+static RtStatus draw_tile(const Drawing *d, const RtLightTile *tile, const uint32_t *objects, uint32_t count,
+                          Worker *worker, RtError *error) {
     RtLightDesk *desk = &worker->desk;
-    uint32_t first = d->bins->first[item], count = d->bins->first[item + 1] - first;
-    const uint32_t *objects = d->bins->objects + first;
-    uint32_t end[RT_LIGHT_TILE_CELLS + 2], *lengths = cube->first + item * RT_LIGHT_TILE_CELLS;
-    d->made[item] = (Made){worker->count, 0, thread, 0};
-    if (count == 0) return RT_OK;
-    const RtLightTile tile = tile_at(d->buffer, d->light, (uint32_t)item);
     desk->count = desk->run_count = 0;
     memset(desk->cut, 0, sizeof desk->cut);
-    for (size_t row = 0; row < sizeof desk->corner / sizeof desk->corner[0]; row++) {
-        for (size_t i = 0; i < sizeof desk->corner[0] / sizeof(float); i++) desk->corner[row][i] = INFINITY;
+    for (size_t row = 0; row <= tile->n; row++) {
+        for (size_t i = 0; i <= tile->n; i++) desk->corner[row][i] = INFINITY;
     }
-    if (d->buffer->full_occlusion) RT_TRY(go_over(&tile, objects, count, true, desk, error));
-    cover_cells(desk);
-    RT_TRY(go_over(&tile, objects, count, false, desk, error));
-    RT_TRY(sort_candidates(worker, end, error));
-    RT_TRY(keep_lists(d, &cube->grids[tile.face], worker, end, lengths, error));
-    d->made[item].count = worker->count - d->made[item].first;
+    if (d->buffer->full_occlusion) RT_TRY(go_over(tile, objects, count, true, desk, error));
+    cover_cells(tile, desk);
+    RT_TRY(go_over(tile, objects, count, false, desk, error));
+    RT_TRY(sort_candidates(worker, tile->n * tile->n, error));
+    return keep_lists(d, tile, worker, error);
+}
+
+static RtStatus make_tile(void *context, size_t item, int thread, RtError *error) {
+    Drawing *d = context;
+    Worker *worker = &d->workers[thread];
+    uint32_t first = d->bins->first[item], count = d->bins->first[item + 1] - first;
+    RtLightTile tile = tile_at(d->buffer, d->light, (uint32_t)item);
+    Made made = {worker->count, 0, worker->cell_count, 1, thread, 0, 0};
+    if (count > 0) made.n = tile.n = choose_fineness(&tile, d->bins->objects + first, count);
+    RT_TRY(rt_reserve(&worker->lengths, &worker->cell_capacity, worker->cell_count + UINT64_C(1) * tile.n * tile.n,
+                      sizeof(uint16_t), error));
+    if (count > 0) {
+        RT_TRY(draw_tile(d, &tile, d->bins->objects + first, count, worker, error));
+    } else {
+        worker->lengths[worker->cell_count++] = 0;
+    }
+    made.count = worker->count - made.first;
+    d->made[item] = made;
     return RT_OK;
 }
 
 /* ---- all tiles ---- */
 
-/* Lengths of lists become where they begin. */
+/* To their places. */
 static RtStatus move_tile(void *context, size_t item, int thread, RtError *error) {
     (void)thread, (void)error;
     const Drawing *d = context;
     RtLightCube *cube = &d->buffer->cubes[d->light];
     const Made *made = &d->made[item];
-    uint32_t *first = cube->first + item * RT_LIGHT_TILE_CELLS, sum = made->place;
-    for (uint32_t i = 0; i < RT_LIGHT_TILE_CELLS; i++) {
-        uint32_t length = first[i];
-        first[i] = sum;
-        sum += length;
+    const Worker *worker = &d->workers[made->thread];
+    uint32_t sum = made->place;
+    cube->tiles[item] = made->cell_place << 6 | made->n;
+    for (uint32_t i = 0; i < made->n * made->n; i++) {
+        cube->first[made->cell_place + i] = sum;
+        sum += worker->lengths[made->first_cell + i];
     }
     if (made->count == 0) return RT_OK;
-    memcpy(cube->entries + made->place, d->workers[made->thread].entries + made->first,
-           made->count * sizeof(RtLightEntry));
+    memcpy(cube->entries + made->place, worker->entries + made->first, made->count * sizeof(RtLightEntry));
     return RT_OK;
 }
 
 /* Gives tiles their places; how many entries there are. */
 static uint32_t place_tiles(Drawing *d) {
+    RtLightCube *cube = &d->buffer->cubes[d->light];
     uint32_t sum = 0;
-    for (uint32_t tile = 0; tile < d->buffer->cubes[d->light].tile_count; tile++) {
-        d->made[tile].place = sum;
-        sum += d->made[tile].count;
+    for (uint32_t tile = 0; tile < cube->tile_count; tile++) {
+        Made *made = &d->made[tile];
+        made->place = sum;
+        made->cell_place = cube->cell_count;
+        sum += made->count;
+        cube->cell_count += made->n * made->n;
     }
     return sum;
 }
 
 static RtStatus make_all(Drawing *d, int threads, RtError *error) {
     RtLightCube *cube = &d->buffer->cubes[d->light];
-    size_t cells = (size_t)cube->tile_count * RT_LIGHT_TILE_CELLS;
-    cube->first = rt_alloc(cells + 1, sizeof(uint32_t));
-    if (!cube->first) return rt_fail_memory(error, "the cells of a light buffer", cells * sizeof(uint32_t));
     RT_TRY(rt_parallel_for(cube->tile_count, threads, make_tile, d, error));
     uint32_t sum = place_tiles(d);
-    cube->first[cells] = sum;
+    cube->tiles = rt_alloc(cube->tile_count, sizeof(uint32_t));
+    cube->first = rt_alloc_unset(cube->cell_count + (size_t)1, sizeof(uint32_t));
     cube->entries = rt_alloc_unset(sum, sizeof(RtLightEntry));
-    if (!cube->entries)
+    if (!cube->tiles || !cube->first || !cube->entries)
         return rt_fail_memory(error, "the lists of a light buffer", sum * sizeof(RtLightEntry));
+    cube->first[cube->cell_count] = sum;
     return rt_parallel_for(cube->tile_count, threads, move_tile, d, error);
 }
 
@@ -320,6 +365,7 @@ RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t light, const RtLigh
         rt_free(desk->runs);
         rt_free(d.workers[i].sorted);
         rt_free(d.workers[i].entries);
+        rt_free(d.workers[i].lengths);
     }
     rt_free(d.workers);
     rt_free(d.made);
