@@ -33,8 +33,9 @@ static inline RtW16 rt_w16_truncate(RtV16 a) {
 static inline RtV16 rt_v16_of_words(RtW16 a) {
     return _mm512_cvtepi32_ps(a);
 }
-static inline RtV16 rt_v16_as(RtW16 a) {
-    return _mm512_castsi512_ps(a);
+/* a[i] moved right by bits[i], 0..31. */
+static inline RtW16 rt_w16_down(RtW16 a, RtW16 bits) {
+    return _mm512_srlv_epi32(a, bits);
 }
 /* table[2 * index[i]]: one of a row of pairs. */
 static inline RtW16 rt_w16_lookup_pair(const uint32_t *table, RtW16 index) {
@@ -79,8 +80,8 @@ static inline RtW16 rt_w16_truncate(RtV16 a) {
 static inline RtV16 rt_v16_of_words(RtW16 a) {
     return (RtV16){_mm256_cvtepi32_ps(a.lo), _mm256_cvtepi32_ps(a.hi)};
 }
-static inline RtV16 rt_v16_as(RtW16 a) {
-    return (RtV16){_mm256_castsi256_ps(a.lo), _mm256_castsi256_ps(a.hi)};
+static inline RtW16 rt_w16_down(RtW16 a, RtW16 bits) {
+    return (RtW16){_mm256_srlv_epi32(a.lo, bits.lo), _mm256_srlv_epi32(a.hi, bits.hi)};
 }
 static inline RtW16 rt_w16_lookup_pair(const uint32_t *table, RtW16 index) {
     return (RtW16){_mm256_i32gather_epi32((const int *)table, index.lo, 8),

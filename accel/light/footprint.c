@@ -14,7 +14,7 @@
  * true segment meets the box grown by the margin, at a depth between 0 and that of the origin, and in the
  * cell of the segment's direction, whose u and w are known to 2^-21: the shear of a ray is dir.b / dir.a but
  * for two roundings of 2^-24, and there is one each for u - grid.u, at most 2, and its product with
- * grid.scale. So is its place among the eighths of the cell. A sphere's hit function computes in double: the
+ * grid.scale. So is its place among the parts of the cell. A sphere's hit function computes in double: the
  * distance of the line from its centre is at most its radius + 2^-24 of the distance from the origin.
  *
  * Of the cells of the rectangle around an object's box,
@@ -167,8 +167,8 @@ RtLightCells rt_light_cells(const RtLightTile *tile, const RtLightFootprint *foo
         hi = fmin(fmax(hi, -1), n + 1);
         at.lo[k] = (int32_t)fmax(floor(lo), 0);
         at.hi[k] = (int32_t)fmin(floor(hi), n - 1);
-        at.sub_lo[k] = (int32_t)floor(8 * lo);
-        at.sub_hi[k] = (int32_t)floor(8 * hi);
+        at.part_lo[k] = (int32_t)floor(RT_LIGHT_PART * lo);
+        at.part_hi[k] = (int32_t)floor(RT_LIGHT_PART * hi);
     }
     return at;
 }

@@ -10,14 +10,14 @@
  *
  * Layout: tiles are face after face, row after row; tiles[k] is the number of the first cell of tile k, times
  * 64, plus its n; in a tile cells are row after row. The list of cell k of a light is entries[first[k]..first[k + 1]), ascending by key, then by object. A key
- * holds, from the highest bit: a 0; 15 bits of depth, rounded down; and four times a 0 and 3 bits, the box
- * around the object in the cell, in eighths of a cell: 7 - most row, least row, 7 - most column, least
- * column. A list that was cut ends in an entry RT_LIGHT_BEYOND: what is as deep or deeper may be missing.
+ * holds, from the highest bit: a 0; 15 bits of depth, rounded down; and 16 bits for the 4 x 4 parts of the
+ * cell, row by row, that the object may be seen in. A list that was cut ends in an entry RT_LIGHT_BEYOND: what
+ * is as deep or deeper may be missing.
  * Objects that touch a light are in its near list instead, because they would be in all cells.
  *
  * Invariant: an object that can block a ray from inside `domain` to the light is in the near list, or in the
- * list of the ray's cell with a depth not above that of the ray and with a box that holds the ray; or the
- * list was cut, at a depth not above that of the ray. Why rounding does not break it stands in footprint.c.
+ * list of the ray's cell, with a depth not above that of the ray and the part of the cell that the ray is in;
+ * or the list was cut, at a depth not above that of the ray. Why rounding does not break it stands in footprint.c.
  * So cutting lists is free: it never changes an answer, but who gives it. */
 #ifndef RT_ACCEL_LIGHT_LIGHT_H
 #define RT_ACCEL_LIGHT_LIGHT_H
@@ -32,7 +32,7 @@
     X(RT_LIGHT_FULL_OCCLUSION, "full_occlusion", RT_FLAG("on"),                                              \
       "end a list where the whole cell is likely to be covered", "Haines & Greenberg 1986, of one object")   \
     X(RT_LIGHT_EXTENTS, "extents", RT_FLAG("on"),                                                            \
-      "test the box around an object in the cell, to an eighth of it, before the object", "this program")    \
+      "skip what is not seen in the part of the cell, a sixteenth, that the ray is in", "this program")      \
     X(RT_LIGHT_LONGEST, "longest", RT_INT("64", 1, 65534, "2"),                                              \
       "entries of a list; what lies deeper is passed on", "measured")
 
@@ -47,11 +47,10 @@ typedef struct RtLightEntry {
 
 #define RT_LIGHT_BEYOND UINT32_MAX
 
-/* The zeros of a key: subtracted from a key in which they are 1, another one leaves those of the fields in
- * which it is not above. */
-#define RT_LIGHT_DEEP  0x80000000u
-#define RT_LIGHT_BOXED 0x00008888u
-#define RT_LIGHT_DEPTHS 32768 /* that a key can hold */
+/* What a key can hold. */
+#define RT_LIGHT_DEPTHS 32768
+#define RT_LIGHT_PARTS  0xffffu
+enum { RT_LIGHT_PART = 4 }; /* parts along the edge of a cell */
 
 /* The most cells along the edge of a tile, and in a tile. */
 enum { RT_LIGHT_FINEST = 63, RT_LIGHT_TILE_CELLS = RT_LIGHT_FINEST * RT_LIGHT_FINEST };
@@ -84,6 +83,7 @@ typedef struct RtLightBuffer {
     uint32_t cells; /* as asked for */
     uint32_t longest;
     bool full_occlusion, extents;
+    bool serves;        /* whether some light does */
     RtBox domain;       /* where rays start that are answered; empty without objects */
     RtLightCube *cubes; /* [lights] */
     const RtLightKernels *kernels;
@@ -153,18 +153,20 @@ typedef struct RtLightFootprint {
 bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
                         RtLightFootprint *footprint);
 
-/* The cells of a footprint in a tile; none where lo > hi. And its box in eighths of cells of the tile. */
+/* The cells of a footprint in a tile; none where lo > hi. And its parts of cells. */
 typedef struct RtLightCells {
     int32_t lo[2], hi[2];
-    int32_t sub_lo[2], sub_hi[2];
+    int32_t part_lo[2], part_hi[2];
 } RtLightCells;
 RtLightCells rt_light_cells(const RtLightTile *tile, const RtLightFootprint *footprint);
 
 #define RT_LIGHT_MAX_EDGES 8
 
 /* What parts cells from an object: lines, and a plane of depths. x and y are columns and rows from the corner
- * of a tile. The object is not in the cell whose middle is (x, y) if parts[i] . (x, y, 1) < 0 for some i. Its
+ * of a tile. The object is not in the cell whose middle is (x, y) if parts[i] . (x, y, 1) < 0 for some i; not
+ * in a part of a cell whose middle is (x, y) if that is below RT_LIGHT_NARROWER. Its
  * points there are no less deep than 1 / (slope . (x, y, 1)), unless that is above `far`, nor than `near`. */
+#define RT_LIGHT_NARROWER 0.375f /* as |parts[i][0]| + |parts[i][1]| = 1, half a cell less half a part */
 typedef struct RtLightOutline {
     uint32_t count;
     float parts[2 * RT_LIGHT_MAX_EDGES][3];
@@ -210,8 +212,8 @@ typedef struct RtLightDesk {
     uint32_t run_count, run_capacity;
 } RtLightDesk;
 
-/* What a small triangle adds at most, and what is written beyond. */
-enum { RT_LIGHT_SMALL_ROOM = RT_LIGHT_SMALL_CELLS * RT_LIGHT_SMALL_CELLS + 16 };
+/* What a small triangle adds at most. */
+enum { RT_LIGHT_SMALL_ROOM = RT_LIGHT_SMALL_CELLS * RT_LIGHT_SMALL_CELLS };
 
 struct RtLightKernels {
     RtOccludedKernel *occluded;

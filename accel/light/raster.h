@@ -164,11 +164,11 @@ static uint32_t place(const RtLightBuffer *buffer, uint32_t light, uint32_t firs
 /* To be drawn one by one. Lines and rectangles are from the corner of the tile. */
 typedef struct Small {
     _Alignas(64) float line[3][3][16]; /* edge; x, y and 1; `inside` is where all are >= 0 */
-    float around[3][16];               /* what is added for the cell about a point */
+    float around[3][16];               /* what is added for the part of a cell about a point */
     float near[16], far[16];
     uint32_t depth[16];
     uint32_t lo[2][16], hi[2][16];     /* cells of the tile; none where lo > hi */
-    uint32_t sub_lo[2][16], sub_hi[2][16]; /* in eighths, 0 at the corner of the tile */
+    float least[2][16], most[2][16];       /* the rectangle */
     uint32_t large;                        /* those that are not small */
 } Small;
 
@@ -197,7 +197,7 @@ RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles,
     RtV16 acx = rt_v16_sub(p.x[2], p.x[0]), acy = rt_v16_sub(p.y[2], p.y[0]);
     RtV16 area = rt_v16_sub(rt_v16_mul(abx, acy), rt_v16_mul(aby, acx));
     RtV16 sign = rt_v16_pick(rt_v16_negative(area), rt_v16_all(1), rt_v16_all(-1));
-    const RtV16 half = rt_v16_add(rt_v16_all(0.5f), p.grow);
+    const RtV16 half = rt_v16_add(rt_v16_all(0.5f / RT_LIGHT_PART), p.grow);
     for (int i = 0; i < 3; i++) {
         int k = (i + 1) % 3;
         RtV16 nx = rt_v16_mul(rt_v16_sub(p.y[i], p.y[k]), sign);
@@ -218,8 +218,8 @@ RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles,
         /* The rectangle may miss the tile: then lo > hi, below or above. */
         rt_w16_put(s->lo[k], rt_w16_most(lo, rt_w16_all(0)));
         rt_w16_put(s->hi[k], rt_w16_least(hi, rt_w16_all(tile->n - 1)));
-        rt_w16_put(s->sub_lo[k], floor16(rt_v16_mul(p.lo[k], rt_v16_all(8))));
-        rt_w16_put(s->sub_hi[k], floor16(rt_v16_mul(p.hi[k], rt_v16_all(8))));
+        rt_v16_store(s->least[k], p.lo[k]);
+        rt_v16_store(s->most[k], p.hi[k]);
     }
 }
 
@@ -235,13 +235,12 @@ RT_KERNEL uint32_t lanes_of(uint32_t columns, uint32_t rows) {
     return row * 0x1111 & (rows < 4 ? (1u << 4 * rows) - 1 : 0xffff);
 }
 
-RT_KERNEL uint32_t inside_lines(const Small *s, uint32_t i, RtV16 x, RtV16 y, bool around) {
+RT_KERNEL uint32_t inside_lines(const Small *s, uint32_t i, RtV16 x, RtV16 y) {
     RtV16 worst = rt_v16_all(INFINITY);
     for (int e = 0; e < 3; e++) {
         RtV16 at = rt_v16_add(rt_v16_mul(rt_v16_all(s->line[e][0][i]), x),
                               rt_v16_mul(rt_v16_all(s->line[e][1][i]), y));
-        at = rt_v16_add(at, rt_v16_all(s->line[e][2][i] + (around ? s->around[e][i] : 0)));
-        worst = rt_v16_min(at, worst);
+        worst = rt_v16_min(rt_v16_add(at, rt_v16_all(s->line[e][2][i])), worst);
     }
     return rt_v16_at_most(rt_v16_all(0), worst);
 }
@@ -254,14 +253,14 @@ static uint32_t cover(const RtLightTile *tile, const uint32_t *triangles, uint32
         /* Corners of cells within the rectangle, borders of the tile included. */
         int lo[2], hi[2];
         for (int k = 0; k < 2; k++) {
-            lo[k] = (int)s.lo[k][i] + ((int)s.sub_lo[k][i] > 0);
-            hi[k] = (int)s.hi[k][i] + ((int)s.sub_hi[k][i] >= 8 * (int)(s.hi[k][i] + 1));
+            lo[k] = (int)s.lo[k][i] + (s.least[k][i] > 0);
+            hi[k] = (int)s.hi[k][i] + (s.most[k][i] >= (float)((int)s.hi[k][i] + 1));
         }
         for (int row = lo[1]; row <= hi[1]; row += 4) {
             for (int column = lo[0]; column <= hi[0]; column += 4) {
                 RtV16 x = rt_v16_add(rt_v16_load(lane_column), rt_v16_all((float)column));
                 RtV16 y = rt_v16_add(rt_v16_load(lane_row), rt_v16_all((float)row));
-                uint32_t in = inside_lines(&s, i, x, y, false);
+                uint32_t in = inside_lines(&s, i, x, y);
                 in &= lanes_of((uint32_t)(hi[0] - column + 1), (uint32_t)(hi[1] - row + 1));
                 for (; in; in &= in - 1) {
                     int lane = __builtin_ctz(in);
@@ -274,55 +273,54 @@ static uint32_t cover(const RtLightTile *tile, const uint32_t *triangles, uint32
     return s.large;
 }
 
-/* Keys of cells at column, row of which the object's box is from sub_lo to sub_hi. */
-RT_KERNEL RtW16 box_key(RtW16 column8, RtW16 row8, const uint32_t lo[2], const uint32_t hi[2]) {
-    const RtW16 zero = rt_w16_all(0), seven = rt_w16_all(7);
-    RtW16 x0 = rt_w16_least(rt_w16_most(rt_w16_sub(rt_w16_all(lo[0]), column8), zero), seven);
-    RtW16 y0 = rt_w16_least(rt_w16_most(rt_w16_sub(rt_w16_all(lo[1]), row8), zero), seven);
-    RtW16 x1 = rt_w16_least(rt_w16_most(rt_w16_sub(rt_w16_all(hi[0]), column8), zero), seven);
-    RtW16 y1 = rt_w16_least(rt_w16_most(rt_w16_sub(rt_w16_all(hi[1]), row8), zero), seven);
-    RtW16 x = rt_w16_or(x0, rt_w16_left(rt_w16_sub(seven, x1), 4));
-    RtW16 y = rt_w16_or(y0, rt_w16_left(rt_w16_sub(seven, y1), 4));
-    return rt_w16_or(x, rt_w16_left(y, 8));
-}
-
 RT_KERNEL void add_run(RtLightDesk *desk, RtRef object, uint32_t before) {
     if (desk->count > before) desk->runs[desk->run_count++] = (RtLightEntry){desk->count - before, object};
 }
 
-RT_KERNEL void add_cells(RtLightDesk *desk, uint32_t in, RtW16 cell, RtW16 key) {
-    rt_w16_put_some(desk->cell + desk->count, in, cell);
-    rt_w16_put_some(desk->key + desk->count, in, key);
-    desk->count += (uint32_t)__builtin_popcount(in);
-}
+/* Middles of the parts of the cell (0, 0). */
+static const float middle_x[16] __attribute__((aligned(64))) = {
+    0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f,
+    0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f};
+static const float middle_y[16] __attribute__((aligned(64))) = {
+    0.125f, 0.125f, 0.125f, 0.125f, 0.375f, 0.375f, 0.375f, 0.375f,
+    0.625f, 0.625f, 0.625f, 0.625f, 0.875f, 0.875f, 0.875f, 0.875f};
 
 static uint32_t draw(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk) {
     Small s;
     prepare_small(tile, triangles, count, &s);
+    const RtV16 x = rt_v16_load(middle_x), y = rt_v16_load(middle_y), zero = rt_v16_all(0);
     for (uint32_t i = 0; i < count; i++) {
         if (s.large >> i & 1) continue;
-        const uint32_t sub_lo[2] = {s.sub_lo[0][i], s.sub_lo[1][i]}, before = desk->count;
-        const uint32_t sub_hi[2] = {s.sub_hi[0][i], s.sub_hi[1][i]};
+        const uint32_t before = desk->count;
         const int last_column = (int)s.hi[0][i], last_row = (int)s.hi[1][i];
-        const RtV16 near = rt_v16_all(s.near[i]);
-        for (int row = (int)s.lo[1][i]; row <= last_row; row += 4) {
-            for (int column = (int)s.lo[0][i]; column <= last_column; column += 4) {
-                RtV16 x = rt_v16_add(rt_v16_load(lane_column), rt_v16_all((float)column));
-                RtV16 y = rt_v16_add(rt_v16_load(lane_row), rt_v16_all((float)row));
-                const RtV16 half = rt_v16_all(0.5f);
-                uint32_t in = lanes_of((uint32_t)(last_column - column + 1), (uint32_t)(last_row - row + 1));
-                in &= inside_lines(&s, i, rt_v16_add(x, half), rt_v16_add(y, half), true);
-                const float *cover = &desk->cover[row][column];
-                const size_t next = sizeof desk->cover[0] / sizeof(float);
-                uint32_t covered = in & ~rt_v16_at_most(near, rt_v16_join(cover, cover + next, cover + 2 * next,
-                                                                          cover + 3 * next));
-                in &= ~covered;
-                for (int k = 0; covered; k++, covered >>= 4) desk->cut[row + k] |= (uint64_t)(covered & 15) << column;
-                if (!in) continue;
-                RtW16 x8 = rt_w16_left(rt_w16_truncate(x), 3), y8 = rt_w16_left(rt_w16_truncate(y), 3);
-                RtW16 key = rt_w16_or(box_key(x8, y8, sub_lo, sub_hi), rt_w16_all(s.depth[i] << 16));
-                RtV16 cell = rt_v16_add(rt_v16_mul(y, rt_v16_all((float)tile->n)), x); /* exact */
-                add_cells(desk, in, rt_w16_truncate(cell), key);
+        RtV16 at[3]; /* in the parts of cell (0, 0) */
+        for (int e = 0; e < 3; e++) {
+            at[e] = rt_v16_add(rt_v16_mul(rt_v16_all(s.line[e][0][i]), x),
+                               rt_v16_mul(rt_v16_all(s.line[e][1][i]), y));
+            at[e] = rt_v16_add(at[e], rt_v16_all(s.line[e][2][i] + s.around[e][i]));
+        }
+        /* Parts beyond the rectangle are left by the lines of slivers. */
+        const RtV16 least_x = rt_v16_all(s.least[0][i] - 0.125f), most_x = rt_v16_all(s.most[0][i] + 0.125f);
+        const RtV16 least_y = rt_v16_all(s.least[1][i] - 0.125f), most_y = rt_v16_all(s.most[1][i] + 0.125f);
+        for (int row = (int)s.lo[1][i]; row <= last_row; row++) {
+            RtV16 part_row = rt_v16_add(y, rt_v16_all((float)row));
+            uint32_t rows = rt_v16_at_most(least_y, part_row) & rt_v16_at_most(part_row, most_y);
+            for (int column = (int)s.lo[0][i]; column <= last_column; column++) {
+                RtV16 worst = rt_v16_all(INFINITY);
+                for (int e = 0; e < 3; e++) {
+                    float moved = s.line[e][0][i] * (float)column + s.line[e][1][i] * (float)row;
+                    worst = rt_v16_min(rt_v16_add(at[e], rt_v16_all(moved)), worst);
+                }
+                RtV16 part_column = rt_v16_add(x, rt_v16_all((float)column));
+                uint32_t parts = rows & rt_v16_at_most(zero, worst);
+                parts &= rt_v16_at_most(least_x, part_column) & rt_v16_at_most(part_column, most_x);
+                if (!parts) continue;
+                if (s.near[i] > desk->cover[row][column]) {
+                    desk->cut[row] |= UINT64_C(1) << column;
+                    continue;
+                }
+                desk->cell[desk->count] = (uint32_t)row * tile->n + (uint32_t)column;
+                desk->key[desk->count++] = s.depth[i] << 16 | parts;
             }
         }
         add_run(desk, rt_ref(RT_SHAPE_TRIANGLE, triangles[i]), before);
@@ -364,17 +362,42 @@ static void cover_outline(const RtLightOutline *outline, const RtLightCells *at,
     }
 }
 
+/* The parts of a cell that lie in a rectangle of parts. */
+RT_KERNEL uint32_t parts_within(const RtLightCells *at, int column, int row) {
+    uint32_t within[2];
+    for (int k = 0; k < 2; k++) {
+        int first = (k ? row : column) * RT_LIGHT_PART, lo = at->part_lo[k] - first;
+        int hi = at->part_hi[k] - first;
+        lo = lo < 0 ? 0 : lo;
+        hi = hi < RT_LIGHT_PART - 1 ? hi : RT_LIGHT_PART - 1;
+        within[k] = hi < lo ? 0 : (2u << hi) - (1u << lo);
+    }
+    uint32_t rows = within[1];
+    rows = (rows & 1) | (rows & 2) << 3 | (rows & 4) << 6 | (rows & 8) << 9;
+    return rows * within[0];
+}
+
+/* The parts of a cell that no line parts from the object. */
+RT_KERNEL uint32_t parts_of(const RtLightOutline *outline, const RtLightCells *at, int column, int row) {
+    uint32_t parts = parts_within(at, column, row);
+    RtV16 x = rt_v16_add(rt_v16_load(middle_x), rt_v16_all((float)column));
+    RtV16 y = rt_v16_add(rt_v16_load(middle_y), rt_v16_all((float)row));
+    for (uint32_t e = 0; e < outline->count; e++) {
+        const float *line = outline->parts[e];
+        RtV16 on = rt_v16_add(rt_v16_mul(rt_v16_all(line[0]), x), rt_v16_mul(rt_v16_all(line[1]), y));
+        parts &= rt_v16_at_most(rt_v16_all(RT_LIGHT_NARROWER - line[2]), on);
+    }
+    return parts;
+}
+
 static void draw_outline(const RtLightTile *tile, const RtLightOutline *outline, const RtLightFootprint *from,
                          const RtLightCells *at, RtRef object, RtLightDesk *desk) {
     const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
-    const uint32_t before = desk->count, n = tile->n;
-    const uint32_t sub_lo[2] = {(uint32_t)at->sub_lo[0], (uint32_t)at->sub_lo[1]};
-    const uint32_t sub_hi[2] = {(uint32_t)at->sub_hi[0], (uint32_t)at->sub_hi[1]};
+    const uint32_t before = desk->count;
     const RtV16 nearest = rt_v16_all(from->near), flattest = rt_v16_all(1 / from->far);
     for (int row = at->lo[1]; row <= at->hi[1]; row++) {
         for (int column = at->lo[0]; column <= at->hi[0]; column += 16) {
-            RtV16 x = rt_v16_add(rt_v16_load(lane_number), rt_v16_all((float)column));
-            RtV16 middle = rt_v16_add(x, rt_v16_all(0.5f));
+            RtV16 middle = rt_v16_add(rt_v16_load(lane_number), rt_v16_all((float)column + 0.5f));
             uint32_t in = first_lanes(at->hi[0] - column + 1);
             for (uint32_t e = 0; e < outline->count; e++) {
                 in &= rt_v16_at_most(rt_v16_all(0), line_at(outline->parts[e], middle, (float)row + 0.5f));
@@ -385,15 +408,17 @@ static void draw_outline(const RtLightTile *tile, const RtLightOutline *outline,
             const float *cover = &desk->cover[row][column];
             uint32_t covered = in & ~rt_v16_at_most(near, rt_v16_join(cover, cover + 4, cover + 8, cover + 12));
             desk->cut[row] |= (uint64_t)covered << column;
-            in &= ~covered;
-            if (!in) continue;
             RtV16 step = rt_v16_mul(rt_v16_sub(near, rt_v16_all(grid->depth)), rt_v16_all(grid->depth_scale));
             step = rt_v16_min(rt_v16_max(step, rt_v16_all(0)), rt_v16_all(RT_LIGHT_DEPTHS - 1));
-            RtW16 column8 = rt_w16_left(rt_w16_truncate(x), 3);
-            RtW16 key = box_key(column8, rt_w16_all((uint32_t)row * 8), sub_lo, sub_hi);
-            key = rt_w16_or(key, rt_w16_left(rt_w16_truncate(step), 16));
-            RtW16 cell = rt_w16_add(rt_w16_truncate(x), rt_w16_all((uint32_t)row * n));
-            add_cells(desk, in, cell, key);
+            uint32_t depth[16];
+            rt_w16_put(depth, rt_w16_truncate(step));
+            for (in &= ~covered; in; in &= in - 1) {
+                int lane = __builtin_ctz(in);
+                uint32_t parts = parts_of(outline, at, column + lane, row);
+                if (!parts) continue;
+                desk->cell[desk->count] = (uint32_t)row * tile->n + (uint32_t)(column + lane);
+                desk->key[desk->count++] = depth[lane] << 16 | parts;
+            }
         }
     }
     add_run(desk, object, before);

@@ -35,9 +35,9 @@ static RtStatus check_order(const RtLightCube *cube, uint32_t light, uint32_t ob
         }
         for (uint32_t i = cube->first[cell]; i < cube->first[cell + 1]; i++) {
             const RtLightEntry *entry = &cube->entries[i];
-            bool last = i + 1 == cube->first[cell + 1], good = !(entry->key & (RT_LIGHT_DEEP | RT_LIGHT_BOXED));
+            bool last = i + 1 == cube->first[cell + 1], good = depth_of(entry->key) < RT_LIGHT_DEPTHS;
             if (entry->object == RT_LIGHT_BEYOND) {
-                good = good && last && !(entry->key & 0xffff);
+                good = good && last && (entry->key & RT_LIGHT_PARTS) == RT_LIGHT_PARTS;
             } else {
                 good = good && rt_ref_index(entry->object) < objects;
             }
@@ -136,8 +136,8 @@ RtStatus rt_light_validate(const RtAccel *accel, RtError *error) {
     const RtLightBuffer *buffer = (const RtLightBuffer *)accel;
     uint32_t objects = accel->scene->geometry.object_count;
     for (uint32_t light = 0; light < accel->scene->light_count; light++) {
-        RT_TRY(check_near(buffer, light, error));
         if (!buffer->cubes[light].serves) continue;
+        RT_TRY(check_near(buffer, light, error));
         RT_TRY(check_order(&buffer->cubes[light], light, objects, error));
         for (uint32_t id = 0; id < objects; id++) {
             if (rt_light_is_near(buffer, light, id)) continue;

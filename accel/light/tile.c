@@ -43,18 +43,19 @@ typedef struct Drawing {
 
 /* ---- how fine ---- */
 
-/* An object of width x and height y, in tiles, is in about (n x + 1) (n y + 1) cells of a tile, of which
- * n^2 x y are the share of its area. What is above that, in relation to it, is what fine cells bring down, and
- * memory and time of the build what they cost. From some of the tile's objects. */
-static uint32_t choose_fineness(RtLightTile *tile, const uint32_t *objects, uint32_t count) {
-    enum { SAMPLE = 12 };
+/* A ray meets, in the list of its cell, objects that it does not meet itself: of width x and height y, in
+ * tiles, an object is in about (n x + 1) (n y + 1) of a tile's n^2 cells, of which n^2 x y are its own share.
+ * The others, sums of (x + y) / n + 1 / n^2 to a list, are to be about three where one object lies behind
+ * another, and more where more do, as a ray does not look at the deeper ones. From some of the objects. */
+static uint32_t choose_fineness(const RtLightTile *tile, const uint32_t *objects, uint32_t count) {
+    enum { SAMPLE = 16 };
     const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
-    const double surplus = 1.0;
     double sides = 0, areas = 0, seen = 0, part = (double)count / (count < SAMPLE ? count : SAMPLE);
+    if (grid->least == grid->finest) return grid->finest;
     for (uint32_t i = 0; i < count && i < SAMPLE; i++) {
-        uint32_t object = objects[count < SAMPLE ? i : (uint32_t)((uint64_t)i * count / SAMPLE)] & ~RT_LIGHT_ALONE;
+        uint32_t object = objects[count < SAMPLE ? i : (uint32_t)((uint64_t)i * count / SAMPLE)];
+        uint32_t id = rt_light_id_of(&tile->buffer->base.scene->geometry, object & ~RT_LIGHT_ALONE);
         RtLightFootprint at;
-        uint32_t id = rt_light_id_of(&tile->buffer->base.scene->geometry, object);
         if (!rt_light_footprint(tile->buffer, tile->light, tile->face, id, &at)) continue;
         double size[2];
         for (int k = 0; k < 2; k++) {
@@ -66,10 +67,10 @@ static uint32_t choose_fineness(RtLightTile *tile, const uint32_t *objects, uint
         areas += part * size[0] * size[1];
         seen += part;
     }
-    double n = (sides + sqrt(sides * sides + 4 * surplus * areas * seen)) / fmax(2 * surplus * areas, 0x1p-20);
-    n = fmin(n, 1 + 3 * sqrt((double)count)); /* nine cells an object */
-    n = fmin(fmax(n, grid->least), grid->finest);
-    return (uint32_t)n;
+    double others = 3 * sqrt(fmax(areas, 0x1p-10));
+    double n = (sides + sqrt(sides * sides + 4 * others * seen)) / (2 * others);
+    n = fmin(n, 1 + 3 * sqrt((double)count)); /* about nine cells an object at most */
+    return (uint32_t)fmin(fmax(n, grid->least), grid->finest);
 }
 
 /* ---- drawing ---- */
@@ -131,7 +132,7 @@ static RtStatus take_alone(const RtLightTile *tile, RtRef object, bool cover, Rt
     if (!rt_light_footprint(buffer, tile->light, tile->face, id, &from)) return RT_OK;
     const RtLightCells at = rt_light_cells(tile, &from);
     if (at.lo[0] > at.hi[0] || at.lo[1] > at.hi[1]) return RT_OK;
-    if (!cover) RT_TRY(make_room(desk, RT_LIGHT_TILE_CELLS + 16, error));
+    if (!cover) RT_TRY(make_room(desk, RT_LIGHT_TILE_CELLS, error));
     if (is_flat(object)) {
         rt_light_outline(tile, id, &from, &outline);
         if (cover) {
@@ -263,7 +264,7 @@ static RtStatus keep_lists(const Drawing *d, const RtLightTile *tile, Worker *wo
         if (kept < count) beyond = depth_bits(list[kept].key), cut = true;
         if (kept > 0) memcpy(worker->entries + worker->count, list, kept * sizeof *list);
         worker->count += kept;
-        if (cut) worker->entries[worker->count++] = (RtLightEntry){beyond, RT_LIGHT_BEYOND};
+        if (cut) worker->entries[worker->count++] = (RtLightEntry){beyond | RT_LIGHT_PARTS, RT_LIGHT_BEYOND};
         worker->lengths[worker->cell_count++] = (uint16_t)(kept + cut);
     }
     return RT_OK;
