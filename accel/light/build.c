@@ -94,7 +94,8 @@ static void make_grid(const Outlook *o, double cells, double margin, RtLightGrid
     double scale = (double)grid->scale;
     grid->columns = (uint32_t)fmax(ceil((o->view.hi[0] - (double)grid->u) * scale - 0x1p-20), 1);
     grid->rows = (uint32_t)fmax(ceil((o->view.hi[1] - (double)grid->w) * scale - 0x1p-20), 1);
-    grid->depth = rt_float_below(o->view.near);
+    /* Two steps before the nearest object, so that what is before it has a lesser key. */
+    grid->depth = rt_float_below(o->view.near - 2 * (o->view.far - o->view.near) / RT_LIGHT_DEPTHS);
     grid->depth_scale = (float)((RT_LIGHT_DEPTHS - 1) / (o->view.far - (double)grid->depth));
 }
 

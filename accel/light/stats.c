@@ -49,6 +49,14 @@ static RtStatus check_order(const RtLightCube *cube, uint32_t light, uint32_t ob
     return RT_OK;
 }
 
+/* By how much objects may be said to be nearer to cells, in cells, than lists say: both err on the safe side,
+ * lists by less. */
+static float tolerance(const RtLightTile *tile, const RtLightFootprint *at) {
+    const RtLightCube *cube = &tile->buffer->cubes[tile->light];
+    double cells = (double)cube->grids[tile->face].scale * tile->n;
+    return (float)(0x1p-5 + 8 * cube->margin * cells / (double)at->near);
+}
+
 /* Is the object certainly in the list of a cell? Then *depth is the least that it may have there. As for the
  * lists, but for what they allow for rounding. */
 static bool is_seen(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at,
@@ -60,21 +68,40 @@ static bool is_seen(const RtLightTile *tile, uint32_t id, const RtLightFootprint
         return rt_light_touches(tile, id, column, row);
     for (uint32_t i = 0; i < outline->count; i++) {
         const float *line = outline->parts[i];
-        if (line[0] * x + line[1] * y + line[2] < 0x1p-5f) return false;
+        if (line[0] * x + line[1] * y + line[2] < tolerance(tile, at)) return false;
     }
     float slope = outline->slope[0] * x + outline->slope[1] * y + outline->slope[2];
     *depth = rt_maxf(*depth, 1 / rt_maxf(slope, 1 / at->far)) * (1 + 0x1p-18f);
     return true;
 }
 
-/* Is the object in the list of a cell, not deeper than that, or was the list cut before? */
-static bool is_listed(const RtLightCube *cube, uint32_t cell, RtRef object, uint32_t depth) {
+/* Is the object in the list of a cell, in these parts of it and not deeper than that, or was the list cut
+ * before? */
+static bool is_listed(const RtLightCube *cube, uint32_t cell, RtRef object, uint32_t parts, uint32_t depth) {
     for (uint32_t i = cube->first[cell]; i < cube->first[cell + 1]; i++) {
         const RtLightEntry *entry = &cube->entries[i];
         if (depth_of(entry->key) > depth) return false;
-        if (entry->object == object || entry->object == RT_LIGHT_BEYOND) return true;
+        if (entry->object == object || entry->object == RT_LIGHT_BEYOND) return (entry->key & parts) == parts;
     }
     return false;
+}
+
+/* The parts of a cell that a flat object is certainly seen in; of another, none are certain. */
+static uint32_t parts_seen(const RtLightCells *at, const RtLightOutline *outline, float tolerated,
+                           uint32_t column, uint32_t row) {
+    uint32_t parts = 0;
+    for (uint32_t i = 0; i < RT_LIGHT_PART * RT_LIGHT_PART; i++) {
+        uint32_t x = column * RT_LIGHT_PART + i % RT_LIGHT_PART, y = row * RT_LIGHT_PART + i / RT_LIGHT_PART;
+        bool seen = (int32_t)x > at->part_lo[0] && (int32_t)x < at->part_hi[0] && (int32_t)y > at->part_lo[1] &&
+                    (int32_t)y < at->part_hi[1];
+        for (uint32_t k = 0; seen && k < outline->count; k++) {
+            const float *line = outline->parts[k];
+            float on = line[0] * ((float)x + 0.5f) + line[1] * ((float)y + 0.5f);
+            seen = on / RT_LIGHT_PART + line[2] - RT_LIGHT_NARROWER >= tolerated;
+        }
+        parts |= (uint32_t)seen << i;
+    }
+    return parts;
 }
 
 static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFootprint *from,
@@ -86,13 +113,16 @@ static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFo
     RtRef object = buffer->base.scene->geometry.objects[id];
     RtShape shape = rt_ref_shape(object);
     RtLightOutline outline;
-    if (shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON) rt_light_outline(tile, id, from, &outline);
+    bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
+    if (flat) rt_light_outline(tile, id, from, &outline);
     uint32_t first = rt_light_first_cell(cube->tiles[grid->first_tile + tile->row * grid->columns + tile->column]);
     for (uint32_t row = (uint32_t)at.lo[1]; (int32_t)row <= at.hi[1]; row++) {
         for (uint32_t column = (uint32_t)at.lo[0]; (int32_t)column <= at.hi[0]; column++) {
             float near;
             if (!is_seen(tile, id, from, &outline, column, row, &near)) continue;
-            if (is_listed(cube, first + row * tile->n + column, object, rt_light_depth_key(grid, near))) continue;
+            uint32_t cell = first + row * tile->n + column, depth = rt_light_depth_key(grid, near);
+            uint32_t parts = flat ? parts_seen(&at, &outline, tolerance(tile, from), column, row) : 0;
+            if (is_listed(cube, cell, object, parts, depth)) continue;
             return rt_fail(error, RT_MISMATCH,
                            "light: the list of cell %u,%u of tile %u,%u of face %d of light %u lacks object %u "
                            "at depth %g",

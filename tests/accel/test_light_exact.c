@@ -113,7 +113,7 @@ RT_TEST(a_partial_occluder_hides_nothing_beside_it) {
     enum { COUNT = 20000 };
     static RtRay rays[COUNT];
     const char *specs[] = {"light:cells=1+brute", "light:cells=3+brute", "light:cells=16+brute",
-                           "light:cells=61,cache=off+brute"};
+                           "light:cells=61,longest=3+brute"};
     RtScene scene;
     begin_scene(&scene);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.3f, 0.2f, 8), 1, error));
@@ -164,31 +164,37 @@ RT_TEST(directions_along_edges_and_corners_are_answered_like_brute) {
         RtTally tally = check_like_brute("light:cells=1+brute", &scene, rays, count);
         assert_true(lights ? tally.passed_on == 0 : tally.passed_on == count);
         check_like_brute("light:cells=4+brute", &scene, rays, count);
-        check_like_brute("light:cells=8,extents=off,cache=off+brute", &scene, rays, count);
+        check_like_brute("light:cells=8,extents=off+brute", &scene, rays, count);
         check_like_brute("light:cells=9+brute", &scene, rays, count);
         rt_scene_clear(&scene);
     }
 }
 
-/* A ray that leaves a triangle on the light's side tests neither it nor those in its plane. */
+/* A ray that leaves a polygon or a sphere on the light's side tests neither it nor what is in its plane. */
 RT_TEST(a_receiver_that_faces_the_light_is_not_tested) {
-    const RtVec3 corners[4] = {{{-1, -1, -1}}, {{1, -1, 1}}, {{1, 1, 1}}, {{-1, 1, -1}}};
+    const RtVec3 corners[6] = {{{-1, -1, -1}}, {{1, -1, 1}}, {{1, 0, 1}},
+                               {{-1, 0, -1}},  {{1, 1, 1}},  {{-1, 1, -1}}};
+    const RtVec3 beside[4] = {corners[3], corners[2], corners[4], corners[5]};
     RtScene scene;
     begin_scene(&scene);
-    for (int i = 1; i < 3; i++) {
-        const RtVec3 half[3] = {corners[0], corners[i], corners[i + 1]};
-        assert_ok(rt_scene_add_triangle(&scene, 0, half, NULL, error));
-    }
+    assert_ok(rt_scene_add_polygon(&scene, 0, corners, 4, error));
+    assert_ok(rt_scene_add_polygon(&scene, 0, beside, 4, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3, 0, -3), 1, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(1, 2, 3), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
+    const char *spec = "light:cells=64,full_occlusion=off+brute";
     RtRay off = shadow_ray(&scene, rt_vec3(-0x1p-17f, 0, 0x1p-17f), 0),
-          on = shadow_ray(&scene, rt_vec3(0, 0, 0), 0);
-    RtTally tally = check_like_brute("light:full_occlusion=off+brute", &scene, &off, 1);
+          on = shadow_ray(&scene, rt_vec3(0, 0, 0), 0),
+          top = shadow_ray(&scene, rt_vec3(3, 0, -2 + 0x1p-15f), 0);
+    RtTally tally = check_like_brute(spec, &scene, &off, 1);
     assert_int_equal(tally.steps, 2);
     assert_int_equal(tally.extent_tests, 4);
     assert_int_equal(tally.object_tests, 0);
-    tally = check_like_brute("light:full_occlusion=off+brute", &scene, &on, 1);
-    assert_int_equal(tally.object_hits, 1);
+    tally = check_like_brute(spec, &scene, &on, 1);
+    assert_true(tally.object_hits > 0);
+    tally = check_like_brute(spec, &scene, &top, 1);
+    assert_int_equal(tally.steps, 1);
+    assert_int_equal(tally.object_tests, 0);
     rt_scene_clear(&scene);
 }
 
