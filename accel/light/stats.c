@@ -57,22 +57,14 @@ static float tolerance(const RtLightTile *tile, const RtLightFootprint *at) {
     return (float)(0x1p-5 + 8 * cube->margin * cells / (double)at->near);
 }
 
-/* Is the object certainly in the list of a cell? Then *depth is the least that it may have there. As for the
- * lists, but for what they allow for rounding. */
-static bool is_seen(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at,
-                    const RtLightOutline *outline, uint32_t column, uint32_t row, float *depth) {
-    RtShape shape = rt_ref_shape(tile->buffer->base.scene->geometry.objects[id]);
+/* The least depth that the lists may have for an object in a cell: they, too, allow for rounding. */
+static float least_depth(const RtLightFootprint *at, const RtLightOutline *outline, uint32_t column,
+                         uint32_t row) {
     float x = (float)column + 0.5f, y = (float)row + 0.5f;
-    *depth = at->near;
-    if (shape != RT_SHAPE_TRIANGLE && shape != RT_SHAPE_POLYGON)
-        return rt_light_touches(tile, id, column, row);
-    for (uint32_t i = 0; i < outline->count; i++) {
-        const float *line = outline->parts[i];
-        if (line[0] * x + line[1] * y + line[2] < tolerance(tile, at)) return false;
-    }
-    float slope = outline->slope[0] * x + outline->slope[1] * y + outline->slope[2];
-    *depth = rt_maxf(*depth, 1 / rt_maxf(slope, 1 / at->far)) * (1 + 0x1p-18f);
-    return true;
+    const float *slope = outline->slope;
+    float rounding = fabsf(slope[0] * x) + fabsf(slope[1] * y) + fabsf(slope[2]);
+    float least = slope[0] * x + slope[1] * y + slope[2] - 0x1p-19f * rounding;
+    return rt_maxf(at->near, 1 / rt_maxf(least, 1 / at->far)) * (1 + 0x1p-18f);
 }
 
 /* Is the object in the list of a cell, in these parts of it and not deeper than that, or was the list cut
@@ -118,10 +110,10 @@ static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFo
     uint32_t first = rt_light_first_cell(cube->tiles[grid->first_tile + tile->row * grid->columns + tile->column]);
     for (uint32_t row = (uint32_t)at.lo[1]; (int32_t)row <= at.hi[1]; row++) {
         for (uint32_t column = (uint32_t)at.lo[0]; (int32_t)column <= at.hi[0]; column++) {
-            float near;
-            if (!is_seen(tile, id, from, &outline, column, row, &near)) continue;
+            float near = flat ? least_depth(from, &outline, column, row) : from->near;
             uint32_t cell = first + row * tile->n + column, depth = rt_light_depth_key(grid, near);
             uint32_t parts = flat ? parts_seen(&at, &outline, tolerance(tile, from), column, row) : 0;
+            if (flat ? parts == 0 : !rt_light_touches(tile, id, column, row)) continue;
             if (is_listed(cube, cell, object, parts, depth)) continue;
             return rt_fail(error, RT_MISMATCH,
                            "light: the list of cell %u,%u of tile %u,%u of face %d of light %u lacks object %u "
