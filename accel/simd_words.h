@@ -17,7 +17,7 @@ RT_W16_PAIR(or, or_si512)
 RT_W16_PAIR(least, min_epi32)
 RT_W16_PAIR(most, max_epi32)
 #undef RT_W16_PAIR
-#define rt_w16_left(a, bits) _mm512_slli_epi32(a, bits)
+#define rt_w16_left(a, bits)  _mm512_slli_epi32(a, bits)
 #define rt_w16_right(a, bits) _mm512_srli_epi32(a, bits)
 /* Bit i: a[i] == b[i]; a[i] < b[i]. */
 static inline uint32_t rt_w16_equal(RtW16 a, RtW16 b) {
@@ -62,7 +62,7 @@ RT_W16_PAIR(or, or_si256)
 RT_W16_PAIR(least, min_epi32)
 RT_W16_PAIR(most, max_epi32)
 #undef RT_W16_PAIR
-#define rt_w16_left(a, bits) ((RtW16){_mm256_slli_epi32((a).lo, bits), _mm256_slli_epi32((a).hi, bits)})
+#define rt_w16_left(a, bits)  ((RtW16){_mm256_slli_epi32((a).lo, bits), _mm256_slli_epi32((a).hi, bits)})
 #define rt_w16_right(a, bits) ((RtW16){_mm256_srli_epi32((a).lo, bits), _mm256_srli_epi32((a).hi, bits)})
 static inline uint32_t rt_w16_signs(__m256i lo, __m256i hi) {
     return (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(lo)) |

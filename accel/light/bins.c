@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What falls into the tiles of a light: objects are placed, chunk by chunk on all threads, and counted by
- * chunk and tile; sums over tiles, and of a tile over chunks, say where each goes. So a tile has its objects in
- * one order, whatever the number of threads. */
+ * chunk and tile; sums over tiles, and of a tile over chunks, say where each goes. So a tile has its objects
+ * in one order, whatever the number of threads. */
 #include "accel/light/light.h"
 
 #include "base/memory.h"
@@ -110,9 +110,11 @@ static RtStatus sum_tiles(Binning *b, RtLightBins *bins, RtError *error) {
             b->chunks[i].at[tile] = (uint32_t)sum;
             sum += count;
         }
-        if (sum > UINT32_MAX) return rt_fail(error, RT_BAD_INPUT, "a light buffer of so many cells has too "
-                                                                  "many objects in its tiles: fewer cells "
-                                                                  "would do");
+        if (sum > UINT32_MAX)
+            return rt_fail(error, RT_BAD_INPUT,
+                           "a light buffer of so many cells has too "
+                           "many objects in its tiles: fewer cells "
+                           "would do");
     }
     bins->first[b->tiles] = (uint32_t)sum;
     bins->objects = rt_alloc_unset((size_t)sum, sizeof(uint32_t));

@@ -147,18 +147,18 @@ static RtStatus fit_grids(RtLightBuffer *buffer, const Outlook *outlooks, double
         uint32_t n = fits + (too_many - fits) / 2;
         *(make_grids(buffer, outlooks, n) <= most ? &fits : &too_many) = n;
     }
-    return rt_fail(error, RT_BAD_INPUT,
-                   "a light buffer of %u cells along the edge of a face for %u lights would take more than %.3g "
-                   "GiB: cells=%u would fit",
-                   buffer->cells, buffer->base.scene->light_count, limit / 0x1p30, fits);
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "a light buffer of %u cells along the edge of a face for %u lights would take more than %.3g "
+        "GiB: cells=%u would fit",
+        buffer->cells, buffer->base.scene->light_count, limit / 0x1p30, fits);
 }
 
 static RtStatus choose_grids(RtLightBuffer *buffer, double limit, double *cells, RtError *error) {
     const RtScene *scene = buffer->base.scene;
     Outlook *outlooks = rt_alloc(6 * (size_t)scene->light_count, sizeof(Outlook));
     if (!outlooks) return rt_fail_memory(error, "a light buffer", 6 * scene->light_count * sizeof(Outlook));
-    for (uint32_t i = 0; i < scene->light_count; i++)
-        look_at_objects(buffer, i, outlooks + 6 * (size_t)i);
+    for (uint32_t i = 0; i < scene->light_count; i++) look_at_objects(buffer, i, outlooks + 6 * (size_t)i);
     RtStatus status = fit_grids(buffer, outlooks, limit, cells, error);
     rt_free(outlooks);
     return status;

@@ -109,8 +109,8 @@ static const RtVec3 *vertices_of(const RtGeometry *g, uint32_t id, uint32_t *cou
     return g->polygon_vertices + g->polygons[index].first;
 }
 
-/* Of a flat object that is all in front of the light less than its box is seen: the hull of its vertices, each
- * grown by the margin. False if it is not on the face. */
+/* Of a flat object that is all in front of the light less than its box is seen: the hull of its vertices,
+ * each grown by the margin. False if it is not on the face. */
 static bool narrow_view(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
                         RtLightView *view) {
     uint32_t count;

@@ -3,14 +3,14 @@
  * the table that is defined.
  *
  * Of a stream a block of rays is taken at a time, light by light. First each ray finds its cell, sixteen in
- * lanes. Then the rays that have a list go through it in rounds, of one entry, of two, and of four: those whose entry is not
- * deeper and is seen in their part of the cell make pairs of a ray and an object, which are tested in lanes where they are
- * triangles. Who is blocked, or at the end of its list, drops out. What a ray does depends on no other, so
- * that counts are the same in streams of any length. Rays at the end of a list that was cut, and those that
- * are not exactly what a shadow ray is, are passed on together.
+ * lanes. Then the rays that have a list go through it in rounds, of one entry, of two, and of four: those
+ * whose entry is not deeper and is seen in their part of the cell make pairs of a ray and an object, which
+ * are tested in lanes where they are triangles. Who is blocked, or at the end of its list, drops out. What a
+ * ray does depends on no other, so that counts are the same in streams of any length. Rays at the end of a
+ * list that was cut, and those that are not exactly what a shadow ray is, are passed on together.
  *
- * A step is an entry looked at that is not deeper than the ray; an extent test that of the part of the cell, and
- * of the side of a polygon or sphere (side.h). */
+ * A step is an entry looked at that is not deeper than the ray; an extent test that of the part of the cell,
+ * and of the side of a polygon or sphere (side.h). */
 #include "accel/light/light.h"
 #include "accel/light/raster.h"
 #include "accel/light/side.h"
@@ -143,7 +143,8 @@ RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const Sixteen 
 }
 
 /* Tests the objects that touch the light; gives the rays that are left. */
-RT_KERNEL uint32_t test_near(const Asking *a, const RtLightCube *cube, uint32_t lanes, const uint32_t *order) {
+RT_KERNEL uint32_t test_near(const Asking *a, const RtLightCube *cube, uint32_t lanes,
+                             const uint32_t *order) {
     const RtGeometry *g = &a->self->base.scene->geometry;
     uint32_t left = lanes;
     for (; lanes; lanes &= lanes - 1) {
@@ -476,7 +477,11 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
         i = next;
         while (next < count && next - i < BLOCK && rays[next].kind == RT_RAY_SHADOW) next++;
         if (next == i) continue;
-        Asking a = {(const RtLightBuffer *)accel, scratch, scratch->own, rays + i, blockers + i,
+        Asking a = {(const RtLightBuffer *)accel,
+                    scratch,
+                    scratch->own,
+                    rays + i,
+                    blockers + i,
                     tallies ? &tallies[RT_RAY_SHADOW] : NULL};
         if (a.self->serves) {
             shade_block(&a, (uint32_t)(next - i), tallies);
@@ -487,7 +492,9 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
     }
 }
 
+RT_REFUSE_QUESTION(nearest, RtHit)
 RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
 
-const RtLightKernels RT_LIGHT_KERNELS = {occluded_timed, occluded_counted, sizeof(Stream),
-                                         place, cover, draw, cover_outline, draw_outline};
+const RtLightKernels RT_LIGHT_KERNELS = {nearest_timed,  occluded_timed, nearest_counted, occluded_counted,
+                                         sizeof(Stream), place,          cover,           draw,
+                                         cover_outline,  draw_outline};

@@ -9,34 +9,37 @@
  * Every object is opaque: shadow rays are blocked by whatever they meet, transmission or not (rt_shadow_ray
  * in render/illumination.c and its caller attenuate nothing). So any shape that fills a cell can cover it.
  *
- * Exact: every object is tested by its own hit function, or the same in lanes (accel/pairs.h); lists hold more
- * than needed rather than less (footprint.c). Passed on are also rays that are not exactly what a shadow ray
- * is: from inside the domain, dir = light - origin, tmax at most 1. */
-#include "accel/kernel.h"
+ * Exact: every object is tested by its own hit function, or the same in lanes (accel/pairs.h); lists hold
+ * more than needed rather than less (footprint.c). Passed on are also rays that are not exactly what a shadow
+ * ray is: from inside the domain, dir = light - origin, tmax at most 1. */
 #include "accel/light/light.h"
 
-const RtLightKernels *rt_light_kernels(RtIsa isa) {
-    return isa == RT_ISA_AVX512 ? &rt_light_avx512 : isa == RT_ISA_AVX2 ? &rt_light_avx2 : &rt_light_portable;
+static const RtLightKernels *kernels_of(const RtAccel *accel) {
+    return ((const RtLightBuffer *)accel)->kernels;
 }
 
-static const RtLightBuffer *buffer_of(const RtAccel *accel) {
-    return (const RtLightBuffer *)accel;
+static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                    RtHit *hits) {
+    kernels_of(accel)->nearest(accel, scratch, rays, count, hits);
 }
 
-static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                           uint32_t *blockers) {
-    buffer_of(accel)->kernels->occluded(accel, scratch, rays, count, blockers);
+static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     uint32_t *blockers) {
+    kernels_of(accel)->occluded(accel, scratch, rays, count, blockers);
 }
 
-static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *blockers, RtTally *tallies) {
-    buffer_of(accel)->kernels->occluded_counted(accel, scratch, rays, count, blockers, tallies);
+static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                          RtHit *hits, RtTally *tallies) {
+    kernels_of(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
 }
 
-RT_REFUSE_QUESTION(nearest, RtHit)
+static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                           uint32_t *blockers, RtTally *tallies) {
+    kernels_of(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
+}
 
 static size_t scratch_bytes(const RtAccel *accel) {
-    return buffer_of(accel)->kernels->scratch_bytes;
+    return kernels_of(accel)->scratch_bytes;
 }
 
 const RtAccelOps rt_light_ops = {
@@ -47,7 +50,10 @@ const RtAccelOps rt_light_ops = {
     .kinds = 1u << RT_RAY_SHADOW,
     .build = rt_light_build,
     .destroy = rt_light_destroy,
-    RT_KERNEL_OPS,
+    .nearest = nearest,
+    .occluded = occluded,
+    .nearest_counted = count_nearest,
+    .occluded_counted = count_occluded,
     .scratch_bytes = scratch_bytes,
     .describe = rt_light_describe,
     .validate = rt_light_validate,

@@ -9,16 +9,16 @@
  * cells of equal width, n being as large as the objects seen there are small.
  *
  * Layout: tiles are face after face, row after row; tiles[k] is the number of the first cell of tile k, times
- * 64, plus its n; in a tile cells are row after row. The list of cell k of a light is entries[first[k]..first[k + 1]), ascending by key, then by object. A key
- * holds, from the highest bit: a 0; 15 bits of depth, rounded down; and 16 bits for the 4 x 4 parts of the
- * cell, row by row, that the object may be seen in. A list that was cut ends in an entry RT_LIGHT_BEYOND: what
- * is as deep or deeper may be missing.
- * Objects that touch a light are in its near list instead, because they would be in all cells.
+ * 64, plus its n; in a tile cells are row after row. The list of cell k of a light is
+ * entries[first[k]..first[k + 1]), ascending by key, then by object. A key holds, from the highest bit: a 0;
+ * 15 bits of depth, rounded down; and 16 bits for the 4 x 4 parts of the cell, row by row, that the object
+ * may be seen in. A list that was cut ends in an entry RT_LIGHT_BEYOND: what is as deep or deeper may be
+ * missing. Objects that touch a light are in its near list instead, because they would be in all cells.
  *
  * Invariant: an object that can block a ray from inside `domain` to the light is in the near list, or in the
  * list of the ray's cell, with a depth not above that of the ray and the part of the cell that the ray is in;
- * or the list was cut, at a depth not above that of the ray. Why rounding does not break it stands in footprint.c.
- * So cutting lists is free: it never changes an answer, but who gives it. */
+ * or the list was cut, at a depth not above that of the ray. Why rounding does not break it stands in
+ * footprint.c. So cutting lists is free: it never changes an answer, but who gives it. */
 #ifndef RT_ACCEL_LIGHT_LIGHT_H
 #define RT_ACCEL_LIGHT_LIGHT_H
 
@@ -66,8 +66,8 @@ typedef struct RtLightGrid {
 /* What one light sees. */
 typedef struct RtLightCube {
     RtLightGrid grids[6];
-    double margin;       /* by which boxes grow: see footprint.c */
-    bool serves;         /* else all its rays are passed on, and there are no lists */
+    double margin;                   /* by which boxes grow: see footprint.c */
+    bool serves;                     /* else all its rays are passed on, and there are no lists */
     uint32_t tile_count, cell_count; /* of all faces */
     uint32_t *tiles;                 /* [tile_count] */
     uint32_t *first;                 /* [cell_count + 1] */
@@ -139,7 +139,8 @@ bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id);
 typedef struct RtLightView {
     double lo[2], hi[2], near, far;
 } RtLightView;
-bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const RtBox *box, RtLightView *view);
+bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const RtBox *box,
+                   RtLightView *view);
 
 /* The tiles of a face that an object may be seen in from the light, columns lo[0]..hi[0] of rows
  * lo[1]..hi[1]. */
@@ -216,7 +217,9 @@ typedef struct RtLightDesk {
 enum { RT_LIGHT_SMALL_ROOM = RT_LIGHT_SMALL_CELLS * RT_LIGHT_SMALL_CELLS };
 
 struct RtLightKernels {
+    RtNearestKernel *nearest;
     RtOccludedKernel *occluded;
+    RtNearestCounted *nearest_counted;
     RtOccludedCounted *occluded_counted;
     size_t scratch_bytes;
 

@@ -6,10 +6,10 @@
  * Projection. An offset from the light is off by 2^-24 of itself, which the margin m = 1.25 * margin makes up
  * for. Only triangles at a depth of 16 m or more, and with |u|, |w| <= 2, are drawn here. Their u and w are
  * off by 2^-24 each for both offsets, the quotient, the difference from grid.u, the product with grid.scale
- * and that with the cells of a tile, of numbers of at most 4: less than 2^-18 - RT_LIGHT_EDGE. What lies within m of them is at most
- * 4 m / depth away in u and w, since (m + |u| m) / (depth - m) is less. So much, and an EDGE, and SLACK cells
- * for the lines below, the rectangle around the projected triangle grows; and so much a line must be away
- * from a cell.
+ * and that with the cells of a tile, of numbers of at most 4: less than 2^-18 - RT_LIGHT_EDGE. What lies
+ * within m of them is at most 4 m / depth away in u and w, since (m + |u| m) / (depth - m) is less. So much,
+ * and an EDGE, and SLACK cells for the lines below, the rectangle around the projected triangle grows; and so
+ * much a line must be away from a cell.
  *
  * Lines. Coordinates are columns and rows from the corner of a tile. A line through two vertices, evaluated
  * in the middle of a cell, is off by a few 2^-24 of the sum of |coefficient| * 2^7, as a small triangle with
@@ -29,10 +29,10 @@
 
 /* Seen from a light on a face. */
 typedef struct Projected {
-    RtV16 x[3], y[3];                 /* columns and rows from the origin of the grid */
-    RtV16 lo[2], hi[2], near, far;    /* grown */
-    RtV16 grow;                       /* in cells */
-    uint32_t drawn, small;            /* can be drawn in lanes; and is small */
+    RtV16 x[3], y[3];              /* columns and rows from the origin of the grid */
+    RtV16 lo[2], hi[2], near, far; /* grown */
+    RtV16 grow;                    /* in cells */
+    uint32_t drawn, small;         /* can be drawn in lanes; and is small */
 } Projected;
 
 /* What projecting needs of the light. */
@@ -81,7 +81,8 @@ RT_KERNEL uint32_t seen_on(const Eye *eye, int face, RtV16 v[3][3]) {
     const RtV16 zero = rt_v16_all(0), far = rt_v16_add(most3(z), eye->margin);
     uint32_t seen = ~rt_v16_at_most(far, zero) & 0xffff;
     for (int k = 0; k < 2; k++) {
-        RtV16 least = rt_v16_sub(least3(side[k]), eye->margin), most = rt_v16_add(most3(side[k]), eye->margin);
+        RtV16 least = rt_v16_sub(least3(side[k]), eye->margin),
+              most = rt_v16_add(most3(side[k]), eye->margin);
         seen &= rt_v16_at_most(least, far) & rt_v16_at_most(rt_v16_sub(zero, most), far);
     }
     return seen;
@@ -167,9 +168,9 @@ typedef struct Small {
     float around[3][16];               /* what is added for the part of a cell about a point */
     float near[16], far[16];
     uint32_t depth[16];
-    uint32_t lo[2][16], hi[2][16];     /* cells of the tile; none where lo > hi */
-    float least[2][16], most[2][16];       /* the rectangle */
-    uint32_t large;                        /* those that are not small */
+    uint32_t lo[2][16], hi[2][16];   /* cells of the tile; none where lo > hi */
+    float least[2][16], most[2][16]; /* the rectangle */
+    uint32_t large;                  /* those that are not small */
 } Small;
 
 /* a, rounded down; of less than 2^31. */
@@ -179,8 +180,7 @@ RT_KERNEL RtW16 floor16(RtV16 a) {
     return rt_w16_pick(above, whole, rt_w16_sub(whole, rt_w16_all(1)));
 }
 
-RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles, uint32_t count,
-                             Small *s) {
+RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, Small *s) {
     const RtLightBuffer *buffer = tile->buffer;
     const RtLightGrid *grid = &buffer->cubes[tile->light].grids[tile->face];
     const Eye eye = make_eye(buffer, tile->light);
@@ -224,10 +224,10 @@ RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles,
 }
 
 /* Lanes are 4 x 4 cells. */
-static const float lane_column[16] __attribute__((aligned(64))) = {0, 1, 2, 3, 0, 1, 2, 3,
-                                                                   0, 1, 2, 3, 0, 1, 2, 3};
-static const float lane_row[16] __attribute__((aligned(64))) = {0, 0, 0, 0, 1, 1, 1, 1,
-                                                                2, 2, 2, 2, 3, 3, 3, 3};
+static const float lane_column[16]
+    __attribute__((aligned(64))) = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+static const float lane_row[16]
+    __attribute__((aligned(64))) = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
 /* The lanes of the first `columns` columns and `rows` rows of 4 x 4. */
 RT_KERNEL uint32_t lanes_of(uint32_t columns, uint32_t rows) {
@@ -278,12 +278,12 @@ RT_KERNEL void add_run(RtLightDesk *desk, RtRef object, uint32_t before) {
 }
 
 /* Middles of the parts of the cell (0, 0). */
-static const float middle_x[16] __attribute__((aligned(64))) = {
-    0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f,
-    0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f};
-static const float middle_y[16] __attribute__((aligned(64))) = {
-    0.125f, 0.125f, 0.125f, 0.125f, 0.375f, 0.375f, 0.375f, 0.375f,
-    0.625f, 0.625f, 0.625f, 0.625f, 0.875f, 0.875f, 0.875f, 0.875f};
+static const float middle_x[16]
+    __attribute__((aligned(64))) = {0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f,
+                                    0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f};
+static const float middle_y[16]
+    __attribute__((aligned(64))) = {0.125f, 0.125f, 0.125f, 0.125f, 0.375f, 0.375f, 0.375f, 0.375f,
+                                    0.625f, 0.625f, 0.625f, 0.625f, 0.875f, 0.875f, 0.875f, 0.875f};
 
 static uint32_t draw(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk) {
     Small s;
@@ -330,8 +330,8 @@ static uint32_t draw(const RtLightTile *tile, const uint32_t *triangles, uint32_
 
 /* ---- sixteen cells of a row, and one object ---- */
 
-static const float lane_number[16] __attribute__((aligned(64))) = {0, 1, 2,  3,  4,  5,  6,  7,
-                                                                   8, 9, 10, 11, 12, 13, 14, 15};
+static const float lane_number[16]
+    __attribute__((aligned(64))) = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 RT_KERNEL RtV16 line_at(const float line[3], RtV16 x, float y) {
     return rt_v16_add(rt_v16_mul(rt_v16_all(line[0]), x), rt_v16_all(line[1] * y + line[2]));
@@ -406,7 +406,8 @@ static void draw_outline(const RtLightTile *tile, const RtLightOutline *outline,
             RtV16 slope = rt_v16_max(line_at(outline->slope, middle, (float)row + 0.5f), flattest);
             RtV16 near = rt_v16_max(rt_v16_div(rt_v16_all(1 - 0x1p-20f), slope), nearest);
             const float *cover = &desk->cover[row][column];
-            uint32_t covered = in & ~rt_v16_at_most(near, rt_v16_join(cover, cover + 4, cover + 8, cover + 12));
+            uint32_t covered =
+                in & ~rt_v16_at_most(near, rt_v16_join(cover, cover + 4, cover + 8, cover + 12));
             desk->cut[row] |= (uint64_t)covered << column;
             RtV16 step = rt_v16_mul(rt_v16_sub(near, rt_v16_all(grid->depth)), rt_v16_all(grid->depth_scale));
             step = rt_v16_min(rt_v16_max(step, rt_v16_all(0)), rt_v16_all(RT_LIGHT_DEPTHS - 1));

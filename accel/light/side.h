@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Does a ray to a light stay on one side of a polygon's plane, or leave a sphere for good? The object on which
- * it starts is turned away by that.
+/* Does a ray to a light stay on one side of a polygon's plane, or leave a sphere for good? The object on
+ * which it starts is turned away by that.
  *
  * Exact. A hit at t is a point of the ray within delta of the object, along each axis, where for m the
  * distance along an axis from the origin to the farthest point of the object's box, e = 2^-24: hit functions
  * of polygons and spheres compute in double, and from there on rounding t to float32 and clamping it to where
  * the thick ray is in the box move the point by a few e m. delta = 32 e m = 2^-19 m is above that.
  *
- * - If the ray, at t = 0 and at t = 1 >= tmax, is on one side of the plane by more than delta |normal|_1, then
- *   no t between can be a hit: distances are linear in t. The rounding of the distances themselves, in double,
- *   is below 2^-46 of the lengths that they are made of.
+ * - If the ray, at t = 0 and at t = 1 >= tmax, is on one side of the plane by more than delta |normal|_1,
+ * then no t between can be a hit: distances are linear in t. The rounding of the distances themselves, in
+ * double, is below 2^-46 of the lengths that they are made of.
  * - If the ray leaves the sphere's centre, its distance from it is least at the origin; if that is above the
  *   radius by more than sqrt(3) delta, and 2^-46 of it for rounding, no t >= 0 can be a hit. */
 #ifndef RT_ACCEL_LIGHT_SIDE_H

@@ -84,8 +84,8 @@ static uint32_t parts_seen(const RtLightCells *at, const RtLightOutline *outline
     uint32_t parts = 0;
     for (uint32_t i = 0; i < RT_LIGHT_PART * RT_LIGHT_PART; i++) {
         uint32_t x = column * RT_LIGHT_PART + i % RT_LIGHT_PART, y = row * RT_LIGHT_PART + i / RT_LIGHT_PART;
-        bool seen = (int32_t)x > at->part_lo[0] && (int32_t)x < at->part_hi[0] && (int32_t)y > at->part_lo[1] &&
-                    (int32_t)y < at->part_hi[1];
+        bool seen = (int32_t)x > at->part_lo[0] && (int32_t)x < at->part_hi[0] &&
+                    (int32_t)y > at->part_lo[1] && (int32_t)y < at->part_hi[1];
         for (uint32_t k = 0; seen && k < outline->count; k++) {
             const float *line = outline->parts[k];
             float on = line[0] * ((float)x + 0.5f) + line[1] * ((float)y + 0.5f);
@@ -107,7 +107,8 @@ static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFo
     RtLightOutline outline;
     bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
     if (flat) rt_light_outline(tile, id, from, &outline);
-    uint32_t first = rt_light_first_cell(cube->tiles[grid->first_tile + tile->row * grid->columns + tile->column]);
+    uint32_t first =
+        rt_light_first_cell(cube->tiles[grid->first_tile + tile->row * grid->columns + tile->column]);
     for (uint32_t row = (uint32_t)at.lo[1]; (int32_t)row <= at.hi[1]; row++) {
         for (uint32_t column = (uint32_t)at.lo[0]; (int32_t)column <= at.hi[0]; column++) {
             float near = flat ? least_depth(from, &outline, column, row) : from->near;
@@ -115,10 +116,11 @@ static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFo
             uint32_t parts = flat ? parts_seen(&at, &outline, tolerance(tile, from), column, row) : 0;
             if (flat ? parts == 0 : !rt_light_touches(tile, id, column, row)) continue;
             if (is_listed(cube, cell, object, parts, depth)) continue;
-            return rt_fail(error, RT_MISMATCH,
-                           "light: the list of cell %u,%u of tile %u,%u of face %d of light %u lacks object %u "
-                           "at depth %g",
-                           column, row, tile->column, tile->row, tile->face, tile->light, id, (double)near);
+            return rt_fail(
+                error, RT_MISMATCH,
+                "light: the list of cell %u,%u of tile %u,%u of face %d of light %u lacks object %u "
+                "at depth %g",
+                column, row, tile->column, tile->row, tile->face, tile->light, id, (double)near);
         }
     }
     return RT_OK;

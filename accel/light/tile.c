@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The lists of a light, tile by tile on all threads. In a tile, first the corners of cells are covered by what
- * lies on them, as in a shadow map; a cell whose four corners are covered is taken to be covered, a little
- * beyond the deepest of them. Then objects are drawn: each becomes a candidate of the cells that it may be
- * seen in and that are not covered before it. Candidates are sorted by cell, depth and object.
+/* The lists of a light, tile by tile on all threads. In a tile, first the corners of cells are covered by
+ * what lies on them, as in a shadow map; a cell whose four corners are covered is taken to be covered, a
+ * little beyond the deepest of them. Then objects are drawn: each becomes a candidate of the cells that it
+ * may be seen in and that are not covered before it. Candidates are sorted by cell, depth and object.
  *
  * What is behind a hole between corners is passed on: what covers a cell is a guess, that lists were cut is
  * not (light.h). */
@@ -292,8 +292,8 @@ static RtStatus make_tile(void *context, size_t item, int thread, RtError *error
     RtLightTile tile = tile_at(d->buffer, d->light, (uint32_t)item);
     Made made = {worker->count, 0, worker->cell_count, 1, thread, 0, 0};
     if (count > 0) made.n = tile.n = choose_fineness(&tile, d->bins->objects + first, count);
-    RT_TRY(rt_reserve(&worker->lengths, &worker->cell_capacity, worker->cell_count + UINT64_C(1) * tile.n * tile.n,
-                      sizeof(uint16_t), error));
+    RT_TRY(rt_reserve(&worker->lengths, &worker->cell_capacity,
+                      worker->cell_count + UINT64_C(1) * tile.n * tile.n, sizeof(uint16_t), error));
     if (count > 0) {
         RT_TRY(draw_tile(d, &tile, d->bins->objects + first, count, worker, error));
     } else {

@@ -66,7 +66,8 @@ RT_TEST(a_list_is_cut_where_it_would_be_too_long) {
     RtScene scene;
     RtAccel *accel;
     make_screen(&scene);
-    const RtLightBuffer *buffer = open_buffer("light:cells=16,full_occlusion=off,longest=2+brute", &scene, &accel);
+    const RtLightBuffer *buffer =
+        open_buffer("light:cells=16,full_occlusion=off,longest=2+brute", &scene, &accel);
     List list = list_at(buffer, 8, 8);
     assert_int_equal(list.count, 3);
     assert_true(list.cut);
