@@ -38,8 +38,15 @@ apt() {
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# install_missing SECTION...: what cannot be installed is named, and is fatal unless it is optional
+# install_missing SECTION...: what cannot be installed is named, and is fatal unless it is optional, or of the cluster
 install_missing() {
+    local section wanted=() needed=()
+    for section; do
+        case $section in
+        optional | cluster) wanted+=("$section") ;;
+        *) needed+=("$section") ;;
+        esac
+    done
     command -v dpkg-query >/dev/null || {
         say "this is not Debian: have the counterparts of these ready: $(packages "$@" | xargs)"
         return
@@ -54,9 +61,9 @@ install_missing() {
             logged build/apt.log apt install -y --no-install-recommends $names || true
         fi
     fi
-    names=$(missing optional | xargs)
+    names=$(missing "${wanted[@]}" | xargs)
     [ -z "$names" ] || say "going on without $names"
-    names=$(missing "${@/optional/}" | xargs)
+    names=$(missing "${needed[@]}" | xargs)
     [ -z "$names" ] || die "packages are missing; as root: apt-get install --no-install-recommends $names"
 }
 

@@ -49,7 +49,7 @@ typedef struct RtAccel {
     X(predicted_steps, "expected steps")
 
 /* What hierarchies of boxes are like beside that (Aila, Karras & Laine 2013; accel/tree/quality.c). NaN
- * elsewhere. They are in JSON only: tables of counts are those of predictions. Each of X(name, meaning). */
+ * elsewhere. Each of X(name, meaning). */
 #define RT_QUALITIES(X)                                                                                      \
     X(end_point_overlap, "expected cost, at a point of the surface, of nodes that contain it but not its "   \
                          "object; triangles only")                                                           \

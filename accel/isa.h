@@ -1,8 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Instruction sets that kernels are compiled for more than once, and which of them this machine has. Every
- * one gives the same bits: what differs is how many lanes a vector has. */
+/* Accelerators whose kernels are compiled more than once, each time for another instruction set, and chosen
+ * among at run time. Every one gives the same bits and counts: what differs is how many lanes a vector has.
+ *
+ * Such an accelerator NAME has its kernels in accel/NAME/kernels.h, which ends with the definition of a table
+ * called RT_KERNELS (accel/kernel.h: RT_DEFINE_KERNEL_TABLE), and three files that include it,
+ *
+ *     #define RT_KERNELS rt_NAME_avx2
+ *     #include "accel/NAME/kernels.h"
+ *
+ * and so on, whose flags CMakeLists.txt sets. Its own struct begins with an RtIsaAccel, `kernels` of which
+ * `build` sets to RT_KERNELS_FOR(NAME, isa); RT_ISA_OPS are its queries. */
 #ifndef RT_ACCEL_ISA_H
 #define RT_ACCEL_ISA_H
+
+#include "accel/accel.h"
 
 typedef enum RtIsa {
     RT_ISA_PORTABLE, /* whatever the program itself is compiled for */
@@ -11,17 +22,53 @@ typedef enum RtIsa {
 } RtIsa;
 
 /* The most that this machine has. */
-static inline RtIsa rt_isa_best(void) {
-#if defined(__x86_64__)
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("bmi2")) return RT_ISA_PORTABLE;
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
-        return RT_ISA_AVX512;
-    }
-    return RT_ISA_AVX2;
-#else
-    return RT_ISA_PORTABLE;
-#endif
-}
+RtIsa rt_isa_best(void);
+
+/* The kernels for one instruction set. */
+typedef struct RtKernels {
+    RtNearestKernel *nearest;
+    RtOccludedKernel *occluded;
+    RtNearestCounted *nearest_counted;
+    RtOccludedCounted *occluded_counted;
+    size_t scratch_bytes; /* of a query, where that does not depend on what was built */
+} RtKernels;
+
+#define RT_DECLARE_KERNELS(name)                                                                             \
+    extern const RtKernels rt_##name##_portable, rt_##name##_avx2, rt_##name##_avx512
+
+/* Those of an accelerator for an RtIsa, which this machine must have. */
+#define RT_KERNELS_FOR(name, isa)                                                                            \
+    ((isa) == RT_ISA_AVX512 ? &rt_##name##_avx512                                                            \
+     : (isa) == RT_ISA_AVX2 ? &rt_##name##_avx2                                                              \
+                            : &rt_##name##_portable)
+
+/* What an accelerator that has them begins with. */
+typedef struct RtIsaAccel {
+    RtAccel base;
+    const RtKernels *kernels;
+} RtIsaAccel;
+
+/* For RtAccelOps: hand over to the kernels. */
+RtNearestKernel rt_isa_nearest;
+RtOccludedKernel rt_isa_occluded;
+RtNearestCounted rt_isa_nearest_counted;
+RtOccludedCounted rt_isa_occluded_counted;
+size_t rt_isa_scratch_bytes(const RtAccel *accel);
+
+#define RT_ISA_OPS                                                                                           \
+    .nearest = rt_isa_nearest, .occluded = rt_isa_occluded, .nearest_counted = rt_isa_nearest_counted,       \
+    .occluded_counted = rt_isa_occluded_counted
+
+/* ---- as a parameter ---- */
+
+#define RT_ISA_PARAM                                                                                         \
+    "isa", RT_CHOICE("best", "best|portable|avx2|avx512"),                                                   \
+        "instruction set; changes no answer and no count", "best: of this machine"
+
+/* What a value of it asks for. */
+RtIsa rt_isa_asked(RtValue value);
+
+/* RT_OK, or RT_NOT_AVAILABLE where this machine has not what a value asks for. */
+RtStatus rt_isa_available(RtValue value, RtError *error);
 
 #endif

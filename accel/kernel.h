@@ -87,6 +87,37 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
         }                                                                                                    \
     }
 
+/* The four kernels from one that traces a whole stream,
+ *
+ *     void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+ *                RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any, bool counted);
+ *
+ * answers of which go to `hits`, or where any hit will do to `blockers`. `any` and `counted` are constants
+ * where it is inlined; pointers that are of no use are NULL. */
+#define RT_DEFINE_STREAM_KERNELS(trace)                                                                      \
+    static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,             \
+                              size_t count, RtHit *hits) {                                                   \
+        trace(accel, scratch, rays, count, hits, NULL, NULL, false, false);                                  \
+    }                                                                                                        \
+    static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,           \
+                                size_t count, RtHit *hits, RtTally *tallies) {                               \
+        trace(accel, scratch, rays, count, hits, NULL, tallies, false, true);                                \
+    }                                                                                                        \
+    static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
+                               size_t count, uint32_t *blockers) {                                           \
+        trace(accel, scratch, rays, count, NULL, blockers, NULL, true, false);                               \
+    }                                                                                                        \
+    static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
+                                 size_t count, uint32_t *blockers, RtTally *tallies) {                       \
+        trace(accel, scratch, rays, count, NULL, blockers, tallies, true, true);                             \
+    }
+
+/* Where there are kernels for each instruction set (accel/isa.h): the table of those that one of the
+ * RT_DEFINE_..._KERNELS has defined, and the bytes of scratch memory that they need. RT_KERNELS is its name.
+ */
+#define RT_DEFINE_KERNEL_TABLE(bytes)                                                                        \
+    const RtKernels RT_KERNELS = {nearest_timed, occluded_timed, nearest_counted, occluded_counted, bytes}
+
 /* ---- overlays ---- */
 
 /* What an overlay does with rays of one question, `nearest` or `occluded`, whose answers are of type Answer;

@@ -203,7 +203,24 @@ static inline RtSet16 rt_v16_negative(RtV16 a) {
 static inline RtV16 rt_v16_pick(RtSet16 set, RtV16 a, RtV16 b) {
     return _mm512_mask_mov_ps(a, set, b);
 }
-#define rt_v16_half(a, half) _mm512_extractf32x8_ps(a, half)
+static inline uint32_t rt_v16_bits(RtSet16 set) {
+    return set;
+}
+static inline void rt_v16_store_some(float *to, uint32_t lanes, RtV16 a) {
+    _mm512_mask_store_ps(to, (__mmask16)lanes, a);
+}
+static inline RtV16 rt_v16_floor(RtV16 a) {
+    return _mm512_roundscale_ps(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+}
+static inline RtV16 rt_v16_ceil(RtV16 a) {
+    return _mm512_roundscale_ps(a, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
+}
+static inline void rt_v16_truncate(int32_t *to, RtV16 a) {
+    _mm512_store_si512(to, _mm512_cvttps_epi32(a));
+}
+static inline __m256 rt_v16_half(RtV16 a, int half) {
+    return half ? _mm512_extractf32x8_ps(a, 1) : _mm512_castps512_ps256(a);
+}
 static inline RtV16 rt_v16_halves(__m256 lo, __m256 hi) {
     return _mm512_insertf32x8(_mm512_castps256_ps512(lo), hi, 1);
 }
@@ -276,8 +293,34 @@ static inline RtSet16 rt_v16_negative(RtV16 a) {
 static inline RtV16 rt_v16_pick(RtSet16 set, RtV16 a, RtV16 b) {
     return (RtV16){_mm256_blendv_ps(a.lo, b.lo, set.lo), _mm256_blendv_ps(a.hi, b.hi, set.hi)};
 }
+/* Bit i: lane i is in the set. */
+static inline uint32_t rt_v16_bits(RtSet16 set) {
+    return rt_v16_signs(set);
+}
+/* The lanes of a mask to to[0..16), 64-byte aligned, whose others stay. */
+static inline void rt_v8_store_some(float *to, uint32_t lanes, __m256 a) {
+    __m256i kept = rt_v8_get(to);
+    rt_v8_put(to, rt_v8_pick(lanes, kept, _mm256_castps_si256(a)));
+}
+static inline void rt_v16_store_some(float *to, uint32_t lanes, RtV16 a) {
+    rt_v8_store_some(to, lanes & 255, a.lo);
+    rt_v8_store_some(to + 8, lanes >> 8, a.hi);
+}
+static inline RtV16 rt_v16_floor(RtV16 a) {
+    return (RtV16){_mm256_floor_ps(a.lo), _mm256_floor_ps(a.hi)};
+}
+static inline RtV16 rt_v16_ceil(RtV16 a) {
+    return (RtV16){_mm256_ceil_ps(a.lo), _mm256_ceil_ps(a.hi)};
+}
+/* The integer parts, to to[0..16), 64-byte aligned. */
+static inline void rt_v16_truncate(int32_t *to, RtV16 a) {
+    rt_v8_put(to, _mm256_cvttps_epi32(a.lo));
+    rt_v8_put(to + 8, _mm256_cvttps_epi32(a.hi));
+}
 /* The lower eight, 0, or the upper, 1; and of both. */
-#define rt_v16_half(a, half) ((half) ? (a).hi : (a).lo)
+static inline __m256 rt_v16_half(RtV16 a, int half) {
+    return half ? a.hi : a.lo;
+}
 static inline RtV16 rt_v16_halves(__m256 lo, __m256 hi) {
     return (RtV16){lo, hi};
 }
@@ -303,6 +346,15 @@ static inline float rt_v16_most(RtV16 a) {
     return -rt_v8_least(_mm256_xor_ps(_mm256_max_ps(a.lo, a.hi), sign));
 }
 #endif
+
+/* The least of the lanes. */
+static inline float rt_v16_least(RtV16 a) {
+#if defined(__AVX512F__)
+    return _mm512_reduce_min_ps(a);
+#else
+    return rt_v8_least(rt_v16_fold(a));
+#endif
+}
 
 /* The least of the lanes of each of four vectors. */
 static inline RtFour rt_v16_least4(RtV16 a, RtV16 b, RtV16 c, RtV16 d) {
@@ -349,6 +401,12 @@ static inline uint32_t rt_d8_at_most(RtD8 a, RtD8 b) {
 static inline uint32_t rt_d8_differ(RtD8 a, RtD8 b) {
     return _mm512_cmp_pd_mask(a, b, _CMP_NEQ_OQ);
 }
+static inline RtD8 rt_d8_abs(RtD8 a) {
+    return _mm512_abs_pd(a);
+}
+static inline RtD8 rt_d8_sign(RtD8 a, RtD8 sign) {
+    return _mm512_or_pd(a, _mm512_and_pd(sign, _mm512_set1_pd(-0.0)));
+}
 #else
 typedef struct RtD8 {
     __m256d lo, hi;
@@ -375,7 +433,21 @@ static inline uint32_t rt_d8_differ(RtD8 a, RtD8 b) {
     return (uint32_t)_mm256_movemask_pd(_mm256_cmp_pd(a.lo, b.lo, _CMP_NEQ_OQ)) |
            (uint32_t)_mm256_movemask_pd(_mm256_cmp_pd(a.hi, b.hi, _CMP_NEQ_OQ)) << 4;
 }
+static inline RtD8 rt_d8_abs(RtD8 a) {
+    const __m256d sign = _mm256_set1_pd(-0.0);
+    return (RtD8){_mm256_andnot_pd(sign, a.lo), _mm256_andnot_pd(sign, a.hi)};
+}
+/* |a|, with the sign of another; a >= 0. */
+static inline RtD8 rt_d8_sign(RtD8 a, RtD8 sign) {
+    const __m256d bit = _mm256_set1_pd(-0.0);
+    return (RtD8){_mm256_or_pd(a.lo, _mm256_and_pd(sign.lo, bit)),
+                  _mm256_or_pd(a.hi, _mm256_and_pd(sign.hi, bit))};
+}
 #endif
+/* Rounded to float32, to to[0..8), anywhere. */
+static inline void rt_d8_put(float *to, RtD8 a) {
+    _mm256_storeu_ps(to, rt_d8_narrow(a));
+}
 RT_D8_PAIR(add)
 RT_D8_PAIR(sub)
 RT_D8_PAIR(mul)
@@ -399,6 +471,10 @@ static inline RtW16 rt_w16_of(RtV16 a) {
 }
 static inline RtW16 rt_w16_add(RtW16 a, RtW16 b) {
     return _mm512_add_epi32(a, b);
+}
+/* The lanes of a mask to to[0..16), whose others stay. */
+static inline void rt_w16_store_some(uint32_t *to, uint32_t lanes, RtW16 a) {
+    _mm512_mask_storeu_epi32(to, (__mmask16)lanes, a);
 }
 /* The lanes of a mask in ascending order to to[0..16), of which the others may be written over. */
 static inline void rt_w16_put_some(uint32_t *to, uint32_t mask, RtW16 a) {
@@ -429,6 +505,10 @@ static inline RtW16 rt_w16_of(RtV16 a) {
 }
 static inline RtW16 rt_w16_add(RtW16 a, RtW16 b) {
     return (RtW16){_mm256_add_epi32(a.lo, b.lo), _mm256_add_epi32(a.hi, b.hi)};
+}
+static inline void rt_w16_store_some(uint32_t *to, uint32_t lanes, RtW16 a) {
+    rt_v8_put(to, rt_v8_pick(lanes & 255, rt_v8_get(to), a.lo));
+    rt_v8_put(to + 8, rt_v8_pick(lanes >> 8, rt_v8_get(to + 8), a.hi));
 }
 static inline void rt_w16_put_some(uint32_t *to, uint32_t mask, RtW16 a) {
     rt_v8_put(to, rt_v8_take(rt_v8_order(mask & 255), a.lo));

@@ -6,14 +6,13 @@
 #include "accel/accel.h"
 #include "base/table.h"
 
-/* Of an RtDescription: what it says but for its bytes, the predictions after RT_SHAPE_COLUMNS, the qualities
- * last. */
+/* Of an RtDescription: what it says but for its bytes; the predictions, and then the qualities, after
+ * RT_SHAPE_COLUMNS. */
 #define RT_PLUS_ONE(name, meaning) +1
 enum {
     RT_SHAPE_COLUMNS = 5,
-    RT_PREDICTION_COUNT = 0 RT_PREDICTIONS(RT_PLUS_ONE),
-    RT_QUALITY_COUNT = 0 RT_QUALITIES(RT_PLUS_ONE),
-    RT_STRUCTURE_COLUMNS = RT_SHAPE_COLUMNS + RT_PREDICTION_COUNT + RT_QUALITY_COUNT
+    RT_PREDICTION_COLUMNS = 0 RT_PREDICTIONS(RT_PLUS_ONE) RT_QUALITIES(RT_PLUS_ONE),
+    RT_STRUCTURE_COLUMNS = RT_SHAPE_COLUMNS + RT_PREDICTION_COLUMNS
 };
 #undef RT_PLUS_ONE
 extern const RtTableColumn rt_structure_columns[RT_STRUCTURE_COLUMNS];

@@ -199,6 +199,9 @@ refuses "'bvh:best' is neither a spec" $bench --accel bvh --baseline bvh:best
 refuses "no ray kind 'sideways'.*primary" $bench --accel bvh --rays sideways
 refuses 'primary.*twice' $bench --accel bvh --rays primary,primary
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 1000000000
+refuses "until: invalid value '1'.*1%" $bench --accel bvh --until 1
+refuses 'patience.*1\.\.' $bench --accel bvh --until 1% --patience 0
+does $bench --accel bvh --until 100%
 refuses 'limit.*1\.\.' $bench --accel bvh --limit 0
 refuses 'rounds.*1\.\.1000' $bench --accel bvh --rounds 0
 refuses 'coherent-run.*1\.\.' $bench --accel bvh --coherent-run 0
@@ -222,6 +225,37 @@ awk -F '[":, ]+' '
         if (!(of_steps > 0.9999 && of_steps < 1.0001 && of_tests > 0.9999 && of_tests < 1.0001)) exit 1
     }
     END { exit rows != 4 }' seconds.json || complain "bench --json: steps and tests a second are not those of a ray"
+
+# The table fits a terminal, names its baseline, and says why a ratio on a part of the rays is another one.
+long=wide:in_flight=1,packets=0,order=off
+"$program" $bench --accel bvh --accel brute --ray-stride 7 --accel $long --rays primary,shadow >table 2>&1
+awk 'length > 80 { exit 1 }' table || complain "bench: the table has lines of more than 80 characters"
+for says in 'size=1: 11 objects, 8x8, depth 5, seed 1' 'to that of bvh, .* of 2 rounds; intervals' '^of 50 %' \
+    '^  shadow, [0-9]* rays' '^brute \* ' '^\* brute is measured on one of 7 rays' '^wide:in_flight=1,packets=0,' '^bvh (again) '; do
+    grep -q "$says" table || complain "bench: the table does not say '$says'"
+done
+"$program" $bench --accel bvh --rays primary --seed 9 --json >seconds.json
+for says in '"seed": 9' '"rounds": 2' '"width": 8' '"baseline": "bvh"' '"ns_low": [0-9]' '"straddles_1": [tf]'; do
+    grep -q "$says" seconds.json || complain "bench --json: does not say '$says'"
+done
+"$program" bench 'balls:size=1|2' --size 8x8 --rounds 2 --accel bvh --rays primary --json >seconds.json
+for says in '"scene": "balls:size=1"' '"scene": "balls:size=2"'; do
+    [ "$(grep -c "$says" seconds.json)" = 3 ] || complain "bench --json: scenes, rows and null runs are not each of $says"
+done
+rm table seconds.json
+refuses '--hits and --counts are of one scene' bench 'balls:size=1|2' --accel bvh --rays primary --size 8x8 --hits hits.npy
+refuses 'one SCENE at a time' rays 'balls:size=1|2' --size 8x8 -o rays.npy
+
+for subject in '' 'a' 'a b c' 'a b --with c' 'a b --accel bvh' 'a b --until 1%' 'a b --rounds 9' 'a b --size 8x8'; do
+    refuses 'raytally compare: ' compare $subject
+done
+refuses "margin: invalid value '3'" compare a b --margin 3
+refuses 'nowhere is not a finished result directory' compare nowhere nowhere
+refuses 'an EXPERIMENT says what its rays are' compare a.yaml --rays primary --with "$program"
+refuses 'no/such: cannot be started: No such file' compare balls:size=1 --accel bvh --size 8x8 --with no/such
+refuses '/bin/true cannot be compared with' compare balls:size=1 --accel bvh --size 8x8 --with /bin/true
+refuses '/bin/cat cannot be compared with' compare balls:size=1 --accel bvh --size 8x8 --with /bin/cat
+refuses "'grd': did you mean 'grid'" compare balls:size=1 --accel grd --with "$program"
 
 refuses 'EXPERIMENT is missing' run
 refuses 'nope\.yaml: .*No such file' run nope.yaml

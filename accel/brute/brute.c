@@ -7,51 +7,14 @@
 
 #include "base/memory.h"
 
-typedef struct Brute {
-    RtAccel base;
-    const RtBruteKernels *kernels;
-} Brute;
-
-const RtBruteKernels *rt_brute_kernels(RtIsa isa) {
-    return isa == RT_ISA_AVX512 ? &rt_brute_avx512 : isa == RT_ISA_AVX2 ? &rt_brute_avx2 : &rt_brute_portable;
-}
-
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    RT_TRY(rt_accel_new(what, sizeof(Brute), out, error));
-    ((Brute *)*out)->kernels = rt_brute_kernels(rt_isa_best());
+    RT_TRY(rt_accel_new(what, sizeof(RtIsaAccel), out, error));
+    ((RtIsaAccel *)*out)->kernels = RT_KERNELS_FOR(brute, rt_isa_best());
     return RT_OK;
 }
 
 static void destroy(RtAccel *accel) {
     rt_free(accel);
-}
-
-static const RtBruteKernels *kernels_of(const RtAccel *accel) {
-    return ((const Brute *)accel)->kernels;
-}
-
-static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                    RtHit *hits) {
-    kernels_of(accel)->nearest(accel, scratch, rays, count, hits);
-}
-
-static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *blockers) {
-    kernels_of(accel)->occluded(accel, scratch, rays, count, blockers);
-}
-
-static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits, RtTally *tallies) {
-    kernels_of(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
-}
-
-static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                           uint32_t *blockers, RtTally *tallies) {
-    kernels_of(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
-}
-
-static size_t scratch_bytes(const RtAccel *accel) {
-    return kernels_of(accel)->scratch_bytes;
 }
 
 static void describe(const RtAccel *accel, RtDescription *out) {
@@ -71,11 +34,8 @@ const RtAccelOps rt_brute_ops = {
     .paper = "Whitted 1980, An Improved Illumination Model for Shaded Display, CACM 23(6)",
     .build = build,
     .destroy = destroy,
-    .nearest = nearest,
-    .occluded = occluded,
-    .nearest_counted = count_nearest,
-    .occluded_counted = count_occluded,
-    .scratch_bytes = scratch_bytes,
+    RT_ISA_OPS,
+    .scratch_bytes = rt_isa_scratch_bytes,
     .describe = describe,
     .validate = validate,
 };

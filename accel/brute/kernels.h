@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* rt_test_all for many rays, sixteen objects at a time; included once for each instruction set:
- * RT_BRUTE_KERNELS is the name of the table that is defined.
+/* rt_test_all for many rays, sixteen objects at a time; included once for each instruction set
+ * (accel/isa.h).
  *
  * Layout: nothing outlives a query. Of a stream a batch of rays is prepared; then, chunk by chunk, spheres
  * and triangles are copied to a desk that fits into the first cache, coordinate by coordinate, an object per
@@ -192,9 +192,8 @@ RT_KERNEL void begin(Desk *desk, const RtGeometry *g, const RtScratch *scratch, 
     desk->open_count = count;
 }
 
-/* Answers go to `hits`, or where any hit will do to `blockers`. */
 RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     bool any, RtHit *hits, uint32_t *blockers, RtTally *tallies) {
+                     RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any, bool counted) {
     const RtGeometry *g = &accel->scene->geometry;
     Desk *desk = scratch->own;
     for (size_t first = 0; first < count; first += BATCH) {
@@ -202,13 +201,13 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
         begin(desk, g, scratch, rays + first, n, tallies);
 #define TEST_SHAPE(CONSTANT, name, Type)                                                                     \
     test_shape(desk, g, (Objects){g->name##s, g->name##_ids, g->name##_count, RT_SHAPE_##CONSTANT}, any,     \
-               tallies != NULL);
+               counted);
         RT_SHAPES(TEST_SHAPE)
 #undef TEST_SHAPE
         for (uint32_t i = 0; i < n; i++) {
             const Asking *a = &desk->asking[i];
-            RT_COUNT(tallies ? a->tally : NULL, rays, 1);
-            RT_COUNT(tallies ? a->tally : NULL, hits, a->best.object != RT_NO_OBJECT);
+            RT_COUNT(counted ? a->tally : NULL, rays, 1);
+            RT_COUNT(counted ? a->tally : NULL, hits, a->best.object != RT_NO_OBJECT);
             if (any)
                 blockers[first + i] = a->best.object;
             else
@@ -217,25 +216,5 @@ RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay
     }
 }
 
-static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits) {
-    trace(accel, scratch, rays, count, false, hits, NULL, NULL);
-}
-
-static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                           uint32_t *blockers) {
-    trace(accel, scratch, rays, count, true, NULL, blockers, NULL);
-}
-
-static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, RtTally *tallies) {
-    trace(accel, scratch, rays, count, false, hits, NULL, tallies);
-}
-
-static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *blockers, RtTally *tallies) {
-    trace(accel, scratch, rays, count, true, NULL, blockers, tallies);
-}
-
-const RtBruteKernels RT_BRUTE_KERNELS = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,
-                                         sizeof(Desk)};
+RT_DEFINE_STREAM_KERNELS(trace)
+RT_DEFINE_KERNEL_TABLE(sizeof(Desk));

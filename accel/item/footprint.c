@@ -16,16 +16,25 @@
  * by less than `blur`, and its component along the axis, 1, by less than that. */
 #include "accel/item/item.h"
 
-/* Where the view is so wide that directions are off by more, everything is seen everywhere. */
-#define MOST_BLUR 0x1p-10
-
 void rt_item_aim(RtItemBuffer *buffer) {
     const RtView *v = &buffer->view;
     double right = rt_lengthd(v->right), down = rt_lengthd(v->down);
     buffer->across = rt_scaled(v->right, 1 / (right * right));
     buffer->downward = rt_scaled(v->down, 1 / (down * down));
-    buffer->longest = 1.001 + right + down;
-    buffer->blur = 0x1p-22 * buffer->longest * (1 + 1 / right + 1 / down);
+    /* Position i of n samples: (2 i + 1) / n - 1, or between corners 2 i / (n - 1) - 1. */
+    const RtSampling *s = &v->sampling;
+    double step[2] = {(s->corners ? s->columns - 1 : s->columns) * 0.5,
+                      (s->corners ? s->rows - 1 : s->rows) * 0.5};
+    double start[2] = {(s->columns - 1) * 0.5, (s->rows - 1) * 0.5};
+    double longest = 1.001 + right + down;
+    buffer->aim = (RtItemAim){
+        .x = rt_add_scaledd(rt_scaled(buffer->across, step[0]), v->forward, start[0]),
+        .y = rt_add_scaledd(rt_scaled(buffer->downward, step[1]), v->forward, start[1]),
+        .depth = v->forward,
+        .scale = {step[0] / right, step[1] / down},
+        .longest = longest,
+        .blur = 0x1p-22 * longest * (1 + 1 / right + 1 / down),
+    };
 }
 
 /* A point relative to the eye: position times depth, and depth. */
@@ -105,12 +114,12 @@ static bool samples_between(double lo, double hi, uint32_t n, bool corners, uint
 bool rt_item_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemFootprint *footprint) {
     const RtSampling *s = &buffer->view.sampling;
     float tmin = (float)buffer->view.near;
-    double blur = buffer->blur;
-    if (!(blur <= MOST_BLUR)) {
+    double blur = buffer->aim.blur;
+    if (!(blur <= RT_ITEM_MOST_BLUR)) {
         *footprint = (RtItemFootprint){{0, 0}, {s->columns - 1, s->rows - 1}, tmin};
         return true;
     }
-    Bounds b = project_box(buffer, &buffer->base.scene->geometry.boxes[id], (double)tmin * (1 - blur));
+    Bounds b = project_box(buffer, &buffer->isa.base.scene->geometry.boxes[id], (double)tmin * (1 - blur));
     if (!samples_between(b.lo[0] - blur, b.hi[0] + blur, s->columns, s->corners, &footprint->lo[0],
                          &footprint->hi[0]) ||
         !samples_between(b.lo[1] - blur, b.hi[1] + blur, s->rows, s->corners, &footprint->lo[1],

@@ -1,42 +1,55 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The inside of item: its data, shared by the files of this folder.
  *
- * A sample of the image says which object is seen there, and from which t on any other object may be:
- *
- *     id      the object that is nearest, RT_NO_OBJECT where there is none, or RT_ITEM_UNDECIDED
- *     other   no object but `id` is hit by exactly the ray of this sample at a t below `other`; INFINITY
- * where no other is hit at all. A tie counts as below, unless `id` is the lesser id and wins it.
+ * A sample of the image says which object is seen there: its id, RT_NO_OBJECT where the ray of the sample
+ * meets nothing, or RT_ITEM_UNDECIDED.
  *
  * Layout: samples row after row from the upper left, as the sources of primary rays count them.
  *
- * Invariant: `other` is what it says. That `id` is right need not be known: its hit function is asked. The
- * invariant rests on two facts that footprint.c shows, whatever the rounding: a footprint holds every sample
- * whose ray can hit the object, and a span begins at no later a t than such a hit. */
+ * Invariant: exactly the ray of a sample that names an object hits no other object before that one, by (t,
+ * id), if it hits that one at all; and the ray of a sample that names none hits nothing. That the object is
+ * hit need not be known: its hit function is asked. Why this is so whatever the rounding stands in raster.h,
+ * for flat objects, and in footprint.c for all others. */
 #ifndef RT_ACCEL_ITEM_ITEM_H
 #define RT_ACCEL_ITEM_ITEM_H
 
 #include "accel/accel.h"
+#include "accel/isa.h"
 
-enum { RT_ITEM_SETTLE, RT_ITEM_PARAM_COUNT };
+enum { RT_ITEM_SETTLE, RT_ITEM_ISA, RT_ITEM_PARAM_COUNT };
 extern const RtParam rt_item_params[RT_ITEM_PARAM_COUNT];
+
+RT_DECLARE_KERNELS(item);
 
 #define RT_ITEM_UNDECIDED (UINT32_MAX - 1)
 
-typedef struct RtItemSample {
-    uint32_t id;
-    float other;
-} RtItemSample;
+typedef struct RtItemPainting RtItemPainting;
+
+/* A vector in double, and a fourth component. */
+typedef struct RtItemTerm {
+    double at[4];
+} RtItemTerm;
+
+/* Samples of the image as homogeneous coordinates: a point q relative to the eye is seen at column x . q / w,
+ * row y . q / w, at t = w, with w = depth . q. */
+typedef struct RtItemAim {
+    RtVec3d x, y, depth;
+    double scale[2]; /* samples per unit of slope: along x and y */
+    double longest;  /* |dir| of all rays is below this */
+    double blur;     /* by how much directions, rounded to float32, are off, as a part of 1 */
+} RtItemAim;
 
 typedef struct RtItemBuffer {
-    RtAccel base;
+    RtIsaAccel isa;
+    const RtItemPainting *painting;
     RtView view;
     bool settle;
-    RtItemSample *samples; /* [rows * columns] */
-    /* For projecting: q . across and q . downward, over q . forward, are the position of q in the image,
-     * -1..1. */
-    RtVec3d across, downward;
-    double longest; /* |dir| of all rays is below this */
-    double blur;    /* by how much directions, rounded to float32, are off, as a part of 1 */
+    uint32_t *samples; /* [rows * columns] */
+    /* The dir of a sample's ray is columns[column] + rows[row], rounded to float32; the fourth component is
+     * its tmax. */
+    RtItemTerm *columns, *rows;
+    RtVec3d across, downward; /* q . across and q . downward, over q . forward: position in -1..1 */
+    RtItemAim aim;
 } RtItemBuffer;
 
 static inline size_t rt_item_sample_count(const RtItemBuffer *buffer) {
@@ -44,6 +57,9 @@ static inline size_t rt_item_sample_count(const RtItemBuffer *buffer) {
 }
 
 /* footprint.c */
+
+/* Where the view is so wide that directions are off by more, everything is seen everywhere. */
+#define RT_ITEM_MOST_BLUR 0x1p-10
 
 /* Fills what is for projecting; `view` is there. */
 void rt_item_aim(RtItemBuffer *buffer);
@@ -56,33 +72,6 @@ typedef struct RtItemFootprint {
 
 /* The samples whose rays may hit an object, from its box; false if there are none. */
 bool rt_item_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemFootprint *footprint);
-
-/* facet.c */
-
-#define RT_ITEM_MAX_EDGES 16
-
-/* A flat convex object for scan conversion. Vectors are relative to the eye. */
-typedef struct RtItemFacet {
-    uint32_t count;
-    RtVec3d edges[RT_ITEM_MAX_EDGES];   /* normals of the planes through eye and edge, towards the inside */
-    double slack[RT_ITEM_MAX_EDGES];    /* error of dir . edge, times t: the hit function's */
-    double rounding[RT_ITEM_MAX_EDGES]; /* error of dir . edge: our own */
-    RtVec3d normal;
-    double height;                             /* normal . any vertex */
-    double slop, height_error, approach_error; /* of normal . point of a hit, height, normal . dir */
-} RtItemFacet;
-
-/* False for what is not flat, not convex, or has too many edges. */
-bool rt_item_facet(const RtItemBuffer *buffer, uint32_t id, RtItemFacet *facet);
-
-/* Where along a ray an object is hit, if it is: at lo <= t <= hi. Exactly known where lo = hi. */
-typedef struct RtItemSpan {
-    float lo, hi;
-    bool certain; /* that it is hit */
-} RtItemSpan;
-
-/* False if the ray certainly misses the facet, of whose footprint it is; else *span. */
-bool rt_item_cross(const RtItemFacet *facet, const RtRay *ray, float near, RtItemSpan *span);
 
 /* build.c */
 RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error);

@@ -28,21 +28,30 @@ static void sort_few(RtKdEvent *events, uint32_t count) {
     }
 }
 
-/* Stable, from the lowest byte of the keys to the highest; four passes end where they began. */
+enum { DIGIT = 11, DIGITS = 1 << DIGIT, PASSES = 3 };
+
+static uint32_t digit(RtKdEvent event, int pass) {
+    return key(event) >> (pass * DIGIT) & (DIGITS - 1);
+}
+
+/* Stable, from the lowest digits of the keys to the highest. */
 static void sort_many(RtKdEvent *events, RtKdEvent *spare, uint32_t count) {
-    for (uint32_t shift = 0; shift < 32; shift += 8) {
-        uint32_t place[256] = {0}, sum = 0;
-        for (uint32_t i = 0; i < count; i++) place[key(events[i]) >> shift & 255]++;
-        for (uint32_t digit = 0; digit < 256; digit++) {
-            uint32_t length = place[digit];
-            place[digit] = sum;
-            sum += length;
-        }
-        for (uint32_t i = 0; i < count; i++) spare[place[key(events[i]) >> shift & 255]++] = events[i];
-        RtKdEvent *swapped = events;
-        events = spare;
-        spare = swapped;
+    uint32_t place[PASSES][DIGITS] = {{0}}, sum[PASSES] = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        for (int pass = 0; pass < PASSES; pass++) place[pass][digit(events[i], pass)]++;
     }
+    for (uint32_t d = 0; d < DIGITS; d++) {
+        for (int pass = 0; pass < PASSES; pass++) {
+            uint32_t length = place[pass][d];
+            place[pass][d] = sum[pass];
+            sum[pass] += length;
+        }
+    }
+    for (int pass = 0; pass < PASSES; pass++) {
+        RtKdEvent *from = pass % 2 ? spare : events, *to = pass % 2 ? events : spare;
+        for (uint32_t i = 0; i < count; i++) to[place[pass][digit(from[i], pass)]++] = from[i];
+    }
+    memcpy(events, spare, count * sizeof *events);
 }
 
 /* Adding 0 makes -0 a 0, which is the same plane. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Subtrees of a kd-tree on all threads. The top is built as on one thread, but a cell of few enough objects
- * is set aside, with a copy of its lists, where it comes up; then each such cell is built on its own, in the
+ * is set aside, with its lists, where it comes up; then each such cell is built on its own, in the
  * same way while it is large; then all is written into one tree in the order in which one thread would have
  * made it. */
 #include "accel/kd/kd.h"
@@ -66,7 +66,21 @@ static RtStatus copy_lists(const RtKdBuilder *from, RtKdCell *cell, RtKdBuilder 
     return RT_OK;
 }
 
-static RtStatus set_aside(Subtrees *s, const RtKdBuilder *b, RtKdCell cell, uint64_t limit, RtError *error) {
+/* The last cell's lists lie at the bottom, with nothing above them that is still of use. */
+static void hand_over_lists(RtKdBuilder *from, RtKdBuilder *to) {
+    for (int a = 0; a < 3; a++) {
+        to->events[a] = from->events[a];
+        to->event_capacity[a] = from->event_capacity[a];
+        from->events[a] = NULL;
+        from->event_capacity[a] = 0;
+    }
+    to->ids = from->ids;
+    to->id_capacity = from->id_capacity;
+    from->ids = NULL;
+    from->id_capacity = 0;
+}
+
+static RtStatus set_aside(Subtrees *s, RtKdBuilder *b, RtKdCell cell, uint64_t limit, RtError *error) {
     RT_TRY(rt_reserve(&s->items, &s->capacity, (uint64_t)s->count + 1, sizeof(Subtree *), error));
     Subtree *item = s->items[s->count] = rt_alloc(1, sizeof(Subtree));
     if (!item) return rt_fail_memory(error, "a subtree of a kd-tree", sizeof(Subtree));
@@ -79,7 +93,10 @@ static RtStatus set_aside(Subtrees *s, const RtKdBuilder *b, RtKdCell cell, uint
     item->builder.kd = &item->kd;
     item->builder.ledger = &item->ledger;
     item->objects = cell.ids.count;
-    RT_TRY(copy_lists(b, &cell, &item->builder, error));
+    if (b->pending_count == 0)
+        hand_over_lists(b, &item->builder);
+    else
+        RT_TRY(copy_lists(b, &cell, &item->builder, error));
     cell.node = 0;
     item->builder.pending[item->builder.pending_count++] = cell;
     return RT_OK;

@@ -1,15 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Drawing on the cells of a light in lanes: sixteen triangles at a time are projected, and sixteen cells at a
- * time are parted from one. Included once for each instruction set; only + - * / and comparisons of float32,
- * so that all give the same bits.
- *
- * Projection. An offset from the light is off by 2^-24 of itself, which the margin m = 1.25 * margin makes up
- * for. Only triangles at a depth of 16 m or more, and with |u|, |w| <= 2, are drawn here. Their u and w are
- * off by 2^-24 each for both offsets, the quotient, the difference from grid.u, the product with grid.scale
- * and that with the cells of a tile, of numbers of at most 4: less than 2^-18 - RT_LIGHT_EDGE. What lies
- * within m of them is at most 4 m / depth away in u and w, since (m + |u| m) / (depth - m) is less. So much,
- * and an EDGE, and SLACK cells for the lines below, the rectangle around the projected triangle grows; and so
- * much a line must be away from a cell.
+/* Drawing on the cells of a light in lanes, by what project.h says: sixteen corners or parts of cells at a
+ * time are parted from a triangle, sixteen cells of a row from an object by its outline. Included once for
+ * each instruction set.
  *
  * Lines. Coordinates are columns and rows from the corner of a tile. A line through two vertices, evaluated
  * in the middle of a cell, is off by a few 2^-24 of the sum of |coefficient| * 2^7, as a small triangle with
@@ -18,149 +10,9 @@
 #ifndef RT_ACCEL_LIGHT_RASTER_H
 #define RT_ACCEL_LIGHT_RASTER_H
 
-#include "accel/kernel.h"
-#include "accel/light/light.h"
-#include "accel/pairs.h"
-#include "accel/simd_words.h"
+#include "accel/light/project.h"
 
-#define RT_LIGHT_SLACK 0x1p-6f
-
-/* ---- sixteen triangles ---- */
-
-/* Seen from a light on a face. */
-typedef struct Projected {
-    RtV16 x[3], y[3];              /* columns and rows from the origin of the grid */
-    RtV16 lo[2], hi[2], near, far; /* grown */
-    RtV16 grow;                    /* in cells */
-    uint32_t drawn, small;         /* can be drawn in lanes; and is small */
-} Projected;
-
-/* What projecting needs of the light. */
-typedef struct Eye {
-    RtV16 position[3], margin;
-} Eye;
-
-RT_KERNEL Eye make_eye(const RtLightBuffer *buffer, uint32_t light) {
-    Eye eye;
-    for (int a = 0; a < 3; a++)
-        eye.position[a] = rt_v16_all(buffer->base.scene->lights[light].position.at[a]);
-    eye.margin = rt_v16_all(rt_float_above(1.25 * buffer->cubes[light].margin));
-    return eye;
-}
-
-RT_KERNEL RtV16 least3(const RtV16 a[3]) {
-    return rt_v16_min(rt_v16_min(a[0], a[1]), a[2]);
-}
-
-RT_KERNEL RtV16 most3(const RtV16 a[3]) {
-    return rt_v16_max(rt_v16_max(a[0], a[1]), a[2]);
-}
-
-/* Offsets of triangles at[0..16) by vertex and axis. */
-RT_KERNEL void offsets_of(const Eye *eye, const RtTriangle *const at[16], RtV16 v[3][3]) {
-    rt_pairs_gather(at, v);
-    for (int i = 0; i < 3; i++) {
-        for (int a = 0; a < 3; a++) v[i][a] = rt_v16_sub(v[i][a], eye->position[a]);
-    }
-}
-
-/* Depths of vertices, and how far they are to the side along u and w. */
-RT_KERNEL void turn_to_face(int face, RtV16 v[3][3], RtV16 z[3], RtV16 side[2][3]) {
-    const int axis = face / 2;
-    for (int i = 0; i < 3; i++) {
-        z[i] = face % 2 ? v[i][axis] : rt_v16_sub(rt_v16_all(0), v[i][axis]);
-        side[0][i] = v[i][(axis + 1) % 3];
-        side[1][i] = v[i][(axis + 2) % 3];
-    }
-}
-
-/* Those that may be seen on a face. */
-RT_KERNEL uint32_t seen_on(const Eye *eye, int face, RtV16 v[3][3]) {
-    RtV16 z[3], side[2][3];
-    turn_to_face(face, v, z, side);
-    const RtV16 zero = rt_v16_all(0), far = rt_v16_add(most3(z), eye->margin);
-    uint32_t seen = ~rt_v16_at_most(far, zero) & 0xffff;
-    for (int k = 0; k < 2; k++) {
-        RtV16 least = rt_v16_sub(least3(side[k]), eye->margin),
-              most = rt_v16_add(most3(side[k]), eye->margin);
-        seen &= rt_v16_at_most(least, far) & rt_v16_at_most(rt_v16_sub(zero, most), far);
-    }
-    return seen;
-}
-
-/* In n x n cells of a tile; column and row are the first of them. */
-RT_KERNEL void project(const Eye *eye, const RtLightGrid *grid, int face, uint32_t n, uint32_t column,
-                       uint32_t row, RtV16 v[3][3], Projected *p) {
-    const RtV16 m = eye->margin;
-    RtV16 z[3], side[2][3];
-    turn_to_face(face, v, z, side);
-    RtV16 nearest = least3(z);
-    p->near = rt_v16_sub(nearest, m);
-    p->far = rt_v16_add(most3(z), m);
-    p->drawn = rt_v16_at_most(rt_v16_mul(m, rt_v16_all(16)), nearest);
-    for (int i = 0; i < 3; i++) {
-        RtV16 wide = rt_v16_add(z[i], z[i]);
-        p->drawn &= rt_v16_at_most(rt_v16_abs(side[0][i]), wide);
-        p->drawn &= rt_v16_at_most(rt_v16_abs(side[1][i]), wide);
-    }
-    const RtV16 scale = rt_v16_all(grid->scale * (float)n), most_cells = rt_v16_all(0x1p13f);
-    RtV16 grow = rt_v16_div(rt_v16_mul(m, rt_v16_all(4)), rt_v16_max(nearest, m));
-    grow = rt_v16_add(rt_v16_all(0x1p-18f), grow);
-    p->grow = rt_v16_add(rt_v16_mul(scale, grow), rt_v16_all(RT_LIGHT_SLACK));
-    p->small = p->drawn;
-    for (int k = 0; k < 2; k++) {
-        RtV16 *to = k ? p->y : p->x;
-        const RtV16 origin = rt_v16_all(k ? grid->w : grid->u), from = rt_v16_all((float)(k ? row : column));
-        for (int i = 0; i < 3; i++) {
-            to[i] = rt_v16_mul(rt_v16_sub(rt_v16_div(side[k][i], z[i]), origin), scale);
-            to[i] = rt_v16_sub(to[i], from);
-            p->drawn &= rt_v16_at_most(rt_v16_abs(to[i]), most_cells);
-        }
-        p->lo[k] = rt_v16_sub(least3(to), p->grow);
-        p->hi[k] = rt_v16_add(most3(to), p->grow);
-        p->small &= rt_v16_at_most(rt_v16_sub(p->hi[k], p->lo[k]), rt_v16_all(RT_LIGHT_SMALL_CELLS - 1));
-    }
-    p->small &= p->drawn;
-}
-
-static uint32_t place(const RtLightBuffer *buffer, uint32_t light, uint32_t first, uint32_t count,
-                      RtLightPlace *places) {
-    const RtLightCube *cube = &buffer->cubes[light];
-    const Eye eye = make_eye(buffer, light);
-    const RtTriangle *at[16];
-    RtV16 v[3][3];
-    uint32_t found = 0;
-    for (uint32_t i = 0; i < 16; i++)
-        at[i] = &buffer->base.scene->geometry.triangles[first + (i < count ? i : 0)];
-    offsets_of(&eye, at, v);
-    for (int face = 0; face < 6; face++) {
-        const RtLightGrid *grid = &cube->grids[face];
-        if (grid->columns == 0) continue;
-        uint32_t seen = seen_on(&eye, face, v) & ((1u << count) - 1);
-        if (!seen) continue;
-        Projected p;
-        project(&eye, grid, face, 1, 0, 0, v, &p);
-        _Alignas(64) uint32_t lo[2][16], hi[2][16];
-        for (int k = 0; k < 2; k++) {
-            const RtV16 zero = rt_v16_all(0), cells = rt_v16_all((float)(k ? grid->rows : grid->columns));
-            seen &= ~(p.drawn & ~(rt_v16_at_most(zero, p.hi[k]) & ~rt_v16_at_most(cells, p.lo[k])));
-            RtV16 last = rt_v16_sub(cells, rt_v16_all(1));
-            rt_w16_put(lo[k], rt_w16_truncate(rt_v16_min(rt_v16_max(p.lo[k], zero), last)));
-            rt_w16_put(hi[k], rt_w16_truncate(rt_v16_min(rt_v16_max(p.hi[k], zero), last)));
-        }
-        for (; seen; seen &= seen - 1) {
-            uint32_t i = (uint32_t)__builtin_ctz(seen), bit = 1u << i;
-            places[found++] = (RtLightPlace){.object = first + i,
-                                             .lo = {(uint16_t)lo[0][i], (uint16_t)lo[1][i]},
-                                             .hi = {(uint16_t)hi[0][i], (uint16_t)hi[1][i]},
-                                             .face = (uint8_t)face,
-                                             .drawn = (p.drawn & bit) != 0};
-        }
-    }
-    return found;
-}
-
-/* ---- sixteen small triangles in a tile ---- */
+/* ---- small triangles in a tile ---- */
 
 /* To be drawn one by one. Lines and rectangles are from the corner of the tile. */
 typedef struct Small {
@@ -172,13 +24,6 @@ typedef struct Small {
     float least[2][16], most[2][16]; /* the rectangle */
     uint32_t large;                  /* those that are not small */
 } Small;
-
-/* a, rounded down; of less than 2^31. */
-RT_KERNEL RtW16 floor16(RtV16 a) {
-    RtW16 whole = rt_w16_truncate(a);
-    uint32_t above = ~rt_v16_at_most(rt_v16_of_words(whole), a) & 0xffff;
-    return rt_w16_pick(above, whole, rt_w16_sub(whole, rt_w16_all(1)));
-}
 
 RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, Small *s) {
     const RtLightBuffer *buffer = tile->buffer;
@@ -214,7 +59,7 @@ RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles,
     rt_v16_store(s->near, p.near);
     rt_v16_store(s->far, p.far);
     for (int k = 0; k < 2; k++) {
-        RtW16 lo = floor16(p.lo[k]), hi = floor16(p.hi[k]);
+        RtW16 lo = rt_w16_truncate(rt_v16_floor(p.lo[k])), hi = rt_w16_truncate(rt_v16_floor(p.hi[k]));
         /* The rectangle may miss the tile: then lo > hi, below or above. */
         rt_w16_put(s->lo[k], rt_w16_most(lo, rt_w16_all(0)));
         rt_w16_put(s->hi[k], rt_w16_least(hi, rt_w16_all(tile->n - 1)));

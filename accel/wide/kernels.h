@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The kernels of `wide`, included once for each instruction set by a file that has named its table of them,
- * RT_WIDE_KERNELS.
+/* The kernels of `wide`, included once for each instruction set (accel/isa.h).
  *
  * Rays are traced as packets while these share enough of their visits, else as streams of rays alone. How
  * much they share is seen when they are, and tried again from time to time. Counted kernels trace no packets:
@@ -21,11 +20,6 @@ typedef struct Scratch {
     Sorter sorter;
     Habit habits[RT_RAY_KIND_COUNT];
 } Scratch;
-
-static size_t scratch_bytes(const RtAccel *accel) {
-    (void)accel;
-    return sizeof(Scratch);
-}
 
 /* The ways as functions of their own, so that each stands in the program once. */
 #define DEFINE_WAYS(question, any)                                                                           \
@@ -50,13 +44,21 @@ enum {
     TRIAL = 256 * 1024, /* rays traced alone between two trials of packets */
 };
 
-/* Streams that ask for any hit need no distances, and are harder to beat. */
-#define WORTH_MORE_ANY 1.2f
+/* How much more than asked for rays must share. Streams that ask for any hit need no distances, and are
+ * harder to beat. Without AVX2 what packets gather is gathered word by word: they pay for nearest hits of
+ * rays that share much, and for any hit nowhere to speak of. */
+#if defined(__AVX2__)
+#define WORTH_NEAREST 1.0f
+#define WORTH_ANY     1.2f
+#else
+#define WORTH_NEAREST 1.6f
+#define WORTH_ANY     13.0f
+#endif
 
 /* As packets, as far as these pay; gives how many rays have been. */
 RT_KERNEL size_t trace_together(const Question *q, size_t count, bool any) {
     Habit *habit = &((Scratch *)q->scratch->own)->habits[q->rays[0].kind];
-    const float worth = q->self->sharing * (any ? WORTH_MORE_ANY : 1);
+    const float worth = q->self->sharing * (any ? WORTH_ANY : WORTH_NEAREST);
     size_t i = 0;
     if (habit->alone && habit->trial > count) {
         habit->trial -= count;
@@ -77,10 +79,11 @@ RT_KERNEL size_t trace_together(const Question *q, size_t count, bool any) {
     return i;
 }
 
-RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch *scratch, const RtRay *rays,
-                     size_t count, RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any,
-                     bool counted) {
-    const Question q = {self, tree, &self->base.scene->geometry, scratch, rays, hits, blockers, tallies};
+RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any, bool counted) {
+    const RtWide *self = (const RtWide *)accel;
+    const RtWideTree *tree = any ? self->occluded : self->nearest;
+    const Question q = {self, tree, &accel->scene->geometry, scratch, rays, hits, blockers, tallies};
     size_t done = 0;
     if (self->in_flight == 1) {
         trace_singly(&q, 0, count, any, counted);
@@ -95,29 +98,5 @@ RT_KERNEL void trace(const RtWide *self, const RtWideTree *tree, const RtScratch
         (counted ? stream_nearest_counted : stream_nearest_timed)(&q, done, count - done);
 }
 
-static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits) {
-    const RtWide *self = (const RtWide *)accel;
-    trace(self, self->nearest, scratch, rays, count, hits, NULL, NULL, false, false);
-}
-
-static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, RtTally *tallies) {
-    const RtWide *self = (const RtWide *)accel;
-    trace(self, self->nearest, scratch, rays, count, hits, NULL, tallies, false, true);
-}
-
-static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                           uint32_t *blockers) {
-    const RtWide *self = (const RtWide *)accel;
-    trace(self, self->occluded, scratch, rays, count, NULL, blockers, NULL, true, false);
-}
-
-static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *blockers, RtTally *tallies) {
-    const RtWide *self = (const RtWide *)accel;
-    trace(self, self->occluded, scratch, rays, count, NULL, blockers, tallies, true, true);
-}
-
-const RtWideKernels RT_WIDE_KERNELS = {nearest_timed, occluded_timed, nearest_counted, occluded_counted,
-                                       scratch_bytes};
+RT_DEFINE_STREAM_KERNELS(trace)
+RT_DEFINE_KERNEL_TABLE(sizeof(Scratch));

@@ -14,12 +14,9 @@
  * triangle of a leaf, which are tested at once. Counts are those of rays alone, the same for all instruction
  * sets and any number of rays in flight. */
 #include "accel/wide/wide.h"
-#include "accel/isa.h"
 #include "accel/tree/recipe.h"
 
 #include "base/memory.h"
-
-typedef enum Isa { BEST, PORTABLE, AVX2, AVX512 } Isa;
 
 /* What `bvh` has as parameters. */
 enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
@@ -55,35 +52,10 @@ enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };
       "rays that have to share a visit of a node, on average, or no packets are made; 0: always",            \
       "measured")                                                                                            \
     X(PARAM_HUGE_PAGES, "huge_pages", RT_FLAG("on"), "ask the system for large pages", "measured")           \
-    X(PARAM_ISA, "isa", RT_CHOICE("best", "best|portable|avx2|avx512"),                                      \
-      "instruction set; changes no answer and no count", "best: of this machine")
+    X(PARAM_ISA, RT_ISA_PARAM)
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
-
-/* ---- instruction sets ---- */
-
-/* What is asked for. */
-static RtIsa isa_of(const RtValue *values) {
-    switch ((Isa)values[PARAM_ISA].choice) {
-    case BEST: break;
-    case PORTABLE: return RT_ISA_PORTABLE;
-    case AVX2: return RT_ISA_AVX2;
-    case AVX512: return RT_ISA_AVX512;
-    }
-    return rt_isa_best();
-}
-
-static const RtWideKernels *kernels_of(RtIsa isa) {
-    return isa == RT_ISA_AVX512 ? &rt_wide_avx512 : isa == RT_ISA_AVX2 ? &rt_wide_avx2 : &rt_wide_portable;
-}
-
-static RtStatus available(const RtValue *values, RtError *error) {
-    if (isa_of(values) <= rt_isa_best()) return RT_OK;
-    char name[RT_MAX_SPEC_CHARS];
-    rt_param_format(&params[PARAM_ISA], values[PARAM_ISA], name, sizeof name);
-    return rt_fail(error, RT_NOT_AVAILABLE, "this processor has no %s: leave isa out", name);
-}
 
 /* ---- build ---- */
 
@@ -124,6 +96,10 @@ static RtStatus fill(RtWideTree *self, const RtBuild *what, RtTreeMethod method,
     return status;
 }
 
+static RtStatus available(const RtValue *values, RtError *error) {
+    return rt_isa_available(values[PARAM_ISA], error);
+}
+
 static RtStatus fill_trees(RtWide *self, const RtBuild *what, RtError *error) {
     RtTreeMethod method = (RtTreeMethod)what->values[PARAM_BUILD].choice;
     RT_TRY(available(what->values, error));
@@ -140,43 +116,13 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     bool two = values[PARAM_BUILD].choice == RT_TREE_SPATIAL && values[PARAM_WHOLE].flag;
     self->nearest = &self->trees[0];
     self->occluded = &self->trees[two ? 1 : 0];
-    self->kernels = kernels_of(isa_of(values));
+    self->isa.kernels = RT_KERNELS_FOR(wide, rt_isa_asked(values[PARAM_ISA]));
     self->in_flight = (uint32_t)values[PARAM_IN_FLIGHT].i;
     self->order = values[PARAM_ORDER].flag;
     self->prefetch = values[PARAM_PREFETCH].flag;
     self->sharing = (float)values[PARAM_SHARING].f;
     self->packets = (uint32_t)values[PARAM_PACKETS].i;
     return rt_accel_built(accel, fill_trees(self, what, error), out);
-}
-
-/* ---- queries: kernels.h, by the instruction set ---- */
-
-static const RtWideKernels *kernels(const RtAccel *accel) {
-    return ((const RtWide *)accel)->kernels;
-}
-
-static void ask_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                        RtHit *hits) {
-    kernels(accel)->nearest(accel, scratch, rays, count, hits);
-}
-
-static void ask_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                         uint32_t *blockers) {
-    kernels(accel)->occluded(accel, scratch, rays, count, blockers);
-}
-
-static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits, RtTally *tallies) {
-    kernels(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
-}
-
-static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                           uint32_t *blockers, RtTally *tallies) {
-    kernels(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
-}
-
-static size_t scratch_bytes(const RtAccel *accel) {
-    return kernels(accel)->scratch_bytes(accel);
 }
 
 /* ---- looking at it ---- */
@@ -207,11 +153,8 @@ const RtAccelOps rt_wide_ops = {
     RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
-    .nearest = ask_nearest,
-    .occluded = ask_occluded,
-    .nearest_counted = count_nearest,
-    .occluded_counted = count_occluded,
-    .scratch_bytes = scratch_bytes,
+    RT_ISA_OPS,
+    .scratch_bytes = rt_isa_scratch_bytes,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

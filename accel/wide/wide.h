@@ -15,6 +15,7 @@
 #ifndef RT_ACCEL_WIDE_WIDE_H
 #define RT_ACCEL_WIDE_WIDE_H
 
+#include "accel/isa.h"
 #include "accel/tree/hierarchy.h"
 #include "accel/tree/split.h"
 
@@ -117,25 +118,15 @@ void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer);
 
 /* ---- the accelerator ---- */
 
-/* The kernels for one instruction set. */
-typedef struct RtWideKernels {
-    RtNearestKernel *nearest;
-    RtOccludedKernel *occluded;
-    RtNearestCounted *nearest_counted;
-    RtOccludedCounted *occluded_counted;
-    size_t (*scratch_bytes)(const RtAccel *accel);
-} RtWideKernels;
-
-extern const RtWideKernels rt_wide_portable, rt_wide_avx2, rt_wide_avx512;
+RT_DECLARE_KERNELS(wide);
 
 typedef struct RtWide {
-    RtAccel base;
+    RtIsaAccel isa;
     RtWideTree trees[2];                  /* the second only where any-hit rays have one of their own */
     const RtWideTree *nearest, *occluded; /* of them */
-    const RtWideKernels *kernels;
-    uint32_t in_flight; /* rays traced at once; 1: one after the other */
-    uint32_t packets;   /* packets traced at once; 0: none */
-    float sharing;      /* rays that share a visit of a node, on average, for which packets pay */
+    uint32_t in_flight;                   /* rays traced at once; 1: one after the other */
+    uint32_t packets;                     /* packets traced at once; 0: none */
+    float sharing; /* rays that share a visit of a node, on average, for which packets pay */
     bool order, prefetch;
 } RtWide;
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "base/memory.h"
 
+#include <malloc.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 #include <unistd.h>
 
 static _Atomic uint64_t fail_countdown;
-static _Atomic int64_t live_blocks;
+static _Atomic int64_t live_blocks, live_bytes, most_bytes = INT64_MAX;
 
 static bool told_to_fail(void) {
     uint64_t left = atomic_load(&fail_countdown);
@@ -27,8 +28,13 @@ static void *allocate(size_t count, size_t size, size_t boundary, size_t *padded
     if (size != 0 && count > (SIZE_MAX - boundary) / size) return NULL;
     if (told_to_fail()) return NULL;
     *padded = (count * size + boundary) / boundary * boundary;
+    if (*padded > (uint64_t)INT64_MAX / 2 ||
+        atomic_load(&live_bytes) + (int64_t)*padded > atomic_load(&most_bytes))
+        return NULL;
     void *block = aligned_alloc(boundary, *padded);
-    if (block) atomic_fetch_add(&live_blocks, 1);
+    if (!block) return NULL;
+    atomic_fetch_add(&live_blocks, 1);
+    atomic_fetch_add(&live_bytes, (int64_t)malloc_usable_size(block));
     return block;
 }
 
@@ -50,7 +56,12 @@ void *rt_alloc_unset(size_t count, size_t size) {
 void rt_free(void *block) {
     if (!block) return;
     atomic_fetch_sub(&live_blocks, 1);
+    atomic_fetch_sub(&live_bytes, (int64_t)malloc_usable_size(block));
     free(block);
+}
+
+void rt_memory_limit(uint64_t bytes) {
+    atomic_store(&most_bytes, bytes ? atomic_load(&live_bytes) + (int64_t)bytes : INT64_MAX);
 }
 
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
@@ -62,7 +73,7 @@ RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t siz
     if (grown < needed) grown = needed;
     if (grown < 16) grown = 16;
     if (grown > UINT32_MAX) grown = UINT32_MAX;
-    void *block = rt_alloc((size_t)grown, size);
+    void *block = rt_alloc_unset((size_t)grown, size);
     if (!block) return rt_fail_memory(error, "a growing array", (size_t)grown * size);
     /* The caller's pointer is read and written as bytes: it is no void pointer, and may not be taken for
      * one. */

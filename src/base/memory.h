@@ -24,11 +24,15 @@ void rt_free(void *block);
 
 /* Makes room for `needed` elements in a growing array. `array` is the address of a pointer, of any type, to
  * `*capacity` elements of `size` bytes each (or of NULL); the block is replaced by a larger one with the same
- * contents. On failure nothing changes. */
+ * contents; nothing beyond them is set. On failure nothing changes. */
 RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error);
 
 /* Bytes of memory in this machine. */
 uint64_t rt_memory_size(void);
+
+/* From now on at most `bytes` more are handed out than are now; 0: as many as there are. What other libraries
+ * allocate is not counted. */
+void rt_memory_limit(uint64_t bytes);
 
 /* For tests: the allocation `n` calls from now fails (1 = the next); 0 switches this off. */
 void rt_alloc_fail_at(uint64_t n);

@@ -156,7 +156,7 @@ typedef struct RtColumnGroup {
 
 /* ---- tables ---- */
 
-#define RT_MAX_TABLE_COLUMNS 64
+#define RT_MAX_TABLE_COLUMNS 80
 
 typedef struct RtTable {
     const RtColumnGroup *groups;

@@ -49,3 +49,16 @@ void rt_join_names(const char *const *names, size_t count, char *out, size_t roo
         snprintf(out + used, room - used, "%s%s", i ? ", " : "", names[i]);
     }
 }
+
+void rt_print_wrapped(const char *text, FILE *out) {
+    enum { WIDTH = 80 };
+    while (strlen(text) > WIDTH) {
+        size_t end = WIDTH;
+        while (end > 0 && text[end] != ' ') end--;
+        if (end == 0) end = strcspn(text, " ");
+        if (text[end] == '\0') break;
+        fprintf(out, "%.*s\n", (int)end, text);
+        text += end + 1;
+    }
+    fprintf(out, "%s\n", text);
+}

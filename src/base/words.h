@@ -4,6 +4,7 @@
 #define RT_BASE_WORDS_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 /* Of `names[0..count)` the one that `word` most likely meant, or NULL if none is near (edit distance). */
 const char *rt_nearest_name(const char *word, const char *const *names, size_t count);
@@ -15,5 +16,9 @@ void rt_suggest(const char *word, const char *const *names, size_t count, char o
 
 /* "a, b, c" to out[0..room), cut where there is too little room. */
 void rt_join_names(const char *const *names, size_t count, char *out, size_t room);
+
+/* Prints `text` and an end of line, with lines broken at blanks so that none has more than 80 characters,
+ * unless a word has. */
+void rt_print_wrapped(const char *text, FILE *out);
 
 #endif

@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const result_files[] = {RT_RUN_JOURNAL, RT_VERIFY_JOURNAL, RT_MANIFEST, "counts.csv",
-                                           "times.csv",    "published.csv",   "best.csv",  "published.md",
-                                           "report.html",  "verify.csv",      "verify.md"};
+static const char *const result_files[] = {RT_RUN_JOURNAL, RT_VERIFY_JOURNAL, RT_MANIFEST,     "counts.csv",
+                                           "times.csv",    "rounds.csv",      "published.csv", "best.csv",
+                                           "published.md", "report.html",     "verify.csv",    "verify.md"};
 
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 

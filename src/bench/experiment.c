@@ -3,7 +3,6 @@
 
 #include "bench/earlier.h"
 
-#include <ctype.h>
 #include <string.h>
 
 void rt_experiment_init(RtExperiment *experiment) {
@@ -19,25 +18,29 @@ void rt_experiment_init(RtExperiment *experiment) {
     }
 }
 
-/* Whether labels may have this character: they name rows of CSV, plots and files of images. */
-static bool may_name(char c) {
-    return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
+/* ---- rays of a file ---- */
+
+/* Random rays are those that nothing is known of. */
+static const struct {
+    const char *name;
+    RtRayKind kind;
+} given[] = {{"nearest", RT_RAY_RANDOM}, {"occlusion", RT_RAY_OCCLUSION}};
+
+RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error) {
+    for (int i = 0; i < 2; i++) {
+        *kind = given[i].kind;
+        if (strcmp(given[i].name, name) == 0) return RT_OK;
+    }
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "rays of a file are asked for the nearest hit, or for any: nearest or occlusion, not '%.40s'", name);
 }
 
-RtStatus rt_workload_set_scene(RtWorkload *workload, const char *spec, const char *folder, RtError *error) {
-    if (strlen(spec) >= sizeof workload->spec) {
-        return rt_fail(error, RT_BAD_INPUT, "%.40s...: a scene has at most %zu characters", spec,
-                       sizeof workload->spec - 1);
+const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind) {
+    for (int i = 0; i < 2 && *experiment->rays_from; i++) {
+        if (given[i].kind == kind) return given[i].name;
     }
-    strcpy(workload->spec, spec);
-    workload->file = strcspn(spec, "./") < strcspn(spec, ":");
-    const char *slash = workload->file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
-    size_t length = workload->file ? strcspn(start, ".") : strlen(start);
-    snprintf(workload->label, RT_MAX_LABEL, "%.*s", (int)length, start);
-    for (char *c = workload->label; *c; c++) {
-        if (!may_name(*c)) *c = '_';
-    }
-    return rt_path_join(workload->file ? folder : "", spec, workload->path, error);
+    return rt_ray_kind_name(kind);
 }
 
 /* ---- the baseline ---- */
@@ -73,6 +76,7 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
         *candidate = (RtCandidate){.ray_stride = 1};
         memcpy(candidate->spec, specs[i], sizeof candidate->spec);
         label_setting(specs[i], candidate->label);
+        memcpy(candidate->base, candidate->label, sizeof candidate->base);
     }
     return RT_OK;
 }
@@ -124,7 +128,7 @@ const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
 
 static RtStatus check_label(const char *label, RtError *error) {
     for (const char *c = label; *c; c++) {
-        if (may_name(*c)) continue;
+        if (rt_may_label(*c)) continue;
         return rt_fail(error, RT_BAD_INPUT,
                        "'%s' cannot name a row or a plot: give a `label` without blanks, quotes and any of "
                        "/ \\ $ & < > @ ^ { }",
@@ -219,15 +223,31 @@ static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *
         name);
 }
 
+/* There is a column in tables for each. */
+static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept, RtError *error) {
+    RtSweptKey keys[RT_MAX_SWEPT_KEYS];
+    uint32_t count = rt_experiment_swept(experiment, keys);
+    for (uint32_t i = 0; i < swept->count; i++) {
+        uint32_t k = 0;
+        while (k < count && strcmp(keys[k].key, swept->keys[i]) != 0) k++;
+        if (k < count) continue;
+        return rt_fail(error, RT_BAD_INPUT, "'%s' is one too many: at most %d parameters are swept",
+                       swept->keys[i], RT_MAX_SWEPT_KEYS);
+    }
+    return RT_OK;
+}
+
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
     for (uint32_t i = 0; i < experiment->workload_count; i++) {
-        snprintf(where, RT_MAX_LABEL, "scenes[%u]", i);
+        snprintf(where, RT_MAX_LABEL, "scenes[%u]", experiment->workloads[i].entry);
         RT_TRY(check_workload(experiment, i, error));
+        RT_TRY(check_swept(experiment, &experiment->workloads[i].swept, error));
     }
     for (uint32_t i = 0; i < experiment->candidate_count; i++) {
-        snprintf(where, RT_MAX_LABEL, "accelerators[%u]", i);
+        snprintf(where, RT_MAX_LABEL, "accelerators[%u]", experiment->candidates[i].entry);
         if (*experiment->best && rt_candidate_is_baseline(experiment, i)) strcpy(where, "baseline");
         RT_TRY(check_candidate(experiment, i, error));
+        RT_TRY(check_swept(experiment, &experiment->candidates[i].swept, error));
     }
     for (uint32_t i = 0; i < experiment->kind_count; i++) {
         snprintf(where, RT_MAX_LABEL, "rays[%u]", i);

@@ -7,17 +7,23 @@
 #include "accel/accel.h"
 #include "base/file.h"
 #include "bench/statistics.h"
+#include "bench/sweep.h"
 
 #define RT_MAX_LABEL       48
 #define RT_MAX_TEXT        4096
 #define RT_MAX_WORKLOADS   32
 #define RT_MAX_CANDIDATES  256
 #define RT_MAX_PLOTS       8
+#define RT_MAX_CLAIMS      64
+#define RT_MAX_CLAIM       256
 #define RT_MAX_RAYS_A_KIND UINT64_C(100000000)
 
 /* One scene of an experiment. Labels are unique, without blanks and quotes: names in CSV and plots. */
 typedef struct RtWorkload {
     char label[RT_MAX_LABEL];
+    char base[RT_MAX_LABEL];      /* what all of one sweep share of their labels; else the label */
+    RtSwept swept;                /* of the scene's parameters */
+    uint32_t entry;               /* of the list in the YAML: several come of one that sweeps */
     char spec[RT_MAX_SCENE_NAME]; /* as written */
     char path[RT_MAX_PATH];       /* for rt_scene_open: a built-in, or the file seen from the YAML's folder */
     uint32_t width, height;       /* of the frame whose rays are recorded; 0 x 0: the camera's */
@@ -31,6 +37,9 @@ typedef struct RtWorkload {
 /* One accelerator of an experiment. No two on the same scene have the same label. */
 typedef struct RtCandidate {
     char label[RT_MAX_LABEL];
+    char base[RT_MAX_LABEL]; /* as of a workload */
+    RtSwept swept;
+    uint32_t entry;
     char spec[RT_MAX_SPEC_CHARS]; /* as written */
     uint64_t ray_stride;          /* k: measured on each kth ray of a set, so that slow ones finish; >= 1 */
     uint32_t left_out;            /* bit t: it is not measured on workloads[t] */
@@ -69,6 +78,9 @@ typedef struct RtPublishedSetup {
 typedef struct RtExperiment {
     char name[RT_MAX_LABEL];
     char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
+    char finding[RT_MAX_TEXT];                /* what was learnt, or "" */
+    char claims[RT_MAX_CLAIMS][RT_MAX_CLAIM]; /* bench/claims.h */
+    uint32_t claim_count;
     RtWorkload workloads[RT_MAX_WORKLOADS];
     uint32_t workload_count;
     RtCandidate candidates[RT_MAX_CANDIDATES];
@@ -86,15 +98,19 @@ typedef struct RtExperiment {
     uint32_t rounds;       /* 1..RT_MAX_ROUNDS */
     uint32_t milliseconds; /* a short set is repeated within a round until it takes this long; 0: once */
     uint64_t seed;
+    double limit_seconds;     /* a cell that would take longer is left out; 0: none is */
+    uint64_t limit_megabytes; /* a structure that takes more, also while it is built, is left out; 0: none */
     char plots[RT_MAX_PLOTS]
               [RT_MAX_LABEL]; /* gnuplot scripts seen from the YAML, run in this order in one go */
     uint32_t plot_count;
     RtPublishedSetup published;
-    bool count_only;          /* nothing is timed */
-    bool quick;               /* the smaller variant, for a first look */
-    char path[RT_MAX_PATH];   /* of the YAML; "" where there is none */
-    char folder[RT_MAX_PATH]; /* of the YAML */
-    uint64_t fingerprint;     /* of the YAML's bytes */
+    char rays_from[RT_MAX_PATH]; /* a file of rays (bench/ray_file.h) of the one kind, in place of recorded
+                                    ones; or "" */
+    bool count_only;             /* nothing is timed */
+    bool quick;                  /* the smaller variant, for a first look */
+    char path[RT_MAX_PATH];      /* of the YAML; "" where there is none */
+    char folder[RT_MAX_PATH];    /* of the YAML */
+    uint64_t fingerprint;        /* of the YAML's bytes, without finding and expect, which change no result */
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds but occlusion, which is diffuse once more, and the defaults: limit
@@ -104,6 +120,11 @@ void rt_experiment_init(RtExperiment *experiment);
 /* Reads the YAML at `path`. Whatever is wrong (unknown keys, specs that do not parse, labels used twice, a
  * baseline that is no candidate) is told with its line. `quick` applies the overrides under `quick:`. */
 RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error);
+
+/* What rays of a file may be: asked for the nearest hit, or for any. They stand under these names in tables,
+ * where recorded ones have theirs. */
+RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error);
+const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind);
 
 /* Whether candidate `c`, which may be the null run (candidate_count), is measured on workload `t`. */
 bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
@@ -130,10 +151,35 @@ uint32_t rt_workload_find(const RtExperiment *experiment, const char *label);
  * the same. */
 const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot);
 
-/* Sets spec, path, file and a label made from them: the file's name without folder and extension, or the
- * built-in as it is written, with _ for what a label may not have. A dot or a slash before the first colon
- * makes `spec` a file, seen from `folder`. */
-RtStatus rt_workload_set_scene(RtWorkload *workload, const char *spec, const char *folder, RtError *error);
+/* Appends one workload like `like` for each scene that `spec` stands for (bench/sweep.h). Sets spec, path,
+ * file, swept, and the label. That is made from the scene where `like` has none: the file's name without
+ * folder and extension, or the built-in as it is written, with _ for what a label may not have; else one of
+ * several gets ":key=value" behind the label of `like`. A dot or a slash before the first colon makes `spec`
+ * a file, seen from `folder`. */
+RtStatus rt_experiment_add_scenes(RtExperiment *experiment, const RtWorkload *like, const char *spec,
+                                  const char *folder, RtError *error);
+
+/* Appends one candidate like `like` for each accelerator that its spec stands for. A label is made as that of
+ * a workload; without one it is the spec. */
+RtStatus rt_experiment_add_accels(RtExperiment *experiment, const RtCandidate *like, RtError *error);
+
+/* A parameter that an experiment sweeps, of scenes or of accelerators: those of one name are one. */
+#define RT_MAX_SWEPT_KEYS 8
+typedef struct RtSweptKey {
+    const char *key; /* borrowed */
+    bool scene;
+    bool number; /* every value is one */
+} RtSweptKey;
+
+/* All of them, those of scenes first, in the order in which they are written: how many. */
+uint32_t rt_experiment_swept(const RtExperiment *experiment, RtSweptKey keys[RT_MAX_SWEPT_KEYS]);
+
+/* Its value for a cell, where `candidate` may be the null run; NULL where it has none. */
+const char *rt_swept_of(const RtExperiment *experiment, const RtSweptKey *key, uint32_t workload,
+                        uint32_t candidate);
+
+/* Whether labels may have this character: they name rows of CSV, plots and files of images. */
+bool rt_may_label(char c);
 
 /* Whether the parts of an experiment, each in its range, go together, however it came about; marks candidates
  * that this build lacks. *where gets the path of the fault in the YAML ("name", "accelerators[2]"), room for

@@ -3,6 +3,7 @@
  * What is wrong with a value is told here; what does not go together, by rt_experiment_check. */
 #include "base/memory.h"
 #include "base/yaml.h"
+#include "bench/claims.h"
 #include "bench/experiment.h"
 #include "render/frame.h"
 
@@ -47,21 +48,31 @@ static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit
     return rt_yaml_u32(y, n, "milliseconds", 0, 60000, milliseconds);
 }
 
+static RtStatus read_limits(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
+    RT_TRY(rt_yaml_keys(y, n, "seconds? megabytes?"));
+    RT_TRY(rt_yaml_double(y, n, "seconds", &experiment->limit_seconds));
+    RT_TRY(rt_yaml_u64(y, n, "megabytes", 1, 1000000000, &experiment->limit_megabytes));
+    if (!rt_yaml_get(y, n, "seconds") || experiment->limit_seconds > 0) return RT_OK;
+    return rt_yaml_fail(y, rt_yaml_get(y, n, "seconds"), "invalid value '%g': expected more than 0",
+                        experiment->limit_seconds);
+}
+
 /* ---- parts ---- */
 
-static RtStatus read_workload(const RtYaml *y, const RtYamlNode *n, const char *folder, RtWorkload *workload,
-                              RtError *error) {
+static RtStatus read_workloads(const RtYaml *y, const RtYamlNode *n, uint32_t entry, RtExperiment *experiment,
+                               RtError *error) {
     const char *spec = "";
+    RtWorkload like = {.entry = entry, .depth = RT_DEFAULT_DEPTH};
     RT_TRY(rt_yaml_keys(y, n, "scene label? size? corners? light_from_outside? depth? optional?"));
     RT_TRY(rt_yaml_text(y, n, "scene", RT_MAX_SCENE_NAME - 1, &spec));
-    RT_TRY(rt_yaml_place(y, rt_workload_set_scene(workload, spec, folder, error), n, "scene"));
-    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, workload->label));
-    workload->depth = RT_DEFAULT_DEPTH;
-    RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &workload->depth));
-    RT_TRY(read_size(y, n, &workload->width, &workload->height));
-    RT_TRY(read_flag(y, n, "corners", &workload->corners));
-    RT_TRY(read_flag(y, n, "light_from_outside", &workload->light_from_outside));
-    return read_flag(y, n, "optional", &workload->optional);
+    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
+    RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &like.depth));
+    RT_TRY(read_size(y, n, &like.width, &like.height));
+    RT_TRY(read_flag(y, n, "corners", &like.corners));
+    RT_TRY(read_flag(y, n, "light_from_outside", &like.light_from_outside));
+    RT_TRY(read_flag(y, n, "optional", &like.optional));
+    RtStatus status = rt_experiment_add_scenes(experiment, &like, spec, experiment->folder, error);
+    return rt_yaml_place(y, status, n, "scene");
 }
 
 /* Leaves the candidate out on all workloads that its `scenes` do not name; none named: on none. */
@@ -72,27 +83,28 @@ static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExp
     for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
         const char *label = "";
         RT_TRY(rt_yaml_text(y, n, NULL, RT_MAX_LABEL - 1, &label));
-        uint32_t workload = rt_workload_find(experiment, label);
-        if (workload == experiment->workload_count) {
-            return rt_yaml_fail(y, n, "'%s' is not the label of one of the scenes", label);
+        bool found = false;
+        for (uint32_t t = 0; t < experiment->workload_count; t++) {
+            const RtWorkload *workload = &experiment->workloads[t];
+            if (strcmp(workload->label, label) != 0 && strcmp(workload->base, label) != 0) continue;
+            on |= UINT32_C(1) << t;
+            found = true;
         }
-        on |= UINT32_C(1) << workload;
+        if (!found) return rt_yaml_fail(y, n, "'%s' is not the label of one of the scenes", label);
     }
     candidate->left_out = list ? ~on : 0;
     return RT_OK;
 }
 
-static RtStatus read_candidate(const RtYaml *y, const RtYamlNode *n, const RtExperiment *experiment,
-                               RtCandidate *candidate) {
-    const char *spec = "";
+static RtStatus read_candidates(const RtYaml *y, const RtYamlNode *n, uint32_t entry,
+                                RtExperiment *experiment, RtError *error) {
+    RtCandidate like = {.entry = entry, .ray_stride = 1};
     RT_TRY(rt_yaml_keys(y, n, "accel label? ray_stride? scenes?"));
-    RT_TRY(rt_yaml_text(y, n, "accel", RT_MAX_SPEC_CHARS - 1, &spec));
-    snprintf(candidate->spec, RT_MAX_SPEC_CHARS, "%s", spec);
-    snprintf(candidate->label, RT_MAX_LABEL, "%s", spec);
-    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, candidate->label));
-    candidate->ray_stride = 1;
-    RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &candidate->ray_stride));
-    return read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, candidate);
+    RT_TRY(rt_yaml_copy(y, n, "accel", RT_MAX_SPEC_CHARS, like.spec));
+    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
+    RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &like.ray_stride));
+    RT_TRY(read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, &like));
+    return rt_yaml_place(y, rt_experiment_add_accels(experiment, &like, error), n, "accel");
 }
 
 static RtStatus read_tolerances(const RtYaml *y, const RtYamlNode *n, double tolerance[RT_COLUMN_COUNT]) {
@@ -178,16 +190,27 @@ static RtStatus read_quick(const RtYaml *y, const RtYamlNode *n, bool quick, RtE
 static RtStatus read_lists(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment, RtError *error) {
     const RtYamlNode *scenes = rt_yaml_get(y, n, "scenes"), *accels = rt_yaml_get(y, n, "accelerators");
     RT_TRY(rt_yaml_list(y, scenes, NULL, 1, RT_MAX_WORKLOADS, "scenes"));
-    for (const RtYamlNode *e = rt_yaml_first(scenes); e != rt_yaml_end(scenes); e += e->size) {
-        RtWorkload *workload = &experiment->workloads[experiment->workload_count++];
-        RT_TRY(read_workload(y, e, experiment->folder, workload, error));
-    }
+    uint32_t entry = 0;
+    for (const RtYamlNode *e = rt_yaml_first(scenes); e != rt_yaml_end(scenes); e += e->size)
+        RT_TRY(read_workloads(y, e, entry++, experiment, error));
     RT_TRY(rt_yaml_list(y, accels, NULL, 1, RT_MAX_CANDIDATES, "accelerators"));
-    for (const RtYamlNode *e = rt_yaml_first(accels); e != rt_yaml_end(accels); e += e->size) {
-        RT_TRY(read_candidate(y, e, experiment, &experiment->candidates[experiment->candidate_count++]));
-    }
+    entry = 0;
+    for (const RtYamlNode *e = rt_yaml_first(accels); e != rt_yaml_end(accels); e += e->size)
+        RT_TRY(read_candidates(y, e, entry++, experiment, error));
     RT_TRY(read_rays(y, rt_yaml_get(y, n, "rays"), experiment, error));
     return read_labels(y, n, "plots", RT_MAX_PLOTS, experiment->plots, &experiment->plot_count);
+}
+
+static RtStatus read_claims(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment,
+                            RtError *error) {
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_CLAIMS, "claims"));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        RtClaim claim;
+        char *text = experiment->claims[experiment->claim_count++];
+        RT_TRY(rt_yaml_copy(y, n, NULL, RT_MAX_CLAIM, text));
+        RT_TRY(rt_yaml_place(y, rt_claim_parse(experiment, text, &claim, error), n, NULL));
+    }
+    return RT_OK;
 }
 
 /* Gives a failure of rt_experiment_check its place: `where` is "name", or "scenes[3]". */
@@ -206,11 +229,13 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_keys(
         y, n,
         "name question prediction scenes accelerators baseline? rays? limit? coherent_run? rounds? "
-        "milliseconds? seed? count_only? published? quick? plots?"));
+        "milliseconds? seed? count_only? published? quick? plots? expect? finding? limits?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
     RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));
+    RT_TRY(rt_yaml_copy(y, n, "finding", RT_MAX_TEXT, experiment->finding));
     RT_TRY(read_scale(y, n, &experiment->limit, &experiment->rounds, &experiment->milliseconds));
+    if (rt_yaml_get(y, n, "limits")) RT_TRY(read_limits(y, rt_yaml_get(y, n, "limits"), experiment));
     RT_TRY(rt_yaml_u64(y, n, "coherent_run", 1, RT_MAX_RAYS_A_KIND, &experiment->coherent_run));
     RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
     RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
@@ -222,7 +247,44 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     experiment->quick = quick;
     char where[RT_MAX_LABEL] = "";
     RtStatus status = rt_experiment_check(experiment, where, error);
-    return place(y, status, where);
+    RT_TRY(place(y, status, where));
+    return read_claims(y, rt_yaml_get(y, n, "expect"), experiment, error);
+}
+
+/* ---- what the results depend on ---- */
+
+/* Where line number `line` begins. */
+static size_t begin_of(const char *text, size_t length, uint32_t line) {
+    size_t at = 0;
+    for (; line > 1 && at < length; at++) line -= text[at] == '\n';
+    return at;
+}
+
+/* Of the text without the lines of `finding` and `expect`, which are written, or written better, when the
+ * results are there. Those that share a line with another key count. */
+static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length) {
+    XXH3_state_t *state = XXH3_createState();
+    size_t from = 0;
+    if (!state) return XXH3_64bits(text, length);
+    XXH3_64bits_reset(state);
+    const RtYamlNode *end = rt_yaml_end(y->nodes);
+    for (const RtYamlNode *key = rt_yaml_first(y->nodes); key != end;) {
+        const RtYamlNode *next = key + key->size;
+        next += next->size;
+        const char *name = rt_yaml_text_of(y, key);
+        size_t begin = begin_of(text, length, key->line);
+        size_t behind = next == end ? length : begin_of(text, length, next->line);
+        bool apart = key->column == 1 && behind > begin;
+        if (apart && (strcmp(name, "finding") == 0 || strcmp(name, "expect") == 0)) {
+            XXH3_64bits_update(state, text + from, begin - from);
+            from = behind;
+        }
+        key = next;
+    }
+    XXH3_64bits_update(state, text + from, length - from);
+    uint64_t fingerprint = XXH3_64bits_digest(state);
+    XXH3_freeState(state);
+    return fingerprint;
 }
 
 RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
@@ -235,8 +297,9 @@ RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool qui
     strcpy(experiment->path, path);
     rt_path_folder(path, experiment->folder);
     RT_TRY(rt_file_read(path, RT_YAML_MAX_BYTES, &text, &length, error));
-    experiment->fingerprint = XXH3_64bits(text, length);
     RtStatus status = rt_yaml_parse(&yaml, path, text, length, error);
+    bool mapping = status == RT_OK && yaml.nodes->kind == RT_YAML_MAPPING;
+    if (mapping) experiment->fingerprint = fingerprint_of(&yaml, text, length);
     rt_free(text);
     RT_TRY(status);
     status = read_experiment(&yaml, quick, experiment, error);

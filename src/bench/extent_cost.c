@@ -162,7 +162,9 @@ static RtStatus run(const Times *times, Bench *bench, Extents *extents, RtError 
                                        .context = bench,
                                        .work = bench->chords.count,
                                        .seconds = row(times, times->count)};
-    RtStatus status = rt_rounds_run(runners, times->count + (bench->chords.count > 0), times->rounds, error);
+    uint32_t done;
+    RtStatus status =
+        rt_rounds_run(runners, times->count + (bench->chords.count > 0), times->rounds, &done, error);
     rt_free(runners);
     return status;
 }

@@ -3,7 +3,7 @@
 
 static const char *const kind_names[RT_EXTENT_KIND_COUNT] = {"box", "sphere", "obb", "slabs"};
 
-static const RtRounds rounds = {.rounds = 20, .least = 1e-3, .seed = 1};
+static const RtRounds rounds = {.rounds = 20, .most = 20, .least = 1e-3, .seed = 1};
 
 /* ---- measuring ---- */
 

@@ -9,12 +9,14 @@
 #include <math.h>
 #include <string.h>
 
+static const char *const each_names[RT_EACH_COUNT] = {"each_seconds", "each_wall", "each_baseline"};
+
 /* ---- to JSON ---- */
 
-static json_t *header_json(const RtExperiment *experiment) {
-    return json_pack("{s:s, s:o, s:b, s:s}", "experiment", experiment->name, "hash",
+static json_t *header_json(const RtExperiment *experiment, const RtOnly *only) {
+    return json_pack("{s:s, s:o, s:b, s:s, s:i, s:i}", "experiment", experiment->name, "hash",
                      rt_json_hex(experiment->fingerprint), "quick", experiment->quick, "build",
-                     rt_build_identity());
+                     rt_build_identity(), "shard", (int)only->shard, "shards", (int)only->shards);
 }
 
 static json_t *workload_json(const RtWorkloadResult *workload) {
@@ -50,11 +52,25 @@ static json_t *estimate_json(const RtEstimate *e) {
     return json_pack("[f, f, f, f]", e->median, e->low, e->high, e->least);
 }
 
-static json_t *time_json(const RtExperiment *experiment, const RtCell *cell) {
-    return json_pack("{s:I, s:I, s:i, s:o, s:o, s:o, s:s}", "rays", (json_int_t)cell->tally.rays, "rounds",
-                     (json_int_t)cell->rounds, "threads", cell->threads, "seconds",
-                     estimate_json(&cell->seconds), "wall", estimate_json(&cell->wall), "ratio",
-                     estimate_json(&cell->ratio), "baseline", rt_candidate_label(experiment, cell->baseline));
+static json_t *rounds_json(const RtCell *cell, RtEach each) {
+    json_t *list = json_array();
+    for (uint32_t r = 0; r < cell->rounds; r++) {
+        json_array_append_new(list, json_real(rt_cell_rounds(cell, each)[r]));
+    }
+    return list;
+}
+
+static json_t *time_json(const RtResults *results, const RtCell *cell) {
+    const RtMachine *machine = &results->machines[cell->machine];
+    json_t *object = json_pack(
+        "{s:I, s:I, s:i, s:o, s:o, s:o, s:s, s:s, s:s}", "rays", (json_int_t)cell->tally.rays, "rounds",
+        (json_int_t)cell->rounds, "threads", cell->threads, "seconds", estimate_json(&cell->seconds), "wall",
+        estimate_json(&cell->wall), "ratio", estimate_json(&cell->ratio), "baseline",
+        rt_candidate_label(results->experiment, cell->baseline), "host", machine->host, "cpu", machine->cpu);
+    for (int i = 0; i < RT_EACH_COUNT && cell->each; i++) {
+        json_object_set_new(object, each_names[i], rounds_json(cell, (RtEach)i));
+    }
+    return object;
 }
 
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
@@ -75,16 +91,22 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
                          count_json(cell));
     case RT_EVENT_TIME:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
-                         time_json(experiment, cell));
+                         time_json(results, cell));
+    case RT_EVENT_TOO_LARGE:
+        return json_pack("{s:s, s:s, s:s}", "scene", scene, "accel", accel, "too_large",
+                         rt_build_at(results, event->workload, event->candidate)->limit);
+    case RT_EVENT_TOO_LONG:
+        return json_pack("{s:s, s:s, s:s, s:s}", "scene", scene, "accel", accel, "kind", kind, "too_long",
+                         cell->limit);
     }
     return NULL;
 }
 
 /* ---- writing ---- */
 
-RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
-                         RtError *error) {
-    json_t *header = resume ? NULL : header_json(experiment);
+RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment,
+                         const RtOnly *only, bool resume, RtError *error) {
+    json_t *header = resume ? NULL : header_json(experiment, only);
     if (!resume && !header) return rt_fail_memory(error, path, 0);
     RtStatus status = rt_json_lines_open(journal, path, header, error);
     json_decref(header);
@@ -167,7 +189,34 @@ static void take_count(RtCell *cell, const json_t *object) {
     take_tally(&cell->tally, object);
 }
 
-static void take_time(const RtExperiment *experiment, uint32_t workload, RtCell *cell, const json_t *object) {
+/* Journals of earlier versions have no times of rounds. */
+static RtStatus take_rounds(RtCell *cell, const json_t *object, RtError *error) {
+    for (int i = 0; i < RT_EACH_COUNT; i++) {
+        size_t count = json_array_size(json_object_get(object, each_names[i]));
+        if (count != cell->rounds || count == 0 || count > RT_MAX_ROUNDS) return RT_OK;
+    }
+    RT_TRY(rt_cell_make_rounds(cell, error));
+    for (int i = 0; i < RT_EACH_COUNT; i++) {
+        const json_t *list = json_object_get(object, each_names[i]);
+        for (uint32_t r = 0; r < cell->rounds; r++) {
+            rt_cell_rounds(cell, (RtEach)i)[r] = json_number_value(json_array_get(list, r));
+        }
+    }
+    return RT_OK;
+}
+
+static void take_text(char *out, size_t room, const json_t *object, const char *key) {
+    const char *text = json_string_value(json_object_get(object, key));
+    snprintf(out, room, "%s", text ? text : "");
+}
+
+static RtStatus take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object,
+                          RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    RtMachine machine;
+    take_text(machine.host, sizeof machine.host, object, "host");
+    take_text(machine.cpu, sizeof machine.cpu, object, "cpu");
+    cell->machine = rt_results_machine(results, &machine);
     const char *baseline = json_string_value(json_object_get(object, "baseline"));
     uint32_t c = rt_candidate_find(experiment, baseline ? baseline : "", workload);
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
@@ -178,10 +227,11 @@ static void take_time(const RtExperiment *experiment, uint32_t workload, RtCell 
     cell->seconds = get_estimate(object, "seconds");
     cell->wall = get_estimate(object, "wall");
     cell->ratio = get_estimate(object, "ratio");
+    return take_rounds(cell, object, error);
 }
 
 /* Places a line where its labels say; lines about what the experiment does not have are passed over. */
-static void take_line(RtResults *results, const json_t *line) {
+static RtStatus take_line(RtResults *results, const json_t *line, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     const char *scene = json_string_value(json_object_get(line, "scene"));
     const char *accel = json_string_value(json_object_get(line, "accel"));
@@ -189,21 +239,26 @@ static void take_line(RtResults *results, const json_t *line) {
     const json_t *object;
     RtRayKind kind = RT_RAY_PRIMARY;
     uint32_t workload = scene ? rt_workload_find(experiment, scene) : experiment->workload_count;
-    if (workload == experiment->workload_count) return;
+    if (workload == experiment->workload_count) return RT_OK;
     if ((object = json_object_get(line, "workload"))) take_workload(&results->workloads[workload], object);
-    if (!accel) return;
+    if (!accel) return RT_OK;
     uint32_t candidate = rt_candidate_find(experiment, accel, workload);
-    if (candidate > experiment->candidate_count) return;
+    if (candidate > experiment->candidate_count) return RT_OK;
     if ((object = json_object_get(line, "built")))
         take_build(rt_build_at(results, workload, candidate), object);
-    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return;
+    const char *limit = json_string_value(json_object_get(line, "too_large"));
+    if (limit) snprintf(rt_build_at(results, workload, candidate)->limit, RT_MAX_LIMIT, "%s", limit);
+    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return RT_OK;
     RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
-    if ((object = json_object_get(line, "timed"))) take_time(experiment, workload, cell, object);
+    limit = json_string_value(json_object_get(line, "too_long"));
+    if (limit) snprintf(cell->limit, RT_MAX_LIMIT, "%s", limit);
+    object = json_object_get(line, "timed");
+    return object ? take_time(results, workload, cell, object, error) : RT_OK;
 }
 
 static RtStatus check_header(const char *path, const json_t *line, const RtExperiment *experiment,
-                             bool same_build, RtError *error) {
+                             const RtOnly *only, RtError *error) {
     const char *build = json_string_value(json_object_get(line, "build"));
     const char *name = json_string_value(json_object_get(line, "experiment"));
     bool quick = json_is_true(json_object_get(line, "quick"));
@@ -220,7 +275,15 @@ static RtStatus check_header(const char *path, const json_t *line, const RtExper
             "%s: this is a run %s --quick: start over and lose it with --force, or give another --out", path,
             quick ? "with" : "without");
     }
-    if (!same_build || (build && strcmp(build, rt_build_identity()) == 0)) return RT_OK;
+    uint64_t shard = get_integer(line, "shard"), shards = get_integer(line, "shards");
+    if (only && (shard != only->shard || shards != only->shards)) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: this is a run with another --shard (%d/%d): start over and lose it with --force, or "
+            "give another --out",
+            path, (int)shard, (int)shards);
+    }
+    if (!only || (build && strcmp(build, rt_build_identity()) == 0)) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
         "%s: this run was begun by another build (%s; this is %s): start over and lose it with --force, or "
@@ -228,12 +291,12 @@ static RtStatus check_header(const char *path, const json_t *line, const RtExper
         path, build ? build : "unknown", rt_build_identity());
 }
 
-RtStatus rt_journal_load(const char *path, RtResults *results, bool same_build, RtError *error) {
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, RtError *error) {
     json_t *lines;
     RT_TRY(rt_json_lines_load(path, &lines, error));
-    RtStatus status = check_header(path, json_array_get(lines, 0), results->experiment, same_build, error);
+    RtStatus status = check_header(path, json_array_get(lines, 0), results->experiment, only, error);
     for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
-        take_line(results, json_array_get(lines, i));
+        status = take_line(results, json_array_get(lines, i), error);
     }
     json_decref(lines);
     return status;

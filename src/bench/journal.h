@@ -11,16 +11,17 @@
 #include "bench/workload.h"
 
 /* Opens the journal at `path` for appending: with `resume` the one that is there, else a new one that takes
- * its place. Close with rt_json_lines_close, also after a failure. */
-RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment, bool resume,
-                         RtError *error);
+ * its place, which says of which shard it is (`only`). Close with rt_json_lines_close, also after a failure.
+ */
+RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment,
+                         const RtOnly *only, bool resume, RtError *error);
 
 /* Writes down what the event says is known now. */
 RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
                            RtError *error);
 
-/* Fills `results` with all that the journal at `path` knows. Refuses one of another experiment; of another
- * build if `same_build`. */
-RtStatus rt_journal_load(const char *path, RtResults *results, bool same_build, RtError *error);
+/* Fills `results` with all that the journal at `path` knows. Refuses one of another experiment; with `only`,
+ * that is to be gone on with, one of another build or another shard. */
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, RtError *error);
 
 #endif

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/utsname.h>
+#include <unistd.h>
 
 /* The model name of the first processor, "" where /proc does not tell. */
 static void read_cpu(char *out, size_t room) {
@@ -65,4 +66,11 @@ json_t *rt_machine_json(void) {
 const char *rt_build_identity(void) {
     return RT_DIRTY ? RT_VERSION " " RT_COMMIT " with changes, " RT_COMPILER
                     : RT_VERSION " " RT_COMMIT ", " RT_COMPILER;
+}
+
+RtMachine rt_machine_here(void) {
+    RtMachine machine = {"", ""};
+    read_cpu(machine.cpu, sizeof machine.cpu);
+    if (gethostname(machine.host, sizeof machine.host - 1) != 0) machine.host[0] = '\0';
+    return machine;
 }

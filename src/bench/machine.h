@@ -3,6 +3,8 @@
 #ifndef RT_BENCH_MACHINE_H
 #define RT_BENCH_MACHINE_H
 
+#include "bench/results.h"
+
 #include <jansson.h>
 
 /* {"cpu", "simd", "processors", "os", "compiler", "flags", "version", "commit", "dirty"}, and by the name
@@ -13,5 +15,8 @@ json_t *rt_machine_json(void);
 /* Version, commit and dirty flag in one line: only what was measured by one and the same build may be
  * mixed. */
 const char *rt_build_identity(void);
+
+/* This machine. */
+RtMachine rt_machine_here(void);
 
 #endif

@@ -37,9 +37,9 @@ static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set,
     pass->queries = rt_alloc((size_t)pass->threads, sizeof *pass->queries);
     if (counted) pass->tallies = rt_alloc((size_t)pass->threads, sizeof *pass->tallies);
     if (rt_ray_kind_is_occlusion(set->kind)) {
-        pass->blocked = rt_alloc(count, answer);
+        pass->blocked = rt_alloc_unset(count, answer);
     } else {
-        pass->hits = rt_alloc(count, answer);
+        pass->hits = rt_alloc_unset(count, answer);
     }
     if (!pass->queries || (counted && !pass->tallies) || (!pass->hits && !pass->blocked)) {
         return rt_fail_memory(error, "the answers to a ray set", count * answer);
@@ -115,30 +115,97 @@ RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit
     return status;
 }
 
+/* ---- ray by ray ---- */
+
+/* What a chunk of rays costs, each asked by itself. */
+typedef struct RowsPass {
+    Pass pass;
+    RtTally *rows; /* [set->count] */
+} RowsPass;
+
+static RtStatus count_rows(void *context, size_t item, int thread, RtError *error) {
+    (void)error;
+    RowsPass *work = context;
+    const RtRaySet *set = work->pass.set;
+    RtQuery *query = &work->pass.queries[thread];
+    rt_query_begin(query);
+    for (size_t i = item * CHUNK; i < set->count && i < (item + 1) * CHUNK; i++) {
+        RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+        RtHit hit;
+        bool blocked;
+        if (work->pass.blocked) {
+            rt_occluded(query, &set->rays[i], 1, &blocked, tallies);
+        } else {
+            rt_nearest(query, &set->rays[i], 1, &hit, tallies);
+        }
+        work->rows[i] = tallies[set->kind];
+    }
+    return RT_OK;
+}
+
+RtStatus rt_measure_rows(const RtAccel *accel, const RtRaySet *set, int threads, RtRows *rows,
+                         RtError *error) {
+    RowsPass work;
+    *rows = (RtRows){.count = set->count, .tallies = rt_alloc(set->count, sizeof(RtTally))};
+    if (!rows->tallies) return rt_fail_memory(error, "the counts of rays", set->count * sizeof(RtTally));
+    work.rows = rows->tallies;
+    RtStatus status = pass_init(&work.pass, accel, set, threads, false, error);
+    if (status == RT_OK) status = run_pass(&work.pass, error);
+    if (status == RT_OK) {
+        size_t chunks = (set->count + CHUNK - 1) / CHUNK;
+        status = rt_parallel_for(chunks, work.pass.threads, count_rows, &work, error);
+    }
+    if (status == RT_OK) {
+        rows->hits = work.pass.hits;
+        rows->blocked = work.pass.blocked;
+        work.pass.hits = NULL;
+        work.pass.blocked = NULL;
+    }
+    pass_clear(&work.pass);
+    return status;
+}
+
+void rt_rows_clear(RtRows *rows) {
+    rt_free(rows->hits);
+    rt_free(rows->blocked);
+    rt_free(rows->tallies);
+    *rows = (RtRows){0};
+}
+
 /* ---- timing ---- */
 
 static RtStatus run_runner(void *context, RtError *error) {
     return run_pass(context, error);
 }
 
-RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, RtError *error) {
-    Pass *passes = rt_alloc(count, sizeof(Pass));
+RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
+    Pass *pass = rt_alloc(1, sizeof(Pass));
+    *runner = (RtRunner){.run = run_runner,
+                         .context = pass,
+                         .work = (double)timed->set->count,
+                         .parallel = rt_thread_count(threads) > 1,
+                         .seconds = timed->seconds,
+                         .wall = timed->wall};
+    if (!pass) return rt_fail_memory(error, "a pass", sizeof(Pass));
+    return pass_init(pass, timed->accel, timed->set, threads, false, error);
+}
+
+void rt_runner_close(RtRunner *runner) {
+    if (runner->context) pass_clear(runner->context);
+    rt_free(runner->context);
+    *runner = (RtRunner){0};
+}
+
+RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
+                         RtError *error) {
     RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
+    if (!runners) return rt_fail_memory(error, "the rounds", count * sizeof(RtRunner));
     RtStatus status = RT_OK;
-    if (!passes || !runners) status = rt_fail_memory(error, "the rounds", count * sizeof(Pass));
     for (size_t i = 0; status == RT_OK && i < count; i++) {
-        status = pass_init(&passes[i], timed[i].accel, timed[i].set, timing->threads, false, error);
-        runners[i] = (RtRunner){.run = run_runner,
-                                .context = &passes[i],
-                                .work = (double)timed[i].set->count,
-                                .parallel = passes[i].threads > 1,
-                                .seconds = timed[i].seconds,
-                                .wall = timed[i].wall};
+        status = rt_runner_open(&runners[i], &timed[i], timing->threads, error);
     }
-    const RtRounds rounds = {timing->rounds, timing->least, timing->seed};
-    if (status == RT_OK) status = rt_rounds_run(runners, count, &rounds, error);
-    for (size_t i = 0; passes && i < count; i++) pass_clear(&passes[i]);
-    rt_free(passes);
+    if (status == RT_OK) status = rt_rounds_run(runners, count, &timing->rounds, done, error);
+    for (size_t i = 0; i < count; i++) rt_runner_close(&runners[i]);
     rt_free(runners);
     return status;
 }

@@ -37,12 +37,12 @@ static uint64_t stream_of(RtRayKind kind, uint64_t index) {
     return (uint64_t)kind << 56 | index;
 }
 
-static RtStatus set_init(RtRaySet *set, RtRayKind kind, uint64_t count, RtError *error) {
-    *set = (RtRaySet){.kind = kind, .count = count, .rays = rt_alloc(count, sizeof(RtRay))};
+RtStatus rt_rayset_init(RtRaySet *set, RtRayKind kind, uint64_t count, RtError *error) {
+    *set = (RtRaySet){.kind = kind, .count = count, .rays = rt_alloc_unset(count, sizeof(RtRay))};
     return set->rays ? RT_OK : rt_fail_memory(error, "a ray set", count * sizeof(RtRay));
 }
 
-static void seal(RtRaySet *set) {
+void rt_rayset_seal(RtRaySet *set) {
     set->fingerprint = XXH3_64bits(set->rays, set->count * sizeof(RtRay));
 }
 
@@ -66,7 +66,7 @@ static RtStatus join(Recorder *recorder, RtRayKind kind, RtError *error) {
     uint64_t count = 0;
     for (size_t i = 0; i < recorder->tile_count; i++) count += recorder->tiles[i].count[kind];
     RtRaySet *set = &recorder->sets[kind];
-    RT_TRY(set_init(set, kind, count, error));
+    RT_TRY(rt_rayset_init(set, kind, count, error));
     uint64_t used = 0;
     for (size_t i = 0; i < recorder->tile_count; i++) {
         TileRays *tile = &recorder->tiles[i];
@@ -98,7 +98,7 @@ static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtCrossing *
 static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     const RtRaySet *primary = &recorder->sets[RT_RAY_PRIMARY];
     RtRaySet *set = &recorder->sets[RT_RAY_DIFFUSE];
-    RT_TRY(set_init(set, RT_RAY_DIFFUSE, primary->count, error));
+    RT_TRY(rt_rayset_init(set, RT_RAY_DIFFUSE, primary->count, error));
     set->count = 0;
     RtCrossing *room;
     RT_TRY(rt_hit_room(&recorder->scene->geometry, &room, error));
@@ -115,7 +115,7 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
 static RtStatus make_occlusion(Recorder *recorder, RtError *error) {
     const RtRaySet *diffuse = &recorder->sets[RT_RAY_DIFFUSE];
     RtRaySet *set = &recorder->sets[RT_RAY_OCCLUSION];
-    RT_TRY(set_init(set, RT_RAY_OCCLUSION, diffuse->count, error));
+    RT_TRY(rt_rayset_init(set, RT_RAY_OCCLUSION, diffuse->count, error));
     for (uint64_t i = 0; i < diffuse->count; i++) {
         set->rays[i] = diffuse->rays[i];
         set->rays[i].kind = RT_RAY_OCCLUSION;
@@ -166,7 +166,7 @@ static RtStatus make_chunk(void *context, size_t item, int thread, RtError *erro
 
 static RtStatus make_random(Recorder *recorder, RtError *error) {
     uint64_t count = recorder->scene->geometry.object_count ? recorder->recording->random : 0;
-    RT_TRY(set_init(&recorder->sets[RT_RAY_RANDOM], RT_RAY_RANDOM, count, error));
+    RT_TRY(rt_rayset_init(&recorder->sets[RT_RAY_RANDOM], RT_RAY_RANDOM, count, error));
     return rt_parallel_for((count + CHUNK - 1) / CHUNK, recorder->recording->threads, make_chunk, recorder,
                            error);
 }
@@ -187,7 +187,7 @@ static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *fra
     RT_TRY(make_diffuse(recorder, error));
     RT_TRY(make_occlusion(recorder, error));
     RT_TRY(make_random(recorder, error));
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) seal(&recorder->sets[kind]);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_seal(&recorder->sets[kind]);
     return RT_OK;
 }
 
@@ -216,9 +216,9 @@ RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecordin
 
 RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtError *error) {
     assert(stride > 0);
-    RT_TRY(set_init(to, from->kind, (from->count + stride - 1) / stride, error));
+    RT_TRY(rt_rayset_init(to, from->kind, (from->count + stride - 1) / stride, error));
     for (uint64_t i = 0; i < to->count; i++) to->rays[i] = from->rays[i * stride];
-    seal(to);
+    rt_rayset_seal(to);
     return RT_OK;
 }
 
@@ -235,7 +235,7 @@ RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtR
     if (run > limit / 64) run = limit / 64;
     if (run > RT_TILE_BLOCK) run -= run % RT_TILE_BLOCK;
     if (stride <= 1 || run <= 1) return rt_rayset_thin(from, stride ? stride : 1, to, error);
-    RT_TRY(set_init(to, from->kind, limit, error));
+    RT_TRY(rt_rayset_init(to, from->kind, limit, error));
     to->count = 0;
     for (uint64_t group = 0; group * stride * run < from->count; group++) {
         uint64_t first = (group * stride + pick(group, stride)) * run;
@@ -243,7 +243,7 @@ RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtR
             to->rays[to->count++] = from->rays[i];
         }
     }
-    seal(to);
+    rt_rayset_seal(to);
     return RT_OK;
 }
 

@@ -42,6 +42,10 @@ RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtE
  * blocks of 8 x 8 samples are kept. */
 RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error);
 
+/* A set of `count` rays for the caller to fill, all of them zero, and what is to follow: its fingerprint. */
+RtStatus rt_rayset_init(RtRaySet *set, RtRayKind kind, uint64_t count, RtError *error);
+void rt_rayset_seal(RtRaySet *set);
+
 void rt_rayset_clear(RtRaySet *set);
 
 /* The sphere through the corners of `box`; the unit sphere for the empty box. */

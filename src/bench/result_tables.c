@@ -3,8 +3,10 @@
 
 #include "accel/structure_json.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 typedef RtResultRow Row;
 
@@ -22,6 +24,17 @@ static RtField label_of(const Row *r) {
     return field;
 }
 
+static const char *kind_of(const Row *r) {
+    return rt_experiment_kind_name(r->results->experiment, r->kind);
+}
+
+/* A label that is too long to stand beside figures stands on a line before them. */
+static RtField short_label_of(const Row *r) {
+    char label[RT_MAX_EYE_LABEL];
+    rt_result_eye_label(r, label);
+    return rt_field_print("%s", strlen(label) > RT_EYE_WIDTH ? " " : label);
+}
+
 static RtField ratio_of(const Row *r) {
     bool ends = r->which != RT_TOTALS;
     return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN,
@@ -31,6 +44,11 @@ static RtField ratio_of(const Row *r) {
 static RtField baseline_of(const Row *r) {
     if (!r->cell->timed) return rt_field_missing();
     return rt_field_text(rt_candidate_label(r->results->experiment, r->cell->baseline));
+}
+
+void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
+    snprintf(out, RT_MAX_EYE_LABEL, "%s%s", rt_candidate_label(r->results->experiment, r->candidate),
+             ray_stride_of(r) > 1 ? " *" : "");
 }
 
 /* A counter, unless it is not known how often it counted a ray. */
@@ -54,6 +72,10 @@ static const void *build_of(const void *row) {
     return &((const Row *)row)->build->shape.build;
 }
 
+static double each_ns(const Row *r, RtEach each) {
+    return 1e9 * rt_cell_rounds(r->cell, each)[r->round];
+}
+
 /* ---- columns ---- */
 
 #define TIMED(figure) (r->cell->timed ? (figure) : (double)NAN)
@@ -67,7 +89,7 @@ static const void *build_of(const void *row) {
     X(height, "height", integer, "pixels", "height of the frame", r->scene->height)                          \
     X(corners, "corners", flag, "", "samples at pixel corners, not centres", r->setup->corners)              \
     X(depth, "depth", integer, "", "levels of the ray tree, the primary ray being one", r->setup->depth)     \
-    X(kind, "kind", text, "", "kind of the rays", rt_ray_kind_name(r->kind))                                 \
+    X(kind, "kind", text, "", "kind of the rays", kind_of(r))                                                \
     X(set_rays, "set_rays", integer, "", "rays in the set, after the limit", r->scene->rays[r->kind])        \
     X(set_hash, "set_hash", hash, "", "fingerprint of the set", r->scene->ray_fingerprints[r->kind])         \
     X(accel, "accelerator", text, "", "the accelerator's label in the experiment; (again): a null run",      \
@@ -105,6 +127,8 @@ static const void *build_of(const void *row) {
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
       known(r->cell->tally.steps, r->all.steps))                                                             \
     X(differ, "differ", integer, "", "answers unlike the baseline's; 0 if exact", r->cell->differ)           \
+    X(host, "host", text, "", "the machine that timed it", r->results->machines[r->cell->machine].host)      \
+    X(cpu, "cpu", text, "", "its processor", r->results->machines[r->cell->machine].cpu)                     \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
     X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
     X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->all.steps)                                   \
@@ -118,7 +142,20 @@ static const void *build_of(const void *row) {
       1e-6 * r->all.steps / r->all.seconds)                                                                  \
     X(mtests_per_s, "mtests_per_s", real6, "million/s",                                                      \
       "object tests a second: mrays_per_s by object tests per ray",                                          \
-      1e-6 * r->all.object_tests / r->all.seconds)
+      1e-6 * r->all.object_tests / r->all.seconds)                                                           \
+    X(eye_label, "accelerator", text, "", "the label, where there is room", short_label_of(r))               \
+    X(eye_tests, "tests", figure, "", "object tests per ray", r->all.object_tests)                           \
+    X(eye_extents, "ext.", figure, "", "extent tests per ray", r->all.extent_tests)                          \
+    X(eye_steps, "steps", figure, "", "steps per ray", r->all.steps)                                         \
+    X(eye_mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds)                        \
+    X(eye_ratio, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                       \
+    X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
+    X(round_ns, "ns", real6, "ns", "processor time per ray in it, by the clock on several threads",          \
+      each_ns(r, RT_EACH_SECONDS))                                                                           \
+    X(round_wall_ns, "wall_ns", real6, "ns", "time per ray by the clock", each_ns(r, RT_EACH_WALL))          \
+    X(round_baseline_ns, "baseline_ns", real6, "ns",                                                         \
+      "the baseline's in this round, on the same rays, as round_ns; over that, the ratio",                   \
+      each_ns(r, RT_EACH_BASELINE))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
@@ -127,7 +164,7 @@ static const RtColumnGroup counts[] = {
     {NULL, rt_tally_columns + 1, RT_TALLY_COUNTER_COUNT - 1, tally_of},
     {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of},
     RT_ONE(columns, bytes),
-    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},
 };
 
 static const RtColumnGroup times[] = {
@@ -135,27 +172,39 @@ static const RtColumnGroup times[] = {
     RT_FROM_TO(columns, threads, ratio_high),
     RT_FROM_TO(columns, build_seconds, bytes),
     RT_FROM_TO(columns, object_tests, differ),
-    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COUNT, structure_of},
+    {NULL, rt_structure_columns + RT_SHAPE_COLUMNS, RT_PREDICTION_COLUMNS, structure_of},
+    RT_FROM_TO(columns, host, cpu),
+};
+
+static const RtColumnGroup each_round[] = {
+    RT_ONE(columns, scene),
+    RT_ONE(columns, kind),
+    RT_ONE(columns, accel),
+    RT_ONE(columns, baseline),
+    RT_FROM_TO(columns, round, round_baseline_ns),
 };
 
 static const RtColumnGroup bench[] = {
     RT_ONE(columns, scene_spec),
-    RT_ONE(columns, spec),
+    RT_FROM_TO(columns, accel, ray_stride),
     RT_ONE(columns, kind),
     RT_FROM_TO(columns, rays, bytes),
     {"structure", rt_structure_columns, RT_STRUCTURE_COLUMNS, structure_of},
     {"structure.build", rt_tally_columns, RT_TALLY_COUNTER_COUNT, build_of},
     {"counts", rt_tally_columns, RT_TALLY_COUNTER_COUNT, known_tally_of},
-    RT_ONE(columns, mrays_per_s),
+    RT_FROM_TO(columns, threads, mrays_per_s),
     RT_FROM_TO(columns, msteps_per_s, mtests_per_s),
     RT_FROM_TO(columns, baseline, ratio_high),
-    RT_ONE(columns, coverage),
 };
 
-static const RtColumnGroup null_runs[] = {RT_ONE(columns, kind), RT_FROM_TO(columns, ratio, straddles_1),
-                                          RT_ONE(columns, coverage)};
+static const RtColumnGroup null_runs[] = {RT_ONE(columns, scene_spec), RT_ONE(columns, kind),
+                                          RT_FROM_TO(columns, accel, spec), RT_ONE(columns, rays),
+                                          RT_FROM_TO(columns, build_seconds, straddles_1)};
 
-/* The last three are for HTML, which has room. */
+static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, eye_ratio)};
+
+static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label), RT_FROM_TO(columns, build_ms, mb)};
+
 static const RtColumnGroup cells[] = {
     RT_ONE(columns, accel),         RT_ONE(columns, kind),
     RT_ONE(columns, rays),          RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
@@ -170,10 +219,18 @@ static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, r
 
 /* A workload after the other, in each an accelerator after the other, the null run last, in each all kinds;
  * for the eye and bench, of one workload, a kind after the other. */
+static bool is_by_workload(RtResultTable which) {
+    return which <= RT_ROUNDS;
+}
+
 static void find(Row *r, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const size_t kinds = e->kind_count, candidates = e->candidate_count + 1;
-    bool by_workload = r->which <= RT_TIMES;
+    bool by_workload = is_by_workload(r->which);
+    if (r->which == RT_ROUNDS) {
+        r->round = (uint32_t)(i % RT_MAX_ROUNDS);
+        i /= RT_MAX_ROUNDS;
+    }
     r->kind = e->kinds[by_workload ? i % kinds : i / candidates];
     r->candidate = (uint32_t)((by_workload ? i / kinds : i) % candidates);
     if (by_workload) r->workload = (uint32_t)(i / kinds / candidates);
@@ -190,12 +247,28 @@ static double per_ray(const Row *r, uint64_t counter) {
 static RtTotal all_of(const Row *r) {
     const RtTally *tally = &r->cell->tally;
     if (r->which == RT_TOTALS) return rt_results_total(r->results, r->workload, r->candidate);
-    return (RtTotal){tally->rays,
-                     per_ray(r, tally->object_tests),
-                     per_ray(r, tally->extent_tests),
-                     per_ray(r, tally->steps),
-                     TIMED(r->cell->seconds.median),
-                     TIMED(r->cell->ratio.median)};
+    return (RtTotal){.rays = tally->rays,
+                     .object_tests = per_ray(r, tally->object_tests),
+                     .extent_tests = per_ray(r, tally->extent_tests),
+                     .steps = per_ray(r, tally->steps),
+                     .seconds = TIMED(r->cell->seconds.median),
+                     .ratio = TIMED(r->cell->ratio.median)};
+}
+
+/* One of the baseline's candidates that is not the fastest of them on these rays. */
+static bool is_lost(const Row *r, const RtCell *cell) {
+    return cell->timed && r->candidate < r->results->experiment->candidate_count &&
+           rt_candidate_is_baseline(r->results->experiment, r->candidate) && cell->baseline != r->candidate;
+}
+
+/* Whether any of the candidate's cells is for the eye. */
+static bool is_shown(const Row *r) {
+    for (uint32_t k = 0; k < r->results->experiment->kind_count; k++) {
+        const RtCell *cell =
+            rt_cell_at(r->results, r->workload, r->candidate, r->results->experiment->kinds[k]);
+        if ((cell->counted || cell->timed) && !is_lost(r, cell)) return true;
+    }
+    return false;
 }
 
 static const void *row_at(void *context, size_t i) {
@@ -203,14 +276,14 @@ static const void *row_at(void *context, size_t i) {
     find(r, i);
     const bool null = r->candidate == r->results->experiment->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
-    const bool lost = timed && !null && rt_candidate_is_baseline(r->results->experiment, r->candidate) &&
-                      r->cell->baseline != r->candidate;
     const bool there[RT_RESULT_TABLE_COUNT] = {
         [RT_COUNTS] = counted && r->build->counts,
         [RT_TIMES] = timed,
+        [RT_ROUNDS] = timed && r->cell->each && r->round < r->cell->rounds,
         [RT_BENCH] = counted && !null,
         [RT_NULL_RUNS] = timed && null,
-        [RT_CELLS] = (counted || timed) && !lost,
+        [RT_CELLS] = (counted || timed) && !is_lost(r, r->cell),
+        [RT_STRUCTURES] = is_shown(r) && !null && i < r->results->experiment->candidate_count,
         [RT_CELLS_MORE] = counted || timed,
         [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->candidate_count,
     };
@@ -219,80 +292,55 @@ static const void *row_at(void *context, size_t i) {
     return r;
 }
 
+/* ---- what is swept ---- */
+
+static RtField get_swept(const void *row, const RtTableColumn *column) {
+    const Row *r = row;
+    const RtSweptKey *key = &r->swept[column->key];
+    const char *value = rt_swept_of(r->results->experiment, key, r->workload, r->candidate);
+    double number;
+    if (!value || !key->number) return rt_field_text(value);
+    return rt_swept_number(value, &number) ? rt_field_real(number) : rt_field_missing();
+}
+
+/* A column for each swept parameter at the end, where those of all experiments are alike up to there. */
+static void add_swept(RtTable *table, Row *row) {
+    row->swept_count = rt_experiment_swept(row->results->experiment, row->swept);
+    for (uint32_t i = 0; i < row->swept_count; i++) {
+        const RtSweptKey *key = &row->swept[i];
+        char *name = row->swept_names[i];
+        snprintf(name, sizeof row->swept_names[i], "%s.%s", key->scene ? "scene" : "accel", key->key);
+        row->swept_columns[i] = (RtTableColumn){.id = name,
+                                                .name = name,
+                                                .unit = "",
+                                                .meaning = "the swept parameter",
+                                                .get = get_swept,
+                                                .form = key->number ? RT_FORM_real9 : RT_FORM_text,
+                                                .key = (int)i};
+    }
+    if (!row->swept_count) return;
+    assert(table->group_count < RT_MAX_RESULT_GROUPS);
+    memcpy(row->groups, table->groups, table->group_count * sizeof *row->groups);
+    row->groups[table->group_count++] = (RtColumnGroup){NULL, row->swept_columns, row->swept_count, NULL};
+    table->groups = row->groups;
+}
+
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
-        [RT_COUNTS] = {RT_GROUPS(counts)}, [RT_TIMES] = {RT_GROUPS(times)},
-        [RT_BENCH] = {RT_GROUPS(bench)},   [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},
-        [RT_CELLS] = {RT_GROUPS(cells)},   [RT_CELLS_MORE] = {RT_GROUPS(cells)},
+        [RT_COUNTS] = {RT_GROUPS(counts)},         [RT_TIMES] = {RT_GROUPS(times)},
+        [RT_ROUNDS] = {RT_GROUPS(each_round)},     [RT_BENCH] = {RT_GROUPS(bench)},
+        [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},   [RT_CELLS] = {RT_GROUPS(for_the_eye)},
+        [RT_STRUCTURES] = {RT_GROUPS(structures)}, [RT_CELLS_MORE] = {RT_GROUPS(cells)},
         [RT_TOTALS] = {RT_GROUPS(totals)},
     };
     const RtExperiment *e = row->results->experiment;
-    const size_t workloads = which <= RT_TIMES ? e->workload_count : 1;
+    const size_t workloads = is_by_workload(which) ? e->workload_count : 1;
     RtTable table = tables[which];
-    if (which == RT_CELLS) table.group_count -= 3;
     table.row_count = workloads * (e->candidate_count + 1) * e->kind_count;
+    if (which == RT_ROUNDS) table.row_count *= RT_MAX_ROUNDS;
     table.row = row_at;
     table.context = row;
     row->which = which;
+    if (which <= RT_BENCH) add_swept(&table, row);
     return table;
-}
-
-/* ---- for the eye ---- */
-
-void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]) {
-    double coverage = rt_interval_coverage(experiment->rounds);
-    snprintf(out, RT_MAX_INTERVAL_TITLE, "%.3g %%",
-             experiment->rounds >= RT_FULL_ROUNDS ? 95 : 100 * coverage);
-}
-
-void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {
-    const RtExperiment *experiment = results->experiment;
-    char title[RT_MAX_INTERVAL_TITLE];
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        const RtWorkloadResult *workload = &results->workloads[t];
-        RtResultRow row = {.results = results, .workload = t};
-        RtTable table = rt_result_table(which, &row);
-        if (!workload->known) continue;
-        fprintf(out, "\n%s: %" PRIu32 " objects, %" PRIu32 "x%" PRIu32 ", depth %" PRIu32,
-                experiment->workloads[t].label, workload->objects, workload->width, workload->height,
-                experiment->workloads[t].depth);
-        if (which == RT_CELLS && rt_cell_at(results, t, experiment->baseline, experiment->kinds[0])->timed) {
-            rt_interval_title(experiment, title);
-            fprintf(out, "; intervals of %s", title);
-        }
-        fputc('\n', out);
-        rt_table_text(&table, out);
-        if (which == RT_CELLS && experiment->baseline_count > 1) {
-            fprintf(out,
-                    "Ratios refer to %s: of %" PRIu32 " settings the fastest for each kind, shown here.\n",
-                    experiment->best, experiment->baseline_count);
-        }
-    }
-}
-
-void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
-    const size_t room = RT_MAX_SENTENCE;
-    uint32_t runs, straddling;
-    rt_null_verdict(results, &runs, &straddling);
-    out[0] = '\0';
-    if (runs == 0) return;
-    int n =
-        snprintf(out, room, "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " intervals straddle 1",
-                 results->experiment->candidates[results->experiment->baseline].label, straddling, runs);
-    uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
-    double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
-    if (misses == 0) {
-        n += snprintf(out + n, room - (size_t)n, ", as they should.");
-    } else if (misses <= 1 + 2 * chance * runs) {
-        n += snprintf(out + n, room - (size_t)n, "; %.2g %% of all may miss by chance.", 100 * chance);
-    } else {
-        n += snprintf(out + n, room - (size_t)n,
-                      ": this machine was not quiet; take small differences for noise.");
-    }
-    if (rounds >= RT_FULL_ROUNDS) return;
-    snprintf(out + n, room - (size_t)n,
-             " Rounds: %" PRIu32
-             ", too few for 95 %%; an interval is all that was measured and holds the median in "
-             "%.3g %%. Take %d or more.",
-             rounds, 100 * coverage, RT_FULL_ROUNDS);
 }

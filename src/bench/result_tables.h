@@ -15,13 +15,18 @@ typedef enum RtResultTable {
      * seconds, bytes; and tests and steps as counted here, which for an accelerator that is not in counts.csv
      * may be others elsewhere. */
     RT_TIMES,
+    /* rounds.csv: a row per round of a timed cell, null runs included. */
+    RT_ROUNDS,
     RT_BENCH,      /* "rows" of bench --json: of each cell that was counted */
     RT_NULL_RUNS,  /* "null_runs" there */
     RT_CELLS,      /* for the eye: one workload by accelerator and ray kind; of a best of only the best */
-    RT_CELLS_MORE, /* the same with more columns, and all rows */
+    RT_STRUCTURES, /* for the eye: of each accelerator in it, what its structure takes */
+    RT_CELLS_MORE, /* cells with more columns, and all rows */
     RT_TOTALS,     /* one workload by accelerator, all kinds together */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;
+
+#define RT_MAX_RESULT_GROUPS 16
 
 /* The row at hand. */
 typedef struct RtResultRow {
@@ -30,18 +35,32 @@ typedef struct RtResultRow {
     uint32_t workload; /* of tables for the eye, and of bench: the one that they show */
     uint32_t candidate;
     RtRayKind kind;
+    uint32_t round; /* of RT_ROUNDS */
     const RtWorkload *setup;
     const RtWorkloadResult *scene;
     const RtBuildResult *build;
     const RtCell *cell;
     RtTotal all; /* of the cell, or of RT_TOTALS */
+    uint32_t swept_count;
+    RtSweptKey swept[RT_MAX_SWEPT_KEYS]; /* what the experiment sweeps */
+    char swept_names[RT_MAX_SWEPT_KEYS]
+                    [RT_MAX_NAME + 8]; /* and its columns, at the end of CSV and of bench */
+    RtTableColumn swept_columns[RT_MAX_SWEPT_KEYS];
+    RtColumnGroup groups[RT_MAX_RESULT_GROUPS];
 } RtResultRow;
 
 /* `row` stays where it is as long as the table, which alone uses it, with its results, and for the eye its
  * workload, filled in. */
 RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 
-/* RT_CELLS or RT_TOTALS of each workload that is known. */
+/* How a row is called for the eye: its label, and a star if it is measured on a part of the rays. One of more
+ * than RT_EYE_WIDTH characters stands on a line of its own. */
+#define RT_EYE_WIDTH     24
+#define RT_MAX_EYE_LABEL (RT_MAX_LABEL + 16)
+void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
+
+/* RT_CELLS, in 80 columns, with RT_STRUCTURES and what the figures refer to; or RT_TOTALS; of each workload
+ * that is known. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
 
 /* "12 of 12 null runs straddle 1.", and what to think of it otherwise; and where rounds are too few, what

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 #include <math.h>
+#include <string.h>
 
 RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error) {
     size_t workloads = experiment->workload_count, builds = workloads * (experiment->candidate_count + 1);
@@ -11,15 +12,33 @@ RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtE
     results->workloads = rt_alloc(workloads, sizeof(RtWorkloadResult));
     results->builds = rt_alloc(builds, sizeof(RtBuildResult));
     results->cells = rt_alloc(builds * RT_RAY_KIND_COUNT, sizeof(RtCell));
-    if (results->workloads && results->builds && results->cells) return RT_OK;
+    results->machines = rt_alloc(RT_MAX_MACHINES, sizeof(RtMachine));
+    results->machine_count = 1;
+    if (results->workloads && results->builds && results->cells && results->machines) return RT_OK;
     return rt_fail_memory(error, "the results", builds * RT_RAY_KIND_COUNT * sizeof(RtCell));
 }
 
 void rt_results_clear(RtResults *results) {
+    const RtExperiment *e = results->experiment;
+    size_t cells =
+        results->cells ? e->workload_count * (e->candidate_count + 1) * (size_t)RT_RAY_KIND_COUNT : 0;
+    for (size_t i = 0; i < cells; i++) rt_free(results->cells[i].each);
     rt_free(results->workloads);
     rt_free(results->builds);
     rt_free(results->cells);
+    rt_free(results->machines);
     *results = (RtResults){0};
+}
+
+uint32_t rt_results_machine(RtResults *results, const RtMachine *machine) {
+    uint32_t m = 0;
+    for (; m < results->machine_count; m++) {
+        const RtMachine *known = &results->machines[m];
+        if (strcmp(known->host, machine->host) == 0 && strcmp(known->cpu, machine->cpu) == 0) return m;
+    }
+    if (m == RT_MAX_MACHINES) return 0;
+    results->machines[results->machine_count++] = *machine;
+    return m;
 }
 
 static size_t build_index(const RtResults *results, uint32_t workload, uint32_t candidate) {
@@ -34,6 +53,16 @@ RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candida
     return &results->cells[build_index(results, workload, candidate) * RT_RAY_KIND_COUNT + (size_t)kind];
 }
 
+RtStatus rt_cell_make_rounds(RtCell *cell, RtError *error) {
+    rt_free(cell->each);
+    cell->each = rt_alloc((size_t)RT_EACH_COUNT * cell->rounds, sizeof(double));
+    return cell->each ? RT_OK : rt_fail_memory(error, "the times of rounds", cell->rounds * sizeof(double));
+}
+
+double *rt_cell_rounds(const RtCell *cell, RtEach each) {
+    return cell->each + (size_t)each * cell->rounds;
+}
+
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate) {
     return candidate < experiment->candidate_count ? experiment->candidates[candidate].label
                                                    : experiment->again;
@@ -46,6 +75,23 @@ void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddl
             const RtCell *cell = rt_cell_at(results, t, results->experiment->candidate_count, (RtRayKind)k);
             *runs += cell->timed;
             *straddling += cell->timed && rt_estimate_holds(&cell->ratio, 1);
+        }
+    }
+}
+
+void rt_print_limits(const RtResults *results, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            const char *scene = experiment->workloads[t].label, *accel = experiment->candidates[c].label;
+            const RtBuildResult *build = rt_build_at(results, t, c);
+            if (*build->limit) fprintf(out, "Left out: %s on %s: %s\n", accel, scene, build->limit);
+            for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+                const RtCell *cell = rt_cell_at(results, t, c, (RtRayKind)k);
+                if (!*cell->limit) continue;
+                fprintf(out, "Left out: %s on %s, %s rays: %s\n", accel, scene,
+                        rt_ray_kind_name((RtRayKind)k), cell->limit);
+            }
         }
     }
 }
@@ -69,7 +115,8 @@ static void add(Mean *mean, double value, double weight) {
 }
 
 RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0}, baseline = {0};
+    Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0}, baseline = {0}, low = {0},
+         high = {0};
     uint64_t rays = 0;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         RtRayKind kind = (RtRayKind)k;
@@ -82,6 +129,8 @@ RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t c
         add(&steps, rt_cell_per_ray(results, workload, candidate, kind, tally->steps), weight);
         if (!cell->timed) continue;
         add(&seconds, cell->seconds.median, weight);
+        add(&low, cell->seconds.low, weight);
+        add(&high, cell->seconds.high, weight);
         add(&baseline, cell->ratio.median * cell->seconds.median, weight);
     }
     /* 0 / 0 is NAN: not known. */
@@ -90,5 +139,7 @@ RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t c
                      .extent_tests = extent_tests.sum / extent_tests.weight,
                      .steps = steps.sum / steps.weight,
                      .seconds = seconds.sum / seconds.weight,
-                     .ratio = baseline.sum / seconds.sum};
+                     .ratio = baseline.sum / seconds.sum,
+                     .seconds_low = low.sum / low.weight,
+                     .seconds_high = high.sum / high.weight};
 }

@@ -8,6 +8,10 @@
 #include "bench/experiment.h"
 #include "bench/statistics.h"
 
+#include <stdio.h>
+
+#define RT_MAX_LIMIT 64
+
 typedef struct RtWorkloadResult {
     bool known;   /* the scene was opened and its rays recorded */
     bool skipped; /* optional, and its file is missing */
@@ -22,41 +26,67 @@ typedef struct RtBuildResult {
     bool known, exact, counts;    /* as in RtAccel */
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
     double seconds;               /* median of up to three builds */
+    char limit[RT_MAX_LIMIT];     /* which limit it went beyond, so that no cell of it is measured; else "" */
     RtDescription shape;
 } RtBuildResult;
 
+/* Times of each round, seconds a ray: by the clock of the comparison, on the wall clock, and the baseline's
+ * on the same rays, by the clock of the comparison. */
+typedef enum RtEach { RT_EACH_SECONDS, RT_EACH_WALL, RT_EACH_BASELINE, RT_EACH_COUNT } RtEach;
+
 typedef struct RtCell {
     bool counted, timed;
-    RtTally tally;   /* tally.rays: of the thinned set */
-    uint64_t differ; /* answers unlike the baseline's; of an exact accelerator always 0 */
+    char limit[RT_MAX_LIMIT]; /* which limit it would go beyond, so that it is not measured; else "" */
+    RtTally tally;            /* tally.rays: of the thinned set */
+    uint64_t differ;          /* answers unlike the baseline's; of an exact accelerator always 0 */
     uint32_t rounds;
     int threads;        /* of the timing */
+    uint32_t machine;   /* that timed it: one of RtResults.machines */
     RtEstimate seconds; /* a ray: processor time on one thread, wall time on several */
     RtEstimate wall;    /* a ray, on the wall clock */
     RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
+    double *each;       /* [RT_EACH_COUNT][rounds] owned: every round's time; NULL: not kept */
     uint32_t baseline; /* the candidate that is: where there are several, the fastest of them on these rays */
 } RtCell;
+
+/* Where cells were timed. */
+#define RT_MAX_MACHINES 256
+typedef struct RtMachine {
+    char host[64], cpu[128]; /* "": not known */
+} RtMachine;
 
 typedef struct RtResults {
     const RtExperiment *experiment; /* borrowed */
     RtWorkloadResult *workloads;    /* [workload_count] */
     RtBuildResult *builds;          /* see rt_build_at */
     RtCell *cells;                  /* see rt_cell_at */
+    RtMachine *machines;            /* [RT_MAX_MACHINES]; the first is not known */
+    uint32_t machine_count;
 } RtResults;
 
 /* All unknown. Clear with rt_results_clear, also after a failure. */
 RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtError *error);
 void rt_results_clear(RtResults *results);
 
+/* The place of a machine among those of the results, which it joins; 0 where they are too many. */
+uint32_t rt_results_machine(RtResults *results, const RtMachine *machine);
+
 /* Places in the arrays; candidate = candidate_count is the null run. */
 RtBuildResult *rt_build_at(const RtResults *results, uint32_t workload, uint32_t candidate);
 RtCell *rt_cell_at(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
+
+/* Room for the times of the cell's `rounds` rounds; and those of one sort, [rounds]. */
+RtStatus rt_cell_make_rounds(RtCell *cell, RtError *error);
+double *rt_cell_rounds(const RtCell *cell, RtEach each);
 
 /* The candidate's label, that of the baseline and " (again)" for the null run. */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
 
 /* How many of the null runs there are, and how many of them have an interval with 1 inside. */
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
+
+/* A line for each limit that was hit, and what was left out; nothing where there is none. */
+void rt_print_limits(const RtResults *results, FILE *out);
 
 /* What a candidate's cells of one workload add up to. Per ray means per ray of all kinds together, each kind
  * with the weight of its unthinned set, so that thinned and full measurements compare. NAN where unknown. */
@@ -65,6 +95,8 @@ typedef struct RtTotal {
     double object_tests, extent_tests, steps; /* a ray */
     double seconds;                           /* a ray */
     double ratio;                             /* of throughput to the baseline's on the same rays */
+    double seconds_low,
+        seconds_high; /* ends of the intervals of all kinds, weighted alike: rather too wide */
 } RtTotal;
 
 RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate);

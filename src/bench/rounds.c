@@ -10,23 +10,25 @@
 
 enum { MOST_REPEATS = 1000000 };
 
-/* Runs `repeats` times; seconds of both clocks for all of them. */
-static RtStatus time_runner(const RtRunner *runner, double *seconds, double *wall, RtError *error) {
+RtStatus rt_runner_time(const RtRunner *runner, uint32_t repeats, double *seconds, double *wall,
+                        RtError *error) {
     double processor_start = rt_thread_seconds(), wall_start = rt_wall_seconds();
-    for (uint32_t i = 0; i < runner->repeats; i++) RT_TRY(runner->run(runner->context, error));
+    for (uint32_t i = 0; i < repeats; i++) RT_TRY(runner->run(runner->context, error));
     *wall = rt_wall_seconds() - wall_start;
     *seconds = runner->parallel ? *wall : rt_thread_seconds() - processor_start;
     return RT_OK;
+}
+
+uint32_t rt_runner_repeats(double seconds, double least) {
+    return (uint32_t)fmin(fmax(ceil(least / fmax(seconds, 1e-9)), 1), MOST_REPEATS);
 }
 
 /* Brings code and data into the caches, and finds how often each must run to last `least` seconds. */
 static RtStatus warm_up(RtRunner *runners, size_t count, double least, RtError *error) {
     for (size_t i = 0; i < count; i++) {
         double seconds, wall;
-        runners[i].repeats = 1;
-        RT_TRY(time_runner(&runners[i], &seconds, &wall, error));
-        seconds = seconds > 1e-9 ? seconds : 1e-9;
-        runners[i].repeats = (uint32_t)fmin(fmax(ceil(least / seconds), 1), MOST_REPEATS);
+        RT_TRY(rt_runner_time(&runners[i], 1, &seconds, &wall, error));
+        runners[i].repeats = rt_runner_repeats(seconds, least);
     }
     return RT_OK;
 }
@@ -40,28 +42,31 @@ static void shuffle(size_t *order, size_t count, RtRandom *random) {
 }
 
 static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const RtRounds *rounds,
-                           RtError *error) {
+                           uint32_t *done, RtError *error) {
     RtRandom random = rt_random(rounds->seed, 0);
     for (size_t i = 0; i < count; i++) order[i] = i;
     RT_TRY(warm_up(runners, count, rounds->least, error));
-    for (uint32_t round = 0; round < rounds->rounds; round++) {
+    for (uint32_t round = 0; round < rounds->most; round++) {
+        if (round >= rounds->rounds && (!rounds->enough || rounds->enough(rounds->context, round))) break;
         shuffle(order, count, &random);
         for (size_t i = 0; i < count; i++) {
             RtRunner *runner = &runners[order[i]];
             double seconds, wall, work = runner->repeats * runner->work;
-            RT_TRY(time_runner(runner, &seconds, &wall, error));
+            RT_TRY(rt_runner_time(runner, runner->repeats, &seconds, &wall, error));
             runner->seconds[round] = seconds / work;
             if (runner->wall) runner->wall[round] = wall / work;
         }
+        *done = round + 1;
     }
     return RT_OK;
 }
 
-RtStatus rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *rounds, RtError *error) {
-    assert(rounds->rounds >= 1 && rounds->rounds <= RT_MAX_ROUNDS);
+RtStatus rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *rounds, uint32_t *done,
+                       RtError *error) {
+    assert(rounds->rounds >= 1 && rounds->rounds <= rounds->most && rounds->most <= RT_MAX_ROUNDS);
     size_t *order = rt_alloc(count, sizeof(size_t));
     if (!order) return rt_fail_memory(error, "the rounds", count * sizeof(size_t));
-    RtStatus status = run_rounds(runners, order, count, rounds, error);
+    RtStatus status = run_rounds(runners, order, count, rounds, done, error);
     rt_free(order);
     return status;
 }

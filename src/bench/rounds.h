@@ -18,17 +18,30 @@ typedef struct RtRunner {
     void *context;
     double work;      /* pieces of work in one run, > 0: times are per piece */
     bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
-    double *seconds;  /* [rounds] out: by the clock of the comparison, else the thread's processor time */
-    double *wall;     /* [rounds] out: by the wall clock; NULL if nobody asks */
+    double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */
+    double *wall;     /* [most] out: by the wall clock; NULL if nobody asks */
     uint32_t repeats; /* scratch: runs in a round */
 } RtRunner;
 
 typedef struct RtRounds {
-    uint32_t rounds; /* 1..RT_MAX_ROUNDS, after one more that warms up */
+    uint32_t rounds; /* 1..most, after one more that warms up */
+    uint32_t most;   /* ..RT_MAX_ROUNDS: as many as are run unless `enough` ends it before */
     double least;    /* seconds: what is shorter is repeated within a round until it takes this long */
     uint64_t seed;   /* of the order */
+    /* Asked from `rounds` rounds on, after each, with their number, whether these will do. NULL: they do. */
+    bool (*enough)(void *context, uint32_t rounds);
+    void *context;
 } RtRounds;
 
-RtStatus rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *rounds, RtError *error);
+/* *done gets the number of rounds. */
+RtStatus rt_rounds_run(RtRunner *runners, size_t count, const RtRounds *rounds, uint32_t *done,
+                       RtError *error);
+
+/* Runs one of them `repeats` times: seconds by both clocks for all of that. */
+RtStatus rt_runner_time(const RtRunner *runner, uint32_t repeats, double *seconds, double *wall,
+                        RtError *error);
+
+/* How often a run that takes `seconds` is to be repeated to last `least` seconds. */
+uint32_t rt_runner_repeats(double seconds, double least);
 
 #endif

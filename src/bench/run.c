@@ -37,7 +37,7 @@ static RtStatus take_directory(RtRun *run, RtError *error) {
     RT_TRY(rt_run_path(run, RT_RUN_JOURNAL, path, error));
     /* A journal tells more of itself than that it is there. */
     if (options->start != RT_START_ANEW && rt_file_exists(path)) {
-        RT_TRY(rt_journal_load(path, run->results, true, error));
+        RT_TRY(rt_journal_load(path, run->results, &options->workload.only, error));
     }
     return rt_earlier_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
@@ -59,6 +59,7 @@ static RtStatus open_scenes(RtRun *run, RtError *error) {
     for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
         uint32_t slot = slot_of(run->experiment, t);
         char image[RT_MAX_PATH];
+        if (!rt_only_scene(&run->options->workload.only, run->experiment, t)) continue;
         RT_TRY(image_path(run, t, image, error));
         bool drawn = run->resumed && rt_file_exists(image);
         if (run->opened[slot] || (drawn && rt_workload_is_done(run->results, t, &run->options->workload)))
@@ -96,7 +97,8 @@ static RtStatus open_journal(RtRun *run, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_run_path(run, RT_RUN_JOURNAL, path, error));
     if (!run->resumed) rt_earlier_remove(run->options->directory, RT_RUN_JOURNAL);
-    return rt_journal_open(&run->journal, path, run->experiment, run->resumed, error);
+    return rt_journal_open(&run->journal, path, run->experiment, &run->options->workload.only, run->resumed,
+                           error);
 }
 
 static void name_missing(const RtRun *run) {
@@ -136,7 +138,9 @@ static RtStatus write_tables(const RtRun *run, RtError *error) {
     RT_TRY(rt_run_write_table(run, "counts.csv", &counts, error));
     if (run->experiment->count_only) return RT_OK;
     RtTable times = rt_result_table(RT_TIMES, &row);
-    return rt_run_write_table(run, "times.csv", &times, error);
+    RT_TRY(rt_run_write_table(run, "times.csv", &times, error));
+    RtTable rounds = rt_result_table(RT_ROUNDS, &row);
+    return rt_run_write_table(run, "rounds.csv", &rounds, error);
 }
 
 static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,
@@ -174,6 +178,15 @@ static void close_scene(RtRun *run, uint32_t t) {
     rt_scene_clear(&run->scenes[slot]);
 }
 
+bool rt_run_is_complete(const RtRun *run) {
+    RtWorkloadOptions options = run->options->workload;
+    options.only = (RtOnly){.shard = options.only.shard, .shards = options.only.shards};
+    for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
+        if (!rt_workload_is_done(run->results, t, &options)) return false;
+    }
+    return true;
+}
+
 RtStatus rt_run_measure(RtRun *run, RtError *error) {
     RtWorkloadOptions options = run->options->workload;
     options.observer = (RtObserver){run, on_event, on_notice};
@@ -181,12 +194,13 @@ RtStatus rt_run_measure(RtRun *run, RtError *error) {
     name_missing(run);
     for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
         RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
+        if (!rt_only_scene(&options.only, run->experiment, t)) continue;
         RT_TRY(rt_workload_measure(run->results, t, &options, scene, error));
         RT_TRY(write_tables(run, error));
         RT_TRY(write_image(run, t, error));
         close_scene(run, t);
     }
-    if (run->measured || !run->resumed) return RT_OK;
+    if (run->measured || !run->resumed || !rt_run_is_complete(run)) return RT_OK;
     rt_run_notice(run, "nothing was left to measure: this run is finished. --force begins it anew");
     return RT_OK;
 }

@@ -4,6 +4,7 @@
  *   cells.jsonl      the journal: everything found, line by line as it was found
  *   counts.csv       exact columns; byte-identical wherever the same version is run
  *   times.csv        measured columns, where anything is timed
+ *   rounds.csv       every round's times, of which those are made
  *   images/          a picture of each scene
  *
  * rt_run_open looks, rt_run_begin makes the directory and keeps others away, rt_run_measure begins the
@@ -45,6 +46,9 @@ RtStatus rt_run_begin(RtRun *run, RtError *error);
 
 /* Begins the journal, or goes on with it, and fills the results. */
 RtStatus rt_run_measure(RtRun *run, RtError *error);
+
+/* Whether nothing is left to measure, of which `only` may leave much. */
+bool rt_run_is_complete(const RtRun *run);
 
 void rt_run_close(RtRun *run);
 

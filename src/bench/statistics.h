@@ -32,12 +32,37 @@ typedef struct RtEstimate {
 /* Is `value` within the interval? Of the numbers as they are, however many digits of them are shown. */
 bool rt_estimate_holds(const RtEstimate *estimate, double value);
 
+/* How far its ends lie from the median, the farther one, as a part of the median. */
+double rt_estimate_width(const RtEstimate *estimate);
+
 /* The middle of values[0..count), 1 <= count <= RT_MAX_ROUNDS; the mean of the middle two if count is
  * even. */
 double rt_median(const double *values, uint32_t count);
 
 /* Estimate of values[0..count), 1 <= count <= RT_MAX_ROUNDS. */
 RtEstimate rt_estimate(const double *values, uint32_t count);
+
+/* The same with an interval that covers `coverage` (0..1) at least, if there are enough measurements: else it
+ * is the smallest to the largest. */
+RtEstimate rt_estimate_at(const double *values, uint32_t count, double coverage);
+
+/* The fewest measurements whose interval of that coverage leaves one out on either side, so that a single
+ * stray one decides nothing; RT_MAX_ROUNDS where these are not enough. */
+uint32_t rt_rounds_for(double coverage);
+
+/* Estimate of the ratio of what over[0..over_count) is about to what under[0..under_count) is, which were not
+ * measured together: the median of all ratios of one to another (Hodges & Lehmann 1963, "Estimates of
+ * Location Based on Rank Tests", Annals of Mathematical Statistics 34(2)), and the order statistics of them
+ * that the test of Mann & Whitney 1947 leaves, exactly up to UNPAIRED_EXACT measurements of both together, by
+ * its normal approximation beyond. Where too few for `coverage`: the smallest to the largest. Least is the
+ * smallest ratio. RT_NO_MEMORY. */
+RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const double *under,
+                              uint32_t under_count, double coverage, RtEstimate *estimate, RtError *error);
+
+/* What each of `count` intervals has to cover for all of them to hold in 95 % of all cases, however they
+ * depend on one another (Bonferroni's inequality; Dunn 1961, "Multiple Comparisons among Means", Journal of
+ * the American Statistical Association 56(293)). */
+double rt_coverage_of_each(uint32_t count);
 
 /* Estimate of the ratios over[i] / under[i]: paired, so that a drift which slows both does not show. */
 RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t count);

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "bench/ray_file.h"
 #include "scenes/open.h"
 
 #include <string.h>
@@ -18,14 +19,16 @@ static const double CHEAP_BUILD = 0.25; /* seconds */
 /* ---- what is left to do ---- */
 
 static bool runs(const RtWorkloadState *workload, uint32_t candidate) {
-    return rt_candidate_runs(workload->experiment, candidate, workload->index);
+    return rt_candidate_runs(workload->experiment, candidate, workload->index) &&
+           rt_only_accel(&workload->options->only, workload->experiment, candidate) &&
+           !*rt_build_at(workload->results, workload->index, candidate)->limit;
 }
 
 static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         bool null = c == workload->experiment->candidate_count;
-        if (!runs(workload, c)) continue;
+        if (!runs(workload, c) || *cell->limit) continue;
         if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
     }
     return true;
@@ -33,44 +36,20 @@ static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
 
 static bool workload_is_done(const RtWorkloadState *workload) {
     const RtWorkloadResult *result = &workload->results->workloads[workload->index];
+    if (!rt_only_scene(&workload->options->only, workload->experiment, workload->index)) return true;
     if (result->skipped || !result->known) return result->skipped;
     for (uint32_t c = 0; c < workload->count; c++) {
         if (runs(workload, c) && !rt_build_at(workload->results, workload->index, c)->known) return false;
     }
     for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
         RtRayKind kind = workload->experiment->kinds[k];
+        if (!rt_only_kind(&workload->options->only, kind)) continue;
         if (result->rays[kind] && !kind_is_done(workload, kind)) return false;
     }
     return true;
 }
 
 /* ---- scene, rays, structures ---- */
-
-/* Keeps of the recorded sets what the experiment asks for, at most `limit` of each kind. */
-static RtStatus keep_sets(RtWorkloadState *workload, const RtRaySet *recorded, RtError *error) {
-    for (uint32_t k = 0; k < workload->experiment->kind_count; k++) {
-        RtRayKind kind = workload->experiment->kinds[k];
-        RT_TRY(rt_rayset_limit(&recorded[kind], workload->experiment->limit,
-                               workload->experiment->coherent_run, &workload->sets[kind], error));
-    }
-    return RT_OK;
-}
-
-static RtStatus record_rays(RtWorkloadState *workload, RtError *error) {
-    const RtWorkload *setup = &workload->experiment->workloads[workload->index];
-    RtRecording recording = {.depth = setup->depth,
-                             .seed = workload->experiment->seed,
-                             .random = workload->experiment->limit,
-                             .threads = workload->options->threads,
-                             .light_from_outside = setup->light_from_outside};
-    RtRaySet recorded[RT_RAY_KIND_COUNT] = {0};
-    RT_TRY(rt_accel_open_on(rt_accel_default(), workload->scene, recording.threads, &workload->reference,
-                            error));
-    RtStatus status = rt_rayset_record(recorded, workload->reference, &recording, error);
-    if (status == RT_OK) status = keep_sets(workload, recorded, error);
-    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&recorded[k]);
-    return status;
-}
 
 /* Fills the workload's part of the results, or holds it against what an earlier run found. */
 static RtStatus describe_workload(RtWorkloadState *workload, RtError *error) {
@@ -97,9 +76,8 @@ static RtStatus describe_workload(RtWorkloadState *workload, RtError *error) {
 }
 
 static RtStatus prepare(RtWorkloadState *workload, RtError *error) {
-    const RtWorkload *setup = &workload->experiment->workloads[workload->index];
-    RT_TRY(rt_scene_sample(workload->scene, setup->width, setup->height, 1, setup->corners, error));
-    RT_TRY(record_rays(workload, error));
+    RT_TRY(rt_workload_record(workload->experiment, workload->index, workload->options->threads,
+                              workload->scene, &workload->reference, workload->sets, error));
     return describe_workload(workload, error);
 }
 
@@ -121,17 +99,41 @@ static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel
     return RT_OK;
 }
 
+/* Builds a candidate within the limits; says in result->limit, without keeping it, which it went beyond. */
+static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec *spec, double *seconds,
+                             RtError *error) {
+    const RtExperiment *experiment = workload->experiment;
+    RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
+    rt_memory_limit(1000000 * experiment->limit_megabytes);
+    RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
+    rt_memory_limit(0);
+    if (status != RT_OK && (status != RT_NO_MEMORY || !experiment->limit_megabytes)) return status;
+    if (status == RT_NO_MEMORY) {
+        snprintf(result->limit, RT_MAX_LIMIT, "its structure takes more than %llu MB",
+                 (unsigned long long)experiment->limit_megabytes);
+    } else if (experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds) {
+        snprintf(result->limit, RT_MAX_LIMIT, "building takes %.3g s, more than %g s", *seconds,
+                 experiment->limit_seconds);
+    } else {
+        return RT_OK;
+    }
+    rt_accel_destroy(workload->built[c]);
+    workload->built[c] = NULL;
+    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LARGE, RT_RAY_PRIMARY, result->limit, error);
+}
+
 static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
     for (uint32_t c = 0; c < workload->count; c++) {
         RtSpec spec;
-        double seconds;
+        double seconds = 0;
         RtBuildResult *result = rt_build_at(workload->results, workload->index, c);
         if (!runs(workload, c)) continue;
         RT_TRY(rt_spec_parse(workload->experiment->candidates[rt_workload_origin(workload, c)].spec, &spec,
                              error));
-        RT_TRY(build_one(workload, &spec, &workload->accels[c], &seconds, error));
+        RT_TRY(build_within(workload, c, &spec, &seconds, error));
+        if (!workload->built[c]) continue;
         if (result->known) continue;
-        const RtAccel *accel = workload->accels[c];
+        const RtAccel *accel = workload->built[c];
         *result = (RtBuildResult){.known = true, .exact = accel->exact, .counts = accel->counts};
         result->seconds = seconds;
         rt_spec_format(&spec, result->spec);
@@ -210,14 +212,15 @@ static RtStatus check_answers(const RtWorkloadState *workload, uint32_t candidat
                        "%s on %s answers %llu of %llu %s rays unlike %s, the first of them ray %llu; "
                        "`raytally verify` shows what is wrong",
                        accel, scene, (unsigned long long)count->differ, (unsigned long long)share->set.count,
-                       rt_ray_kind_name(kind), rt_accel_default(), (unsigned long long)count->first);
+                       rt_experiment_kind_name(workload->experiment, kind), rt_accel_default(),
+                       (unsigned long long)count->first);
     }
     if (count->tally.rays == share->set.count && count->tally.hits == hits) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
                    "%s on %s counts %llu %s rays with %llu hits, where there are %llu with %llu", accel,
-                   scene, (unsigned long long)count->tally.rays, rt_ray_kind_name(kind),
-                   (unsigned long long)count->tally.hits, (unsigned long long)share->set.count,
-                   (unsigned long long)hits);
+                   scene, (unsigned long long)count->tally.rays,
+                   rt_experiment_kind_name(workload->experiment, kind), (unsigned long long)count->tally.hits,
+                   (unsigned long long)share->set.count, (unsigned long long)hits);
 }
 
 static RtStatus count_kind(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
@@ -237,13 +240,42 @@ static RtStatus count_kind(RtWorkloadState *workload, RtRayKind kind, RtError *e
     return RT_OK;
 }
 
+/* Row by row what each ray met and cost, where that is asked for: of one candidate, on one kind of rays. */
+static RtStatus save_rows(const RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    const RtWorkloadOptions *options = workload->options;
+    RtRows rows;
+    if (!options->hits && !options->counts) return RT_OK;
+    RtStatus status =
+        rt_measure_rows(workload->accels[0], &workload->sets[kind], options->threads, &rows, error);
+    if (status == RT_OK && options->hits) status = rt_hits_save(&rows, options->hits, error);
+    if (status == RT_OK && options->counts) status = rt_counts_save(&rows, options->counts, error);
+    rt_rows_clear(&rows);
+    return status;
+}
+
 /* ---- all of it ---- */
+
+/* Those that are not known to go beyond a limit. */
+static void choose_accels(RtWorkloadState *workload, RtRayKind kind) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        workload->accels[c] = *cell->limit ? NULL : workload->built[c];
+    }
+}
 
 static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     if (workload->sets[kind].count == 0 || kind_is_done(workload, kind)) return RT_OK;
+    if (!rt_only_kind(&workload->options->only, kind)) return RT_OK;
+    choose_accels(workload, kind);
     RtStatus status = deal_shares(workload, &workload->sets[kind], error);
+    if (status == RT_OK) status = rt_workload_check_limits(workload, kind, error);
     if (status == RT_OK) status = count_kind(workload, kind, error);
-    if (status == RT_OK && !workload->count_only) status = rt_workload_time(workload, kind, error);
+    if (status == RT_OK) status = save_rows(workload, kind, error);
+    if (status == RT_OK && workload->options->timer) {
+        status = workload->options->timer(workload->options->timer_context, workload, kind, error);
+    } else if (status == RT_OK && !workload->count_only) {
+        status = rt_workload_time(workload, kind, error);
+    }
     rt_free(workload->answers);
     workload->answers = NULL;
     return status;
@@ -262,7 +294,7 @@ static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWork
     RtWorkloadState workload = {
         .results = results, .experiment = results->experiment, .options = options, .index = index};
     workload.count_only = options->count_only || workload.experiment->count_only;
-    workload.count = workload.experiment->candidate_count + !workload.count_only;
+    workload.count = workload.experiment->candidate_count + (!workload.count_only && !options->timer);
     return workload;
 }
 
@@ -271,17 +303,21 @@ bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOpt
     return workload_is_done(&workload);
 }
 
+RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error) {
+    *scene = (RtScene){0};
+    if (!workload->file || rt_file_exists(workload->path)) return rt_scene_open(workload->path, scene, error);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", workload->path);
+}
+
 RtStatus rt_workload_open(RtResults *results, uint32_t index, const RtWorkloadOptions *options,
                           RtScene *scene, RtError *error) {
     const RtWorkload *setup = &results->experiment->workloads[index];
     const RtObserver *observer = &options->observer;
     char message[RT_MAX_PATH + 128];
     *scene = (RtScene){0};
-    if (!setup->file || rt_file_exists(setup->path)) return rt_scene_open(setup->path, scene, error);
-    if (!setup->optional) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", setup->path);
-    }
+    if (!setup->optional || !setup->file || rt_file_exists(setup->path))
+        return rt_workload_open_scene(setup, scene, error);
     snprintf(message, sizeof message,
              "%s is missing, so '%s' is skipped; `scenes/fetch.sh` fetches the public meshes", setup->path,
              setup->label);
@@ -295,15 +331,17 @@ RtStatus rt_workload_measure(RtResults *results, uint32_t index, const RtWorkloa
     RtWorkloadState workload = state_of(results, index, options);
     workload.scene = scene;
     if (workload_is_done(&workload)) return RT_OK;
+    workload.built = rt_alloc(workload.count, sizeof(RtAccel *));
     workload.accels = rt_alloc(workload.count, sizeof(RtAccel *));
     workload.shares = rt_alloc(workload.count, sizeof(RtWorkloadShare));
     RtStatus status = RT_OK;
-    if (!workload.accels || !workload.shares)
+    if (!workload.built || !workload.accels || !workload.shares)
         status = rt_fail_memory(error, "a workload", workload.count * sizeof(RtWorkloadShare));
     if (status == RT_OK) status = measure(&workload, error);
-    for (uint32_t c = 0; workload.accels && c < workload.count; c++) rt_accel_destroy(workload.accels[c]);
+    for (uint32_t c = 0; workload.built && c < workload.count; c++) rt_accel_destroy(workload.built[c]);
     rt_accel_destroy(workload.reference);
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&workload.sets[k]);
+    rt_free(workload.built);
     rt_free(workload.accels);
     rt_free(workload.shares);
     return status;

@@ -4,13 +4,16 @@
 #ifndef RT_BENCH_WORKLOAD_H
 #define RT_BENCH_WORKLOAD_H
 
+#include "bench/rayset.h"
 #include "bench/results.h"
 
 typedef enum RtEventKind {
-    RT_EVENT_WORKLOAD, /* results->workloads[workload] is known */
-    RT_EVENT_BUILD,    /* the build of `candidate` is known */
-    RT_EVENT_COUNT,    /* the cell is counted */
-    RT_EVENT_TIME      /* the cell is timed */
+    RT_EVENT_WORKLOAD,  /* results->workloads[workload] is known */
+    RT_EVENT_BUILD,     /* the build of `candidate` is known */
+    RT_EVENT_COUNT,     /* the cell is counted */
+    RT_EVENT_TIME,      /* the cell is timed */
+    RT_EVENT_TOO_LARGE, /* the structure of `candidate` went beyond a limit */
+    RT_EVENT_TOO_LONG   /* the cell would go beyond a limit */
 } RtEventKind;
 
 /* Which part of the results was just filled. */
@@ -28,15 +31,47 @@ typedef struct RtObserver {
     void (*notice)(void *context, const char *message);
 } RtObserver;
 
+/* A part of an experiment: one scene, or one accelerator on it, or one kind of rays, by labels or what labels
+ * of a sweep have in common; NULL for all. What ratios refer to is always measured, too. */
+typedef struct RtOnly {
+    const char *scene, *accel, *kind;
+    uint32_t shard, shards; /* of the scenes those that fall to one of several machines, 1..shards; 0: all */
+} RtOnly;
+
+bool rt_only_scene(const RtOnly *only, const RtExperiment *experiment, uint32_t workload);
+bool rt_only_accel(const RtOnly *only, const RtExperiment *experiment, uint32_t candidate);
+bool rt_only_kind(const RtOnly *only, RtRayKind kind);
+struct RtWorkloadState; /* bench/workload_state.h */
+
 typedef struct RtWorkloadOptions {
     int threads;     /* of recording, building and counting: 0 = all processors; changes no count */
     int timing;      /* threads of the timing, 1 as a rule */
     bool count_only; /* no timing */
+    RtOnly only;
+    double until; /* rounds go on until all intervals of ratios lie this near to their medians, as a part of
+                     them: 0.01; 0: as many rounds as the experiment says */
+    double patience; /* seconds that a kind of rays on a scene may take until then */
+    /* Files for what each ray met and cost (bench/ray_file.h), or NULL: of an experiment of one workload, one
+     * candidate without a stride, and one kind of rays. */
+    const char *hits, *counts;
     RtObserver observer;
+    /* Takes the place of the timing of one kind of rays, and of the null run, which there is none of; or
+     * NULL. */
+    RtStatus (*timer)(void *context, struct RtWorkloadState *workload, RtRayKind kind, RtError *error);
+    void *timer_context;
 } RtWorkloadOptions;
+
+/* Records the rays of workload number `index` on its scene, whose sampling it sets: at most the experiment's
+ * limit of each of its kinds, to sets[RT_RAY_KIND_COUNT]; or, where it has rays of a file, reads those.
+ * *reference is the exact accelerator that recorded them. Destroy and clear both, also after a failure. */
+RtStatus rt_workload_record(const RtExperiment *experiment, uint32_t index, int threads, RtScene *scene,
+                            RtAccel **reference, RtRaySet *sets, RtError *error);
 
 /* Whether nothing is unknown of the experiment's workload number `index`. */
 bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOptions *options);
+
+/* Opens the scene of a workload, which has to be there. The caller's: rt_scene_clear. */
+RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error);
 
 /* Opens its scene, which is the caller's: rt_scene_clear. Where it is optional and missing, it is empty, and
  * the workload is skipped with a notice. */

@@ -21,7 +21,8 @@ typedef struct RtWorkloadState {
     bool count_only;
     RtScene *scene;
     RtAccel *reference;               /* answers */
-    RtAccel **accels;                 /* [count], NULL for one that does not run here */
+    RtAccel **built;                  /* [count], NULL for one that does not run here */
+    RtAccel **accels;                 /* [count], of them those that get the rays of the kind at hand */
     RtRaySet sets[RT_RAY_KIND_COUNT]; /* behind the `count` rays of one at hand lie its thinned shares */
     RtWorkloadShare *shares;          /* [count], of the kind at hand */
     RtHit *answers;                   /* to the set of the kind at hand and the shares behind it */
@@ -43,6 +44,14 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
     RtEvent event = {what, workload->index, candidate, kind};
     return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
 }
+
+/* Tells that candidate `c`, or a cell of it, went beyond the limit that `limit` names. That of the baseline,
+ * without which there is nothing to compare with, is RT_BAD_INPUT, and no longer named. */
+RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
+                               char *limit, RtError *error);
+
+/* Leaves out who would take longer on the rays of that kind than the limit: whose shares are dealt. */
+RtStatus rt_workload_check_limits(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
 /* Times all candidates on their shares of the rays of one kind. */
 RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error);

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 int rt_cli_fail(const RtError *error) {
     fprintf(stderr, "raytally: %s\n", error->message);
@@ -54,6 +55,14 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
                    (long long)lo, (long long)hi);
     }
     return value;
+}
+
+double rt_cli_percent(struct argp_state *state, const char *option, const char *text) {
+    char *end;
+    double percent = strtod(text, &end);
+    if (end == text || strcmp(end, "%") != 0 || !(percent > 0 && percent <= 100))
+        argp_error(state, "%s: invalid value '%s': expected a percentage, as in 1%%", option, text);
+    return percent / 100;
 }
 
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height) {

@@ -25,7 +25,10 @@ int rt_command_info(int argc, char **argv);
 int rt_command_render(int argc, char **argv);
 int rt_command_verify(int argc, char **argv);
 int rt_command_bench(int argc, char **argv);
+int rt_command_rays(int argc, char **argv);
+int rt_command_compare(int argc, char **argv);
 int rt_command_run(int argc, char **argv);
+int rt_command_merge(int argc, char **argv);
 int rt_command_plot(int argc, char **argv);
 int rt_command_report(int argc, char **argv);
 int rt_command_reproduce(int argc, char **argv);
@@ -45,6 +48,24 @@ json_t *rt_cli_params_json(const RtParam *table, size_t count);
  * `state` is argp's. */
 int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
                        int64_t hi);
+
+/* A share such as "1%", more than 0 and at most 100 of a hundred, as a part: 0.01. */
+double rt_cli_percent(struct argp_state *state, const char *option, const char *text);
+
+/* Of the commands that time: rounds go on until intervals are narrow. */
+#define RT_PATIENCE 60 /* seconds */
+#define RT_UNTIL_OPTIONS(until, patience)                                                                    \
+    {"until",                                                                                                \
+     until,                                                                                                  \
+     "P%",                                                                                                   \
+     0,                                                                                                      \
+     "Go on with rounds until the intervals of all ratios lie within P % of their medians, for 1000 rounds " \
+     "or --patience seconds at most; where that was not enough a line says how narrow they are",             \
+     0},                                                                                                     \
+    {                                                                                                        \
+        "patience", patience, "SECONDS", 0,                                                                  \
+            "With --until: at most so long for a kind of rays on a scene (60)", 0                            \
+    }
 
 /* Of the commands that list what there is: all of it, or one by name. The parser's input is an RtListOptions.
  */

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
  * workload that leaves no directory behind. */
+#include "base/json.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "bench/machine.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
-#include "render/frame.h"
+#include "cli/recording.h"
 #include "verify/spread.h"
 
 #include <argp.h>
@@ -14,24 +16,22 @@
 #include <string.h>
 
 enum {
-    OPT_RAYS = 256,
-    OPT_ROUNDS,
+    OPT_ROUNDS = 256,
     OPT_BASELINE,
     OPT_THREADS,
-    OPT_SIZE,
-    OPT_CORNERS,
-    OPT_DEPTH,
     OPT_COUNT_ONLY,
     OPT_CSV,
     OPT_JSON,
-    OPT_SEED,
-    OPT_LIMIT,
-    OPT_COHERENT_RUN,
-    OPT_RAY_STRIDE
+    OPT_RAY_STRIDE,
+    OPT_RAYS_FROM,
+    OPT_HITS,
+    OPT_COUNTS,
+    OPT_UNTIL,
+    OPT_PATIENCE
 };
 
 typedef struct Options {
-    RtExperiment *experiment;
+    RtRecordingOptions recording;
     const char *scene, *baseline, *csv;
     RtWorkloadOptions workload;
     bool json;
@@ -40,17 +40,11 @@ typedef struct Options {
 static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0,
      "An accelerator, NAME[:KEY=VALUE,...]; once per accelerator. `all`: every one, at "
-     "its defaults",
+     "its defaults. A VALUE may be a list, 1|4|16, or a range, 1..9+2 (in steps of 2) or 1..64*2 (each twice "
+     "the one before): then it is an accelerator for each, of several such VALUEs each with each",
      0},
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
      "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
-    {"rays", OPT_RAYS, "KIND,...", 0,
-     "Ray kinds: primary, shadow, reflection, transmission, diffuse, random; and occlusion, the diffuse rays "
-     "asked for any hit (all but occlusion)",
-     0},
-    {"limit", OPT_LIMIT, "N", 0, "At most N rays of a kind; a larger set is thinned evenly (100000)", 0},
-    {"coherent-run", OPT_COHERENT_RUN, "N", 0,
-     "Neighbouring rays kept together where a set is thinned, for packets and caches (256)", 0},
     {"baseline", OPT_BASELINE, "SPEC", 0,
      "The accelerator that ratios refer to (the first); or NAME:best, the fastest of several settings for "
      "each "
@@ -58,43 +52,49 @@ static const struct argp_option options[] = {
      0},
     {"rounds", OPT_ROUNDS, "N", 0,
      "Timing rounds, each in an order drawn anew (10); at least 6 for intervals of 95 %", 0},
-    {"seed", OPT_SEED, "S", 0, "Seed of diffuse and random rays and of orders (1)", 0},
+    RT_UNTIL_OPTIONS(OPT_UNTIL, OPT_PATIENCE),
     {"threads", OPT_THREADS, "N", 0,
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
      "counting on all; on several, wall time is compared",
      0},
-    {"size", OPT_SIZE, "WxH", 0, "Size of the frame whose rays are recorded (the camera's)", 0},
-    {"corners", OPT_CORNERS, 0, 0, "Sample pixel corners, (W+1) x (H+1) rays", 0},
-    {"depth", OPT_DEPTH, "N", 0, "Levels of the ray tree, the primary ray being the first (5)", 0},
     {"count-only", OPT_COUNT_ONLY, 0, 0, "Count, do not time", 0},
     {"csv", OPT_CSV, "FILE", 0,
      "Also write a row per cell to FILE, in the columns of times.csv; with "
      "--count-only of counts.csv",
      0},
+    {"hits", OPT_HITS, "FILE.npy", 0,
+     "Also write what each ray met, for NumPy, a row per ray: t and object (inf and -1 for a miss); of "
+     "shadow and "
+     "occlusion rays whether anything lies on them. With one --accel and one kind of --rays",
+     0},
+    {"counts", OPT_COUNTS, "FILE.npy", 0,
+     "Also write what each ray cost, a row per ray and a field per counter, each ray asked by itself: where "
+     "rays "
+     "share visits (wide) rows sum to more than the table shows",
+     0},
     {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
+    {"rays-from", OPT_RAYS_FROM, "FILE.npy", 0,
+     "Measure with the rays of FILE, an array of float32 of shape (N, 8) as `raytally rays` writes it, in "
+     "place of "
+     "recorded ones; --rays says what they ask for: nearest, or occlusion (any hit)",
+     2},
     {0}};
 
 /* ---- options ---- */
 
+/* All that the spec stands for. */
 static void add_accel(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    if (experiment->candidate_count == RT_MAX_CANDIDATES) {
-        argp_error(state, "--accel: at most %d may be given", RT_MAX_CANDIDATES);
-    }
+    RtError error;
+    RtCandidate like = {.entry = experiment->candidate_count, .ray_stride = 1};
     if (strlen(text) >= RT_MAX_SPEC_CHARS) {
         argp_error(state, "--accel: a spec has at most %d characters", RT_MAX_SPEC_CHARS - 1);
     }
-    RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
-    candidate->ray_stride = 1;
-    strcpy(candidate->spec, text);
-    if (strlen(text) < RT_MAX_LABEL) {
-        strcpy(candidate->label, text);
-    } else {
-        snprintf(candidate->label, RT_MAX_LABEL, "%.*s...%u", RT_MAX_LABEL - 8, text,
-                 experiment->candidate_count);
-    }
+    strcpy(like.spec, text);
+    if (rt_experiment_add_accels(experiment, &like, &error) != RT_OK)
+        argp_error(state, "--accel: %s", error.message);
 }
 
-static void add_accels(RtExperiment *experiment, const char *text, struct argp_state *state) {
+void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_state *state) {
     if (strcmp(text, "all") != 0) {
         add_accel(experiment, text, state);
         return;
@@ -103,6 +103,14 @@ static void add_accels(RtExperiment *experiment, const char *text, struct argp_s
         char spec[RT_MAX_SPEC_CHARS];
         rt_spread_spec(rt_accel_at(i), 0, spec);
         add_accel(experiment, spec, state);
+    }
+}
+
+/* Of all that the preceding --accel stands for. */
+static void set_ray_stride(RtExperiment *experiment, uint64_t stride) {
+    uint32_t last = experiment->candidate_count - 1, entry = experiment->candidates[last].entry;
+    for (uint32_t c = 0; c <= last; c++) {
+        if (experiment->candidates[c].entry == entry) experiment->candidates[c].ray_stride = stride;
     }
 }
 
@@ -120,50 +128,53 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
     }
 }
 
-static void parse_kinds(RtExperiment *experiment, const char *text, struct argp_state *state) {
-    experiment->kind_count = 0;
-    for (size_t length; *text; text += length + (text[length] == ',')) {
-        char name[RT_MAX_NAME];
-        RtError error;
-        length = strcspn(text, ",");
-        snprintf(name, sizeof name, "%.*s", (int)length, text);
-        if (experiment->kind_count == RT_RAY_KIND_COUNT) argp_error(state, "--rays: a kind is given twice");
-        RtRayKind *kind = &experiment->kinds[experiment->kind_count++];
-        if (rt_ray_kind_parse(name, kind, &error) != RT_OK) argp_error(state, "--rays: %s", error.message);
+/* Rows of rays belong to one accelerator and one kind, and no file is written over another. */
+static void check_rows(const Options *o, struct argp_state *state) {
+    const RtExperiment *e = o->recording.experiment;
+    const char *const files[] = {o->workload.hits, o->workload.counts, o->csv,
+                                 *e->rays_from ? e->rays_from : NULL};
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < i; k++) {
+            if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
+                argp_error(state, "'%s' is named twice: each file needs a name of its own", files[i]);
+        }
     }
-    if (!experiment->kind_count) argp_error(state, "--rays: give at least one kind");
+    if (!o->workload.hits && !o->workload.counts) return;
+    if (e->candidate_count != 1 || e->candidates[0].ray_stride != 1) {
+        argp_error(state,
+                   "--hits and --counts are of one accelerator: give one --accel, and no --ray-stride or "
+                   "other --baseline");
+    }
+    if (e->kind_count != 1) argp_error(state, "--hits and --counts are of one kind of rays: --rays KIND");
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     Options *o = state->input;
-    RtExperiment *e = o->experiment;
+    RtExperiment *e = o->recording.experiment;
     switch (key) {
-    case 'a': add_accels(e, argument, state); return 0;
+    case ARGP_KEY_INIT: state->child_inputs[0] = &o->recording; return 0;
+    case 'a': rt_cli_add_accels(e, argument, state); return 0;
     case OPT_RAY_STRIDE:
         if (!e->candidate_count) argp_error(state, "--ray-stride comes after the --accel that it applies to");
-        e->candidates[e->candidate_count - 1].ray_stride =
-            (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
-        return 0;
-    case OPT_RAYS: parse_kinds(e, argument, state); return 0;
-    case OPT_LIMIT:
-        e->limit = (uint64_t)rt_cli_integer(state, "--limit", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
-        return 0;
-    case OPT_COHERENT_RUN:
-        e->coherent_run =
-            (uint64_t)rt_cli_integer(state, "--coherent-run", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND);
+        set_ray_stride(
+            e, (uint64_t)rt_cli_integer(state, "--ray-stride", argument, 1, (int64_t)RT_MAX_RAYS_A_KIND));
         return 0;
     case OPT_BASELINE: o->baseline = argument; return 0;
     case OPT_ROUNDS:
         e->rounds = (uint32_t)rt_cli_integer(state, "--rounds", argument, 1, RT_MAX_ROUNDS);
         return 0;
-    case OPT_SEED: e->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
     case OPT_THREADS:
         o->workload.threads = o->workload.timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
         return 0;
-    case OPT_SIZE: rt_cli_size(state, argument, &e->workloads[0].width, &e->workloads[0].height); return 0;
-    case OPT_CORNERS: e->workloads[0].corners = true; return 0;
-    case OPT_DEPTH:
-        e->workloads[0].depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH);
+    case OPT_RAYS_FROM:
+        if (strlen(argument) >= RT_MAX_PATH) argp_error(state, "--rays-from: the path is too long");
+        strcpy(e->rays_from, argument);
+        return 0;
+    case OPT_HITS: o->workload.hits = argument; return 0;
+    case OPT_COUNTS: o->workload.counts = argument; return 0;
+    case OPT_UNTIL: o->workload.until = rt_cli_percent(state, "--until", argument); return 0;
+    case OPT_PATIENCE:
+        o->workload.patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
         return 0;
     case OPT_COUNT_ONLY: o->workload.count_only = true; return 0;
     case OPT_CSV: o->csv = argument; return 0;
@@ -177,6 +188,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
             argp_error(state, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists");
         if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
         if (o->baseline) set_baseline(e, o->baseline, state);
+        if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
+        rt_recording_finish(&o->recording, state);
+        check_rows(o, state);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
@@ -184,11 +198,41 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 /* ---- output ---- */
 
+/* Appends the rows of one scene. */
+static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
+    RtResultRow row = {.results = results, .workload = workload};
+    RtTable table = rt_result_table(which, &row);
+    json_t *rows = rt_table_json(&table);
+    json_array_extend(array, rows);
+    json_decref(rows);
+}
+
+/* One scene, and what was recorded of it. */
+static json_t *scene_json(const RtResults *results, uint32_t workload) {
+    const RtExperiment *e = results->experiment;
+    const RtWorkload *setup = &e->workloads[workload];
+    const RtWorkloadResult *scene = &results->workloads[workload];
+    const bool given = *e->rays_from;
+    json_t *rays = given ? json_pack("{s:s}", "from", e->rays_from)
+                         : json_pack("{s:I, s:I, s:b, s:I, s:I, s:I}", "width", (json_int_t)scene->width,
+                                     "height", (json_int_t)scene->height, "corners", setup->corners, "depth",
+                                     (json_int_t)setup->depth, "limit", (json_int_t)e->limit, "coherent_run",
+                                     (json_int_t)e->coherent_run);
+    return json_pack("{s:s, s:I, s:o, s:o}", "scene", setup->spec, "objects", (json_int_t)scene->objects,
+                     "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
+}
+
 static void print_json(const RtResults *results) {
-    RtResultRow row = {.results = results}, null = row;
-    RtTable rows = rt_result_table(RT_BENCH, &row), nulls = rt_result_table(RT_NULL_RUNS, &null);
-    rt_cli_print_json(json_pack("{s:o, s:o, s:o}", "machine", rt_machine_json(), "rows", rt_table_json(&rows),
-                                "null_runs", rt_table_json(&nulls)));
+    const RtExperiment *e = results->experiment;
+    json_t *scenes = json_array(), *rows = json_array(), *nulls = json_array();
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        json_array_append_new(scenes, scene_json(results, t));
+        extend(rows, results, RT_BENCH, t);
+        extend(nulls, results, RT_NULL_RUNS, t);
+    }
+    rt_cli_print_json(json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes",
+                                scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds,
+                                "baseline", rt_baseline_label(e), "rows", rows, "null_runs", nulls));
 }
 
 static RtStatus write_csv(const RtResults *results, const Options *o, RtError *error) {
@@ -208,7 +252,9 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
         char sentence[RT_MAX_SENTENCE];
         rt_print_results(results, RT_CELLS, stdout);
         rt_null_sentence(results, sentence);
-        if (sentence[0]) printf("\n%s\n", sentence);
+        if (!sentence[0]) return RT_OK;
+        putchar('\n');
+        rt_print_wrapped(sentence, stdout);
     }
     return RT_OK;
 }
@@ -217,15 +263,19 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
 
 static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
-    RtExperiment *experiment = o->experiment;
-    RT_TRY(rt_workload_set_scene(&experiment->workloads[0], o->scene, "", error));
+    RtExperiment *experiment = o->recording.experiment;
+    RT_TRY(rt_experiment_add_scenes(experiment, &o->recording.like, o->scene, "", error));
+    if (experiment->workload_count > 1 && (o->workload.hits || o->workload.counts))
+        return rt_fail(error, RT_BAD_INPUT, "--hits and --counts are of one scene: '%s' is %u", o->scene,
+                       experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    RtProgress progress = rt_progress_begin(experiment, o->workload.count_only ? 1 : 2);
+    RtProgress progress = rt_progress_begin(&o->workload);
     o->workload.observer = rt_progress_observer(&progress);
     RtResults results;
     RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = rt_workload_run(&results, 0, &o->workload, error);
+    for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
+        status = rt_workload_run(&results, t, &o->workload, error);
     rt_progress_end(&progress);
     if (status == RT_OK) status = report(&results, o, error);
     rt_results_clear(&results);
@@ -233,26 +283,30 @@ static RtStatus bench(Options *o, RtError *error) {
 }
 
 int rt_command_bench(int argc, char **argv) {
-    Options o = {.experiment = rt_alloc(1, sizeof(RtExperiment)), .workload = {.timing = 1}};
+    Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment))},
+                 .workload = {.timing = 1, .patience = RT_PATIENCE}};
     RtError error;
-    if (!o.experiment) {
+    if (!o.recording.experiment) {
         rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
         return rt_cli_fail(&error);
     }
-    rt_experiment_init(o.experiment);
-    o.experiment->workload_count = 1;
-    o.experiment->coherent_run = 256;
-    o.experiment->workloads[0].depth = RT_DEFAULT_DEPTH;
+    rt_recording_init(&o.recording);
+    const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
     const struct argp argp = {
         .options = options,
         .parser = parse_option,
         .args_doc = "SCENE",
         .doc = "Count and time accelerators on the rays of one scene, and compare them."
-               "\vSCENE is a file or a built-in, as in balls:size=3. Every accelerator gets the "
+               "\vSCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote "
+               "what "
+               "your shell would take for its own: | and *). Every accelerator gets the "
                "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
-               "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100"};
+               "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
+               "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
+               "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy",
+        .children = children};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtStatus status = bench(&o, &error);
-    rt_free(o.experiment);
+    rt_free(o.recording.experiment);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

@@ -15,9 +15,9 @@
 enum { MOST_CSV_BYTES = 1 << 28 };
 
 static RtStatus count_again(RtResults *results, RtError *error) {
-    RtProgress progress = rt_progress_begin(results->experiment, 1);
-    RtWorkloadOptions options = {
-        .timing = 1, .count_only = true, .observer = rt_progress_observer(&progress)};
+    RtWorkloadOptions options = {.timing = 1, .count_only = true};
+    RtProgress progress = rt_progress_begin(&options);
+    options.observer = rt_progress_observer(&progress);
     RtStatus status = RT_OK;
     for (uint32_t t = 0; status == RT_OK && t < results->experiment->workload_count; t++) {
         status = rt_workload_run(results, t, &options, error);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: an experiment, from its YAML to a result directory. */
 #include "base/memory.h"
+#include "bench/claims.h"
+#include "bench/journal.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
@@ -10,13 +12,26 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OPT_RESUME = 256, OPT_FORCE, OPT_QUICK };
+enum {
+    OPT_RESUME = 256,
+    OPT_FORCE,
+    OPT_QUICK,
+    OPT_STRICT,
+    OPT_DRY_RUN,
+    OPT_ONLY,
+    OPT_SHARD,
+    OPT_UNTIL,
+    OPT_PATIENCE
+};
 
 typedef struct Options {
     const char *path, *out;
     RtStart start;
-    bool quick;
+    bool quick, strict, dry;
+    char only_text[3 * RT_MAX_LABEL];
+    RtOnly only;
     int threads, timing;
+    double until, patience;
 } Options;
 
 static const struct argp_option options[] = {
@@ -31,8 +46,43 @@ static const struct argp_option options[] = {
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
      "counting on all; on several, wall time is compared",
      0},
+    RT_UNTIL_OPTIONS(OPT_UNTIL, OPT_PATIENCE),
     {"quick", OPT_QUICK, 0, 0, "The smaller variant that the YAML describes under `quick`", 0},
+    {"strict", OPT_STRICT, 0, 0, "Exit code 1 where a claim of the experiment (`expect`) does not hold", 0},
+    {"dry-run", OPT_DRY_RUN, 0, 0,
+     "Measure nothing: list the cells, which of them are finished, and how long the others will take", 0},
+    {"only", OPT_ONLY, "SCENE[/ACCEL[/KIND]]", 0,
+     "Measure one scene, or one accelerator on it, or on one kind of rays, and the baseline; by labels. "
+     "--resume "
+     "without it measures the rest",
+     0},
+    {"shard", OPT_SHARD, "I/N", 0,
+     "Measure each Nth scene, from the Ith on (into results/NAME-I-of-N), all accelerators on it: for N "
+     "machines. "
+     "`raytally merge` joins the directories",
+     0},
     {0}};
+
+static void parse_only(Options *o, const char *text, struct argp_state *state) {
+    if (strlen(text) >= sizeof o->only_text) argp_error(state, "--only: '%s' is too long", text);
+    strcpy(o->only_text, text);
+    char *accel = strchr(o->only_text, '/'), *kind = accel ? strchr(accel + 1, '/') : NULL;
+    if (accel) *accel++ = '\0';
+    if (kind) *kind++ = '\0';
+    o->only.scene = o->only_text;
+    o->only.accel = accel;
+    o->only.kind = kind;
+}
+
+static void parse_shard(Options *o, const char *text, struct argp_state *state) {
+    unsigned shard, shards;
+    int end = 0;
+    bool fine = sscanf(text, "%3u/%3u%n", &shard, &shards, &end) == 2 && !text[end];
+    if (!fine || shard < 1 || shard > shards)
+        argp_error(state, "--shard: invalid value '%s': expected I/N, 1 <= I <= N, as in 2/4", text);
+    o->only.shard = shard;
+    o->only.shards = shards;
+}
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     Options *o = state->input;
@@ -41,7 +91,15 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case OPT_RESUME: o->start = RT_START_RESUME; return 0;
     case OPT_FORCE: o->start = RT_START_ANEW; return 0;
     case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
+    case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
+    case OPT_PATIENCE:
+        o->patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
+        return 0;
     case OPT_QUICK: o->quick = true; return 0;
+    case OPT_STRICT: o->strict = true; return 0;
+    case OPT_DRY_RUN: o->dry = true; return 0;
+    case OPT_ONLY: parse_only(o, argument, state); return 0;
+    case OPT_SHARD: parse_shard(o, argument, state); return 0;
     case ARGP_KEY_ARG:
         if (o->path) argp_error(state, "one EXPERIMENT at a time; '%s' is a second one", argument);
         o->path = argument;
@@ -53,31 +111,130 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     }
 }
 
+/* ---- before ---- */
+
+static RtStatus check_only(const RtExperiment *e, const RtOnly *only, RtError *error) {
+    bool scene = !only->scene, accel = !only->accel, kind = !only->kind;
+    for (uint32_t t = 0; t < e->workload_count; t++)
+        scene |= rt_only_scene(&(RtOnly){.scene = only->scene}, e, t);
+    for (uint32_t c = 0; c < e->candidate_count; c++) {
+        bool called = strcmp(only->accel ? only->accel : "", e->candidates[c].label) == 0;
+        accel |= called || (!rt_candidate_is_baseline(e, c) && rt_only_accel(only, e, c));
+    }
+    for (uint32_t k = 0; k < e->kind_count; k++) kind |= rt_only_kind(only, e->kinds[k]);
+    if (!scene || !accel || !kind) {
+        return rt_fail(error, RT_BAD_INPUT, "--only: '%s' is not the label of one of the %s",
+                       !scene   ? only->scene
+                       : !accel ? only->accel
+                                : only->kind,
+                       !scene   ? "scenes"
+                       : !accel ? "accelerators"
+                                : "kinds of rays");
+    }
+    if (only->shards <= e->workload_count) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "--shard: there are %u scenes, too few for %u shards",
+                   e->workload_count, only->shards);
+}
+
+/* What --dry-run prints of one cell. */
+static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
+    const RtExperiment *e = results->experiment;
+    const RtCell *cell = rt_cell_at(results, t, c, kind);
+    const char *limit = *cell->limit ? cell->limit : rt_build_at(results, t, c)->limit;
+    bool finished = cell->counted && (cell->timed || e->count_only);
+    if (results->workloads[t].known && !results->workloads[t].rays[kind]) return;
+    printf("%-24s %-28s %-12s %s\n", e->workloads[t].label, rt_candidate_label(e, c), rt_ray_kind_name(kind),
+           *limit     ? limit
+           : finished ? "finished"
+                      : "");
+}
+
+/* Nothing is opened: what is in the directory tells how long cells take. */
+static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *error) {
+    const RtExperiment *e = results->experiment;
+    const RtOnly *only = &how->workload.only;
+    char path[RT_MAX_PATH], duration[RT_MAX_DURATION];
+    RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
+    if (rt_file_exists(path) && how->start != RT_START_ANEW)
+        RT_TRY(rt_journal_load(path, results, only, error));
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        for (uint32_t c = 0; c < e->candidate_count; c++) {
+            bool there = rt_only_scene(only, e, t) && rt_only_accel(only, e, c) && rt_candidate_runs(e, c, t);
+            for (uint32_t k = 0; there && k < e->kind_count; k++) {
+                if (rt_only_kind(only, e->kinds[k])) print_cell(results, t, c, e->kinds[k]);
+            }
+        }
+    }
+    RtForecast forecast = rt_forecast(results, &how->workload);
+    rt_format_duration(forecast.left, duration);
+    printf("%u cells, %u of them finished; the others take %s %s%s\n", forecast.cells, forecast.finished,
+           forecast.guessed ? "at least" : "about", duration,
+           forecast.guessed ? " (rounds by milliseconds: nothing is timed yet)" : "");
+    return RT_OK;
+}
+
+/* The command that goes on. */
+static void go_on(const Options *o, const char *directory, char *out, size_t room) {
+    char threads[32] = "", shard[32] = "", until[64] = "";
+    if (o->timing != 1 || o->threads) snprintf(threads, sizeof threads, " --threads %d", o->threads);
+    if (o->only.shards) snprintf(shard, sizeof shard, " --shard %u/%u", o->only.shard, o->only.shards);
+    if (o->until > 0)
+        snprintf(until, sizeof until, " --until %g%% --patience %g", 100 * o->until, o->patience);
+    snprintf(out, room, "raytally run %s --out %s%s%s%s%s --resume", o->path, directory,
+             o->quick ? " --quick" : "", threads, shard, until);
+}
+
+static void print_all(const RtResults *results, const char *directory, bool report) {
+    char sentence[RT_MAX_SENTENCE];
+    rt_print_results(results, RT_TOTALS, stdout);
+    rt_print_limits(results, stdout);
+    rt_claims_print(results, stdout);
+    rt_null_sentence(results, sentence);
+    printf("\n%s%s", sentence, *sentence ? "\n" : "");
+    if (report) printf("Report: %s/report.html\n", directory);
+}
+
+static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how, RtError *error) {
+    char command[RT_MAX_PATH + 256];
+    RtProgress progress = rt_progress_begin(&how->workload);
+    go_on(o, how->directory, command, sizeof command);
+    rt_progress_watch(&progress, how->directory, command);
+    how->workload.observer = rt_progress_observer(&progress);
+    RtStatus status = rt_run_experiment(results, how, error);
+    rt_progress_end(&progress);
+    if (status != RT_OK) return status;
+    print_all(results, how->directory, !o->only.scene && !o->only.shards);
+    return o->strict ? rt_claims_check(results, error) : RT_OK;
+}
+
 static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) {
-    char directory[RT_MAX_PATH], sentence[RT_MAX_SENTENCE];
+    char directory[RT_MAX_PATH];
     RtResults results;
     RT_TRY(rt_experiment_load(experiment, o->path, o->quick, error));
-    snprintf(directory, sizeof directory, "results/%s", experiment->name);
-    RtProgress progress = rt_progress_begin(experiment, experiment->count_only ? 1 : 2);
-    RtRunOptions how = {.directory = o->out ? o->out : directory,
-                        .start = o->start,
-                        .workload = {.threads = o->threads,
-                                     .timing = o->timing,
-                                     .observer = rt_progress_observer(&progress)}};
+    RT_TRY(check_only(experiment, &o->only, error));
+    if (o->until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
+    if (o->only.shards)
+        snprintf(directory, sizeof directory, "results/%s-%u-of-%u", experiment->name, o->only.shard,
+                 o->only.shards);
+    else
+        snprintf(directory, sizeof directory, "results/%s", experiment->name);
+    RtRunOptions how = {
+        .directory = o->out ? o->out : directory,
+        .start = o->start,
+        .workload = {.threads = o->threads,
+                     .timing = o->timing,
+                     .only = o->only,
+                     .until = o->until,
+                     .patience = o->patience},
+    };
     RtStatus status = rt_results_init(&results, experiment, error);
-    if (status == RT_OK) status = rt_run_experiment(&results, &how, error);
-    rt_progress_end(&progress);
-    if (status == RT_OK) {
-        rt_print_results(&results, RT_TOTALS, stdout);
-        rt_null_sentence(&results, sentence);
-        printf("\n%s%sReport: %s/report.html\n", sentence, *sentence ? "\n" : "", how.directory);
-    }
+    if (status == RT_OK) status = o->dry ? dry_run(&results, &how, error) : measure(o, &results, &how, error);
     rt_results_clear(&results);
     return status;
 }
 
 int rt_command_run(int argc, char **argv) {
-    Options o = {.timing = 1};
+    Options o = {.timing = 1, .patience = RT_PATIENCE};
     const struct argp argp = {.options = options,
                               .parser = parse_option,
                               .args_doc = "EXPERIMENT.yaml",
@@ -85,9 +242,10 @@ int rt_command_run(int argc, char **argv) {
                                   "Run an experiment and write its result directory: counts.csv, times.csv, "
                                   "manifest.json, plots, images and report.html. A directory with results, "
                                   "finished or not, is refused without --resume or --force; so is one that "
-                                  "another process writes into."
+                                  "another process writes into. Ctrl-C at any time: what is measured is kept."
                                   "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
-                                  "gnuplot there is a note), or a published figure is missed. "
+                                  "gnuplot there is a note), a published figure is missed, or with "
+                                  "--strict a claim does not hold. "
                                   "experiments/README.md says how to write an experiment."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;

@@ -4,6 +4,7 @@
  * line. */
 #include "base/clock.h"
 #include "base/memory.h"
+#include "bench/ray_file.h"
 #include "cli/cli.h"
 #include "scenes/family.h"
 #include "verify/replay.h"
@@ -43,13 +44,15 @@ typedef struct Options {
     RtStart start;
     int threads;
     uint64_t rays, seed;
-    const char *folder, *replay;
+    const char *folder, *replay, *rays_from;
+    bool counted_rays;             /* --rays was given */
+    RtRaySet given;                /* those of rays_from */
     RtVerifySpec specs[MAX_SPECS]; /* what the accelerators stand for */
     uint32_t spec_count;
     char family_specs[MAX_SCENES][RT_MAX_SPEC_CHARS];
 } Options;
 
-enum { KEY_SPREAD = 256, KEY_FAMILIES, KEY_RESUME, KEY_FORCE, KEY_REPLAY };
+enum { KEY_SPREAD = 256, KEY_FAMILIES, KEY_RESUME, KEY_FORCE, KEY_REPLAY, KEY_RAYS_FROM };
 
 static const struct argp_option options[] = {
     {"accel", 'a', "SPEC", 0, "An accelerator, or `all` of them (the default); may be repeated", 0},
@@ -59,6 +62,11 @@ static const struct argp_option options[] = {
      "and, where no SCENE is given, also the families of scenes",
      0},
     {"rays", 'n', "N", 0, "Rays for each scene and accelerator (default 100000)", 0},
+    {"rays-from", KEY_RAYS_FROM, "FILE.npy", 0,
+     "The rays of FILE in place of all others: an array of float32 of shape (N, 8), as `raytally rays` "
+     "writes it. Each "
+     "is asked both for its nearest hit and for any",
+     0},
     {"seed", 's', "S", 0, "Seed of the random rays and of `families` (default 1)", 0},
     {"threads", 't', "N", 0, "Threads; 0, the default, is all processors", 0},
     {"out", 'o', "DIR", 0,
@@ -122,7 +130,11 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case KEY_FORCE: o->start = RT_START_ANEW; return 0;
     case KEY_REPLAY: o->replay = argument; return 0;
     case 'o': o->folder = argument; return 0;
-    case 'n': o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 20000000); return 0;
+    case KEY_RAYS_FROM: o->rays_from = argument; return 0;
+    case 'n':
+        o->counted_rays = true;
+        o->rays = (uint64_t)rt_cli_integer(state, "--rays", argument, 1, 20000000);
+        return 0;
     case 's': o->seed = (uint64_t)rt_cli_integer(state, "--seed", argument, 0, INT64_MAX); return 0;
     case 't': o->threads = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
     case 'j': o->json = true; return 0;
@@ -132,6 +144,11 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
             argp_error(state,
                        "--replay asks again what is in FILE and prints text: it takes no SCENE, --accel, "
                        "--out or --json");
+        }
+        if (o->rays_from && (o->families || o->counted_rays || o->replay || o->scene_count == 0)) {
+            argp_error(state,
+                       "--rays-from has all rays in it, and they belong to a SCENE: name that, and leave "
+                       "--rays, --families and --replay out");
         }
         if (o->start != RT_START_FRESH && !o->folder) {
             argp_error(state, "--resume and --force are about the run in --out DIR: name it");
@@ -309,7 +326,7 @@ static RtStatus verify(const Options *o, bool *failed, RtError *error) {
                      .scene_count = o->scene_count,
                      .specs = o->specs,
                      .spec_count = o->spec_count,
-                     .rays = {o->rays, o->seed, o->families, o->threads},
+                     .rays = {o->rays, o->seed, o->families, o->threads, o->rays_from ? &o->given : NULL},
                      .folder = o->folder,
                      .start = o->start};
     json_t *rows;
@@ -387,7 +404,12 @@ int rt_command_verify(int argc, char **argv) {
     RtError error;
     bool failed = false;
     RtStatus status = o.replay ? replay(&o, &failed, &error) : choose_specs(&o, &error);
+    if (status == RT_OK && o.rays_from) {
+        status = rt_rays_load(o.rays_from, RT_RAY_RANDOM, &o.given, &error);
+        o.rays = o.given.count;
+    }
     if (status == RT_OK && !o.replay) status = verify(&o, &failed, &error);
+    rt_rayset_clear(&o.given);
     if (status != RT_OK) return rt_cli_fail(&error);
     return failed ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;
 }

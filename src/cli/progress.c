@@ -3,41 +3,78 @@
 
 #include "base/clock.h"
 
+#include <math.h>
+#include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
 #include <unistd.h>
 
-RtProgress rt_progress_begin(const RtExperiment *experiment, uint32_t parts) {
-    uint32_t candidates = 0; /* on each scene */
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        for (uint32_t c = 0; c < experiment->candidate_count; c++)
-            candidates += rt_candidate_runs(experiment, c, t);
-    }
-    return (RtProgress){.terminal = isatty(STDERR_FILENO) == 1,
-                        .all = experiment->kind_count * candidates * parts,
-                        .start = rt_wall_seconds()};
+static const double LINE_EVERY = 60; /* seconds */
+
+RtProgress rt_progress_begin(const RtWorkloadOptions *options) {
+    double now = rt_wall_seconds();
+    return (RtProgress){
+        .terminal = isatty(STDERR_FILENO) == 1, .options = *options, .start = now, .shown = now};
+}
+
+/* ---- how long it will take ---- */
+
+void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
+    int minutes = (int)fmin(round(seconds / 60), 1e8);
+    if (seconds < 90)
+        snprintf(out, RT_MAX_DURATION, "%.0f s", seconds);
+    else if (minutes < 100)
+        snprintf(out, RT_MAX_DURATION, "%d min", minutes);
+    else
+        snprintf(out, RT_MAX_DURATION, "%d h %d min", minutes / 60, minutes % 60);
+}
+
+double rt_progress_left(const RtProgress *progress, double now) {
+    double left = rt_forecast_left(&progress->forecast, progress->before, progress->asked - progress->start);
+    return isnan(left) ? left : fmax(left - (now - progress->asked), 0);
+}
+
+/* ---- lines ---- */
+
+static void show(RtProgress *progress) {
+    const RtForecast *f = &progress->forecast;
+    double now = rt_wall_seconds(), left = rt_progress_left(progress, now);
+    char duration[RT_MAX_DURATION], rest[RT_MAX_DURATION + 16] = "";
+    rt_format_duration(left, duration);
+    if (!isnan(left)) snprintf(rest, sizeof rest, ", about %s left", duration);
+    fprintf(stderr, progress->terminal ? "\r\033[K[%u/%u] %s%s" : "raytally: %u of %u cells, %s%s\n",
+            f->finished, f->cells, progress->doing, rest);
+    fflush(stderr);
+    progress->shown = now;
+}
+
+static void describe(RtProgress *progress, const RtResults *results, const RtEvent *event) {
+    static const char *const what[] = {
+        [RT_EVENT_WORKLOAD] = "rays recorded", [RT_EVENT_BUILD] = "built",
+        [RT_EVENT_COUNT] = "counted",          [RT_EVENT_TIME] = "timed",
+        [RT_EVENT_TOO_LARGE] = "left out",     [RT_EVENT_TOO_LONG] = "left out"};
+    const RtExperiment *experiment = results->experiment;
+    bool scene = event->what == RT_EVENT_WORKLOAD, build = event->what == RT_EVENT_BUILD;
+    snprintf(progress->doing, sizeof progress->doing, "%s%s%s%s%s: %s",
+             experiment->workloads[event->workload].label, scene ? "" : " ",
+             scene ? "" : rt_candidate_label(experiment, event->candidate), scene || build ? "" : " ",
+             scene || build ? "" : rt_experiment_kind_name(experiment, event->kind), what[event->what]);
 }
 
 static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
     (void)error;
     RtProgress *progress = context;
-    const RtExperiment *experiment = results->experiment;
-    bool null = event->candidate == experiment->candidate_count;
-    bool cell = event->what == RT_EVENT_COUNT || event->what == RT_EVENT_TIME;
-    progress->done += cell && !null;
-    if (!progress->terminal) return RT_OK;
-    double passed = rt_wall_seconds() - progress->start;
-    double left = progress->done ? passed / progress->done * (progress->all - progress->done) : 0;
-    fprintf(stderr, "\r\033[K[%u/%u] %s", progress->done, progress->all,
-            experiment->workloads[event->workload].label);
-    if (event->what != RT_EVENT_WORKLOAD)
-        fprintf(stderr, " %s", rt_candidate_label(experiment, event->candidate));
-    if (cell) fprintf(stderr, " %s", rt_ray_kind_name(event->kind));
-    fprintf(stderr, event->what == RT_EVENT_WORKLOAD ? ": rays recorded"
-                    : event->what == RT_EVENT_BUILD  ? ": built"
-                    : event->what == RT_EVENT_COUNT  ? ": counted"
-                                                     : ": timed");
-    if (progress->done) fprintf(stderr, ", about %.0f s left", left);
-    fflush(stderr);
+    double now = rt_wall_seconds();
+    if (progress->watched) pthread_mutex_lock(&progress->lock);
+    progress->forecast = rt_forecast(results, &progress->options); /* takes less than a cell by far */
+    progress->asked = now;
+    if (!progress->begun) progress->before = progress->forecast.known; /* what is not measured here */
+    progress->begun = true;
+    describe(progress, results, event);
+    if (progress->terminal || now - progress->shown >= LINE_EVERY) show(progress);
+    if (progress->watched) pthread_mutex_unlock(&progress->lock);
     return RT_OK;
 }
 
@@ -50,6 +87,67 @@ RtObserver rt_progress_observer(RtProgress *progress) {
     return (RtObserver){progress, on_event, on_notice};
 }
 
+/* ---- the watch ---- */
+
+/* The journal is whole at any moment, so that nothing is left to do. */
+static void leave(const RtProgress *progress, int number) {
+    fprintf(stderr, "%sraytally: interrupted; ", progress->terminal ? "\r\033[K" : "");
+    if (progress->begun) {
+        fprintf(stderr, "%u of %u cells are finished, all that was measured is kept in %s. To go on:\n  %s\n",
+                progress->forecast.finished, progress->forecast.cells, progress->keeps, progress->go_on);
+    } else {
+        fprintf(stderr, "nothing was measured yet, and what was in %s is as it was\n", progress->keeps);
+    }
+    _exit(128 + number);
+}
+
+static void *watch(void *context) {
+    RtProgress *progress = context;
+    const struct timespec second = {.tv_sec = 1};
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGUSR2);
+    for (;;) {
+        int number = sigtimedwait(&signals, NULL, &second);
+        pthread_mutex_lock(&progress->lock);
+        bool ended = progress->ended;
+        if (!ended && (number == SIGINT || number == SIGTERM)) leave(progress, number);
+        double since = rt_wall_seconds() - progress->shown;
+        if (!ended && progress->begun && since >= (progress->terminal ? 1 : LINE_EVERY)) show(progress);
+        pthread_mutex_unlock(&progress->lock);
+        if (ended) return NULL;
+    }
+}
+
+static void block(int how) {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGUSR2);
+    pthread_sigmask(how, &signals, NULL);
+}
+
+void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on) {
+    snprintf(progress->keeps, sizeof progress->keeps, "%s", directory);
+    snprintf(progress->go_on, sizeof progress->go_on, "%s", go_on);
+    pthread_mutex_init(&progress->lock, NULL);
+    block(SIG_BLOCK);
+    progress->watched = pthread_create(&progress->watcher, NULL, watch, progress) == 0;
+    if (!progress->watched) block(SIG_UNBLOCK);
+}
+
 void rt_progress_end(RtProgress *progress) {
+    if (progress->watched) {
+        pthread_mutex_lock(&progress->lock);
+        progress->ended = true;
+        pthread_mutex_unlock(&progress->lock);
+        pthread_kill(progress->watcher, SIGUSR2); /* so that it does not wait out its second */
+        pthread_join(progress->watcher, NULL);
+        pthread_mutex_destroy(&progress->lock);
+        block(SIG_UNBLOCK);
+    }
     if (progress->terminal) fputs("\r\033[K", stderr);
 }

@@ -2,6 +2,8 @@
 #include "report/plot.h"
 
 #include "base/memory.h"
+#include "report/color.h"
+#include "report/sweep_plot.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -12,14 +14,6 @@
 #include <unistd.h>
 
 enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 3 };
-
-const char *rt_candidate_color(uint32_t candidate) {
-    /* The eight of Okabe & Ito (2008), told apart by colour-blind readers too, led by grey; then four
-     * more. */
-    static const char *const colors[] = {"#8c8c8c", "#e69f00", "#009e73", "#0072b2", "#56b4e9", "#d55e00",
-                                         "#cc79a7", "#5b4a9f", "#a6761d", "#66a61e", "#b2182b", "#17becf"};
-    return colors[candidate % (sizeof colors / sizeof colors[0])];
-}
 
 /* ---- scripts ---- */
 
@@ -180,14 +174,17 @@ static RtStatus settle(const char *directory, bool keep, RtError *error) {
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
-    char program[] = "gnuplot", *arguments[MOST_ARGUMENTS] = {program};
-    if (experiment->plot_count == 0) return RT_OK;
+    char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp", *arguments[MOST_ARGUMENTS] = {program};
+    const bool sweeps = rt_sweep_plots_needed(experiment);
+    if (experiment->plot_count == 0 && !sweeps) return RT_OK;
     settle(directory, false, NULL); /* of a drawing that was cut short */
     RT_TRY(write_names(results, directory, error));
+    if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
         snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
         arguments[i + 1] = paths[i];
     }
+    if (sweeps) arguments[1] = sweep_script;
     RtStatus status = run_gnuplot(arguments, directory, error);
     if (status != RT_OK) {
         settle(directory, false, NULL);

@@ -18,11 +18,9 @@ RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error);
  * exists, each under its rt_plot_name; `keep`: but for those that are there, which may have been edited. */
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, bool keep, RtError *error);
 
-/* Draws. RT_NOT_AVAILABLE where gnuplot is not installed; RT_MISMATCH, with what it says, where it fails:
- * then the plots are what they were before. */
+/* Draws, by the experiment's scripts; where it names none and sweeps parameters, by one that is written
+ * (sweep_plot.h). RT_NOT_AVAILABLE where gnuplot is not installed; RT_MISMATCH, with what it says, where it
+ * fails: then the plots are what they were before. */
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error);
-
-/* The colour of a candidate, "#rrggbb". */
-const char *rt_candidate_color(uint32_t candidate);
 
 #endif

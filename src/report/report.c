@@ -4,9 +4,10 @@
 #include "report/report.h"
 
 #include "base/memory.h"
+#include "bench/claims.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
-#include "report/plot.h"
+#include "report/color.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -71,6 +72,23 @@ static void put_card(FILE *out, const char *title, const char *text) {
     fputs("</div>\n", out);
 }
 
+static void put_claims(FILE *out, const RtResults *results) {
+    const RtExperiment *experiment = results->experiment;
+    if (!experiment->claim_count) return;
+    fputs("<div class=\"card\"><b>Claims</b><table><tbody>\n", out);
+    for (uint32_t i = 0; i < experiment->claim_count; i++) {
+        RtClaimResult result;
+        rt_claim_judge(results, i, &result);
+        fprintf(out, "<tr><td%s>%s</td><td>", result.verdict == RT_CLAIM_FALSE ? " class=\"missed\"" : "",
+                rt_claim_verdict_name(result.verdict));
+        rt_html_put(out, experiment->claims[i]);
+        fputs("</td><td>", out);
+        rt_html_put(out, result.figures);
+        fputs("</td></tr>\n", out);
+    }
+    fputs("</tbody></table></div>\n", out);
+}
+
 static const char *text_at(const json_t *object, const char *key) {
     const char *text = json_string_value(json_object_get(object, key));
     return text ? text : "unknown";
@@ -97,6 +115,8 @@ static void put_head(FILE *out, const RtResults *results, const json_t *manifest
             experiment->quick ? " &middot; <strong>quick variant</strong>" : "");
     put_card(out, "Question", experiment->question);
     put_card(out, "Prediction, written before the run", experiment->prediction);
+    put_claims(out, results);
+    put_card(out, "Finding", experiment->finding);
 }
 
 static void put_plot(void *context, const char *path) {
@@ -212,7 +232,9 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
         rt_html_put(out, rt_tally_meaning(i));
         fputs("</dd>\n", out);
     }
-    fputs("</dl></details>\n<details open><summary>Manifest</summary><dl>", out);
+    fputs("</dl></details>\n<pre class=\"meta\">", out);
+    rt_print_limits(results, out);
+    fputs("</pre>\n<details open><summary>Manifest</summary><dl>", out);
     put_members(out, manifest);
     put_members(out, json_object_get(manifest, "machine"));
     fputs("</dl></details>\n", out);

@@ -118,6 +118,8 @@ static RtStatus write_report(const Work *work, RtError *error) {
 
 static RtStatus finish(Work *work, RtError *error) {
     const RtRun *run = &work->run;
+    /* A shard is finished; what is made of all of them is for rt_run_merge. */
+    if (run->options->workload.only.shards) return write_manifest(run, error);
     RT_TRY(write_compared(work, error));
     RT_TRY(write_manifest(run, error));
     /* What was measured is worth a report, drawn or not. */
@@ -139,7 +141,11 @@ RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtEr
     RtStatus status = rt_run_open(&work.run, results, options, error);
     if (status == RT_OK) status = begin(&work, error);
     if (status == RT_OK) status = rt_run_measure(&work.run, error);
-    if (status == RT_OK) status = finish(&work, error);
+    if (status == RT_OK && rt_run_is_complete(&work.run)) {
+        status = finish(&work, error);
+    } else if (status == RT_OK) {
+        rt_run_notice(&work.run, "a part was measured; --resume without --only measures what is left");
+    }
     rt_run_close(&work.run);
     rt_published_clear(&work.published);
     return status;
@@ -161,5 +167,5 @@ RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults 
     }
     RT_TRY(rt_experiment_load(experiment, path, quick, error));
     RT_TRY(rt_results_init(results, experiment, error));
-    return rt_journal_load(journal, results, false, error);
+    return rt_journal_load(journal, results, NULL, error);
 }

@@ -71,15 +71,15 @@ RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling,
     return RT_OK;
 }
 
-/* Position of sample `i` of `n` in -1..1. */
-static double sample_position(uint32_t i, uint32_t n, bool corners) {
+double rt_sample_position(uint32_t i, uint32_t n, bool corners) {
     return corners ? 2.0 * i / (n - 1) - 1 : (2.0 * i + 1) / n - 1;
 }
 
 RtRay rt_view_ray(const RtView *view, uint32_t column, uint32_t row) {
     const RtSampling *s = &view->sampling;
-    RtVec3d dir = rt_add_scaledd(view->forward, view->right, sample_position(column, s->columns, s->corners));
-    dir = rt_add_scaledd(dir, view->down, sample_position(row, s->rows, s->corners));
+    RtVec3d dir =
+        rt_add_scaledd(view->forward, view->right, rt_sample_position(column, s->columns, s->corners));
+    dir = rt_add_scaledd(dir, view->down, rt_sample_position(row, s->rows, s->corners));
     return (RtRay){.org = rt_narrow(view->eye),
                    .tmin = (float)view->near,
                    .dir = rt_narrow(dir),

@@ -47,8 +47,12 @@ typedef struct RtView {
 /* Refuses a camera that looks nowhere (from = at), has `up` along its axis, or a fov outside (0, 180). */
 RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling, RtError *error);
 
+/* Position of sample `i` of `n`, a column or a row of the grid, in -1..1 across the image plane. */
+double rt_sample_position(uint32_t i, uint32_t n, bool corners);
+
 /* The primary ray of the sample in `column`, `row`: from the eye, dir not normalised (its component along the
- * axis is 1, so t is depth), tmin at the near plane, source = row * columns + column. */
+ * axis is 1, so t is depth), tmin at the near plane, source = row * columns + column. Its
+ * dir is (forward + right * position of the column) + down * position of the row, in double, rounded. */
 RtRay rt_view_ray(const RtView *view, uint32_t column, uint32_t row);
 
 #endif

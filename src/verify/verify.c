@@ -75,9 +75,10 @@ static json_t *header_json(const Run *run) {
     for (uint32_t i = 0; i < v->spec_count; i++) {
         json_array_append_new(specs, json_string(v->specs[i].spec));
     }
-    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:I, s:b}", "build", rt_build_identity(), "scenes", scenes,
-                     "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count, "seed",
-                     (json_int_t)v->rays.seed, "families", v->rays.families);
+    json_t *given = v->rays.given ? rt_json_hex(v->rays.given->fingerprint) : json_null();
+    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:I, s:b}", "build", rt_build_identity(), "scenes",
+                     scenes, "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count,
+                     "rays_hash", given, "seed", (json_int_t)v->rays.seed, "families", v->rays.families);
 }
 
 /* What was verified, and with what, in the folder's manifest.json. */

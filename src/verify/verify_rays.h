@@ -8,12 +8,13 @@
 #ifndef RT_VERIFY_VERIFY_RAYS_H
 #define RT_VERIFY_VERIFY_RAYS_H
 
-#include "accel/accel.h"
+#include "bench/rayset.h"
 
 typedef struct RtVerifyRays {
     uint64_t count, seed;
     bool families;
     int threads;
+    const RtRaySet *given; /* NULL; or the rays, `count` of them, that take the place of all others */
 } RtVerifyRays;
 
 /* Has the scene sampled as sparsely as its share of rays asks for; before accelerators are built over it. */

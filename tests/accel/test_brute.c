@@ -67,7 +67,7 @@ static void assert_same(const Asked *right, const Asked *got, bool counted, RtIs
     assert_memory_equal(right->occluded, got->occluded, sizeof right->occluded);
 }
 
-static void by_kernels(const RtBruteKernels *kernels, const RtQuery *query, Asked *asked, size_t stream,
+static void by_kernels(const RtKernels *kernels, const RtQuery *query, Asked *asked, size_t stream,
                        bool counted) {
     for (size_t first = 0; first < asked->count; first += stream) {
         size_t left = asked->count - first, n = left < stream ? left : stream;
@@ -96,7 +96,7 @@ static void assert_is_the_definition(const RtScene *scene, const RtRay *rays, si
         for (size_t s = 0; s < sizeof streams / sizeof streams[0]; s++) {
             for (int counted = 0; counted < 2; counted++) {
                 Asked got = begin_asking(rays, count);
-                by_kernels(rt_brute_kernels((RtIsa)isa), &query, &got, streams[s], counted);
+                by_kernels(RT_KERNELS_FOR(brute, isa), &query, &got, streams[s], counted);
                 assert_same(&right, &got, counted, (RtIsa)isa, streams[s]);
                 clear(&got);
             }

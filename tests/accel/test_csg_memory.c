@@ -152,7 +152,7 @@ static RtStatus build_item(const Row *row, RtError *error) {
     RtAccel *accel;
     RT_TRY(rt_accel_open("item+brute", &row->scene, &accel, error));
     const RtItemBuffer *buffer = (const RtItemBuffer *)accel;
-    for (size_t i = 0; i < rt_item_sample_count(buffer); i++) assert_int_equal(buffer->samples[i].id, 0);
+    for (size_t i = 0; i < rt_item_sample_count(buffer); i++) assert_int_equal(buffer->samples[i], 0);
     RtStatus status = accel->ops->validate(accel, error);
     rt_accel_destroy(accel);
     return status;

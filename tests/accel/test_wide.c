@@ -27,7 +27,7 @@ static RtWideNode *node_at(const RtWide *wide, RtWideRef ref) {
 }
 
 static void unmake(RtWide *wide, RtScene *scene) {
-    rt_accel_destroy(&wide->base);
+    rt_accel_destroy(&wide->isa.base);
     rt_scene_clear(scene);
 }
 
@@ -54,59 +54,59 @@ RT_TEST(validate_names_what_is_wrong_with_a_node) {
     for (uint32_t plane = 0; plane < 2; plane++) { /* both along x, inward and outward of the parent */
         float outward = plane ? 1 : -1;
         node->plane[plane][plane ? node->count - 1 : 0] += outward;
-        assert_broken(&wide->base, "does not contain its child");
+        assert_broken(&wide->isa.base, "does not contain its child");
         *node = kept;
         node->plane[plane][0] -= outward * 0.5f;
-        assert_broken(&wide->base, "does not contain its object");
+        assert_broken(&wide->isa.base, "does not contain its object");
         *node = kept;
     }
     for (uint32_t plane = 0; plane < 6; plane++) {
         node->plane[plane][1] = NAN;
-        assert_broken(&wide->base, "does not contain its");
+        assert_broken(&wide->isa.base, "does not contain its");
         *node = kept;
         root->plane[plane][lane] = NAN;
-        assert_broken(&wide->base, "does not contain its child");
+        assert_broken(&wide->isa.base, "does not contain its child");
         *root = kept_root;
     }
 
     const uint32_t counts[] = {0, 1, 9, UINT32_MAX};
     for (int i = 0; i < 4; i++) {
         node->count = counts[i];
-        assert_broken(&wide->base, "children");
+        assert_broken(&wide->isa.base, "children");
         *node = kept;
     }
     root->count = 1;
-    assert_broken(&wide->base, "node 0 has 1 children");
+    assert_broken(&wide->isa.base, "node 0 has 1 children");
     *root = kept_root;
     root->count--; /* a child left out */
-    assert_broken(&wide->base, "has a box and no child");
+    assert_broken(&wide->isa.base, "has a box and no child");
     for (int p = 0; p < 6; p++) root->plane[p][root->count] = p % 2 ? -INFINITY : INFINITY;
-    assert_broken(&wide->base, "nodes are in the tree");
+    assert_broken(&wide->isa.base, "nodes are in the tree");
     *root = kept_root;
 
     root->child[lane] = 0;
-    assert_broken(&wide->base, "has a child before it");
+    assert_broken(&wide->isa.base, "has a child before it");
     root->child[lane] = (RtWideRef)wide->trees[0].bytes;
-    assert_broken(&wide->base, "is not in the arena");
+    assert_broken(&wide->isa.base, "is not in the arena");
     root->child[lane] = (RtWideRef)wide->trees[0].bytes - RT_WIDE_UNIT; /* begins in it, ends behind */
-    assert_broken(&wide->base, "is not in the arena");
+    assert_broken(&wide->isa.base, "is not in the arena");
     root->child[lane] = at | 4; /* a node has no number of objects */
-    assert_broken(&wide->base, "is not in the arena");
+    assert_broken(&wide->isa.base, "is not in the arena");
     root->child[lane] = RT_WIDE_DONE;
-    assert_broken(&wide->base, "is not in the arena");
+    assert_broken(&wide->isa.base, "is not in the arena");
     *root = kept_root;
     uint32_t other = lane + 1;
     while (other < root->count && rt_wide_kind(root->child[other]) != RT_WIDE_NODE) other++;
     assert_true(other < root->count);
     root->child[other] = at;
-    assert_broken(&wide->base, "node"); /* one has two parents, or one has none */
+    assert_broken(&wide->isa.base, "node"); /* one has two parents, or one has none */
     *root = kept_root;
     wide->trees[0].node_count++;
-    assert_broken(&wide->base, "nodes are in the tree");
+    assert_broken(&wide->isa.base, "nodes are in the tree");
     wide->trees[0].node_count -= 2;
-    assert_broken(&wide->base, "has two parents");
+    assert_broken(&wide->isa.base, "has two parents");
     wide->trees[0].node_count++;
-    assert_ok(wide->base.ops->validate(&wide->base, error));
+    assert_ok(wide->isa.base.ops->validate(&wide->isa.base, error));
     unmake(wide, &scene);
 }
 
@@ -124,29 +124,29 @@ RT_TEST(validate_names_what_is_wrong_with_a_leaf_of_triangles) {
     memcpy(kept, blocks, sizeof kept);
 
     blocks[1].v[2][1][0] += 1;
-    assert_broken(&wide->base, "is another triangle");
+    assert_broken(&wide->isa.base, "is another triangle");
     blocks[1].v[2][1][0] = NAN;
-    assert_broken(&wide->base, "is another triangle");
+    assert_broken(&wide->isa.base, "is another triangle");
     memcpy(blocks, kept, sizeof kept);
     blocks[1].v[0][0][1] = 0; /* where no triangle is */
-    assert_broken(&wide->base, "is another triangle");
+    assert_broken(&wide->isa.base, "is another triangle");
     memcpy(blocks, kept, sizeof kept);
     blocks[1].id[0] = RT_NO_OBJECT;
-    assert_broken(&wide->base, "holds no triangle in lane 4");
+    assert_broken(&wide->isa.base, "holds no triangle in lane 4");
     blocks[1].id[0] = 5;
-    assert_broken(&wide->base, "holds no triangle in lane 4");
+    assert_broken(&wide->isa.base, "holds no triangle in lane 4");
     blocks[1].id[0] = blocks[0].id[0];
-    assert_broken(&wide->base, "is in 2 leaves");
+    assert_broken(&wide->isa.base, "is in 2 leaves");
     memcpy(blocks, kept, sizeof kept);
 
     root->child[0] = rt_wide_leaf(RT_WIDE_TRIANGLES, rt_wide_place(leaf), 6);
-    assert_broken(&wide->base, "holds no triangle in lane 5");
+    assert_broken(&wide->isa.base, "holds no triangle in lane 5");
     root->child[0] = rt_wide_leaf(RT_WIDE_TRIANGLES, rt_wide_place(leaf), 4);
-    assert_broken(&wide->base, "is in 0 leaves");
+    assert_broken(&wide->isa.base, "is in 0 leaves");
     root->child[0] = rt_wide_leaf(RT_WIDE_TRIANGLES, rt_wide_place(leaf) + RT_WIDE_UNIT, 5);
-    assert_broken(&wide->base, "is not in the arena");
+    assert_broken(&wide->isa.base, "is not in the arena");
     root->child[0] = rt_wide_leaf(RT_WIDE_LANDED, rt_wide_place(leaf), 5);
-    assert_broken(&wide->base, "is not in the arena");
+    assert_broken(&wide->isa.base, "is not in the arena");
     unmake(wide, &scene);
 }
 
@@ -159,20 +159,20 @@ RT_TEST(validate_names_what_is_wrong_with_a_list) {
     assert_int_equal(rt_wide_kind(leaf), RT_WIDE_OBJECTS);
     RtWideList *list = (void *)(wide->trees[0].arena + rt_wide_place(leaf)), kept = *list;
     list->id[1] = list->id[0];
-    assert_broken(&wide->base, "is in 2 leaves");
+    assert_broken(&wide->isa.base, "is in 2 leaves");
     list->id[1] = 3;
-    assert_broken(&wide->base, "holds no object");
+    assert_broken(&wide->isa.base, "holds no object");
     *list = kept;
     list->id[7] = 0;
-    assert_broken(&wide->base, "holds more than its objects");
+    assert_broken(&wide->isa.base, "holds more than its objects");
     *list = kept;
     root->child[0] = rt_wide_leaf(RT_WIDE_OBJECTS, rt_wide_place(leaf), 2);
-    assert_broken(&wide->base, "holds more than its objects");
+    assert_broken(&wide->isa.base, "holds more than its objects");
     root->child[0] = rt_wide_leaf(RT_WIDE_TRIANGLES, rt_wide_place(leaf), 3); /* spheres are none */
-    assert_broken(&wide->base, "wide: ");
+    assert_broken(&wide->isa.base, "wide: ");
     root->child[0] = leaf;
     root->plane[1][0] -= 1;
-    assert_broken(&wide->base, "does not contain its object");
+    assert_broken(&wide->isa.base, "does not contain its object");
     unmake(wide, &scene);
 }
 
@@ -203,7 +203,7 @@ RT_TEST(validate_names_a_node_that_is_too_deep) {
         node->child[1] = i + 1 < CHAIN ? (i + 1) * (uint32_t)sizeof *node
                                        : rt_wide_leaf(RT_WIDE_OBJECTS, nodes + i * (uint32_t)sizeof *list, 1);
     }
-    assert_broken(&wide->base, "is too deep");
+    assert_broken(&wide->isa.base, "is too deep");
     unmake(wide, &scene);
 }
 
@@ -214,7 +214,7 @@ RT_TEST(validate_looks_at_both_trees) {
     RtWide *wide = make_wide(&scene, 0, "build=spatial,whole=on");
     assert_ptr_equal(wide->occluded, &wide->trees[1]);
     ((RtWideNode *)(void *)wide->trees[1].arena)->count = 0;
-    assert_broken(&wide->base, "node 0 has 0 children");
+    assert_broken(&wide->isa.base, "node 0 has 0 children");
     unmake(wide, &scene);
 }
 
@@ -227,7 +227,7 @@ RT_TEST(eight_objects_far_apart_are_one_node_of_eight_leaves) {
     make_row(&scene, 8, 10, false);
     RtWide *wide = make_wide(&scene, 0, "max_leaf_size=1,block_cost=2");
     RtDescription description;
-    rt_accel_describe(&wide->base, &description);
+    rt_accel_describe(&wide->isa.base, &description);
     assert_int_equal(description.interior, 1);
     assert_int_equal(description.leaves, 8);
     assert_int_equal(description.depth, 1);
@@ -284,7 +284,7 @@ static void count_rays(const RtWide *wide, const RtRay *rays, size_t cut, bool a
     RtQuery query;
     RtHit hits[COUNTED];
     bool blocked[COUNTED];
-    assert_ok(rt_query_init(&query, &wide->base, error));
+    assert_ok(rt_query_init(&query, &wide->isa.base, error));
     for (size_t i = 0, n; i < COUNTED; i += n) {
         n = COUNTED - i < cut ? COUNTED - i : cut;
         if (any)
@@ -319,7 +319,7 @@ RT_TEST(counts_are_the_same_by_any_instruction_set_and_however_a_stream_is_cut_o
                     if (isa + way + cut == 0) memcpy(first, tallies, sizeof first);
                     assert_memory_equal(first, tallies, sizeof first);
                 }
-                rt_accel_destroy(wide ? &wide->base : NULL);
+                rt_accel_destroy(wide ? &wide->isa.base : NULL);
             }
         }
         assert_true(first[0].rays > 0 && first[0].hits > 0 && first[0].extent_tests > first[0].steps);
@@ -343,7 +343,7 @@ RT_TEST(a_rays_counts_are_those_by_hand) {
     RtQuery query;
     RtHit hits[2];
     RtTally tallies[RT_RAY_KIND_COUNT] = {0};
-    assert_ok(rt_query_init(&query, &wide->base, error));
+    assert_ok(rt_query_init(&query, &wide->isa.base, error));
     rt_nearest(&query, rays, 2, hits, tallies);
     const RtTally *met = &tallies[RT_RAY_PRIMARY], *missed = &tallies[RT_RAY_RANDOM];
     assert_int_equal(hits[0].object, 0);
@@ -395,7 +395,7 @@ RT_TEST(what_would_take_too_much_is_refused_and_what_just_fits_is_not) {
     RtAccel *accel;
     RtError refusal = {RT_OK, ""};
     uint64_t bytes = wide->trees[0].bytes;
-    rt_accel_destroy(&wide->base);
+    rt_accel_destroy(&wide->isa.base);
     assert_ok(rt_spec_parse("wide", &spec, error));
     const RtValue *values = spec.layers[0].values;
     assert_ok(build_within("wide", bytes, &scene, values, &accel, error));
@@ -412,7 +412,7 @@ RT_TEST(an_instruction_set_that_is_not_there_is_no_crash) {
         RtWide *wide = make_wide(&scene, isa, "");
         if (isa == 0) assert_non_null(wide);
         if (!wide) print_message("skipped here: isa=%s\n", instruction_sets[isa]);
-        rt_accel_destroy(wide ? &wide->base : NULL);
+        rt_accel_destroy(wide ? &wide->isa.base : NULL);
     }
     rt_scene_clear(&scene);
 }

@@ -85,15 +85,13 @@ static RtCell time_thinned(const char *baseline, const char *spec) {
     strcpy(e->name, "thinned");
     e->milliseconds = 1;
     e->kind_count = 1;
-    e->workload_count = 1;
-    e->workloads[0].depth = 1;
-    e->workloads[0].width = e->workloads[0].height = 8;
+    const RtWorkload scene = {.depth = 1, .width = 8, .height = 8};
     e->candidate_count = 2;
     e->candidates[0] = (RtCandidate){.label = "all", .ray_stride = 1};
     e->candidates[1] = (RtCandidate){.label = "some", .ray_stride = 64};
     strcpy(e->candidates[0].spec, baseline);
     strcpy(e->candidates[1].spec, spec);
-    assert_ok(rt_workload_set_scene(&e->workloads[0], "random:n=300", "", error));
+    assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
     assert_ok(rt_experiment_check(e, where, error));
     assert_ok(rt_results_init(&results, e, error));
     assert_ok(rt_workload_run(&results, 0, &options, error));
@@ -165,16 +163,14 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     strcpy(e->name, "best");
     e->milliseconds = 1;
     e->kind_count = 2;
-    e->workload_count = 1;
-    e->workloads[0].depth = 1;
-    e->workloads[0].width = e->workloads[0].height = 32;
+    const RtWorkload scene = {.depth = 1, .width = 32, .height = 32};
     e->candidate_count = 2;
     e->candidates[0] = (RtCandidate){.label = "all", .spec = "bvh", .ray_stride = 1};
     e->candidates[1] = (RtCandidate){.label = "some", .spec = "bvh", .ray_stride = 7};
     assert_ok(rt_experiment_set_baseline(e, name, error));
     assert_true(e->baseline == 2 && e->baseline_count > 1 && e->candidate_count == 2 + e->baseline_count);
     assert_string_equal(rt_baseline_label(e), name);
-    assert_ok(rt_workload_set_scene(&e->workloads[0], "random:n=300", "", error));
+    assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
     assert_ok(rt_experiment_check(e, where, error));
     assert_ok(rt_results_init(&results, e, error));
     assert_ok(rt_workload_run(&results, 0, &options, error));
@@ -182,6 +178,80 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     assert_best_is_baseline(&results, RT_RAY_SHADOW);
     rt_results_clear(&results);
     rt_free(e);
+}
+
+/* ---- until the intervals are narrow ---- */
+
+static RtStatus do_nothing(void *context, RtError *error) {
+    (void)error;
+    ++*(int *)context;
+    return RT_OK;
+}
+
+static bool five_will_do(void *context, uint32_t rounds) {
+    ++*(int *)context;
+    return rounds >= 5;
+}
+
+RT_TEST(rounds_go_on_until_they_will_do_and_no_longer_than_they_may) {
+    const uint32_t cases[][3] = {{3, 9, 5}, {3, 4, 4}, {7, 9, 7}, {9, 9, 9}}; /* at least, at most, done */
+    for (int i = 0; i < 4; i++) {
+        int runs = 0, asked = 0;
+        double seconds[9];
+        uint32_t done;
+        RtRunner runner = {.run = do_nothing, .context = &runs, .work = 1, .seconds = seconds};
+        RtRounds rounds = {
+            .rounds = cases[i][0], .most = cases[i][1], .enough = five_will_do, .context = &asked};
+        assert_ok(rt_rounds_run(&runner, 1, &rounds, &done, error));
+        assert_int_equal(done, cases[i][2]);
+        assert_int_equal(runs, done + 1); /* one to warm up */
+        assert_int_equal(asked, i == 0 ? 3 : i == 1 || i == 2 ? 1 : 0);
+    }
+}
+
+static void note(void *context, const char *message) {
+    snprintf(context, 256, "%s", message);
+}
+
+/* Times bvh until its null run is as narrow as `until`, and gives the rounds; `says` is what was told. */
+static uint32_t rounds_until(double until, double patience, char says[256]) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtWorkloadOptions options = {.threads = 1, .timing = 1, .until = until, .patience = patience};
+    RtResults results;
+    char where[RT_MAX_LABEL];
+    assert_non_null(e);
+    says[0] = '\0';
+    options.observer = (RtObserver){says, NULL, note};
+    rt_experiment_init(e);
+    strcpy(e->name, "until");
+    e->milliseconds = 1;
+    e->rounds = 6;
+    e->kind_count = 1;
+    e->candidate_count = 1;
+    e->candidates[0] = (RtCandidate){.label = "bvh", .spec = "bvh", .ray_stride = 1};
+    RtWorkload like = {.depth = 1, .width = 16, .height = 16};
+    assert_ok(rt_experiment_add_scenes(e, &like, "random:n=300", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    assert_ok(rt_workload_run(&results, 0, &options, error));
+    const RtCell *null = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    uint32_t rounds = null->rounds;
+    assert_true((rt_estimate_width(&null->ratio) <= until) == (says[0] == '\0'));
+    assert_non_null(null->each);
+    rt_results_clear(&results);
+    rt_free(e);
+    return rounds;
+}
+
+RT_TEST(timing_goes_on_until_the_intervals_of_ratios_are_narrow_or_says_that_they_are_not) {
+    char says[256];
+    assert_int_equal(rounds_until(100, 60, says), 6);
+    assert_string_equal(says, "");
+    assert_true(rounds_until(1e-12, 0.2, says) > 6);
+    assert_non_null(strstr(says, "primary rays on random:n=300: after "));
+    assert_non_null(strstr(says, "the widest is that of bvh (again)"));
+    assert_int_equal(rounds_until(1e-12, 600, says), RT_MAX_ROUNDS);
+    assert_non_null(strstr(says, "after 1000 rounds"));
 }
 
 RT_TESTS(measure, NULL, NULL)

@@ -83,4 +83,93 @@ RT_TEST(ratios_are_paired_within_a_round) {
     assert_true(e.median == 2 && e.low == 2 && e.high == 2);
 }
 
+/* Critical values of Mann and Whitney's U for two samples of 10, of 5, of 4 at 5 %: 23, 2, 0 (so the ends are
+ * the 24th, third and first of the ratios), and none for two of 3. At 1 % for two of 10: 16. */
+RT_TEST(unpaired_intervals_lie_at_the_ranks_that_the_tables_of_mann_and_whitney_say) {
+    const struct {
+        uint32_t count;
+        double coverage;
+        uint32_t low;
+    } cases[] = {{10, 0.95, 24}, {5, 0.95, 3}, {4, 0.95, 1}, {3, 0.95, 1}, {10, 0.99, 17}, {40, 0.95, 596}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        double over[40], under[40], ratios[1600];
+        uint32_t n = cases[i].count, below = 0;
+        RtEstimate e;
+        for (uint32_t k = 0; k < n; k++) { /* all ratios differ */
+            over[k] = 1 + 0.013 * k + 1e-5 * k * k;
+            under[k] = 1 + 0.0007 * k + 1e-7 * k * k;
+        }
+        for (uint32_t k = 0; k < n * n; k++) ratios[k] = over[k / n] / under[k % n];
+        assert_ok(rt_estimate_unpaired(over, n, under, n, cases[i].coverage, &e, error));
+        for (uint32_t k = 0; k < n * n; k++) below += ratios[k] <= e.low;
+        assert_int_equal(below, cases[i].low);
+        below = 0;
+        for (uint32_t k = 0; k < n * n; k++) below += ratios[k] >= e.high;
+        assert_int_equal(below, cases[i].low);
+        assert_true(e.low <= e.median && e.median <= e.high);
+    }
+}
+
+/* Times of a common median 1, after a change by a fifth: 2000 workloads, exactly and nearly. */
+RT_TEST(unpaired_intervals_hold_the_true_ratio_as_often_as_they_say) {
+    const uint32_t counts[][2] = {{10, 10}, {6, 17}, {40, 35}};
+    for (size_t c = 0; c < 3; c++) {
+        int inside = 0;
+        for (uint64_t workload = 0; workload < 2000; workload++) {
+            RtRandom random = rt_random(12, workload);
+            double over[40], under[40];
+            RtEstimate e;
+            for (uint32_t i = 0; i < counts[c][0]; i++)
+                over[i] = 1.2 / (1 - 0.5 * (double)rt_random_unit(&random));
+            for (uint32_t i = 0; i < counts[c][1]; i++)
+                under[i] = 1 / (1 - 0.5 * (double)rt_random_unit(&random));
+            assert_ok(rt_estimate_unpaired(over, counts[c][0], under, counts[c][1], 0.95, &e, error));
+            inside += rt_estimate_holds(&e, 1.2);
+        }
+        assert_true(inside >= 1880 && inside <= 1950);
+    }
+}
+
+RT_TEST(as_many_rounds_are_taken_as_so_many_cells_ask_for) {
+    assert_true(rt_coverage_of_each(0) == 0.95 && rt_coverage_of_each(1) == 0.95);
+    assert_true(fabs(rt_coverage_of_each(10) - 0.995) < 1e-12);
+    assert_int_equal(rt_rounds_for(0.95), 9);
+    assert_int_equal(rt_rounds_for(rt_coverage_of_each(10)), 13);
+    assert_int_equal(rt_rounds_for(rt_coverage_of_each(100)), 17);
+}
+
+/* Rounds of `cells` cells with a spread of half a percent about `truth`; how many of them say what is so. */
+static int decided(uint64_t seed, uint32_t cells, double truth) {
+    RtRandom random = rt_random(seed, cells);
+    const double coverage = rt_coverage_of_each(cells);
+    const uint32_t rounds = rt_rounds_for(coverage);
+    int count = 0;
+    for (uint32_t c = 0; c < cells; c++) {
+        double ratios[RT_MAX_ROUNDS];
+        for (uint32_t r = 0; r < rounds; r++) {
+            double noise = 0;
+            for (int i = 0; i < 12; i++) noise += (double)rt_random_unit(&random) - 0.5; /* deviation 1 */
+            ratios[r] = truth * exp(0.005 * noise);
+        }
+        RtEstimate e = rt_estimate_at(ratios, rounds, coverage);
+        count += !rt_estimate_holds(&e, 1);
+    }
+    return count;
+}
+
+/* Of 1000 comparisons of things that are alike at most a twentieth reports anything, however many cells they
+ * have; and a difference of 2 % is found. */
+RT_TEST(comparisons_of_many_cells_report_no_more_than_those_of_one_and_find_two_percent) {
+    const uint32_t cells[] = {1, 4, 40};
+    for (size_t i = 0; i < 3; i++) {
+        int reports = 0, found = 0;
+        for (uint64_t seed = 0; seed < 1000; seed++) {
+            reports += decided(seed, cells[i], 1) > 0;
+            if (seed < 100) found += decided(seed, cells[i], 1.02);
+        }
+        assert_true(reports <= 70); /* 50 and three standard errors */
+        assert_true(found >= 99 * (int)cells[i]);
+    }
+}
+
 RT_TESTS(statistics, NULL, NULL)

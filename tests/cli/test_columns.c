@@ -6,6 +6,7 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "bench/compare.h"
 #include "bench/extents_table.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
@@ -31,6 +32,12 @@ static RtTable of_published(RtPublishedTable which) {
     return rt_published_table(which, &cursor);
 }
 
+static RtTable of_comparison(void) {
+    static const RtComparison comparison = {0};
+    static RtComparedRow row = {.comparison = &comparison};
+    return rt_comparison_table(&row, true);
+}
+
 typedef struct Section {
     const char *title;
     bool csv;
@@ -38,7 +45,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 9 };
+enum { SECTIONS = 11 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -46,11 +53,13 @@ static void list(Section sections[SECTIONS]) {
     const Section all[SECTIONS] = {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
         {"times.csv", true, NULL, of_results(RT_TIMES)},
+        {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
         {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},
         {"best.csv", true, "results/havran-1999/best.csv", of_published(RT_BEST)},
         {"verify.csv", true, "results/verify/verify.csv", verify_csv},
         {"bench --json: rows", false, NULL, of_results(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, of_results(RT_NULL_RUNS)},
+        {"compare --json: cells", false, NULL, of_comparison()},
         {"verify --json: rows", false, NULL, verify_json},
         {"info --extents --json: extents.rows", false, NULL, extents},
     };
@@ -107,7 +116,15 @@ static void print_document(FILE *out) {
         "not\n"
         "known is empty in CSV and null in JSON. In JSON a name with a dot is that of a member of an "
         "object;\n"
-        "yes is true, no is false, and an interval is an object of its three parts.\n",
+        "yes is true, no is false, and an interval is an object of its three parts.\n"
+        "\n"
+        "Where an experiment sweeps parameters, `counts.csv`, `times.csv` and the rows of `bench --json` "
+        "have a "
+        "column more\n"
+        "for each of them, at the end: `scene.KEY` for a parameter of scenes, `accel.KEY` for one of "
+        "accelerators, as in\n"
+        "`accel.density`; empty where the row has no such parameter. All other columns are the same for "
+        "every experiment.\n",
         out);
     for (size_t i = 0; i < SECTIONS; i++) {
         Row row = {.section = &sections[i]};
@@ -172,19 +189,22 @@ RT_TEST(the_files_that_are_kept_have_these_columns) {
     }
 }
 
-/* A new counter, prediction or side has a column in each of these. */
-RT_TEST(every_counter_and_prediction_is_in_counts_and_in_bench) {
-    static const RtResultTable both[] = {RT_COUNTS, RT_BENCH};
-    for (size_t i = 0; i < 2; i++) {
+/* A new counter has a column in each of these but the times, a new prediction or quality in each. */
+RT_TEST(every_counter_prediction_and_quality_is_in_counts_times_and_bench) {
+    static const RtResultTable all[] = {RT_COUNTS, RT_BENCH, RT_TIMES};
+    for (size_t i = 0; i < 3; i++) {
         char *text;
         size_t size;
         FILE *out = open_memstream(&text, &size);
-        RtTable table = of_results(both[i]);
+        RtTable table = of_results(all[i]);
         rt_table_csv(&table, out);
         fclose(out);
 #define IN_TABLE(name, meaning) assert_non_null(strstr(text, #name));
-        RT_TALLY_COUNTERS(IN_TABLE)
+        if (all[i] != RT_TIMES) {
+            RT_TALLY_COUNTERS(IN_TABLE)
+        }
         RT_PREDICTIONS(IN_TABLE)
+        RT_QUALITIES(IN_TABLE)
         free(text);
     }
 }

@@ -4,6 +4,7 @@
 #include "clock_testing.h"
 #include "experiment_testing.h"
 
+#include "base/csv.h"
 #include "base/json.h"
 #include "bench/result_tables.h"
 #include "report/result_directory.h"
@@ -296,16 +297,84 @@ RT_TEST_IN_PLACE(a_finished_run_that_is_resumed_measures_nothing_and_writes_the_
     const Place *place = *state;
     assert_ok(run(place, "done", RT_START_FRESH, 1, nobody, error));
     char *counts = read_in(place, "done/counts.csv"), *times = read_in(place, "done/times.csv");
+    char *rounds = read_in(place, "done/rounds.csv");
     Stopper stopper = {0}; /* the first event would stop it */
     RtObserver observer = {&stopper, stop_after, NULL};
     assert_ok(run(place, "done", RT_START_RESUME, 1, observer, error));
     char *counts_now = read_in(place, "done/counts.csv"), *times_now = read_in(place, "done/times.csv");
+    char *rounds_now = read_in(place, "done/rounds.csv");
     assert_string_equal(counts, counts_now);
     assert_string_equal(times, times_now);
+    assert_string_equal(rounds, rounds_now);
+    rt_free(rounds);
+    rt_free(rounds_now);
     rt_free(counts);
     rt_free(times);
     rt_free(counts_now);
     rt_free(times_now);
+}
+
+static double real_at(const RtCsv *csv, uint32_t row, const char *name) {
+    uint32_t column = rt_csv_find(csv, name);
+    assert_true(column < csv->columns);
+    return strtod(rt_csv_field(csv, row, column), NULL);
+}
+
+static bool is_same_row(const RtCsv *one, uint32_t row, const RtCsv *other, uint32_t other_row) {
+    const char *const names[] = {"scene", "kind", "accel", "baseline"};
+    for (int i = 0; i < 4; i++) {
+        const char *text = rt_csv_field(one, row, rt_csv_find(one, names[i]));
+        if (strcmp(text, rt_csv_field(other, other_row, rt_csv_find(other, names[i]))) != 0) return false;
+    }
+    return true;
+}
+
+/* Whoever has them can compute them again: medians and ratios, of thinned candidates, too. */
+RT_TEST_IN_PLACE(the_times_are_made_of_those_of_the_rounds) {
+    const Place *place = *state;
+    RtCsv times, rounds;
+    Path times_path = path_in(place, "out/times.csv"), rounds_path = path_in(place, "out/rounds.csv");
+    assert_ok(run(place, "out", RT_START_FRESH, 1, nobody, error));
+    assert_ok(rt_csv_read(&times, times_path.text, error));
+    assert_ok(rt_csv_read(&rounds, rounds_path.text, error));
+    assert_int_equal(rounds.rows, 3 * times.rows);
+    for (uint32_t i = 0; i < times.rows; i++) {
+        double ns[3], wall[3], ratio[3];
+        for (uint32_t r = 0; r < 3; r++) {
+            uint32_t row = 3 * i + r;
+            assert_true(is_same_row(&times, i, &rounds, row));
+            assert_true(real_at(&rounds, row, "round") == r + 1);
+            ns[r] = real_at(&rounds, row, "round_ns");
+            wall[r] = real_at(&rounds, row, "round_wall_ns");
+            ratio[r] = real_at(&rounds, row, "round_baseline_ns") / ns[r];
+        }
+        assert_true(rt_median(ns, 3) == real_at(&times, i, "ns"));
+        assert_true(rt_median(wall, 3) == real_at(&times, i, "wall_ns"));
+        assert_true(fabs(rt_median(ratio, 3) / real_at(&times, i, "ratio") - 1) < 1e-4);
+    }
+    rt_csv_clear(&times);
+    rt_csv_clear(&rounds);
+}
+
+/* Of rounds of another number than is said nothing is taken. */
+RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
+    const Place *place = *state;
+    RtResults results;
+    assert_ok(run(place, "out", RT_START_FRESH, 1, nobody, error));
+    const char *const from[2] = {"\"each_wall", "\"rounds\":3"}, *const to[2] = {"\"EACH_wall",
+                                                                                 "\"rounds\":5"};
+    for (int i = 0; i < 2; i++) {
+        char *journal = read_in(place, "out/cells.jsonl"), *whole = read_in(place, "out/cells.jsonl");
+        for (char *at = journal; (at = strstr(at, from[i])) != NULL;) memcpy(at, to[i], strlen(to[i]));
+        write_in(place, "out/cells.jsonl", journal);
+        assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
+        const RtCell *cell = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+        assert_true(cell->timed && cell->rounds == (i ? 5 : 3) && !cell->each);
+        rt_results_clear(&results);
+        write_in(place, "out/cells.jsonl", whole);
+        rt_free(journal);
+        rt_free(whole);
+    }
 }
 
 RT_TEST_IN_PLACE(a_run_of_another_experiment_is_not_resumed) {

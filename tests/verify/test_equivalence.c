@@ -216,14 +216,15 @@ RT_TEST(what_goes_wrong_while_tracing_is_a_status_of_all_who_trace) {
     double seconds, wall;
     assert_ok(rt_maker_build(&maker, &stage->scene, &accel, error));
     const RtTimed timed = {accel, &set, &seconds, &wall};
-    const RtTiming timing = {.rounds = 1, .threads = 1};
+    const RtTiming timing = {.rounds = {.rounds = 1, .most = 1}, .threads = 1};
+    uint32_t done;
     assert_went_wrong(rt_equivalence_check(&stage->reference, accel, 1, &equivalence, &failure), &failure);
     assert_went_wrong(rt_reference_init(&reference, accel, rays, RAYS, 1, &failure), &failure);
     assert_went_wrong(rt_failure_ask(&question, &stage->scene, maker, &reply, &failure), &failure);
     assert_went_wrong(rt_frame_trace(&frame, accel, &options, &failure), &failure);
     assert_went_wrong(rt_measure_answers(accel, &set, 1, hits, &failure), &failure);
     assert_went_wrong(rt_measure_count(accel, &set, stage->reference.hits, 1, &count, &failure), &failure);
-    assert_went_wrong(rt_measure_time(&timed, 1, &timing, &failure), &failure);
+    assert_went_wrong(rt_measure_time(&timed, 1, &timing, &done, &failure), &failure);
     assert_went_wrong(rt_verify_rays(&wanted, accel, more, &failure), &failure);
     rt_accel_destroy(accel);
 }

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+# prediction: tests and steps of random lines against what areas say; of all kinds of rays, as a ratio; and time from a
+# time per ray, test and step fitted to each accelerator. On the eight scenes of every kind of object: what is measured on
+# triangles alone is for prediction-trees.gp.
+
+all_scenes = scenes; all_accels = accels
+scenes = "points spheres balls tetra mount lattice tree stadium"
+accels = "box grid-0.25 grid-1 grid-4 grid-16 grid-64 grid-nested octree-4 octree-6 octree-8 kd bvh bvh-sweep bvh-lbvh \
+agglomerative rubin-whitted"
+here(s) = strstrt(" ".scenes." ", " ".s." ") > 0
+n_scenes = words(scenes); n_accels = words(accels); n_kinds = words(kinds)
+hues = "#2f6f9f #c1543c #4f9d69 #8e5ea2 #d4a017 #5ab4c5 #a0662d #7a7a7a"
+hue(s) = word(hues, 1 + (s - 1) % words(hues))
+
+# ---- what part of the random lines meets the box of the scene: the steps of a grid of one voxel ----
+
+array meets[n_scenes]
+do for [s = 1:n_scenes] {
+  stats "counts.csv" using (strcol("scene") eq word(scenes, s) && strcol("accel") eq "box" && strcol("kind") eq "random" ? \
+                            column("steps") / column("rays") : 0) nooutput
+  meets[s] = STATS_max
+}
+is(s, kind) = strcol("scene") eq word(scenes, s) && strcol("kind") eq kind && strcol("accel") ne "box"
+predicted(what) = column("predicted_".what)
+measured(what, s) = column(what eq "tests" ? "object_tests" : "steps") / column("rays") / meets[s]
+
+# ---- random lines ----
+
+eval svg("1-random-lines", 1100, 560)
+set multiplot
+set logscale xy
+set grid ytics
+set key left top font ",11" textcolor rgb ink samplen 0.5 spacing 0.95
+do for [m = 1:2] {
+  what = word("tests steps", m)
+  set lmargin at screen 0.06 + (m - 1) * 0.485
+  set rmargin at screen 0.49 + (m - 1) * 0.485
+  set tmargin at screen 0.92; set bmargin at screen 0.12
+  set title (m == 1 ? "object tests" : "steps")." of a random line through the box" textcolor rgb ink font ",14"
+  set xlabel "predicted from areas" textcolor rgb ink
+  set ylabel (m == 1 ? "measured" : "") textcolor rgb ink
+  if (m == 2) { unset key }
+  set xrange [(m == 1 ? 0.003 : 3) : (m == 1 ? 3000 : 1000)]
+  set yrange [(m == 1 ? 0.003 : 3) : (m == 1 ? 3000 : 1000)]
+  plot x with lines linecolor rgb soft linewidth 1 notitle, \
+       for [s = 1:n_scenes] "counts.csv" using (is(s, "random") ? predicted(what) : NaN):(measured(what, s)) \
+         with points pointtype 7 pointsize 0.55 linecolor rgb hue(s) title word(scenes, s)
+}
+unset multiplot
+unset key
+
+# ---- measured over predicted, for each kind of ray; the part that misses the box counts as it is ----
+
+eval svg("2-by-kind", 1100, 680)
+set multiplot
+unset logscale y
+set grid xtics noytics
+set yrange [n_scenes + 0.6 : 0.4]
+set xrange [0.008 : 250]
+set xtics ("1/100" 0.01, "1/10" 0.1, "1" 1, "10" 10, "100" 100)
+unset ylabel
+do for [m = 1:2] {
+  what = word("tests steps", m)
+  do for [k = 1:n_kinds] {
+    kind = word(kinds, k)
+    set lmargin at screen 0.08 + (k - 1) * 0.23
+    set rmargin at screen 0.08 + k * 0.23 - 0.02
+    set tmargin at screen 0.94 - (m - 1) * 0.46
+    set bmargin at screen 0.585 - (m - 1) * 0.46
+    set title (m == 1 ? "tests" : "steps").", ".kind." rays" textcolor rgb ink font ",13"
+    set xlabel (m == 2 ? "measured / predicted" : "") textcolor rgb ink
+    unset ytics; unset label
+    if (k == 1) {
+      do for [s = 1:n_scenes] {
+        set label s word(scenes, s) at graph -0.04, first s right textcolor rgb hue(s) font ",12"
+      }
+    }
+    set arrow 1 from 1, graph 0 to 1, graph 1 nohead linecolor rgb soft
+    plot for [s = 1:n_scenes] "counts.csv" using (is(s, kind) ? measured(what, s) * (kind eq "random" ? 1 : meets[s]) / predicted(what) : NaN): \
+           (s + 0.5 * rand(0) - 0.25) with points pointtype 7 pointsize 0.4 linecolor rgb hue(s)
+    unset arrow 1
+  }
+}
+unset multiplot
+unset label
+
+# ---- time: ns = a + b tests + c steps for each accelerator, least relative squares over scenes and kinds ----
+
+set xrange [*:*]; set yrange [*:*] # a fit leaves out what lies beyond
+set fit quiet nolog errorvariables
+array base_ns[n_accels]; array test_ns[n_accels]; array step_ns[n_accels]; array off[n_accels]
+own(a) = strcol("accel") eq word(accels, a) && here(strcol("scene")) && column("object_tests") == column("object_tests")
+tests_of(a) = own(a) ? column("object_tests") / column("rays") : NaN
+set print "plots/3-constants.csv"
+print "accel,ns_per_ray,ns_per_test,ns_per_step,typical_error,explained" # the part of the variance of log time
+do for [a = 1:n_accels] {
+  if (word(accels, a) ne "box") {
+    f(x, y) = p * p + q * q * x + r * r * y # none is less than nothing
+    p = 5; q = 3; r = 2
+    fit f(x, y) "times.csv" using (tests_of(a)):(column("steps") / column("rays")):(column("ns")):(column("ns")) zerror via p, q, r
+    base_ns[a] = p * p; test_ns[a] = q * q; step_ns[a] = r * r; off[a] = FIT_STDFIT
+    stats "times.csv" using (log(column("ns") / f(tests_of(a), column("steps") / column("rays")))):(own(a) ? log(column("ns")) : NaN) nooutput
+    explained = 1 - (STATS_mean_x ** 2 + STATS_stddev_x ** 2) / STATS_stddev_y ** 2
+    print sprintf("%s,%.3g,%.3g,%.3g,%.2g,%.2f", word(accels, a), base_ns[a], test_ns[a], step_ns[a], off[a], explained)
+  }
+}
+unset print
+
+# ---- pairs of structures of a family over a scene whose order by time these tell from predicted tests and steps ----
+
+set print "plots/3-order.csv"
+print "family,kind,pairs,right"
+do for [family in "grid octree hierarchy"] {
+  members = family eq "grid" ? "grid-0.25 grid-1 grid-4 grid-16 grid-64" : family eq "octree" ? "octree-4 octree-6 octree-8" : \
+            "bvh bvh-sweep bvh-lbvh agglomerative rubin-whitted"
+  array told[words(members)]; array took[words(members)]
+  do for [kind in kinds] {
+    pairs = 0; right = 0
+    do for [s = 1:n_scenes] {
+      do for [i = 1:words(members)] {
+        do for [a = 1:n_accels] { if (word(accels, a) eq word(members, i)) { number = a } }
+        chosen(column_name) = strcol("scene") eq word(scenes, s) && strcol("kind") eq kind && strcol("accel") eq word(members, i) ? \
+                              column(column_name) : NaN
+        stats "times.csv" using (chosen("predicted_tests")):(chosen("predicted_steps")) nooutput
+        told[i] = base_ns[number] + test_ns[number] * STATS_max_x + step_ns[number] * STATS_max_y
+        stats "times.csv" using (chosen("ns")) nooutput
+        took[i] = STATS_max
+      }
+      do for [i = 2:words(members)] {
+        do for [j = 1:i - 1] { pairs = pairs + 1; right = right + ((told[i] < told[j]) == (took[i] < took[j])) }
+      }
+    }
+    print sprintf("%s,%s,%d,%d", family, kind, pairs, right)
+  }
+}
+unset print
+
+eval svg("3-time", 1100, 560)
+set multiplot
+set logscale xy
+set grid xtics ytics
+set xtics autofreq; set ytics autofreq
+set xrange [20 : 200000]; set yrange [20 : 200000]
+set key left top font ",11" textcolor rgb ink samplen 0.5 spacing 0.95
+do for [m = 1:2] {
+  set lmargin at screen 0.06 + (m - 1) * 0.485
+  set rmargin at screen 0.49 + (m - 1) * 0.485
+  set tmargin at screen 0.92; set bmargin at screen 0.12
+  set title (m == 1 ? "from tests and steps as measured" : "from tests and steps as predicted") textcolor rgb ink font ",14"
+  set xlabel "ns per ray by fitted times of a ray, a test and a step" textcolor rgb ink
+  set ylabel (m == 1 ? "ns per ray, measured" : "") textcolor rgb ink
+  if (m == 2) { unset key }
+  per_ray(what) = m == 1 ? column(what eq "tests" ? "object_tests" : "steps") / column("rays") : column("predicted_".what)
+  model(a, s) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a) ? \
+                base_ns[a] + test_ns[a] * per_ray("tests") + step_ns[a] * per_ray("steps") : NaN
+  plot x with lines linecolor rgb soft notitle, \
+       for [s = 1:n_scenes] NaN with points pointtype 7 pointsize 0.55 linecolor rgb hue(s) title word(scenes, s), \
+       for [s = 1:n_scenes] for [a = 1:n_accels] "times.csv" using (word(accels, a) eq "box" ? NaN : model(a, s)):(column("ns")) \
+         with points pointtype 7 pointsize 0.4 linecolor rgb hue(s) notitle
+}
+unset multiplot
+unset key
+unset output

@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Results for a terminal of 80 columns. */
+#include "base/words.h"
+#include "bench/result_tables.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]) {
+    double coverage = rt_interval_coverage(experiment->rounds);
+    snprintf(out, RT_MAX_INTERVAL_TITLE, "%.3g %%",
+             experiment->rounds >= RT_FULL_ROUNDS ? 95 : 100 * coverage);
+}
+
+/* ---- one workload ---- */
+
+static void print_title(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    const RtWorkloadResult *workload = &results->workloads[t];
+    fprintf(out, "\n%s: %" PRIu32 " objects, ", experiment->workloads[t].label, workload->objects);
+    if (*experiment->rays_from) {
+        fprintf(out, "rays of %s", experiment->rays_from);
+    } else {
+        fprintf(out, "%" PRIu32 "x%" PRIu32 ", depth %" PRIu32 ", seed %" PRIu64, workload->width,
+                workload->height, experiment->workloads[t].depth, experiment->seed);
+    }
+    fputc('\n', out);
+}
+
+/* A heading before the rows of each kind of rays, and labels that are long on lines of their own. */
+static void print_rows(const RtTable *table, RtResultRow *row, FILE *out) {
+    int widths[RT_MAX_TABLE_COLUMNS];
+    bool by_kind = row->which == RT_CELLS, any = false;
+    RtRayKind kind = RT_RAY_PRIMARY;
+    rt_table_widths(table, widths);
+    rt_table_line(table, widths, NULL, out);
+    for (size_t i = 0; i < table->row_count; i++) {
+        char label[RT_MAX_EYE_LABEL];
+        if (!table->row(table->context, i)) continue;
+        if (by_kind && (!any || row->kind != kind)) {
+            fprintf(out, "  %s, %" PRIu64 " rays\n",
+                    rt_experiment_kind_name(row->results->experiment, row->kind),
+                    row->scene->rays[row->kind]);
+        }
+        any = true;
+        kind = row->kind;
+        rt_result_eye_label(row, label);
+        if (strlen(label) > RT_EYE_WIDTH) fprintf(out, "%s\n", label);
+        rt_table_line(table, widths, row, out);
+    }
+}
+
+/* The least and the most rounds that any cell was timed for; 0 if none was. */
+static uint32_t rounds_of(const RtResults *results, uint32_t t, uint32_t *least) {
+    uint32_t most = 0;
+    for (uint32_t c = 0; c <= results->experiment->candidate_count; c++) {
+        for (uint32_t k = 0; k < results->experiment->kind_count; k++) {
+            const RtCell *cell = rt_cell_at(results, t, c, results->experiment->kinds[k]);
+            if (!cell->timed) continue;
+            *least = most == 0 || cell->rounds < *least ? cell->rounds : *least;
+            most = cell->rounds > most ? cell->rounds : most;
+        }
+    }
+    return most;
+}
+
+/* What the ratios refer to, and what intervals are worth. */
+static void print_ratios(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char title[RT_MAX_INTERVAL_TITLE], rounds[32], text[RT_MAX_SENTENCE];
+    uint32_t least = 0, most = rounds_of(results, t, &least);
+    if (most == 0) return;
+    rt_interval_title(experiment, title);
+    snprintf(rounds, sizeof rounds, least == most ? "%" PRIu32 : "%" PRIu32 " to %" PRIu32, least, most);
+    snprintf(text, sizeof text,
+             "Ratios are of throughput to that of %s, paired in each of %s rounds; intervals of %s.",
+             rt_baseline_label(experiment), rounds, title);
+    rt_print_wrapped(text, out);
+    if (experiment->baseline_count == 1) return;
+    snprintf(text, sizeof text, "%s: of %" PRIu32 " settings the fastest for each kind, which is shown.",
+             experiment->best, experiment->baseline_count);
+    rt_print_wrapped(text, out);
+}
+
+/* Why a ratio of part of the rays is not the quotient of the throughputs beside it. */
+static void print_strides(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char text[RT_MAX_SENTENCE];
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
+        if (candidate->ray_stride == 1 || !rt_candidate_runs(experiment, c, t)) continue;
+        snprintf(text, sizeof text,
+                 "* %s is measured on one of %" PRIu64
+                 " rays. Its ratio is to %s on those same rays, and so not the "
+                 "quotient of the throughputs above.",
+                 candidate->label, candidate->ray_stride, rt_baseline_label(experiment));
+        rt_print_wrapped(text, out);
+    }
+}
+
+static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
+    RtResultRow row = {.results = results, .workload = t}, structure = row;
+    RtTable table = rt_result_table(RT_CELLS, &row), structures = rt_result_table(RT_STRUCTURES, &structure);
+    rt_print_wrapped("Object tests, extent tests and steps are those of a ray.", out);
+    print_ratios(results, t, out);
+    fputc('\n', out);
+    print_rows(&table, &row, out);
+    print_strides(results, t, out);
+    fputc('\n', out);
+    print_rows(&structures, &structure, out);
+}
+
+void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        RtResultRow row = {.results = results, .workload = t};
+        RtTable table = rt_result_table(which, &row);
+        if (!results->workloads[t].known) continue;
+        print_title(results, t, out);
+        if (which == RT_CELLS) {
+            print_cells(results, t, out);
+        } else {
+            rt_table_text(&table, out);
+        }
+    }
+}
+
+/* ---- null runs ---- */
+
+void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
+    const size_t room = RT_MAX_SENTENCE;
+    uint32_t runs, straddling;
+    rt_null_verdict(results, &runs, &straddling);
+    out[0] = '\0';
+    if (runs == 0) return;
+    int n =
+        snprintf(out, room, "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " intervals straddle 1",
+                 results->experiment->candidates[results->experiment->baseline].label, straddling, runs);
+    uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
+    double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
+    if (misses == 0) {
+        n += snprintf(out + n, room - (size_t)n, ", as they should.");
+    } else if (misses <= 1 + 2 * chance * runs) {
+        n += snprintf(out + n, room - (size_t)n, "; %.2g %% of all may miss by chance.", 100 * chance);
+    } else {
+        n += snprintf(out + n, room - (size_t)n,
+                      ": this machine was not quiet; take small differences for noise.");
+    }
+    if (rounds >= RT_FULL_ROUNDS) return;
+    snprintf(out + n, room - (size_t)n,
+             " Rounds: %" PRIu32
+             ", too few for 95 %%; an interval is all that was measured and holds the median in "
+             "%.3g %%. Take %d or more.",
+             rounds, 100 * coverage, RT_FULL_ROUNDS);
+}

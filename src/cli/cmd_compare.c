@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* raytally compare: what a change has made faster or slower, and which counts it changed; by two result
+ * directories, or by two programs that run in turns. */
+#include "base/memory.h"
+#include "bench/compare.h"
+#include "bench/worker.h"
+#include "cli/cli.h"
+#include "cli/recording.h"
+#include "report/result_directory.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    OPT_WITH = 256,
+    OPT_WORKER,
+    OPT_QUICK,
+    OPT_ROUNDS,
+    OPT_UNTIL,
+    OPT_PATIENCE,
+    OPT_MARGIN,
+    OPT_STRICT,
+    OPT_THREADS,
+    OPT_JSON
+};
+
+/* A difference between two directories: runs of one build, made one after the other, differ by less. */
+static const double MARGIN_OF_DIRECTORIES = 0.05;
+
+typedef struct Options {
+    RtRecordingOptions recording;
+    const char *subjects[2]; /* directories; or an experiment or a scene */
+    int subject_count;
+    const char *with;
+    bool worker, quick, strict, json;
+    uint32_t rounds;
+    double until, patience, margin; /* margin < 0: not given */
+    int threads, timing;
+} Options;
+
+static const struct argp_option options[] = {
+    {"with", OPT_WITH, "PROGRAM", 0,
+     "Another raytally, as in ../old/build/release/raytally: the one that was `before`. This one is `after`",
+     0},
+    {"accel", 'a', "SPEC", 0, "An accelerator, for a SCENE; once per accelerator. `all`: every one", 0},
+    {"strict", OPT_STRICT, 0, 0, "Exit code 1 where anything is slower", 0},
+    {"margin", OPT_MARGIN, "P%", 0,
+     "Call it a difference only beyond P % (none with --with; 5% for directories, which are single runs)", 0},
+    {"rounds", OPT_ROUNDS, "N", 0,
+     "With --with: at least N rounds, each of both programs started anew (10; more where there are many "
+     "cells)",
+     0},
+    {"until", OPT_UNTIL, "P%", 0,
+     "With --with: go on with rounds until all intervals lie within P % of their medians, for 1000 rounds or "
+     "--patience seconds at most",
+     0},
+    {"patience", OPT_PATIENCE, "SECONDS", 0, "With --until: at most so long, of all (600)", 0},
+    {"quick", OPT_QUICK, 0, 0, "The smaller variant of the EXPERIMENT", 0},
+    {"threads", OPT_THREADS, "N", 0, "Threads, as in `raytally bench`", 0},
+    {"json", OPT_JSON, 0, 0, "One JSON document on stdout instead of the table", 0},
+    {"worker", OPT_WORKER, 0, OPTION_HIDDEN, NULL, 0}, /* bench/worker.h */
+    {0}};
+
+static void check(Options *o, struct argp_state *state) {
+    RtExperiment *e = o->recording.experiment;
+    const bool programs = o->with || o->worker;
+    if (!programs && o->subject_count != 2)
+        argp_error(state, "give two result directories, or --with PROGRAM and an EXPERIMENT or a SCENE");
+    if (programs && o->subject_count != 1)
+        argp_error(state, "--with takes one EXPERIMENT.yaml, or one SCENE with --accel");
+    if (!programs &&
+        (e->candidate_count || o->recording.frame || o->recording.kinds || o->until > 0 || o->rounds))
+        argp_error(
+            state,
+            "two result directories are compared as they are: rays, --accel, --rounds and --until go with "
+            "--with PROGRAM");
+    if (programs && !e->candidate_count && (o->recording.frame || o->recording.kinds))
+        argp_error(state, "an EXPERIMENT says what its rays are; for a SCENE give --accel");
+    rt_recording_finish(&o->recording, state);
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    Options *o = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &o->recording; return 0;
+    case 'a': rt_cli_add_accels(o->recording.experiment, argument, state); return 0;
+    case OPT_WITH: o->with = argument; return 0;
+    case OPT_WORKER: o->worker = true; return 0;
+    case OPT_QUICK: o->quick = true; return 0;
+    case OPT_STRICT: o->strict = true; return 0;
+    case OPT_JSON: o->json = true; return 0;
+    case OPT_MARGIN: o->margin = rt_cli_percent(state, "--margin", argument); return 0;
+    case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
+    case OPT_PATIENCE:
+        o->patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
+        return 0;
+    case OPT_ROUNDS:
+        o->rounds = (uint32_t)rt_cli_integer(state, "--rounds", argument, 1, RT_MAX_ROUNDS);
+        return 0;
+    case OPT_THREADS:
+        o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->subject_count == 2) argp_error(state, "'%s' is one too many", argument);
+        o->subjects[o->subject_count++] = argument;
+        return 0;
+    case ARGP_KEY_END: check(o, state); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* ---- two programs ---- */
+
+/* The experiment of the YAML, or of a scene and accelerators, as `bench` measures them. */
+static RtStatus load(Options *o, RtError *error) {
+    RtExperiment *e = o->recording.experiment;
+    char where[RT_MAX_LABEL];
+    if (e->candidate_count == 0) return rt_experiment_load(e, o->subjects[0], o->quick, error);
+    strcpy(e->name, "compare");
+    RT_TRY(rt_experiment_add_scenes(e, &o->recording.like, o->subjects[0], "", error));
+    return rt_experiment_check(e, where, error);
+}
+
+static RtStatus work(Options *o, RtError *error) {
+    RtWorkloadOptions how = {.threads = o->threads, .timing = o->timing};
+    RT_TRY(load(o, error));
+    return rt_worker_serve(o->recording.experiment, &how, stdin, stdout, error);
+}
+
+static void on_progress(void *context, uint32_t round, uint32_t rounds, const char *scene, const char *kind) {
+    const bool *terminal = context;
+    if (!*terminal) return;
+    fprintf(stderr, "\r\033[Kround %u of %u or more: %s %s", round + 1, rounds, scene, kind);
+    fflush(stderr);
+}
+
+static void on_notice(void *context, const char *message) {
+    const bool *terminal = context;
+    fprintf(stderr, "%sraytally: %s\n", *terminal ? "\r\033[K" : "", message);
+}
+
+/* A worker is asked for by the same arguments, so that it measures the same. */
+static RtStatus compare_programs(Options *o, int argc, char **argv, RtComparison *comparison,
+                                 RtError *error) {
+    bool terminal = isatty(STDERR_FILENO) == 1;
+    char compare[] = "compare", worker[] = "--worker", name[] = "raytally";
+    char **arguments = rt_alloc((size_t)argc + 3, sizeof(char *));
+    if (!arguments) return rt_fail_memory(error, "arguments", 0);
+    arguments[0] = name;
+    arguments[1] = compare;
+    arguments[2] = worker;
+    for (int i = 1; i < argc; i++) arguments[i + 2] = argv[i];
+    RtStatus status = load(o, error); /* what is wrong with it is told once */
+    RtPrograms programs = {.before = o->with,
+                           .after = "/proc/self/exe",
+                           .arguments = arguments,
+                           .rounds = o->rounds ? o->rounds : 10,
+                           .until = o->until,
+                           .patience = o->patience,
+                           .least = 1e-3 * o->recording.experiment->milliseconds,
+                           .pinned = o->timing == 1,
+                           .seed = o->recording.experiment->seed,
+                           .context = &terminal,
+                           .progress = on_progress,
+                           .notice = on_notice};
+    if (status == RT_OK) status = rt_compare_programs(&programs, comparison, error);
+    if (terminal) fputs("\r\033[K", stderr);
+    rt_free(arguments);
+    return status;
+}
+
+/* ---- two directories ---- */
+
+static RtStatus load_both(const Options *o, RtExperiment *experiments, RtResults *results,
+                          RtComparison *comparison, RtError *error) {
+    for (int i = 0; i < 2; i++) RT_TRY(rt_run_load(o->subjects[i], &experiments[i], &results[i], error));
+    snprintf(comparison->before, sizeof comparison->before, "%s", o->subjects[0]);
+    snprintf(comparison->after, sizeof comparison->after, "%s", o->subjects[1]);
+    return rt_compare_results(&results[0], &results[1], comparison, error);
+}
+
+static RtStatus compare_directories(const Options *o, RtComparison *comparison, RtError *error) {
+    RtExperiment *experiments = rt_alloc(2, sizeof(RtExperiment));
+    RtResults results[2] = {0};
+    if (!experiments) return rt_fail_memory(error, "experiments", 2 * sizeof(RtExperiment));
+    RtStatus status = load_both(o, experiments, results, comparison, error);
+    for (int i = 0; i < 2; i++) rt_results_clear(&results[i]);
+    rt_free(experiments);
+    return status;
+}
+
+/* ---- the command ---- */
+
+static RtStatus compare(Options *o, int argc, char **argv, bool *slower, RtError *error) {
+    RtComparison comparison = {.margin = o->margin >= 0 ? o->margin : o->with ? 0 : MARGIN_OF_DIRECTORIES};
+    RtStatus status = o->with ? compare_programs(o, argc, argv, &comparison, error)
+                              : compare_directories(o, &comparison, error);
+    if (status == RT_OK && o->json) rt_cli_print_json(rt_comparison_json(&comparison));
+    if (status == RT_OK && !o->json) rt_comparison_print(&comparison, stdout);
+    *slower = rt_comparison_count(&comparison, RT_CHANGE_SLOWER) > 0;
+    rt_comparison_clear(&comparison);
+    return status;
+}
+
+int rt_command_compare(int argc, char **argv) {
+    RtError error;
+    bool slower = false;
+    Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment))},
+                 .timing = 1,
+                 .patience = 600,
+                 .margin = -1};
+    if (!o.recording.experiment) {
+        rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
+        return rt_cli_fail(&error);
+    }
+    rt_recording_init(&o.recording);
+    const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
+    const struct argp argp = {
+        .options = options,
+        .parser = parse_option,
+        .args_doc = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
+        .doc = "Say what is faster, slower or no different after a change, and which counts changed: from "
+               "two result "
+               "directories, or by running this raytally and another one in turns on the same rays, which "
+               "finds much "
+               "smaller differences."
+               "\vRatios are of throughput: above 1 it is faster now. All intervals hold together in 95 %, "
+               "however many "
+               "cells there are. Directories are single runs at two times; what they differ by anyway is "
+               "left to "
+               "--margin. Examples:\n"
+               "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
+               "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
+               "--until 1%\n"
+               "  raytally compare results/last-month results/first-look --strict",
+        .children = children};
+    argp_parse(&argp, argc, argv, 0, 0, &o);
+    RtStatus status = o.worker ? work(&o, &error) : compare(&o, argc, argv, &slower, &error);
+    rt_free(o.recording.experiment);
+    if (status != RT_OK) return rt_cli_fail(&error);
+    return slower && o.strict ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;
+}

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "report/merge.h"
+
+#include "base/json.h"
+#include "bench/journal.h"
+#include "bench/manifest.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- what the shards say of themselves ---- */
+
+typedef struct Merge {
+    char *const *directories;
+    uint32_t count;
+    const char *out;
+    json_t *journals[RT_MAX_SHARDS];
+} Merge;
+
+static const json_t *header_of(const Merge *merge, uint32_t i) {
+    return json_array_get(merge->journals[i], 0);
+}
+
+static uint32_t number_of(const Merge *merge, uint32_t i, const char *key) {
+    return (uint32_t)json_integer_value(json_object_get(header_of(merge, i), key));
+}
+
+static RtStatus load_journals(Merge *merge, RtError *error) {
+    for (uint32_t i = 0; i < merge->count; i++) {
+        char path[RT_MAX_PATH];
+        json_t *manifest;
+        RT_TRY(rt_path_join(merge->directories[i], RT_RUN_JOURNAL, path, error));
+        if (!rt_file_exists(path)) {
+            return rt_fail(error, RT_BAD_INPUT, "%s is not the directory of a run: it has no %s",
+                           merge->directories[i], RT_RUN_JOURNAL);
+        }
+        if (rt_manifest_read(merge->directories[i], &manifest, NULL) != RT_OK) {
+            return rt_fail(error, RT_BAD_INPUT, "%s is not finished: go on with raytally run ... --resume",
+                           merge->directories[i]);
+        }
+        json_decref(manifest);
+        RT_TRY(rt_json_lines_load(path, &merge->journals[i], error));
+        if (number_of(merge, i, "shards") > 0) continue;
+        return rt_fail(error, RT_BAD_INPUT, "%s is not a shard: it was not run with --shard",
+                       merge->directories[i]);
+    }
+    return RT_OK;
+}
+
+static RtStatus check_alike(const Merge *merge, RtError *error) {
+    static const char *const keys[] = {"hash", "quick", "build", "shards"};
+    static const char *const what[] = {"experiments, or versions of one", "variants (--quick)",
+                                       "builds of raytally", "numbers of shards"};
+    for (uint32_t i = 1; i < merge->count; i++) {
+        for (int k = 0; k < 4; k++) {
+            const json_t *a = json_object_get(header_of(merge, 0), keys[k]);
+            const json_t *b = json_object_get(header_of(merge, i), keys[k]);
+            if (json_equal(a, b)) continue;
+            return rt_fail(error, RT_BAD_INPUT, "%s and %s are of different %s", merge->directories[0],
+                           merge->directories[i], what[k]);
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus check_whole(const Merge *merge, RtError *error) {
+    uint32_t shards = number_of(merge, 0, "shards");
+    for (uint32_t shard = 1; shard <= shards; shard++) {
+        uint32_t found = merge->count;
+        for (uint32_t i = 0; i < merge->count; i++) {
+            if (number_of(merge, i, "shard") != shard) continue;
+            if (found < merge->count) {
+                return rt_fail(error, RT_BAD_INPUT, "shard %u of %u is there twice: %s and %s", shard, shards,
+                               merge->directories[found], merge->directories[i]);
+            }
+            found = i;
+        }
+        if (found == merge->count)
+            return rt_fail(error, RT_BAD_INPUT, "shard %u of %u is missing", shard, shards);
+    }
+    return RT_OK;
+}
+
+/* ---- joining ---- */
+
+/* Where the experiment lies, which must be as it was. */
+static RtStatus load_experiment(const Merge *merge, RtExperiment *experiment, RtError *error) {
+    char path[RT_MAX_PATH];
+    json_t *manifest;
+    uint64_t hash = 0;
+    RT_TRY(rt_manifest_read(merge->directories[0], &manifest, error));
+    const char *file = json_string_value(json_object_get(manifest, "file"));
+    snprintf(path, sizeof path, "%s", file ? file : "");
+    json_decref(manifest);
+    const char *text = json_string_value(json_object_get(header_of(merge, 0), "hash"));
+    if (!text || sscanf(text, "%" SCNx64, &hash) != 1) hash = 0;
+    bool quick = json_is_true(json_object_get(header_of(merge, 0), "quick"));
+    RT_TRY(rt_experiment_load(experiment, path, quick, error));
+    if (experiment->fingerprint == hash) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it", path);
+}
+
+/* All lines, shard by shard, behind a header of none. */
+static RtStatus write_journal(const Merge *merge, const RtExperiment *experiment, RtError *error) {
+    static const RtOnly all = {0};
+    char path[RT_MAX_PATH];
+    RtJsonLines journal = {0};
+    RT_TRY(rt_path_join(merge->out, RT_RUN_JOURNAL, path, error));
+    RtStatus status = rt_journal_open(&journal, path, experiment, &all, false, error);
+    for (uint32_t i = 0; i < merge->count; i++) {
+        for (size_t line = 1; status == RT_OK && line < json_array_size(merge->journals[i]); line++) {
+            json_t *object = json_array_get(merge->journals[i], line);
+            if (json_is_object(object)) status = rt_json_lines_write(&journal, json_incref(object), error);
+        }
+    }
+    rt_json_lines_close(&journal);
+    return status;
+}
+
+typedef struct Copies {
+    const char *out;
+    RtStatus status;
+    RtError *error;
+} Copies;
+
+static void copy_image(void *context, const char *path) {
+    Copies *copies = context;
+    char to[RT_MAX_PATH], name[RT_MAX_PATH];
+    snprintf(name, sizeof name, "images/%s", strrchr(path, '/') + 1);
+    if (copies->status == RT_OK) copies->status = rt_path_join(copies->out, name, to, copies->error);
+    if (copies->status == RT_OK) copies->status = rt_file_copy(path, to, copies->error);
+}
+
+static RtStatus copy_images(const Merge *merge, RtError *error) {
+    Copies copies = {merge->out, RT_OK, error};
+    for (uint32_t i = 0; i < merge->count && copies.status == RT_OK; i++) {
+        char images[RT_MAX_PATH];
+        RT_TRY(rt_path_join(merge->directories[i], "images", images, error));
+        rt_directory_each(images, ".png", copy_image, &copies);
+    }
+    return copies.status;
+}
+
+static RtStatus take_directory(const Merge *merge, RtStart start, RtError *error) {
+    char images[RT_MAX_PATH];
+    bool goes_on;
+    RT_TRY(rt_earlier_look(merge->out, RT_RUN_JOURNAL, start, &goes_on, error));
+    RT_TRY(rt_path_join(merge->out, "images", images, error));
+    RT_TRY(rt_directory_create(images, error));
+    rt_earlier_remove(merge->out, RT_RUN_JOURNAL);
+    return RT_OK;
+}
+
+static RtStatus merge_all(Merge *merge, RtStart start, RtExperiment *experiment, RtResults *results,
+                          const RtObserver *observer, RtError *error) {
+    RtRunOptions options = {
+        .directory = merge->out, .start = RT_START_RESUME, .workload = {.timing = 1, .observer = *observer}};
+    RT_TRY(load_journals(merge, error));
+    RT_TRY(check_alike(merge, error));
+    RT_TRY(check_whole(merge, error));
+    RT_TRY(load_experiment(merge, experiment, error));
+    RT_TRY(rt_results_init(results, experiment, error));
+    RT_TRY(take_directory(merge, start, error));
+    RT_TRY(write_journal(merge, experiment, error));
+    RT_TRY(copy_images(merge, error));
+    return rt_run_experiment(results, &options, error);
+}
+
+RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start,
+                  RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error) {
+    Merge merge = {.directories = directories, .count = count, .out = out};
+    *results = (RtResults){0};
+    RtStatus status = merge_all(&merge, start, experiment, results, observer, error);
+    for (uint32_t i = 0; i < count; i++) json_decref(merge.journals[i]);
+    return status;
+}

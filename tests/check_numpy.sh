@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Rays, hits and counts go through NumPy: the commands and the lines of Python of experiments/README.md do what it says,
+# and what NumPy has written is read as what it is. Uses $RT_PROGRAM. Skipped (77) without python3 or NumPy.
+set -euo pipefail
+program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+readme=$(realpath "$(dirname "$0")/../experiments/README.md")
+python3 -c 'import numpy' 2>/dev/null || {
+    echo 'check_numpy: skipped: python3-numpy is not installed'
+    exit 77
+}
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
+export PATH=$work/bin:$PATH
+cd "$work"
+
+fail() {
+    echo "check_numpy: $*" >&2
+    exit 1
+}
+
+# The section as a script: indented commands, and blocks of Python.
+awk '/^## / { inside = /^## Rays of one.s own$/ }
+    !inside { next }
+    /^```python/ { print "python3 - <<\047EOF\047"; next }
+    /^```/ { print "EOF"; next }
+    /^    raytally / { print substr($0, 5); next }
+    /^(import|hits|met|print|rays|numpy)/' "$readme" >section.sh
+[ "$(grep -c '^raytally' section.sh)" = 3 ] && [ "$(grep -c '^python3' section.sh)" = 2 ] ||
+    fail 'experiments/README.md has no such section'
+bash -e section.sh >said || fail 'what experiments/README.md says fails'
+
+# Through NumPy and back: the same hits and counts. In other orders and types: refused.
+raytally rays balls:size=2 --size 64x64 --rays diffuse -o rays.npy >said
+raytally bench balls:size=2 --size 64x64 --rays diffuse --accel grid --count-only --json --hits h1.npy --counts c1.npy \
+    >one.json
+python3 - <<'EOF'
+import numpy
+rays = numpy.load("rays.npy")
+assert rays.dtype == numpy.float32 and rays.shape[1] == 8
+numpy.save("copy.npy", rays)
+numpy.save("double.npy", rays.astype("float64"))
+numpy.save("big.npy", rays.astype(">f4"))
+numpy.save("columns.npy", numpy.asfortranarray(rays))
+numpy.save("flat.npy", rays.ravel())
+numpy.savez("zip.npz", rays)
+with open("version2.npy", "wb") as file:
+    numpy.lib.format.write_array(file, rays, version=(2, 0))
+with open("version3.npy", "wb") as file:
+    numpy.lib.format.write_array(file, rays, version=(3, 0))
+EOF
+given='bench balls:size=2 --rays nearest --accel grid --count-only --rays-from'
+for file in copy version2 version3; do
+    raytally $given $file.npy --hits h2.npy --counts c2.npy >said
+    cmp h1.npy h2.npy && cmp c1.npy c2.npy || fail "the rays of $file.npy are others"
+done
+for file in double.npy big.npy columns.npy flat.npy zip.npz; do
+    code=0
+    raytally $given $file >said 2>why || code=$?
+    [ $code = 2 ] && grep -q "^raytally: $file: " why || fail "$file is not refused: $(cat why)"
+done
+python3 - <<'EOF'
+import json, numpy
+hits, counts = numpy.load("h1.npy"), numpy.load("c1.npy")
+table = json.load(open("one.json"))["rows"][0]["counts"]
+for name in counts.dtype.names:
+    assert counts[name].sum() == table[name], name
+met = hits["object"] >= 0
+assert met.sum() == table["hits"] and numpy.isfinite(hits["t"][met]).all() and numpy.isinf(hits["t"][~met]).all()
+EOF

@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* raytally rays, and what takes its files: bench and verify --rays-from, bench --hits and --counts. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/tally.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#define OUT  RT_BINARY_DIR "/test_cmd_rays"
+#define RAYS OUT ".npy"
+
+__attribute__((format(printf, 1, 2))) static int run(const char *format, ...) {
+    char command[4096];
+    int used = snprintf(command, sizeof command, "'%s' ", RT_PROGRAM);
+    va_list args;
+    va_start(args, format);
+    used += vsnprintf(command + used, sizeof command - (size_t)used, format, args);
+    va_end(args);
+    snprintf(command + used, sizeof command - (size_t)used, " > '%s.out' 2> '%s.err'", OUT, OUT);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+typedef struct Bytes {
+    char *data;
+    size_t size;
+} Bytes;
+
+static Bytes bytes_of(const char *path) {
+    Bytes bytes;
+    assert_ok(rt_file_read(path, 1 << 28, &bytes.data, &bytes.size, error));
+    return bytes;
+}
+
+static void assert_same_bytes(const char *one, const char *other) {
+    Bytes a = bytes_of(one), b = bytes_of(other);
+    assert_int_equal(a.size, b.size);
+    assert_memory_equal(a.data, b.data, a.size);
+    rt_free(a.data);
+    rt_free(b.data);
+}
+
+/* The numbers behind the header of version 1.0. */
+static const char *numbers_of(const Bytes *bytes) {
+    const unsigned char *header = (const unsigned char *)bytes->data;
+    return bytes->data + 10 + header[8] + 256 * header[9];
+}
+
+/* Counts of the only row of the document that the last run printed. */
+static json_t *counts_of_run(void) {
+    json_t *document = json_load_file(OUT ".out", 0, NULL);
+    assert_non_null(document);
+    json_t *row = json_array_get(json_object_get(document, "rows"), 0);
+    json_t *counts = json_incref(json_object_get(row, "counts"));
+    json_decref(document);
+    return counts;
+}
+
+#define SMALL "--size 40x40 --limit 1000"
+
+/* Rows, columns and sums, for a kind that is asked for the nearest hit and one that is asked for any. */
+RT_TEST(recorded_rays_that_are_read_back_meet_and_cost_the_same) {
+    const char *const kinds[][2] = {{"primary", "nearest"}, {"diffuse", "nearest"}, {"shadow", "occlusion"}};
+    const char *const specs[] = {"bvh", "grid", "brute"};
+    for (size_t i = 0; i < 9; i++) {
+        const char *kind = kinds[i / 3][0], *given = kinds[i / 3][1], *spec = specs[i % 3];
+        assert_int_equal(run("rays balls:size=2 %s --rays %s -o '%s'", SMALL, kind, RAYS), 0);
+        assert_int_equal(
+            run("bench balls:size=2 %s --accel %s --rays %s --count-only --json --hits '%s.h1.npy' "
+                "--counts '%s.c1.npy'",
+                SMALL, spec, kind, OUT, OUT),
+            0);
+        json_t *recorded = counts_of_run();
+        assert_int_equal(
+            run("bench balls:size=2 --accel %s --rays-from '%s' --rays %s --count-only --json --hits "
+                "'%s.h2.npy' --counts '%s.c2.npy' --threads 2",
+                spec, RAYS, given, OUT, OUT),
+            0);
+        json_t *read = counts_of_run();
+        assert_true(json_equal(recorded, read));
+        assert_same_bytes(OUT ".h1.npy", OUT ".h2.npy");
+        assert_same_bytes(OUT ".c1.npy", OUT ".c2.npy");
+        json_decref(recorded);
+        json_decref(read);
+    }
+}
+
+RT_TEST(rows_of_counts_sum_to_the_counts_and_rows_of_hits_to_the_hits) {
+    assert_int_equal(
+        run("bench balls:size=2 %s --accel octree --rays diffuse --count-only --json --hits '%s.h.npy' "
+            "--counts '%s.c.npy'",
+            SMALL, OUT, OUT),
+        0);
+    json_t *counts = counts_of_run();
+    const Bytes hits = bytes_of(OUT ".h.npy"), rows = bytes_of(OUT ".c.npy");
+    RtTally sum = {0};
+    const char *at = numbers_of(&rows);
+    for (; at < rows.data + rows.size; at += sizeof(RtTally)) {
+        RtTally row;
+        memcpy(&row, at, sizeof row);
+        rt_tally_add(&sum, &row);
+        assert_int_equal(row.rays, 1);
+    }
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        assert_int_equal(rt_tally_get(&sum, i),
+                         json_integer_value(json_object_get(counts, rt_tally_name(i))));
+    }
+    uint64_t hit = 0, all = 0;
+    for (at = numbers_of(&hits); at < hits.data + hits.size; at += sizeof(float) + sizeof(int64_t)) {
+        float t;
+        int64_t object;
+        memcpy(&t, at, sizeof t);
+        memcpy(&object, at + sizeof t, sizeof object);
+        assert_true((object == -1) == (t == INFINITY) && object >= -1);
+        hit += object >= 0;
+        all++;
+    }
+    assert_int_equal(hit, sum.hits);
+    assert_int_equal(all, sum.rays);
+    assert_true(0 < hit && hit < all);
+    rt_free(hits.data);
+    rt_free(rows.data);
+    json_decref(counts);
+}
+
+RT_TEST(occlusion_rays_say_whether_anything_lies_on_them) {
+    assert_int_equal(
+        run("bench balls:size=2 %s --accel bvh --rays shadow --count-only --json --hits '%s.h.npy'", SMALL,
+            OUT),
+        0);
+    json_t *counts = counts_of_run();
+    const Bytes hits = bytes_of(OUT ".h.npy");
+    assert_non_null(strstr(hits.data + 10, "'|b1'"));
+    json_int_t hit = 0;
+    for (const char *at = numbers_of(&hits); at < hits.data + hits.size; at++) hit += *at;
+    assert_int_equal(hit, json_integer_value(json_object_get(counts, "hits")));
+    rt_free(hits.data);
+    json_decref(counts);
+}
+
+RT_TEST(verify_asks_the_rays_of_a_file) {
+    assert_int_equal(run("rays balls:size=1 %s --rays random -o '%s'", SMALL, RAYS), 0);
+    assert_int_equal(run("verify balls:size=1 --accel bvh --accel grid --rays-from '%s'", RAYS), 0);
+    Bytes says = bytes_of(OUT ".out");
+    assert_non_null(strstr(says.data, "2 rows, 2000 pairs of a ray and an accelerator: 0 wrong"));
+    rt_free(says.data);
+}
+
+/* A verification is gone on with only by the same rays. */
+RT_TEST(a_verification_knows_its_rays_again) {
+    assert_int_equal(run("rays balls:size=1 %s --rays random -o '%s'", SMALL, RAYS), 0);
+    assert_int_equal(run("verify balls:size=1 --accel bvh --rays-from '%s' --out '%s.d' --force", RAYS, OUT),
+                     0);
+    assert_int_equal(run("verify balls:size=1 --accel bvh --rays-from '%s' --out '%s.d' --resume", RAYS, OUT),
+                     0);
+    assert_int_equal(run("rays balls:size=1 %s --rays random --seed 2 -o '%s'", SMALL, RAYS), 0);
+    assert_int_equal(run("verify balls:size=1 --accel bvh --rays-from '%s' --out '%s.d' --resume", RAYS, OUT),
+                     2);
+    Bytes says = bytes_of(OUT ".err");
+    assert_non_null(strstr(says.data, "with other rays_hash"));
+    rt_free(says.data);
+}
+
+/* Puts `value` into a column of row 7. */
+static void damage(uint32_t column, float value) {
+    assert_int_equal(run("rays balls:size=1 %s -o '%s'", SMALL, RAYS), 0);
+    Bytes bytes = bytes_of(RAYS);
+    size_t at = (size_t)(numbers_of(&bytes) - bytes.data) + (7 * 8 + column) * sizeof(float);
+    memcpy(bytes.data + at, &value, sizeof value);
+    if (column == 4) memset(bytes.data + at, 0, 3 * sizeof value);
+    assert_ok(rt_file_write(RAYS, bytes.data, bytes.size, error));
+    rt_free(bytes.data);
+}
+
+RT_TEST(a_ray_that_is_none_is_refused_by_its_row) {
+    const struct {
+        uint32_t column;
+        float value;
+        const char *says;
+    } cases[] = {{1, NAN, "origin is not finite"},
+                 {0, 1e18f, "beyond 5e17"},
+                 {5, INFINITY, "direction is not finite"},
+                 {4, 0, "direction is zero"},
+                 {3, -1, "tmin is negative"},
+                 {3, INFINITY, "tmin is negative or not finite"},
+                 {7, -1, "less than its tmin"},
+                 {7, NAN, "less than its tmin"},
+                 {3, NAN, "tmin is negative"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        damage(cases[i].column, cases[i].value);
+        for (int verify = 0; verify < 2; verify++) {
+            int code = verify ? run("verify balls:size=1 --accel bvh --rays-from '%s'", RAYS)
+                              : run("bench balls:size=1 --accel bvh --rays nearest --rays-from '%s'", RAYS);
+            Bytes says = bytes_of(OUT ".err");
+            assert_int_equal(code, 2);
+            assert_non_null(strstr(says.data, "row 7 (the first is 0)"));
+            if (!strstr(says.data, cases[i].says)) fail_msg("column %u: %s", cases[i].column, says.data);
+            rt_free(says.data);
+        }
+    }
+}
+
+RT_TEST(what_does_not_go_together_is_refused_and_leaves_no_file) {
+    const char *const cases[][2] = {
+        {"bench balls:size=1 --accel bvh --rays-from x.npy", "--rays nearest, or --rays occlusion"},
+        {"bench balls:size=1 --accel bvh --rays-from x.npy --rays diffuse", "not 'diffuse'"},
+        {"bench balls:size=1 --accel bvh --rays-from x.npy --rays nearest,occlusion", "one kind at a time"},
+        {"bench balls:size=1 --accel bvh --rays-from x.npy --rays nearest --size 8x8", "--size is about"},
+        {"bench balls:size=1 --accel bvh --rays-from x.npy --rays nearest", "x.npy: cannot be opened"},
+        {"bench balls:size=1 --accel bvh --rays-from /dev/null --rays nearest", "this is not a file"},
+        {"bench balls:size=1 --accel bvh --accel grid --rays primary --hits y.npy", "of one accelerator"},
+        {"bench balls:size=1 --accel bvh --ray-stride 2 --rays primary --hits y.npy", "of one accelerator"},
+        {"bench balls:size=1 --accel bvh --baseline grid --rays primary --counts y.npy",
+         "of one accelerator"},
+        {"bench balls:size=1 --accel bvh --hits y.npy", "of one kind"},
+        {"bench balls:size=1 --accel bvh --rays primary --hits y.npy --counts y.npy", "named twice"},
+        {"bench balls:size=1 --accel bvh --rays nearest --rays-from y.npy --hits y.npy", "named twice"},
+        {"bench balls:size=1 --accel bvh --rays primary --size 8x8 --count-only --hits no/y.npy",
+         "No such file"},
+        {"rays balls:size=1", "-o FILE.npy"},
+        {"rays balls:size=1 -o y.npy --rays primary,shadow", "one kind at a time"},
+        {"rays balls:size=1 -o y.npy --rays transmission", "has no transmission rays"},
+        {"rays nope.nff -o y.npy", "there is no such file"},
+        {"rays balls:size=1 --size 8x8 -o no/y.npy", "No such file"},
+        {"verify --accel bvh --rays-from x.npy", "belong to a SCENE"},
+        {"verify balls:size=1 --rays 10 --rays-from x.npy", "leave --rays"},
+        {"verify balls:size=1 --families --rays-from x.npy", "leave --rays, --families"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        int code = run("%s", cases[i][0]);
+        Bytes says = bytes_of(OUT ".err");
+        if (code != 2 || !strstr(says.data, cases[i][1]))
+            fail_msg("'%s' (%d): %s", cases[i][0], code, says.data);
+        rt_free(says.data);
+        assert_false(rt_file_exists("y.npy") || rt_file_exists("y.npy.tmp"));
+    }
+}
+
+RT_TESTS(cmd_rays, NULL, NULL)

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Claims and findings of an experiment, from its YAML to the report. */
+#include "experiment_testing.h"
+
+static const char claiming[] = "name: small\n"
+                               "question: Which density is best?\n"
+                               "prediction: Four.\n"
+                               "scenes:\n"
+                               "  - {scene: \"random:n=200\", size: 12x12}\n"
+                               "accelerators:\n"
+                               "  - {accel: bvh}\n"
+                               "  - {accel: \"grid:density=1..16*4\"}\n"
+                               "rays: [primary]\n"
+                               "count_only: yes\n"
+                               "limit: 100\n"
+                               "expect:\n"
+                               "  - object_tests of grid falls with density\n"
+                               "  - object_tests of bvh > 1000\n";
+
+static int make_claiming(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml", claiming);
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_claiming, remove_place)
+
+RT_TEST_IN_PLACE(a_false_claim_is_said_to_be_and_is_exit_code_1_if_strict) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "output", "holds          object_tests of grid falls with density");
+    assert_in_file(place, "output", "does not hold  object_tests of bvh > 1000");
+    assert_in_file(place, "out/report.html", "does not hold");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --strict"), 1);
+    assert_in_file(place, "message", "1 of 2 claims do not hold, the first: object_tests of bvh > 1000");
+    write_changed(place, "small.yaml", claiming, "bvh > 1000", "bvh < 1000");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume --strict"), 0);
+}
+
+RT_TEST_IN_PLACE(a_bad_claim_is_refused_with_its_line_when_the_yaml_is_read) {
+    const Place *place = *state;
+    RtError error = {RT_OK, ""};
+    write_changed(place, "small.yaml", claiming, "bvh > 1000", "bhv > 1000");
+    assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error,
+                   ":14:5: expect[1]: 'bhv' is not the label of one of the accelerators; a claim is as");
+}
+
+/* What is found, and better claims, come after the run. */
+RT_TEST_IN_PLACE(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    write_changed(place, "small.yaml", claiming, "count_only",
+                  "finding: >-\n  Four it is,\n  indeed.\ncount_only");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    assert_in_file(place, "message", "nothing was left to measure");
+    assert_in_file(place, "out/report.html", "<b>Finding</b>Four it is, indeed.");
+    assert_int_equal(raytally(place, "report out"), 0);
+    assert_int_equal(raytally(place, "reproduce out"), 0);
+    write_changed(place, "small.yaml", claiming, "limit: 100", "finding: Four.\nlimit: 99");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 2);
+    write_changed(place, "small.yaml", claiming, "prediction: Four.", "prediction: Five.");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 2);
+}
+
+RT_TESTS(claims_run, NULL, NULL)

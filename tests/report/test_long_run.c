@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Runs that take long: how long, a part of them, what is left out, and what remains of them when they end. */
+#include "experiment_testing.h"
+
+#include "base/clock.h"
+#include "bench/forecast.h"
+#include "bench/result_tables.h"
+#include "report/result_directory.h"
+
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static const char long_experiment[] = "name: small\n"
+                                      "question: How long?\n"
+                                      "prediction: A second.\n"
+                                      "scenes:\n"
+                                      "  - {scene: \"balls:size=2\", label: balls, size: 24x24}\n"
+                                      "  - {scene: \"random:n=200|400\", label: cloud, size: 24x24}\n"
+                                      "  - {scene: \"random:n=300,seed=2\", label: other, size: 24x24}\n"
+                                      "accelerators:\n"
+                                      "  - {accel: bvh}\n"
+                                      "  - {accel: \"grid:density=1..16*2\"}\n"
+                                      "  - {accel: brute, ray_stride: 10}\n"
+                                      "rays: [primary, diffuse]\n"
+                                      "limit: 300\n"
+                                      "rounds: 3\n"
+                                      "milliseconds: 3\n";
+
+static int make_long(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml", long_experiment);
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_long, remove_place)
+
+/* Starts `raytally run small.yaml ...` in the folder. */
+static pid_t start(const Place *place, const char *out, const char *resume) {
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child > 0) return child;
+    int message = -1, nothing = open("/dev/null", O_WRONLY);
+    if (chdir(place->folder) == 0) message = open("message", O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    dup2(nothing, STDOUT_FILENO);
+    dup2(message, STDERR_FILENO);
+    execl(RT_PROGRAM, "raytally", "run", "small.yaml", "--threads", "1", "--out", out, resume, (char *)NULL);
+    _exit(127);
+}
+
+static void wait_seconds(double seconds) {
+    struct timespec time = {.tv_sec = (time_t)seconds, .tv_nsec = (long)(1e9 * fmod(seconds, 1))};
+    nanosleep(&time, NULL);
+}
+
+static void assert_same_file(const Place *place, const char *a, const char *b) {
+    char *texts[] = {read_in(place, a), read_in(place, b)};
+    assert_string_equal(texts[0], texts[1]);
+    rt_free(texts[0]);
+    rt_free(texts[1]);
+}
+
+/* Whole lines: the last may have been cut off. */
+static size_t journal_lines(const Place *place) {
+    if (!rt_file_exists(path_in(place, "out/cells.jsonl").text)) return 0;
+    char *text = read_in(place, "out/cells.jsonl");
+    size_t lines = 0;
+    for (const char *c = text; *c; c++) lines += *c == '\n';
+    rt_free(text);
+    return lines;
+}
+
+/* At moments that are drawn from the time that the whole takes; nothing that was finished is lost. */
+RT_TEST_IN_PLACE(a_run_that_is_killed_again_and_again_ends_as_one_that_was_not) {
+    const Place *place = *state;
+    double began = rt_wall_seconds();
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
+    double whole = rt_wall_seconds() - began;
+    uint32_t draw = 12345, killed = 0;
+    size_t before = 0;
+    for (int i = 0; i < 12; i++) {
+        int how = 0;
+        pid_t child = start(place, "out", "--resume");
+        draw = draw * 1664525 + 1013904223;
+        wait_seconds(0.4 * whole * draw / 4294967296.0);
+        kill(child, SIGKILL);
+        waitpid(child, &how, 0);
+        killed += WIFSIGNALED(how);
+        size_t now = journal_lines(place);
+        assert_true(now >= before);
+        before = now;
+    }
+    assert_true(killed >= 3);
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
+    assert_same_file(place, "whole/counts.csv", "out/counts.csv");
+    assert_int_equal(raytally(place, "reproduce out"), 0);
+}
+
+RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
+    const Place *place = *state;
+    int how;
+    pid_t child = start(place, "out", "--resume");
+    while (journal_lines(place) < 20) wait_seconds(0.01);
+    kill(child, SIGINT);
+    waitpid(child, &how, 0);
+    assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 128 + SIGINT);
+    assert_in_file(place, "message",
+                   " of 56 cells are finished, all that was measured is kept in out. To go on:");
+    assert_in_file(place, "message", "raytally run small.yaml --out out --threads 1 --resume");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume --dry-run"), 0);
+    assert_in_file(place, "output", "finished\n");
+    assert_in_file(place, "output", "the others take about ");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
+}
+
+RT_TEST_IN_PLACE(a_dry_run_lists_the_cells_and_touches_nothing) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --dry-run"), 0);
+    assert_in_file(place, "output", "cloud:n=400              grid:density=16              diffuse");
+    /* 4 scenes by 2 kinds by 8 that are timed in 1 + 3 rounds, brute with the baseline on its rays. */
+    assert_in_file(place, "output", "56 cells, 0 of them finished; the others take at least 1 s");
+    assert_false(rt_file_exists(path_in(place, "out").text));
+    assert_int_equal(raytally(place, "run small.yaml --out out --only cloud/grid/diffuse --dry-run"), 0);
+    assert_in_file(place, "output", "12 cells"); /* bvh, the baseline, too */
+}
+
+RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only cloud:n=400/brute/primary"),
+                     0);
+    assert_in_file(place, "message", "a part was measured");
+    assert_false(rt_file_exists(path_in(place, "out/manifest.json").text));
+    char *counts = read_in(place, "out/counts.csv");
+    assert_non_null(strstr(counts, "brute"));
+    assert_null(strstr(counts, "grid"));
+    assert_null(strstr(counts, "diffuse"));
+    rt_free(counts);
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
+    assert_same_file(place, "whole/counts.csv", "out/counts.csv");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only nowhere --resume"), 2);
+}
+
+RT_TEST_IN_PLACE(what_goes_beyond_a_limit_is_left_out_and_recorded) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", long_experiment, "n=200|400\", label: cloud",
+                  "n=20000\", label: cloud");
+    write_changed(place, "limited.yaml", long_experiment, "limit: 300", "limits: {megabytes: 1}\nlimit: 300");
+    char *text = read_in(place, "limited.yaml");
+    write_changed(place, "small.yaml", text, "n=200|400\"", "n=200|30000\"");
+    rt_free(text);
+    /* bvh, the baseline, takes 2 MB of 30000 spheres. */
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
+    assert_in_file(place, "message", "the baseline 'bvh' goes beyond a limit on 'cloud:n=30000'");
+    text = read_in(place, "small.yaml");
+    write_changed(place, "small.yaml", text, "rays: [", "baseline: brute\nrays: [");
+    rt_free(text);
+    text = read_in(place, "small.yaml");
+    write_changed(place, "small.yaml", text, ", ray_stride: 10", "");
+    rt_free(text);
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force"), 0);
+    assert_in_file(place, "output", "Left out: bvh on cloud:n=30000: its structure takes more than 1 MB");
+    assert_in_file(place, "out/cells.jsonl", "too_large");
+    assert_in_file(place, "out/report.html", "its structure takes more than 1 MB");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
+    assert_in_file(place, "message", "nothing was left to measure");
+    assert_in_file(place, "output", "Left out: bvh on cloud:n=30000");
+}
+
+RT_TEST_IN_PLACE(a_cell_that_would_take_too_long_is_not_begun) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", long_experiment, "limit: 300", "limits: {seconds: 1e-6}\nlimit: 300");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
+    assert_in_file(place, "message", "the baseline 'bvh' goes beyond a limit");
+    write_changed(place, "small.yaml", long_experiment, "limit: 300", "limits: {seconds: 0}\nlimit: 300");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --force"), 2);
+    assert_in_file(place, "message", "limits.seconds: invalid value '0': expected more than 0");
+    write_changed(place, "small.yaml", long_experiment, "n=200|400\", label: cloud, size: 24x24",
+                  "n=200|100000\", label: cloud, size: 100x100");
+    char *text = read_in(place, "small.yaml");
+    write_changed(place, "small.yaml", text, "limit: 300", "limits: {seconds: 0.5}\nlimit: 10000");
+    rt_free(text);
+    text = read_in(place, "small.yaml");
+    write_changed(place, "small.yaml", text, ", ray_stride: 10", "");
+    rt_free(text);
+    if (raytally(place, "run small.yaml --threads 1 --out out --force") != 0)
+        skip(); /* slow: the baseline, too */
+    assert_in_file(place, "output", "Left out: brute on cloud:n=100000, primary rays: it would take about");
+}
+
+/* ---- how long it will take ---- */
+
+typedef struct Watch {
+    double start, before, errors[512], passed[512];
+    uint32_t count;
+    bool begun;
+    RtWorkloadOptions options;
+    RtForecast last;
+} Watch;
+
+static RtStatus look(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
+    Watch *w = context;
+    double now = rt_wall_seconds();
+    (void)event, (void)error;
+    w->last = rt_forecast(results, &w->options);
+    if (!w->begun) w->before = w->last.known;
+    w->begun = true;
+    w->passed[w->count] = now - w->start;
+    w->errors[w->count++] = now - w->start + rt_forecast_left(&w->last, w->before, now - w->start);
+    return RT_OK;
+}
+
+/* The whole, as it is foretold at every event from a tenth of it on, but for the burst in which one kind's
+ * times come. The machine may be busy: most of them. */
+RT_TEST_IN_PLACE(the_time_that_is_left_is_foretold_from_a_tenth_on) {
+    const Place *place = *state;
+    static Watch watch;
+    RtResults results;
+    watch = (Watch){.options = {.threads = 1, .timing = 1}};
+    write_changed(place, "small.yaml", long_experiment, "milliseconds: 3", "milliseconds: 8");
+    assert_ok(load_small(place, false, error));
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    watch.options.observer = (RtObserver){&watch, look, NULL};
+    watch.start = rt_wall_seconds();
+    for (uint32_t t = 0; t < place->experiment->workload_count; t++)
+        assert_ok(rt_workload_run(&results, t, &watch.options, error));
+    double whole = rt_wall_seconds() - watch.start;
+    uint32_t right = 0, all = 0;
+    for (uint32_t i = 0; i < watch.count; i++) {
+        if (watch.passed[i] < 0.1 * whole || isnan(watch.errors[i])) continue;
+        if (i + 1 < watch.count && watch.passed[i + 1] - watch.passed[i] < 0.01 * whole) continue;
+        all++;
+        right += watch.errors[i] < 1.5 * whole && watch.errors[i] > whole / 1.5;
+    }
+    assert_true(all >= 4);
+    assert_true(right * 4 >= all * 3);
+    assert_int_equal(watch.last.cells, 56);
+    assert_int_equal(watch.last.finished, 56);
+    assert_true(watch.last.left == 0);
+    rt_results_clear(&results);
+}
+
+RT_TESTS(long_run, NULL, NULL)

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Shards of one experiment, joined. */
+#include "experiment_testing.h"
+
+#include "base/csv.h"
+
+static const char sharded[] = "name: small\n"
+                              "question: On how many machines?\n"
+                              "prediction: It does not matter.\n"
+                              "scenes:\n"
+                              "  - {scene: \"balls:size=1|2\", size: 12x12}\n"
+                              "  - {scene: \"random:n=50..200*2\", label: cloud, size: 12x12}\n"
+                              "accelerators:\n"
+                              "  - {accel: bvh}\n"
+                              "  - {accel: \"grid:density=1|4\"}\n"
+                              "rays: [primary, shadow]\n"
+                              "limit: 100\n"
+                              "rounds: 2\n"
+                              "milliseconds: 0\n"
+                              "expect: [object_tests of grid falls with density on cloud]\n";
+
+static int make_sharded(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml", sharded);
+    for (int i = 1; i <= 4; i++) {
+        char command[128];
+        snprintf(command, sizeof command, "run small.yaml --threads 1 --shard %d/4 --out s%d", i, i);
+        if (raytally(*state, command) != 0) return -1;
+    }
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_sharded, remove_place)
+
+static void refused(const Place *place, const char *arguments, const char *says) {
+    assert_int_equal(raytally(place, arguments), 2);
+    assert_in_file(place, "message", says);
+    assert_false(rt_file_exists(path_in(place, "all").text));
+}
+
+RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
+    const Place *place = *state;
+    RtCsv csv;
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out one"), 0);
+    assert_int_equal(raytally(place, "merge s3 s1 s4 s2 -o all"), 0);
+    assert_in_file(place, "output", "holds          object_tests of grid falls with density on cloud");
+    char *one = read_in(place, "one/counts.csv"), *all = read_in(place, "all/counts.csv");
+    assert_string_equal(one, all);
+    rt_free(one);
+    rt_free(all);
+    assert_true(rt_file_exists(path_in(place, "all/manifest.json").text));
+    assert_true(rt_file_exists(path_in(place, "all/images/cloud:n=200.png").text));
+    assert_in_file(place, "all/report.html", "cloud:n=200");
+    assert_int_equal(raytally(place, "reproduce all"), 0);
+    Path times = path_in(place, "all/times.csv");
+    assert_ok(rt_csv_read(&csv, times.text, error));
+    assert_int_equal(csv.rows, 5 * 2 * 4);
+    assert_true(*rt_csv_field(&csv, 0, rt_csv_find(&csv, "host")));
+    assert_true(rt_csv_find(&csv, "cpu") < csv.columns);
+    rt_csv_clear(&csv);
+    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 2);
+    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all --force"), 0);
+}
+
+RT_TEST_IN_PLACE(what_does_not_make_a_whole_is_refused_and_nothing_is_written) {
+    const Place *place = *state;
+    refused(place, "merge s1 s2 s4 -o all", "shard 3 of 4 is missing");
+    refused(place, "merge s1 s2 s3 s4 s2 -o all", "shard 2 of 4 is there twice: s2 and s2");
+    refused(place, "merge s1 s2 nowhere -o all", "nowhere is not the directory of a run");
+    refused(place, "merge s1 s2", "say where to: -o DIR");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
+    refused(place, "merge s1 whole -o all", "whole is not a shard");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/3 --out third"), 0);
+    refused(place, "merge s1 third -o all", "s1 and third are of different numbers of shards");
+    write_changed(place, "small.yaml", sharded, "limit: 100", "limit: 99");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out other"), 0);
+    refused(place, "merge s1 other s3 s4 -o all", "s1 and other are of different experiments");
+    refused(place, "merge s1 s2 s3 s4 -o all", "small.yaml has changed since the shards were made");
+    assert_int_equal(remove(path_in(place, "s3/manifest.json").text), 0);
+    refused(place, "merge s1 s2 s3 s4 -o all", "s3 is not finished: go on");
+}
+
+RT_TEST_IN_PLACE(a_shard_is_gone_on_with_as_the_shard_that_it_is) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 3/4 --out s2 --resume"), 2);
+    assert_in_file(place, "message", "this is a run with another --shard (2/4)");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume"), 0);
+    assert_in_file(place, "message", "nothing was left to measure");
+}
+
+RT_TESTS(merge, NULL, NULL)

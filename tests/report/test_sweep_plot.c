@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Experiments that sweep parameters: rows, columns, and the plot that needs no script. */
+#include "experiment_testing.h"
+
+#include "base/csv.h"
+
+#include <unistd.h>
+
+static const char swept[] = "name: small\n"
+                            "question: Which density is best?\n"
+                            "prediction: Four.\n"
+                            "scenes:\n"
+                            "  - {scene: \"random:n=20..200*10\", label: cloud, size: 12x12}\n"
+                            "  - {scene: balls, size: 8x8}\n"
+                            "accelerators:\n"
+                            "  - {accel: bvh}\n"
+                            "  - {accel: \"grid:density=1..16*2\", scenes: [cloud]}\n"
+                            "  - {accel: \"bvh:build=sweep|lbvh\", label: other}\n"
+                            "rays: [primary]\n"
+                            "limit: 100\n"
+                            "rounds: 2\n"
+                            "milliseconds: 0\n";
+
+static int make_swept(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml", swept);
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_swept, remove_place)
+
+/* 2 clouds with 1 + 5 + 2 accelerators, and balls with 3. */
+RT_TEST_IN_PLACE(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
+    const Place *place = *state;
+    RtCsv csv;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    Path path = path_in(place, "out/counts.csv");
+    assert_ok(rt_csv_read(&csv, path.text, error));
+    assert_int_equal(csv.rows, 2 * 8 + 3);
+    assert_string_equal(rt_csv_name(&csv, csv.columns - 3), "scene.n");
+    assert_string_equal(rt_csv_name(&csv, csv.columns - 2), "accel.density");
+    assert_string_equal(rt_csv_name(&csv, csv.columns - 1), "accel.build");
+    uint32_t n = csv.columns - 3, density = csv.columns - 2, build = csv.columns - 1, row = 8 + 5;
+    assert_string_equal(rt_csv_field(&csv, row, rt_csv_find(&csv, "scene")), "cloud:n=200");
+    assert_string_equal(rt_csv_field(&csv, row, rt_csv_find(&csv, "accel")), "grid:density=16");
+    assert_string_equal(rt_csv_field(&csv, row, n), "200");
+    assert_string_equal(rt_csv_field(&csv, row, density), "16");
+    assert_string_equal(rt_csv_field(&csv, row, build), "");
+    assert_string_equal(rt_csv_field(&csv, 18, n), "");
+    assert_string_equal(rt_csv_field(&csv, 18, build), "lbvh");
+    rt_csv_clear(&csv);
+}
+
+RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_scene) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    if (access("/usr/bin/gnuplot", X_OK) != 0) skip();
+    const char *const drawn[] = {"out/plots/01-sweep-n.svg", "out/plots/02-sweep-density.svg",
+                                 "out/plots/03-sweep-density.svg", "out/plots/04-sweep-build.svg"};
+    for (size_t i = 0; i < sizeof drawn / sizeof drawn[0]; i++) assert_in_file(place, drawn[i], "</svg>");
+    assert_in_file(place, drawn[0], "grid:density=16");
+    assert_in_file(place, drawn[0], "ns per ray");
+    assert_in_file(place, drawn[3], "lbvh");
+    assert_in_file(place, "out/plots/sweep.gp", "set logscale x");
+    assert_in_file(place, "out/report.html", "data:image/svg+xml");
+    char *log = read_in(place, "out/plots/gnuplot.log");
+    assert_string_equal(log, "");
+    rt_free(log);
+}
+
+RT_TEST_IN_PLACE(fifty_accelerators_are_fifty_lines_of_which_no_two_look_alike) {
+    const Place *place = *state;
+    static char script[1 << 18], styles[64][160];
+    uint32_t lines = 0;
+    write_changed(place, "small.yaml", swept, "1..16*2", "1..48+1");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    FILE *file = fopen(path_in(place, "out/plots/sweep.gp").text, "r");
+    assert_non_null(file);
+    script[fread(script, 1, sizeof script - 1, file)] = '\0';
+    fclose(file);
+    *strstr(script, "unset multiplot") = '\0'; /* the first figure */
+    for (const char *at = script; (at = strstr(at, "set style line ")) && lines < 64; at++, lines++) {
+        const char *style = strstr(at, "linecolor");
+        snprintf(styles[lines], sizeof styles[lines], "%.*s", (int)strcspn(style, "\n"), style);
+        for (uint32_t k = 0; k < lines; k++) assert_string_not_equal(styles[k], styles[lines]);
+    }
+    assert_int_equal(lines, 1 + 48 + 2);
+}
+
+RT_TEST_IN_PLACE(a_bad_sweep_is_refused_with_its_line) {
+    const Place *place = *state;
+    const struct {
+        const char *from, *to, *says;
+    } cases[] = {
+        {"1..16*2", "1..16", ":9:13: accelerators[1].accel: '1..16' is no range"},
+        {"1..16*2", "1|-4", ":9:"},
+        {"1..16*2", "1..16*2|1..16+0.01", "more than 256 values"},
+        {"grid:density", "grid:densty", "did you mean 'density'?"},
+        {"20..200*10", "1..64+1", ":5:13: scenes[0].scene: there are more than 32 scenes"},
+        {"label: other", "label: other-that-is-as-long-as-a-label-may-be-or-so", "give a short `label`"},
+        {"limit: 100", "baseline: other", ":12:"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        write_changed(place, "small.yaml", swept, cases[i].from, cases[i].to);
+        RtError error = {RT_OK, ""};
+        assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error, cases[i].says);
+    }
+}
+
+RT_TEST_IN_PLACE(bench_takes_sweeps_of_scenes_and_accelerators) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "bench 'random:n=10|20' --accel bvh --accel 'grid:density=1..4*2' "
+                                     "--ray-stride 3 --rays primary --size 8x8 --count-only --csv rows.csv"),
+                     0);
+    RtCsv csv;
+    Path path = path_in(place, "rows.csv");
+    assert_ok(rt_csv_read(&csv, path.text, error));
+    assert_int_equal(csv.rows, 2 * 4);
+    for (uint32_t row = 1; row < 4; row++)
+        assert_string_equal(rt_csv_field(&csv, row, rt_csv_find(&csv, "ray_stride")), "3");
+    assert_string_equal(rt_csv_field(&csv, 7, csv.columns - 2), "20");
+    assert_string_equal(rt_csv_field(&csv, 7, csv.columns - 1), "4");
+    rt_csv_clear(&csv);
+    assert_int_equal(raytally(place, "bench 'random:n=10|20' --accel bvh --rays primary --count-only --json"),
+                     0);
+    assert_in_file(place, "output", "random:n=10");
+    assert_in_file(place, "output", "random:n=20");
+    assert_int_equal(raytally(place, "bench balls --accel 'grid:density=1..4'"), 2);
+    assert_in_file(place, "message", "is no range");
+}
+
+RT_TESTS(sweep_plot, NULL, NULL)
