@@ -157,7 +157,8 @@ static RtStatus fit_grids(RtLightBuffer *buffer, const Outlook *outlooks, double
 static RtStatus choose_grids(RtLightBuffer *buffer, double limit, double *cells, RtError *error) {
     const RtScene *scene = buffer->base.scene;
     Outlook *outlooks = rt_alloc(6 * (size_t)scene->light_count, sizeof(Outlook));
-    if (!outlooks) return rt_fail_memory(error, "a light buffer", 6 * scene->light_count * sizeof(Outlook));
+    if (!outlooks)
+        return rt_fail_memory(error, "a light buffer", 6 * (size_t)scene->light_count * sizeof(Outlook));
     for (uint32_t i = 0; i < scene->light_count; i++) look_at_objects(buffer, i, outlooks + 6 * (size_t)i);
     RtStatus status = fit_grids(buffer, outlooks, limit, cells, error);
     rt_free(outlooks);
@@ -170,6 +171,7 @@ static RtStatus make_near_list(RtLightBuffer *buffer, uint32_t light, RtError *e
     const RtGeometry *g = &buffer->base.scene->geometry;
     RtLightCube *cube = &buffer->cubes[light];
     uint32_t capacity = 0;
+    if (!rt_light_is_in(buffer, light, &g->box)) return RT_OK;
     for (uint32_t id = 0; id < g->object_count; id++) {
         if (!rt_light_is_near(buffer, light, id)) continue;
         RT_TRY(rt_reserve(&cube->near, &capacity, cube->near_count + UINT64_C(1), sizeof(uint32_t), error));

@@ -64,10 +64,14 @@ static void grow_box(const RtLightBuffer *buffer, uint32_t light, int face, cons
     }
 }
 
-bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id) {
+bool rt_light_is_in(const RtLightBuffer *buffer, uint32_t light, const RtBox *box) {
     RtVec3d lo, hi;
-    grow_box(buffer, light, 1, &buffer->base.scene->geometry.boxes[id], &lo, &hi);
+    grow_box(buffer, light, 1, box, &lo, &hi);
     return lo.x <= 0 && hi.x >= 0 && lo.y <= 0 && hi.y >= 0 && lo.z <= 0 && hi.z >= 0;
+}
+
+bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id) {
+    return rt_light_is_in(buffer, light, &buffer->base.scene->geometry.boxes[id]);
 }
 
 /* The least and largest x / z with x in [lo, hi] and z in [near, far], far > 0; z <= 0 does not count. */

@@ -131,7 +131,8 @@ static inline uint32_t rt_light_id_of(const RtGeometry *g, RtRef object) {
 /* An offset from the light in the axes of a face: u, w, depth, the first two times depth. */
 RtVec3d rt_light_offset(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3d point);
 
-/* Does the object's box, grown by the margin, hold the light? */
+/* Does a box, grown by the margin, hold the light? That of an object? */
+bool rt_light_is_in(const RtLightBuffer *buffer, uint32_t light, const RtBox *box);
 bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id);
 
 /* Where a box, grown by the margin, is seen on a face: u and w, cut at the borders of the face, and depth.

@@ -151,6 +151,10 @@ static uint32_t draw(const RtLightTile *tile, const uint32_t *triangles, uint32_
             RtV16 part_row = rt_v16_add(y, rt_v16_all((float)row));
             uint32_t rows = rt_v16_at_most(least_y, part_row) & rt_v16_at_most(part_row, most_y);
             for (int column = (int)s.lo[0][i]; column <= last_column; column++) {
+                if (s.near[i] > desk->cover[row][column]) { /* even if it is not in the cell */
+                    desk->cut[row] |= UINT64_C(1) << column;
+                    continue;
+                }
                 RtV16 worst = rt_v16_all(INFINITY);
                 for (int e = 0; e < 3; e++) {
                     float moved = s.line[e][0][i] * (float)column + s.line[e][1][i] * (float)row;
@@ -160,10 +164,6 @@ static uint32_t draw(const RtLightTile *tile, const uint32_t *triangles, uint32_
                 uint32_t parts = rows & rt_v16_at_most(zero, worst);
                 parts &= rt_v16_at_most(least_x, part_column) & rt_v16_at_most(part_column, most_x);
                 if (!parts) continue;
-                if (s.near[i] > desk->cover[row][column]) {
-                    desk->cut[row] |= UINT64_C(1) << column;
-                    continue;
-                }
                 desk->cell[desk->count] = (uint32_t)row * tile->n + (uint32_t)column;
                 desk->key[desk->count++] = s.depth[i] << 16 | parts;
             }

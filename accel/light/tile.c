@@ -20,15 +20,20 @@ typedef struct Worker {
     uint32_t end[RT_LIGHT_TILE_CELLS + 2]; /* of lists in `sorted` */
     RtLightEntry *sorted;                  /* [sorted_capacity]: the candidates of a tile */
     uint32_t sorted_capacity;
-    RtLightEntry *entries; /* of all tiles of this thread */
-    uint32_t count, capacity;
+    /* The lists of all tiles of this thread, in blocks that stay where they are: to move what has become too
+     * large takes longer than to draw it. */
+    RtLightEntry **blocks;
+    uint32_t block_count, block_capacity;
+    RtLightEntry *next; /* in the last block, in which there is room for */
+    uint32_t room;
     uint16_t *lengths; /* of the lists of all their cells */
     uint32_t cell_count, cell_capacity;
 } Worker;
 
 /* Where the lists of a tile are until they have their place; then their place. */
 typedef struct Made {
-    uint32_t first, count, first_cell, n;
+    const RtLightEntry *entries;
+    uint32_t count, first_cell, n;
     int thread;
     uint32_t place, cell_place;
 } Made;
@@ -45,10 +50,11 @@ typedef struct Drawing {
 
 /* A ray meets, in the list of its cell, objects that it does not meet itself: of width x and height y, in
  * tiles, an object is in about (n x + 1) (n y + 1) of a tile's n^2 cells, of which n^2 x y are its own share.
- * The others, sums of (x + y) / n + 1 / n^2 to a list, are to be about three where one object lies behind
- * another, and more where more do, as a ray does not look at the deeper ones. From some of the objects. */
+ * The others, sums of (x + y) / n + 1 / n^2 to a list, are to be one and a half where a list holds one
+ * object of the area of the tile, and more where more do, as a ray does not look at the deeper ones. From
+ * some of the objects. */
 static uint32_t choose_fineness(const RtLightTile *tile, const uint32_t *objects, uint32_t count) {
-    enum { SAMPLE = 16 };
+    enum { SAMPLE = 6 };
     const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
     double sides = 0, areas = 0, seen = 0, part = (double)count / (count < SAMPLE ? count : SAMPLE);
     if (grid->least == grid->finest) return grid->finest;
@@ -67,7 +73,7 @@ static uint32_t choose_fineness(const RtLightTile *tile, const uint32_t *objects
         areas += part * size[0] * size[1];
         seen += part;
     }
-    double others = 3 * sqrt(fmax(areas, 0x1p-10));
+    double others = 1.5 * sqrt(fmax(areas, 0x1p-10));
     double n = (sides + sqrt(sides * sides + 4 * others * seen)) / (2 * others);
     n = fmin(n, 1 + 3 * sqrt((double)count)); /* about nine cells an object at most */
     return (uint32_t)fmin(fmax(n, grid->least), grid->finest);
@@ -247,14 +253,30 @@ static uint32_t longest_that_fits(const uint32_t *end, uint32_t cells, uint32_t 
     return longest;
 }
 
-/* The lists to worker->entries, and their lengths. */
-static RtStatus keep_lists(const Drawing *d, const RtLightTile *tile, Worker *worker, RtError *error) {
+enum { BLOCK_ENTRIES = 1 << 19 };
+
+static RtStatus reserve_entries(Worker *worker, uint32_t needed, RtError *error) {
+    if (needed <= worker->room) return RT_OK;
+    uint32_t room = needed < BLOCK_ENTRIES ? BLOCK_ENTRIES : needed;
+    RT_TRY(rt_reserve(&worker->blocks, &worker->block_capacity, worker->block_count + UINT64_C(1),
+                      sizeof(RtLightEntry *), error));
+    RtLightEntry *block = rt_alloc_unset(room, sizeof *block);
+    if (!block) return rt_fail_memory(error, "the lists of a light buffer", room * sizeof *block);
+    worker->blocks[worker->block_count++] = worker->next = block;
+    worker->room = room;
+    return RT_OK;
+}
+
+/* The lists to worker->next, and their lengths. */
+static RtStatus keep_lists(const Drawing *d, const RtLightTile *tile, Worker *worker, Made *made,
+                           RtError *error) {
     const RtLightGrid *grid = &d->buffer->cubes[d->light].grids[tile->face];
     const RtLightDesk *desk = &worker->desk;
     const uint32_t cells = tile->n * tile->n, *end = worker->end;
     uint32_t longest = longest_that_fits(end, cells, d->buffer->longest, d->most);
-    RT_TRY(rt_reserve(&worker->entries, &worker->capacity, worker->count + (uint64_t)desk->count + cells,
-                      sizeof(RtLightEntry), error));
+    RT_TRY(reserve_entries(worker, desk->count + cells, error));
+    RtLightEntry *to = worker->next;
+    made->entries = to;
     for (uint32_t i = 0; i < cells; i++) {
         const RtLightEntry *list = worker->sorted + end[i];
         uint32_t count = end[i + 1] - end[i], kept = count < longest ? count : longest;
@@ -262,16 +284,18 @@ static RtStatus keep_lists(const Drawing *d, const RtLightTile *tile, Worker *wo
         bool cut = desk->cut[row] >> column & 1;
         uint32_t beyond = cut ? rt_light_depth_key(grid, desk->cover[row][column]) << 16 : 0;
         if (kept < count) beyond = depth_bits(list[kept].key), cut = true;
-        if (kept > 0) memcpy(worker->entries + worker->count, list, kept * sizeof *list);
-        worker->count += kept;
-        if (cut) worker->entries[worker->count++] = (RtLightEntry){beyond | RT_LIGHT_PARTS, RT_LIGHT_BEYOND};
+        for (uint32_t k = 0; k < kept; k++) *to++ = list[k];
+        if (cut) *to++ = (RtLightEntry){beyond | RT_LIGHT_PARTS, RT_LIGHT_BEYOND};
         worker->lengths[worker->cell_count++] = (uint16_t)(kept + cut);
     }
+    made->count = (uint32_t)(to - worker->next);
+    worker->room -= made->count;
+    worker->next = to;
     return RT_OK;
 }
 
 static RtStatus draw_tile(const Drawing *d, const RtLightTile *tile, const uint32_t *objects, uint32_t count,
-                          Worker *worker, RtError *error) {
+                          Worker *worker, Made *made, RtError *error) {
     RtLightDesk *desk = &worker->desk;
     desk->count = desk->run_count = 0;
     memset(desk->cut, 0, sizeof desk->cut);
@@ -282,7 +306,7 @@ static RtStatus draw_tile(const Drawing *d, const RtLightTile *tile, const uint3
     cover_cells(tile, desk);
     RT_TRY(go_over(tile, objects, count, false, desk, error));
     RT_TRY(sort_candidates(worker, tile->n * tile->n, error));
-    return keep_lists(d, tile, worker, error);
+    return keep_lists(d, tile, worker, made, error);
 }
 
 static RtStatus make_tile(void *context, size_t item, int thread, RtError *error) {
@@ -290,16 +314,15 @@ static RtStatus make_tile(void *context, size_t item, int thread, RtError *error
     Worker *worker = &d->workers[thread];
     uint32_t first = d->bins->first[item], count = d->bins->first[item + 1] - first;
     RtLightTile tile = tile_at(d->buffer, d->light, (uint32_t)item);
-    Made made = {worker->count, 0, worker->cell_count, 1, thread, 0, 0};
+    Made made = {NULL, 0, worker->cell_count, 1, thread, 0, 0};
     if (count > 0) made.n = tile.n = choose_fineness(&tile, d->bins->objects + first, count);
     RT_TRY(rt_reserve(&worker->lengths, &worker->cell_capacity,
                       worker->cell_count + UINT64_C(1) * tile.n * tile.n, sizeof(uint16_t), error));
     if (count > 0) {
-        RT_TRY(draw_tile(d, &tile, d->bins->objects + first, count, worker, error));
+        RT_TRY(draw_tile(d, &tile, d->bins->objects + first, count, worker, &made, error));
     } else {
         worker->lengths[worker->cell_count++] = 0;
     }
-    made.count = worker->count - made.first;
     d->made[item] = made;
     return RT_OK;
 }
@@ -320,7 +343,7 @@ static RtStatus move_tile(void *context, size_t item, int thread, RtError *error
         sum += worker->lengths[made->first_cell + i];
     }
     if (made->count == 0) return RT_OK;
-    memcpy(cube->entries + made->place, worker->entries + made->first, made->count * sizeof(RtLightEntry));
+    memcpy(cube->entries + made->place, made->entries, made->count * sizeof(RtLightEntry));
     return RT_OK;
 }
 
@@ -365,7 +388,8 @@ RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t light, const RtLigh
         rt_free(desk->key);
         rt_free(desk->runs);
         rt_free(d.workers[i].sorted);
-        rt_free(d.workers[i].entries);
+        for (uint32_t k = 0; k < d.workers[i].block_count; k++) rt_free(d.workers[i].blocks[k]);
+        rt_free(d.workers[i].blocks);
         rt_free(d.workers[i].lengths);
     }
     rt_free(d.workers);
