@@ -73,15 +73,15 @@ RT_TEST(lights_in_awkward_places_are_answered_like_brute) {
 
 /* ---- rounding, partial occluders, edges, receivers ---- */
 
-/* A triangle 1 below the light, its edges just inside borders of the 8 x 8 cells and one corner that its
- * diagonal passes; specks 2000 off widen the domain. A vertex is seen from 1000 off with an error of 2^-24 of
- * that, which is 2^-14 of the distance to the light: rays that miss by less are said to hit, from the cells
- * beside. */
-RT_TEST(rounding_far_off_is_within_the_margin) {
+/* A triangle 1 below the light, its edges at u, w = +- size and by `in` inside borders of cells, and one
+ * corner that its diagonal passes; specks 2000 off widen the domain. A vertex is seen from 1000 off with an
+ * error of 2^-24 of that, which is 2^-14 of the distance to the light: rays that miss by less are said to
+ * hit, from the cells beside. */
+static void check_far_off(float size, float in, const char *spec) {
     enum { COUNT = 100000 };
     static RtRay rays[COUNT];
     const RtVec3 light = {{0.1f, 0.2f, 0.3f}};
-    const float in = 0x1p-18f, a = 0.25f - in, b = -0.25f + 3 * in;
+    const float a = size - in, b = -size + 3 * in;
     const RtVec3 corners[3] = {{{a, b, -1}}, {{b, a, -1}}, {{a, a, -1}}};
     RtScene scene;
     begin_scene(&scene);
@@ -96,16 +96,26 @@ RT_TEST(rounding_far_off_is_within_the_margin) {
     for (size_t i = 0; i < COUNT; i++) {
         double depth = 500 + 1000 * (double)rt_random_unit(&random), at[2];
         for (int k = 0; k < 2; k++) {
-            double off = 0x1p-15 * ((double)rt_random_unit(&random) - 0.5);
-            at[k] = 0.25 * ((double)(rt_random_below(&random, 3)) - 1) + off;
+            double off = (0x1p-15 + 2 * (double)in) * ((double)rt_random_unit(&random) - 0.5);
+            at[k] = (double)size * ((double)(rt_random_below(&random, 3)) - 1) + off;
         }
-        if (i % 2) at[i / 2 % 2] = 0.5 * (double)rt_random_unit(&random) - 0.25; /* along a border */
+        /* along a border */
+        if (i % 2) at[i / 2 % 2] = (double)size * (2 * (double)rt_random_unit(&random) - 1);
         RtVec3d from = rt_vec3d(at[0] * depth, at[1] * depth, -depth);
         rays[i] = shadow_ray(&scene, rt_add(light, rt_narrow(from)), 0);
     }
-    check_like_brute("light:cells=8,extents=off+brute", &scene, rays, COUNT);
-    check_like_brute("light:cells=8+brute", &scene, rays, COUNT);
+    RtTally tally = check_like_brute(spec, &scene, rays, COUNT);
+    assert_true(tally.object_tests > COUNT / 20 && tally.passed_on == 0);
     rt_scene_clear(&scene);
+}
+
+/* Cells of which a 64th, by which all grow, is more than the error, and less. */
+RT_TEST(rounding_far_off_is_within_the_margin) {
+    check_far_off(0.25f, 0x1p-18f, "light:cells=8,extents=off+brute");
+    check_far_off(0.25f, 0x1p-18f, "light:cells=8+brute");
+    check_far_off(0.25f, 0x1.8p-16f, "light:cells=4096,extents=off+brute");    /* a large triangle */
+    check_far_off(0x1p-10f, 0x1.8p-16f, "light:cells=4096,extents=off+brute"); /* a small one */
+    check_far_off(0x1p-10f, 0x1.8p-16f, "light:cells=4096+brute");
 }
 
 /* What a sphere over half of a cell does not hide is seen, without asking below. */
