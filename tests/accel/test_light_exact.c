@@ -114,8 +114,8 @@ RT_TEST(rounding_far_off_is_within_the_margin) {
     check_far_off(0.25f, 0x1p-18f, "light:cells=8,extents=off+brute");
     check_far_off(0.25f, 0x1p-18f, "light:cells=8+brute");
     check_far_off(0.25f, 0x1.8p-16f, "light:cells=4096,extents=off+brute");    /* a large triangle */
-    check_far_off(0x1p-10f, 0x1.8p-16f, "light:cells=4096,extents=off+brute"); /* a small one */
-    check_far_off(0x1p-10f, 0x1.8p-16f, "light:cells=4096+brute");
+    check_far_off(0x1p-10f, 0x1.9p-17f, "light:cells=4096,extents=off+brute"); /* a small one */
+    check_far_off(0x1p-10f, 0x1.9p-17f, "light:cells=4096+brute");
 }
 
 /* What a sphere over half of a cell does not hide is seen, without asking below. */
