@@ -1,45 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building a light buffer: objects in order of depth, the covers of cells, and the lists in two passes.
- *
- * Why the lists are complete. A hit on an object at t means (base/ray.h) that the ray's point at t is in the
- * object's box but for the thickness and a few roundings: 2^-20 of the distance from the ray's origin, 2^-22
- * of the length of dir, 2^-22 of the coordinates. dir is the difference of light and origin in float32, so
- * the ray's point is off the true segment by another 2^-24 of its length. For origins inside `domain` all of
- * these are below
- *
- *     margin = 2^-18 * reach + 2^-20 * farthest,
- *
- * with reach the largest side of the box around domain and light, and farthest its largest coordinate. So the
- * true segment meets the box grown by the margin, at a depth between 0 and that of the origin, and in the
- * cell of the segment's direction, whose u and w are known to 2^-22. A sphere's hit function computes in
- * double: the distance of the line from its centre is at most its radius + 2^-24 of the distance from the
- * origin. */
+/* Building a light buffer: margins, grids and how fine they are, near lists; then light by light what falls
+ * into the tiles (bins.c) and their lists (tile.c). */
 #include "accel/light/light.h"
 
 #include "base/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT] = {RT_LIGHT_PARAMS(RT_PARAM_ENTRY)};
-
-static int compare_entries(const void *a, const void *b) {
-    const RtLightEntry *x = a, *y = b;
-    if (x->depth != y->depth) return x->depth < y->depth ? -1 : 1;
-    return x->id < y->id ? -1 : x->id > y->id;
-}
-
-uint32_t rt_light_order(const RtLightBuffer *buffer, uint32_t light, int face, RtLightEntry *order) {
-    uint32_t count = 0;
-    for (uint32_t id = 0; id < buffer->base.scene->geometry.object_count; id++) {
-        RtLightFootprint footprint;
-        if (rt_light_is_near(buffer, light, id)) continue;
-        if (!rt_light_footprint(buffer, light, face, id, &footprint)) continue;
-        order[count++] = (RtLightEntry){footprint.depth, id};
-    }
-    qsort(order, count, sizeof *order, compare_entries);
-    return count;
-}
 
 /* ---- margins ---- */
 
@@ -55,210 +23,202 @@ static RtBox choose_domain(const RtScene *scene) {
     return box;
 }
 
-static RtStatus make_margins(RtLightBuffer *buffer, RtError *error) {
+static RtStatus make_cubes(RtLightBuffer *buffer, RtError *error) {
     const RtScene *scene = buffer->base.scene;
-    buffer->margin = rt_alloc(scene->light_count, sizeof(double));
-    if (!buffer->margin) return rt_fail_memory(error, "a light buffer", scene->light_count * sizeof(double));
+    buffer->cubes = rt_alloc(scene->light_count, sizeof(RtLightCube));
+    if (!buffer->cubes)
+        return rt_fail_memory(error, "a light buffer", scene->light_count * sizeof(RtLightCube));
     buffer->domain = choose_domain(scene);
     for (uint32_t i = 0; i < scene->light_count; i++) {
         RtBox all = rt_box_add_point(buffer->domain, scene->lights[i].position);
-        buffer->margin[i] = 0x1p-18 * rt_box_longest_side(all) + 0x1p-20 * rt_box_largest_coordinate(all);
+        buffer->cubes[i].margin =
+            0x1p-18 * rt_box_longest_side(all) + 0x1p-20 * rt_box_largest_coordinate(all);
     }
     return RT_OK;
 }
 
-/* ---- lists ---- */
+/* ---- tiles ---- */
 
-/* One face of one light, its objects in order. */
-typedef struct Face {
-    RtLightBuffer *buffer;
-    uint32_t light;
-    int face;
-    size_t first_cell;
-    const RtLightEntry *order;
-    uint32_t count;
-} Face;
+/* The part of a face that sees the scene, and how many objects are seen there. */
+typedef struct Outlook {
+    RtLightView view; /* far: 0 where nothing is seen */
+    double objects;
+} Outlook;
 
-static void cover_cells(const Face *f) {
-    RtLightBuffer *buffer = f->buffer;
-    for (uint32_t i = 0; i < f->count; i++) {
-        uint32_t id = f->order[i].id;
-        RtLightFootprint at;
-        rt_light_footprint(buffer, f->light, f->face, id, &at);
-        for (uint32_t row = at.lo[1]; row <= at.hi[1]; row++) {
-            for (uint32_t column = at.lo[0]; column <= at.hi[0]; column++) {
-                RtLightCover *cover = &buffer->covers[f->first_cell + (size_t)row * buffer->n + column];
-                float depth;
-                if (cover->depth <= at.depth) continue;
-                if (!rt_light_covers(buffer, f->light, f->face, id, column, row, &depth)) continue;
-                if (depth < cover->depth) *cover = (RtLightCover){depth, id};
-            }
+/* From every kth object. */
+static void look_at_objects(const RtLightBuffer *buffer, uint32_t light, Outlook outlooks[6]) {
+    enum { SAMPLE = 2048 };
+    const RtGeometry *g = &buffer->base.scene->geometry;
+    uint32_t stride = g->object_count / SAMPLE + 1;
+    for (int face = 0; g->object_count > 0 && face < 6; face++) {
+        Outlook *o = &outlooks[face];
+        RtLightView v;
+        if (!rt_light_view(buffer, light, face, &g->box, &o->view)) {
+            o->view.far = 0;
+            continue;
         }
+        for (uint32_t id = 0; id < g->object_count; id += stride)
+            o->objects += rt_light_view(buffer, light, face, &g->boxes[id], &v) ? stride : 0;
     }
 }
 
-/* Adds 1 to slot[k] for every cell k of the face that an object belongs to; where there are entries, stores
- * the object at the slot before. Called twice: to count the lists, and to fill them. */
-static void scatter(const Face *f, uint32_t *slot, uint64_t *sum) {
-    RtLightBuffer *buffer = f->buffer;
-    for (uint32_t i = 0; i < f->count; i++) {
-        RtLightEntry entry = f->order[i];
-        RtLightFootprint at;
-        rt_light_footprint(buffer, f->light, f->face, entry.id, &at);
-        for (uint32_t row = at.lo[1]; row <= at.hi[1]; row++) {
-            for (uint32_t column = at.lo[0]; column <= at.hi[0]; column++) {
-                size_t cell = f->first_cell + (size_t)row * buffer->n + column;
-                if (buffer->covers && entry.depth > buffer->covers[cell].depth) continue;
-                if (!rt_light_touches(buffer, f->light, f->face, entry.id, column, row)) continue;
-                if (buffer->entries) buffer->entries[slot[cell]] = entry;
-                slot[cell]++;
-                ++*sum;
-            }
-        }
+/* Tiles of about so many objects, of which a third may be in front. */
+enum { OBJECTS_OF_TILE = 64, MOST_TILES = 256, CELLS_OF_TILE = 32 };
+
+/* How many tiles there are along the longer edge, and how fine they may be. `cells`: how many of them are
+ * asked for along it, or 0. */
+static void divide(const Outlook *o, double cells, double margin, RtLightGrid *grid) {
+    double width = o->view.hi[0] - o->view.lo[0], height = o->view.hi[1] - o->view.lo[1];
+    double longer = fmax(width, height), tiles;
+    if (cells > 0) {
+        tiles = ceil(cells / CELLS_OF_TILE);
+        grid->least = grid->finest = (uint32_t)ceil(cells / tiles);
+    } else {
+        tiles = floor(longer * sqrt(o->objects / OBJECTS_OF_TILE / (width * height)));
+        tiles = fmin(fmax(tiles, 1), MOST_TILES);
+        /* Cells 16 times as wide as what they grow by. */
+        double narrowest = 16 * (0x1p-18 + 8 * margin / (o->view.near + o->view.far));
+        grid->least = 1;
+        grid->finest = (uint32_t)fmin(fmax(longer / tiles / narrowest, 1), RT_LIGHT_FINEST);
     }
+    grid->scale = (float)(tiles / longer);
 }
 
-typedef enum Pass { COVER, COUNT, FILL } Pass;
+static void make_grid(const Outlook *o, double cells, double margin, RtLightGrid *grid) {
+    *grid = (RtLightGrid){.columns = 0};
+    if (o->view.far <= 0) return;
+    divide(o, cells, margin, grid);
+    grid->u = rt_float_below(o->view.lo[0]);
+    grid->w = rt_float_below(o->view.lo[1]);
+    /* Views have an EDGE to spare: what rounding adds does not make a tile more. */
+    double scale = (double)grid->scale;
+    grid->columns = (uint32_t)fmax(ceil((o->view.hi[0] - (double)grid->u) * scale - 0x1p-20), 1);
+    grid->rows = (uint32_t)fmax(ceil((o->view.hi[1] - (double)grid->w) * scale - 0x1p-20), 1);
+    /* Two steps before the nearest object, so that what is before it has a lesser key. */
+    grid->depth = rt_float_below(o->view.near - 2 * (o->view.far - o->view.near) / RT_LIGHT_DEPTHS);
+    grid->depth_scale = (float)((RT_LIGHT_DEPTHS - 1) / (o->view.far - (double)grid->depth));
+}
 
-static uint64_t go_over_faces(RtLightBuffer *buffer, RtLightEntry *order, Pass pass) {
-    uint64_t sum = 0;
+/* ---- how many fit ---- */
+
+/* A buffer must have room for so much: a list's place, and two entries. */
+enum { LEAST_OF_CELL = sizeof(uint32_t) + 2 * sizeof(RtLightEntry) };
+
+/* Sets the grids of all lights for `cells` along the longer edge, 0 to choose; gives the cells there are at
+ * most. */
+static double make_grids(RtLightBuffer *buffer, const Outlook *outlooks, double cells) {
+    double all = 0;
+    for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
+        RtLightCube *cube = &buffer->cubes[light];
+        double tiles = 0;
+        for (uint32_t face = 0; face < 6; face++) {
+            RtLightGrid *grid = &cube->grids[face];
+            make_grid(&outlooks[6 * (size_t)light + face], cells, cube->margin, grid);
+            grid->first_tile = (uint32_t)tiles;
+            tiles += (double)grid->columns * grid->rows;
+            all += (double)grid->columns * grid->rows * grid->finest * grid->finest;
+        }
+        cube->tile_count = (uint32_t)tiles;
+    }
+    return all;
+}
+
+/* Makes tiles less fine where they are chosen, so that all fit. */
+static double make_coarser(RtLightBuffer *buffer, double part) {
+    double all = 0;
     for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
         for (int face = 0; face < 6; face++) {
-            Face f = {buffer, light, face, rt_light_face(buffer, light, face), order, 0};
-            f.count = rt_light_order(buffer, light, face, order);
-            if (pass == COVER) {
-                cover_cells(&f);
-            } else {
-                scatter(&f, buffer->first, &sum);
-            }
+            RtLightGrid *grid = &buffer->cubes[light].grids[face];
+            grid->finest = (uint32_t)fmax(grid->finest * sqrt(part), 1);
+            all += (double)grid->columns * grid->rows * grid->finest * grid->finest;
         }
     }
-    return sum;
+    return all;
 }
 
-/* Sums over all footprints, from one pass over the objects. */
-typedef struct Extent {
-    double cells, sides, count; /* width * height, width + height, 1; in cells */
-    double near;                /* entries of near lists */
-} Extent;
-
-static Extent measure_footprints(const RtLightBuffer *buffer) {
-    const RtScene *scene = buffer->base.scene;
-    Extent sum = {0};
-    for (uint32_t light = 0; light < scene->light_count; light++) {
-        for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
-            RtLightFootprint at;
-            bool near = rt_light_is_near(buffer, light, id);
-            sum.near += near;
-            for (int face = 0; !near && face < 6; face++) {
-                if (!rt_light_footprint(buffer, light, face, id, &at)) continue;
-                double width = at.hi[0] - at.lo[0] + 1.0, height = at.hi[1] - at.lo[1] + 1.0;
-                sum.cells += width * height;
-                sum.sides += width + height;
-                sum.count += 1;
-            }
-        }
-    }
-    return sum;
-}
-
-/* At least as many list entries as there will be with n cells along an edge, at most as many as asked for:
- * what is within k cells is within k n / asked of the wider ones, and these may be cut at both ends. */
-static double bound_references(const RtLightBuffer *buffer, const Extent *sum, uint32_t n) {
-    double part = (double)n / buffer->n, cut = n < buffer->n ? 2 : 0;
-    return sum->near + part * part * sum->cells + part * cut * sum->sides + cut * cut * sum->count;
-}
-
-/* Bytes of the arrays, and of one query's memory; infinite if list entries cannot be numbered. */
-static double bound_bytes(const RtLightBuffer *buffer, const Extent *sum, uint32_t n) {
-    double references = bound_references(buffer, sum, n);
-    size_t a_cell = sizeof(uint32_t) + (buffer->full_occlusion ? sizeof(RtLightCover) : 0) +
-                    (buffer->cache ? sizeof(RtLightMemory) : 0);
-    if (!(references < UINT32_MAX)) return INFINITY;
-    return 6.0 * n * n * buffer->base.scene->light_count * (double)a_cell +
-           references * (double)sizeof(RtLightEntry);
-}
-
-/* Before anything is made or gone over: a cell too many costs time as well. */
-static RtStatus refuse_size(const RtLightBuffer *buffer, RtError *error) {
-    const double most = (double)RT_ACCEL_MAX_BYTES;
-    Extent sum = measure_footprints(buffer);
-    if (bound_bytes(buffer, &sum, buffer->n) <= most) return RT_OK;
-    uint32_t fits = 1, too_many = buffer->n;
+static RtStatus fit_grids(RtLightBuffer *buffer, const Outlook *outlooks, double limit, double *cells,
+                          RtError *error) {
+    uint32_t fits = 0, too_many = buffer->cells;
+    double most = limit / LEAST_OF_CELL;
+    *cells = make_grids(buffer, outlooks, buffer->cells);
+    if (*cells > most && buffer->cells == 0) *cells = make_coarser(buffer, most / *cells);
+    if (*cells <= most) return RT_OK;
     while (too_many - fits > 1) {
         uint32_t n = fits + (too_many - fits) / 2;
-        *(bound_bytes(buffer, &sum, n) <= most ? &fits : &too_many) = n;
+        *(make_grids(buffer, outlooks, n) <= most ? &fits : &too_many) = n;
     }
     return rt_fail(
         error, RT_BAD_INPUT,
-        "a light buffer of %u x %u cells a face for %u lights with up to %.3g list entries would take "
-        "more than %.0f GiB: cells=%u would fit",
-        buffer->n, buffer->n, buffer->base.scene->light_count, bound_references(buffer, &sum, buffer->n),
-        most / 0x1p30, fits);
+        "a light buffer of %u cells along the edge of a face for %u lights would take more than %.3g "
+        "GiB: cells=%u would fit",
+        buffer->cells, buffer->base.scene->light_count, limit / 0x1p30, fits);
 }
 
-static RtStatus make_near_lists(RtLightBuffer *buffer, RtError *error) {
+static RtStatus choose_grids(RtLightBuffer *buffer, double limit, double *cells, RtError *error) {
     const RtScene *scene = buffer->base.scene;
-    buffer->near_first = rt_alloc(scene->light_count + (size_t)1, sizeof(uint32_t));
-    if (!buffer->near_first)
-        return rt_fail_memory(error, "a light buffer", scene->light_count * sizeof(uint32_t));
-    for (int fill = 0; fill < 2; fill++) {
-        uint64_t count = 0;
-        for (uint32_t light = 0; light < scene->light_count; light++) {
-            for (uint32_t id = 0; id < scene->geometry.object_count; id++) {
-                if (!rt_light_is_near(buffer, light, id)) continue;
-                if (fill) buffer->near[count] = id;
-                count++;
-            }
-            buffer->near_first[light + 1] = (uint32_t)count;
-        }
-        if (fill) break;
-        buffer->near = rt_alloc(count, sizeof(uint32_t));
-        if (!buffer->near)
-            return rt_fail_memory(error, "the lists of a light buffer", count * sizeof(uint32_t));
-    }
-    return RT_OK;
+    Outlook *outlooks = rt_alloc(6 * (size_t)scene->light_count, sizeof(Outlook));
+    if (!outlooks)
+        return rt_fail_memory(error, "a light buffer", 6 * (size_t)scene->light_count * sizeof(Outlook));
+    for (uint32_t i = 0; i < scene->light_count; i++) look_at_objects(buffer, i, outlooks + 6 * (size_t)i);
+    RtStatus status = fit_grids(buffer, outlooks, limit, cells, error);
+    rt_free(outlooks);
+    return status;
 }
 
-static RtStatus make_lists(RtLightBuffer *buffer, RtLightEntry *order, RtError *error) {
-    size_t cells = rt_light_cell_count(buffer);
-    buffer->first = rt_alloc(cells + 1, sizeof(uint32_t));
-    if (buffer->full_occlusion) buffer->covers = rt_alloc(cells, sizeof(RtLightCover));
-    if (!buffer->first || (buffer->full_occlusion && !buffer->covers)) {
-        return rt_fail_memory(error, "the cells of a light buffer", cells * (4 + sizeof(RtLightCover)));
+/* ---- near lists ---- */
+
+static RtStatus make_near_list(RtLightBuffer *buffer, uint32_t light, RtError *error) {
+    const RtGeometry *g = &buffer->base.scene->geometry;
+    RtLightCube *cube = &buffer->cubes[light];
+    uint32_t capacity = 0;
+    if (!rt_light_is_in(buffer, light, &g->box)) return RT_OK;
+    for (uint32_t id = 0; id < g->object_count; id++) {
+        if (!rt_light_is_near(buffer, light, id)) continue;
+        RT_TRY(rt_reserve(&cube->near, &capacity, cube->near_count + UINT64_C(1), sizeof(uint32_t), error));
+        cube->near[cube->near_count++] = id;
     }
-    if (buffer->covers) {
-        for (size_t i = 0; i < cells; i++) buffer->covers[i] = (RtLightCover){INFINITY, RT_NO_OBJECT};
-        go_over_faces(buffer, order, COVER);
-    }
-    uint64_t references = go_over_faces(buffer, order, COUNT);
-    buffer->entries = rt_alloc(references, sizeof(RtLightEntry));
-    if (!buffer->entries) {
-        return rt_fail_memory(error, "the lists of a light buffer", references * sizeof(RtLightEntry));
-    }
-    /* Ends of lists; the fill pass, after which first[k] is the end of list k: shift by one. */
-    uint32_t sum = 0;
-    for (size_t i = 0; i <= cells; i++) {
-        uint32_t length = buffer->first[i];
-        buffer->first[i] = sum;
-        sum += length;
-    }
-    go_over_faces(buffer, order, FILL);
-    memmove(buffer->first + 1, buffer->first, cells * sizeof(uint32_t));
-    buffer->first[0] = 0;
     return RT_OK;
 }
 
 /* ---- build and destroy ---- */
 
+/* Left to its own choice a light serves scenes of more objects only: what lies below answers rays among fewer
+ * in less time than it takes to find their cells and look at the entry that is their own object. */
+enum { FEW_OBJECTS = 12000 };
+
+static RtStatus make_light(RtLightBuffer *buffer, uint32_t light, uint32_t most_of_tile, int threads,
+                           RtError *error) {
+    RtLightBins bins = {NULL, NULL};
+    RtStatus status = make_near_list(buffer, light, error);
+    if (status == RT_OK) status = rt_light_fill_bins(buffer, light, threads, &bins, error);
+    if (status == RT_OK) status = rt_light_make_lists(buffer, light, &bins, most_of_tile, threads, error);
+    rt_free(bins.first);
+    rt_free(bins.objects);
+    buffer->serves = buffer->cubes[light].serves = status == RT_OK;
+    return status;
+}
+
+static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError *error) {
+    double cells = 0, limit = (double)what->limit;
+    if (buffer->cells == 0 && what->scene->geometry.object_count < FEW_OBJECTS) return RT_OK;
+    RT_TRY(choose_grids(buffer, limit, &cells, error));
+    double entries = (limit - cells * (double)sizeof(uint32_t)) / sizeof(RtLightEntry), tiles = 1;
+    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++) tiles += buffer->cubes[i].tile_count;
+    uint32_t most_of_tile = (uint32_t)(fmin(entries, 0x1p30) / tiles);
+    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++)
+        RT_TRY(make_light(buffer, i, most_of_tile, what->threads, error));
+    return RT_OK;
+}
+
 void rt_light_destroy(RtAccel *accel) {
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
-    rt_free(buffer->margin);
-    rt_free(buffer->first);
-    rt_free(buffer->entries);
-    rt_free(buffer->covers);
-    rt_free(buffer->near_first);
-    rt_free(buffer->near);
+    for (uint32_t i = 0; buffer->cubes && i < accel->scene->light_count; i++) {
+        rt_free(buffer->cubes[i].tiles);
+        rt_free(buffer->cubes[i].first);
+        rt_free(buffer->cubes[i].entries);
+        rt_free(buffer->cubes[i].near);
+    }
+    rt_free(buffer->cubes);
     rt_free(buffer);
 }
 
@@ -267,17 +227,12 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
     RtAccel *accel;
     RT_TRY(rt_accel_new(what, sizeof(RtLightBuffer), &accel, error));
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
-    buffer->n = (uint32_t)values[RT_LIGHT_CELLS].i;
+    buffer->cells = (uint32_t)values[RT_LIGHT_CELLS].i;
+    buffer->longest = (uint32_t)values[RT_LIGHT_LONGEST].i;
     buffer->full_occlusion = values[RT_LIGHT_FULL_OCCLUSION].flag;
     buffer->extents = values[RT_LIGHT_EXTENTS].flag;
-    buffer->cache = values[RT_LIGHT_CACHE].flag;
-    uint32_t objects = what->scene->geometry.object_count;
-    RtLightEntry *order = rt_alloc(objects, sizeof *order);
-    RtStatus status = order ? RT_OK : rt_fail_memory(error, "a light buffer", objects * sizeof *order);
-    if (status == RT_OK) status = make_margins(buffer, error);
-    if (status == RT_OK) status = refuse_size(buffer, error);
-    if (status == RT_OK) status = make_near_lists(buffer, error);
-    if (status == RT_OK) status = make_lists(buffer, order, error);
-    rt_free(order);
+    buffer->kernels = rt_light_kernels(rt_isa_best());
+    RtStatus status = make_cubes(buffer, error);
+    if (status == RT_OK) status = make_lights(buffer, what, error);
     return rt_accel_built(accel, status, out);
 }

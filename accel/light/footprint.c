@@ -1,52 +1,77 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Where on the faces of a light's cube an object is seen, and what covers whole cells. All in double, in
- * offsets from the light. An object is seen within the rectangle around its box; of the cells there,
+ * offsets from the light; raster.h does the same for small triangles in lanes.
  *
- * - balls (spheres, and those about cones) touch those that the cone that they fill meets: points of the cell
- *   at depth z are at most z * half * sqrt(2) from its axis;
+ * Why the lists are complete. A hit on an object at t means (base/ray.h) that the ray's point at t is in the
+ * object's box but for the thickness and a few roundings: 2^-20 of the distance from the ray's origin, 2^-22
+ * of the length of dir, 2^-22 of the coordinates. dir is the difference of light and origin in float32, so
+ * the ray's point is off the true segment by another 2^-24 of its length. For origins inside `domain` all of
+ * these are below
+ *
+ *     margin = 2^-18 * reach + 2^-20 * farthest,
+ *
+ * with reach the largest side of the box around domain and light, and farthest its largest coordinate. So the
+ * true segment meets the box grown by the margin, at a depth between 0 and that of the origin, and in the
+ * cell of the segment's direction, whose u and w are known to 2^-21: the shear of a ray is dir.b / dir.a but
+ * for two roundings of 2^-24, and there is one each for u - grid.u, at most 2, and its product with
+ * grid.scale. So is its place among the parts of the cell. A sphere's hit function computes in double: the
+ * distance of the line from its centre is at most its radius + 2^-24 of the distance from the origin.
+ *
+ * Of the cells of the rectangle around an object's box,
+ *
+ * - balls (spheres, and those about cones and CSG trees) touch those that the cone that they fill meets:
+ *   points of the cell at depth z are at most z * half * sqrt(2) from its axis;
  * - triangles and polygons touch those that no plane through the light and an edge parts from them. Let s be
- *   the normal of such a plane, all vertices on its side s . v >= 0 but for rounding. A hit lies within the
- *   margin of the object along each axis, for the reasons given in build.c and side.h, and so at
- *   s . p >= -margin |s|_1; a polygon is hit in its plane, off its vertices by its warp along one axis, which
- *   is added. The cell's points of depth z have s . p <= z M, where M is the largest of its corners at
- * depth 1. With M < 0 and z at least the least depth d of the grown box: none in common if d M < -margin
- * |s|_1. The slack is more than twice that: s, computed from a and b, is off by 2^-51 |a||b|, its products
- * with a p as long as `reach` by 2^-50 |a||b| reach, where the margin is above 2^-18 reach. Where the light
- * is within the margin of the object's depth (d <= 0) no cell is parted. A concave polygon has vertices on
- * both sides of some edges, which then part nothing.
- * - Other shapes touch all cells of the rectangle, and cover none. */
+ *   the normal of such a plane, all vertices on its side s . v >= 0 but for rounding. A hit is on the
+ *   triangle as if its vertices lay up to 7 * 2^-24 of their distance from the origin elsewhere
+ *   (accel/extent.h), and what moves the point besides is less than the margin; so it lies within the margin
+ *   of the object along each axis, at s . p >= -margin |s|_1. A polygon is hit in its plane, off its vertices
+ *   by its warp along one axis, which is added. The cell's points of depth z have s . p <= z M, where M is
+ *   the largest of its corners at depth 1. With M < 0 and z at least the least depth d of the grown box: none
+ *   in common if d M < -margin |s|_1. The slack is more than twice that: s, computed from a and b, is off by
+ *   2^-51 |a||b|, its products with a p as long as `reach` by 2^-50 |a||b| reach, where the margin is above
+ *   2^-18 reach. Where the light is within the margin of the object's depth (d <= 0) no cell is parted. A
+ *   concave polygon has vertices on both sides of some edges, which then part nothing.
+ * - Other shapes touch all cells of the rectangle, and cover none.
+ *
+ * Their depth in a cell: with n the normal of a flat object's plane and k = n . p > 0 for its points p, a hit
+ * has n . p >= k - margin |n|_1, and in the direction (u, w, 1) the depth (n . p) / (n . (u, w, 1)).
+ *
+ * What covers need not be proved: see light.h. */
 #include "accel/light/light.h"
 
-/* An offset from the light in the axes of a face: u, w, depth. */
 static RtVec3d face_axes(int face, RtVec3d v) {
     int axis = face / 2;
     double depth = v.at[axis];
     return rt_vec3d(v.at[(axis + 1) % 3], v.at[(axis + 2) % 3], face % 2 ? depth : -depth);
 }
 
-static RtVec3d offsetd(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3d point) {
+RtVec3d rt_light_offset(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3d point) {
     return face_axes(face, rt_subd(point, rt_widen(buffer->base.scene->lights[light].position)));
 }
 
 static RtVec3d offset(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3 point) {
-    return offsetd(buffer, light, face, rt_widen(point));
+    return rt_light_offset(buffer, light, face, rt_widen(point));
 }
 
-/* The object's box, grown by the margin. */
-static void grown_box(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, RtVec3d *lo,
-                      RtVec3d *hi) {
-    const RtBox *box = &buffer->base.scene->geometry.boxes[id];
+/* A box grown by the margin. */
+static void grow_box(const RtLightBuffer *buffer, uint32_t light, int face, const RtBox *box, RtVec3d *lo,
+                     RtVec3d *hi) {
     RtVec3d a = offset(buffer, light, face, box->lo), b = offset(buffer, light, face, box->hi);
     for (int k = 0; k < 3; k++) {
-        lo->at[k] = fmin(a.at[k], b.at[k]) - buffer->margin[light];
-        hi->at[k] = fmax(a.at[k], b.at[k]) + buffer->margin[light];
+        lo->at[k] = fmin(a.at[k], b.at[k]) - buffer->cubes[light].margin;
+        hi->at[k] = fmax(a.at[k], b.at[k]) + buffer->cubes[light].margin;
     }
 }
 
-bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id) {
+bool rt_light_is_in(const RtLightBuffer *buffer, uint32_t light, const RtBox *box) {
     RtVec3d lo, hi;
-    grown_box(buffer, light, 1, id, &lo, &hi);
+    grow_box(buffer, light, 1, box, &lo, &hi);
     return lo.x <= 0 && hi.x >= 0 && lo.y <= 0 && hi.y >= 0 && lo.z <= 0 && hi.z >= 0;
+}
+
+bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id) {
+    return rt_light_is_in(buffer, light, &buffer->base.scene->geometry.boxes[id]);
 }
 
 /* The least and largest x / z with x in [lo, hi] and z in [near, far], far > 0; z <= 0 does not count. */
@@ -56,29 +81,216 @@ static void quotients(double lo, double hi, double near, double far, double *lea
     *most = most_at > 0 ? hi / most_at : INFINITY;
 }
 
-bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
-                        RtLightFootprint *footprint) {
+bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const RtBox *box,
+                   RtLightView *view) {
     RtVec3d lo, hi;
-    grown_box(buffer, light, face, id, &lo, &hi);
+    grow_box(buffer, light, face, box, &lo, &hi);
     if (!(hi.z > 0)) return false;
     for (int k = 0; k < 2; k++) {
         double least, most;
         quotients(lo.at[k], hi.at[k], lo.z, hi.z, &least, &most);
-        least -= RT_LIGHT_EDGE;
-        most += RT_LIGHT_EDGE;
-        if (least > 1 || most < -1) return false;
-        footprint->lo[k] = rt_light_column(buffer, least);
-        footprint->hi[k] = rt_light_column(buffer, most);
+        view->lo[k] = fmax(least - RT_LIGHT_EDGE, -1 - RT_LIGHT_EDGE);
+        view->hi[k] = fmin(most + RT_LIGHT_EDGE, 1 + RT_LIGHT_EDGE);
+        if (!(view->lo[k] <= view->hi[k])) return false;
     }
-    footprint->depth = lo.z > 0 ? rt_float_below(lo.z) : 0;
+    view->near = fmax(lo.z, 0);
+    view->far = hi.z;
     return true;
 }
 
-/* ---- cells ---- */
+/* What is lost in float32 where cells or tiles are counted, as a part of one. */
+#define SLACK 0x1p-6
 
-/* The middle of a cell, at depth 1. */
-static RtVec3d cell_axis(const RtLightBuffer *buffer, uint32_t column, uint32_t row) {
-    return rt_vec3d((2.0 * column + 1) / buffer->n - 1, (2.0 * row + 1) / buffer->n - 1, 1);
+/* The vertices of a flat object; NULL of another. A point hit is within *warp of their hull. */
+static const RtVec3 *vertices_of(const RtGeometry *g, uint32_t id, uint32_t *count, double *warp) {
+    uint32_t index = rt_ref_index(g->objects[id]);
+    *count = 3;
+    *warp = 0;
+    if (rt_ref_shape(g->objects[id]) == RT_SHAPE_TRIANGLE) return g->triangles[index].v;
+    if (rt_ref_shape(g->objects[id]) != RT_SHAPE_POLYGON) return NULL;
+    *count = g->polygons[index].count;
+    *warp = (double)g->polygons[index].warp;
+    return g->polygon_vertices + g->polygons[index].first;
+}
+
+/* Of a flat object that is all in front of the light less than its box is seen: the hull of its vertices,
+ * each grown by the margin. False if it is not on the face. */
+static bool narrow_view(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
+                        RtLightView *view) {
+    uint32_t count;
+    double warp, least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+    const RtVec3 *vertices = vertices_of(&buffer->base.scene->geometry, id, &count, &warp);
+    double grow = buffer->cubes[light].margin + warp;
+    for (uint32_t i = 0; vertices && i < count; i++) {
+        RtVec3d at = offset(buffer, light, face, vertices[i]);
+        if (!(at.z > 2 * grow)) return true;
+        for (int k = 0; k < 2; k++) {
+            double lo, hi;
+            quotients(at.at[k] - grow, at.at[k] + grow, at.z - grow, at.z + grow, &lo, &hi);
+            least[k] = fmin(lo, least[k]);
+            most[k] = fmax(hi, most[k]);
+        }
+    }
+    for (int k = 0; vertices && k < 2; k++) {
+        view->lo[k] = fmax(least[k] - RT_LIGHT_EDGE, view->lo[k]);
+        view->hi[k] = fmin(most[k] + RT_LIGHT_EDGE, view->hi[k]);
+        if (!(view->lo[k] <= view->hi[k])) return false;
+    }
+    return true;
+}
+
+bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
+                        RtLightFootprint *footprint) {
+    const RtLightGrid *grid = &buffer->cubes[light].grids[face];
+    RtLightView view;
+    if (grid->columns == 0) return false;
+    if (!rt_light_view(buffer, light, face, &buffer->base.scene->geometry.boxes[id], &view)) return false;
+    if (!narrow_view(buffer, light, face, id, &view)) return false;
+    for (int k = 0; k < 2; k++) {
+        double corner = (double)(k ? grid->w : grid->u), scale = (double)grid->scale;
+        uint32_t count = k ? grid->rows : grid->columns;
+        double lo = (view.lo[k] - corner) * scale - SLACK, hi = (view.hi[k] - corner) * scale + SLACK;
+        if (hi < 0 || lo >= count) return false;
+        footprint->lo[k] = lo > 0 ? (uint32_t)lo : 0;
+        footprint->hi[k] = hi < count ? (uint32_t)hi : count - 1;
+        footprint->least[k] = (float)((view.lo[k] - corner) * scale);
+        footprint->most[k] = (float)((view.hi[k] - corner) * scale);
+    }
+    footprint->near = rt_float_below(view.near);
+    footprint->far = rt_float_above(view.far);
+    return true;
+}
+
+RtLightCells rt_light_cells(const RtLightTile *tile, const RtLightFootprint *footprint) {
+    RtLightCells at;
+    for (int k = 0; k < 2; k++) {
+        double from = k ? tile->row : tile->column, n = tile->n;
+        double lo = ((double)footprint->least[k] - from) * n - SLACK;
+        double hi = ((double)footprint->most[k] - from) * n + SLACK;
+        lo = fmin(fmax(lo, -1), n + 1);
+        hi = fmin(fmax(hi, -1), n + 1);
+        at.lo[k] = (int32_t)fmax(floor(lo), 0);
+        at.hi[k] = (int32_t)fmin(floor(hi), n - 1);
+        at.part_lo[k] = (int32_t)floor(RT_LIGHT_PART * lo);
+        at.part_hi[k] = (int32_t)floor(RT_LIGHT_PART * hi);
+    }
+    return at;
+}
+
+/* What cells of a tile are on its face: direction (u, w) of its corner, and cells per 1 of it. */
+typedef struct Frame {
+    double u, w, scale;
+} Frame;
+
+static Frame frame_of(const RtLightTile *tile) {
+    const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
+    double scale = (double)grid->scale;
+    return (Frame){(double)grid->u + tile->column / scale, (double)grid->w + tile->row / scale,
+                   scale * tile->n};
+}
+
+/* ---- flat objects ---- */
+
+static double norm(RtVec3d v) {
+    return fabs(v.x) + fabs(v.y) + fabs(v.z);
+}
+
+/* v . (u, w, 1) in columns and rows. */
+static void in_cells(const Frame *frame, RtVec3d v, double out[3]) {
+    out[0] = v.x / frame->scale;
+    out[1] = v.y / frame->scale;
+    out[2] = v.x * frame->u + v.y * frame->w + v.z;
+}
+
+static void narrow(const double from[3], double by, float to[3]) {
+    for (int k = 0; k < 3; k++) to[k] = (float)(from[k] * by);
+}
+
+/* How much v . (u, w, 1) changes from the middle of a cell to its borders, and a little beyond. */
+static double across_cell(const Frame *frame, RtVec3d v) {
+    return (fabs(v.x) + fabs(v.y)) * ((0.5 + SLACK) / frame->scale + RT_LIGHT_EDGE);
+}
+
+/* Adds the lines through the edges. */
+static void add_edges(RtLightOutline *o, const Frame *frame, const RtVec3d *vertices, uint32_t count,
+                      double grow, double least_depth) {
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d a = vertices[i], b = vertices[(i + 1) % count], side = rt_crossd(a, b);
+        double lo = 0, hi = 0;
+        for (uint32_t k = 0; k < count; k++) {
+            double at = rt_dotd(side, vertices[k]);
+            lo = fmin(lo, at);
+            hi = fmax(hi, at);
+        }
+        double slack = 2 * grow * (norm(side) + 0x1p-20 * norm(a) * norm(b)), line[3];
+        bool positive = lo > -slack, negative = hi < slack;
+        in_cells(frame, side, line);
+        double unit = fabs(line[0]) + fabs(line[1]);
+        o->covers = o->covers && positive != negative && unit > 0x1p-60 * norm(side);
+        if (!(unit > 0x1p-60 * norm(side))) continue;
+        if (o->covers) narrow(line, (positive ? 1 : -1) / unit, o->inside[i]);
+        /* What is seen edge on is on both sides. */
+        double around = across_cell(frame, side) + 2 * slack / least_depth;
+        around += 0x1p-20 * (fabs(line[2]) + around + unit * 2 * RT_LIGHT_FINEST);
+        for (int sign = -1; sign <= 1; sign += 2) {
+            if (!(sign > 0 ? positive : negative)) continue;
+            const double part[3] = {sign * line[0], sign * line[1], sign * line[2] + around};
+            narrow(part, 1 / unit, o->parts[o->count++]);
+        }
+    }
+}
+
+/* The plane through `point`. */
+static void add_plane(RtLightOutline *o, const Frame *frame, RtVec3d point, RtVec3d normal, double grow) {
+    double at = rt_dotd(normal, point), plane[3];
+    if (at < 0) normal = rt_scaled(normal, -1), at = -at;
+    double least = at - 2 * grow * norm(normal) - 0x1p-40 * norm(normal) * norm(point);
+    in_cells(frame, normal, plane);
+    if (!(least > 0.25 * at)) {
+        o->covers = false;
+        return;
+    }
+    narrow(plane, 1 / at, o->face);
+    plane[2] += across_cell(frame, normal);
+    plane[2] += 0x1p-20 * (fabs(plane[2]) + 2 * RT_LIGHT_FINEST * (fabs(plane[0]) + fabs(plane[1])));
+    narrow(plane, 1 / least, o->slope);
+}
+
+void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at, RtLightOutline *o) {
+    const RtLightBuffer *buffer = tile->buffer;
+    const RtGeometry *g = &buffer->base.scene->geometry;
+    const Frame frame = frame_of(tile);
+    const uint32_t light = tile->light;
+    const int face = tile->face;
+    uint32_t count;
+    double grow = buffer->cubes[light].margin, warp;
+    RtVec3d offsets[RT_LIGHT_MAX_EDGES], normal, point;
+    const RtVec3 *vertices = vertices_of(g, id, &count, &warp);
+    *o = (RtLightOutline){.covers = count <= RT_LIGHT_MAX_EDGES, .edges = count, .slope = {0, 0, INFINITY}};
+    if (o->covers && at->near > 0) {
+        for (uint32_t i = 0; i < count; i++) offsets[i] = offset(buffer, light, face, vertices[i]);
+        add_edges(o, &frame, offsets, count, grow + warp, (double)at->near);
+    } else {
+        o->covers = false;
+    }
+    if (rt_ref_shape(g->objects[id]) == RT_SHAPE_POLYGON) {
+        const RtPolygon *polygon = &g->polygons[rt_ref_index(g->objects[id])];
+        normal = face_axes(face, polygon->normal);
+        point = rt_light_offset(buffer, light, face, polygon->center);
+    } else {
+        point = offset(buffer, light, face, vertices[0]);
+        RtVec3d b = rt_subd(offset(buffer, light, face, vertices[1]), point);
+        normal = rt_crossd(b, rt_subd(offset(buffer, light, face, vertices[2]), point));
+        grow += 0x1p-40 * norm(point);
+    }
+    add_plane(o, &frame, point, normal, grow);
+}
+
+/* ---- round objects ---- */
+
+/* The direction of column x, row y, at depth 1. */
+static RtVec3d direction(const Frame *frame, double x, double y) {
+    return rt_vec3d(frame->u + x / frame->scale, frame->w + y / frame->scale, 1);
 }
 
 /* Squared distance of a point from the line through the light along `axis`. */
@@ -87,137 +299,26 @@ static double distance_squared(RtVec3d point, RtVec3d axis) {
     return rt_dotd(across, across) / rt_dotd(axis, axis);
 }
 
-/* A ball's points are at most center.z + radius deep. */
-static bool ball_touches(const RtLightBuffer *buffer, RtVec3d center, double radius, RtVec3d axis) {
-    double half = 1.5 * (1.0 / buffer->n + RT_LIGHT_EDGE); /* above sqrt(2) */
-    double reach = radius + half * (center.z + radius);
-    return distance_squared(center, axis) <= reach * reach;
+bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row) {
+    const RtLightBuffer *buffer = tile->buffer;
+    const Frame frame = frame_of(tile);
+    RtBall ball = rt_object_ball(&buffer->base.scene->geometry, id);
+    RtVec3d center = rt_light_offset(buffer, tile->light, tile->face, ball.center);
+    double radius = ball.radius + 2 * buffer->cubes[tile->light].margin;
+    double half = 1.5 * ((0.5 + SLACK) / frame.scale + RT_LIGHT_EDGE); /* above sqrt(2) */
+    double reach = radius + half * (center.z + radius); /* a ball's points are at most so deep */
+    return distance_squared(center, direction(&frame, column + 0.5, row + 0.5)) <= reach * reach;
 }
 
-static double norm(RtVec3d v) {
-    return fabs(v.x) + fabs(v.y) + fabs(v.z);
-}
-
-/* Flat objects of more vertices are taken for their boxes: the test of all edges against all vertices is not
- * worth it. */
-enum { MAX_EDGES = 8 };
-
-/* Does no plane through the light and an edge part the vertices, grown by `grow`, from the cell? */
-static bool outline_touches(const RtLightBuffer *buffer, const RtVec3d *vertices, uint32_t count, double grow,
-                            double least_depth, RtVec3d axis) {
-    double half = 1.0 / buffer->n + RT_LIGHT_EDGE;
-    for (uint32_t i = 0; i < count; i++) {
-        RtVec3d a = vertices[i], b = vertices[(i + 1) % count], side = rt_crossd(a, b);
-        double lo = 0, hi = 0, middle = rt_dotd(side, axis), around = half * (fabs(side.x) + fabs(side.y));
-        for (uint32_t k = 0; k < count; k++) {
-            double at = rt_dotd(side, vertices[k]);
-            lo = fmin(lo, at);
-            hi = fmax(hi, at);
-        }
-        double slack = 2 * grow * (norm(side) + 0x1p-20 * norm(a) * norm(b));
-        if (lo > -slack && least_depth * (middle + around) < -2 * slack) return false;
-        if (hi < slack && least_depth * (middle - around) > 2 * slack) return false;
-    }
+bool rt_light_covers(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row, float *depth) {
+    const RtGeometry *g = &tile->buffer->base.scene->geometry;
+    if (rt_ref_shape(g->objects[id]) != RT_SHAPE_SPHERE) return false;
+    const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
+    const Frame frame = frame_of(tile);
+    RtVec3d center = offset(tile->buffer, tile->light, tile->face, sphere->center);
+    RtVec3d corner = direction(&frame, column, row);
+    double radius = (double)sphere->radius;
+    if (!(rt_dotd(center, corner) > 0) || !(distance_squared(center, corner) < radius * radius)) return false;
+    *depth = (float)center.z;
     return true;
-}
-
-bool rt_light_touches(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
-                      uint32_t row) {
-    const RtGeometry *g = &buffer->base.scene->geometry;
-    uint32_t index = rt_ref_index(g->objects[id]), count = 3;
-    RtVec3d axis = cell_axis(buffer, column, row), lo, hi, offsets[MAX_EDGES];
-    double grow = buffer->margin[light];
-    const RtVec3 *vertices;
-    switch (rt_ref_shape(g->objects[id])) {
-    case RT_SHAPE_SPHERE:
-    case RT_SHAPE_CONE:
-    case RT_SHAPE_CSG: {
-        RtBall ball = rt_object_ball(g, id);
-        return ball_touches(buffer, offsetd(buffer, light, face, ball.center), ball.radius + 2 * grow, axis);
-    }
-    case RT_SHAPE_TRIANGLE: vertices = g->triangles[index].v; break;
-    case RT_SHAPE_POLYGON:
-        vertices = g->polygon_vertices + g->polygons[index].first;
-        count = g->polygons[index].count;
-        grow += (double)g->polygons[index].warp;
-        break;
-    default: return true;
-    }
-    grown_box(buffer, light, face, id, &lo, &hi);
-    if (count > MAX_EDGES || !(lo.z > 0)) return true;
-    for (uint32_t i = 0; i < count; i++) offsets[i] = offset(buffer, light, face, vertices[i]);
-    return outline_touches(buffer, offsets, count, grow, lo.z, axis);
-}
-
-/* ---- covering ---- */
-
-static bool sphere_covers(RtVec3d center, double radius, const RtVec3d corners[4]) {
-    for (int k = 0; k < 4; k++) {
-        if (!(rt_dotd(center, corners[k]) > 0)) return false;
-        if (!(distance_squared(center, corners[k]) < radius * radius * (1 - 0x1p-10))) return false;
-    }
-    return true;
-}
-
-/* Are all corners on the same side of all edges, that is, inside? Adds the depth of the plane at each. */
-static bool polygon_covers(const RtLightBuffer *buffer, uint32_t light, int face, const RtVec3 *vertices,
-                           uint32_t count, RtVec3d point, RtVec3d normal, const RtVec3d corners[4],
-                           double *depth) {
-    bool positive = false, negative = false;
-    RtVec3d a = offset(buffer, light, face, vertices[count - 1]);
-    for (uint32_t i = 0; i < count; i++) {
-        RtVec3d b = offset(buffer, light, face, vertices[i]), side = rt_crossd(a, b);
-        for (int k = 0; k < 4; k++) {
-            double on = rt_dotd(side, corners[k]);
-            positive = positive || on >= 0;
-            negative = negative || on <= 0;
-        }
-        if (positive && negative) return false;
-        a = b;
-    }
-    for (int k = 0; k < 4; k++) {
-        double at = rt_dotd(normal, point) / rt_dotd(normal, corners[k]);
-        if (!(at > 0)) return false;
-        *depth = fmax(*depth, at);
-    }
-    return true;
-}
-
-bool rt_light_covers(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
-                     uint32_t row, float *depth) {
-    const RtGeometry *g = &buffer->base.scene->geometry;
-    uint32_t index = rt_ref_index(g->objects[id]);
-    RtVec3d axis = cell_axis(buffer, column, row), corners[4];
-    double half = 1.0 / buffer->n + RT_LIGHT_EDGE, deepest = 0;
-    for (int k = 0; k < 4; k++) {
-        corners[k] = rt_vec3d(axis.x + (k & 1 ? half : -half), axis.y + (k & 2 ? half : -half), 1);
-    }
-    bool covers = false;
-    switch (rt_ref_shape(g->objects[id])) {
-    case RT_SHAPE_SPHERE: {
-        const RtSphere *sphere = &g->spheres[index];
-        RtVec3d center = offset(buffer, light, face, sphere->center);
-        covers = sphere_covers(center, (double)sphere->radius, corners);
-        deepest = center.z + (double)sphere->radius;
-        break;
-    }
-    case RT_SHAPE_TRIANGLE: {
-        const RtTriangle *triangle = &g->triangles[index];
-        RtVec3d a = offset(buffer, light, face, triangle->v[0]);
-        RtVec3d b = rt_subd(offset(buffer, light, face, triangle->v[1]), a);
-        RtVec3d c = rt_subd(offset(buffer, light, face, triangle->v[2]), a);
-        covers = polygon_covers(buffer, light, face, triangle->v, 3, a, rt_crossd(b, c), corners, &deepest);
-        break;
-    }
-    case RT_SHAPE_POLYGON: {
-        const RtPolygon *polygon = &g->polygons[index];
-        covers = polygon_covers(buffer, light, face, g->polygon_vertices + polygon->first, polygon->count,
-                                offsetd(buffer, light, face, polygon->center),
-                                face_axes(face, polygon->normal), corners, &deepest);
-        break;
-    }
-    default: break;
-    }
-    *depth = rt_float_above(deepest + buffer->margin[light]);
-    return covers;
 }

@@ -4,112 +4,266 @@
  * Around each light stands a cube of six faces, one per axis and direction: face 2 a + 1 looks from the light
  * along +a, 2 a along -a. A point at offset v from the light belongs to the face of its largest |v.at[a]|,
  * its depth, and lies on it at u = v.at[b] / depth, w = v.at[c] / depth, both in [-1, 1], with b, c the axes
- * after a. A face has n x n cells of equal width in u and w.
+ * after a. On each face lies a grid of square tiles, over the rectangle in which the scene is seen; what is
+ * outside is lit. Tile (column, row) has u in grid.u + [column, column + 1] / grid.scale, w alike, and n x n
+ * cells of equal width, n being as large as the objects seen there are small.
  *
- * Layout: cells light after light, face after face, row after row, u fastest. The list of cell k is
- * entries[first[k]..first[k + 1]), ascending by (depth, id); objects that touch a light are in its near list
- * instead, near[near_first[light]..near_first[light + 1]), because they would be in all cells.
+ * Layout: tiles are face after face, row after row; tiles[k] is the number of the first cell of tile k, times
+ * 64, plus its n; in a tile cells are row after row. The list of cell k of a light is
+ * entries[first[k]..first[k + 1]), ascending by key, then by object. A key holds, from the highest bit: a 0;
+ * 15 bits of depth, rounded down; and 16 bits for the 4 x 4 parts of the cell, row by row, that the object
+ * may be seen in. A list that was cut ends in an entry RT_LIGHT_BEYOND: what is as deep or deeper may be
+ * missing. Objects that touch a light are in its near list instead, because they would be in all cells.
  *
- * Invariant: an object that can block a ray from inside `domain` to the light, of depth at most
- * covers[cell].depth, is in the near list or in the list of the ray's cell, with a depth not above that of
- * the ray. Why rounding does not break it stands in build.c. */
+ * Invariant: an object that can block a ray from inside `domain` to the light is in the near list, or in the
+ * list of the ray's cell, with a depth not above that of the ray and the part of the cell that the ray is in;
+ * or the list was cut, at a depth not above that of the ray. Why rounding does not break it stands in
+ * footprint.c. So cutting lists is free: it never changes an answer, but who gives it. */
 #ifndef RT_ACCEL_LIGHT_LIGHT_H
 #define RT_ACCEL_LIGHT_LIGHT_H
 
 #include "accel/accel.h"
+#include "accel/isa.h"
 
 #define RT_LIGHT_PARAMS(X)                                                                                   \
-    X(RT_LIGHT_CELLS, "cells", RT_INT("64", 1, 4096, "1|7|256"),                                             \
-      "cells along the edge of a face of the cube", "Haines & Greenberg 1986 use 20 to 200")                 \
+    X(RT_LIGHT_CELLS, "cells", RT_INT("0", 0, 4096, "1|7|256"),                                              \
+      "cells along the longer edge of the part of a face that sees the scene; 0: as fine as the objects",    \
+      "this program; Haines & Greenberg 1986 use 20 to 200")                                                 \
     X(RT_LIGHT_FULL_OCCLUSION, "full_occlusion", RT_FLAG("on"),                                              \
-      "end a list at the first object that covers the whole cell", "Haines & Greenberg 1986")                \
+      "end a list where the whole cell is likely to be covered", "Haines & Greenberg 1986, of one object")   \
     X(RT_LIGHT_EXTENTS, "extents", RT_FLAG("on"),                                                            \
-      "test the box of an object of a list, and the side of its plane, before the object", "this program")   \
-    X(RT_LIGHT_CACHE, "cache", RT_FLAG("on"), "try the object that blocked the last ray in a cell first",    \
-      "Haines & Greenberg 1986")
+      "skip what is not seen in the part of the cell, a sixteenth, that the ray is in", "this program")      \
+    X(RT_LIGHT_LONGEST, "longest", RT_INT("64", 1, 65534, "2"),                                              \
+      "entries of a list; what lies deeper is passed on", "measured")
 
 enum { RT_LIGHT_PARAMS(RT_PARAM_INDEX) RT_LIGHT_PARAM_COUNT };
 extern const RtParam rt_light_params[RT_LIGHT_PARAM_COUNT];
 
-/* An object of a list. No point of it that can be hit is less deep. */
+/* An object of a list, or RT_LIGHT_BEYOND. */
 typedef struct RtLightEntry {
-    float depth;
-    uint32_t id;
+    uint32_t key;
+    RtRef object;
 } RtLightEntry;
 
-/* The object that hides whatever is deeper than `depth` in a cell: {INFINITY, RT_NO_OBJECT} for none. */
-typedef RtLightEntry RtLightCover;
+#define RT_LIGHT_BEYOND UINT32_MAX
+
+/* What a key can hold. */
+#define RT_LIGHT_DEPTHS 32768
+#define RT_LIGHT_PARTS  0xffffu
+enum { RT_LIGHT_PART = 4 }; /* parts along the edge of a cell */
+
+/* The most cells along the edge of a tile, and in a tile. */
+enum { RT_LIGHT_FINEST = 63, RT_LIGHT_TILE_CELLS = RT_LIGHT_FINEST * RT_LIGHT_FINEST };
+
+typedef struct RtLightGrid {
+    float u, w, scale;        /* the corner of tile (0, 0); tiles per 1 of u and w */
+    float depth, depth_scale; /* the least depth there is, and steps of a key's depth per 1 */
+    uint32_t columns, rows;   /* tiles; 0: nothing is seen on this face */
+    uint32_t first_tile;      /* of the light's */
+    uint32_t least, finest;   /* cells along the edge of a tile: no fewer, no more */
+} RtLightGrid;
+
+/* What one light sees. */
+typedef struct RtLightCube {
+    RtLightGrid grids[6];
+    double margin;                   /* by which boxes grow: see footprint.c */
+    bool serves;                     /* else all its rays are passed on, and there are no lists */
+    uint32_t tile_count, cell_count; /* of all faces */
+    uint32_t *tiles;                 /* [tile_count] */
+    uint32_t *first;                 /* [cell_count + 1] */
+    RtLightEntry *entries;           /* [first[cell_count]] */
+    uint32_t near_count;
+    uint32_t *near; /* [near_count] ids */
+} RtLightCube;
+
+typedef struct RtLightKernels RtLightKernels;
 
 typedef struct RtLightBuffer {
     RtAccel base;
-    uint32_t n; /* cells along the edge of a face */
-    bool full_occlusion, extents, cache;
-    RtBox domain;          /* where rays start that are answered; empty without objects */
-    double *margin;        /* [lights] by which boxes grow: see build.c */
-    uint32_t *first;       /* [cells + 1] */
-    RtLightEntry *entries; /* [first[cells]] */
-    RtLightCover *covers;  /* [cells], or NULL without full occlusion */
-    uint32_t *near_first;  /* [lights + 1] */
-    uint32_t *near;        /* [near_first[lights]] */
+    uint32_t cells; /* as asked for */
+    uint32_t longest;
+    bool full_occlusion, extents;
+    bool serves;        /* whether some light does */
+    RtBox domain;       /* where rays start that are answered; empty without objects */
+    RtLightCube *cubes; /* [lights] */
+    const RtLightKernels *kernels;
 } RtLightBuffer;
-
-/* What a query remembers of a cell: which of `entries` blocked the last ray, if `epoch` is the query's.
- * Scratch memory is [1 + cells] of them; that of a query's own epoch comes first. */
-typedef struct RtLightMemory {
-    uint32_t epoch, entry;
-} RtLightMemory;
 
 /* By how much cells grow in u and w on all sides: more than u can be wrong by where a ray is looked up. */
 #define RT_LIGHT_EDGE 0x1p-20
 
-static inline size_t rt_light_cell_count(const RtLightBuffer *buffer) {
-    return (size_t)buffer->base.scene->light_count * 6 * buffer->n * buffer->n;
+/* The depth of a key; it does not fall where `depth` rises. */
+static inline uint32_t rt_light_depth_key(const RtLightGrid *grid, float depth) {
+    float step = (depth - grid->depth) * grid->depth_scale;
+    return step > 0 ? (step < RT_LIGHT_DEPTHS - 1 ? (uint32_t)step : RT_LIGHT_DEPTHS - 1) : 0;
 }
 
-/* The first cell of a face. */
-static inline size_t rt_light_face(const RtLightBuffer *buffer, uint32_t light, int face) {
-    return ((size_t)light * 6 + (size_t)face) * buffer->n * buffer->n;
+/* Cells along the edge of a tile, and its first cell. */
+static inline uint32_t rt_light_fineness(uint32_t tile) {
+    return tile & 63;
+}
+static inline uint32_t rt_light_first_cell(uint32_t tile) {
+    return tile >> 6;
 }
 
-/* The column or row at u, clamped to those that exist. */
-static inline uint32_t rt_light_column(const RtLightBuffer *buffer, double u) {
-    double at = (u + 1) * 0.5 * buffer->n;
-    if (!(at > 0)) return 0;
-    return at < buffer->n ? (uint32_t)at : buffer->n - 1;
+/* A tile of a light. */
+typedef struct RtLightTile {
+    const RtLightBuffer *buffer;
+    uint32_t light;
+    int face;
+    uint32_t column, row; /* in the grid of the face */
+    uint32_t n;           /* cells along its edge */
+} RtLightTile;
+
+/* The id of an entry's object. */
+static inline uint32_t rt_light_id_of(const RtGeometry *g, RtRef object) {
+    switch (rt_ref_shape(object)) {
+#define RT_LIGHT_ID(CONSTANT, name, Type)                                                                    \
+    case RT_SHAPE_##CONSTANT: return g->name##_ids[rt_ref_index(object)];
+        RT_SHAPES(RT_LIGHT_ID)
+#undef RT_LIGHT_ID
+    default: return RT_NO_OBJECT;
+    }
 }
 
-/* footprint.c */
+/* ---- footprint.c ---- */
 
-/* The cells of a face that an object may be seen in from the light, columns lo[0]..hi[0] of rows
- * lo[1]..hi[1], and its least depth there, rounded down. */
+/* An offset from the light in the axes of a face: u, w, depth, the first two times depth. */
+RtVec3d rt_light_offset(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3d point);
+
+/* Does a box, grown by the margin, hold the light? That of an object? */
+bool rt_light_is_in(const RtLightBuffer *buffer, uint32_t light, const RtBox *box);
+bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id);
+
+/* Where a box, grown by the margin, is seen on a face: u and w, cut at the borders of the face, and depth.
+ * False if it is not. Not to be asked of boxes that hold the light. */
+typedef struct RtLightView {
+    double lo[2], hi[2], near, far;
+} RtLightView;
+bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const RtBox *box,
+                   RtLightView *view);
+
+/* The tiles of a face that an object may be seen in from the light, columns lo[0]..hi[0] of rows
+ * lo[1]..hi[1]. */
 typedef struct RtLightFootprint {
     uint32_t lo[2], hi[2];
-    float depth;
+    float least[2], most[2]; /* the same in parts of tiles */
+    float near, far;         /* depths, rounded outward */
 } RtLightFootprint;
 
 /* False if there are none. Not to be asked of objects that touch the light. */
 bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
                         RtLightFootprint *footprint);
 
-/* Does the object's box, grown by the margin, hold the light? */
-bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id);
+/* The cells of a footprint in a tile; none where lo > hi. And its parts of cells. */
+typedef struct RtLightCells {
+    int32_t lo[2], hi[2];
+    int32_t part_lo[2], part_hi[2];
+} RtLightCells;
+RtLightCells rt_light_cells(const RtLightTile *tile, const RtLightFootprint *footprint);
 
-/* May the object be seen in one cell of its footprint? True where in doubt. */
-bool rt_light_touches(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
-                      uint32_t row);
+#define RT_LIGHT_MAX_EDGES 8
 
-/* Does the object hide all that is behind it in the closed cell? Then *depth is where it ends. An answer that
- * is wrong by rounding costs time only: see light.c. */
-bool rt_light_covers(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id, uint32_t column,
-                     uint32_t row, float *depth);
+/* What parts cells from an object: lines, and a plane of depths. x and y are columns and rows from the corner
+ * of a tile. The object is not in the cell whose middle is (x, y) if parts[i] . (x, y, 1) < 0 for some i; not
+ * in a part of a cell whose middle is (x, y) if that is below RT_LIGHT_NARROWER. Its
+ * points there are no less deep than 1 / (slope . (x, y, 1)), unless that is above `far`, nor than `near`. */
+#define RT_LIGHT_NARROWER 0.375f /* as |parts[i][0]| + |parts[i][1]| = 1, half a cell less half a part */
+typedef struct RtLightOutline {
+    uint32_t count;
+    float parts[2 * RT_LIGHT_MAX_EDGES][3];
+    float slope[3];
+    bool covers; /* what is within inside[0..edges) is covered, at depth 1 / (face . (x, y, 1)) */
+    uint32_t edges;
+    float inside[RT_LIGHT_MAX_EDGES][3];
+    float face[3];
+} RtLightOutline;
 
-/* build.c */
+/* Of a flat object, in cells of the tile; another has no parts, and its cells are to be asked about one by
+ * one. */
+void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at,
+                      RtLightOutline *outline);
+
+/* Of an object that is not flat: may it be seen in a cell of the tile? And does it hide all that is behind it
+ * in the direction of the lower corner of cell (column, row)? Then *depth is where. */
+bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row);
+bool rt_light_covers(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row, float *depth);
+
+/* ---- kernels.h and raster.h, for each instruction set ---- */
+
+/* Where triangles are seen, in lanes. */
+typedef struct RtLightPlace {
+    uint32_t object;       /* RtRef, or index of a triangle */
+    uint16_t lo[2], hi[2]; /* tiles */
+    uint8_t face;
+    bool drawn; /* can be drawn in lanes; else the footprint is to be asked for */
+} RtLightPlace;
+
+/* A small triangle has a footprint of at most so many cells squared. */
+enum { RT_LIGHT_SMALL_CELLS = 8 };
+
+/* A tile on its way: what the cells may see. */
+typedef struct RtLightDesk {
+    float corner[RT_LIGHT_FINEST + 5][RT_LIGHT_FINEST + 17]; /* depth that is covered there, or INFINITY */
+    float cover[RT_LIGHT_FINEST + 5][RT_LIGHT_FINEST + 17];  /* depth beyond which a cell is covered */
+    uint64_t cut[RT_LIGHT_FINEST + 5]; /* by row, bit by column: something deeper was left out */
+    /* Candidates in runs of one object: cell of the tile, and key. */
+    uint32_t *cell, *key;
+    uint32_t count, cell_capacity, key_capacity;
+    RtLightEntry *runs; /* key: how many */
+    uint32_t run_count, run_capacity;
+} RtLightDesk;
+
+/* What a small triangle adds at most. */
+enum { RT_LIGHT_SMALL_ROOM = RT_LIGHT_SMALL_CELLS * RT_LIGHT_SMALL_CELLS };
+
+struct RtLightKernels {
+    RtNearestKernel *nearest;
+    RtOccludedKernel *occluded;
+    RtNearestCounted *nearest_counted;
+    RtOccludedCounted *occluded_counted;
+    size_t scratch_bytes;
+
+    /* Triangles first..first+count-1 (at most 16): where they are seen, to `places`, at most six each; gives
+     * how many that are. */
+    uint32_t (*place)(const RtLightBuffer *buffer, uint32_t light, uint32_t first, uint32_t count,
+                      RtLightPlace *places);
+    /* Of up to sixteen triangles those that are small in the tile: the corners they cover; and their
+     * candidates, for which there is room. Gives those that are not. */
+    uint32_t (*cover)(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk);
+    uint32_t (*draw)(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, RtLightDesk *desk);
+    /* The same of one object by its outline: `room` for all cells of the tile. */
+    void (*cover_outline)(const RtLightOutline *outline, const RtLightCells *at, RtLightDesk *desk);
+    void (*draw_outline)(const RtLightTile *tile, const RtLightOutline *outline, const RtLightFootprint *from,
+                         const RtLightCells *at, RtRef object, RtLightDesk *desk);
+};
+
+extern const RtLightKernels rt_light_portable, rt_light_avx2, rt_light_avx512;
+
+/* Those for an instruction set, which this machine must have. */
+const RtLightKernels *rt_light_kernels(RtIsa isa);
+
+/* ---- bins.c ---- */
+
+/* What falls into the tiles of a light: objects[first[k]..first[k + 1]) into tile k. */
+#define RT_LIGHT_ALONE 0x80000000u /* of what is not drawn in lanes */
+typedef struct RtLightBins {
+    uint32_t *first;   /* [tiles + 1] */
+    uint32_t *objects; /* [first[tiles]] RtRef and RT_LIGHT_ALONE */
+} RtLightBins;
+
+RtStatus rt_light_fill_bins(const RtLightBuffer *buffer, uint32_t light, int threads, RtLightBins *bins,
+                            RtError *error);
+
+/* ---- tile.c ---- */
+
+/* Makes the lists of a light, each tile's of no more than `most` entries. */
+RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t light, const RtLightBins *bins, uint32_t most,
+                             int threads, RtError *error);
+
+/* ---- build.c ---- */
 RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_light_destroy(RtAccel *accel);
-
-/* Objects that have a footprint on a face, ascending by (depth, id), to order[0..object_count); gives their
- * number. */
-uint32_t rt_light_order(const RtLightBuffer *buffer, uint32_t light, int face, RtLightEntry *order);
 
 /* stats.c */
 void rt_light_describe(const RtAccel *accel, RtDescription *out);

@@ -1,57 +1,49 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Does the plane of a flat object (triangle, polygon) lie between a ray's origin and its light?
+/* Does a ray to a light stay on one side of a polygon's plane, or leave a sphere for good? The object on
+ * which it starts is turned away by that.
  *
  * Exact. A hit at t is a point of the ray within delta of the object, along each axis, where for m the
- * distance along an axis from the origin to the farthest point of the object, e = 2^-24:
+ * distance along an axis from the origin to the farthest point of the object's box, e = 2^-24: hit functions
+ * of polygons and spheres compute in double, and from there on rounding t to float32 and clamping it to where
+ * the thick ray is in the box move the point by a few e m. delta = 32 e m = 2^-19 m is above that.
  *
- * - A triangle's hit function takes vertices that are displaced by at most 7 e m (accel/extent.h), and from
- *   there on computes with relative errors of 2^-52: weights that are not negative, and a t at which the ray
- *   passes through the point that they give. Rounding t to float32 and clamping it to where the thick ray is
- *   in the box, which is wider than the displacement, move the point by a few e m more.
- * - A polygon's hit function computes in double; of it only the rounding of t is left.
- *
- * delta = 32 e m = 2^-19 m is above both. So if the ray, at t = 0 and at t = 1 >= tmax, is on one side of the
- * plane by more than delta |normal|_1, then no t between can be a hit: distances are linear in t. The
- * rounding of the distances themselves, in double, is below 2^-48 of the products that they are made of. */
+ * - If the ray, at t = 0 and at t = 1 >= tmax, is on one side of the plane by more than delta |normal|_1,
+ * then no t between can be a hit: distances are linear in t. The rounding of the distances themselves, in
+ * double, is below 2^-46 of the lengths that they are made of.
+ * - If the ray leaves the sphere's centre, its distance from it is least at the origin; if that is above the
+ *   radius by more than sqrt(3) delta, and 2^-46 of it for rounding, no t >= 0 can be a hit. */
 #ifndef RT_ACCEL_LIGHT_SIDE_H
 #define RT_ACCEL_LIGHT_SIDE_H
 
 #include "accel/kernel.h"
 
-RT_KERNEL bool rt_light_is_flat(const RtGeometry *geometry, uint32_t id) {
-    RtShape shape = rt_ref_shape(geometry->objects[id]);
-    return shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
+RT_KERNEL bool rt_light_has_side(RtRef object) {
+    return rt_ref_shape(object) == RT_SHAPE_POLYGON || rt_ref_shape(object) == RT_SHAPE_SPHERE;
 }
 
-static inline double rt_light_norm(RtVec3d v) {
-    return fabs(v.x) + fabs(v.y) + fabs(v.z);
-}
-
-/* `scale`: what the rounding errors of the normal are in proportion to. */
-static inline bool rt_light_plane_is_between(RtVec3d point, RtVec3d normal, double scale, const RtBox *box,
-                                             const RtPreparedRay *ray) {
+/* The object is one that has sides, the ray's tmin at least 0 and tmax at most 1. True only if it is not
+ * hit. */
+RT_KERNEL bool rt_light_is_aside(const RtGeometry *geometry, uint32_t id, const RtRay *ray) {
+    uint32_t index = rt_ref_index(geometry->objects[id]);
+    const RtBox *box = &geometry->boxes[id];
     RtVec3d org = rt_widen(ray->org), dir = rt_widen(ray->dir);
     double away = 0;
     for (int a = 0; a < 3; a++) {
-        away = fmax(away,
-                    fmax(fabs((double)box->lo.at[a] - org.at[a]), fabs((double)box->hi.at[a] - org.at[a])));
+        away = fmax(away, fabs((double)box->lo.at[a] - org.at[a]));
+        away = fmax(away, fabs((double)box->hi.at[a] - org.at[a]));
     }
-    double at_origin = rt_dotd(normal, rt_subd(org, point)), at_light = at_origin + rt_dotd(normal, dir);
-    double most = 0x1p-19 * away * rt_light_norm(normal) + 0x1p-46 * scale * (away + rt_light_norm(dir));
-    return !((at_origin > most && at_light > most) || (at_origin < -most && at_light < -most));
-}
-
-/* `id` is flat, the ray's tmax at most 1. False only if the object is not hit. */
-static inline bool rt_light_is_between(const RtGeometry *geometry, uint32_t id, const RtPreparedRay *ray) {
-    uint32_t index = rt_ref_index(geometry->objects[id]);
-    const RtBox *box = &geometry->boxes[id];
-    if (rt_ref_shape(geometry->objects[id]) == RT_SHAPE_POLYGON) {
-        const RtPolygon *polygon = &geometry->polygons[index];
-        return rt_light_plane_is_between(polygon->center, polygon->normal, 1, box, ray);
+    if (rt_ref_shape(geometry->objects[id]) == RT_SHAPE_SPHERE) {
+        const RtSphere *sphere = &geometry->spheres[index];
+        RtVec3d from = rt_subd(org, rt_widen(sphere->center));
+        double reach = (double)sphere->radius * (1 + 0x1p-40) + 0x1.cp-19 * away;
+        return rt_dotd(from, dir) > 0x1p-40 * away * rt_lengthd(dir) && rt_dotd(from, from) > reach * reach;
     }
-    const RtVec3 *v = geometry->triangles[index].v;
-    RtVec3d a = rt_widen(v[0]), ab = rt_subd(rt_widen(v[1]), a), ac = rt_subd(rt_widen(v[2]), a);
-    return rt_light_plane_is_between(a, rt_crossd(ab, ac), rt_light_norm(ab) * rt_light_norm(ac), box, ray);
+    const RtPolygon *polygon = &geometry->polygons[index];
+    RtVec3d n = polygon->normal;
+    double at_origin = rt_dotd(n, rt_subd(org, polygon->center)), at_light = at_origin + rt_dotd(n, dir);
+    double norm = fabs(n.x) + fabs(n.y) + fabs(n.z);
+    double most = 0x1p-19 * away * norm + 0x1p-46 * (away + rt_lengthd(dir));
+    return (at_origin > most && at_light > most) || (at_origin < -most && at_light < -most);
 }
 
 #endif

@@ -6,106 +6,167 @@
 
 void rt_light_describe(const RtAccel *accel, RtDescription *out) {
     const RtLightBuffer *buffer = (const RtLightBuffer *)accel;
-    uint32_t lights = accel->scene->light_count;
-    size_t cells = rt_light_cell_count(buffer);
-    uint64_t references = (uint64_t)buffer->first[cells] + buffer->near_first[lights], empty = 0;
-    for (size_t i = 0; i < cells; i++) empty += buffer->first[i] == buffer->first[i + 1];
-    *out = (RtDescription){
-        .leaves = cells,
-        .empty_leaves = empty,
-        .references = references,
-        .bytes = (cells + 1) * sizeof(uint32_t) + buffer->first[cells] * sizeof(RtLightEntry) +
-                 (buffer->covers ? cells * sizeof(RtLightCover) : 0) + lights * sizeof(double) +
-                 (lights + (size_t)1 + buffer->near_first[lights]) * sizeof(uint32_t),
-        RT_NO_PREDICTION,
-    };
+    *out = (RtDescription){RT_NO_PREDICTION};
+    for (uint32_t light = 0; light < accel->scene->light_count; light++) {
+        const RtLightCube *cube = &buffer->cubes[light];
+        out->bytes += sizeof *cube + cube->near_count * sizeof(uint32_t);
+        out->references += cube->near_count;
+        if (!cube->serves) continue;
+        out->leaves += cube->cell_count;
+        out->references += cube->first[cube->cell_count];
+        out->bytes += (cube->cell_count + (size_t)1 + cube->tile_count) * sizeof(uint32_t) +
+                      cube->first[cube->cell_count] * sizeof(RtLightEntry);
+        for (uint32_t i = 0; i < cube->cell_count; i++)
+            out->empty_leaves += cube->first[i] == cube->first[i + 1];
+    }
 }
 
-/* The lists of a face hold, in order, what belongs to them; `cursor` [n * n] starts where each list does. */
-static RtStatus check_face(const RtLightBuffer *buffer, uint32_t light, int face, RtLightEntry *order,
-                           uint32_t *cursor, RtError *error) {
-    size_t first_cell = rt_light_face(buffer, light, face), in_face = (size_t)buffer->n * buffer->n;
-    for (size_t i = 0; i < in_face; i++) cursor[i] = buffer->first[first_cell + i];
-    uint32_t count = rt_light_order(buffer, light, face, order);
-    for (uint32_t i = 0; i < count; i++) {
-        RtLightEntry entry = order[i];
-        RtLightFootprint at;
-        rt_light_footprint(buffer, light, face, entry.id, &at);
-        for (uint32_t row = at.lo[1]; row <= at.hi[1]; row++) {
-            for (uint32_t column = at.lo[0]; column <= at.hi[0]; column++) {
-                size_t in = (size_t)row * buffer->n + column, cell = first_cell + in;
-                if (buffer->covers && entry.depth > buffer->covers[cell].depth) continue;
-                if (!rt_light_touches(buffer, light, face, entry.id, column, row)) continue;
-                const RtLightEntry *found = &buffer->entries[cursor[in]];
-                if (cursor[in] < buffer->first[cell + 1] && found->id == entry.id &&
-                    found->depth == entry.depth) {
-                    cursor[in]++;
-                    continue;
-                }
-                return rt_fail(
-                    error, RT_MISMATCH,
-                    "light: the list of cell %u,%u of face %d of light %u lacks object %u at depth %g, "
-                    "or is not in order",
-                    column, row, face, light, entry.id, (double)entry.depth);
+/* ---- validate ---- */
+
+static uint32_t depth_of(uint32_t key) {
+    return key >> 16;
+}
+
+static RtStatus check_order(const RtLightCube *cube, uint32_t light, uint32_t objects, RtError *error) {
+    for (uint32_t cell = 0; cell < cube->cell_count; cell++) {
+        if (cube->first[cell] > cube->first[cell + 1]) {
+            return rt_fail(error, RT_MISMATCH, "light: list %u of light %u ends before it begins", cell,
+                           light);
+        }
+        for (uint32_t i = cube->first[cell]; i < cube->first[cell + 1]; i++) {
+            const RtLightEntry *entry = &cube->entries[i];
+            bool last = i + 1 == cube->first[cell + 1], good = depth_of(entry->key) < RT_LIGHT_DEPTHS;
+            if (entry->object == RT_LIGHT_BEYOND) {
+                good = good && last && (entry->key & RT_LIGHT_PARTS) == RT_LIGHT_PARTS;
+            } else {
+                good = good && rt_ref_index(entry->object) < objects;
             }
+            if (good && !last) good = depth_of(entry->key) <= depth_of(entry[1].key);
+            if (good) continue;
+            return rt_fail(error, RT_MISMATCH, "light: list %u of light %u is not in order", cell, light);
         }
     }
     return RT_OK;
 }
 
-static RtStatus check_covers(const RtLightBuffer *buffer, uint32_t light, int face, RtError *error) {
-    size_t first_cell = rt_light_face(buffer, light, face), in_face = (size_t)buffer->n * buffer->n;
-    for (size_t i = 0; buffer->covers && i < in_face; i++) {
-        const RtLightCover *cover = &buffer->covers[first_cell + i];
-        uint32_t column = (uint32_t)(i % buffer->n), row = (uint32_t)(i / buffer->n);
-        float depth = 0;
-        if (cover->id == RT_NO_OBJECT
-                ? cover->depth == INFINITY
-                : cover->id < buffer->base.scene->geometry.object_count &&
-                      rt_light_covers(buffer, light, face, cover->id, column, row, &depth) &&
-                      depth == cover->depth) {
-            continue;
+/* By how much objects may be said to be nearer to cells, in cells, than lists say: both err on the safe side,
+ * lists by less. */
+static float tolerance(const RtLightTile *tile, const RtLightFootprint *at) {
+    const RtLightCube *cube = &tile->buffer->cubes[tile->light];
+    double cells = (double)cube->grids[tile->face].scale * tile->n;
+    return (float)(0x1p-5 + 8 * cube->margin * cells / (double)at->near);
+}
+
+/* The least depth that the lists may have for an object in a cell: they, too, allow for rounding. */
+static float least_depth(const RtLightFootprint *at, const RtLightOutline *outline, uint32_t column,
+                         uint32_t row) {
+    float x = (float)column + 0.5f, y = (float)row + 0.5f;
+    const float *slope = outline->slope;
+    float rounding = fabsf(slope[0] * x) + fabsf(slope[1] * y) + fabsf(slope[2]);
+    float least = slope[0] * x + slope[1] * y + slope[2] - 0x1p-19f * rounding;
+    return rt_maxf(at->near, 1 / rt_maxf(least, 1 / at->far)) * (1 + 0x1p-18f);
+}
+
+/* Is the object in the list of a cell, in these parts of it and not deeper than that, or was the list cut
+ * before? */
+static bool is_listed(const RtLightCube *cube, uint32_t cell, RtRef object, uint32_t parts, uint32_t depth) {
+    for (uint32_t i = cube->first[cell]; i < cube->first[cell + 1]; i++) {
+        const RtLightEntry *entry = &cube->entries[i];
+        if (depth_of(entry->key) > depth) return false;
+        if (entry->object == object || entry->object == RT_LIGHT_BEYOND) return (entry->key & parts) == parts;
+    }
+    return false;
+}
+
+/* The parts of a cell that a flat object is certainly seen in; of another, none are certain. */
+static uint32_t parts_seen(const RtLightCells *at, const RtLightOutline *outline, float tolerated,
+                           uint32_t column, uint32_t row) {
+    uint32_t parts = 0;
+    for (uint32_t i = 0; i < RT_LIGHT_PART * RT_LIGHT_PART; i++) {
+        uint32_t x = column * RT_LIGHT_PART + i % RT_LIGHT_PART, y = row * RT_LIGHT_PART + i / RT_LIGHT_PART;
+        bool seen = (int32_t)x > at->part_lo[0] && (int32_t)x < at->part_hi[0] &&
+                    (int32_t)y > at->part_lo[1] && (int32_t)y < at->part_hi[1];
+        for (uint32_t k = 0; seen && k < outline->count; k++) {
+            const float *line = outline->parts[k];
+            float on = line[0] * ((float)x + 0.5f) + line[1] * ((float)y + 0.5f);
+            seen = on / RT_LIGHT_PART + line[2] - RT_LIGHT_NARROWER >= tolerated;
         }
-        return rt_fail(error, RT_MISMATCH,
-                       "light: cell %u,%u of face %d of light %u is not covered by object %u", column, row,
-                       face, light, cover->id);
+        parts |= (uint32_t)seen << i;
+    }
+    return parts;
+}
+
+static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFootprint *from,
+                           RtError *error) {
+    const RtLightBuffer *buffer = tile->buffer;
+    const RtLightCube *cube = &buffer->cubes[tile->light];
+    const RtLightGrid *grid = &cube->grids[tile->face];
+    const RtLightCells at = rt_light_cells(tile, from);
+    RtRef object = buffer->base.scene->geometry.objects[id];
+    RtShape shape = rt_ref_shape(object);
+    RtLightOutline outline;
+    bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
+    if (flat) rt_light_outline(tile, id, from, &outline);
+    uint32_t first =
+        rt_light_first_cell(cube->tiles[grid->first_tile + tile->row * grid->columns + tile->column]);
+    for (uint32_t row = (uint32_t)at.lo[1]; (int32_t)row <= at.hi[1]; row++) {
+        for (uint32_t column = (uint32_t)at.lo[0]; (int32_t)column <= at.hi[0]; column++) {
+            float near = flat ? least_depth(from, &outline, column, row) : from->near;
+            uint32_t cell = first + row * tile->n + column, depth = rt_light_depth_key(grid, near);
+            uint32_t parts = flat ? parts_seen(&at, &outline, tolerance(tile, from), column, row) : 0;
+            if (flat ? parts == 0 : !rt_light_touches(tile, id, column, row)) continue;
+            if (is_listed(cube, cell, object, parts, depth)) continue;
+            return rt_fail(
+                error, RT_MISMATCH,
+                "light: the list of cell %u,%u of tile %u,%u of face %d of light %u lacks object %u "
+                "at depth %g",
+                column, row, tile->column, tile->row, tile->face, tile->light, id, (double)near);
+        }
     }
     return RT_OK;
 }
 
-static RtStatus check_near(const RtLightBuffer *buffer, RtError *error) {
+static RtStatus check_object(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
+                             RtError *error) {
+    const RtLightCube *cube = &buffer->cubes[light];
+    const RtLightGrid *grid = &cube->grids[face];
+    RtLightFootprint at;
+    if (!rt_light_footprint(buffer, light, face, id, &at)) return RT_OK;
+    for (uint32_t row = at.lo[1]; row <= at.hi[1]; row++) {
+        for (uint32_t column = at.lo[0]; column <= at.hi[0]; column++) {
+            uint32_t n = rt_light_fineness(cube->tiles[grid->first_tile + row * grid->columns + column]);
+            const RtLightTile tile = {buffer, light, face, column, row, n};
+            RT_TRY(check_tile(&tile, id, &at, error));
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus check_near(const RtLightBuffer *buffer, uint32_t light, RtError *error) {
+    const RtLightCube *cube = &buffer->cubes[light];
     uint32_t at = 0;
-    for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
-        bool good = buffer->near_first[light] == at;
-        for (uint32_t id = 0; good && id < buffer->base.scene->geometry.object_count; id++) {
-            if (!rt_light_is_near(buffer, light, id)) continue;
-            good = at < buffer->near_first[light + 1] && buffer->near[at++] == id;
-        }
-        if (good && buffer->near_first[light + 1] == at) continue;
-        return rt_fail(error, RT_MISMATCH,
-                       "light: the near list of light %u does not hold the objects that touch it", light);
+    for (uint32_t id = 0; id < buffer->base.scene->geometry.object_count; id++) {
+        if (!rt_light_is_near(buffer, light, id)) continue;
+        if (at < cube->near_count && cube->near[at++] == id) continue;
+        at = UINT32_MAX;
+        break;
     }
-    return RT_OK;
+    if (at == cube->near_count) return RT_OK;
+    return rt_fail(error, RT_MISMATCH,
+                   "light: the near list of light %u does not hold the objects that touch it", light);
 }
 
 RtStatus rt_light_validate(const RtAccel *accel, RtError *error) {
     const RtLightBuffer *buffer = (const RtLightBuffer *)accel;
-    size_t cells = rt_light_cell_count(buffer), in_face = (size_t)buffer->n * buffer->n;
-    for (size_t i = 0; i < cells; i++) {
-        if (buffer->first[i] <= buffer->first[i + 1]) continue;
-        return rt_fail(error, RT_MISMATCH, "light: list %zu ends before it begins", i);
-    }
-    RT_TRY(check_near(buffer, error));
-    RtLightEntry *order = rt_alloc(accel->scene->geometry.object_count, sizeof *order);
-    uint32_t *cursor = rt_alloc(in_face, sizeof *cursor);
-    RtStatus status = order && cursor ? RT_OK : rt_fail_memory(error, "validating", in_face * sizeof *cursor);
-    for (uint32_t light = 0; status == RT_OK && light < accel->scene->light_count; light++) {
-        for (int face = 0; status == RT_OK && face < 6; face++) {
-            status = check_covers(buffer, light, face, error);
-            if (status == RT_OK) status = check_face(buffer, light, face, order, cursor, error);
+    uint32_t objects = accel->scene->geometry.object_count;
+    for (uint32_t light = 0; light < accel->scene->light_count; light++) {
+        if (!buffer->cubes[light].serves) continue;
+        RT_TRY(check_near(buffer, light, error));
+        RT_TRY(check_order(&buffer->cubes[light], light, objects, error));
+        for (uint32_t id = 0; id < objects; id++) {
+            if (rt_light_is_near(buffer, light, id)) continue;
+            for (int face = 0; face < 6; face++) RT_TRY(check_object(buffer, light, face, id, error));
         }
     }
-    rt_free(order);
-    rt_free(cursor);
-    return status;
+    return RT_OK;
 }

@@ -2,6 +2,9 @@
 /* The light buffer: what it counts, counted by hand, and what its cells remember. */
 #include "light_testing.h"
 
+#include "base/memory.h"
+#include "scenes/builtin.h"
+
 /* ---- counted by hand ---- */
 
 typedef struct Row {
@@ -34,118 +37,162 @@ static void check_rows(const RtScene *scene, const Row *rows, size_t count) {
     }
 }
 
+#define HIT(tests, extents, visits)                                                                          \
+    {                                                                                                        \
+        .rays = 1, .hits = 1, .object_tests = tests, .object_hits = 1, .extent_tests = extents,              \
+        .steps = visits                                                                                      \
+    }
+
 RT_TEST(it_counts_what_was_counted_by_hand) {
     RtScene scene;
     make_screen(&scene);
     RtRay above = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 6), 0);    /* under the sphere, above the screen */
     RtRay below = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 3), 0);    /* under both */
     RtRay high = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 9.02f), 0); /* above both */
+    RtRay under = shadow_ray(&scene, rt_vec3(3.5f, 3.5f, 3), 0);    /* under the screen, past the sphere */
+    RtRay over = shadow_ray(&scene, rt_vec3(3.5f, 3.5f, 6), 0);     /* above the screen, past the sphere */
+    RtRay deepest = shadow_ray(&scene, rt_vec3(3.9f, 3.9f, 0.9f), 0);
+    RtRay on_top = shadow_ray(&scene, rt_vec3(3.5f, 3.5f, 5.01f), 0);
+    RtRay aside = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 8.9f), 0);
     RtRay askew = below, foreign = below, longer = below, away = below;
     askew.dir.x *= 1.5f;
     foreign.source = 1;
     longer.tmax = 2;
     away.org.z = -1000;
     away.dir.z = 1010;
+    const RtTally passed = {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1};
     const Row rows[] = {
-        /* One cell a face: the list downwards is sphere 1 (depth 1), polygon 0 (5), sphere 2 (9). */
-        {"light:cells=1+brute",
-         above,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
-        {"light:cells=1,extents=off+brute",
-         above,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .steps = 1}},
+        /* One cell a face: the list downwards is sphere 1 (depth 1), polygon 0 (5), sphere 2 (9). An extent
+         * test for the part of the cell, and one for the side of the object. */
+        {"light:cells=1+brute", above, true, HIT(1, 2, 1)},
+        {"light:cells=1,extents=off+brute", above, true, HIT(1, 0, 1)},
         /* No object is less deep than 0.98. */
         {"light:cells=1+brute", high, false, {.rays = 1}},
-        /* With 16 cells sphere 1 covers the cell around its middle: it is what hides the depths. */
-        {"light:cells=16+brute",
-         below,
+        /* The sphere in vain, and then the screen; sphere 2 is deeper than the ray. */
+        {"light:cells=1,full_occlusion=off+brute", under, true, HIT(2, 4, 2)},
+        {"light:cells=1,full_occlusion=off+brute",
+         over,
+         false,
+         {.rays = 1, .object_tests = 1, .extent_tests = 2, .steps = 1}},
+        /* After the first entry two are looked at: sphere 2 as well, though the screen is in the way. */
+        {"light:cells=1,full_occlusion=off+brute", deepest, true, HIT(3, 6, 3)},
+        /* Right above the screen, which is deeper; sphere 1 is not in the cell. */
+        {"light:cells=16+brute", on_top, false, {.rays = 1}},
+        /* Right above sphere 1, which the ray leaves behind: it is not tested. */
+        {"light:cells=1+brute", aside, false, {.rays = 1, .extent_tests = 2, .steps = 1}},
+        /* With 16 cells sphere 1 covers the cell around its middle. */
+        {"light:cells=16+brute", below, true, HIT(1, 2, 1)},
+        /* A list that is cut after one entry: brute goes on, both spheres before the polygon. */
+        {"light:cells=1,longest=1+brute",
+         under,
          true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
+         {.rays = 1,
+          .hits = 1,
+          .object_tests = 4,
+          .object_hits = 1,
+          .extent_tests = 2,
+          .steps = 1,
+          .passed_on = 1}},
         /* What is no ray to a light is passed on, where brute tests in order of shape: sphere 1 first. */
-        {"light+brute",
-         foreign,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
-        {"light+brute",
-         longer,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
-        {"light+brute",
-         askew,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
-        /* Nor is one from outside the domain. */
-        {"light+brute",
-         away,
-         true,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .passed_on = 1}},
+        {"light:cells=64+brute", foreign, true, passed},
+        {"light:cells=64+brute", longer, true, passed},
+        {"light:cells=64+brute", askew, true, passed},
+        /* So is one from outside the domain, and any in a scene of few objects unless cells are asked for. */
+        {"light:cells=64+brute", away, true, passed},
+        {"light+brute", below, true, passed},
     };
     check_rows(&scene, rows, sizeof rows / sizeof rows[0]);
     rt_scene_clear(&scene);
 }
 
-/* ---- what a cell remembers ---- */
+/* ---- the same on all machines ---- */
 
-RT_TEST(a_cell_remembers_what_blocked_its_last_ray) {
-    RtScene scene;
-    make_screen(&scene);
-    /* One cell a face, its list sphere 1 (depth 1), polygon 0 (5), sphere 2 (9). The first ray passes through
-     * the box of sphere 1 and misses it, as the second does, which is from above the screen. */
-    RtRay under = shadow_ray(&scene, rt_vec3(3.5f, 3.5f, 3), 0);
-    RtRay over = shadow_ray(&scene, rt_vec3(3.5f, 3.5f, 6), 0);
-    RtRay shaded = shadow_ray(&scene, rt_vec3(0.5f, 0.5f, 6), 0);
-    const RtTally from_the_start = {.rays = 1,
-                                    .hits = 1,
-                                    .object_tests = 2,
-                                    .object_hits = 1,
-                                    .extent_tests = 3, /* two boxes, and the plane of the polygon */
-                                    .steps = 2};
-    const struct {
-        RtRay ray;
-        bool begin;
-        RtTally expected;
-    } rows[] = {
-        {under, false, from_the_start},
-        /* The polygon, remembered, comes first; */
-        {under,
-         false,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 2, .steps = 1}},
-        /* but not where it is deeper than the origin. What misses changes nothing. */
-        {over, false, {.rays = 1, .object_tests = 1, .extent_tests = 1, .steps = 1}},
-        {under,
-         false,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 2, .steps = 1}},
-        /* Now sphere 1 is remembered, */
-        {shaded,
-         false,
-         {.rays = 1, .hits = 1, .object_tests = 1, .object_hits = 1, .extent_tests = 1, .steps = 1}},
-        /* and tried in vain, once. */
-        {under, false, from_the_start},
-        /* A new beginning: the polygon is forgotten. */
-        {under, true, from_the_start},
-    };
-    RtAccel *accel;
-    RtQuery query;
-    assert_ok(rt_accel_open("light:cells=1,full_occlusion=off+brute", &scene, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
-        bool blocked;
-        if (rows[i].begin) rt_query_begin(&query);
-        rt_occluded(&query, &rows[i].ray, 1, &blocked, tallies);
-        check_tally(i, &tallies[RT_RAY_SHADOW], &rows[i].expected);
+static void check_same_lists(const RtLightBuffer *a, const RtLightBuffer *b) {
+    for (uint32_t i = 0; i < a->base.scene->light_count; i++) {
+        const RtLightCube *x = &a->cubes[i], *y = &b->cubes[i];
+        assert_int_equal(x->tile_count, y->tile_count);
+        assert_int_equal(x->cell_count, y->cell_count);
+        assert_memory_equal(x->tiles, y->tiles, x->tile_count * sizeof *x->tiles);
+        assert_memory_equal(x->first, y->first, (x->cell_count + (size_t)1) * sizeof *x->first);
+        assert_memory_equal(x->entries, y->entries, x->first[x->cell_count] * sizeof *x->entries);
     }
-    /* Where epochs have been used up, what an old one has left behind is not mistaken for new. */
-    RtLightMemory *memory = query.scratch[0].own;
-    memory[0].epoch = UINT32_MAX;
-    memory[1].epoch = 1;
-    rt_query_begin(&query);
-    for (size_t i = 1; i <= 6; i++) assert_int_not_equal(memory[i].epoch, memory[0].epoch);
+}
+
+static const char *const large_scenes[] = {"hall:size=2", "city:size=5"};
+
+RT_TEST(lists_do_not_depend_on_threads) {
+    for (size_t i = 0; i < sizeof large_scenes / sizeof large_scenes[0]; i++) {
+        RtScene scene;
+        RtAccel *one, *three;
+        assert_ok(rt_builtin_open(large_scenes[i], &scene, error));
+        assert_ok(rt_accel_open_on("light+brute", &scene, 1, &one, error));
+        assert_ok(rt_accel_open_on("light+brute", &scene, 3, &three, error));
+        assert_true(((RtLightBuffer *)one)->serves);
+        check_same_lists((RtLightBuffer *)one, (RtLightBuffer *)three);
+        rt_accel_destroy(one);
+        rt_accel_destroy(three);
+        rt_scene_clear(&scene);
+    }
+}
+
+enum { MANY = 4000 };
+
+static void answer(RtAccel *accel, const RtRay *rays, bool *blocked, RtTally *tally) {
+    RtTally tallies[RT_RAY_KIND_COUNT] = {{0}};
+    RtQuery query;
+    assert_ok(rt_query_init(&query, accel, error));
+    rt_occluded(&query, rays, MANY, blocked, tallies);
+    *tally = tallies[RT_RAY_SHADOW];
     rt_query_clear(&query);
-    rt_accel_destroy(accel);
-    rt_scene_clear(&scene);
+}
+
+RT_TEST(every_instruction_set_makes_the_same_lists_and_counts) {
+    static RtRay rays[MANY];
+    static bool expected[MANY], blocked[MANY];
+    for (size_t i = 0; i < sizeof large_scenes / sizeof large_scenes[0]; i++) {
+        RtScene scene;
+        RtAccel *accel;
+        RtTally by_best, tally;
+        assert_ok(rt_builtin_open(large_scenes[i], &scene, error));
+        assert_ok(rt_accel_open("light+brute", &scene, &accel, error));
+        RtLightBuffer *best = (RtLightBuffer *)accel;
+        RtRandom random = rt_random(9, 0);
+        for (uint32_t k = 0; k < MANY; k++) {
+            const RtBox *box = &scene.geometry.boxes[rt_random_below(&random, scene.geometry.object_count)];
+            rays[k] = shadow_ray(&scene, rt_box_center(*box), k % scene.light_count);
+        }
+        answer(accel, rays, expected, &by_best);
+        for (RtIsa isa = RT_ISA_PORTABLE; isa <= rt_isa_best(); isa++) {
+            RtLightBuffer other = *best;
+            other.kernels = rt_light_kernels(isa);
+            other.cubes = rt_alloc(scene.light_count, sizeof(RtLightCube));
+            assert_non_null(other.cubes);
+            for (uint32_t light = 0; light < scene.light_count; light++) {
+                RtLightBins bins = {NULL, NULL};
+                other.cubes[light] = best->cubes[light];
+                other.cubes[light].cell_count = 0;
+                assert_ok(rt_light_fill_bins(&other, light, 1, &bins, error));
+                assert_ok(rt_light_make_lists(&other, light, &bins, UINT32_MAX, 1, error));
+                rt_free(bins.first);
+                rt_free(bins.objects);
+            }
+            check_same_lists(best, &other);
+            const RtLightKernels *kept = best->kernels;
+            best->kernels = other.kernels;
+            answer(accel, rays, blocked, &tally);
+            best->kernels = kept;
+            assert_memory_equal(blocked, expected, sizeof blocked);
+            assert_memory_equal(&tally, &by_best, sizeof tally);
+            for (uint32_t light = 0; light < scene.light_count; light++) {
+                rt_free(other.cubes[light].tiles);
+                rt_free(other.cubes[light].first);
+                rt_free(other.cubes[light].entries);
+            }
+            rt_free(other.cubes);
+        }
+        rt_accel_destroy(accel);
+        rt_scene_clear(&scene);
+    }
 }
 
 RT_TESTS(light, NULL, assert_nothing_is_kept)

@@ -12,9 +12,27 @@ static const RtLightBuffer *open_buffer(const char *spec, const RtScene *scene, 
     return (const RtLightBuffer *)*accel;
 }
 
-/* A cell of the face that looks down, -z, from the first light. */
-static size_t cell_at(const RtLightBuffer *buffer, uint32_t column, uint32_t row) {
-    return rt_light_face(buffer, 0, 4) + (size_t)row * buffer->n + column;
+/* A list of the face that looks down, -z, from the first light: its cells are in one tile. */
+typedef struct List {
+    const RtLightEntry *at;
+    uint32_t count;
+    bool cut;
+} List;
+
+static List list_at(const RtLightBuffer *buffer, uint32_t column, uint32_t row) {
+    const RtLightCube *cube = &buffer->cubes[0];
+    const RtLightGrid *grid = &cube->grids[4];
+    assert_int_equal(grid->columns * grid->rows, 1);
+    uint32_t tile = cube->tiles[grid->first_tile];
+    uint32_t cell = rt_light_first_cell(tile) + row * rt_light_fineness(tile) + column;
+    List list = {cube->entries + cube->first[cell], cube->first[cell + 1] - cube->first[cell], false};
+    list.cut = list.count > 0 && list.at[list.count - 1].object == RT_LIGHT_BEYOND;
+    return list;
+}
+
+static float depth_of(const RtLightBuffer *buffer, const RtLightEntry *entry) {
+    const RtLightGrid *grid = &buffer->cubes[0].grids[4];
+    return grid->depth + (float)(entry->key >> 16) / grid->depth_scale;
 }
 
 RT_TEST(full_occlusion_ends_lists_at_what_covers_a_cell) {
@@ -23,20 +41,20 @@ RT_TEST(full_occlusion_ends_lists_at_what_covers_a_cell) {
     make_screen(&scene);
     const RtLightBuffer *cut = open_buffer("light:cells=16+brute", &scene, &on);
     const RtLightBuffer *whole = open_buffer("light:cells=16,full_occlusion=off+brute", &scene, &off);
-    /* The middle of the face is under the sphere, the cell at u = w = 0.6 beside it, over the
+    /* The middle of the face is under the sphere, the cell at u = w = 0.7 beside it, over the
      * screen. */
-    size_t middle = cell_at(cut, 8, 8), beside = cell_at(cut, 12, 12);
-    assert_null(whole->covers);
-    assert_int_equal(whole->first[middle + 1] - whole->first[middle], 3);
-    assert_int_equal(cut->covers[middle].id, 1);
-    assert_int_equal(cut->covers[beside].id, 0);
-    assert_int_equal(cut->first[middle + 1] - cut->first[middle], 1);
-    assert_true(cut->covers[middle].depth >= 3 && cut->covers[middle].depth < 3.01f);
-    assert_true(cut->covers[beside].depth >= 5 && cut->covers[beside].depth < 5.01f);
-    /* Where the screen ends nothing is covered: its rim is at u = 0.8. */
-    for (uint32_t i = 0; i < 16; i++) {
-        assert_int_equal(cut->covers[cell_at(cut, i, 15)].id, RT_NO_OBJECT);
-    }
+    List middle = list_at(cut, 8, 8), all = list_at(whole, 8, 8), beside = list_at(cut, 13, 13);
+    assert_int_equal(all.count, 3);
+    assert_false(all.cut);
+    assert_int_equal(middle.count, 2);
+    assert_true(middle.cut);
+    assert_int_equal(middle.at[0].object, scene.geometry.objects[1]);
+    assert_true(depth_of(cut, &middle.at[1]) >= 2 && depth_of(cut, &middle.at[1]) < 2.01f);
+    assert_int_equal(beside.count, 1); /* nothing is behind the screen there */
+    assert_int_equal(beside.at[0].object, scene.geometry.objects[0]);
+    assert_false(beside.cut);
+    /* Where the screen ends nothing is seen: its rim is at u = 0.8. */
+    for (uint32_t i = 0; i < 16; i++) assert_int_equal(list_at(cut, i, 15).count, 0);
     assert_ok(rt_accel_validate(on, error));
     assert_ok(rt_accel_validate(off, error));
     rt_accel_destroy(on);
@@ -44,18 +62,52 @@ RT_TEST(full_occlusion_ends_lists_at_what_covers_a_cell) {
     rt_scene_clear(&scene);
 }
 
-RT_TEST(a_concave_polygon_covers_no_cell_of_its_notch) {
-    /* A square with a notch down to its middle. */
+RT_TEST(a_list_is_cut_where_it_would_be_too_long) {
+    RtScene scene;
+    RtAccel *accel;
+    make_screen(&scene);
+    const RtLightBuffer *buffer =
+        open_buffer("light:cells=16,full_occlusion=off,longest=2+brute", &scene, &accel);
+    List list = list_at(buffer, 8, 8);
+    assert_int_equal(list.count, 3);
+    assert_true(list.cut);
+    assert_true(depth_of(buffer, &list.at[2]) > 8.9f); /* of the sphere that is missing */
+    assert_ok(rt_accel_validate(accel, error));
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(nothing_is_cut_behind_the_notch_of_a_concave_polygon) {
+    /* A square with a notch down to its middle, and one behind it. */
     const RtVec3 notched[5] = {{{-8, -8, 5}}, {{8, -8, 5}}, {{8, 8, 5}}, {{0, 0, 5}}, {{-8, 8, 5}}};
+    const RtVec3 behind[4] = {{{-8, -8, 0}}, {{8, -8, 0}}, {{8, 8, 0}}, {{-8, 8, 0}}};
     RtScene scene;
     RtAccel *accel;
     begin_scene(&scene);
     assert_ok(rt_scene_add_polygon(&scene, 0, notched, 5, error));
+    assert_ok(rt_scene_add_polygon(&scene, 0, behind, 4, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
     const RtLightBuffer *buffer = open_buffer("light:cells=16+brute", &scene, &accel);
-    assert_int_equal(buffer->covers[cell_at(buffer, 8, 2)].id, 0);
-    assert_int_equal(buffer->covers[cell_at(buffer, 8, 12)].id, RT_NO_OBJECT);
+    List notch = list_at(buffer, 8, 12);
+    assert_false(notch.cut);
+    assert_int_equal(notch.at[notch.count - 1].object, scene.geometry.objects[1]);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+/* A slanted edge: what is beyond it in the cell is told from the cell's parts. */
+RT_TEST(a_key_says_which_parts_of_the_cell_an_object_is_seen_in) {
+    const RtVec3 corner[3] = {{{-5, -5, 5}}, {{5, -5, 5}}, {{-5, 5, 5}}};
+    RtScene scene;
+    RtAccel *accel;
+    begin_scene(&scene);
+    assert_ok(rt_scene_add_triangle(&scene, 0, corner, NULL, error));
+    assert_ok(rt_scene_add_light(&scene, rt_vec3(0, 0, 10), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(&scene, error));
+    List list = list_at(open_buffer("light:cells=1+brute", &scene, &accel), 0, 0);
+    assert_int_equal(list.count, 1);
+    assert_int_equal(list.at[0].key & RT_LIGHT_PARTS, 0x37ff); /* on the diagonal, and up to it */
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);
 }
@@ -74,62 +126,60 @@ RT_TEST(too_many_cells_are_refused_with_a_number_that_fits) {
     RtError error = {RT_OK, ""};
     make_awkward(&scene, 0);
     assert_int_equal(rt_accel_open("light:cells=4096+bvh", &scene, &accel, &error), RT_BAD_INPUT);
-    /* 8 lights x 6 faces x 20 bytes a cell in 4 GiB, without any list: 2115. What a cell remembers counts. */
-    unsigned fits = number_that_fits(&error);
-    assert_in_range(fits, 1000, 2115);
-    assert_int_equal(rt_accel_open("light:cells=4096,cache=off+bvh", &scene, &accel, &error), RT_BAD_INPUT);
-    assert_in_range(number_that_fits(&error), fits + 1, 2730);
+    /* 8 lights x 6 faces x 20 bytes a cell in 4 GiB: 2115 if all faces saw the scene all over, less than a
+     * tile more. */
+    assert_in_range(number_that_fits(&error), 2080, 4095);
     rt_scene_clear(&scene);
+}
+
+static bool starts_with_a_triangle(const RtLightCube *cube, uint32_t cell) {
+    const RtLightEntry *list = &cube->entries[cube->first[cell]];
+    if (cube->first[cell + 1] - cube->first[cell] < 2 || list[0].key >> 16 == list[1].key >> 16) return false;
+    return rt_ref_shape(list[0].object) == RT_SHAPE_TRIANGLE &&
+           __builtin_popcount(list[0].key & RT_LIGHT_PARTS) > 8;
 }
 
 RT_TEST(each_broken_invariant_is_named) {
     RtScene scene;
     RtAccel *accel;
     make_awkward(&scene, 0);
-    assert_ok(rt_accel_open("light:cells=8+brute", &scene, &accel, error));
+    assert_ok(rt_accel_open("light:cells=64,full_occlusion=off+brute", &scene, &accel, error));
     RtLightBuffer *buffer = (RtLightBuffer *)accel;
+    RtLightCube *cube = &buffer->cubes[4];
     assert_ok(rt_accel_validate(accel, error));
 
-    size_t cell = 0;
-    while (buffer->first[cell + 1] - buffer->first[cell] < 2) cell++;
-    RtLightEntry *list = &buffer->entries[buffer->first[cell]], kept = list[0];
+    uint32_t cell = 0; /* with a triangle in most of it, and something deeper */
+    while (!starts_with_a_triangle(cube, cell)) cell++;
+    RtLightEntry *list = &cube->entries[cube->first[cell]], kept = list[0];
     list[0] = list[1];
     list[1] = kept;
-    assert_broken(accel, "lacks object");
+    assert_broken(accel, "is not in order");
     list[1] = list[0];
-    list[0] = kept;
-    list[0].depth += 1;
     assert_broken(accel, "lacks object");
+    list[0] = kept;
+    list[0].key = list[1].key;
+    assert_broken(accel, "lacks object");
+    list[0] = kept;
+    list[0].key &= ~RT_LIGHT_PARTS;
+    assert_broken(accel, "lacks object");
+    list[0] = kept;
+    list[0].object = RT_LIGHT_BEYOND;
+    assert_broken(accel, "is not in order");
     list[0] = kept;
 
-    buffer->first[cell + 1] -= 1;
-    assert_broken(accel, "lacks object");
-    buffer->first[cell + 1] += 1;
-    uint32_t end = buffer->first[cell + 1];
-    buffer->first[cell + 1] = 0;
-    buffer->first[cell] = 1;
+    uint32_t end = cube->first[cell + 1];
+    cube->first[cell + 1] = cube->first[cell] - 1;
     assert_broken(accel, "ends before it begins");
-    buffer->first[cell + 1] = end;
-    buffer->first[cell] = (uint32_t)(list - buffer->entries);
+    cube->first[cell + 1] = end;
 
-    size_t covered = 0;
-    while (buffer->covers[covered].id == RT_NO_OBJECT) covered++;
-    RtLightCover cover = buffer->covers[covered];
-    buffer->covers[covered].depth /= 2;
-    assert_broken(accel, "is not covered");
-    buffer->covers[covered].id ^= 1;
-    assert_broken(accel, "is not covered");
-    buffer->covers[covered] = cover;
-
-    assert_true(buffer->near_first[1] > 0); /* the first light is inside a sphere */
-    buffer->near[0] ^= 1;
-    assert_broken(accel, "near list");
-    buffer->near[0] ^= 1;
-    buffer->near_first[1] += 1; /* one more for the first light, one fewer for the second */
+    cube = &buffer->cubes[0];
+    assert_true(cube->near_count > 0); /* the first light is inside a sphere */
+    cube->near[0] ^= 1;
     assert_broken(accel, "near list of light 0");
-    buffer->near_first[1] -= 2;
+    cube->near[0] ^= 1;
+    cube->near_count -= 1;
     assert_broken(accel, "near list of light 0");
-    buffer->near_first[1] += 1;
+    cube->near_count += 1;
     assert_ok(rt_accel_validate(accel, error));
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);

@@ -73,15 +73,15 @@ RT_TEST(lights_in_awkward_places_are_answered_like_brute) {
 
 /* ---- rounding, partial occluders, edges, receivers ---- */
 
-/* A triangle 1 below the light, its edges just inside borders of the 8 x 8 cells and one corner that its
- * diagonal passes; specks 2000 off widen the domain. A vertex is seen from 1000 off with an error of 2^-24 of
- * that, which is 2^-14 of the distance to the light: rays that miss by less are said to hit, from the cells
- * beside. */
-RT_TEST(rounding_far_off_is_within_the_margin) {
+/* A triangle 1 below the light, its edges at u, w = +- size and by `in` inside borders of cells, and one
+ * corner that its diagonal passes; specks 2000 off widen the domain. A vertex is seen from 1000 off with an
+ * error of 2^-24 of that, which is 2^-14 of the distance to the light: rays that miss by less are said to
+ * hit, from the cells beside. */
+static void check_far_off(float size, float in, const char *spec) {
     enum { COUNT = 100000 };
     static RtRay rays[COUNT];
     const RtVec3 light = {{0.1f, 0.2f, 0.3f}};
-    const float in = 0x1p-18f, a = 0.25f - in, b = -0.25f + 3 * in;
+    const float a = size - in, b = -size + 3 * in;
     const RtVec3 corners[3] = {{{a, b, -1}}, {{b, a, -1}}, {{a, a, -1}}};
     RtScene scene;
     begin_scene(&scene);
@@ -96,16 +96,26 @@ RT_TEST(rounding_far_off_is_within_the_margin) {
     for (size_t i = 0; i < COUNT; i++) {
         double depth = 500 + 1000 * (double)rt_random_unit(&random), at[2];
         for (int k = 0; k < 2; k++) {
-            double off = 0x1p-15 * ((double)rt_random_unit(&random) - 0.5);
-            at[k] = 0.25 * ((double)(rt_random_below(&random, 3)) - 1) + off;
+            double off = (0x1p-15 + 2 * (double)in) * ((double)rt_random_unit(&random) - 0.5);
+            at[k] = (double)size * ((double)(rt_random_below(&random, 3)) - 1) + off;
         }
-        if (i % 2) at[i / 2 % 2] = 0.5 * (double)rt_random_unit(&random) - 0.25; /* along a border */
+        /* along a border */
+        if (i % 2) at[i / 2 % 2] = (double)size * (2 * (double)rt_random_unit(&random) - 1);
         RtVec3d from = rt_vec3d(at[0] * depth, at[1] * depth, -depth);
         rays[i] = shadow_ray(&scene, rt_add(light, rt_narrow(from)), 0);
     }
-    check_like_brute("light:cells=8,extents=off+brute", &scene, rays, COUNT);
-    check_like_brute("light:cells=8+brute", &scene, rays, COUNT);
+    RtTally tally = check_like_brute(spec, &scene, rays, COUNT);
+    assert_true(tally.object_tests > COUNT / 20 && tally.passed_on == 0);
     rt_scene_clear(&scene);
+}
+
+/* Cells of which a 64th, by which all grow, is more than the error, and less. */
+RT_TEST(rounding_far_off_is_within_the_margin) {
+    check_far_off(0.25f, 0x1p-18f, "light:cells=8,extents=off+brute");
+    check_far_off(0.25f, 0x1p-18f, "light:cells=8+brute");
+    check_far_off(0.25f, 0x1.8p-16f, "light:cells=4096,extents=off+brute");    /* a large triangle */
+    check_far_off(0x1p-10f, 0x1.9p-17f, "light:cells=4096,extents=off+brute"); /* a small one */
+    check_far_off(0x1p-10f, 0x1.9p-17f, "light:cells=4096+brute");
 }
 
 /* What a sphere over half of a cell does not hide is seen, without asking below. */
@@ -113,7 +123,7 @@ RT_TEST(a_partial_occluder_hides_nothing_beside_it) {
     enum { COUNT = 20000 };
     static RtRay rays[COUNT];
     const char *specs[] = {"light:cells=1+brute", "light:cells=3+brute", "light:cells=16+brute",
-                           "light:cells=61,cache=off+brute"};
+                           "light:cells=61,longest=3+brute"};
     RtScene scene;
     begin_scene(&scene);
     assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(0.3f, 0.2f, 8), 1, error));
@@ -164,31 +174,37 @@ RT_TEST(directions_along_edges_and_corners_are_answered_like_brute) {
         RtTally tally = check_like_brute("light:cells=1+brute", &scene, rays, count);
         assert_true(lights ? tally.passed_on == 0 : tally.passed_on == count);
         check_like_brute("light:cells=4+brute", &scene, rays, count);
-        check_like_brute("light:cells=8,extents=off,cache=off+brute", &scene, rays, count);
+        check_like_brute("light:cells=8,extents=off+brute", &scene, rays, count);
         check_like_brute("light:cells=9+brute", &scene, rays, count);
         rt_scene_clear(&scene);
     }
 }
 
-/* A ray that leaves a triangle on the light's side tests neither it nor those in its plane. */
+/* A ray that leaves a polygon or a sphere on the light's side tests neither it nor what is in its plane. */
 RT_TEST(a_receiver_that_faces_the_light_is_not_tested) {
-    const RtVec3 corners[4] = {{{-1, -1, -1}}, {{1, -1, 1}}, {{1, 1, 1}}, {{-1, 1, -1}}};
+    const RtVec3 corners[6] = {{{-1, -1, -1}}, {{1, -1, 1}}, {{1, 0, 1}},
+                               {{-1, 0, -1}},  {{1, 1, 1}},  {{-1, 1, -1}}};
+    const RtVec3 beside[4] = {corners[3], corners[2], corners[4], corners[5]};
     RtScene scene;
     begin_scene(&scene);
-    for (int i = 1; i < 3; i++) {
-        const RtVec3 half[3] = {corners[0], corners[i], corners[i + 1]};
-        assert_ok(rt_scene_add_triangle(&scene, 0, half, NULL, error));
-    }
+    assert_ok(rt_scene_add_polygon(&scene, 0, corners, 4, error));
+    assert_ok(rt_scene_add_polygon(&scene, 0, beside, 4, error));
+    assert_ok(rt_scene_add_sphere(&scene, 0, rt_vec3(3, 0, -3), 1, error));
     assert_ok(rt_scene_add_light(&scene, rt_vec3(1, 2, 3), rt_vec3(1, 1, 1), error));
     assert_ok(rt_scene_finish(&scene, error));
+    const char *spec = "light:cells=64,full_occlusion=off+brute";
     RtRay off = shadow_ray(&scene, rt_vec3(-0x1p-17f, 0, 0x1p-17f), 0),
-          on = shadow_ray(&scene, rt_vec3(0, 0, 0), 0);
-    RtTally tally = check_like_brute("light:full_occlusion=off+brute", &scene, &off, 1);
+          on = shadow_ray(&scene, rt_vec3(0, 0, 0), 0),
+          top = shadow_ray(&scene, rt_vec3(3, 0, -2 + 0x1p-15f), 0);
+    RtTally tally = check_like_brute(spec, &scene, &off, 1);
     assert_int_equal(tally.steps, 2);
     assert_int_equal(tally.extent_tests, 4);
     assert_int_equal(tally.object_tests, 0);
-    tally = check_like_brute("light:full_occlusion=off+brute", &scene, &on, 1);
-    assert_int_equal(tally.object_hits, 1);
+    tally = check_like_brute(spec, &scene, &on, 1);
+    assert_true(tally.object_hits > 0);
+    tally = check_like_brute(spec, &scene, &top, 1);
+    assert_int_equal(tally.steps, 1);
+    assert_int_equal(tally.object_tests, 0);
     rt_scene_clear(&scene);
 }
 

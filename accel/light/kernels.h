@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Answering shadow rays in streams; included once for each instruction set: RT_LIGHT_KERNELS is the name of
+ * the table that is defined.
+ *
+ * Of a stream a block of rays is taken at a time, light by light. First each ray finds its cell, sixteen in
+ * lanes. Then the rays that have a list go through it in rounds, of one entry, of two, and of four: those
+ * whose entry is not deeper and is seen in their part of the cell make pairs of a ray and an object, which
+ * are tested in lanes where they are triangles. Who is blocked, or at the end of its list, drops out. What a
+ * ray does depends on no other, so that counts are the same in streams of any length. Rays at the end of a
+ * list that was cut, and those that are not exactly what a shadow ray is, are passed on together.
+ *
+ * A step is an entry looked at that is not deeper than the ray; an extent test that of the part of the cell,
+ * and of the side of a polygon or sphere (side.h). */
+#include "accel/light/meet.h"
+#include "accel/light/raster.h"
+
+/* ---- a round ---- */
+
+/* What is looked up in a round. */
+typedef struct Round {
+    uint32_t pairs, others, left;
+    bool all_triangles;
+} Round;
+
+/* Appends the pairs of lanes `met`. */
+RT_KERNEL void add_pairs(const Asking *a, Round *round, uint32_t met, RtW16 ray, RtW16 object) {
+    const RtGeometry *g = &a->self->base.scene->geometry;
+    Stream *stream = a->stream;
+    if (!round->all_triangles) {
+        const RtW16 triangle = rt_w16_all(RT_SHAPE_TRIANGLE);
+        uint32_t other = met & ~rt_w16_equal(rt_w16_right(object, RT_REF_INDEX_BITS), triangle);
+        rt_w16_put_some(stream->other_ray + round->others, other, ray);
+        rt_w16_put_some(stream->other_object + round->others, other, object);
+        round->others += (uint32_t)__builtin_popcount(other);
+        met &= ~other;
+    }
+    rt_w16_put_some(stream->pair_ray + round->pairs, met, ray);
+    rt_w16_put_some(stream->pair_object + round->pairs, met, object);
+    uint32_t after = round->pairs + (uint32_t)__builtin_popcount(met);
+    for (uint32_t i = round->pairs; i < after; i++) {
+        const RtTriangle *t = &g->triangles[rt_ref_index(stream->pair_object[i])];
+        __builtin_prefetch(t);
+        __builtin_prefetch(&t->v[2].z);
+    }
+    round->pairs = after;
+}
+
+/* Sixteen rays on their way look at their next `deep` entries. */
+RT_KERNEL void look_up(const Asking *a, const RtLightEntry *entries, uint32_t first, uint32_t count,
+                       uint32_t deep, Round *round) {
+    Stream *stream = a->stream;
+    Way *way = &stream->way;
+    const RtW16 beyond = rt_w16_all(RT_LIGHT_BEYOND), one = rt_w16_all(1), none = rt_w16_all(0);
+    uint32_t lanes = count - first < 16 ? (1u << (count - first)) - 1 : 0xffff;
+    RtW16 ray = rt_w16_pick(lanes, none, rt_w16_get(way->ray + first));
+    RtW16 at = rt_w16_pick(lanes, none, rt_w16_get(way->at + first));
+    RtW16 end = rt_w16_get(way->end + first), key = rt_w16_get(way->key + first);
+    const RtW16 depth = rt_w16_right(key, 16);
+    const RtW16 part = rt_w16_and(key, rt_w16_all(RT_LIGHT_PART * RT_LIGHT_PART - 1));
+    lanes &= rt_w16_equal(rt_w16_lookup(a->blockers, ray), rt_w16_all(RT_NO_OBJECT));
+    for (uint32_t i = 0; i < deep && lanes; i++) {
+        RtW16 object = rt_w16_lookup_pair(&entries[0].object, at);
+        RtW16 of_entry = rt_w16_lookup_pair(&entries[0].key, at);
+        lanes &= ~rt_w16_below(depth, rt_w16_right(of_entry, 16));
+        uint32_t ends = lanes & rt_w16_equal(object, beyond);
+        lanes &= ~ends;
+        rt_w16_put_some(stream->ended + stream->ended_count, ends, ray);
+        stream->ended_count += (uint32_t)__builtin_popcount(ends);
+        RT_COUNT(a->tally, steps, __builtin_popcount(lanes));
+        uint32_t met = lanes;
+        if (a->self->extents) {
+            RT_COUNT(a->tally, extent_tests, __builtin_popcount(lanes));
+            met &= rt_w16_equal(rt_w16_and(rt_w16_down(of_entry, part), one), one);
+        }
+        if (met) add_pairs(a, round, met, ray, object);
+        RtW16 next = rt_w16_add(at, one);
+        lanes &= rt_w16_below(next, end);
+        at = rt_w16_pick(lanes, none, next);
+    }
+    rt_w16_put_some(way->ray + round->left, lanes, ray);
+    rt_w16_put_some(way->at + round->left, lanes, at);
+    rt_w16_put_some(way->end + round->left, lanes, end);
+    rt_w16_put_some(way->key + round->left, lanes, key);
+    round->left += (uint32_t)__builtin_popcount(lanes);
+}
+
+/* A round of all rays on their way; gives how many are left. */
+RT_KERNEL uint32_t take_round(const Asking *a, uint32_t light, uint32_t count, uint32_t deep,
+                              bool all_triangles) {
+    const RtLightEntry *entries = a->self->cubes[light].entries;
+    Round round = {0, 0, 0, all_triangles};
+    for (uint32_t first = 0; first < count; first += 16) look_up(a, entries, first, count, deep, &round);
+    RT_COUNT(a->tally, object_tests, round.pairs);
+    test_pairs(a, light, round.pairs);
+    test_others(a, round.others);
+    return round.left;
+}
+
+/* Rays order[0..count) to a light that serves. */
+RT_KERNEL void shade_light(const Asking *a, uint32_t light, const uint32_t *order, uint32_t count,
+                           bool all_triangles) {
+    Stream *stream = a->stream;
+    stream->ended_count = 0;
+    uint32_t on_way = begin_light(a, light, order, count);
+    for (uint32_t deep = 1; on_way > 0; deep = deep < DEEPEST ? 2 * deep : DEEPEST)
+        on_way = take_round(a, light, on_way, deep, all_triangles);
+    /* Those at the end of a list that was cut; some were blocked in the same round. */
+    for (uint32_t i = 0; i < stream->ended_count; i++) {
+        uint32_t ray = stream->ended[i];
+        stream->passed[stream->passed_count] = ray;
+        stream->passed_count += a->blockers[ray] == RT_NO_OBJECT;
+    }
+}
+
+/* ---- streams ---- */
+
+RT_KERNEL void pass_on(const Asking *a, RtTally *tallies) {
+    Stream *stream = a->stream;
+    uint32_t count = stream->passed_count;
+    if (count == 0) return;
+    RT_COUNT(a->tally, passed_on, count);
+    for (uint32_t i = 0; i < count; i++) stream->passed_rays[i] = a->rays[stream->passed[i]];
+    rt_hand_down_occluded(&a->self->base, a->scratch, stream->passed_rays, count, stream->passed_blockers,
+                          tallies);
+    for (uint32_t i = 0; i < count; i++) a->blockers[stream->passed[i]] = stream->passed_blockers[i];
+}
+
+/* Rays by light: those of lights[0] first, in their order. Gives how many are of it; the others are put
+ * behind, to be gone over again. */
+RT_KERNEL uint32_t gather_light(const RtRay *rays, uint32_t *order, uint32_t count, uint32_t *others,
+                                uint32_t *other_count) {
+    uint32_t light = rays[order[0]].source, same = 0, other = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t ray = order[i];
+        bool is_same = rays[ray].source == light;
+        others[other] = ray;
+        order[same] = ray;
+        same += is_same;
+        other += !is_same;
+    }
+    *other_count = other;
+    return same;
+}
+
+/* A block of shadow rays. */
+RT_KERNEL void shade_block(Asking *a, uint32_t count, RtTally *tallies) {
+    const RtScene *scene = a->self->base.scene;
+    const bool all_triangles = scene->geometry.triangle_count == scene->geometry.object_count;
+    Stream *stream = a->stream;
+    uint32_t two[2][BLOCK], *order = two[0], *others = two[1];
+    stream->passed_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        order[i] = i;
+        a->blockers[i] = RT_NO_OBJECT;
+    }
+    for (uint32_t left = count; left > 0;) {
+        uint32_t light = a->rays[order[0]].source, rest;
+        uint32_t n = gather_light(a->rays, order, left, others, &rest);
+        if (light < scene->light_count && a->self->cubes[light].serves) {
+            shade_light(a, light, order, n, all_triangles);
+        } else {
+            memcpy(stream->passed + stream->passed_count, order, n * sizeof *order);
+            stream->passed_count += n;
+        }
+        left = rest;
+        uint32_t *swap = order;
+        order = others;
+        others = swap;
+    }
+    uint32_t hits = 0;
+    if (a->tally) {
+        for (uint32_t i = 0; i < count; i++) hits += a->blockers[i] != RT_NO_OBJECT;
+    }
+    pass_on(a, tallies);
+    RT_COUNT(a->tally, rays, count - stream->passed_count);
+    RT_COUNT(a->tally, hits, hits);
+}
+
+RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                            uint32_t *blockers, RtTally *tallies) {
+    for (size_t i = 0, next; i < count; i = next) {
+        for (next = i; next < count && rays[next].kind != RT_RAY_SHADOW; next++) {
+        }
+        if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, blockers + i, tallies);
+        i = next;
+        while (next < count && next - i < BLOCK && rays[next].kind == RT_RAY_SHADOW) next++;
+        if (next == i) continue;
+        Asking a = {(const RtLightBuffer *)accel,
+                    scratch,
+                    scratch->own,
+                    rays + i,
+                    blockers + i,
+                    tallies ? &tallies[RT_RAY_SHADOW] : NULL};
+        if (a.self->serves) {
+            shade_block(&a, (uint32_t)(next - i), tallies);
+        } else {
+            RT_COUNT(a.tally, passed_on, next - i);
+            rt_hand_down_occluded(accel, scratch, rays + i, next - i, blockers + i, tallies);
+        }
+    }
+}
+
+RT_REFUSE_QUESTION(nearest, RtHit)
+RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
+
+const RtLightKernels RT_LIGHT_KERNELS = {nearest_timed,  occluded_timed, nearest_counted, occluded_counted,
+                                         sizeof(Stream), place,          cover,           draw,
+                                         cover_outline,  draw_outline};

@@ -1,0 +1,3 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#define RT_LIGHT_KERNELS rt_light_avx2
+#include "accel/light/kernels.h"
