@@ -56,7 +56,11 @@ RT_KERNEL void scan(RtExtentKind kind, const RtExtents *self, const RtPreparedRa
         RT_COUNT(tally, steps, 1);
         RT_COUNT(tally, extent_tests, 1);
         const RtBox *own = &geometry->boxes[id];
-        if (!rt_extent_hit(set, kind, id, own, ray, &line, rt_limit(ray, best), &enter)) continue;
+        RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "extent", .index = id);
+        bool met = rt_extent_hit(set, kind, id, own, ray, &line, rt_limit(ray, best), &enter);
+        RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "extent", .index = id, .box = own,
+                   .met = met);
+        if (!met) continue;
         if (rt_test_object(geometry, id, ray, any, best, tally)) return;
     }
 }

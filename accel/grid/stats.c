@@ -24,6 +24,14 @@ RtStatus rt_grid_each_voxel(const RtGridLevel *level,
     return RT_OK;
 }
 
+RtBox rt_grid_voxel_box(const RtGridLevel *level, uint32_t voxel) {
+    const RtGridBlock *block = &level->blocks[level->block_count - 1];
+    while (block->voxel > voxel) block--;
+    uint32_t within = voxel - block->voxel, x = within % block->n[0], y = within / block->n[0] % block->n[1];
+    uint32_t z = within / block->n[0] / block->n[1];
+    return rt_grid_range_box(block, &(RtGridRange){{x, y, z}, {x, y, z}});
+}
+
 static size_t plane_count(const RtGridLevel *level) {
     size_t planes = 0;
     for (uint32_t b = 0; b < level->block_count; b++) {

@@ -209,4 +209,7 @@ void rt_kd_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);
 
+/* The cell of a node, found by going through the tree: for pictures. */
+RtBox rt_kd_cell(const RtKd *kd, uint32_t node);
+
 #endif

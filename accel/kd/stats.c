@@ -215,3 +215,21 @@ static RtStatus show_node(void *context, const RtKd *kd, const Place *place) {
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     each_node((const RtKd *)accel, show_node, &viewer);
 }
+
+typedef struct Sought {
+    uint32_t node;
+    RtBox cell;
+} Sought;
+
+static RtStatus compare_node(void *context, const RtKd *kd, const Place *place) {
+    (void)kd;
+    Sought *sought = context;
+    if (place->node == sought->node) sought->cell = place->cell;
+    return RT_OK;
+}
+
+RtBox rt_kd_cell(const RtKd *kd, uint32_t node) {
+    Sought sought = {node, RT_EMPTY_BOX};
+    each_node(kd, compare_node, &sought);
+    return sought.cell;
+}

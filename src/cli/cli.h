@@ -23,6 +23,7 @@ int rt_command_accels(int argc, char **argv);
 int rt_command_scenes(int argc, char **argv);
 int rt_command_info(int argc, char **argv);
 int rt_command_render(int argc, char **argv);
+int rt_command_trace(int argc, char **argv);
 int rt_command_verify(int argc, char **argv);
 int rt_command_bench(int argc, char **argv);
 int rt_command_rays(int argc, char **argv);

@@ -14,6 +14,7 @@ static const RtCommand commands[] = {
     {"info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene", rt_command_info},
     {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
      rt_command_render},
+    {"trace", "SCENE", "one ray's path through an accelerator, step by step", rt_command_trace},
     {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
     {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench},
     {"compare", "BEFORE AFTER", "faster or slower: two results, or two programs run in turns",
