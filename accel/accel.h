@@ -98,11 +98,21 @@ typedef void RtNearestCounted(const RtAccel *accel, const RtScratch *scratch, co
 typedef void RtOccludedCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
                                size_t count, uint32_t *blockers, RtTally *tallies);
 
-/* Who looks at the boxes of a structure: one call of `show` each, with its depth below the root. */
+/* Who looks at the boxes of a structure: one call of `show` each, with its depth below the root, and whether
+ * it is a leaf: one that lists objects. */
 typedef struct RtBoxViewer {
-    void (*show)(void *context, const RtBox *box, uint32_t depth);
+    void (*show)(void *context, const RtBox *box, uint32_t depth, bool leaf);
     void *context;
 } RtBoxViewer;
+
+/* What an overlay has in a cell: a sample of the image, or a direction as seen from a light. */
+typedef struct RtCellView {
+    uint32_t number; /* of the cell */
+    uint32_t length; /* objects in its list */
+    uint32_t
+        object; /* the first of them; RT_NO_OBJECT if there is none, RT_UNNAMED_OBJECT if it is undecided */
+    bool cut;   /* a ray that finds nothing in it is passed on */
+} RtCellView;
 
 /* What an accelerator is built from. */
 typedef struct RtBuild {
@@ -165,6 +175,11 @@ struct RtAccelOps {
 
     /* Optional: shows the boxes of the structure, for pictures. */
     void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
+
+    /* Optional, of an overlay, for pictures: the cell in which it looks up `ray`, one of those that it
+     * answers, of which only the direction and the source matter. False if there is no cell: nothing is seen
+     * there. */
+    bool (*look_up)(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 
     /* Optional: RT_OK, or what went wrong while rays were traced, which kernels cannot say. To be asked where
      * no thread traces. */

@@ -105,7 +105,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGeometry *geometry = &accel->scene->geometry;
     for (uint32_t id = 0; id < geometry->object_count; id++)
-        viewer.show(viewer.context, &geometry->boxes[id], 0);
+        viewer.show(viewer.context, &geometry->boxes[id], 0, true);
 }
 
 const RtAccelOps rt_extents_ops = {

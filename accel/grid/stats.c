@@ -254,16 +254,16 @@ typedef struct Show {
 static RtStatus show_voxel(void *context, const RtGridVoxel *voxel) {
     const Show *show = context;
     const RtGridLevel *level = voxel->level;
-    bool holds = level->first[voxel->number] < level->first[voxel->number + 1] ||
-                 rt_grid_inner(level, voxel->number) != RT_GRID_LEAF;
-    if (holds) show->viewer.show(show->viewer.context, &voxel->box, show->depth);
+    bool leaf = rt_grid_inner(level, voxel->number) == RT_GRID_LEAF;
+    bool holds = !leaf || level->first[voxel->number] < level->first[voxel->number + 1];
+    if (holds) show->viewer.show(show->viewer.context, &voxel->box, show->depth, leaf);
     return RT_OK;
 }
 
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGrid *grid = (const RtGrid *)accel;
     if (grid->depth == 0) return;
-    viewer.show(viewer.context, &grid->box, 0);
+    viewer.show(viewer.context, &grid->box, 0, false);
     for (uint32_t i = 0; i < grid->depth; i++) {
         Show show = {viewer, i + 1};
         rt_grid_each_voxel(&grid->levels[i], show_voxel, &show);

@@ -207,8 +207,8 @@ RtStatus rt_kd_validate(const RtAccel *accel, RtError *error) {
 static RtStatus show_node(void *context, const RtKd *kd, const Place *place) {
     const RtBoxViewer *viewer = context;
     const RtKdNode *node = &kd->nodes[place->node];
-    bool empty = rt_kd_is_leaf(node) && rt_kd_length(node) == 0;
-    if (!empty) viewer->show(viewer->context, &place->cell, place->depth);
+    bool leaf = rt_kd_is_leaf(node), empty = leaf && rt_kd_length(node) == 0;
+    if (!empty) viewer->show(viewer->context, &place->cell, place->depth, leaf);
     return RT_OK;
 }
 

@@ -42,7 +42,7 @@ void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, 
 
 static void show_node(const RtHierarchy *self, uint32_t index, uint32_t depth, RtBoxViewer viewer) {
     const RtNode *node = &self->nodes[index];
-    viewer.show(viewer.context, &node->box, depth);
+    viewer.show(viewer.context, &node->box, depth, rt_node_is_leaf(node));
     if (rt_node_is_leaf(node)) return;
     for (uint32_t i = 0; i < node->count; i++) show_node(self, node->first + i, depth + 1, viewer);
 }

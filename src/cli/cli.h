@@ -78,6 +78,9 @@ typedef struct RtListOptions {
 extern const struct argp_option rt_list_options[];
 int rt_list_parse(int key, char *argument, struct argp_state *state);
 
+/* "X,Y", of --pixel */
+void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y);
+
 /* "WxH" */
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);
 

@@ -36,13 +36,6 @@ static const struct argp_option options[] = {
     {"json", 'j', 0, 0, "One JSON document on stdout, with all rows", 0},
     {0}};
 
-static void parse_pixel(Options *o, struct argp_state *state, const char *text) {
-    char end;
-    o->aimed = true;
-    if (sscanf(text, "%u,%u%c", &o->x, &o->y, &end) == 2 && !strchr(text, '-')) return;
-    argp_error(state, "--pixel: invalid value '%s': expected X,Y, as in 256,200", text);
-}
-
 static void parse_kind(Options *o, struct argp_state *state, const char *text) {
     RtError error;
     if (rt_ray_kind_parse(text, &o->kind, &error) == RT_OK && o->kind <= RT_RAY_TRANSMISSION) return;
@@ -61,7 +54,7 @@ static void check_options(const Options *o, struct argp_state *state) {
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     Options *o = state->input;
     switch (key) {
-    case 'p': parse_pixel(o, state, argument); return 0;
+    case 'p': rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true; return 0;
     case 'a': o->accel = argument; return 0;
     case 's': rt_cli_size(state, argument, &o->width, &o->height); return 0;
     case 'k': parse_kind(o, state, argument); return 0;

@@ -7,6 +7,7 @@
 #include "base/table.h"
 #include "render/draw.h"
 #include "render/path.h"
+#include "render/section.h"
 
 enum { WIDTH = 1000, LEFT = 250, PLOT = WIDTH - LEFT - 20 }; /* of the common x axis, pixels */
 enum { TOP = 64, SECTION = 330, GAP = 46, ROW = 14, MOST_ROWS = 90 };
@@ -139,20 +140,15 @@ static void draw_sphere(const Drawing *d, const RtSphere *sphere, const char *st
 
 /* The plane cuts a flat shape in a line: from where it crosses one edge to where it crosses another. */
 static void draw_flat(const Drawing *d, const RtVec3 *corners, uint32_t count, const char *style) {
+    RtVec3d cut[2];
+    if (!rt_section_flat(corners, count, d->org, d->normal, cut)) return;
     double x[2], y[2];
-    int crossings = 0;
-    for (uint32_t i = 0; i < count && crossings < 2; i++) {
-        RtVec3d a = rt_subd(rt_widen(corners[i]), d->org),
-                b = rt_subd(rt_widen(corners[(i + 1) % count]), d->org);
-        double at_a = rt_dotd(a, d->normal), at_b = rt_dotd(b, d->normal);
-        if ((at_a < 0) == (at_b < 0)) continue;
-        RtVec3d cut = rt_add_scaledd(a, rt_subd(b, a), at_a / (at_a - at_b));
-        x[crossings] = within(x_of(d, rt_dotd(cut, d->along)), -WIDTH, 2 * WIDTH);
-        y[crossings++] = within(y_of(d, cut.at[d->axis] + d->org.at[d->axis]), -WIDTH, 2 * WIDTH);
+    for (int i = 0; i < 2; i++) {
+        x[i] = within(x_of(d, rt_dotd(rt_subd(cut[i], d->org), d->along)), -WIDTH, 2 * WIDTH);
+        y[i] = within(y_of(d, cut[i].at[d->axis]), -WIDTH, 2 * WIDTH);
     }
-    if (crossings == 2)
-        fprintf(d->out, "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" %s/>\n", x[0], y[0], x[1],
-                y[1], style);
+    fprintf(d->out, "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" %s/>\n", x[0], y[0], x[1], y[1],
+            style);
 }
 
 static void draw_object(const Drawing *d, const RtPathRow *row) {

@@ -94,8 +94,9 @@ RT_TEST(objects_share_a_leaf_where_that_costs_no_more) {
     rt_scene_clear(&scene);
 }
 
-static void count_box(void *context, const RtBox *box, uint32_t depth) {
+static void count_box(void *context, const RtBox *box, uint32_t depth, bool leaf) {
     uint32_t *at_depth = context;
+    (void)leaf;
     assert_false(rt_box_is_empty(*box));
     at_depth[depth]++;
 }

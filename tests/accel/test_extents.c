@@ -105,9 +105,10 @@ RT_TEST(describe_tells_references_bytes_and_expected_tests) {
     rt_scene_clear(&scene);
 }
 
-static void count_box(void *context, const RtBox *box, uint32_t depth) {
+static void count_box(void *context, const RtBox *box, uint32_t depth, bool leaf) {
     (void)box;
     assert_int_equal(depth, 0);
+    assert_true(leaf);
     ++*(uint32_t *)context;
 }
 

@@ -189,8 +189,9 @@ RT_TEST(nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_that_
     rt_scene_clear(&scene);
 }
 
-static void count_box(void *context, const RtBox *box, uint32_t depth) {
+static void count_box(void *context, const RtBox *box, uint32_t depth, bool leaf) {
     uint32_t *boxes = context;
+    if (leaf) assert_true(depth > 0);
     assert_false(rt_box_is_empty(*box));
     assert_in_range(depth, 0, 2);
     boxes[depth]++;

@@ -17,9 +17,9 @@ typedef struct Bench {
     bool blocked[ALL];
 } Bench;
 
-static void note_box(void *context, const RtBox *box, uint32_t depth) {
+static void note_box(void *context, const RtBox *box, uint32_t depth, bool leaf) {
     Target *target = context;
-    (void)depth;
+    (void)depth, (void)leaf;
     if (target->box_count < sizeof target->boxes / sizeof target->boxes[0])
         target->boxes[target->box_count++] = *box;
 }
