@@ -361,7 +361,7 @@ int rt_command_render(int argc, char **argv) {
         "  raytally render balls --accel octree --structure leaves.png --leaves --level 0..6\n"
         "  raytally render balls --accel grid --structure section.png --slice z\n"
         "  raytally render balls --accel item:settle=off+bvh --structure samples.png\n"
-        "  raytally render balls --accel light:cells=64+bvh --structure cells.png --pixel 256,300\n"
+        "  raytally render balls --accel light:cells=64+bvh --structure cells.png --pixel 256,400\n"
         "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
         "--heatmap-difference\n"
         "`raytally trace` follows a single ray. What the counters count is in docs/columns.md.";

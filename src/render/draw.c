@@ -158,7 +158,8 @@ int rt_draw_scale(RtImage *image, int x, int y, int width, int dot, const RtScal
             half = rt_text_width(text) * dot / 2;
         rt_draw_rectangle(image, at, marks, dot, MARK * dot, RT_WHITE);
         int from = at - half > x ? at - half : x;
-        if (from < free_from || from + 2 * half > x + width + 2 * dot) continue;
+        if (from + 2 * half > x + width) from = x + width - 2 * half;
+        if (from < free_from) continue;
         rt_draw_text(image, from, numbers, dot, text, RT_WHITE);
         free_from = from + 2 * half + 6 * dot;
     }

@@ -69,9 +69,9 @@ static void put_pixel(RtImage *image, const Drawing *d, uint32_t panel, uint32_t
 static void put_text(RtImage *image, const Drawing *d, uint32_t panel, int y, const char *text) {
     char part[160];
     uint32_t room = d->options->difference || d->count > 1 ? d->width : image->width;
-    size_t fits = room / (6 * (uint32_t)d->dot);
+    size_t fits = (room - 2 * MARGIN * (uint32_t)d->dot) / (6 * (uint32_t)d->dot);
     snprintf(part, sizeof part, "%.*s", (int)(fits < sizeof part ? fits : sizeof part - 1), text);
-    rt_draw_text(image, (int)(panel * d->pitch), y, d->dot, part, RT_WHITE);
+    rt_draw_text(image, (int)(panel * d->pitch) + MARGIN * d->dot, y, d->dot, part, RT_WHITE);
 }
 
 static void draw_panel(RtImage *image, const Drawing *d, uint32_t panel) {
@@ -110,8 +110,8 @@ static void draw_legend(RtImage *image, const Drawing *d) {
     if (d->options->difference)
         rt_draw_scale(image, (int)(2 * d->pitch) + left, top, (int)d->width - 2 * left, d->dot,
                       &d->difference);
-    snprintf(text, sizeof text, "%s  %s  %s", rt_tally_name(d->options->counter),
-             d->scale.logarithmic ? "log" : "linear", d->options->rays ? d->options->rays : "");
+    snprintf(text, sizeof text, "%s  %s  %s rays", rt_tally_name(d->options->counter),
+             d->scale.logarithmic ? "log" : "linear", d->options->rays ? d->options->rays : "all");
     rt_draw_text(image, left, top + BARS * d->dot, d->dot, text, RT_WHITE);
 }
 

@@ -12,7 +12,7 @@ typedef struct RtHeatmapOptions {
     RtHeatmapScale scale; /* AUTO: logarithmic where the mean is below an eighth of the most */
     double most;      /* value of the brightest colour, and of all above it; 0: the largest value there is */
     bool difference;  /* of two panels: a third has the first less the second */
-    const char *rays; /* which rays the frames' costs are of, for the legend: "shadow rays"; NULL: all */
+    const char *rays; /* which rays the frames' costs are of, for the legend: "shadow"; NULL: all */
 } RtHeatmapOptions;
 
 /* A counted frame and what is written above it. Frames of one image are of one size. */

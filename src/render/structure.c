@@ -66,7 +66,7 @@ static bool is_by_size(const Drawing *d) {
 }
 
 static RtColor color_of_size(const Drawing *d, double size) {
-    double small = rt_log(d->most / fmax(size, d->least)) / rt_log(d->most / d->least);
+    double small = rt_log(d->most / fmax(fmin(size, d->most), d->least)) / rt_log(d->most / d->least);
     return rt_color_scale(1 - 0.7 * small);
 }
 
@@ -363,7 +363,11 @@ RtStatus rt_structure_image(RtImage *image, const RtAccel *layer, const RtFrame 
                  .options = options,
                  .width = frame->sampling.width,
                  .height = frame->sampling.height};
+    const RtCamera *camera = &layer->scene->camera;
     layer->ops->each_box(layer, (RtBoxViewer){count_box, &d});
+    /* The floor, which is larger than all that is seen, does not set the scale. */
+    d.most =
+        fmax(d.least, fmin(d.most, 2 * rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)))));
     if (d.drawn == 0 && layer->scene->geometry.object_count > 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "none of the %llu boxes of %s is on the levels, or in the slice, that are asked for",

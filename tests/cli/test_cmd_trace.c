@@ -112,7 +112,7 @@ RT_TEST(the_path_is_drawn) {
     assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel kd --svg " OUT ".svg"), 0);
     assert_true(says(OUT ".svg", "<svg xmlns"));
     assert_true(says(OUT ".svg", "the primary ray of pixel 32,30 of 64 x 64"));
-    assert_true(says(OUT ".svg", "1 extent test, node 0: met"));
+    assert_true(says(OUT ".svg", "1  extent test, node 0: met"));
     assert_true(says(OUT ".svg", "</svg>"));
     unlink(OUT ".svg");
     unlink(OUT ".txt");
