@@ -61,8 +61,8 @@ static void find_scales(Drawing *d) {
 
 static void put_pixel(RtImage *image, const Drawing *d, uint32_t panel, uint32_t x, uint32_t y,
                       RtColor color) {
-    memcpy(image->rgb + 3 * (((size_t)y + (uint32_t)d->top) * image->width + panel * d->pitch + x), color.rgb,
-           3);
+    memcpy(image->rgb + 3 * (((size_t)y + (uint32_t)d->top) * image->width + (size_t)panel * d->pitch + x),
+           color.rgb, 3);
 }
 
 /* As much of a text as fits into a panel, or, in a single one, into the image. */

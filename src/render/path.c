@@ -64,7 +64,7 @@ static void record(void *context, const RtTraced *event) {
                        .enter = INFINITY,
                        .leave = -INFINITY};
     if (event->kind == RT_TRACED_OBJECT_TEST || event->kind == RT_TRACED_REPEAT_AVOIDED) row->what = "object";
-    if (!row->boxed) return;
+    if (!event->box || !row->boxed) return;
     row->box = *event->box;
     find_span(&path->ray, row);
 }

@@ -52,7 +52,7 @@ static int colored(const RtImage *image, RtColor color) {
 
 RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
     RtScene scene;
-    RtImage image;
+    RtImage image = {0};
     open_scene(&scene);
     assert_ok(draw(&scene, "bvh:max_leaf_size=64", RT_ALL_LEVELS, &image, error));
     /* The near face of the box is x, y in -3..3 at z = 1, 9 in front of the eye. */
@@ -71,7 +71,7 @@ RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
 
 RT_TEST(boxes_behind_what_is_seen_are_faint) {
     RtScene scene;
-    RtImage image;
+    RtImage image = {0};
     open_scene(&scene);
     /* The box of the sphere in the middle: its far face, at z = -1, is behind the sphere. */
     assert_ok(draw(&scene, "extents", RT_ALL_LEVELS, &image, error));
@@ -86,7 +86,7 @@ RT_TEST(boxes_behind_what_is_seen_are_faint) {
 
 RT_TEST(levels_and_leaves_leave_the_other_boxes_out) {
     RtScene scene;
-    RtImage all, root, leaves;
+    RtImage all = {0}, root = {0}, leaves = {0};
     RtError refusal;
     open_scene(&scene);
     RtStructureOptions options = RT_ALL_LEVELS;
@@ -113,7 +113,7 @@ RT_TEST(levels_and_leaves_leave_the_other_boxes_out) {
 
 RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
     RtScene scene;
-    RtImage image;
+    RtImage image = {0};
     RtError refusal;
     open_scene(&scene);
     RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = -0.5};
@@ -121,12 +121,10 @@ RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
     /* The scene is 6 wide, in 96 % of the image. Only the middle sphere reaches z = -0.5, in x from -1 to 1.
      */
     double scale = 0.96 * SIDE / 6;
-    RtColor yellow = rt_color_scale(1);
     const uint8_t *edge = pixel(&image, (int)(100 - scale), 100),
                   *other = pixel(&image, (int)(100 - 3 * scale) + 1, 20);
     assert_true(edge[0] > 200 && edge[1] > 180);
     assert_int_equal(other[0], 20);
-    (void)yellow;
     rt_image_clear(&image);
     options.at = 5;
     assert_int_equal(draw(&scene, "extents", options, &image, &refusal), RT_BAD_INPUT);
@@ -158,7 +156,7 @@ RT_TEST(the_topmost_layer_that_can_be_drawn_is_and_any_can_be_named) {
 RT_TEST(the_item_buffer_has_a_color_for_each_object_black_for_none_and_magenta_for_undecided) {
     RtScene scene;
     RtAccel *accel;
-    RtImage image;
+    RtImage image = {0};
     open_scene(&scene);
     assert_ok(rt_accel_open("item+bvh", &scene, &accel, error));
     assert_ok(rt_cells_image(&image, accel, 0, NULL, error));
@@ -187,8 +185,9 @@ RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
     RtVec3 light = scene.lights[0].position;
     uint32_t listed = 0;
     for (int i = 0; i < 400;
-         i++) { /* from far side of the scene to the light: no entry is deeper than the ray */
-        RtRay ray = {.org = rt_vec3(-3 + 6 * (float)(i % 20) / 19, -3 + 6 * (float)(i / 20) / 19, -1),
+         i++) { /* from the far side of the scene to the light: no entry is deeper than the ray */
+        int column = i % 20, row = i / 20;
+        RtRay ray = {.org = rt_vec3(-3 + 6 * (float)column / 19, -3 + 6 * (float)row / 19, -1),
                      .tmax = 1,
                      .kind = RT_RAY_SHADOW};
         RtTally tallies[RT_RAY_KIND_COUNT] = {0};
@@ -211,7 +210,7 @@ RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
 RT_TEST(the_cells_around_a_light_are_drawn_and_a_light_without_cells_is_refused) {
     RtScene scene;
     RtAccel *accel;
-    RtImage image;
+    RtImage image = {0};
     RtError refusal;
     open_scene(&scene);
     assert_ok(rt_accel_open("light:cells=16+bvh", &scene, &accel, error));
