@@ -175,20 +175,18 @@ static double y_of(const Drawing *d, double at) {
     return (d->top - at) * d->scale;
 }
 
-/* Where the section is cut off: well beyond what is seen. */
-static double near_image(const Drawing *d, double pixel) {
-    double most = d->width + d->height;
-    return fmin(fmax(pixel, -most), 2 * most);
+static double within(double value, double lo, double hi) {
+    return fmin(fmax(value, lo), hi);
 }
 
 static void fill_box(void *context, const RtBox *box, uint32_t depth, bool leaf) {
     const Drawing *d = context;
     if (!is_asked_for(d, box, depth, leaf)) return;
     RtColor color = color_of(d, box, depth);
-    double from = fmax(x_of(d, (double)box->lo.at[d->across]), 0);
-    double to = fmin(x_of(d, (double)box->hi.at[d->across]), d->width - 1);
-    double top = fmax(y_of(d, (double)box->hi.at[d->up]), 0),
-           bottom = fmin(y_of(d, (double)box->lo.at[d->up]), d->height - 1);
+    double from = within(x_of(d, (double)box->lo.at[d->across]), 0, d->width);
+    double to = within(x_of(d, (double)box->hi.at[d->across]), -1, d->width - 1);
+    double top = within(y_of(d, (double)box->hi.at[d->up]), 0, d->height);
+    double bottom = within(y_of(d, (double)box->lo.at[d->up]), -1, d->height - 1);
     for (int y = (int)top; y <= (int)bottom; y++) {
         for (int x = (int)from; x <= (int)to; x++) {
             bool edge = x == (int)from || x == (int)to || y == (int)top || y == (int)bottom;
@@ -197,10 +195,12 @@ static void fill_box(void *context, const RtBox *box, uint32_t depth, bool leaf)
     }
 }
 
+/* Lines of objects that are far outside go no farther than a picture beyond its sides. */
 static void line_between(const Drawing *d, double x0, double y0, double x1, double y1) {
-    if (fmin(y0, y1) >= d->height) return;
-    rt_draw_line(d->image, near_image(d, x0), near_image(d, y0), near_image(d, x1),
-                 fmin(near_image(d, y1), d->height - 1), RT_WHITE, 0.8);
+    double w = d->width, h = d->height;
+    if (fmin(y0, y1) >= h) return;
+    rt_draw_line(d->image, within(x0, -w, 2 * w), within(y0, -h, h - 1), within(x1, -w, 2 * w),
+                 within(y1, -h, h - 1), RT_WHITE, 0.8);
 }
 
 static void outline_sphere(const Drawing *d, const RtSphere *sphere) {

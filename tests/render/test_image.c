@@ -286,6 +286,11 @@ RT_TEST(heatmaps_of_two_accelerators_have_one_scale) {
     image = two_heatmaps((RtHeatmapOptions){.scale = RT_HEATMAP_LOG});
     assert_true(has_color(&image, 0, 0, rt_color_scale(log1p(50) / log1p(100))));
     rt_image_clear(&image);
+    costs[0][5].steps = 200; /* the most is the first's */
+    image = two_heatmaps((RtHeatmapOptions){0});
+    assert_true(has_color(&image, 0, 5, rt_color_scale(1)));
+    assert_true(has_color(&image, 1, 0, rt_color_scale(0.5)));
+    rt_image_clear(&image);
 }
 
 RT_TEST(a_difference_is_red_where_the_first_costs_more_and_blue_where_the_second_does) {
