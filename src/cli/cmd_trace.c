@@ -109,12 +109,13 @@ static void print_row(const RtPathRow *row, uint32_t number, const RtGeometry *g
 }
 
 static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g) {
-    uint32_t left_out = 0;
+    uint32_t left_out = 0, joined = 0;
     printf("\n%5s  %-14s  %-24s  %-20s  %-18s  %9s\n", "", "", "", " ray in its box, t", "", "nearest t");
     for (uint32_t i = 0, run; i < path->count; i += run) {
         const RtPathRow *row = &path->rows[i];
         bool hits = row->kind == RT_TRACED_OBJECT_TEST && row->met;
         run = o->rows > 0 ? rt_path_run(path, i) : 1;
+        joined += run - 1;
         if (o->rows > 0 && (int64_t)i >= o->rows && !hits) {
             left_out += run;
         } else if (run == 1) {
@@ -127,7 +128,7 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
         }
     }
     if (left_out) printf("       and %u more rows\n", left_out);
-    if (o->rows > 0) puts("       --rows 0 prints each");
+    if (joined + left_out > 0) puts("       --rows 0 prints each");
 }
 
 static void print_answer(const RtPath *path, const RtGeometry *g) {
@@ -264,7 +265,7 @@ int rt_command_trace(int argc, char **argv) {
             "the rows. Examples:\n"
             "  raytally trace balls --pixel 256,256\n"
             "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
-            "  raytally trace balls --pixel 256,300 --accel light:cells=40+octree --rays shadow --light 1\n"
+            "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
             "Through embree no steps are seen, for it counts none; with mode=user, object tests."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     return run(&o, &error) == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);

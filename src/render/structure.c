@@ -265,7 +265,7 @@ static int legend_height(uint32_t width) {
 
 /* Squares with the colours of levels, every nth if they are many, or of sizes. */
 static void draw_colors(const Drawing *d, int x, int y, int dot) {
-    enum { MOST = 9, SIZES = 5 };
+    enum { MOST = 7, SIZES = 5 };
     bool by_size = is_by_size(d);
     uint32_t levels = d->last - d->first + 1, count = by_size ? SIZES : levels < MOST ? levels : MOST;
     const char *what = by_size ? "size" : "level";
