@@ -143,7 +143,7 @@ RT_KERNEL uint32_t meet(const RtWideNode *node, const Flight *f, __m256 *enter) 
 RT_COLD static void observe_node(const RtWideNode *node, RtWideRef ref, uint32_t mask) {
     RtBox child[RT_WIDE], all = RT_EMPTY_BOX;
     for (uint32_t i = 0; i < node->count; i++) {
-        for (int a = 0; a < 3; a++) {
+        for (size_t a = 0; a < 3; a++) {
             child[i].lo.at[a] = node->plane[2 * a][i];
             child[i].hi.at[a] = node->plane[2 * a + 1][i];
         }
