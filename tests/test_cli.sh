@@ -312,6 +312,7 @@ refuses "quick: .*manifest.json says" run results/small/manifest.json --quick --
 cp small.yaml kept.yaml && sed -i 's/limit: 50/limit: 40/' small.yaml
 "$program" run results/small/manifest.json --force 2>stderr && complain "raytally run DIR/manifest.json: runs what has changed"
 grep -q 'small.yaml has changed since results/small was made' stderr || complain "run DIR/manifest.json: $(cat stderr)"
+rm stderr
 mv kept.yaml small.yaml
 echo '{}' >damaged/manifest.json
 refuses 'does not say what was run' run damaged/manifest.json
