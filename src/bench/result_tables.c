@@ -41,6 +41,14 @@ static RtField ratio_of(const Row *r) {
                              ends ? r->cell->ratio.high : (double)NAN);
 }
 
+static RtField pay_off_of(const Row *r) {
+    double rays = rt_results_pay_off(r->results, r->workload, r->candidate);
+    return isnan(rays)   ? rt_field_missing()
+           : isinf(rays) ? rt_field_text("never")
+           : rays == 0   ? rt_field_text("always")
+                         : rt_field_print(rays > 0 ? "from %.3g" : "to %.3g", 1e-6 * fabs(rays));
+}
+
 static RtField baseline_of(const Row *r) {
     if (!r->cell->timed) return rt_field_missing();
     return rt_field_text(rt_candidate_label(r->results->experiment, r->cell->baseline));
@@ -137,6 +145,8 @@ static double each_ns(const Row *r, RtEach each) {
     X(interval, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                        \
     X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
     X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
+    X(pay_off, "ahead, Mrays", text, "million",                                                              \
+      "for how many rays, with both builds, it takes less time than the baseline", pay_off_of(r))            \
     X(min_ns, "min ns", figure, "ns", "smallest time per ray", TIMED(1e9 * r->cell->seconds.least))          \
     X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps a second: mrays_per_s by steps per ray",      \
       1e-6 * r->all.steps / r->all.seconds)                                                                  \
@@ -203,7 +213,8 @@ static const RtColumnGroup null_runs[] = {RT_ONE(columns, scene_spec), RT_ONE(co
 
 static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, eye_ratio)};
 
-static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label), RT_FROM_TO(columns, build_ms, mb)};
+static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label),
+                                           RT_FROM_TO(columns, build_ms, pay_off)};
 
 static const RtColumnGroup cells[] = {
     RT_ONE(columns, accel),         RT_ONE(columns, kind),
@@ -213,7 +224,7 @@ static const RtColumnGroup cells[] = {
 
 static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, rays),
                                        RT_FROM_TO(columns, tests_a_ray, ns_a_ray),
-                                       RT_FROM_TO(columns, interval, mb)};
+                                       RT_FROM_TO(columns, interval, pay_off)};
 
 /* ---- rows ---- */
 

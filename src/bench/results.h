@@ -101,6 +101,12 @@ typedef struct RtTotal {
 
 RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate);
 
+/* For how many rays, of all kinds in the shares that their sets have, a candidate with its build takes less
+ * time by the clock than the baseline with its (of several the least, where ratios refer to the fastest of
+ * several). 0: always; from so many on; below 0: up to so many; INFINITY: never; NAN: not known, or the
+ * baseline. Builds are of as many threads as a run builds on: they are to be those of the timing. */
+double rt_results_pay_off(const RtResults *results, uint32_t workload, uint32_t candidate);
+
 /* How often a counter counted for a ray of the cell; NAN where that is not known: nothing was counted, or the
  * counter stayed at 0 in an accelerator that does not count everything (Embree its own boxes). */
 double rt_cell_per_ray(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind,

@@ -118,6 +118,35 @@ RT_TEST(a_baseline_that_learns_knows_the_rays_of_thinned_candidates) {
     assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
 }
 
+/* Two structures that were built and timed by hand: seconds to build, nanoseconds a ray. */
+static double pay_off(double theirs, double their_ray, double ours, double our_ray) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtResults results;
+    assert_non_null(e);
+    rt_experiment_init(e);
+    e->workload_count = 1;
+    e->candidate_count = 2;
+    e->baseline_count = 1;
+    assert_ok(rt_results_init(&results, e, error));
+    results.workloads[0].rays[RT_RAY_SHADOW] = 1000;
+    rt_build_at(&results, 0, 0)->seconds = theirs;
+    rt_build_at(&results, 0, 1)->seconds = ours;
+    *rt_cell_at(&results, 0, 1, RT_RAY_SHADOW) =
+        (RtCell){.timed = true, .wall = {.median = 1e-9 * our_ray}, .ratio = {.median = their_ray / our_ray}};
+    double rays = rt_results_pay_off(&results, 0, 1);
+    assert_true(isnan(rt_results_pay_off(&results, 0, 0)));
+    rt_results_clear(&results);
+    rt_free(e);
+    return rays;
+}
+
+RT_TEST(a_build_pays_off_after_as_many_rays_as_save_what_it_takes_more) {
+    assert_true(fabs(pay_off(1, 300, 3, 200) - 2e7) < 1);
+    assert_true(fabs(pay_off(3, 200, 1, 300) + 2e7) < 1); /* ahead up to so many */
+    assert_true(pay_off(1, 300, 1, 200) == 0);
+    assert_true(isinf(pay_off(1, 200, 2, 300)));
+}
+
 /* A name for the best of several, of any accelerator that has one; NULL where none was built in. */
 static const char *any_best(char name[RT_MAX_LABEL]) {
     for (size_t i = 0; i < rt_accel_count(); i++) {
