@@ -107,6 +107,7 @@ typedef struct RtExperiment {
     char rays_from[RT_MAX_PATH]; /* a file of rays (bench/ray_file.h) of the one kind, in place of recorded
                                     ones; or "" */
     bool count_only;             /* nothing is timed */
+    bool distributions;          /* of counts over rays, and of leaves (bench/distribution.h) */
     bool quick;                  /* the smaller variant, for a first look */
     char path[RT_MAX_PATH];      /* of the YAML; "" where there is none */
     char folder[RT_MAX_PATH];    /* of the YAML */

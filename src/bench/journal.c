@@ -3,6 +3,7 @@
 
 #include "accel/structure_json.h"
 #include "base/json.h"
+#include "base/memory.h"
 #include "bench/machine.h"
 
 #include <inttypes.h>
@@ -36,9 +37,14 @@ static json_t *build_json(const RtBuildResult *build) {
     json_t *run =
         json_pack("{s:s, s:b, s:b, s:f, s:I}", "spec", build->spec, "exact", build->exact, "counts",
                   build->counts, "seconds", build->seconds, "bytes", (json_int_t)build->shape.bytes);
-    if (json_object_update_new(object, run) == 0) return object;
-    json_decref(object);
-    return NULL;
+    if (json_object_update_new(object, run) != 0) {
+        json_decref(object);
+        return NULL;
+    }
+    if (build->leaves)
+        json_object_set_new(object, "distributions",
+                            rt_distributions_json(build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT));
+    return object;
 }
 
 static json_t *count_json(const RtCell *cell) {
@@ -89,6 +95,9 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_COUNT:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "counted",
                          count_json(cell));
+    case RT_EVENT_DISTRIBUTION:
+        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "distributed",
+                         rt_distributions_json(cell->distributions, 0, RT_RAY_QUANTITY_COUNT));
     case RT_EVENT_TIME:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
                          time_json(results, cell));
@@ -163,7 +172,20 @@ static void take_tally(RtTally *tally, const json_t *object) {
 #undef TAKE
 }
 
-static void take_build(RtBuildResult *build, const json_t *object) {
+/* Makes room for `count` distributions, from number `first` on, and fills it; without them *out stays as it
+ * is, and they are found once more. */
+static RtStatus take_distributions(RtDistribution **out, size_t first, size_t count, const json_t *object,
+                                   RtError *error) {
+    if (!object || *out) return RT_OK;
+    *out = rt_alloc(count, sizeof(RtDistribution));
+    if (!*out) return rt_fail_memory(error, "distributions", count * sizeof(RtDistribution));
+    if (rt_distributions_take(*out, first, count, object)) return RT_OK;
+    rt_free(*out);
+    *out = NULL;
+    return RT_OK;
+}
+
+static RtStatus take_build(RtBuildResult *build, const json_t *object, RtError *error) {
     const char *spec = json_string_value(json_object_get(object, "spec"));
     build->known = true;
     build->exact = json_is_true(json_object_get(object, "exact"));
@@ -181,6 +203,8 @@ static void take_build(RtBuildResult *build, const json_t *object) {
     RT_QUALITIES(TAKE_PREDICTION)
 #undef TAKE_PREDICTION
     take_tally(&build->shape.build, json_object_get(object, "build"));
+    return take_distributions(&build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT,
+                              json_object_get(object, "distributions"), error);
 }
 
 static void take_count(RtCell *cell, const json_t *object) {
@@ -245,12 +269,14 @@ static RtStatus take_line(RtResults *results, const json_t *line, RtError *error
     uint32_t candidate = rt_candidate_find(experiment, accel, workload);
     if (candidate > experiment->candidate_count) return RT_OK;
     if ((object = json_object_get(line, "built")))
-        take_build(rt_build_at(results, workload, candidate), object);
+        RT_TRY(take_build(rt_build_at(results, workload, candidate), object, error));
     const char *limit = json_string_value(json_object_get(line, "too_large"));
     if (limit) snprintf(rt_build_at(results, workload, candidate)->limit, RT_MAX_LIMIT, "%s", limit);
     if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return RT_OK;
     RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
+    RT_TRY(take_distributions(&cell->distributions, 0, RT_RAY_QUANTITY_COUNT,
+                              json_object_get(line, "distributed"), error));
     limit = json_string_value(json_object_get(line, "too_long"));
     if (limit) snprintf(cell->limit, RT_MAX_LIMIT, "%s", limit);
     object = json_object_get(line, "timed");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/run.h"
 
+#include "bench/distribution_tables.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/result_tables.h"
@@ -132,10 +133,19 @@ static void on_notice(void *context, const char *message) {
     rt_run_notice(context, message);
 }
 
+static RtStatus write_distributions(const RtRun *run, RtError *error) {
+    RtDistributionRow row = {.results = run->results};
+    RtTable distributions = rt_distribution_table(RT_DISTRIBUTIONS, &row);
+    RT_TRY(rt_run_write_table(run, RT_DISTRIBUTIONS_CSV, &distributions, error));
+    RtTable histograms = rt_distribution_table(RT_HISTOGRAMS, &row);
+    return rt_run_write_table(run, RT_HISTOGRAMS_CSV, &histograms, error);
+}
+
 static RtStatus write_tables(const RtRun *run, RtError *error) {
     RtResultRow row = {.results = run->results};
     RtTable counts = rt_result_table(RT_COUNTS, &row);
     RT_TRY(rt_run_write_table(run, "counts.csv", &counts, error));
+    if (run->experiment->distributions) RT_TRY(write_distributions(run, error));
     if (run->experiment->count_only) return RT_OK;
     RtTable times = rt_result_table(RT_TIMES, &row);
     RT_TRY(rt_run_write_table(run, "times.csv", &times, error));
