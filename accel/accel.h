@@ -104,8 +104,8 @@ typedef struct RtBoxViewer {
     void *context;
 } RtBoxViewer;
 
-/* Who looks at the leaves of a structure, or its voxels: one call of `show` each, with the number of objects in
- * its list and its depth below the root. */
+/* Who looks at the leaves of a structure, or its voxels: one call of `show` each, with the number of objects
+ * in its list and its depth below the root. */
 typedef struct RtLeafViewer {
     void (*show)(void *context, uint32_t objects, uint32_t depth);
     void *context;

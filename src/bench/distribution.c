@@ -86,7 +86,8 @@ static json_t *one_json(const RtDistribution *d) {
     FIGURES(PUT)
 #undef PUT
     for (uint32_t b = 0; b < RT_HISTOGRAM_BINS; b++) {
-        if (d->bins[b]) json_array_append_new(bins, json_pack("[I, I]", (json_int_t)b, (json_int_t)d->bins[b]));
+        if (d->bins[b])
+            json_array_append_new(bins, json_pack("[I, I]", (json_int_t)b, (json_int_t)d->bins[b]));
     }
     json_object_set_new(object, "bins", bins);
     return object;

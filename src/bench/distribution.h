@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Distributions of what is counted: object tests, extent tests and steps over the rays of a cell, sizes and
- * depths over the leaves of a structure. A mean says nothing of the few rays that cost a hundred times as much,
- * nor of the few leaves that hold half of the objects.
+ * depths over the leaves of a structure. A mean says nothing of the few rays that cost a hundred times as
+ * much, nor of the few leaves that hold half of the objects.
  *
- * Percentiles are exact: of `count` values in order that of rank ceil(part * count), the least one that so many
- * of them do not exceed. Histograms have a bin for each value below 16 and eight for every doubling beyond, so
- * that a bin is never wider than an eighth of where it begins. */
+ * Percentiles are exact: of `count` values in order that of rank ceil(part * count), the least one that so
+ * many of them do not exceed. Histograms have a bin for each value below 16 and eight for every doubling
+ * beyond, so that a bin is never wider than an eighth of where it begins. */
 #ifndef RT_BENCH_DISTRIBUTION_H
 #define RT_BENCH_DISTRIBUTION_H
 
@@ -15,7 +15,8 @@
 #include <jansson.h>
 #include <stdbool.h>
 
-/* What is distributed, each of X(name, meaning): over rays counters of RtTally of that name, and over leaves. */
+/* What is distributed, each of X(name, meaning): over rays counters of RtTally of that name, and over leaves.
+ */
 #define RT_RAY_QUANTITIES(X)                                                                                 \
     X(object_tests, "object tests of a ray")                                                                 \
     X(extent_tests, "extent tests of a ray")                                                                 \
@@ -58,8 +59,8 @@ void rt_occurrences_clear(RtOccurrences *occurrences);
 /* All zero where no value occurs. */
 RtDistribution rt_distribution_of(const RtOccurrences *occurrences);
 
-/* distributions[0..count) under their names, from rt_quantity_name(first) on, as one JSON object, a new reference, and back; bins without a value are
- * left out. False where one of them is missing. */
+/* distributions[0..count) under their names, from rt_quantity_name(first) on, as one JSON object, a new
+ * reference, and back; bins without a value are left out. False where one of them is missing. */
 json_t *rt_distributions_json(const RtDistribution *distributions, size_t first, size_t count);
 bool rt_distributions_take(RtDistribution *distributions, size_t first, size_t count, const json_t *object);
 

@@ -57,12 +57,13 @@ static double part_of(const Row *r) {
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
 static const RtColumnGroup distributions[] = {RT_FROM_TO(columns, scene, most)};
-static const RtColumnGroup histograms[] = {RT_FROM_TO(columns, scene, quantity), RT_FROM_TO(columns, low, part)};
+static const RtColumnGroup histograms[] = {RT_FROM_TO(columns, scene, quantity),
+                                           RT_FROM_TO(columns, low, part)};
 
 /* ---- rows ---- */
 
-/* A workload after the other, in each an accelerator after the other, in each the quantities over each kind of
- * rays, and then those over leaves. */
+/* A workload after the other, in each an accelerator after the other, in each the quantities over each kind
+ * of rays, and then those over leaves. */
 static const RtDistribution *find(Row *r, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const size_t over_rays = (size_t)e->kind_count * RT_RAY_QUANTITY_COUNT;
@@ -97,8 +98,8 @@ RtTable rt_distribution_table(RtDistributionTable which, RtDistributionRow *row)
     row->which = which;
     if (which == RT_DISTRIBUTIONS)
         return (RtTable){RT_GROUPS(distributions), .row_count = rows, .row = row_at, .context = row};
-    return (RtTable){
-        RT_GROUPS(histograms), .row_count = rows * RT_HISTOGRAM_BINS, .row = row_at, .context = row};
+    return (RtTable){RT_GROUPS(histograms), .row_count = rows * RT_HISTOGRAM_BINS, .row = row_at,
+                     .context = row};
 }
 
 /* ---- for the eye ---- */
@@ -107,7 +108,8 @@ void rt_print_distributions(const RtResults *results, FILE *out) {
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         if (!results->workloads[t].known) continue;
         fprintf(out, "\n%s, how counts are distributed:\n", results->experiment->workloads[t].label);
-        rt_print_wrapped("What half of the rays, or leaves, do not exceed, what 99 % do not, and the most.", out);
+        rt_print_wrapped("What half of the rays, or leaves, do not exceed, what 99 % do not, and the most.",
+                         out);
         rt_print_rows(results, RT_SPREADS, t, out);
         rt_print_rows(results, RT_LEAF_SPREADS, t, out);
     }

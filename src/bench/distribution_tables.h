@@ -10,8 +10,8 @@
 #define RT_HISTOGRAMS_CSV    "histograms.csv"
 
 typedef enum RtDistributionTable {
-    RT_DISTRIBUTIONS, /* distributions.csv: a row per cell and quantity over rays, and per structure and quantity
-                         over leaves: percentiles */
+    RT_DISTRIBUTIONS, /* distributions.csv: a row per cell and quantity over rays, and per structure and
+                         quantity over leaves: percentiles */
     RT_HISTOGRAMS     /* histograms.csv: a row for each bin of these with a value in it */
 } RtDistributionTable;
 

@@ -213,8 +213,8 @@ static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *
     if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
         return rt_fail(error, RT_BAD_INPUT, "'%s' does not name a gnuplot script", experiment->plots[i]);
     }
-    bool taken = strcmp(name, "names.gp") == 0 ||
-                 (experiment->distributions && strcmp(name, "histograms.gp") == 0);
+    bool taken =
+        strcmp(name, "names.gp") == 0 || (experiment->distributions && strcmp(name, "histograms.gp") == 0);
     for (uint32_t k = 0; k < i; k++) taken |= strcmp(name, rt_plot_name(experiment, k)) == 0;
     if (!taken) return RT_OK;
     return rt_fail(

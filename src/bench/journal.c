@@ -42,8 +42,9 @@ static json_t *build_json(const RtBuildResult *build) {
         return NULL;
     }
     if (build->leaves)
-        json_object_set_new(object, "distributions",
-                            rt_distributions_json(build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT));
+        json_object_set_new(
+            object, "distributions",
+            rt_distributions_json(build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT));
     return object;
 }
 

@@ -80,7 +80,7 @@ static double each_ns(const Row *r, RtEach each) {
 
 #define SPREAD(quantity) (&r->cell->distributions[RT_QUANTITY_##quantity])
 #define LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
-#define TIMED(figure) (r->cell->timed ? (figure) : (double)NAN)
+#define TIMED(figure)    (r->cell->timed ? (figure) : (double)NAN)
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
@@ -231,7 +231,8 @@ static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, r
                                        RT_FROM_TO(columns, tests_a_ray, ns_a_ray),
                                        RT_FROM_TO(columns, interval, mb)};
 
-static const RtColumnGroup spreads[] = {RT_ONE(columns, eye_label), RT_FROM_TO(columns, tests_median, steps_most)};
+static const RtColumnGroup spreads[] = {RT_ONE(columns, eye_label),
+                                        RT_FROM_TO(columns, tests_median, steps_most)};
 
 static const RtColumnGroup leaf_spreads[] = {RT_ONE(columns, eye_label),
                                              RT_FROM_TO(columns, size_median, depth_most)};
@@ -350,11 +351,16 @@ static void add_swept(RtTable *table, Row *row) {
 
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
-        [RT_COUNTS] = {RT_GROUPS(counts)},         [RT_TIMES] = {RT_GROUPS(times)},
-        [RT_ROUNDS] = {RT_GROUPS(each_round)},     [RT_BENCH] = {RT_GROUPS(bench)},
-        [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},   [RT_CELLS] = {RT_GROUPS(for_the_eye)},
-        [RT_STRUCTURES] = {RT_GROUPS(structures)}, [RT_CELLS_MORE] = {RT_GROUPS(cells)},
-        [RT_TOTALS] = {RT_GROUPS(totals)},         [RT_SPREADS] = {RT_GROUPS(spreads)},
+        [RT_COUNTS] = {RT_GROUPS(counts)},
+        [RT_TIMES] = {RT_GROUPS(times)},
+        [RT_ROUNDS] = {RT_GROUPS(each_round)},
+        [RT_BENCH] = {RT_GROUPS(bench)},
+        [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},
+        [RT_CELLS] = {RT_GROUPS(for_the_eye)},
+        [RT_STRUCTURES] = {RT_GROUPS(structures)},
+        [RT_CELLS_MORE] = {RT_GROUPS(cells)},
+        [RT_TOTALS] = {RT_GROUPS(totals)},
+        [RT_SPREADS] = {RT_GROUPS(spreads)},
         [RT_LEAF_SPREADS] = {RT_GROUPS(leaf_spreads)},
     };
     const RtExperiment *e = row->results->experiment;

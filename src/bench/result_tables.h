@@ -23,8 +23,8 @@ typedef enum RtResultTable {
     RT_STRUCTURES, /* for the eye: of each accelerator in it, what its structure takes */
     RT_CELLS_MORE, /* cells with more columns, and all rows */
     RT_TOTALS,     /* one workload by accelerator, all kinds together */
-    RT_SPREADS,    /* for the eye: one workload by accelerator and ray kind: medians, 99th percentiles and maxima of
-                      object tests and steps */
+    RT_SPREADS, /* for the eye: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
+                   of object tests and steps */
     RT_LEAF_SPREADS, /* for the eye: by accelerator: those of sizes and depths of leaves */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;

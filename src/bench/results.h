@@ -29,7 +29,8 @@ typedef struct RtBuildResult {
     double seconds;               /* median of up to three builds */
     char limit[RT_MAX_LIMIT];     /* which limit it went beyond, so that no cell of it is measured; else "" */
     RtDescription shape;
-    RtDistribution *leaves; /* [RT_LEAF_QUANTITY_COUNT] owned, of the base; NULL: not asked for, or it has none */
+    RtDistribution
+        *leaves; /* [RT_LEAF_QUANTITY_COUNT] owned, of the base; NULL: not asked for, or it has none */
 } RtBuildResult;
 
 /* Times of each round, seconds a ray: by the clock of the comparison, on the wall clock, and the baseline's
@@ -38,9 +39,9 @@ typedef enum RtEach { RT_EACH_SECONDS, RT_EACH_WALL, RT_EACH_BASELINE, RT_EACH_C
 
 typedef struct RtCell {
     bool counted, timed;
-    char limit[RT_MAX_LIMIT]; /* which limit it would go beyond, so that it is not measured; else "" */
-    RtTally tally;            /* tally.rays: of the thinned set */
-    uint64_t differ;          /* answers unlike the baseline's; of an exact accelerator always 0 */
+    char limit[RT_MAX_LIMIT];      /* which limit it would go beyond, so that it is not measured; else "" */
+    RtTally tally;                 /* tally.rays: of the thinned set */
+    uint64_t differ;               /* answers unlike the baseline's; of an exact accelerator always 0 */
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
     int threads;        /* of the timing */

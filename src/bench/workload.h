@@ -8,13 +8,13 @@
 #include "bench/results.h"
 
 typedef enum RtEventKind {
-    RT_EVENT_WORKLOAD,  /* results->workloads[workload] is known */
-    RT_EVENT_BUILD,     /* the build of `candidate` is known */
-    RT_EVENT_COUNT,     /* the cell is counted */
+    RT_EVENT_WORKLOAD,     /* results->workloads[workload] is known */
+    RT_EVENT_BUILD,        /* the build of `candidate` is known */
+    RT_EVENT_COUNT,        /* the cell is counted */
     RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
-    RT_EVENT_TIME,      /* the cell is timed */
-    RT_EVENT_TOO_LARGE, /* the structure of `candidate` went beyond a limit */
-    RT_EVENT_TOO_LONG   /* the cell would go beyond a limit */
+    RT_EVENT_TIME,         /* the cell is timed */
+    RT_EVENT_TOO_LARGE,    /* the structure of `candidate` went beyond a limit */
+    RT_EVENT_TOO_LONG      /* the cell would go beyond a limit */
 } RtEventKind;
 
 /* Which part of the results was just filled. */

@@ -62,8 +62,8 @@ typedef struct Leaves {
 
 static void take_leaf(void *context, uint32_t objects, uint32_t depth) {
     Leaves *leaves = context;
-    const uint32_t values[RT_LEAF_QUANTITY_COUNT] = {[RT_QUANTITY_leaf_size] = objects,
-                                                     [RT_QUANTITY_leaf_depth] = depth};
+    const uint32_t values[RT_LEAF_QUANTITY_COUNT] = {
+        [RT_QUANTITY_leaf_size] = objects, [RT_QUANTITY_leaf_depth] = depth};
     for (int q = 0; q < RT_LEAF_QUANTITY_COUNT && leaves->status == RT_OK; q++)
         leaves->status = rt_occurrences_add(&leaves->values[q], values[q], leaves->error);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload while it runs: what the files share that make one up (workload.c, workload_time.c and others). */
+/* A workload while it runs: what the files share that make one up (workload.c, workload_time.c and others).
+ */
 #ifndef RT_BENCH_WORKLOAD_STATE_H
 #define RT_BENCH_WORKLOAD_STATE_H
 

@@ -61,8 +61,10 @@ static const struct argp_option options[] = {
      0},
     {"count-only", OPT_COUNT_ONLY, 0, 0, "Count, do not time", 0},
     {"distribution", OPT_DISTRIBUTION, 0, 0,
-     "Also show how object tests and steps are distributed over the rays, each asked by itself, and objects and "
-     "depths over the leaves: medians, 99th percentiles, maxima. A mean hides the rays that cost a hundred times "
+     "Also show how object tests and steps are distributed over the rays, each asked by itself, and objects "
+     "and "
+     "depths over the leaves: medians, 99th percentiles, maxima. A mean hides the rays that cost a hundred "
+     "times "
      "as much. With --json all percentiles and the histograms. An experiment has `distributions: yes`",
      0},
     {"csv", OPT_CSV, "FILE", 0,
@@ -244,8 +246,8 @@ static void print_json(const RtResults *results) {
         extend(rows, results, RT_BENCH, t);
         extend(nulls, results, RT_NULL_RUNS, t);
     }
-    json_t *all = json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes", scenes,
-                            "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
+    json_t *all = json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes",
+                            scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
                             rt_baseline_label(e), "rows", rows, "null_runs", nulls);
     if (e->distributions) {
         json_object_set_new(all, "distributions", distributions_json(results, RT_DISTRIBUTIONS));

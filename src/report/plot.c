@@ -2,9 +2,9 @@
 #include "report/plot.h"
 
 #include "base/memory.h"
+#include "histograms_gp.h"
 #include "report/color.h"
 #include "report/sweep_plot.h"
-#include "histograms_gp.h"
 #include "style_gp.h"
 
 #include <ctype.h>
@@ -188,7 +188,8 @@ static RtStatus settle(const char *directory, bool keep, RtError *error) {
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
-    char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp", histogram_script[] = "plots/" HISTOGRAM_SCRIPT;
+    char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp",
+         histogram_script[] = "plots/" HISTOGRAM_SCRIPT;
     char *arguments[MOST_ARGUMENTS] = {program};
     const bool sweeps = rt_sweep_plots_needed(experiment);
     if (experiment->plot_count == 0 && !sweeps && !experiment->distributions) return RT_OK;

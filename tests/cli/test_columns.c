@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "bench/compare.h"
+#include "bench/distribution_tables.h"
 #include "bench/extents_table.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
@@ -27,6 +28,11 @@ static RtTable of_results(RtResultTable which) {
     return rt_result_table(which, &row);
 }
 
+static RtTable of_distributions(RtDistributionTable which) {
+    static RtDistributionRow rows[2] = {{.results = &results}, {.results = &results}};
+    return rt_distribution_table(which, &rows[which]);
+}
+
 static RtTable of_published(RtPublishedTable which) {
     static RtPublishedCursor cursor = {.published = &published};
     return rt_published_table(which, &cursor);
@@ -45,7 +51,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 11 };
+enum { SECTIONS = 13 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -54,6 +60,8 @@ static void list(Section sections[SECTIONS]) {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
         {"times.csv", true, NULL, of_results(RT_TIMES)},
         {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
+        {"distributions.csv", true, NULL, of_distributions(RT_DISTRIBUTIONS)},
+        {"histograms.csv", true, NULL, of_distributions(RT_HISTOGRAMS)},
         {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},
         {"best.csv", true, "results/havran-1999/best.csv", of_published(RT_BEST)},
         {"verify.csv", true, "results/verify/verify.csv", verify_csv},
