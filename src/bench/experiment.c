@@ -238,6 +238,15 @@ static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept
     return RT_OK;
 }
 
+/* Nothing is run for the machine to count. */
+static RtStatus check_hardware(const RtExperiment *experiment, RtError *error) {
+    if (!experiment->hardware || !experiment->count_only) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "hardware counters are read while rays are traced for their time, which `count_only` leaves "
+        "out");
+}
+
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
     for (uint32_t i = 0; i < experiment->workload_count; i++) {
         snprintf(where, RT_MAX_LABEL, "scenes[%u]", experiment->workloads[i].entry);
@@ -268,6 +277,8 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         snprintf(where, RT_MAX_LABEL, "plots[%u]", i);
         RT_TRY(check_plot(experiment, i, error));
     }
+    strcpy(where, "hardware");
+    RT_TRY(check_hardware(experiment, error));
     strcpy(where, "name");
     if (*experiment->name == '.') {
         return rt_fail(error, RT_BAD_INPUT,

@@ -80,6 +80,20 @@ static json_t *time_json(const RtResults *results, const RtCell *cell) {
     return object;
 }
 
+/* What is not known is null. */
+static json_t *hardware_json(const RtResults *results, const RtCell *cell) {
+    const RtCellHardware *hardware = &cell->hardware;
+    const RtMachine *machine = &results->machines[hardware->machine];
+    json_t *object =
+        json_pack("{s:i, s:f, s:s, s:s, s:s}", "threads", hardware->threads, "running",
+                  hardware->counts.running, "why", hardware->why, "host", machine->host, "cpu", machine->cpu);
+    for (size_t i = 0; i < RT_HARDWARE_COUNT; i++) {
+        double count = *hardware->why ? (double)NAN : hardware->counts.of[i];
+        json_object_set_new(object, rt_hardware_name(i), isnan(count) ? json_null() : json_real(count));
+    }
+    return object;
+}
+
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
     const RtExperiment *experiment = results->experiment;
     const RtCell *cell = rt_cell_at(results, event->workload, event->candidate, event->kind);
@@ -102,6 +116,9 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_TIME:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
                          time_json(results, cell));
+    case RT_EVENT_HARDWARE:
+        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "hardware",
+                         hardware_json(results, cell));
     case RT_EVENT_TOO_LARGE:
         return json_pack("{s:s, s:s, s:s}", "scene", scene, "accel", accel, "too_large",
                          rt_build_at(results, event->workload, event->candidate)->limit);
@@ -235,13 +252,28 @@ static void take_text(char *out, size_t room, const json_t *object, const char *
     snprintf(out, room, "%s", text ? text : "");
 }
 
-static RtStatus take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object,
-                          RtError *error) {
-    const RtExperiment *experiment = results->experiment;
+static uint32_t take_machine(RtResults *results, const json_t *object) {
     RtMachine machine;
     take_text(machine.host, sizeof machine.host, object, "host");
     take_text(machine.cpu, sizeof machine.cpu, object, "cpu");
-    cell->machine = rt_results_machine(results, &machine);
+    return rt_results_machine(results, &machine);
+}
+
+static void take_hardware(RtResults *results, RtCell *cell, const json_t *object) {
+    RtCellHardware *hardware = &cell->hardware;
+    hardware->known = true;
+    hardware->threads = (int)get_integer(object, "threads");
+    hardware->machine = take_machine(results, object);
+    hardware->counts.running = get_number(object, "running");
+    take_text(hardware->why, sizeof hardware->why, object, "why");
+    for (size_t i = 0; i < RT_HARDWARE_COUNT; i++)
+        hardware->counts.of[i] = get_number(object, rt_hardware_name(i));
+}
+
+static RtStatus take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object,
+                          RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    cell->machine = take_machine(results, object);
     const char *baseline = json_string_value(json_object_get(object, "baseline"));
     uint32_t c = rt_candidate_find(experiment, baseline ? baseline : "", workload);
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
@@ -280,6 +312,7 @@ static RtStatus take_line(RtResults *results, const json_t *line, RtError *error
                               json_object_get(line, "distributed"), error));
     limit = json_string_value(json_object_get(line, "too_long"));
     if (limit) snprintf(cell->limit, RT_MAX_LIMIT, "%s", limit);
+    if ((object = json_object_get(line, "hardware"))) take_hardware(results, cell, object);
     object = json_object_get(line, "timed");
     return object ? take_time(results, workload, cell, object, error) : RT_OK;
 }

@@ -32,7 +32,7 @@ void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workl
     RtResultRow row = {.results = results, .workload = workload};
     const RtTable table = rt_result_table(which, &row);
     int widths[RT_MAX_TABLE_COLUMNS];
-    bool by_kind = which == RT_CELLS || which == RT_SPREADS, any = false;
+    bool by_kind = which == RT_CELLS || which == RT_SPREADS || which == RT_MACHINE_CELLS, any = false;
     RtRayKind kind = RT_RAY_PRIMARY;
     fputc('\n', out);
     rt_table_widths(&table, widths);

@@ -80,6 +80,7 @@ static double each_ns(const Row *r, RtEach each) {
 
 #define SPREAD(quantity) (&r->cell->distributions[RT_QUANTITY_##quantity])
 #define LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
+#define MACHINE(name)    (r->cell->hardware.counts.of[RT_HARDWARE_##name])
 #define TIMED(figure)    (r->cell->timed ? (figure) : (double)NAN)
 
 #define COLUMNS(X)                                                                                           \
@@ -165,6 +166,11 @@ static double each_ns(const Row *r, RtEach each) {
     X(depth_median, "depth: 50 %", integer, "", "the same of depths", LEAVES(leaf_depth)->median)            \
     X(depth_p99, "99 %", integer, "", "that 99 % do not exceed", LEAVES(leaf_depth)->p99)                    \
     X(depth_most, "most", integer, "", "of the deepest", LEAVES(leaf_depth)->most)                           \
+    X(eye_instructions, "instr./ray", figure, "", "instructions", MACHINE(instructions))                     \
+    X(eye_cycles, "cycles/ray", figure, "", "cycles", MACHINE(cycles))                                       \
+    X(eye_ipc, "instr./cycle", figure, "", "instructions a cycle", MACHINE(instructions) / MACHINE(cycles))  \
+    X(eye_cache, "cache m.", figure, "", "cache misses a ray", MACHINE(cache_misses))                        \
+    X(eye_branch, "branch m.", figure, "", "mispredicted branches a ray", MACHINE(branch_misses))            \
     X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
     X(round_ns, "ns", real6, "ns", "processor time per ray in it, by the clock on several threads",          \
       each_ns(r, RT_EACH_SECONDS))                                                                           \
@@ -236,6 +242,9 @@ static const RtColumnGroup spreads[] = {RT_ONE(columns, eye_label),
 
 static const RtColumnGroup leaf_spreads[] = {RT_ONE(columns, eye_label),
                                              RT_FROM_TO(columns, size_median, depth_most)};
+
+static const RtColumnGroup machine_cells[] = {RT_ONE(columns, eye_label),
+                                              RT_FROM_TO(columns, eye_instructions, eye_branch)};
 
 /* ---- rows ---- */
 
@@ -310,6 +319,7 @@ static const void *row_at(void *context, size_t i) {
         [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->candidate_count,
         [RT_SPREADS] = r->cell->distributions && !isnan(per_ray(r, r->cell->tally.object_tests)),
         [RT_LEAF_SPREADS] = r->build->leaves && !null && i < r->results->experiment->candidate_count,
+        [RT_MACHINE_CELLS] = r->cell->hardware.known && !*r->cell->hardware.why,
     };
     if (!there[r->which]) return NULL;
     r->all = all_of(r);
@@ -362,6 +372,7 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
         [RT_TOTALS] = {RT_GROUPS(totals)},
         [RT_SPREADS] = {RT_GROUPS(spreads)},
         [RT_LEAF_SPREADS] = {RT_GROUPS(leaf_spreads)},
+        [RT_MACHINE_CELLS] = {RT_GROUPS(machine_cells)},
     };
     const RtExperiment *e = row->results->experiment;
     const size_t workloads = is_by_workload(which) ? e->workload_count : 1;

@@ -25,7 +25,8 @@ typedef enum RtResultTable {
     RT_TOTALS,     /* one workload by accelerator, all kinds together */
     RT_SPREADS, /* for the eye: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
                    of object tests and steps */
-    RT_LEAF_SPREADS, /* for the eye: by accelerator: those of sizes and depths of leaves */
+    RT_LEAF_SPREADS,  /* for the eye: by accelerator: those of sizes and depths of leaves */
+    RT_MACHINE_CELLS, /* for the eye: one workload by accelerator and ray kind: what the machine did */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;
 

@@ -5,6 +5,7 @@
 #ifndef RT_BENCH_RESULTS_H
 #define RT_BENCH_RESULTS_H
 
+#include "base/hardware.h"
 #include "bench/distribution.h"
 #include "bench/experiment.h"
 #include "bench/statistics.h"
@@ -37,6 +38,16 @@ typedef struct RtBuildResult {
  * on the same rays, by the clock of the comparison. */
 typedef enum RtEach { RT_EACH_SECONDS, RT_EACH_WALL, RT_EACH_BASELINE, RT_EACH_COUNT } RtEach;
 
+/* What the machine did for a ray of a cell. */
+#define RT_MAX_WHY 192
+typedef struct RtCellHardware {
+    bool known; /* counted, or known why not */
+    int threads;
+    uint32_t machine;        /* one of RtResults.machines */
+    RtHardwareCounts counts; /* a ray */
+    char why[RT_MAX_WHY];    /* nothing could be counted; else "" */
+} RtCellHardware;
+
 typedef struct RtCell {
     bool counted, timed;
     char limit[RT_MAX_LIMIT];      /* which limit it would go beyond, so that it is not measured; else "" */
@@ -51,6 +62,7 @@ typedef struct RtCell {
     RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
     double *each;       /* [RT_EACH_COUNT][rounds] owned: every round's time; NULL: not kept */
     uint32_t baseline; /* the candidate that is: where there are several, the fastest of them on these rays */
+    RtCellHardware hardware;
 } RtCell;
 
 /* Where cells were timed. */

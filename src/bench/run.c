@@ -2,6 +2,7 @@
 #include "bench/run.h"
 
 #include "bench/distribution_tables.h"
+#include "bench/hardware_table.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/result_tables.h"
@@ -150,7 +151,11 @@ static RtStatus write_tables(const RtRun *run, RtError *error) {
     RtTable times = rt_result_table(RT_TIMES, &row);
     RT_TRY(rt_run_write_table(run, "times.csv", &times, error));
     RtTable rounds = rt_result_table(RT_ROUNDS, &row);
-    return rt_run_write_table(run, "rounds.csv", &rounds, error);
+    RT_TRY(rt_run_write_table(run, "rounds.csv", &rounds, error));
+    if (!run->experiment->hardware) return RT_OK;
+    RtHardwareRow cell = {.results = run->results};
+    RtTable hardware = rt_hardware_table(&cell);
+    return rt_run_write_table(run, RT_HARDWARE_CSV, &hardware, error);
 }
 
 static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,

@@ -30,6 +30,7 @@ static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
         bool null = c == workload->experiment->candidate_count;
         if (!runs(workload, c) || *cell->limit) continue;
         if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
+        if (workload->hardware && !cell->hardware.known && !null) return false;
         if (workload->distributions && !cell->distributions && !null) return false;
     }
     return true;
@@ -279,6 +280,7 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     } else if (status == RT_OK && !workload->count_only) {
         status = rt_workload_time(workload, kind, error);
     }
+    if (status == RT_OK && workload->hardware) status = rt_workload_hardware(workload, kind, error);
     rt_free(workload->answers);
     workload->answers = NULL;
     return status;
@@ -297,6 +299,7 @@ static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWork
     RtWorkloadState workload = {
         .results = results, .experiment = results->experiment, .options = options, .index = index};
     workload.count_only = options->count_only || workload.experiment->count_only;
+    workload.hardware = workload.experiment->hardware && !workload.count_only && !options->timer;
     workload.distributions = workload.experiment->distributions && !options->timer;
     workload.count = workload.experiment->candidate_count + (!workload.count_only && !options->timer);
     return workload;

@@ -13,6 +13,7 @@ typedef enum RtEventKind {
     RT_EVENT_COUNT,        /* the cell is counted */
     RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
     RT_EVENT_TIME,         /* the cell is timed */
+    RT_EVENT_HARDWARE,     /* it is known what the machine did for the rays of the cell, or why not */
     RT_EVENT_TOO_LARGE,    /* the structure of `candidate` went beyond a limit */
     RT_EVENT_TOO_LONG      /* the cell would go beyond a limit */
 } RtEventKind;
@@ -56,6 +57,7 @@ typedef struct RtWorkloadOptions {
      * candidate without a stride, and one kind of rays. */
     const char *hits, *counts;
     RtObserver observer;
+    const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] counted in place of those of their names; or NULL */
     /* Takes the place of the timing of one kind of rays, and of the null run, which there is none of; or
      * NULL. */
     RtStatus (*timer)(void *context, struct RtWorkloadState *workload, RtRayKind kind, RtError *error);

@@ -19,7 +19,7 @@ typedef struct RtWorkloadState {
     const RtExperiment *experiment;
     const RtWorkloadOptions *options;
     uint32_t index, count; /* count: candidates and, where times are taken, the null run */
-    bool count_only, distributions;
+    bool count_only, hardware, distributions;
     RtScene *scene;
     RtAccel *reference;               /* answers */
     RtAccel **built;                  /* [count], NULL for one that does not run here */
@@ -62,5 +62,8 @@ RtStatus rt_workload_distribute_leaves(const RtAccel *accel, RtBuildResult *resu
 
 /* Times all candidates on their shares of the rays of one kind. */
 RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error);
+
+/* Counts what the machine does for all candidates on their shares of the rays of one kind. */
+RtStatus rt_workload_hardware(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
 #endif

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/words.h"
 #include "bench/distribution_tables.h"
+#include "bench/hardware_table.h"
 #include "bench/machine.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
@@ -22,6 +23,7 @@ enum {
     OPT_THREADS,
     OPT_COUNT_ONLY,
     OPT_DISTRIBUTION,
+    OPT_HARDWARE,
     OPT_CSV,
     OPT_JSON,
     OPT_RAY_STRIDE,
@@ -66,6 +68,12 @@ static const struct argp_option options[] = {
      "depths over the leaves: medians, 99th percentiles, maxima. A mean hides the rays that cost a hundred "
      "times "
      "as much. With --json all percentiles and the histograms. An experiment has `distributions: yes`",
+     0},
+    {"hardware", OPT_HARDWARE, 0, 0,
+     "Also show what the machine did for a ray, by the processor's counters: instructions, cycles, misses of "
+     "the "
+     "last cache, mispredicted branches. In rounds of their own, so that times do not change; not in the "
+     "kernel. Where the machine or the kernel gives none, why. An experiment has `hardware: yes`",
      0},
     {"csv", OPT_CSV, "FILE", 0,
      "Also write a row per cell to FILE, in the columns of times.csv; with "
@@ -186,6 +194,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         o->workload.patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
         return 0;
     case OPT_COUNT_ONLY: o->workload.count_only = true; return 0;
+    case OPT_HARDWARE: e->hardware = true; return 0;
     case OPT_DISTRIBUTION: e->distributions = true; return 0;
     case OPT_CSV: o->csv = argument; return 0;
     case OPT_JSON: o->json = true; return 0;
@@ -199,6 +208,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
         if (o->baseline) set_baseline(e, o->baseline, state);
         if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
+        if (e->hardware && o->workload.count_only)
+            argp_error(state,
+                       "--hardware counts while rays are traced for their time: not with --count-only");
         rt_recording_finish(&o->recording, state);
         check_rows(o, state);
         return 0;
@@ -253,6 +265,11 @@ static void print_json(const RtResults *results) {
         json_object_set_new(all, "distributions", distributions_json(results, RT_DISTRIBUTIONS));
         json_object_set_new(all, "histograms", distributions_json(results, RT_HISTOGRAMS));
     }
+    if (e->hardware) {
+        RtHardwareRow row = {.results = results};
+        RtTable table = rt_hardware_table(&row);
+        json_object_set_new(all, "hardware", rt_table_json(&table));
+    }
     rt_cli_print_json(all);
 }
 
@@ -272,6 +289,7 @@ static RtStatus report(const RtResults *results, const Options *o, RtError *erro
     } else {
         char sentence[RT_MAX_SENTENCE];
         rt_print_results(results, RT_CELLS, stdout);
+        if (results->experiment->hardware) rt_print_hardware(results, stdout);
         if (results->experiment->distributions) rt_print_distributions(results, stdout);
         rt_null_sentence(results, sentence);
         if (!sentence[0]) return RT_OK;

@@ -56,6 +56,7 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
                                        [RT_EVENT_COUNT] = "counted",
                                        [RT_EVENT_TIME] = "timed",
                                        [RT_EVENT_DISTRIBUTION] = "distributed",
+                                       [RT_EVENT_HARDWARE] = "counted by the machine",
                                        [RT_EVENT_TOO_LARGE] = "left out",
                                        [RT_EVENT_TOO_LONG] = "left out"};
     const RtExperiment *experiment = results->experiment;

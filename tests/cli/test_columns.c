@@ -9,6 +9,7 @@
 #include "bench/compare.h"
 #include "bench/distribution_tables.h"
 #include "bench/extents_table.h"
+#include "bench/hardware_table.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
 #include "verify/verify_table.h"
@@ -26,6 +27,11 @@ static RtPublished published = {.experiment = &experiment};
 static RtTable of_results(RtResultTable which) {
     static RtResultRow row = {.results = &results};
     return rt_result_table(which, &row);
+}
+
+static RtTable of_hardware(void) {
+    static RtHardwareRow row = {.results = &results};
+    return rt_hardware_table(&row);
 }
 
 static RtTable of_distributions(RtDistributionTable which) {
@@ -51,7 +57,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 13 };
+enum { SECTIONS = 14 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -60,6 +66,7 @@ static void list(Section sections[SECTIONS]) {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
         {"times.csv", true, NULL, of_results(RT_TIMES)},
         {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
+        {"hardware.csv", true, NULL, of_hardware()},
         {"distributions.csv", true, NULL, of_distributions(RT_DISTRIBUTIONS)},
         {"histograms.csv", true, NULL, of_distributions(RT_HISTOGRAMS)},
         {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},

@@ -118,4 +118,41 @@ RT_TEST_IN_PLACE(bench_shows_medians_percentiles_and_maxima) {
     assert_in_file(place, "output", "\"histograms\"");
 }
 
+/* ---- what the machine did ---- */
+
+/* Resumed, the second time without a table, which is made from the journal again. */
+RT_TEST_IN_PLACE(a_run_that_asks_for_hardware_counters_has_a_row_for_each_cell_with_them_or_the_reason) {
+    const Place *place = *state;
+    RtCsv csv;
+    Path path = path_in(place, "out/hardware.csv");
+    write_changed(place, "small.yaml", spread, "count_only: yes",
+                  "hardware: yes\nrounds: 2\nmilliseconds: 0");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    char *first = read_in(place, "out/hardware.csv");
+    assert_int_equal(remove(path.text), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    char *again = read_in(place, "out/hardware.csv");
+    assert_string_equal(first, again);
+    rt_free(first);
+    rt_free(again);
+    assert_ok(rt_csv_read(&csv, path.text, error));
+    assert_int_equal(csv.rows, 2 * 2 * 3);
+    for (uint32_t row = 0; row < csv.rows; row++) {
+        bool counted = *rt_csv_field(&csv, row, rt_csv_find(&csv, "running")) != '\0';
+        assert_true(counted != (*rt_csv_field(&csv, row, rt_csv_find(&csv, "why")) != '\0'));
+        assert_true(*rt_csv_field(&csv, row, rt_csv_find(&csv, "cpu")) != '\0');
+    }
+    rt_csv_clear(&csv);
+}
+
+RT_TEST_IN_PLACE(hardware_counters_where_nothing_is_timed_are_refused) {
+    const Place *place = *state;
+    RtError error;
+    write_changed(place, "small.yaml", spread, "distributions: yes", "hardware: yes");
+    assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error,
+                   ":13:11: hardware: hardware counters");
+    assert_int_equal(raytally(place, "bench balls --accel bvh --hardware --count-only"), 2);
+    assert_in_file(place, "message", "not with --count-only");
+}
+
 RT_TESTS(distributions, NULL, NULL)
