@@ -48,7 +48,7 @@ static double part_of(const Row *r) {
     X(p90, "p90", integer, "", "the least that 90 % do not exceed", r->distribution->p90)                    \
     X(p99, "p99", integer, "", "the least that 99 % do not exceed", r->distribution->p99)                    \
     X(p999, "p999", integer, "", "the least that 99.9 % do not exceed", r->distribution->p999)               \
-    X(most, "max", integer, "", "the largest value", r->distribution->most)                                  \
+    X(max, "max", integer, "", "the largest value", r->distribution->most)                                   \
     X(low, "low", integer, "", "least value of the bin", rt_histogram_low(r->bin))                           \
     X(end, "end", integer, "", "least value beyond the bin", rt_histogram_low(r->bin + 1))                   \
     X(values, "values", integer, "", "rays, or leaves, within it", r->distribution->bins[r->bin])            \
@@ -56,7 +56,7 @@ static double part_of(const Row *r) {
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
 
-static const RtColumnGroup distributions[] = {RT_FROM_TO(columns, scene, most)};
+static const RtColumnGroup distributions[] = {RT_FROM_TO(columns, scene, max)};
 static const RtColumnGroup histograms[] = {RT_FROM_TO(columns, scene, quantity),
                                            RT_FROM_TO(columns, low, part)};
 

@@ -36,7 +36,8 @@ static RtField why_of(const Row *r) {
       EVENT(cache_misses))                                                                                   \
     X(branch_misses, "branch_misses", real6, "", "branches that were mispredicted, per ray",                 \
       EVENT(branch_misses))                                                                                  \
-    X(ipc, "instructions_per_cycle", real6, "", "instructions a cycle", EVENT(instructions) / EVENT(cycles)) \
+    X(instructions_per_cycle, "instructions_per_cycle", real6, "", "instructions a cycle",                   \
+      EVENT(instructions) / EVENT(cycles))                                                                   \
     X(running, "running", real6, "",                                                                         \
       "least part of the time that an event was counted; below 1 they took turns, and were scaled",          \
       running_of(r))                                                                                         \

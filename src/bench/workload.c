@@ -275,6 +275,9 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     if (status == RT_OK) status = count_kind(workload, kind, error);
     if (status == RT_OK && workload->distributions) status = rt_workload_distribute(workload, kind, error);
     if (status == RT_OK) status = save_rows(workload, kind, error);
+    if (status == RT_OK && workload->options->rays)
+        status = workload->options->rays(workload->options->rays_context, workload->index,
+                                         &workload->sets[kind], workload->reference, error);
     if (status == RT_OK && workload->options->timer) {
         status = workload->options->timer(workload->options->timer_context, workload, kind, error);
     } else if (status == RT_OK && !workload->count_only) {

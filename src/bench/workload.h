@@ -58,6 +58,11 @@ typedef struct RtWorkloadOptions {
     const char *hits, *counts;
     RtObserver observer;
     const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] counted in place of those of their names; or NULL */
+    /* Is shown the rays of each kind that were recorded on a workload, while they and the exact accelerator
+     * that answers them are there; or NULL. */
+    RtStatus (*rays)(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
+                     RtError *error);
+    void *rays_context;
     /* Takes the place of the timing of one kind of rays, and of the null run, which there is none of; or
      * NULL. */
     RtStatus (*timer)(void *context, struct RtWorkloadState *workload, RtRayKind kind, RtError *error);

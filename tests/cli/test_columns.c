@@ -6,6 +6,7 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "bench/callgrind.h"
 #include "bench/compare.h"
 #include "bench/distribution_tables.h"
 #include "bench/extents_table.h"
@@ -39,6 +40,12 @@ static RtTable of_distributions(RtDistributionTable which) {
     return rt_distribution_table(which, &rows[which]);
 }
 
+static RtTable of_instructions(void) {
+    static const RtCallgrind callgrind = {0};
+    static RtInstructionsRow row = {.callgrind = &callgrind};
+    return rt_instructions_table(&row);
+}
+
 static RtTable of_published(RtPublishedTable which) {
     static RtPublishedCursor cursor = {.published = &published};
     return rt_published_table(which, &cursor);
@@ -57,7 +64,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 14 };
+enum { SECTIONS = 17 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -74,6 +81,9 @@ static void list(Section sections[SECTIONS]) {
         {"verify.csv", true, "results/verify/verify.csv", verify_csv},
         {"bench --json: rows", false, NULL, of_results(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, of_results(RT_NULL_RUNS)},
+        {"bench --json --hardware: hardware", false, NULL, of_hardware()},
+        {"bench --json --distribution: distributions", false, NULL, of_distributions(RT_DISTRIBUTIONS)},
+        {"bench --json --callgrind: instructions", false, NULL, of_instructions()},
         {"compare --json: cells", false, NULL, of_comparison()},
         {"verify --json: rows", false, NULL, verify_json},
         {"info --extents --json: extents.rows", false, NULL, extents},

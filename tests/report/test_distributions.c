@@ -54,7 +54,7 @@ RT_TEST_IN_PLACE(a_run_that_asks_for_distributions_has_them_in_tables_of_their_o
     for (uint32_t row = 0; row < csv.rows; row++) {
         rays += integer_at(&csv, row, "count");
         assert_true(integer_at(&csv, row, "median") <= integer_at(&csv, row, "p99"));
-        assert_true(integer_at(&csv, row, "p99") <= integer_at(&csv, row, "most"));
+        assert_true(integer_at(&csv, row, "p99") <= integer_at(&csv, row, "max"));
     }
     for (uint32_t row = 0; row < bins.rows; row++) within += integer_at(&bins, row, "values");
     assert_int_equal(rays, within);
