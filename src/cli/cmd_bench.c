@@ -79,7 +79,8 @@ static const struct argp_option options[] = {
     {"callgrind", OPT_CALLGRIND, "N", OPTION_ARG_OPTIONAL,
      "Also show instructions per ray, by valgrind's callgrind: exact, and the same on every run, also where "
      "--hardware "
-     "has nothing. Builds each accelerator again under valgrind, which takes some fifty times as long, and "
+     "has nothing. Builds each accelerator again under valgrind, where building takes many times as long, "
+     "and "
      "asks it "
      "N of the rays of each kind (4096). Without AVX-512, which valgrind does not know",
      0},
