@@ -63,6 +63,8 @@ static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const
             double seconds, wall, work = runner->repeats * runner->work;
             RT_TRY(rt_runner_time(runner, runner->repeats, &seconds, &wall, error));
             runner->seconds[round] = seconds / work;
+            if (seconds < rounds->least) /* it was told wrong from a part */
+                runner->repeats = rt_runner_repeats(seconds / runner->repeats, rounds->least);
             if (runner->wall) runner->wall[round] = wall / work;
         }
         *done = round + 1;

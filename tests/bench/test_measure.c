@@ -216,6 +216,31 @@ RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
     rt_scene_clear(&scene);
 }
 
+static RtStatus spin_a_millisecond(void *context, RtError *error) {
+    double start = rt_thread_seconds();
+    (void)context, (void)error;
+    while (rt_thread_seconds() - start < 1e-3) continue;
+    return RT_OK;
+}
+
+/* Ten times slower than all of it is. */
+static RtStatus warm_wrongly(void *context, double seconds, double *part, RtError *error) {
+    (void)seconds;
+    *part = 0.1;
+    return spin_a_millisecond(context, error);
+}
+
+RT_TEST(what_was_told_wrong_from_a_part_of_the_work_is_repeated_often_enough_from_the_second_round_on) {
+    double seconds[3], wall[3];
+    uint32_t done;
+    const RtRounds rounds = {.rounds = 3, .most = 3, .least = 10e-3, .seed = 1};
+    RtRunner runner = {
+        .run = spin_a_millisecond, .warm = warm_wrongly, .work = 1, .seconds = seconds, .wall = wall};
+    assert_ok(rt_rounds_run(&runner, 1, &rounds, &done, error));
+    assert_true(9 <= runner.repeats && runner.repeats <= 11);
+    for (int r = 0; r < 3; r++) assert_true(0.9e-3 < seconds[r] && seconds[r] < 2e-3);
+}
+
 /* ---- until the intervals are narrow ---- */
 
 static RtStatus do_nothing(void *context, RtError *error) {
