@@ -94,6 +94,20 @@ RT_TEST_IN_PLACE(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in
     }
 }
 
+RT_TEST_IN_PLACE(a_finished_run_with_distributions_that_is_resumed_measures_nothing_again) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    char *before = read_in(place, "out/cells.jsonl"), *table = read_in(place, "out/distributions.csv");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    char *after = read_in(place, "out/cells.jsonl"), *again = read_in(place, "out/distributions.csv");
+    assert_string_equal(before, after);
+    assert_string_equal(table, again);
+    rt_free(before);
+    rt_free(after);
+    rt_free(table);
+    rt_free(again);
+}
+
 RT_TEST_IN_PLACE(reproduce_compares_distributions_byte_for_byte) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
