@@ -46,17 +46,17 @@ static void touch_pages(size_t count) {
 RT_TEST(what_is_done_between_start_and_stop_is_counted_and_nothing_else) {
     RtHardware hardware;
     if (!open_events(&hardware)) skip();
-    touch_pages(1000);
+    touch_pages(5000);
     RtHardwareStart start = rt_hardware_start(&hardware);
     touch_pages(100);
     RtHardwareCounts first = rt_hardware_stop(&hardware, &start);
-    touch_pages(1000);
+    touch_pages(5000);
     start = rt_hardware_start(&hardware);
     touch_pages(300);
     RtHardwareCounts second = rt_hardware_stop(&hardware, &start);
     rt_hardware_close(&hardware);
-    assert_true(100 <= first.of[FAULTS] && first.of[FAULTS] < 120);
-    assert_true(300 <= second.of[FAULTS] && second.of[FAULTS] < 320);
+    assert_true(100 <= first.of[FAULTS] && first.of[FAULTS] < 4000); /* sanitizers touch pages of their own */
+    assert_true(300 <= second.of[FAULTS] && second.of[FAULTS] < 4000);
     assert_true(first.running == 1 && second.running == 1);
 }
 
@@ -71,11 +71,13 @@ static RtStatus spin_and_touch(void *context, size_t item, int thread, RtError *
 RT_TEST(threads_that_are_started_meanwhile_are_counted_each_time_once) {
     RtHardware hardware;
     if (!open_events(&hardware)) skip();
+    double first = 0;
     for (int threads = 1; threads <= 4; threads++) {
         RtHardwareStart start = rt_hardware_start(&hardware);
         assert_ok(rt_parallel_for(8, threads, spin_and_touch, NULL, error));
         RtHardwareCounts counts = rt_hardware_stop(&hardware, &start);
-        assert_true(800 <= counts.of[FAULTS] && counts.of[FAULTS] < 1000);
+        if (threads == 1) first = counts.of[FAULTS];
+        assert_true(800 <= counts.of[FAULTS] && counts.of[FAULTS] < 1.5 * first + 200);
         assert_true(0.15e9 < counts.of[CLOCK] && counts.of[CLOCK] < 0.5e9);
     }
     rt_hardware_close(&hardware);
