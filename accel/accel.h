@@ -104,6 +104,13 @@ typedef struct RtBoxViewer {
     void *context;
 } RtBoxViewer;
 
+/* Who looks at the leaves of a structure, or its voxels: one call of `show` each, with the number of objects
+ * in its list and its depth below the root. */
+typedef struct RtLeafViewer {
+    void (*show)(void *context, uint32_t objects, uint32_t depth);
+    void *context;
+} RtLeafViewer;
+
 /* What an accelerator is built from. */
 typedef struct RtBuild {
     const RtAccelOps *ops; /* of the accelerator itself */
@@ -165,6 +172,9 @@ struct RtAccelOps {
 
     /* Optional: shows the boxes of the structure, for pictures. */
     void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
+
+    /* Optional: shows all leaves, the empty ones included: those that `describe` counts. RT_NO_MEMORY. */
+    RtStatus (*each_leaf)(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
     /* Optional: RT_OK, or what went wrong while rays were traced, which kernels cannot say. To be asked where
      * no thread traces. */

@@ -130,6 +130,7 @@ void rt_grid_destroy(RtAccel *accel);
 void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);
+RtStatus rt_grid_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
 /* The voxel of `block` at a place, as a number in the level. */
 static inline size_t rt_grid_voxel_at(const RtGridBlock *block, const uint32_t at[3]) {

@@ -20,9 +20,12 @@ RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtE
 
 void rt_results_clear(RtResults *results) {
     const RtExperiment *e = results->experiment;
-    size_t cells =
-        results->cells ? e->workload_count * (e->candidate_count + (size_t)1) * RT_RAY_KIND_COUNT : 0;
-    for (size_t i = 0; i < cells; i++) rt_free(results->cells[i].each);
+    size_t builds = e ? e->workload_count * (e->candidate_count + (size_t)1) : 0;
+    for (size_t i = 0; results->cells && i < builds * RT_RAY_KIND_COUNT; i++) {
+        rt_free(results->cells[i].each);
+        rt_free(results->cells[i].distributions);
+    }
+    for (size_t i = 0; results->builds && i < builds; i++) rt_free(results->builds[i].leaves);
     rt_free(results->workloads);
     rt_free(results->builds);
     rt_free(results->cells);

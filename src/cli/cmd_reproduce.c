@@ -73,7 +73,7 @@ static RtStatus compare_all(const char *directory, const RtResults *results, RtE
     if (status == RT_OK) rt_published_compare(&published, results);
     for (size_t i = 0; status == RT_OK && i < RT_EXACT_FILES; i++) {
         const RtExactFile *file = &rt_exact_files[i];
-        if (file->published && results->experiment->published.table_count == 0) continue;
+        if (!file->is_wanted(results->experiment)) continue;
         status = compare_file(directory, file, results, &published, error);
     }
     if (status == RT_OK) status = rt_published_check(&published, error);

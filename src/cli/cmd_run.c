@@ -2,6 +2,7 @@
 /* raytally run: an experiment, from its YAML to a result directory. */
 #include "base/memory.h"
 #include "bench/claims.h"
+#include "bench/hardware_table.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/result_tables.h"
@@ -188,6 +189,7 @@ static void go_on(const Options *o, const RtExperiment *e, const char *directory
 static void print_all(const RtResults *results, const char *directory, bool report) {
     char sentence[RT_MAX_SENTENCE];
     rt_print_results(results, RT_TOTALS, stdout);
+    if (results->experiment->hardware) rt_print_hardware(results, stdout);
     rt_print_limits(results, stdout);
     rt_claims_print(results, stdout);
     rt_null_sentence(results, sentence);

@@ -56,10 +56,14 @@ static void show(RtProgress *progress) {
 }
 
 static void describe(RtProgress *progress, const RtResults *results, const RtEvent *event) {
-    static const char *const what[] = {
-        [RT_EVENT_WORKLOAD] = "rays recorded", [RT_EVENT_BUILD] = "built",
-        [RT_EVENT_COUNT] = "counted",          [RT_EVENT_TIME] = "timed",
-        [RT_EVENT_TOO_LARGE] = "left out",     [RT_EVENT_TOO_LONG] = "left out"};
+    static const char *const what[] = {[RT_EVENT_WORKLOAD] = "rays recorded",
+                                       [RT_EVENT_BUILD] = "built",
+                                       [RT_EVENT_COUNT] = "counted",
+                                       [RT_EVENT_TIME] = "timed",
+                                       [RT_EVENT_DISTRIBUTION] = "distributed",
+                                       [RT_EVENT_HARDWARE] = "counted by the machine",
+                                       [RT_EVENT_TOO_LARGE] = "left out",
+                                       [RT_EVENT_TOO_LONG] = "left out"};
     const RtExperiment *experiment = results->experiment;
     bool scene = event->what == RT_EVENT_WORKLOAD, build = event->what == RT_EVENT_BUILD;
     snprintf(progress->doing, sizeof progress->doing, "%s%s%s%s%s: %s",

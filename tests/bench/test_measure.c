@@ -3,6 +3,7 @@
  * answers; thinned candidates are timed against the baseline on their own rays. */
 #include "testing.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "bench/measure.h"
 #include "bench/workload.h"
@@ -207,6 +208,66 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     assert_best_is_baseline(&results, RT_RAY_SHADOW);
     rt_results_clear(&results);
     rt_free(e);
+}
+
+/* ---- what measuring itself takes ---- */
+
+/* A set takes longer than a round has to, so that each round is one pass: `wall` is all of it. Memory,
+ * warm-up and what is between the passes are the rest. The best of some attempts, for a machine that is busy.
+ */
+RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
+    enum { ROUNDS = 10 };
+    const char *const specs[] = {"brute", "extents"};
+    double seconds[2][ROUNDS], wall[2][ROUNDS], best = 0;
+    RtScene scene;
+    RtAccel *accels[2];
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RtRecording recording = {.depth = 1, .seed = 1, .random = 20000, .threads = 1};
+    const RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .least = 2e-3, .seed = 1},
+                             .threads = 1};
+    assert_ok(rt_scene_open("balls:size=3", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 8, 8, 1, false, error));
+    for (int i = 0; i < 2; i++) assert_ok(rt_accel_open(specs[i], &scene, &accels[i], error));
+    assert_ok(rt_rayset_record(sets, accels[0], &recording, error));
+    for (int attempt = 0; attempt < 5 && best < 0.98; attempt++) {
+        const RtRaySet *set = &sets[RT_RAY_RANDOM];
+        RtTimed timed[2] = {{accels[0], set, seconds[0], wall[0]}, {accels[1], set, seconds[1], wall[1]}};
+        uint32_t done;
+        double rounds = 0, start = rt_wall_seconds();
+        assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
+        double all = rt_wall_seconds() - start;
+        for (int i = 0; i < 2 * ROUNDS; i++) rounds += wall[i / ROUNDS][i % ROUNDS] * (double)set->count;
+        if (rounds / all > best) best = rounds / all;
+    }
+    if (best < 0.98) fail_msg("rounds are %.2f %% of the time", 100 * best);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
+    for (int i = 0; i < 2; i++) rt_accel_destroy(accels[i]);
+    rt_scene_clear(&scene);
+}
+
+static RtStatus spin_a_millisecond(void *context, RtError *error) {
+    double start = rt_thread_seconds();
+    (void)context, (void)error;
+    while (rt_thread_seconds() - start < 1e-3) continue;
+    return RT_OK;
+}
+
+/* Ten times slower than all of it is. */
+static RtStatus warm_wrongly(void *context, double seconds, double *part, RtError *error) {
+    (void)seconds;
+    *part = 0.1;
+    return spin_a_millisecond(context, error);
+}
+
+RT_TEST(what_was_told_wrong_from_a_part_of_the_work_is_repeated_often_enough_from_the_second_round_on) {
+    double seconds[3], wall[3];
+    uint32_t done;
+    const RtRounds rounds = {.rounds = 3, .most = 3, .least = 10e-3, .seed = 1};
+    RtRunner runner = {
+        .run = spin_a_millisecond, .warm = warm_wrongly, .work = 1, .seconds = seconds, .wall = wall};
+    assert_ok(rt_rounds_run(&runner, 1, &rounds, &done, error));
+    assert_true(9 <= runner.repeats && runner.repeats <= 11);
+    for (int r = 0; r < 3; r++) assert_true(0.9e-3 < seconds[r] && seconds[r] < 2e-3);
 }
 
 /* ---- until the intervals are narrow ---- */
