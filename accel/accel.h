@@ -114,6 +114,13 @@ typedef struct RtCellView {
     bool cut;   /* a ray that finds nothing in it is passed on */
 } RtCellView;
 
+/* Who looks at the leaves of a structure, or its voxels: one call of `show` each, with the number of objects
+ * in its list and its depth below the root. */
+typedef struct RtLeafViewer {
+    void (*show)(void *context, uint32_t objects, uint32_t depth);
+    void *context;
+} RtLeafViewer;
+
 /* What an accelerator is built from. */
 typedef struct RtBuild {
     const RtAccelOps *ops; /* of the accelerator itself */
@@ -180,6 +187,9 @@ struct RtAccelOps {
      * answers, of which only the direction and the source matter. False if there is no cell: nothing is seen
      * there. */
     bool (*look_up)(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
+
+    /* Optional: shows all leaves, the empty ones included: those that `describe` counts. RT_NO_MEMORY. */
+    RtStatus (*each_leaf)(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
     /* Optional: RT_OK, or what went wrong while rays were traced, which kernels cannot say. To be asked where
      * no thread traces. */

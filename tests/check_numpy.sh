@@ -5,12 +5,18 @@
 set -euo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 readme=$(realpath "$(dirname "$0")/../experiments/README.md")
-python3 -c 'import numpy' 2>/dev/null || {
+# Another python3 may stand before Debian's, without Debian's NumPy.
+python=
+for candidate in python3 /usr/bin/python3; do
+    if [ -z "$python" ] && "$candidate" -c 'import numpy' 2>/dev/null; then python=$(command -v "$candidate"); fi
+done
+[ -n "$python" ] || {
     echo 'check_numpy: skipped: python3-numpy is not installed'
     exit 77
 }
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
+printf '#!/bin/sh\nexec "%s" "$@"\n' "$python" >"$work/bin/python3" && chmod +x "$work/bin/python3"
 export PATH=$work/bin:$PATH
 cd "$work"
 

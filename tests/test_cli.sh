@@ -306,6 +306,16 @@ refuses 'occupied.*(directory|folder)' run small.yaml --out occupied
 does run small.yaml
 does run small.yaml --resume
 does reproduce results/small
+does run results/small/manifest.json --out again
+cmp -s results/small/counts.csv again/counts.csv || complain "raytally run DIR/manifest.json: does not count the same"
+refuses "quick: .*manifest.json says" run results/small/manifest.json --quick --out again
+cp small.yaml kept.yaml && sed -i 's/limit: 50/limit: 40/' small.yaml
+"$program" run results/small/manifest.json --force 2>stderr && complain "raytally run DIR/manifest.json: runs what has changed"
+grep -q 'small.yaml has changed since results/small was made' stderr || complain "run DIR/manifest.json: $(cat stderr)"
+rm stderr
+mv kept.yaml small.yaml
+echo '{}' >damaged/manifest.json
+refuses 'does not say what was run' run damaged/manifest.json
 cp results/small/counts.csv counted
 # differs WHERE THERE NOW: from what is counted now
 differs() {

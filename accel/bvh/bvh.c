@@ -191,6 +191,12 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     rt_hierarchy_each_box(&((const RtBvh *)accel)->hierarchy, viewer);
 }
 
+static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
+    (void)error;
+    rt_hierarchy_each_leaf(&((const RtBvh *)accel)->hierarchy, viewer);
+    return RT_OK;
+}
+
 const RtAccelOps rt_bvh_ops = {
     .name = "bvh",
     .summary = "binary hierarchy of boxes, by the surface area heuristic or along the Morton curve",
@@ -203,4 +209,5 @@ const RtAccelOps rt_bvh_ops = {
     .describe = describe,
     .validate = validate,
     .each_box = each_box,
+    .each_leaf = each_leaf,
 };

@@ -216,6 +216,12 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     rt_hierarchy_each_box(&((const RtClusters *)accel)->hierarchy, viewer);
 }
 
+static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
+    (void)error;
+    rt_hierarchy_each_leaf(&((const RtClusters *)accel)->hierarchy, viewer);
+    return RT_OK;
+}
+
 const RtAccelOps rt_clusters_ops = {
     .name = "clusters",
     .summary =
@@ -228,4 +234,5 @@ const RtAccelOps rt_clusters_ops = {
     .describe = describe,
     .validate = validate,
     .each_box = each_box,
+    .each_leaf = each_leaf,
 };

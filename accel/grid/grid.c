@@ -333,4 +333,5 @@ const RtAccelOps rt_grid_ops = {
     .describe = rt_grid_describe,
     .validate = rt_grid_validate,
     .each_box = rt_grid_each_box,
+    .each_leaf = rt_grid_each_leaf,
 };

@@ -130,6 +130,7 @@ void rt_grid_destroy(RtAccel *accel);
 void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);
+RtStatus rt_grid_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
 /* The box of a voxel, by its number in the level. */
 RtBox rt_grid_voxel_box(const RtGridLevel *level, uint32_t voxel);

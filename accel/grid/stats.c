@@ -244,7 +244,7 @@ RtStatus rt_grid_validate(const RtAccel *accel, RtError *error) {
     return status;
 }
 
-/* ---- boxes ---- */
+/* ---- boxes and leaves ---- */
 
 typedef struct Show {
     RtBoxViewer viewer;
@@ -268,4 +268,18 @@ void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer) {
         Show show = {viewer, i + 1};
         rt_grid_each_voxel(&grid->levels[i], show_voxel, &show);
     }
+}
+
+/* A voxel of the outermost grid is as deep as the depth of a grid that has no other: 1. */
+RtStatus rt_grid_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
+    const RtGrid *grid = (const RtGrid *)accel;
+    (void)error;
+    for (uint32_t i = 0; i < grid->depth; i++) {
+        const RtGridLevel *level = &grid->levels[i];
+        for (uint32_t v = 0; v < level->voxel_count; v++) {
+            if (rt_grid_inner(level, v) != RT_GRID_LEAF) continue;
+            viewer.show(viewer.context, level->first[v + 1] - level->first[v], i + 1);
+        }
+    }
+    return RT_OK;
 }

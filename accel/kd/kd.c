@@ -116,4 +116,5 @@ const RtAccelOps rt_kd_ops = {
     .describe = rt_kd_describe,
     .validate = rt_kd_validate,
     .each_box = rt_kd_each_box,
+    .each_leaf = rt_kd_each_leaf,
 };

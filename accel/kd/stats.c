@@ -202,7 +202,7 @@ RtStatus rt_kd_validate(const RtAccel *accel, RtError *error) {
     return status;
 }
 
-/* ---- drawing ---- */
+/* ---- boxes and leaves ---- */
 
 static RtStatus show_node(void *context, const RtKd *kd, const Place *place) {
     const RtBoxViewer *viewer = context;
@@ -232,4 +232,16 @@ RtBox rt_kd_cell(const RtKd *kd, uint32_t node) {
     Sought sought = {node, RT_EMPTY_BOX};
     each_node(kd, compare_node, &sought);
     return sought.cell;
+}
+
+static RtStatus show_leaf(void *context, const RtKd *kd, const Place *place) {
+    const RtLeafViewer *viewer = context;
+    const RtKdNode *node = &kd->nodes[place->node];
+    if (rt_kd_is_leaf(node)) viewer->show(viewer->context, rt_kd_length(node), place->depth);
+    return RT_OK;
+}
+
+RtStatus rt_kd_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
+    (void)error;
+    return each_node((const RtKd *)accel, show_leaf, &viewer);
 }

@@ -370,4 +370,5 @@ const RtAccelOps rt_octree_ops = {
     .describe = rt_octree_describe,
     .validate = rt_octree_validate,
     .each_box = rt_octree_each_box,
+    .each_leaf = rt_octree_each_leaf,
 };

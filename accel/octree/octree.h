@@ -128,6 +128,7 @@ RtStatus rt_octree_check_limit(const RtOctreeBuilder *b, uint32_t from, uint32_t
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
 void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer);
+RtStatus rt_octree_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
 /* Of eight children, as bits, those on the lower and those on the upper side along an axis. */
 static inline uint32_t rt_octree_lower(int axis) {

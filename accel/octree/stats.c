@@ -209,3 +209,13 @@ void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
         if (!leaf || node->count > 0) viewer.show(viewer.context, &tree->boxes[i], depth_of(tree, i), leaf);
     }
 }
+
+RtStatus rt_octree_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {
+    const RtOctree *tree = (const RtOctree *)accel;
+    (void)error;
+    for (uint32_t i = 0; i < tree->node_count; i++) {
+        const RtOctreeNode *node = &tree->nodes[i];
+        if (!rt_octree_is_inner(node)) viewer.show(viewer.context, node->count, depth_of(tree, i));
+    }
+    return RT_OK;
+}

@@ -57,6 +57,7 @@ void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, 
 void rt_hierarchy_measure(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out);
 
 void rt_hierarchy_each_box(const RtHierarchy *self, RtBoxViewer viewer);
+void rt_hierarchy_each_leaf(const RtHierarchy *self, RtLeafViewer viewer);
 
 /* RT_OK, or RT_MISMATCH and the first broken invariant, told of `name`. */
 RtStatus rt_hierarchy_validate(const RtHierarchy *self, const RtGeometry *geometry, const char *name,

@@ -51,6 +51,19 @@ void rt_hierarchy_each_box(const RtHierarchy *self, RtBoxViewer viewer) {
     if (self->node_count > 0) show_node(self, 0, 0, viewer);
 }
 
+static void show_leaves(const RtHierarchy *self, uint32_t index, uint32_t depth, RtLeafViewer viewer) {
+    const RtNode *node = &self->nodes[index];
+    if (rt_node_is_leaf(node)) {
+        viewer.show(viewer.context, rt_node_fanout(node), depth);
+        return;
+    }
+    for (uint32_t i = 0; i < node->count; i++) show_leaves(self, node->first + i, depth + 1, viewer);
+}
+
+void rt_hierarchy_each_leaf(const RtHierarchy *self, RtLeafViewer viewer) {
+    if (self->node_count > 0) show_leaves(self, 0, 0, viewer);
+}
+
 /* ---- checking ---- */
 
 typedef struct Check {

@@ -102,6 +102,15 @@ void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer) {
     rt_hierarchy_clear(&plain);
 }
 
+RtStatus rt_wide_each_leaf(const RtWideTree *self, RtLeafViewer viewer, RtError *error) {
+    RtHierarchy plain;
+    if (self->node_count == 0) return RT_OK;
+    if (!flatten(self, &plain)) return rt_fail_memory(error, "the leaves of a hierarchy", self->bytes);
+    rt_hierarchy_each_leaf(&plain, viewer);
+    rt_hierarchy_clear(&plain);
+    return RT_OK;
+}
+
 /* ---- checking ---- */
 
 typedef struct Check {

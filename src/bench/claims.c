@@ -27,6 +27,7 @@ __attribute__((format(printf, 2, 3))) static RtStatus fail(const Reader *r, cons
     char what[512];
     va_list args;
     va_start(args, format);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
     vsnprintf(what, sizeof what, format, args);
     va_end(args);
     return rt_fail(

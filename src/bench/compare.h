@@ -53,6 +53,7 @@ typedef struct RtComparedCell {
     bool counted;                  /* both of these are known, and the same wherever they are counted */
     RtTally counts_before, counts; /* of the cell */
     double *ratios;                /* [RT_MAX_ROUNDS] owned: of each round of two programs; or NULL */
+    uint32_t rounds;               /* of them: where limits leave a cell out of one, fewer than of others */
 } RtComparedCell;
 
 typedef struct RtComparison {

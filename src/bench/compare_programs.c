@@ -125,7 +125,7 @@ static RtStatus time_pairs(Match *match, Pair *pairs, uint32_t count, RtError *e
     }
     for (uint32_t i = 0; i < count; i++) {
         RtComparedCell *cell = &match->comparison->cells[pairs[i].cell];
-        cell->ratios[match->round] = rt_median(pairs[i].turns, RT_TURNS);
+        cell->ratios[cell->rounds++] = rt_median(pairs[i].turns, RT_TURNS);
         cell->before = rt_median(pairs[i].seconds[BEFORE], RT_TURNS);
         cell->after = rt_median(pairs[i].seconds[AFTER], RT_TURNS);
     }
@@ -215,6 +215,12 @@ static RtStatus run_round(Match *match, RtError *error) {
 /* Intervals of what there is after so many rounds; how wide the widest is. */
 static double estimate(RtComparison *comparison, uint32_t rounds) {
     double widest = 0;
+    for (uint32_t i = 0; i < comparison->count; i++) {
+        RtComparedCell *cell = &comparison->cells[i];
+        if (!cell->timed || cell->rounds == rounds) continue;
+        cell->timed = false; /* a limit of time left it out in some round */
+        cell->change = RT_CHANGE_NOT_TIMED;
+    }
     rt_comparison_judge(comparison);
     for (uint32_t i = 0; i < comparison->count; i++) {
         RtComparedCell *cell = &comparison->cells[i];

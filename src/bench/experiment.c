@@ -207,13 +207,14 @@ static RtStatus check_published(const RtExperiment *experiment, RtError *error) 
     return check_beside(published->reasons, error);
 }
 
-/* All scripts are copied into one folder, to names.gp (report/plot.h). */
+/* All scripts are copied into one folder, to names.gp and histograms.gp (report/plot.h). */
 static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *error) {
     const char *name = rt_plot_name(experiment, i);
     if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
         return rt_fail(error, RT_BAD_INPUT, "'%s' does not name a gnuplot script", experiment->plots[i]);
     }
-    bool taken = strcmp(name, "names.gp") == 0;
+    bool taken =
+        strcmp(name, "names.gp") == 0 || (experiment->distributions && strcmp(name, "histograms.gp") == 0);
     for (uint32_t k = 0; k < i; k++) taken |= strcmp(name, rt_plot_name(experiment, k)) == 0;
     if (!taken) return RT_OK;
     return rt_fail(
@@ -235,6 +236,15 @@ static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept
                        swept->keys[i], RT_MAX_SWEPT_KEYS);
     }
     return RT_OK;
+}
+
+/* Nothing is run for the machine to count. */
+static RtStatus check_hardware(const RtExperiment *experiment, RtError *error) {
+    if (!experiment->hardware || !experiment->count_only) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "hardware counters are read while rays are traced for their time, which `count_only` leaves "
+        "out");
 }
 
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
@@ -267,6 +277,8 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
         snprintf(where, RT_MAX_LABEL, "plots[%u]", i);
         RT_TRY(check_plot(experiment, i, error));
     }
+    strcpy(where, "hardware");
+    RT_TRY(check_hardware(experiment, error));
     strcpy(where, "name");
     if (*experiment->name == '.') {
         return rt_fail(error, RT_BAD_INPUT,

@@ -107,10 +107,12 @@ typedef struct RtExperiment {
     char rays_from[RT_MAX_PATH]; /* a file of rays (bench/ray_file.h) of the one kind, in place of recorded
                                     ones; or "" */
     bool count_only;             /* nothing is timed */
-    bool quick;                  /* the smaller variant, for a first look */
-    char path[RT_MAX_PATH];      /* of the YAML; "" where there is none */
-    char folder[RT_MAX_PATH];    /* of the YAML */
-    uint64_t fingerprint;        /* of the YAML's bytes, without finding and expect, which change no result */
+    bool hardware;            /* what the machine did for rays is counted, where it tells (base/hardware.h) */
+    bool distributions;       /* of counts over rays, and of leaves (bench/distribution.h) */
+    bool quick;               /* the smaller variant, for a first look */
+    char path[RT_MAX_PATH];   /* of the YAML; "" where there is none */
+    char folder[RT_MAX_PATH]; /* of the YAML */
+    uint64_t fingerprint;     /* of the YAML's bytes, without finding and expect, which change no result */
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds but occlusion, which is diffuse once more, and the defaults: limit

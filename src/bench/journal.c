@@ -3,6 +3,7 @@
 
 #include "accel/structure_json.h"
 #include "base/json.h"
+#include "base/memory.h"
 #include "bench/machine.h"
 
 #include <inttypes.h>
@@ -36,9 +37,15 @@ static json_t *build_json(const RtBuildResult *build) {
     json_t *run =
         json_pack("{s:s, s:b, s:b, s:f, s:I}", "spec", build->spec, "exact", build->exact, "counts",
                   build->counts, "seconds", build->seconds, "bytes", (json_int_t)build->shape.bytes);
-    if (json_object_update_new(object, run) == 0) return object;
-    json_decref(object);
-    return NULL;
+    if (json_object_update_new(object, run) != 0) {
+        json_decref(object);
+        return NULL;
+    }
+    if (build->leaves)
+        json_object_set_new(
+            object, "distributions",
+            rt_distributions_json(build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT));
+    return object;
 }
 
 static json_t *count_json(const RtCell *cell) {
@@ -73,6 +80,20 @@ static json_t *time_json(const RtResults *results, const RtCell *cell) {
     return object;
 }
 
+/* What is not known is null. */
+static json_t *hardware_json(const RtResults *results, const RtCell *cell) {
+    const RtCellHardware *hardware = &cell->hardware;
+    const RtMachine *machine = &results->machines[hardware->machine];
+    json_t *object =
+        json_pack("{s:i, s:f, s:s, s:s, s:s}", "threads", hardware->threads, "running",
+                  hardware->counts.running, "why", hardware->why, "host", machine->host, "cpu", machine->cpu);
+    for (size_t i = 0; i < RT_HARDWARE_COUNT; i++) {
+        double count = *hardware->why ? (double)NAN : hardware->counts.of[i];
+        json_object_set_new(object, rt_hardware_name(i), isnan(count) ? json_null() : json_real(count));
+    }
+    return object;
+}
+
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
     const RtExperiment *experiment = results->experiment;
     const RtCell *cell = rt_cell_at(results, event->workload, event->candidate, event->kind);
@@ -89,9 +110,15 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
     case RT_EVENT_COUNT:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "counted",
                          count_json(cell));
+    case RT_EVENT_DISTRIBUTION:
+        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "distributed",
+                         rt_distributions_json(cell->distributions, 0, RT_RAY_QUANTITY_COUNT));
     case RT_EVENT_TIME:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "timed",
                          time_json(results, cell));
+    case RT_EVENT_HARDWARE:
+        return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "hardware",
+                         hardware_json(results, cell));
     case RT_EVENT_TOO_LARGE:
         return json_pack("{s:s, s:s, s:s}", "scene", scene, "accel", accel, "too_large",
                          rt_build_at(results, event->workload, event->candidate)->limit);
@@ -163,7 +190,20 @@ static void take_tally(RtTally *tally, const json_t *object) {
 #undef TAKE
 }
 
-static void take_build(RtBuildResult *build, const json_t *object) {
+/* Makes room for `count` distributions, from number `first` on, and fills it; without them *out stays as it
+ * is, and they are found once more. */
+static RtStatus take_distributions(RtDistribution **out, size_t first, size_t count, const json_t *object,
+                                   RtError *error) {
+    if (!object || *out) return RT_OK;
+    *out = rt_alloc(count, sizeof(RtDistribution));
+    if (!*out) return rt_fail_memory(error, "distributions", count * sizeof(RtDistribution));
+    if (rt_distributions_take(*out, first, count, object)) return RT_OK;
+    rt_free(*out);
+    *out = NULL;
+    return RT_OK;
+}
+
+static RtStatus take_build(RtBuildResult *build, const json_t *object, RtError *error) {
     const char *spec = json_string_value(json_object_get(object, "spec"));
     build->known = true;
     build->exact = json_is_true(json_object_get(object, "exact"));
@@ -181,6 +221,8 @@ static void take_build(RtBuildResult *build, const json_t *object) {
     RT_QUALITIES(TAKE_PREDICTION)
 #undef TAKE_PREDICTION
     take_tally(&build->shape.build, json_object_get(object, "build"));
+    return take_distributions(&build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT,
+                              json_object_get(object, "distributions"), error);
 }
 
 static void take_count(RtCell *cell, const json_t *object) {
@@ -210,13 +252,28 @@ static void take_text(char *out, size_t room, const json_t *object, const char *
     snprintf(out, room, "%s", text ? text : "");
 }
 
-static RtStatus take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object,
-                          RtError *error) {
-    const RtExperiment *experiment = results->experiment;
+static uint32_t take_machine(RtResults *results, const json_t *object) {
     RtMachine machine;
     take_text(machine.host, sizeof machine.host, object, "host");
     take_text(machine.cpu, sizeof machine.cpu, object, "cpu");
-    cell->machine = rt_results_machine(results, &machine);
+    return rt_results_machine(results, &machine);
+}
+
+static void take_hardware(RtResults *results, RtCell *cell, const json_t *object) {
+    RtCellHardware *hardware = &cell->hardware;
+    hardware->known = true;
+    hardware->threads = (int)get_integer(object, "threads");
+    hardware->machine = take_machine(results, object);
+    hardware->counts.running = get_number(object, "running");
+    take_text(hardware->why, sizeof hardware->why, object, "why");
+    for (size_t i = 0; i < RT_HARDWARE_COUNT; i++)
+        hardware->counts.of[i] = get_number(object, rt_hardware_name(i));
+}
+
+static RtStatus take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object,
+                          RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    cell->machine = take_machine(results, object);
     const char *baseline = json_string_value(json_object_get(object, "baseline"));
     uint32_t c = rt_candidate_find(experiment, baseline ? baseline : "", workload);
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
@@ -245,14 +302,17 @@ static RtStatus take_line(RtResults *results, const json_t *line, RtError *error
     uint32_t candidate = rt_candidate_find(experiment, accel, workload);
     if (candidate > experiment->candidate_count) return RT_OK;
     if ((object = json_object_get(line, "built")))
-        take_build(rt_build_at(results, workload, candidate), object);
+        RT_TRY(take_build(rt_build_at(results, workload, candidate), object, error));
     const char *limit = json_string_value(json_object_get(line, "too_large"));
     if (limit) snprintf(rt_build_at(results, workload, candidate)->limit, RT_MAX_LIMIT, "%s", limit);
     if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return RT_OK;
     RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
+    RT_TRY(take_distributions(&cell->distributions, 0, RT_RAY_QUANTITY_COUNT,
+                              json_object_get(line, "distributed"), error));
     limit = json_string_value(json_object_get(line, "too_long"));
     if (limit) snprintf(cell->limit, RT_MAX_LIMIT, "%s", limit);
+    if ((object = json_object_get(line, "hardware"))) take_hardware(results, cell, object);
     object = json_object_get(line, "timed");
     return object ? take_time(results, workload, cell, object, error) : RT_OK;
 }

@@ -81,3 +81,28 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
     return rt_fail_at(error, path, fault.line > 0 ? (size_t)fault.line : 0, 0,
                       "%s; the file is damaged: run the experiment again", fault.text);
 }
+
+static RtStatus load_experiment(const json_t *manifest, const char *directory, RtExperiment *experiment,
+                                RtError *error) {
+    const char *file = json_string_value(json_object_get(manifest, "file"));
+    const json_t *hash = json_object_get(manifest, "hash");
+    if (!file || !json_is_string(hash)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s/manifest.json does not say what was run: run the experiment by its YAML",
+                       directory);
+    }
+    RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));
+    json_t *now = rt_json_hex(experiment->fingerprint);
+    bool same = now && json_equal(now, hash);
+    json_decref(now);
+    if (same) return RT_OK;
+    return rt_fail(error, RT_MISMATCH, "%s has changed since %s was made from it", file, directory);
+}
+
+RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error) {
+    json_t *manifest;
+    RT_TRY(rt_manifest_read(directory, &manifest, error));
+    RtStatus status = load_experiment(manifest, directory, experiment, error);
+    json_decref(manifest);
+    return status;
+}

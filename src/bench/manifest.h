@@ -14,4 +14,8 @@ RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *op
 /* Reads it back; the caller owns the reference. */
 RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error);
 
+/* Loads the experiment that the manifest of `directory` is of, quick if that was, from the file that it
+ * names, seen from here; its scenes are found from where it lies. RT_MISMATCH where it has changed since. */
+RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error);
+
 #endif

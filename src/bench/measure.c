@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/measure.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "bench/rounds.h"
@@ -9,6 +10,9 @@
 
 /* Rays handed to a thread at a time. */
 enum { CHUNK = 4096 };
+
+/* Rays traced at a time while warming up. */
+enum { MOST_WARM = 256 };
 
 /* One pass of an accelerator over a ray set. Either `hits` or `blocked` takes the answers. */
 typedef struct Pass {
@@ -178,9 +182,30 @@ static RtStatus run_runner(void *context, RtError *error) {
     return run_pass(context, error);
 }
 
+/* Blocks of rays, one after the other where the golden ratio puts it, so that however few they are they are
+ * spread; the answers' memory is touched, too. */
+static RtStatus warm_runner(void *context, double seconds, double *part, RtError *error) {
+    const double golden = 0.6180339887498949;
+    Pass *pass = context;
+    const uint64_t count = pass->set->count;
+    const uint64_t block = count < 128 ? 1 : count / 64 < MOST_WARM ? count / 64 : MOST_WARM;
+    const uint64_t blocks = count / block;
+    double start = rt_thread_seconds(), place = 0;
+    uint64_t done = 0;
+    if (pass->hits) memset(pass->hits, 0, count * sizeof(RtHit));
+    if (pass->blocked) memset(pass->blocked, 0, count * sizeof(bool));
+    do {
+        trace(pass, 0, block * (uint64_t)(place * (double)blocks), block);
+        place += place + golden < 1 ? golden : golden - 1;
+    } while (++done < blocks && rt_thread_seconds() - start < seconds);
+    *part = (double)(done * block) / (double)count;
+    return rt_accel_check(pass->queries[0].accel, error);
+}
+
 RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
     Pass *pass = rt_alloc(1, sizeof(Pass));
     *runner = (RtRunner){.run = run_runner,
+                         .warm = warm_runner,
                          .context = pass,
                          .work = (double)timed->set->count,
                          .parallel = rt_thread_count(threads) > 1,

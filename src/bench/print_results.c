@@ -28,25 +28,27 @@ static void print_title(const RtResults *results, uint32_t t, FILE *out) {
 }
 
 /* A heading before the rows of each kind of rays, and labels that are long on lines of their own. */
-static void print_rows(const RtTable *table, RtResultRow *row, FILE *out) {
+void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out) {
+    RtResultRow row = {.results = results, .workload = workload};
+    const RtTable table = rt_result_table(which, &row);
     int widths[RT_MAX_TABLE_COLUMNS];
-    bool by_kind = row->which == RT_CELLS, any = false;
+    bool by_kind = which == RT_CELLS || which == RT_SPREADS || which == RT_MACHINE_CELLS, any = false;
     RtRayKind kind = RT_RAY_PRIMARY;
-    rt_table_widths(table, widths);
-    rt_table_line(table, widths, NULL, out);
-    for (size_t i = 0; i < table->row_count; i++) {
+    fputc('\n', out);
+    rt_table_widths(&table, widths);
+    rt_table_line(&table, widths, NULL, out);
+    for (size_t i = 0; i < table.row_count; i++) {
         char label[RT_MAX_EYE_LABEL];
-        if (!table->row(table->context, i)) continue;
-        if (by_kind && (!any || row->kind != kind)) {
-            fprintf(out, "  %s, %" PRIu64 " rays\n",
-                    rt_experiment_kind_name(row->results->experiment, row->kind),
-                    row->scene->rays[row->kind]);
+        if (!table.row(table.context, i)) continue;
+        if (by_kind && (!any || row.kind != kind)) {
+            fprintf(out, "  %s, %" PRIu64 " rays\n", rt_experiment_kind_name(results->experiment, row.kind),
+                    row.scene->rays[row.kind]);
         }
         any = true;
-        kind = row->kind;
-        rt_result_eye_label(row, label);
+        kind = row.kind;
+        rt_result_eye_label(&row, label);
         if (strlen(label) > RT_EYE_WIDTH) fprintf(out, "%s\n", label);
-        rt_table_line(table, widths, row, out);
+        rt_table_line(&table, widths, &row, out);
     }
 }
 
@@ -99,15 +101,11 @@ static void print_strides(const RtResults *results, uint32_t t, FILE *out) {
 }
 
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
-    RtResultRow row = {.results = results, .workload = t}, structure = row;
-    RtTable table = rt_result_table(RT_CELLS, &row), structures = rt_result_table(RT_STRUCTURES, &structure);
     rt_print_wrapped("Object tests, extent tests and steps are those of a ray.", out);
     print_ratios(results, t, out);
-    fputc('\n', out);
-    print_rows(&table, &row, out);
+    rt_print_rows(results, RT_CELLS, t, out);
     print_strides(results, t, out);
-    fputc('\n', out);
-    print_rows(&structures, &structure, out);
+    rt_print_rows(results, RT_STRUCTURES, t, out);
 }
 
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {

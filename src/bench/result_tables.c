@@ -41,6 +41,14 @@ static RtField ratio_of(const Row *r) {
                              ends ? r->cell->ratio.high : (double)NAN);
 }
 
+static RtField pay_off_of(const Row *r) {
+    double rays = rt_results_pay_off(r->results, r->workload, r->candidate);
+    return isnan(rays)   ? rt_field_missing()
+           : isinf(rays) ? rt_field_text("never")
+           : rays == 0   ? rt_field_text("always")
+                         : rt_field_print(rays > 0 ? "from %.3g" : "to %.3g", 1e-6 * fabs(rays));
+}
+
 static RtField baseline_of(const Row *r) {
     if (!r->cell->timed) return rt_field_missing();
     return rt_field_text(rt_candidate_label(r->results->experiment, r->cell->baseline));
@@ -78,7 +86,10 @@ static double each_ns(const Row *r, RtEach each) {
 
 /* ---- columns ---- */
 
-#define TIMED(figure) (r->cell->timed ? (figure) : (double)NAN)
+#define SPREAD(quantity) (&r->cell->distributions[RT_QUANTITY_##quantity])
+#define LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
+#define MACHINE(name)    (r->cell->hardware.counts.of[RT_HARDWARE_##name])
+#define TIMED(figure)    (r->cell->timed ? (figure) : (double)NAN)
 
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment", r->setup->label)                      \
@@ -137,6 +148,8 @@ static double each_ns(const Row *r, RtEach each) {
     X(interval, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                        \
     X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
     X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
+    X(pay_off, "ahead, Mrays", text, "million",                                                              \
+      "for how many rays, with both builds, it takes less time than the baseline", pay_off_of(r))            \
     X(min_ns, "min ns", figure, "ns", "smallest time per ray", TIMED(1e9 * r->cell->seconds.least))          \
     X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps a second: mrays_per_s by steps per ray",      \
       1e-6 * r->all.steps / r->all.seconds)                                                                  \
@@ -149,6 +162,25 @@ static double each_ns(const Row *r, RtEach each) {
     X(eye_steps, "steps", figure, "", "steps per ray", r->all.steps)                                         \
     X(eye_mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds)                        \
     X(eye_ratio, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                       \
+    X(tests_median, "tests: 50 %", integer, "", "object tests that half of the rays do not exceed",          \
+      SPREAD(object_tests)->median)                                                                          \
+    X(tests_p99, "99 %", integer, "", "that 99 % do not exceed", SPREAD(object_tests)->p99)                  \
+    X(tests_most, "most", integer, "", "of the ray that has most", SPREAD(object_tests)->most)               \
+    X(steps_median, "steps: 50 %", integer, "", "the same of steps", SPREAD(steps)->median)                  \
+    X(steps_p99, "99 %", integer, "", "that 99 % do not exceed", SPREAD(steps)->p99)                         \
+    X(steps_most, "most", integer, "", "of the ray that has most", SPREAD(steps)->most)                      \
+    X(size_median, "leaf size: 50 %", integer, "", "objects that half of the leaves do not exceed",          \
+      LEAVES(leaf_size)->median)                                                                             \
+    X(size_p99, "99 %", integer, "", "that 99 % do not exceed", LEAVES(leaf_size)->p99)                      \
+    X(size_most, "most", integer, "", "of the largest", LEAVES(leaf_size)->most)                             \
+    X(depth_median, "depth: 50 %", integer, "", "the same of depths", LEAVES(leaf_depth)->median)            \
+    X(depth_p99, "99 %", integer, "", "that 99 % do not exceed", LEAVES(leaf_depth)->p99)                    \
+    X(depth_most, "most", integer, "", "of the deepest", LEAVES(leaf_depth)->most)                           \
+    X(eye_instructions, "instr./ray", figure, "", "instructions", MACHINE(instructions))                     \
+    X(eye_cycles, "cycles/ray", figure, "", "cycles", MACHINE(cycles))                                       \
+    X(eye_ipc, "instr./cycle", figure, "", "instructions a cycle", MACHINE(instructions) / MACHINE(cycles))  \
+    X(eye_cache, "cache m.", figure, "", "cache misses a ray", MACHINE(cache_misses))                        \
+    X(eye_branch, "branch m.", figure, "", "mispredicted branches a ray", MACHINE(branch_misses))            \
     X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
     X(round_ns, "ns", real6, "ns", "processor time per ray in it, by the clock on several threads",          \
       each_ns(r, RT_EACH_SECONDS))                                                                           \
@@ -203,7 +235,8 @@ static const RtColumnGroup null_runs[] = {RT_ONE(columns, scene_spec), RT_ONE(co
 
 static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, eye_ratio)};
 
-static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label), RT_FROM_TO(columns, build_ms, mb)};
+static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label),
+                                           RT_FROM_TO(columns, build_ms, pay_off)};
 
 static const RtColumnGroup cells[] = {
     RT_ONE(columns, accel),         RT_ONE(columns, kind),
@@ -213,7 +246,16 @@ static const RtColumnGroup cells[] = {
 
 static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, rays),
                                        RT_FROM_TO(columns, tests_a_ray, ns_a_ray),
-                                       RT_FROM_TO(columns, interval, mb)};
+                                       RT_FROM_TO(columns, interval, pay_off)};
+
+static const RtColumnGroup spreads[] = {RT_ONE(columns, eye_label),
+                                        RT_FROM_TO(columns, tests_median, steps_most)};
+
+static const RtColumnGroup leaf_spreads[] = {RT_ONE(columns, eye_label),
+                                             RT_FROM_TO(columns, size_median, depth_most)};
+
+static const RtColumnGroup machine_cells[] = {RT_ONE(columns, eye_label),
+                                              RT_FROM_TO(columns, eye_instructions, eye_branch)};
 
 /* ---- rows ---- */
 
@@ -286,6 +328,9 @@ static const void *row_at(void *context, size_t i) {
         [RT_STRUCTURES] = is_shown(r) && !null && i < r->results->experiment->candidate_count,
         [RT_CELLS_MORE] = counted || timed,
         [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->candidate_count,
+        [RT_SPREADS] = r->cell->distributions && !isnan(per_ray(r, r->cell->tally.object_tests)),
+        [RT_LEAF_SPREADS] = r->build->leaves && !null && i < r->results->experiment->candidate_count,
+        [RT_MACHINE_CELLS] = r->cell->hardware.known && !*r->cell->hardware.why,
     };
     if (!there[r->which]) return NULL;
     r->all = all_of(r);
@@ -327,11 +372,18 @@ static void add_swept(RtTable *table, Row *row) {
 
 RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     static const RtTable tables[RT_RESULT_TABLE_COUNT] = {
-        [RT_COUNTS] = {RT_GROUPS(counts)},         [RT_TIMES] = {RT_GROUPS(times)},
-        [RT_ROUNDS] = {RT_GROUPS(each_round)},     [RT_BENCH] = {RT_GROUPS(bench)},
-        [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},   [RT_CELLS] = {RT_GROUPS(for_the_eye)},
-        [RT_STRUCTURES] = {RT_GROUPS(structures)}, [RT_CELLS_MORE] = {RT_GROUPS(cells)},
+        [RT_COUNTS] = {RT_GROUPS(counts)},
+        [RT_TIMES] = {RT_GROUPS(times)},
+        [RT_ROUNDS] = {RT_GROUPS(each_round)},
+        [RT_BENCH] = {RT_GROUPS(bench)},
+        [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},
+        [RT_CELLS] = {RT_GROUPS(for_the_eye)},
+        [RT_STRUCTURES] = {RT_GROUPS(structures)},
+        [RT_CELLS_MORE] = {RT_GROUPS(cells)},
         [RT_TOTALS] = {RT_GROUPS(totals)},
+        [RT_SPREADS] = {RT_GROUPS(spreads)},
+        [RT_LEAF_SPREADS] = {RT_GROUPS(leaf_spreads)},
+        [RT_MACHINE_CELLS] = {RT_GROUPS(machine_cells)},
     };
     const RtExperiment *e = row->results->experiment;
     const size_t workloads = is_by_workload(which) ? e->workload_count : 1;

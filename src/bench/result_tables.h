@@ -23,6 +23,10 @@ typedef enum RtResultTable {
     RT_STRUCTURES, /* for the eye: of each accelerator in it, what its structure takes */
     RT_CELLS_MORE, /* cells with more columns, and all rows */
     RT_TOTALS,     /* one workload by accelerator, all kinds together */
+    RT_SPREADS, /* for the eye: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
+                   of object tests and steps */
+    RT_LEAF_SPREADS,  /* for the eye: by accelerator: those of sizes and depths of leaves */
+    RT_MACHINE_CELLS, /* for the eye: one workload by accelerator and ray kind: what the machine did */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;
 
@@ -62,6 +66,9 @@ void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
 /* RT_CELLS, in 80 columns, with RT_STRUCTURES and what the figures refer to; or RT_TOTALS; of each workload
  * that is known. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
+
+/* The rows of a table for the eye, behind a blank line and the names of its columns. */
+void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
 
 /* "12 of 12 null runs straddle 1.", and what to think of it otherwise; and where rounds are too few, what
  * their intervals are worth. "" where none was timed. */

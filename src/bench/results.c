@@ -20,9 +20,12 @@ RtStatus rt_results_init(RtResults *results, const RtExperiment *experiment, RtE
 
 void rt_results_clear(RtResults *results) {
     const RtExperiment *e = results->experiment;
-    size_t cells =
-        results->cells ? e->workload_count * (e->candidate_count + (size_t)1) * RT_RAY_KIND_COUNT : 0;
-    for (size_t i = 0; i < cells; i++) rt_free(results->cells[i].each);
+    size_t builds = e ? e->workload_count * (e->candidate_count + (size_t)1) : 0;
+    for (size_t i = 0; results->cells && i < builds * RT_RAY_KIND_COUNT; i++) {
+        rt_free(results->cells[i].each);
+        rt_free(results->cells[i].distributions);
+    }
+    for (size_t i = 0; results->builds && i < builds; i++) rt_free(results->builds[i].leaves);
     rt_free(results->workloads);
     rt_free(results->builds);
     rt_free(results->cells);
@@ -142,4 +145,21 @@ RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t c
                      .ratio = baseline.sum / seconds.sum,
                      .seconds_low = low.sum / low.weight,
                      .seconds_high = high.sum / high.weight};
+}
+
+double rt_results_pay_off(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    Mean saved = {0};
+    double build = INFINITY;
+    if (rt_candidate_is_baseline(results->experiment, candidate)) return (double)NAN;
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
+        if (!cell->timed) continue;
+        double ray = cell->wall.median;
+        add(&saved, (cell->ratio.median - 1) * ray, (double)results->workloads[workload].rays[k]);
+        build = fmin(build, rt_build_at(results, workload, cell->baseline)->seconds);
+    }
+    double more = rt_build_at(results, workload, candidate)->seconds - build, each = saved.sum / saved.weight;
+    if (isnan(each)) return (double)NAN;
+    if (more <= 0 && each >= 0) return 0;
+    return more * each > 0 ? copysign(more / each, each) : (double)INFINITY;
 }

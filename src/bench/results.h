@@ -5,6 +5,8 @@
 #ifndef RT_BENCH_RESULTS_H
 #define RT_BENCH_RESULTS_H
 
+#include "base/hardware.h"
+#include "bench/distribution.h"
 #include "bench/experiment.h"
 #include "bench/statistics.h"
 
@@ -28,17 +30,30 @@ typedef struct RtBuildResult {
     double seconds;               /* median of up to three builds */
     char limit[RT_MAX_LIMIT];     /* which limit it went beyond, so that no cell of it is measured; else "" */
     RtDescription shape;
+    RtDistribution
+        *leaves; /* [RT_LEAF_QUANTITY_COUNT] owned, of the base; NULL: not asked for, or it has none */
 } RtBuildResult;
 
 /* Times of each round, seconds a ray: by the clock of the comparison, on the wall clock, and the baseline's
  * on the same rays, by the clock of the comparison. */
 typedef enum RtEach { RT_EACH_SECONDS, RT_EACH_WALL, RT_EACH_BASELINE, RT_EACH_COUNT } RtEach;
 
+/* What the machine did for a ray of a cell. */
+#define RT_MAX_WHY 192
+typedef struct RtCellHardware {
+    bool known; /* counted, or known why not */
+    int threads;
+    uint32_t machine;        /* one of RtResults.machines */
+    RtHardwareCounts counts; /* a ray */
+    char why[RT_MAX_WHY];    /* nothing could be counted; else "" */
+} RtCellHardware;
+
 typedef struct RtCell {
     bool counted, timed;
-    char limit[RT_MAX_LIMIT]; /* which limit it would go beyond, so that it is not measured; else "" */
-    RtTally tally;            /* tally.rays: of the thinned set */
-    uint64_t differ;          /* answers unlike the baseline's; of an exact accelerator always 0 */
+    char limit[RT_MAX_LIMIT];      /* which limit it would go beyond, so that it is not measured; else "" */
+    RtTally tally;                 /* tally.rays: of the thinned set */
+    uint64_t differ;               /* answers unlike the baseline's; of an exact accelerator always 0 */
+    RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
     uint32_t rounds;
     int threads;        /* of the timing */
     uint32_t machine;   /* that timed it: one of RtResults.machines */
@@ -47,6 +62,7 @@ typedef struct RtCell {
     RtEstimate ratio;   /* of throughput to the baseline's on the same rays, paired by round */
     double *each;       /* [RT_EACH_COUNT][rounds] owned: every round's time; NULL: not kept */
     uint32_t baseline; /* the candidate that is: where there are several, the fastest of them on these rays */
+    RtCellHardware hardware;
 } RtCell;
 
 /* Where cells were timed. */
@@ -100,6 +116,12 @@ typedef struct RtTotal {
 } RtTotal;
 
 RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate);
+
+/* For how many rays, of all kinds in the shares that their sets have, a candidate with its build takes less
+ * time by the clock than the baseline with its (of several the least, where ratios refer to the fastest of
+ * several). 0: always; from so many on; below 0: up to so many; INFINITY: never; NAN: not known, or the
+ * baseline. Builds are of as many threads as a run builds on: they are to be those of the timing. */
+double rt_results_pay_off(const RtResults *results, uint32_t workload, uint32_t candidate);
 
 /* How often a counter counted for a ray of the cell; NAN where that is not known: nothing was counted, or the
  * counter stayed at 0 in an accelerator that does not count everything (Embree its own boxes). */

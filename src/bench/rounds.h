@@ -15,6 +15,10 @@
 /* One of the things that are timed. */
 typedef struct RtRunner {
     RtStatus (*run)(void *context, RtError *error); /* all of its work once */
+    /* Optional, for the warm-up: some of the work on this thread, spread over all of it, for about `seconds`;
+     * *part gets how much of a run that was, above 0. NULL: a whole run, which then takes as long as a round.
+     */
+    RtStatus (*warm)(void *context, double seconds, double *part, RtError *error);
     void *context;
     double work;      /* pieces of work in one run, > 0: times are per piece */
     bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
@@ -24,7 +28,7 @@ typedef struct RtRunner {
 } RtRunner;
 
 typedef struct RtRounds {
-    uint32_t rounds; /* 1..most, after one more that warms up */
+    uint32_t rounds; /* 1..most, after a warm-up */
     uint32_t most;   /* ..RT_MAX_ROUNDS: as many as are run unless `enough` ends it before */
     double least;    /* seconds: what is shorter is repeated within a round until it takes this long */
     uint64_t seed;   /* of the order */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/run.h"
 
+#include "bench/distribution_tables.h"
+#include "bench/hardware_table.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/result_tables.h"
@@ -132,15 +134,28 @@ static void on_notice(void *context, const char *message) {
     rt_run_notice(context, message);
 }
 
+static RtStatus write_distributions(const RtRun *run, RtError *error) {
+    RtDistributionRow row = {.results = run->results};
+    RtTable distributions = rt_distribution_table(RT_DISTRIBUTIONS, &row);
+    RT_TRY(rt_run_write_table(run, RT_DISTRIBUTIONS_CSV, &distributions, error));
+    RtTable histograms = rt_distribution_table(RT_HISTOGRAMS, &row);
+    return rt_run_write_table(run, RT_HISTOGRAMS_CSV, &histograms, error);
+}
+
 static RtStatus write_tables(const RtRun *run, RtError *error) {
     RtResultRow row = {.results = run->results};
     RtTable counts = rt_result_table(RT_COUNTS, &row);
     RT_TRY(rt_run_write_table(run, "counts.csv", &counts, error));
+    if (run->experiment->distributions) RT_TRY(write_distributions(run, error));
     if (run->experiment->count_only) return RT_OK;
     RtTable times = rt_result_table(RT_TIMES, &row);
     RT_TRY(rt_run_write_table(run, "times.csv", &times, error));
     RtTable rounds = rt_result_table(RT_ROUNDS, &row);
-    return rt_run_write_table(run, "rounds.csv", &rounds, error);
+    RT_TRY(rt_run_write_table(run, "rounds.csv", &rounds, error));
+    if (!run->experiment->hardware) return RT_OK;
+    RtHardwareRow cell = {.results = run->results};
+    RtTable hardware = rt_hardware_table(&cell);
+    return rt_run_write_table(run, RT_HARDWARE_CSV, &hardware, error);
 }
 
 static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,

@@ -5,6 +5,9 @@
  *   counts.csv       exact columns; byte-identical wherever the same version is run
  *   times.csv        measured columns, where anything is timed
  *   rounds.csv       every round's times, of which those are made
+ *   hardware.csv     what the machine did for a ray, where the experiment asks for that
+ *   distributions.csv, histograms.csv
+ *                    how counts are distributed, where the experiment asks for that; exact, too
  *   images/          a picture of each scene
  *
  * rt_run_open looks, rt_run_begin makes the directory and keeps others away, rt_run_measure begins the

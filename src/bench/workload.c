@@ -30,6 +30,8 @@ static bool kind_is_done(const RtWorkloadState *workload, RtRayKind kind) {
         bool null = c == workload->experiment->candidate_count;
         if (!runs(workload, c) || *cell->limit) continue;
         if ((!cell->counted && !null) || (!cell->timed && !workload->count_only)) return false;
+        if (workload->hardware && !cell->hardware.known && !null) return false;
+        if (workload->distributions && !cell->distributions && !null) return false;
     }
     return true;
 }
@@ -138,6 +140,7 @@ static RtStatus build_all(RtWorkloadState *workload, RtError *error) {
         result->seconds = seconds;
         rt_spec_format(&spec, result->spec);
         rt_accel_describe(accel, &result->shape);
+        if (workload->distributions) RT_TRY(rt_workload_distribute_leaves(accel, result, error));
         RT_TRY(rt_workload_tell(workload, RT_EVENT_BUILD, c, RT_RAY_PRIMARY, error));
     }
     return RT_OK;
@@ -270,12 +273,17 @@ static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError 
     RtStatus status = deal_shares(workload, &workload->sets[kind], error);
     if (status == RT_OK) status = rt_workload_check_limits(workload, kind, error);
     if (status == RT_OK) status = count_kind(workload, kind, error);
+    if (status == RT_OK && workload->distributions) status = rt_workload_distribute(workload, kind, error);
     if (status == RT_OK) status = save_rows(workload, kind, error);
+    if (status == RT_OK && workload->options->rays)
+        status = workload->options->rays(workload->options->rays_context, workload->index,
+                                         &workload->sets[kind], workload->reference, error);
     if (status == RT_OK && workload->options->timer) {
         status = workload->options->timer(workload->options->timer_context, workload, kind, error);
     } else if (status == RT_OK && !workload->count_only) {
         status = rt_workload_time(workload, kind, error);
     }
+    if (status == RT_OK && workload->hardware) status = rt_workload_hardware(workload, kind, error);
     rt_free(workload->answers);
     workload->answers = NULL;
     return status;
@@ -294,6 +302,8 @@ static RtWorkloadState state_of(RtResults *results, uint32_t index, const RtWork
     RtWorkloadState workload = {
         .results = results, .experiment = results->experiment, .options = options, .index = index};
     workload.count_only = options->count_only || workload.experiment->count_only;
+    workload.hardware = workload.experiment->hardware && !workload.count_only && !options->timer;
+    workload.distributions = workload.experiment->distributions && !options->timer;
     workload.count = workload.experiment->candidate_count + (!workload.count_only && !options->timer);
     return workload;
 }

@@ -8,12 +8,14 @@
 #include "bench/results.h"
 
 typedef enum RtEventKind {
-    RT_EVENT_WORKLOAD,  /* results->workloads[workload] is known */
-    RT_EVENT_BUILD,     /* the build of `candidate` is known */
-    RT_EVENT_COUNT,     /* the cell is counted */
-    RT_EVENT_TIME,      /* the cell is timed */
-    RT_EVENT_TOO_LARGE, /* the structure of `candidate` went beyond a limit */
-    RT_EVENT_TOO_LONG   /* the cell would go beyond a limit */
+    RT_EVENT_WORKLOAD,     /* results->workloads[workload] is known */
+    RT_EVENT_BUILD,        /* the build of `candidate` is known */
+    RT_EVENT_COUNT,        /* the cell is counted */
+    RT_EVENT_DISTRIBUTION, /* the cell has its distributions */
+    RT_EVENT_TIME,         /* the cell is timed */
+    RT_EVENT_HARDWARE,     /* it is known what the machine did for the rays of the cell, or why not */
+    RT_EVENT_TOO_LARGE,    /* the structure of `candidate` went beyond a limit */
+    RT_EVENT_TOO_LONG      /* the cell would go beyond a limit */
 } RtEventKind;
 
 /* Which part of the results was just filled. */
@@ -55,6 +57,12 @@ typedef struct RtWorkloadOptions {
      * candidate without a stride, and one kind of rays. */
     const char *hits, *counts;
     RtObserver observer;
+    const RtHardwareEvent *events; /* [RT_HARDWARE_COUNT] counted in place of those of their names; or NULL */
+    /* Is shown the rays of each kind that were recorded on a workload, while they and the exact accelerator
+     * that answers them are there; or NULL. */
+    RtStatus (*rays)(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
+                     RtError *error);
+    void *rays_context;
     /* Takes the place of the timing of one kind of rays, and of the null run, which there is none of; or
      * NULL. */
     RtStatus (*timer)(void *context, struct RtWorkloadState *workload, RtRayKind kind, RtError *error);

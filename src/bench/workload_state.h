@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A workload while it runs: what the files share that make one up (workload.c, workload_time.c). */
+/* A workload while it runs: what the files share that make one up (workload.c, workload_time.c and others).
+ */
 #ifndef RT_BENCH_WORKLOAD_STATE_H
 #define RT_BENCH_WORKLOAD_STATE_H
 
@@ -18,7 +19,7 @@ typedef struct RtWorkloadState {
     const RtExperiment *experiment;
     const RtWorkloadOptions *options;
     uint32_t index, count; /* count: candidates and, where times are taken, the null run */
-    bool count_only;
+    bool count_only, hardware, distributions;
     RtScene *scene;
     RtAccel *reference;               /* answers */
     RtAccel **built;                  /* [count], NULL for one that does not run here */
@@ -53,7 +54,16 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
 /* Leaves out who would take longer on the rays of that kind than the limit: whose shares are dealt. */
 RtStatus rt_workload_check_limits(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
+/* Finds the distributions of all candidates over their shares of the rays of one kind. */
+RtStatus rt_workload_distribute(RtWorkloadState *workload, RtRayKind kind, RtError *error);
+
+/* Those over the leaves of a structure, to result->leaves. */
+RtStatus rt_workload_distribute_leaves(const RtAccel *accel, RtBuildResult *result, RtError *error);
+
 /* Times all candidates on their shares of the rays of one kind. */
 RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *error);
+
+/* Counts what the machine does for all candidates on their shares of the rays of one kind. */
+RtStatus rt_workload_hardware(RtWorkloadState *workload, RtRayKind kind, RtError *error);
 
 #endif

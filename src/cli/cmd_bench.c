@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
  * workload that leaves no directory behind. */
-#include "base/json.h"
 #include "base/memory.h"
-#include "base/words.h"
-#include "bench/machine.h"
-#include "bench/result_tables.h"
+#include "bench/callgrind.h"
+#include "cli/bench_output.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
@@ -20,6 +18,10 @@ enum {
     OPT_BASELINE,
     OPT_THREADS,
     OPT_COUNT_ONLY,
+    OPT_DISTRIBUTION,
+    OPT_HARDWARE,
+    OPT_CALLGRIND,
+    OPT_CALLGRIND_CHILD,
     OPT_CSV,
     OPT_JSON,
     OPT_RAY_STRIDE,
@@ -35,6 +37,9 @@ typedef struct Options {
     const char *scene, *baseline, *csv;
     RtWorkloadOptions workload;
     bool json;
+    uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
+    const char *child;  /* of it: the folder that it serves */
+    char *const *argv;  /* all arguments, NULL behind the last */
 } Options;
 
 static const struct argp_option options[] = {
@@ -58,6 +63,28 @@ static const struct argp_option options[] = {
      "counting on all; on several, wall time is compared",
      0},
     {"count-only", OPT_COUNT_ONLY, 0, 0, "Count, do not time", 0},
+    {"distribution", OPT_DISTRIBUTION, 0, 0,
+     "Also show how object tests and steps are distributed over the rays, each asked by itself, and objects "
+     "and "
+     "depths over the leaves: medians, 99th percentiles, maxima. A mean hides the rays that cost a hundred "
+     "times "
+     "as much. With --json all percentiles and the histograms. An experiment has `distributions: yes`",
+     0},
+    {"hardware", OPT_HARDWARE, 0, 0,
+     "Also show what the machine did for a ray, by the processor's counters: instructions, cycles, misses of "
+     "the "
+     "last cache, mispredicted branches. In rounds of their own, so that times do not change; not in the "
+     "kernel. Where the machine or the kernel gives none, why. An experiment has `hardware: yes`",
+     0},
+    {"callgrind", OPT_CALLGRIND, "N", OPTION_ARG_OPTIONAL,
+     "Also show instructions per ray, by valgrind's callgrind: exact, and the same on every run, also where "
+     "--hardware "
+     "has nothing. Builds each accelerator again under valgrind, where building takes many times as long, "
+     "and "
+     "asks it "
+     "N of the rays of each kind (4096). Without AVX-512, which valgrind does not know",
+     0},
+    {"callgrind-child", OPT_CALLGRIND_CHILD, "DIR", OPTION_HIDDEN, NULL, 0}, /* bench/callgrind.h */
     {"csv", OPT_CSV, "FILE", 0,
      "Also write a row per cell to FILE, in the columns of times.csv; with "
      "--count-only of counts.csv",
@@ -177,6 +204,13 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         o->workload.patience = (double)rt_cli_integer(state, "--patience", argument, 1, 86400);
         return 0;
     case OPT_COUNT_ONLY: o->workload.count_only = true; return 0;
+    case OPT_HARDWARE: e->hardware = true; return 0;
+    case OPT_CALLGRIND:
+        o->callgrind = argument ? (uint64_t)rt_cli_integer(state, "--callgrind", argument, 1, 100000000)
+                                : RT_CALLGRIND_RAYS;
+        return 0;
+    case OPT_CALLGRIND_CHILD: o->child = argument; return 0;
+    case OPT_DISTRIBUTION: e->distributions = true; return 0;
     case OPT_CSV: o->csv = argument; return 0;
     case OPT_JSON: o->json = true; return 0;
     case ARGP_KEY_ARG:
@@ -189,6 +223,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
         if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
         if (o->baseline) set_baseline(e, o->baseline, state);
         if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
+        if (e->hardware && o->workload.count_only)
+            argp_error(state,
+                       "--hardware counts while rays are traced for their time: not with --count-only");
         rt_recording_finish(&o->recording, state);
         check_rows(o, state);
         return 0;
@@ -196,70 +233,52 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     }
 }
 
-/* ---- output ---- */
+/* ---- instructions ---- */
 
-/* Appends the rows of one scene. */
-static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
-    RtResultRow row = {.results = results, .workload = workload};
-    RtTable table = rt_result_table(which, &row);
-    json_t *rows = rt_table_json(&table);
-    json_array_extend(array, rows);
-    json_decref(rows);
+static RtStatus leave_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
+                           RtError *error) {
+    return rt_callgrind_leave_rays(context, workload, set, exact, error);
 }
 
-/* One scene, and what was recorded of it. */
-static json_t *scene_json(const RtResults *results, uint32_t workload) {
-    const RtExperiment *e = results->experiment;
-    const RtWorkload *setup = &e->workloads[workload];
-    const RtWorkloadResult *scene = &results->workloads[workload];
-    const bool given = *e->rays_from;
-    json_t *rays = given ? json_pack("{s:s}", "from", e->rays_from)
-                         : json_pack("{s:I, s:I, s:b, s:I, s:I, s:I}", "width", (json_int_t)scene->width,
-                                     "height", (json_int_t)scene->height, "corners", setup->corners, "depth",
-                                     (json_int_t)setup->depth, "limit", (json_int_t)e->limit, "coherent_run",
-                                     (json_int_t)e->coherent_run);
-    return json_pack("{s:s, s:I, s:o, s:o}", "scene", setup->spec, "objects", (json_int_t)scene->objects,
-                     "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
-}
-
-static void print_json(const RtResults *results) {
-    const RtExperiment *e = results->experiment;
-    json_t *scenes = json_array(), *rows = json_array(), *nulls = json_array();
-    for (uint32_t t = 0; t < e->workload_count; t++) {
-        json_array_append_new(scenes, scene_json(results, t));
-        extend(rows, results, RT_BENCH, t);
-        extend(nulls, results, RT_NULL_RUNS, t);
-    }
-    rt_cli_print_json(json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes",
-                                scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds,
-                                "baseline", rt_baseline_label(e), "rows", rows, "null_runs", nulls));
-}
-
-static RtStatus write_csv(const RtResults *results, const Options *o, RtError *error) {
-    RtOutput output;
-    RtResultRow row = {.results = results};
-    RtTable table = rt_result_table(o->workload.count_only ? RT_COUNTS : RT_TIMES, &row);
-    RT_TRY(rt_output_open(&output, o->csv, error));
-    rt_table_csv(&table, output.file);
-    return rt_output_commit(&output, error);
-}
-
-static RtStatus report(const RtResults *results, const Options *o, RtError *error) {
-    if (o->csv) RT_TRY(write_csv(results, o, error));
-    if (o->json) {
-        print_json(results);
-    } else {
-        char sentence[RT_MAX_SENTENCE];
-        rt_print_results(results, RT_CELLS, stdout);
-        rt_null_sentence(results, sentence);
-        if (!sentence[0]) return RT_OK;
-        putchar('\n');
-        rt_print_wrapped(sentence, stdout);
-    }
-    return RT_OK;
+/* The child is asked for by the same arguments, so that it has the same accelerators on the same scenes. */
+static RtStatus count_instructions(RtCallgrind *callgrind, char *const *argv, RtError *error) {
+    char command[] = "bench", child[RT_MAX_PATH + 32];
+    size_t count = 0;
+    snprintf(child, sizeof child, "--callgrind-child=%s", callgrind->folder);
+    while (argv[count]) count++;
+    char **arguments = rt_alloc(count + 2, sizeof(char *));
+    if (!arguments) return rt_fail_memory(error, "arguments", 0);
+    arguments[0] = command;
+    arguments[1] = child;
+    for (size_t i = 1; i < count; i++) arguments[i + 1] = argv[i];
+    RtStatus status = rt_callgrind_run(callgrind, arguments, error);
+    rt_free(arguments);
+    return status;
 }
 
 /* ---- the command ---- */
+
+/* Everything but the report. */
+static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
+    const RtExperiment *experiment = o->recording.experiment;
+    if (o->callgrind) {
+        RT_TRY(rt_callgrind_check(error));
+        RT_TRY(rt_callgrind_init(callgrind, experiment, o->callgrind, error));
+        o->workload.rays = leave_rays;
+        o->workload.rays_context = callgrind;
+    }
+    RtProgress progress = rt_progress_begin(&o->workload);
+    o->workload.observer = rt_progress_observer(&progress);
+    RtStatus status = RT_OK;
+    for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
+        status = rt_workload_run(results, t, &o->workload, error);
+    if (status == RT_OK && o->callgrind)
+        o->workload.observer.notice(&progress,
+                                    "instructions are counted under valgrind, which takes a while");
+    rt_progress_end(&progress);
+    if (status == RT_OK && o->callgrind) status = count_instructions(callgrind, o->argv, error);
+    return status;
+}
 
 static RtStatus bench(Options *o, RtError *error) {
     char where[RT_MAX_LABEL];
@@ -270,21 +289,23 @@ static RtStatus bench(Options *o, RtError *error) {
                        experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    RtProgress progress = rt_progress_begin(&o->workload);
-    o->workload.observer = rt_progress_observer(&progress);
+    if (o->child) return rt_callgrind_serve(experiment, o->child, stdout, error);
     RtResults results;
+    RtCallgrind callgrind = {0};
     RtStatus status = rt_results_init(&results, experiment, error);
-    for (uint32_t t = 0; status == RT_OK && t < experiment->workload_count; t++)
-        status = rt_workload_run(&results, t, &o->workload, error);
-    rt_progress_end(&progress);
-    if (status == RT_OK) status = report(&results, o, error);
+    if (status == RT_OK) status = measure(o, &results, &callgrind, error);
+    if (status == RT_OK)
+        status = rt_bench_report(&results, &callgrind,
+                                 &(RtBenchOutput){o->csv, o->json, o->workload.count_only}, error);
+    rt_callgrind_clear(&callgrind);
     rt_results_clear(&results);
     return status;
 }
 
 int rt_command_bench(int argc, char **argv) {
     Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment))},
-                 .workload = {.timing = 1, .patience = RT_PATIENCE}};
+                 .workload = {.timing = 1, .patience = RT_PATIENCE},
+                 .argv = argv};
     RtError error;
     if (!o.recording.experiment) {
         rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));

@@ -73,7 +73,7 @@ static RtStatus compare_all(const char *directory, const RtResults *results, RtE
     if (status == RT_OK) rt_published_compare(&published, results);
     for (size_t i = 0; status == RT_OK && i < RT_EXACT_FILES; i++) {
         const RtExactFile *file = &rt_exact_files[i];
-        if (file->published && results->experiment->published.table_count == 0) continue;
+        if (!file->is_wanted(results->experiment)) continue;
         status = compare_file(directory, file, results, &published, error);
     }
     if (status == RT_OK) status = rt_published_check(&published, error);
@@ -81,27 +81,12 @@ static RtStatus compare_all(const char *directory, const RtResults *results, RtE
     return status;
 }
 
-/* The copy in the directory says what was run; scenes are found from where the original lies. */
-static RtStatus find_original(const char *directory, RtExperiment *experiment, RtError *error) {
-    uint64_t fingerprint = experiment->fingerprint;
-    bool quick = experiment->quick;
-    char path[RT_MAX_PATH];
-    json_t *manifest;
-    RT_TRY(rt_manifest_read(directory, &manifest, error));
-    const char *file = json_string_value(json_object_get(manifest, "file"));
-    snprintf(path, sizeof path, "%s", file ? file : "");
-    json_decref(manifest);
-    RT_TRY(rt_experiment_load(experiment, path, quick, error));
-    if (experiment->fingerprint == fingerprint) return RT_OK;
-    return rt_fail(error, RT_MISMATCH, "%s has changed since %s was made from it", path, directory);
-}
-
 static RtStatus reproduce(const char *directory, const RtExperiment *experiment, RtResults *results,
                           RtError *error) {
+    (void)experiment; /* the copy in the directory: its scenes are not found from there */
     RtExperiment *original = rt_alloc(1, sizeof *original);
     if (!original) return rt_fail_memory(error, "an experiment", sizeof *original);
-    *original = *experiment;
-    RtStatus status = find_original(directory, original, error);
+    RtStatus status = rt_manifest_experiment(directory, original, error);
     rt_results_clear(results);
     if (status == RT_OK) status = rt_results_init(results, original, error);
     if (status == RT_OK) status = count_again(results, error);

@@ -2,7 +2,9 @@
 /* raytally run: an experiment, from its YAML to a result directory. */
 #include "base/memory.h"
 #include "bench/claims.h"
+#include "bench/hardware_table.h"
 #include "bench/journal.h"
+#include "bench/manifest.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
@@ -174,19 +176,20 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
 }
 
 /* The command that goes on. */
-static void go_on(const Options *o, const char *directory, char *out, size_t room) {
+static void go_on(const Options *o, const RtExperiment *e, const char *directory, char *out, size_t room) {
     char threads[32] = "", shard[32] = "", until[64] = "";
     if (o->timing != 1 || o->threads) snprintf(threads, sizeof threads, " --threads %d", o->threads);
     if (o->only.shards) snprintf(shard, sizeof shard, " --shard %u/%u", o->only.shard, o->only.shards);
     if (o->until > 0)
         snprintf(until, sizeof until, " --until %g%% --patience %g", 100 * o->until, o->patience);
-    snprintf(out, room, "raytally run %s --out %s%s%s%s%s --resume", o->path, directory,
-             o->quick ? " --quick" : "", threads, shard, until);
+    snprintf(out, room, "raytally run %s --out %s%s%s%s%s --resume", e->path, directory,
+             e->quick ? " --quick" : "", threads, shard, until);
 }
 
 static void print_all(const RtResults *results, const char *directory, bool report) {
     char sentence[RT_MAX_SENTENCE];
     rt_print_results(results, RT_TOTALS, stdout);
+    if (results->experiment->hardware) rt_print_hardware(results, stdout);
     rt_print_limits(results, stdout);
     rt_claims_print(results, stdout);
     rt_null_sentence(results, sentence);
@@ -197,7 +200,7 @@ static void print_all(const RtResults *results, const char *directory, bool repo
 static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how, RtError *error) {
     char command[RT_MAX_PATH + 256];
     RtProgress progress = rt_progress_begin(&how->workload);
-    go_on(o, how->directory, command, sizeof command);
+    go_on(o, results->experiment, how->directory, command, sizeof command);
     rt_progress_watch(&progress, how->directory, command);
     how->workload.observer = rt_progress_observer(&progress);
     RtStatus status = rt_run_experiment(results, how, error);
@@ -207,10 +210,23 @@ static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how,
     return o->strict ? rt_claims_check(results, error) : RT_OK;
 }
 
+/* A YAML, or the manifest.json of what is to be run again. */
+static RtStatus load(const Options *o, RtExperiment *experiment, RtError *error) {
+    static const char manifest[] = "manifest.json";
+    char folder[RT_MAX_PATH];
+    size_t length = strlen(o->path), last = sizeof manifest - 1;
+    if (length < last || strcmp(o->path + length - last, manifest) != 0)
+        return rt_experiment_load(experiment, o->path, o->quick, error);
+    if (o->quick)
+        return rt_fail(error, RT_BAD_INPUT, "--quick: %s says whether it was; leave it out", o->path);
+    rt_path_folder(o->path, folder);
+    return rt_manifest_experiment(folder, experiment, error);
+}
+
 static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) {
     char directory[RT_MAX_PATH];
     RtResults results;
-    RT_TRY(rt_experiment_load(experiment, o->path, o->quick, error));
+    RT_TRY(load(o, experiment, error));
     RT_TRY(check_only(experiment, &o->only, error));
     if (o->until > 0 && experiment->rounds < RT_FULL_ROUNDS) experiment->rounds = RT_FULL_ROUNDS;
     if (o->only.shards)
@@ -235,18 +251,19 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
 
 int rt_command_run(int argc, char **argv) {
     Options o = {.timing = 1, .patience = RT_PATIENCE};
-    const struct argp argp = {.options = options,
-                              .parser = parse_option,
-                              .args_doc = "EXPERIMENT.yaml",
-                              .doc =
-                                  "Run an experiment and write its result directory: counts.csv, times.csv, "
-                                  "manifest.json, plots, images and report.html. A directory with results, "
-                                  "finished or not, is refused without --resume or --force; so is one that "
-                                  "another process writes into. Ctrl-C at any time: what is measured is kept."
-                                  "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
-                                  "gnuplot there is a note), a published figure is missed, or with "
-                                  "--strict a claim does not hold. "
-                                  "experiments/README.md says how to write an experiment."};
+    const struct argp argp = {
+        .options = options,
+        .parser = parse_option,
+        .args_doc = "EXPERIMENT.yaml|DIR/manifest.json",
+        .doc = "Run an experiment and write its result directory: counts.csv, times.csv, "
+               "manifest.json, plots, images and report.html. By the manifest of a "
+               "directory, run its experiment again, from where it was run. A directory with results, "
+               "finished or not, is refused without --resume or --force; so is one that "
+               "another process writes into. Ctrl-C at any time: what is measured is kept."
+               "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
+               "gnuplot there is a note), a published figure is missed, or with "
+               "--strict a claim does not hold. "
+               "experiments/README.md says how to write an experiment."};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error;
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);

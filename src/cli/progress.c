@@ -11,12 +11,17 @@
 #include <time.h>
 #include <unistd.h>
 
-static const double LINE_EVERY = 60; /* seconds */
+/* Seconds. */
+static const double LINE_EVERY = 60, LINE_OF_TERMINAL_EVERY = 1;
 
 RtProgress rt_progress_begin(const RtWorkloadOptions *options) {
     double now = rt_wall_seconds();
-    return (RtProgress){
-        .terminal = isatty(STDERR_FILENO) == 1, .options = *options, .start = now, .shown = now};
+    bool terminal = isatty(STDERR_FILENO) == 1;
+    return (RtProgress){.terminal = terminal,
+                        .options = *options,
+                        .start = now,
+                        .shown = now,
+                        .every = terminal ? LINE_OF_TERMINAL_EVERY : LINE_EVERY};
 }
 
 /* ---- how long it will take ---- */
@@ -51,10 +56,14 @@ static void show(RtProgress *progress) {
 }
 
 static void describe(RtProgress *progress, const RtResults *results, const RtEvent *event) {
-    static const char *const what[] = {
-        [RT_EVENT_WORKLOAD] = "rays recorded", [RT_EVENT_BUILD] = "built",
-        [RT_EVENT_COUNT] = "counted",          [RT_EVENT_TIME] = "timed",
-        [RT_EVENT_TOO_LARGE] = "left out",     [RT_EVENT_TOO_LONG] = "left out"};
+    static const char *const what[] = {[RT_EVENT_WORKLOAD] = "rays recorded",
+                                       [RT_EVENT_BUILD] = "built",
+                                       [RT_EVENT_COUNT] = "counted",
+                                       [RT_EVENT_TIME] = "timed",
+                                       [RT_EVENT_DISTRIBUTION] = "distributed",
+                                       [RT_EVENT_HARDWARE] = "counted by the machine",
+                                       [RT_EVENT_TOO_LARGE] = "left out",
+                                       [RT_EVENT_TOO_LONG] = "left out"};
     const RtExperiment *experiment = results->experiment;
     bool scene = event->what == RT_EVENT_WORKLOAD, build = event->what == RT_EVENT_BUILD;
     snprintf(progress->doing, sizeof progress->doing, "%s%s%s%s%s: %s",
@@ -73,7 +82,7 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     if (!progress->begun) progress->before = progress->forecast.known; /* what is not measured here */
     progress->begun = true;
     describe(progress, results, event);
-    if (progress->terminal || now - progress->shown >= LINE_EVERY) show(progress);
+    if (progress->terminal || now - progress->shown >= progress->every) show(progress);
     if (progress->watched) pthread_mutex_unlock(&progress->lock);
     return RT_OK;
 }
@@ -115,7 +124,7 @@ static void *watch(void *context) {
         bool ended = progress->ended;
         if (!ended && (number == SIGINT || number == SIGTERM)) leave(progress, number);
         double since = rt_wall_seconds() - progress->shown;
-        if (!ended && progress->begun && since >= (progress->terminal ? 1 : LINE_EVERY)) show(progress);
+        if (!ended && progress->begun && since >= progress->every) show(progress);
         pthread_mutex_unlock(&progress->lock);
         if (ended) return NULL;
     }

@@ -14,6 +14,7 @@ typedef struct RtProgress {
     double start, before;      /* wall seconds when it began; what of the forecast was known then */
     double asked;              /* when the forecast was made */
     double shown;              /* when a line was */
+    double every;              /* seconds from a line to the next, while nothing else asks for one */
     RtForecast forecast;
     bool begun;
     char doing[2 * RT_MAX_LABEL + 64];

@@ -2,8 +2,10 @@
 #include "report/plot.h"
 
 #include "base/memory.h"
+#include "histograms_gp.h"
 #include "report/color.h"
 #include "report/sweep_plot.h"
+#include "style_gp.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -13,7 +15,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 3 };
+enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 4 };
+
+#define HISTOGRAM_SCRIPT "histograms.gp"
 
 /* ---- scripts ---- */
 
@@ -98,6 +102,16 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
     return rt_output_commit(&output, error);
 }
 
+/* The script that draws histograms.csv, after whatever was drawn before it: with what it needs. */
+static RtStatus write_histograms(const char *directory, RtError *error) {
+    char path[RT_MAX_PATH];
+    RtOutput output;
+    RT_TRY(rt_path_join(directory, "plots/" HISTOGRAM_SCRIPT, path, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    fprintf(output.file, "reset session\nload \"plots/names.gp\"\n%s\n%s", style_gp, histograms_gp);
+    return rt_output_commit(&output, error);
+}
+
 /* ---- gnuplot ---- */
 
 /* What gnuplot said last, which names the script and the line; where it said nothing, the scripts it was
@@ -174,9 +188,11 @@ static RtStatus settle(const char *directory, bool keep, RtError *error) {
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char paths[RT_MAX_PLOTS + 1][RT_MAX_LABEL + 8];
-    char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp", *arguments[MOST_ARGUMENTS] = {program};
+    char program[] = "gnuplot", sweep_script[] = "plots/sweep.gp",
+         histogram_script[] = "plots/" HISTOGRAM_SCRIPT;
+    char *arguments[MOST_ARGUMENTS] = {program};
     const bool sweeps = rt_sweep_plots_needed(experiment);
-    if (experiment->plot_count == 0 && !sweeps) return RT_OK;
+    if (experiment->plot_count == 0 && !sweeps && !experiment->distributions) return RT_OK;
     settle(directory, false, NULL); /* of a drawing that was cut short */
     RT_TRY(write_names(results, directory, error));
     if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, error));
@@ -185,6 +201,10 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
         arguments[i + 1] = paths[i];
     }
     if (sweeps) arguments[1] = sweep_script;
+    if (experiment->distributions) {
+        RT_TRY(write_histograms(directory, error));
+        arguments[experiment->plot_count + 2] = histogram_script;
+    }
     RtStatus status = run_gnuplot(arguments, directory, error);
     if (status != RT_OK) {
         settle(directory, false, NULL);

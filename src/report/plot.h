@@ -19,8 +19,9 @@ RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error);
 RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, bool keep, RtError *error);
 
 /* Draws, by the experiment's scripts; where it names none and sweeps parameters, by one that is written
- * (sweep_plot.h). RT_NOT_AVAILABLE where gnuplot is not installed; RT_MISMATCH, with what it says, where it
- * fails: then the plots are what they were before. */
+ * (sweep_plot.h); and where it asks for distributions, by experiments/histograms.gp, too. RT_NOT_AVAILABLE
+ * where gnuplot is not installed; RT_MISMATCH, with what it says, where it fails: then the plots are what
+ * they were before. */
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error);
 
 #endif

@@ -5,6 +5,8 @@
 
 #include "base/memory.h"
 #include "bench/claims.h"
+#include "bench/distribution_tables.h"
+#include "bench/hardware_table.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
 #include "report/color.h"
@@ -167,6 +169,23 @@ static void put_table(FILE *out, const RtResults *results, uint32_t t, RtResultT
     rt_table_html(&table, out);
 }
 
+static void put_details(FILE *out, const char *summary, const RtTable *table) {
+    fprintf(out, "<details><summary>%s</summary><div class=\"wide\">", summary);
+    rt_table_html(table, out);
+    fputs("</div></details>\n", out);
+}
+
+/* What an experiment may ask for besides, of all scenes. */
+static void put_more_tables(FILE *out, const RtResults *results) {
+    RtDistributionRow distribution = {.results = results};
+    RtHardwareRow cell = {.results = results};
+    const RtTable distributions = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
+    const RtTable hardware = rt_hardware_table(&cell);
+    if (results->experiment->distributions)
+        put_details(out, "How counts are distributed, over rays and over leaves", &distributions);
+    if (results->experiment->hardware) put_details(out, "What the machine did for a ray", &hardware);
+}
+
 static void put_tables(FILE *out, const RtResults *results) {
     fputs("<h2>Tables</h2>\n", out);
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
@@ -179,6 +198,7 @@ static void put_tables(FILE *out, const RtResults *results) {
         put_table(out, results, t, RT_CELLS_MORE);
         fputs("</details>\n", out);
     }
+    put_more_tables(out, results);
 }
 
 /* Every member of an object that is text, a number or a truth. */

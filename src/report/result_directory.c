@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/result_directory.h"
 
+#include "bench/distribution_tables.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/result_tables.h"
@@ -44,10 +45,42 @@ static void write_markdown(const RtResults *results, const RtPublished *publishe
     rt_published_page(published, false, out);
 }
 
-const RtExactFile rt_exact_files[RT_EXACT_FILES] = {{"counts.csv", false, write_counts},
-                                                    {"published.csv", true, write_published},
-                                                    {"best.csv", true, write_best},
-                                                    {"published.md", true, write_markdown}};
+static void write_distribution_table(const RtResults *results, RtDistributionTable which, FILE *out) {
+    RtDistributionRow row = {.results = results};
+    RtTable table = rt_distribution_table(which, &row);
+    rt_table_csv(&table, out);
+}
+
+static void write_distributions(const RtResults *results, const RtPublished *published, FILE *out) {
+    (void)published;
+    write_distribution_table(results, RT_DISTRIBUTIONS, out);
+}
+
+static void write_histograms(const RtResults *results, const RtPublished *published, FILE *out) {
+    (void)published;
+    write_distribution_table(results, RT_HISTOGRAMS, out);
+}
+
+static bool always(const RtExperiment *experiment) {
+    (void)experiment;
+    return true;
+}
+
+static bool is_published(const RtExperiment *experiment) {
+    return experiment->published.table_count > 0;
+}
+
+static bool has_distributions(const RtExperiment *experiment) {
+    return experiment->distributions;
+}
+
+const RtExactFile rt_exact_files[RT_EXACT_FILES] = {
+    {"counts.csv", always, write_counts},
+    {RT_DISTRIBUTIONS_CSV, has_distributions, write_distributions},
+    {RT_HISTOGRAMS_CSV, has_distributions, write_histograms},
+    {"published.csv", is_published, write_published},
+    {"best.csv", is_published, write_best},
+    {"published.md", is_published, write_markdown}};
 
 /* A table that lies in a folder beside the YAML gets to one of the same name, where the copy of the YAML
  * finds it. */
@@ -94,7 +127,7 @@ static RtStatus write_compared(Work *work, RtError *error) {
     if (work->run.experiment->published.table_count == 0) return RT_OK;
     rt_published_compare(&work->published, work->run.results);
     for (size_t i = 0; i < RT_EXACT_FILES; i++) {
-        if (rt_exact_files[i].published) RT_TRY(write_exact(work, &rt_exact_files[i], error));
+        if (rt_exact_files[i].is_wanted == is_published) RT_TRY(write_exact(work, &rt_exact_files[i], error));
     }
     return RT_OK;
 }

@@ -31,11 +31,11 @@ RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults 
 /* The files that are byte-identical wherever they are made, from what was found. */
 typedef struct RtExactFile {
     const char *name;
-    bool published; /* only where the experiment names published figures */
+    bool (*is_wanted)(const RtExperiment *experiment);
     void (*write)(const RtResults *results, const RtPublished *published, FILE *out);
 } RtExactFile;
 
-#define RT_EXACT_FILES 4
+#define RT_EXACT_FILES 6
 extern const RtExactFile rt_exact_files[RT_EXACT_FILES];
 
 #endif

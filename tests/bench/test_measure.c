@@ -3,6 +3,7 @@
  * answers; thinned candidates are timed against the baseline on their own rays. */
 #include "testing.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "bench/measure.h"
 #include "bench/workload.h"
@@ -118,6 +119,35 @@ RT_TEST(a_baseline_that_learns_knows_the_rays_of_thinned_candidates) {
     assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
 }
 
+/* Two structures that were built and timed by hand: seconds to build, nanoseconds a ray. */
+static double pay_off(double theirs, double their_ray, double ours, double our_ray) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtResults results;
+    assert_non_null(e);
+    rt_experiment_init(e);
+    e->workload_count = 1;
+    e->candidate_count = 2;
+    e->baseline_count = 1;
+    assert_ok(rt_results_init(&results, e, error));
+    results.workloads[0].rays[RT_RAY_SHADOW] = 1000;
+    rt_build_at(&results, 0, 0)->seconds = theirs;
+    rt_build_at(&results, 0, 1)->seconds = ours;
+    *rt_cell_at(&results, 0, 1, RT_RAY_SHADOW) =
+        (RtCell){.timed = true, .wall = {.median = 1e-9 * our_ray}, .ratio = {.median = their_ray / our_ray}};
+    double rays = rt_results_pay_off(&results, 0, 1);
+    assert_true(isnan(rt_results_pay_off(&results, 0, 0)));
+    rt_results_clear(&results);
+    rt_free(e);
+    return rays;
+}
+
+RT_TEST(a_build_pays_off_after_as_many_rays_as_save_what_it_takes_more) {
+    assert_true(fabs(pay_off(1, 300, 3, 200) - 2e7) < 1);
+    assert_true(fabs(pay_off(3, 200, 1, 300) + 2e7) < 1); /* ahead up to so many */
+    assert_true(pay_off(1, 300, 1, 200) == 0);
+    assert_true(isinf(pay_off(1, 200, 2, 300)));
+}
+
 /* A name for the best of several, of any accelerator that has one; NULL where none was built in. */
 static const char *any_best(char name[RT_MAX_LABEL]) {
     for (size_t i = 0; i < rt_accel_count(); i++) {
@@ -178,6 +208,66 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     assert_best_is_baseline(&results, RT_RAY_SHADOW);
     rt_results_clear(&results);
     rt_free(e);
+}
+
+/* ---- what measuring itself takes ---- */
+
+/* A set takes longer than a round has to, so that each round is one pass: `wall` is all of it. Memory,
+ * warm-up and what is between the passes are the rest. The best of some attempts, for a machine that is busy.
+ */
+RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
+    enum { ROUNDS = 10 };
+    const char *const specs[] = {"brute", "extents"};
+    double seconds[2][ROUNDS], wall[2][ROUNDS], best = 0;
+    RtScene scene;
+    RtAccel *accels[2];
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RtRecording recording = {.depth = 1, .seed = 1, .random = 20000, .threads = 1};
+    const RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .least = 2e-3, .seed = 1},
+                             .threads = 1};
+    assert_ok(rt_scene_open("balls:size=3", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 8, 8, 1, false, error));
+    for (int i = 0; i < 2; i++) assert_ok(rt_accel_open(specs[i], &scene, &accels[i], error));
+    assert_ok(rt_rayset_record(sets, accels[0], &recording, error));
+    for (int attempt = 0; attempt < 5 && best < 0.98; attempt++) {
+        const RtRaySet *set = &sets[RT_RAY_RANDOM];
+        RtTimed timed[2] = {{accels[0], set, seconds[0], wall[0]}, {accels[1], set, seconds[1], wall[1]}};
+        uint32_t done;
+        double rounds = 0, start = rt_wall_seconds();
+        assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
+        double all = rt_wall_seconds() - start;
+        for (int i = 0; i < 2 * ROUNDS; i++) rounds += wall[i / ROUNDS][i % ROUNDS] * (double)set->count;
+        if (rounds / all > best) best = rounds / all;
+    }
+    if (best < 0.98) fail_msg("rounds are %.2f %% of the time", 100 * best);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
+    for (int i = 0; i < 2; i++) rt_accel_destroy(accels[i]);
+    rt_scene_clear(&scene);
+}
+
+static RtStatus spin_a_millisecond(void *context, RtError *error) {
+    double start = rt_thread_seconds();
+    (void)context, (void)error;
+    while (rt_thread_seconds() - start < 1e-3) continue;
+    return RT_OK;
+}
+
+/* Ten times slower than all of it is. */
+static RtStatus warm_wrongly(void *context, double seconds, double *part, RtError *error) {
+    (void)seconds;
+    *part = 0.1;
+    return spin_a_millisecond(context, error);
+}
+
+RT_TEST(what_was_told_wrong_from_a_part_of_the_work_is_repeated_often_enough_from_the_second_round_on) {
+    double seconds[3], wall[3];
+    uint32_t done;
+    const RtRounds rounds = {.rounds = 3, .most = 3, .least = 10e-3, .seed = 1};
+    RtRunner runner = {
+        .run = spin_a_millisecond, .warm = warm_wrongly, .work = 1, .seconds = seconds, .wall = wall};
+    assert_ok(rt_rounds_run(&runner, 1, &rounds, &done, error));
+    assert_true(9 <= runner.repeats && runner.repeats <= 11);
+    for (int r = 0; r < 3; r++) assert_true(0.9e-3 < seconds[r] && seconds[r] < 2e-3);
 }
 
 /* ---- until the intervals are narrow ---- */

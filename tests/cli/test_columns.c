@@ -6,8 +6,11 @@
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "bench/callgrind.h"
 #include "bench/compare.h"
+#include "bench/distribution_tables.h"
 #include "bench/extents_table.h"
+#include "bench/hardware_table.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
 #include "verify/verify_table.h"
@@ -25,6 +28,22 @@ static RtPublished published = {.experiment = &experiment};
 static RtTable of_results(RtResultTable which) {
     static RtResultRow row = {.results = &results};
     return rt_result_table(which, &row);
+}
+
+static RtTable of_hardware(void) {
+    static RtHardwareRow row = {.results = &results};
+    return rt_hardware_table(&row);
+}
+
+static RtTable of_distributions(RtDistributionTable which) {
+    static RtDistributionRow rows[2] = {{.results = &results}, {.results = &results}};
+    return rt_distribution_table(which, &rows[which]);
+}
+
+static RtTable of_instructions(void) {
+    static const RtCallgrind callgrind = {0};
+    static RtInstructionsRow row = {.callgrind = &callgrind};
+    return rt_instructions_table(&row);
 }
 
 static RtTable of_published(RtPublishedTable which) {
@@ -45,7 +64,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 11 };
+enum { SECTIONS = 17 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -54,11 +73,17 @@ static void list(Section sections[SECTIONS]) {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
         {"times.csv", true, NULL, of_results(RT_TIMES)},
         {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
+        {"hardware.csv", true, NULL, of_hardware()},
+        {"distributions.csv", true, NULL, of_distributions(RT_DISTRIBUTIONS)},
+        {"histograms.csv", true, NULL, of_distributions(RT_HISTOGRAMS)},
         {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},
         {"best.csv", true, "results/havran-1999/best.csv", of_published(RT_BEST)},
         {"verify.csv", true, "results/verify/verify.csv", verify_csv},
         {"bench --json: rows", false, NULL, of_results(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, of_results(RT_NULL_RUNS)},
+        {"bench --json --hardware: hardware", false, NULL, of_hardware()},
+        {"bench --json --distribution: distributions", false, NULL, of_distributions(RT_DISTRIBUTIONS)},
+        {"bench --json --callgrind: instructions", false, NULL, of_instructions()},
         {"compare --json: cells", false, NULL, of_comparison()},
         {"verify --json: rows", false, NULL, verify_json},
         {"info --extents --json: extents.rows", false, NULL, extents},

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+# Histograms of object tests and steps per ray, a figure a scene, a column of panels a ray kind, and one of the leaves of
+# structures. Both axes are logarithmic: heights are parts of all per doubling of the value, so that areas compare; a point
+# is in the middle of its bin, and 0 stands at 1/2. raytally writes this where an experiment asks for `distributions`.
+
+n_kinds = words(kinds); n_accels = words(accels)
+first(low) = low < 1 ? 0.5 : low
+middle(low, end) = low < 1 ? 0.5 : sqrt(low * (end - 1))
+height(low, end, part) = part * log(2) / log((end < 1 ? 1 : end) / first(low))
+is_panel(s, k, q) = strcol("scene") eq s && strcol("kind") eq k && strcol("quantity") eq q
+says(q) = q eq "object_tests" ? "object tests of a ray" : q eq "steps" ? "steps of a ray" : \
+          q eq "leaf_size" ? "objects of a leaf" : "depth of a leaf"
+
+set logscale xy
+set format x "%g"; set format y "%g"
+set xrange [0.4:*]; set yrange [*:*]
+set grid xtics ytics linecolor rgb faint linetype 1 linewidth 0.5
+set key at screen 0.5, 0.01 center bottom maxrows 2 samplen 1 textcolor rgb ink
+
+do for [scene in scenes] {
+  eval svg("histograms-".scene, 300 * (n_kinds + 1), 640)
+  set multiplot layout 2, n_kinds + 1 columnsfirst margins 0.06, 0.99, 0.16, 0.9 spacing 0.055, 0.14 \
+    title scene.": part of all, per doubling of its value" noenhanced
+  do for [i = 1:n_kinds + 1] {
+    do for [row = 1:2] {
+      kind = i > n_kinds ? "" : word(kinds, i)
+      quantity = word(i > n_kinds ? "leaf_size leaf_depth" : "object_tests steps", row)
+      set title (row > 1 ? "" : kind eq "" ? "leaves" : kind." rays") offset 0, -0.5
+      set xlabel says(quantity) offset 0, 0.5
+      stats "histograms.csv" using (is_panel(scene, kind, quantity) ? 1 : 0) nooutput
+      if (STATS_sum > 0) {
+        plot for [a = 1:n_accels] "histograms.csv" \
+          using (is_panel(scene, kind, quantity) && strcol("accel") eq word(accels, a) ? \
+                 middle(column("low"), column("end")) : NaN):(height(column("low"), column("end"), column("part"))) \
+          with linespoints pointtype 7 pointsize 0.3 linewidth 1.5 linecolor rgb color(a) title word(accels, a) noenhanced
+        unset key
+      } else { set multiplot next }
+    }
+  }
+  unset multiplot
+  set key
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What a long command says while it runs, on a terminal and where there is none. */
+#include "experiment_testing.h"
+
+#include "base/clock.h"
+#include "cli/progress.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+static int make_small(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml",
+             "name: small\nquestion: a\nprediction: b\nscenes: [{scene: \"balls:size=1\"}]\n"
+             "accelerators: [{accel: bvh}, {accel: grid}]\nrays: [primary]\n");
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
+
+/* Tells progress for `seconds`, all the time, that something was finished; what it says, for rt_free. */
+static char *said(const Place *place, bool terminal, double every, double seconds) {
+    RtResults results;
+    RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    const char *path = path_in(place, "said").text;
+    int file = open(path, O_RDWR | O_CREAT | O_TRUNC, 0666), stderr_was = dup(STDERR_FILENO);
+    assert_ok(load_small(place, false, error));
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    RtProgress progress = rt_progress_begin(&options);
+    progress.terminal = terminal;
+    progress.every = every;
+    RtObserver observer = rt_progress_observer(&progress);
+    assert_true(file >= 0 && stderr_was >= 0);
+    dup2(file, STDERR_FILENO);
+    for (double end = rt_wall_seconds() + seconds; rt_wall_seconds() < end;) {
+        RtEvent event = {.what = RT_EVENT_BUILD, .candidate = 1};
+        assert_int_equal(observer.event(observer.context, &results, &event, NULL), RT_OK);
+    }
+    rt_progress_end(&progress);
+    dup2(stderr_was, STDERR_FILENO);
+    close(stderr_was);
+    close(file);
+    rt_results_clear(&results);
+    return read_in(place, "said");
+}
+
+static int count(const char *text, const char *part) {
+    int n = 0;
+    for (; (text = strstr(text, part)) != NULL; text++) n++;
+    return n;
+}
+
+RT_TEST_IN_PLACE(without_a_terminal_a_line_comes_as_often_as_it_may_and_no_more) {
+    char *text = said(*state, false, 0.2, 0.9);
+    int lines = count(text, "\n");
+    assert_true(1 <= lines && lines <= 4);
+    assert_int_equal(count(text, "raytally: 0 of 2 cells, balls:size=1 grid: built\n"), lines);
+    assert_int_equal(count(text, "\r"), 0);
+    rt_free(text);
+    text = said(*state, false, 60, 0.1);
+    assert_string_equal(text, "");
+    rt_free(text);
+}
+
+RT_TEST_IN_PLACE(on_a_terminal_one_line_is_drawn_in_place_and_taken_away) {
+    char *text = said(*state, true, 1, 0.1);
+    const char *const away = "\r\033[K";
+    size_t length = strlen(text);
+    assert_int_equal(count(text, "\n"), 0);
+    assert_true(count(text, "\r\033[K[0/2] balls:size=1 grid: built") >= 2);
+    assert_true(length > strlen(away));
+    assert_string_equal(text + length - strlen(away), away);
+    rt_free(text);
+}
+
+RT_TEST(a_line_comes_each_minute_and_on_a_terminal_each_second) {
+    RtProgress progress = rt_progress_begin(&(RtWorkloadOptions){.threads = 1});
+    assert_true(progress.every == (progress.terminal ? 1 : 60));
+}
+
+RT_TESTS(progress, NULL, NULL)

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* bench --callgrind: instructions per ray by valgrind, in a child that is this program. */
+#include "experiment_testing.h"
+
+#include "base/json.h"
+#include "bench/ray_file.h"
+
+#include <glob.h>
+#include <unistd.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED true /* valgrind cannot run such a program */
+#elif defined(__has_feature)
+#define SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#else
+#define SANITIZED false
+#endif
+
+static bool has_valgrind(void) {
+    return !SANITIZED && system("valgrind --version >/dev/null 2>&1") == 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
+
+/* "instructions" of what bench prints, a new reference. */
+static json_t *instructions_of(const Place *place, const char *arguments) {
+    char command[300];
+    snprintf(command, sizeof command, "bench %s --count-only --threads 1 --json --callgrind=256", arguments);
+    if (raytally(place, command) != 0) fail_msg("%s: %s", command, read_in(place, "message"));
+    char *text = read_in(place, "output");
+    json_t *document = json_loads(text, 0, NULL);
+    json_t *rows = json_incref(json_object_get(document, "instructions"));
+    json_decref(document);
+    rt_free(text);
+    assert_non_null(rows);
+    return rows;
+}
+
+static json_int_t integer_of(const json_t *rows, size_t i, const char *key) {
+    return json_integer_value(json_object_get(json_array_get(rows, i), key));
+}
+
+static const char *text_of(const json_t *rows, size_t i, const char *key) {
+    return json_string_value(json_object_get(json_array_get(rows, i), key));
+}
+
+RT_TEST_IN_PLACE(instructions_are_the_same_figure_twice_whatever_the_environment) {
+    const Place *place = *state;
+    const char *const arguments = "balls:size=2 --accel bvh --accel grid --accel cache+wide --accel ideal "
+                                  "--rays primary,shadow --size 32x32";
+    if (!has_valgrind()) skip();
+    json_t *one = instructions_of(place, arguments);
+    assert_int_equal(setenv("RT_TEST_FILLER", "some text that moves the stack to another place", 1), 0);
+    json_t *two = instructions_of(place, arguments);
+    unsetenv("RT_TEST_FILLER");
+    assert_int_equal(json_array_size(one), 4 * 2);
+    for (size_t i = 0; i < 8; i++) assert_true(integer_of(one, i, "instructions") > 0);
+    assert_true(json_equal(one, two));
+    json_decref(one);
+    json_decref(two);
+}
+
+/* `count` rays, all alike, to NAME. */
+static void write_alike(const Place *place, const char *name, uint64_t count) {
+    RtRaySet set;
+    assert_ok(rt_rayset_init(&set, RT_RAY_DIFFUSE, count, error));
+    for (uint64_t i = 0; i < count; i++) {
+        set.rays[i] =
+            (RtRay){.org = {{3, 2, 1}}, .dir = {{-3, -2, -1}}, .tmax = INFINITY, .kind = RT_RAY_DIFFUSE};
+    }
+    assert_ok(rt_rays_save(&set, path_in(place, name).text, error));
+    rt_rayset_clear(&set);
+}
+
+/* So neither the start of the program nor a build is in it, and every ray is. */
+RT_TEST_IN_PLACE(each_ray_more_costs_exactly_as_much_as_the_one_before) {
+    const Place *place = *state;
+    const char *const specs[] = {"brute", "bvh", "octree"};
+    if (!has_valgrind()) skip();
+    for (int s = 0; s < 3; s++) {
+        json_int_t sums[3];
+        for (int i = 0; i < 3; i++) {
+            char name[16], arguments[160];
+            snprintf(name, sizeof name, "rays-%d.npy", i);
+            write_alike(place, name, 32 * (uint64_t)(1 + i));
+            snprintf(arguments, sizeof arguments, "random:n=50 --accel %s --rays-from %s --rays nearest",
+                     specs[s], name);
+            json_t *rows = instructions_of(place, arguments);
+            assert_int_equal(integer_of(rows, 0, "rays"), 32 * (1 + i));
+            sums[i] = integer_of(rows, 0, "instructions");
+            json_decref(rows);
+        }
+        assert_true(sums[0] < sums[1]);
+        assert_int_equal(sums[2] - sums[1], sums[1] - sums[0]);
+        assert_in_range(sums[0] - (sums[1] - sums[0]), 1, 1000); /* once a pass */
+    }
+}
+
+RT_TEST_IN_PLACE(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_said) {
+    const Place *place = *state;
+    if (!has_valgrind()) skip();
+    json_t *rows =
+        instructions_of(place, "random:n=50 --accel wide --accel wide:isa=portable --rays primary --size "
+                               "16x16");
+    assert_null(strstr(text_of(rows, 0, "accel"), "isa=best"));
+    assert_null(strstr(text_of(rows, 0, "accel"), "isa=avx512"));
+    assert_non_null(strstr(text_of(rows, 1, "accel"), "isa=portable"));
+    json_decref(rows);
+}
+
+/* Of what is recorded at most so many, and no file stays behind. */
+RT_TEST_IN_PLACE(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
+    const Place *place = *state;
+    glob_t found;
+    if (!has_valgrind()) skip();
+    assert_int_equal(setenv("TMPDIR", place->folder, 1), 0);
+    json_t *rows = instructions_of(place, "random:n=50 --accel bvh --rays primary --size 64x64");
+    unsetenv("TMPDIR");
+    assert_true(integer_of(rows, 0, "rays") > 0 && integer_of(rows, 0, "rays") <= 256);
+    json_decref(rows);
+    assert_int_equal(glob(path_in(place, "raytally-callgrind*").text, 0, NULL, &found), GLOB_NOMATCH);
+    globfree(&found);
+}
+
+RT_TEST_IN_PLACE(the_table_names_the_instruction_set) {
+    const Place *place = *state;
+    if (!has_valgrind()) skip();
+    assert_int_equal(raytally(place,
+                              "bench random:n=50 --accel wide:isa=portable --rays primary --size 16x16 "
+                              "--rounds 1 --callgrind"),
+                     0);
+    assert_in_file(place, "output", "instr./ray  isa");
+    assert_in_file(place, "output", "portable");
+}
+
+/* Before anything is measured. */
+RT_TEST_IN_PLACE(without_valgrind_there_is_a_message_that_says_how_to_get_it) {
+    const Place *place = *state;
+    char command[512];
+    snprintf(command, sizeof command,
+             "cd '%s' && PATH=/nowhere '%s' bench balls --accel bvh --callgrind >output "
+             "2>message",
+             place->folder, RT_PROGRAM);
+    int code = WEXITSTATUS(system(command));
+    assert_int_equal(code, 2);
+    assert_in_file(place, "message", "valgrind is not installed");
+    assert_in_file(place, "message", "apt install valgrind");
+    char *output = read_in(place, "output");
+    assert_string_equal(output, "");
+    rt_free(output);
+}
+
+RT_TESTS(callgrind, NULL, NULL)

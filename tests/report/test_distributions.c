@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Distributions in a result directory, and in bench. */
+#include "experiment_testing.h"
+
+#include "base/csv.h"
+
+#include <unistd.h>
+
+static const char spread[] = "name: small\n"
+                             "question: How long is the tail?\n"
+                             "prediction: Long.\n"
+                             "scenes:\n"
+                             "  - {scene: \"random:n=50\", label: cloud, size: 16x16}\n"
+                             "  - {scene: \"balls:size=2\", label: balls, size: 16x16}\n"
+                             "accelerators:\n"
+                             "  - {accel: bvh}\n"
+                             "  - {accel: grid}\n"
+                             "  - {accel: brute, ray_stride: 3}\n"
+                             "rays: [primary, shadow]\n"
+                             "limit: 200\n"
+                             "distributions: yes\n"
+                             "count_only: yes\n";
+
+static int make_spread(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml", spread);
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_spread, remove_place)
+
+static void assert_same(const Place *place, const char *one, const char *other) {
+    char *a = read_in(place, one), *b = read_in(place, other);
+    assert_string_equal(a, b);
+    rt_free(a);
+    rt_free(b);
+}
+
+static uint64_t integer_at(const RtCsv *csv, uint32_t row, const char *name) {
+    return strtoull(rt_csv_field(csv, row, rt_csv_find(csv, name)), NULL, 10);
+}
+
+/* Three quantities over two kinds of rays of three accelerators, and two over leaves of two; on two scenes.
+ */
+RT_TEST_IN_PLACE(a_run_that_asks_for_distributions_has_them_in_tables_of_their_own) {
+    const Place *place = *state;
+    RtCsv csv, bins;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    Path path = path_in(place, "out/distributions.csv"), histograms = path_in(place, "out/histograms.csv");
+    assert_ok(rt_csv_read(&csv, path.text, error));
+    assert_ok(rt_csv_read(&bins, histograms.text, error));
+    assert_int_equal(csv.rows, 2 * (3 * 2 * 3 + 2 * 2));
+    uint64_t rays = 0, within = 0;
+    for (uint32_t row = 0; row < csv.rows; row++) {
+        rays += integer_at(&csv, row, "count");
+        assert_true(integer_at(&csv, row, "median") <= integer_at(&csv, row, "p99"));
+        assert_true(integer_at(&csv, row, "p99") <= integer_at(&csv, row, "max"));
+    }
+    for (uint32_t row = 0; row < bins.rows; row++) within += integer_at(&bins, row, "values");
+    assert_int_equal(rays, within);
+    rt_csv_clear(&csv);
+    rt_csv_clear(&bins);
+    assert_in_file(place, "out/report.html", "How counts are distributed");
+    if (access("/usr/bin/gnuplot", X_OK) != 0) skip();
+    assert_in_file(place, "out/plots/histograms-cloud.svg", "</svg>");
+    assert_in_file(place, "out/plots/histograms-balls.svg", "shadow rays");
+}
+
+RT_TEST_IN_PLACE(a_run_that_does_not_ask_has_neither_tables_nor_plots_of_them) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", spread, "distributions: yes", "distributions: no");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_false(rt_file_exists(path_in(place, "out/distributions.csv").text));
+    assert_false(rt_file_exists(path_in(place, "out/plots/histograms.gp").text));
+}
+
+/* On one thread and on two, and counted without them before: the journal of a shard has all that is needed.
+ */
+RT_TEST_IN_PLACE(distributions_are_the_same_bytes_on_two_threads_in_parts_and_in_shards) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out one --threads 1"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out two --threads 2"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out parts --only cloud/grid"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out parts --resume"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out s1 --shard 1/2"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out s2 --shard 2/2"), 0);
+    assert_int_equal(raytally(place, "merge s1 s2 -o merged"), 0);
+    const char *const others[] = {"two", "parts", "merged"};
+    for (int i = 0; i < 3; i++) {
+        char distributions[64], histograms[64];
+        snprintf(distributions, sizeof distributions, "%s/distributions.csv", others[i]);
+        snprintf(histograms, sizeof histograms, "%s/histograms.csv", others[i]);
+        assert_same(place, "one/distributions.csv", distributions);
+        assert_same(place, "one/histograms.csv", histograms);
+    }
+}
+
+RT_TEST_IN_PLACE(a_finished_run_with_distributions_that_is_resumed_measures_nothing_again) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    char *before = read_in(place, "out/cells.jsonl"), *table = read_in(place, "out/distributions.csv");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    char *after = read_in(place, "out/cells.jsonl"), *again = read_in(place, "out/distributions.csv");
+    assert_string_equal(before, after);
+    assert_string_equal(table, again);
+    rt_free(before);
+    rt_free(after);
+    rt_free(table);
+    rt_free(again);
+}
+
+RT_TEST_IN_PLACE(reproduce_compares_distributions_byte_for_byte) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_int_equal(raytally(place, "reproduce out"), 0);
+    assert_in_file(place, "output", "out/histograms.csv, byte for byte");
+    write_in(place, "out/distributions.csv", "other\n");
+    assert_int_equal(raytally(place, "reproduce out"), 1);
+    assert_in_file(place, "message", "out/distributions.csv:1: differs");
+}
+
+RT_TEST_IN_PLACE(bench_shows_medians_percentiles_and_maxima) {
+    const Place *place = *state;
+    const char *const command = "bench random:n=50 --accel grid --accel wide --rays primary --size 16x16 "
+                                "--count-only --distribution";
+    char json[256];
+    assert_int_equal(raytally(place, command), 0);
+    assert_in_file(place, "output", "tests: 50 %  99 %  most  steps: 50 %  99 %  most");
+    assert_in_file(place, "output", "leaf size: 50 %");
+    snprintf(json, sizeof json, "%s --json", command);
+    assert_int_equal(raytally(place, json), 0);
+    assert_in_file(place, "output", "\"p999\"");
+    assert_in_file(place, "output", "\"histograms\"");
+}
+
+/* ---- what the machine did ---- */
+
+/* Resumed, the second time without a table, which is made from the journal again. */
+RT_TEST_IN_PLACE(a_run_that_asks_for_hardware_counters_has_a_row_for_each_cell_with_them_or_the_reason) {
+    const Place *place = *state;
+    RtCsv csv;
+    Path path = path_in(place, "out/hardware.csv");
+    write_changed(place, "small.yaml", spread, "count_only: yes",
+                  "hardware: yes\nrounds: 2\nmilliseconds: 0");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    char *first = read_in(place, "out/hardware.csv");
+    assert_int_equal(remove(path.text), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
+    char *again = read_in(place, "out/hardware.csv");
+    assert_string_equal(first, again);
+    rt_free(first);
+    rt_free(again);
+    assert_ok(rt_csv_read(&csv, path.text, error));
+    assert_int_equal(csv.rows, 2 * 2 * 3);
+    for (uint32_t row = 0; row < csv.rows; row++) {
+        bool counted = *rt_csv_field(&csv, row, rt_csv_find(&csv, "running")) != '\0';
+        assert_true(counted != (*rt_csv_field(&csv, row, rt_csv_find(&csv, "why")) != '\0'));
+        assert_true(*rt_csv_field(&csv, row, rt_csv_find(&csv, "cpu")) != '\0');
+    }
+    rt_csv_clear(&csv);
+}
+
+RT_TEST_IN_PLACE(hardware_counters_where_nothing_is_timed_are_refused) {
+    const Place *place = *state;
+    RtError error;
+    write_changed(place, "small.yaml", spread, "distributions: yes", "hardware: yes");
+    assert_refused(load_small(place, false, &error), RT_BAD_INPUT, &error,
+                   ":13:11: hardware: hardware counters");
+    assert_int_equal(raytally(place, "bench balls --accel bvh --hardware --count-only"), 2);
+    assert_in_file(place, "message", "not with --count-only");
+}
+
+RT_TESTS(distributions, NULL, NULL)
