@@ -6,6 +6,7 @@
 #define RT_ACCEL_PAIRS_H
 
 #include "accel/sieve.h"
+#include "accel/simd_doubles.h"
 
 /* Vertices of sheared triangles: x, y along kx and ky of the ray, z along kz. */
 typedef struct RtPairsSheared {

@@ -1,10 +1,78 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* More about sixteen words: arithmetic, comparisons and conversions, beside what accel/simd.h has. Words are
+/* Sixteen words: from and to memory, arithmetic, comparisons, conversions, and as places in tables. Words are
  * signed where they are compared. */
 #ifndef RT_ACCEL_SIMD_WORDS_H
 #define RT_ACCEL_SIMD_WORDS_H
 
 #include "accel/simd.h"
+
+/* ---- memory and tables of floats ---- */
+
+#if defined(__AVX512F__)
+typedef __m512i RtW16;
+static inline RtW16 rt_w16_all(uint32_t a) {
+    return _mm512_set1_epi32((int)a);
+}
+static inline RtW16 rt_w16_get(const uint32_t *from) {
+    return _mm512_loadu_si512(from);
+}
+static inline RtW16 rt_w16_of(RtV16 a) {
+    return _mm512_castps_si512(a);
+}
+static inline RtW16 rt_w16_add(RtW16 a, RtW16 b) {
+    return _mm512_add_epi32(a, b);
+}
+/* The lanes of a mask to to[0..16), whose others stay. */
+static inline void rt_w16_store_some(uint32_t *to, uint32_t lanes, RtW16 a) {
+    _mm512_mask_storeu_epi32(to, (__mmask16)lanes, a);
+}
+/* The lanes of a mask in ascending order to to[0..16), of which the others may be written over. */
+static inline void rt_w16_put_some(uint32_t *to, uint32_t mask, RtW16 a) {
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)mask, a));
+}
+/* table[index[i]] in lane i; an index is less than 2^31. */
+static inline RtV16 rt_v16_lookup(const float *table, RtW16 index) {
+    return _mm512_i32gather_ps(index, table, 4);
+}
+/* The same of a table of sixty-four, 64-byte aligned. */
+static inline RtV16 rt_v16_pick64(const float *table, RtW16 index) {
+    __m512 lo = _mm512_permutex2var_ps(_mm512_load_ps(table), index, _mm512_load_ps(table + 16));
+    __m512 hi = _mm512_permutex2var_ps(_mm512_load_ps(table + 32), index, _mm512_load_ps(table + 48));
+    return _mm512_mask_mov_ps(lo, _mm512_test_epi32_mask(index, _mm512_set1_epi32(32)), hi);
+}
+#else
+typedef struct RtW16 {
+    __m256i lo, hi;
+} RtW16;
+static inline RtW16 rt_w16_all(uint32_t a) {
+    return (RtW16){_mm256_set1_epi32((int)a), _mm256_set1_epi32((int)a)};
+}
+static inline RtW16 rt_w16_get(const uint32_t *from) {
+    return (RtW16){rt_v8_get(from), rt_v8_get(from + 8)};
+}
+static inline RtW16 rt_w16_of(RtV16 a) {
+    return (RtW16){_mm256_castps_si256(a.lo), _mm256_castps_si256(a.hi)};
+}
+static inline RtW16 rt_w16_add(RtW16 a, RtW16 b) {
+    return (RtW16){_mm256_add_epi32(a.lo, b.lo), _mm256_add_epi32(a.hi, b.hi)};
+}
+static inline void rt_w16_store_some(uint32_t *to, uint32_t lanes, RtW16 a) {
+    rt_v8_put(to, rt_v8_pick(lanes & 255, rt_v8_get(to), a.lo));
+    rt_v8_put(to + 8, rt_v8_pick(lanes >> 8, rt_v8_get(to + 8), a.hi));
+}
+static inline void rt_w16_put_some(uint32_t *to, uint32_t mask, RtW16 a) {
+    rt_v8_put(to, rt_v8_take(rt_v8_order(mask & 255), a.lo));
+    rt_v8_put(to + __builtin_popcount(mask & 255), rt_v8_take(rt_v8_order(mask >> 8), a.hi));
+}
+static inline RtV16 rt_v16_lookup(const float *table, RtW16 index) {
+    return (RtV16){_mm256_i32gather_ps(table, index.lo, 4), _mm256_i32gather_ps(table, index.hi, 4)};
+}
+static inline RtV16 rt_v16_pick64(const float *table, RtW16 index) {
+    return rt_v16_lookup(table, index);
+}
+#endif
+
+/* ---- arithmetic, comparisons, tables of words ---- */
 
 #if defined(__AVX512F__)
 #define RT_W16_PAIR(name, intrinsic)                                                                         \

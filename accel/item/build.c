@@ -99,14 +99,19 @@ static bool is_large(const Share *share, size_t place) {
            tiles_of(&share->places[place]) > MANY_TILES;
 }
 
-static void count_places(const Builder *b, Share *share) {
+/* For each object of a share that is not kept apart, and each tile of its place: counts it, or, where there
+ * are entries, puts it where the number says. */
+static void go_over_tiles(Builder *b, Share *share) {
     uint32_t across = rt_item_tiles_across(b->buffer);
     for (size_t i = 0; i < share->end[OTHERS]; i++) {
         const RtItemPlace *place = &share->places[i];
         if (is_large(share, i)) continue;
         for (uint32_t y = place->lo[1]; y <= place->hi[1]; y++) {
-            for (uint32_t x = place->lo[0]; x <= place->hi[0]; x++)
-                share->tile[slot_of(across, x, y, place)]++;
+            for (uint32_t x = place->lo[0]; x <= place->hi[0]; x++) {
+                size_t *number = &share->tile[slot_of(across, x, y, place)];
+                if (b->entries) b->entries[*number] = place->object;
+                ++*number;
+            }
         }
     }
 }
@@ -146,7 +151,7 @@ static RtStatus place_share(void *context, size_t item, int thread, RtError *err
         if (!is_triangle(g, id)) place_footprint(buffer, (uint32_t)id, share->places, &placed);
     }
     share->end[OTHERS] = placed;
-    count_places(b, share);
+    go_over_tiles(b, share);
     return RT_OK;
 }
 
@@ -197,16 +202,7 @@ static RtStatus number_entries(Builder *b, RtError *error) {
 static RtStatus fill_share(void *context, size_t item, int thread, RtError *error) {
     (void)thread, (void)error;
     Builder *b = context;
-    Share *share = &b->share[item];
-    uint32_t across = rt_item_tiles_across(b->buffer);
-    for (size_t i = 0; i < share->end[OTHERS]; i++) {
-        const RtItemPlace *place = &share->places[i];
-        if (is_large(share, i)) continue;
-        for (uint32_t y = place->lo[1]; y <= place->hi[1]; y++) {
-            for (uint32_t x = place->lo[0]; x <= place->hi[0]; x++)
-                b->entries[share->tile[slot_of(across, x, y, place)]++] = place->object;
-        }
-    }
+    go_over_tiles(b, &b->share[item]);
     return RT_OK;
 }
 

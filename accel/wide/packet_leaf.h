@@ -6,6 +6,7 @@
 #define RT_ACCEL_WIDE_PACKET_LEAF_H
 
 #include "accel/pairs.h"
+#include "accel/simd_words.h"
 #include "accel/wide/packet.h"
 
 /* ---- triangles, roughly ---- */

@@ -303,15 +303,9 @@ static RtStatus bench(Options *o, RtError *error) {
 }
 
 int rt_command_bench(int argc, char **argv) {
-    Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment))},
-                 .workload = {.timing = 1, .patience = RT_PATIENCE},
-                 .argv = argv};
+    Options o = {.workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
     RtError error;
-    if (!o.recording.experiment) {
-        rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
-        return rt_cli_fail(&error);
-    }
-    rt_recording_init(&o.recording);
+    if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
     const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
     const struct argp argp = {
         .options = options,
@@ -328,6 +322,6 @@ int rt_command_bench(int argc, char **argv) {
         .children = children};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtStatus status = bench(&o, &error);
-    rt_free(o.recording.experiment);
+    rt_recording_clear(&o.recording);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

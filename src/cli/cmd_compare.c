@@ -207,15 +207,8 @@ static RtStatus compare(Options *o, int argc, char **argv, bool *slower, RtError
 int rt_command_compare(int argc, char **argv) {
     RtError error;
     bool slower = false;
-    Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment))},
-                 .timing = 1,
-                 .patience = 600,
-                 .margin = -1};
-    if (!o.recording.experiment) {
-        rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
-        return rt_cli_fail(&error);
-    }
-    rt_recording_init(&o.recording);
+    Options o = {.timing = 1, .patience = 600, .margin = -1};
+    if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
     const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
     const struct argp argp = {
         .options = options,
@@ -238,7 +231,7 @@ int rt_command_compare(int argc, char **argv) {
         .children = children};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtStatus status = o.worker ? work(&o, &error) : compare(&o, argc, argv, &slower, &error);
-    rt_free(o.recording.experiment);
+    rt_recording_clear(&o.recording);
     if (status != RT_OK) return rt_cli_fail(&error);
     return slower && o.strict ? RT_EXIT_CHECK_FAILED : RT_EXIT_OK;
 }

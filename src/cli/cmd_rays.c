@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally rays: the rays that `bench` records, as an array of NumPy. */
-#include "base/memory.h"
 #include "bench/ray_file.h"
 #include "bench/workload.h"
 #include "cli/cli.h"
@@ -70,12 +69,8 @@ static RtStatus record(const Options *o, RtError *error) {
 
 int rt_command_rays(int argc, char **argv) {
     RtError error;
-    Options o = {.recording = {.experiment = rt_alloc(1, sizeof(RtExperiment)), .one_kind = true}};
-    if (!o.recording.experiment) {
-        rt_fail_memory(&error, "an experiment", sizeof(RtExperiment));
-        return rt_cli_fail(&error);
-    }
-    rt_recording_init(&o.recording);
+    Options o = {.recording = {.one_kind = true}};
+    if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
     const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 0}, {0}};
     const struct argp argp = {
         .options = options,
@@ -92,6 +87,6 @@ int rt_command_rays(int argc, char **argv) {
         .children = children};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtStatus status = record(&o, &error);
-    rt_free(o.recording.experiment);
+    rt_recording_clear(&o.recording);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/recording.h"
 
+#include "base/memory.h"
 #include "cli/cli.h"
 #include "render/frame.h"
 
@@ -57,10 +58,17 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 const struct argp rt_recording_argp = {.options = options, .parser = parse_option};
 
-void rt_recording_init(RtRecordingOptions *o) {
+RtStatus rt_recording_init(RtRecordingOptions *o, RtError *error) {
+    o->experiment = rt_alloc(1, sizeof(RtExperiment));
+    if (!o->experiment) return rt_fail_memory(error, "an experiment", sizeof(RtExperiment));
     rt_experiment_init(o->experiment);
     o->experiment->coherent_run = 256;
     o->like.depth = RT_DEFAULT_DEPTH;
+    return RT_OK;
+}
+
+void rt_recording_clear(RtRecordingOptions *o) {
+    rt_free(o->experiment);
 }
 
 static void parse_kinds(RtExperiment *experiment, const char *text, struct argp_state *state) {

@@ -9,7 +9,7 @@
 
 /* The input of the parser. */
 typedef struct RtRecordingOptions {
-    RtExperiment *experiment; /* to be filled; its scenes are left to be added */
+    RtExperiment *experiment; /* owned: to be filled; its scenes are left to be added */
     RtWorkload like;          /* for all that the scene stands for (rt_experiment_add_scenes) */
     bool one_kind;            /* one kind of rays, primary ones unless another is asked for */
     const char *kinds;        /* as given, or NULL */
@@ -18,8 +18,9 @@ typedef struct RtRecordingOptions {
 
 extern const struct argp rt_recording_argp;
 
-/* Initialises its experiment, without scenes, and `like` with what `bench` measures. */
-void rt_recording_init(RtRecordingOptions *o);
+/* Makes its experiment, without scenes, and `like`, with what `bench` measures. RT_NO_MEMORY. */
+RtStatus rt_recording_init(RtRecordingOptions *o, RtError *error);
+void rt_recording_clear(RtRecordingOptions *o);
 
 /* To be called at ARGP_KEY_END of the parent: the kinds of rays mean something else where rays are of a file.
  */
