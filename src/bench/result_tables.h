@@ -17,12 +17,14 @@ typedef enum RtResultTable {
     RT_TIMES,
     /* rounds.csv: a row per round of a timed cell, null runs included. */
     RT_ROUNDS,
-    RT_BENCH,      /* "rows" of bench --json: of each cell that was counted */
-    RT_NULL_RUNS,  /* "null_runs" there */
-    RT_CELLS,      /* for the eye: one workload by accelerator and ray kind; of a best of only the best */
-    RT_STRUCTURES, /* for the eye: of each accelerator in it, what its structure takes */
-    RT_CELLS_MORE, /* cells with more columns, and all rows */
-    RT_TOTALS,     /* one workload by accelerator, all kinds together */
+    RT_BENCH,       /* "rows" of bench --json: of each cell that was counted */
+    RT_NULL_RUNS,   /* "null_runs" there */
+    RT_CELLS,       /* for the eye: one workload by accelerator and ray kind; of a best of only the best */
+    RT_STRUCTURES,  /* for the eye: of each accelerator in it, what its structure takes */
+    RT_CELLS_PAPER, /* as RT_CELLS, with whole labels and without null runs */
+    RT_CELLS_MORE,  /* cells with more columns, and all rows */
+    RT_TOTALS,      /* one workload by accelerator, all kinds together */
+    RT_TOTALS_MORE, /* these with the intervals of their times */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;
 
@@ -40,7 +42,7 @@ typedef struct RtResultRow {
     const RtWorkloadResult *scene;
     const RtBuildResult *build;
     const RtCell *cell;
-    RtTotal all; /* of the cell, or of RT_TOTALS */
+    RtTotal all; /* of the cell, or of RT_TOTALS... */
     uint32_t swept_count;
     RtSweptKey swept[RT_MAX_SWEPT_KEYS]; /* what the experiment sweeps */
     char swept_names[RT_MAX_SWEPT_KEYS]

@@ -85,9 +85,15 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         if (has_rows(results, c)) fprintf(out, "%s ", experiment->candidates[c].label);
     }
-    fprintf(out, "\"\ncolors = \"");
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (has_rows(results, c)) fprintf(out, "%s ", rt_candidate_color(c));
+    static const char *const lists[] = {"colors", "markers", "dashes"};
+    for (int i = 0; i < 3; i++) {
+        fprintf(out, "\"\n%s = \"", lists[i]);
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            const RtLook look = rt_candidate_look(experiment, c);
+            if (!has_rows(results, c)) continue;
+            if (i == 0) fprintf(out, "%s ", look.color);
+            if (i > 0) fprintf(out, "%d ", i == 1 ? look.marker : look.dash);
+        }
     }
     fprintf(out, "\"\nkinds = \"");
     for (uint32_t k = 0; k < experiment->kind_count; k++) {

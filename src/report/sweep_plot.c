@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "report/color.h"
+#include "report/page.h"
 #include "style_gp.h"
 
 #include <math.h>
@@ -169,17 +170,17 @@ static void put_data(const Figure *figure, FILE *out) {
     }
 }
 
-/* Colour, dash and marker have 12, 5 and 7 values: no two of 420 lines look alike. */
+/* The colour is that of the line's first accelerator; marker and dash tell lines apart in grey print, too. */
 static void put_styles(const Figure *figure, FILE *out) {
-    static const int markers[] = {7, 5, 9, 11, 13, 6, 4};
+    const RtExperiment *experiment = figure->results->experiment;
     for (uint32_t line = 0; line < figure->line_count; line++) {
         const Line *l = &figure->lines[line];
-        uint32_t marks = 1 + figure->value_count / 16;
+        const RtLook look = rt_look(line);
         fprintf(out,
-                "set style line %u linecolor rgb \"%s\" dashtype %u pointtype %d pointsize %s linewidth 1.6 "
+                "set style line %u linecolor rgb \"%s\" dashtype %d pointtype %d pointsize %s linewidth 1.6 "
                 "pointinterval %u\n",
-                line + 1, rt_candidate_color(figure->key->scene ? l->candidate : line),
-                l->flat ? 3 : 1 + line % 5, l->flat ? 0 : markers[line % 7], l->flat ? "0.1" : "0.55", marks);
+                line + 1, rt_candidate_look(experiment, l->candidate).color, look.dash,
+                l->flat ? 0 : look.marker, l->flat ? "0.1" : "0.55", 1 + figure->value_count / 16);
     }
 }
 
@@ -328,13 +329,20 @@ static RtStatus write_script(Figure *figure, const char *directory, RtError *err
     return rt_output_commit(&output, error);
 }
 
+static RtStatus write_style(const char *path, RtError *error) {
+    RtOutput output;
+    RT_TRY(rt_output_open(&output, path, error));
+    rt_page_lines(output.file, style_gp);
+    return rt_output_commit(&output, error);
+}
+
 RtStatus rt_sweep_plots_write(const RtResults *results, const char *directory, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH];
     size_t candidates = experiment->candidate_count;
     size_t points = 2 * candidates * experiment->workload_count;
     RT_TRY(rt_path_join(directory, "plots/style.gp", path, error));
-    RT_TRY(rt_file_write(path, style_gp, strlen(style_gp), error));
+    RT_TRY(write_style(path, error));
     Figure *figure = rt_alloc(1, sizeof *figure);
     if (!figure) return rt_fail_memory(error, "plots", sizeof *figure);
     figure->results = results;
