@@ -61,9 +61,9 @@ RtLook rt_candidate_look(const RtExperiment *experiment, uint32_t candidate) {
     uint32_t earlier = 0;
     for (uint32_t c = 0; c < candidate; c++)
         earlier += has_top(experiment->candidates[c].spec, spec, top_of(spec));
-    return look(shaded(family_color(spec), 1.1 * spread(earlier)), candidate);
+    return look(shaded(family_color(spec), 0.9 * spread(earlier)), candidate);
 }
 
 RtLook rt_look(uint32_t i) {
-    return look(shaded(colors[i % COLOR_COUNT], 1.1 * spread(i / COLOR_COUNT)), i);
+    return look(shaded(colors[i % COLOR_COUNT], 0.9 * spread(i / COLOR_COUNT)), i);
 }

@@ -67,7 +67,7 @@ static bool has_rays(const RtResults *results, RtRayKind kind) {
 }
 
 /* Labels hold nothing that gnuplot's double quotes would interpret (rt_experiment_check). */
-static RtStatus write_names(const RtResults *results, const char *directory, RtError *error) {
+static RtStatus write_names(const RtResults *results, const char *directory, const char *format, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH];
     RtOutput output;
@@ -76,8 +76,8 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
     FILE *out = output.file;
     fprintf(out,
             "# What counts.csv and times.csv have rows of, in the order of the experiment.\n"
-            "experiment = \"%s\"\nscenes = \"",
-            experiment->name);
+            "experiment = \"%s\"\nformat = \"%s\"\nscenes = \"",
+            experiment->name, format);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (results->workloads[t].known) fprintf(out, "%s ", experiment->workloads[t].label);
     }
@@ -174,6 +174,7 @@ static RtStatus settle(const char *directory, bool keep, RtError *error) {
     Settling settling = {keep, RT_OK, error};
     RT_TRY(rt_path_join(directory, "plots", plots, error));
     rt_directory_each(plots, ".svg.tmp", settle_file, &settling);
+    rt_directory_each(plots, ".pdf.tmp", settle_file, &settling);
     return settling.status;
 }
 
@@ -184,14 +185,19 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
     const bool sweeps = rt_sweep_plots_needed(experiment);
     if (experiment->plot_count == 0 && !sweeps) return RT_OK;
     settle(directory, false, NULL); /* of a drawing that was cut short */
-    RT_TRY(write_names(results, directory, error));
     if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
         snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
         arguments[i + 1] = paths[i];
     }
     if (sweeps) arguments[1] = sweep_script;
-    RtStatus status = run_gnuplot(arguments, directory, error);
+    /* names.gp stays as it is for SVG. */
+    static const char *const formats[] = {"pdf", "svg"};
+    RtStatus status = RT_OK;
+    for (int i = 0; i < 2 && status == RT_OK; i++) {
+        RT_TRY(write_names(results, directory, formats[i], error));
+        status = run_gnuplot(arguments, directory, error);
+    }
     if (status != RT_OK) {
         settle(directory, false, NULL);
         return status;

@@ -121,16 +121,21 @@ typedef struct Plots {
     const char *directory;
 } Plots;
 
-/* The number of a gnuplot's <svg width="..." height="...">. */
-static int svg_size(const char *svg, const char *attribute, int otherwise) {
-    const char *at = strstr(svg, "<svg");
-    at = at ? strstr(at, attribute) : NULL;
-    const int size = at ? atoi(at + strlen(attribute)) : 0;
-    return size > 0 ? size : otherwise;
+/* Its size in pixels: gnuplot writes viewBox="0 0 WIDTH HEIGHT". */
+static void read_size(const char *svg, int *width, int *height) {
+    static const char box[] = "viewBox=\"0 0 ";
+    const char *at = strstr(svg, box);
+    char *end = NULL;
+    *width = at ? (int)strtol(at + strlen(box), &end, 10) : 0;
+    *height = end ? (int)strtol(end, NULL, 10) : 0;
+    if (*width > 0 && *height > 0) return;
+    *width = 960;
+    *height = 480;
 }
 
 static void put_svg(FILE *out, const char *svg, size_t size, const Caption *caption) {
-    const int width = svg_size(svg, " width=\"", 960), height = svg_size(svg, " height=\"", 420);
+    int width, height;
+    read_size(svg, &width, &height);
     /* The first sentence says what is drawn. */
     const char *end = strstr(caption->text, ". ");
     fprintf(out,

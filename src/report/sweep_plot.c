@@ -285,7 +285,7 @@ static void put_figure(const Figure *figure, uint32_t number, const char *group,
     put_order(figure, out);
     fputs("names = \"", out);
     for (uint32_t i = 0; i < figure->line_count; i++) fprintf(out, "%s ", figure->lines[i].name);
-    fprintf(out, "\"\neval svg(\"%02u-sweep-%s\", %.0f, %.0f)\n", number, figure->key->key, width, height);
+    fprintf(out, "\"\neval canvas(\"%02u-sweep-%s\", %.0f, %.0f)\n", number, figure->key->key, width, height);
     put_axis(figure, out);
     fprintf(out,
             "set grid xtics ytics\nset multiplot\n"
