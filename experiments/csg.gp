@@ -6,7 +6,7 @@
 n_accels = words(accels)
 sizes = "small large"
 caption = "'trees of 8 to 64 solids' 'trees of 512 solids'"
-array title[3] = ["solids tested / ray (csg\\_tests)", "extents tested / ray", "ns / ray"]
+array title[3] = ["solids tested / ray", "extents tested / ray", "ns / ray"]
 
 # Means over all kinds of rays, each weighed by what its whole set has.
 chosen(size, inner, a) = strcol("scene") eq size."-".inner && strcol("accel") eq word(accels, a)

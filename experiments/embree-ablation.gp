@@ -14,9 +14,9 @@ set yrange [-0.5 : n_accels - 1.5]
 set grid xtics ytics
 set bars small
 
-height = 110 + 40 * (n_accels - 1)
+height = 140 + 40 * (n_accels - 1)
 eval canvas("1-ablation", 960, height)
-set multiplot layout 1, n_scenes margins screen 0.155, 0.99, 54.0 / height, 1 - 60.0 / height spacing screen 0.012, 0.1
+set multiplot layout 1, n_scenes margins screen 0.155, 0.99, 66.0 / height, 1 - 72.0 / height spacing screen 0.012, 0.1
 do for [s = 1:n_scenes] {
   set title word(scenes, s) font ",14" textcolor rgb ink
   set xlabel (s == (n_scenes + 1) / 2 ? "throughput / that of wide" : "") textcolor rgb ink

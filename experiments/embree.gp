@@ -27,7 +27,7 @@ columns = 3; rows = (n_scenes + columns - 1) / columns
 height = 70 + 290 * rows
 
 eval canvas("1-embree", 960, height)
-set multiplot layout rows, columns margins screen 0.065, 0.985, 70.0 / height, 1 - 72.0 / height spacing screen 0.045, 105.0 / height
+set multiplot layout rows, columns margins screen 0.08, 0.985, 70.0 / height, 1 - 72.0 / height spacing screen 0.045, 105.0 / height
 set yrange [0 : *]
 do for [s = 1:n_scenes] {
   set title word(scenes, s) font ",14" textcolor rgb ink
@@ -53,13 +53,13 @@ at(s, q, isa) = named(s, q, "medium", isa) ? place(strcol("kind")) + 0.2 * (q - 
                 named(s, q, "high", isa) ? place(strcol("kind")) + 0.2 * (q - 2.5) + 0.03 : NaN
 
 eval canvas("2-settings", 960, height)
-set multiplot layout rows, columns margins screen 0.065, 0.985, 70.0 / height, 1 - 88.0 / height spacing screen 0.045, 105.0 / height
+set multiplot layout rows, columns margins screen 0.08, 0.985, 70.0 / height, 1 - 88.0 / height spacing screen 0.045, 105.0 / height
 set yrange [0 : 1.1]
 do for [s = 1:n_scenes] {
   set title word(scenes, s) font ",14" textcolor rgb ink
   set ylabel (s % columns == 1 ? "throughput / Embree's best" : "") textcolor rgb ink
   if (s == 1) {
-    set key at screen 0.985, screen 1 - 8.0 / height right top horizontal maxrows 2 samplen 1 textcolor rgb ink
+    set key at screen 0.985, screen 1 - 8.0 / height right top vertical maxrows 2 samplen 0.5 textcolor rgb ink
   } else { unset key }
   plot for [q = 1:4] "times.csv" using (at(s, q, "avx2")):(column("ratio")) \
          with points pointtype open_mark(q) pointsize 0.8 linewidth 1.5 linecolor rgb hue(q) title "avx2, query=".word(queries, q), \

@@ -21,7 +21,7 @@ set xtics (256, 512, 1024, 2048)
 set xlabel "samples along a side of the frame" textcolor rgb ink
 
 eval canvas("1-frames", 960, 400)
-set multiplot layout 1, 3 margins screen 0.06, 0.985, 0.14, 0.84 spacing screen 0.04, 0.1
+set multiplot layout 1, 3 margins screen 0.075, 0.985, 0.14, 0.84 spacing screen 0.04, 0.1
 set title "buffer built" font ",14" textcolor rgb ink
 set ylabel "throughput / Embree's best" textcolor rgb ink
 set key top left samplen 2 textcolor rgb ink

@@ -12,15 +12,16 @@ set yrange [-0.6 : n_scenes - 0.4]
 set grid xtics ytics
 set bars small
 
-height = 120 + 62 * n_scenes
+height = 140 + 62 * n_scenes
 eval canvas("1-light-buffer", 960, height)
-set multiplot layout 1, 2 margins screen 0.15, 0.985, 54.0 / height, 1 - 44.0 / height spacing screen 0.05, 0.1
+set multiplot layout 1, 2 margins screen 0.15, 0.985, 72.0 / height, 1 - 44.0 / height spacing screen 0.05, 0.1
 set logscale x
 set xlabel "throughput / that of wide" textcolor rgb ink
 set ytics ()
 do for [s = 1:n_scenes] { set ytics add (word(scenes, s) n_scenes - s) }
 set key at screen 0.985, screen 1 - 8.0 / height right top vertical maxrows 1 samplen 1 textcolor rgb ink
-plot for [a = 2:n_accels] for [s = 1:n_scenes] "times.csv" \
+plot keyentry with points pointtype marker(1) pointsize 0.8 linecolor rgb color(1) title word(accels, 1), \
+     for [a = 2:n_accels] for [s = 1:n_scenes] "times.csv" \
        using (chosen(s, a) ? column("ratio") : NaN):(place(s, a)):(column("ratio_low")):(column("ratio_high")) \
        with xerrorbars linewidth 1.5 pointtype marker(a) pointsize 0.8 linecolor rgb color(a) title (s == 1 ? word(accels, a) : "")
 unset key

@@ -78,9 +78,9 @@ unset print
 # ---- drawing ----
 
 eval canvas("4-trees", 960, 400)
-set multiplot layout 1, n_families margins screen 0.06, 0.985, 0.15, 0.9 spacing screen 0.02, 0.1
+set multiplot layout 1, n_families margins screen 0.08, 0.985, 0.15, 0.9 spacing screen 0.02, 0.1
 set grid xtics ytics
-set border 3; set xtics nomirror; set ytics nomirror
+set border 3; set xtics nomirror; set ytics nomirror textcolor rgb ink
 set xrange [0 : 1]; set yrange [0.5 : 1]
 set samples 101
 do for [f = 1:n_families] {

@@ -37,9 +37,9 @@ set grid ytics
 set key left top font ",12" textcolor rgb ink samplen 0.5 spacing 1.05
 do for [m = 1:2] {
   what = word("tests steps", m)
-  set lmargin at screen 0.06 + (m - 1) * 0.485
-  set rmargin at screen 0.49 + (m - 1) * 0.485
-  set tmargin at screen 0.92; set bmargin at screen 0.12
+  set lmargin at screen 0.085 + (m - 1) * 0.475
+  set rmargin at screen 0.505 + (m - 1) * 0.475
+  set tmargin at screen 0.91; set bmargin at screen 0.12
   set title (m == 1 ? "object tests" : "steps")." of a random line through the box" textcolor rgb ink font ",14"
   set xlabel "predicted from areas" textcolor rgb ink
   set ylabel (m == 1 ? "measured" : "") textcolor rgb ink
@@ -147,9 +147,9 @@ set xtics autofreq; set ytics autofreq
 set xrange [20 : 200000]; set yrange [20 : 200000]
 set key left top font ",12" textcolor rgb ink samplen 0.5 spacing 1.05
 do for [m = 1:2] {
-  set lmargin at screen 0.06 + (m - 1) * 0.485
-  set rmargin at screen 0.49 + (m - 1) * 0.485
-  set tmargin at screen 0.92; set bmargin at screen 0.12
+  set lmargin at screen 0.085 + (m - 1) * 0.475
+  set rmargin at screen 0.505 + (m - 1) * 0.475
+  set tmargin at screen 0.91; set bmargin at screen 0.12
   set title (m == 1 ? "from tests and steps as measured" : "from tests and steps as predicted") textcolor rgb ink font ",14"
   set xlabel "ns per ray by fitted times of a ray, a test and a step" textcolor rgb ink
   set ylabel (m == 1 ? "ns per ray, measured" : "") textcolor rgb ink

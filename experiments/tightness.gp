@@ -25,7 +25,7 @@ do for [s = 1:n_scenes] {
 }
 
 eval canvas("1-tightness", 960, 640)
-set multiplot layout 2, n_scenes columnsfirst margins screen 0.05, 0.985, 0.09, 0.88 spacing screen 0.045, 0.13
+set multiplot layout 2, n_scenes columnsfirst margins screen 0.05, 0.985, 0.09, 0.87 spacing screen 0.045, 0.13
 set grid ytics
 set xtics 3, 2, 13
 set xrange [2.5 : 13.5]
@@ -34,7 +34,7 @@ do for [s = 1:n_scenes] {
   set title word(scenes, s).": tests per object met" font ",13" textcolor rgb ink
   unset xlabel
   if (s == 1) {
-    set key at screen 0.985, screen 0.985 right top horizontal samplen 2 textcolor rgb ink
+    set key at screen 0.985, screen 0.985 right top vertical maxrows 1 samplen 2 textcolor rgb ink
   } else { unset key }
   plot "counts.csv" using (chosen(s) ? k_of(strcol("accel")) : NaN):(column("object_tests") / column("object_hits")) \
          with linespoints linewidth 1.8 pointtype 7 pointsize 0.7 linecolor rgb look(4) title "k slabs", \
