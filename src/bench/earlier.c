@@ -8,7 +8,8 @@
 
 static const char *const result_files[] = {RT_RUN_JOURNAL, RT_VERIFY_JOURNAL, RT_MANIFEST,     "counts.csv",
                                            "times.csv",    "rounds.csv",      "published.csv", "best.csv",
-                                           "published.md", "report.html",     "verify.csv",    "verify.md"};
+                                           "published.md", "report.html",     "verify.csv",    "verify.md",
+                                           "tables.md",    "tables.tex"};
 
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
@@ -70,5 +71,6 @@ void rt_earlier_remove(const char *directory, const char *journal) {
         if (rt_path_join(directory, result_files[i], path, NULL) == RT_OK) remove(path);
     }
     remove_each(directory, "plots", ".svg");
+    remove_each(directory, "plots", ".pdf");
     remove_each(directory, "images", ".png");
 }

@@ -67,7 +67,8 @@ static bool has_rays(const RtResults *results, RtRayKind kind) {
 }
 
 /* Labels hold nothing that gnuplot's double quotes would interpret (rt_experiment_check). */
-static RtStatus write_names(const RtResults *results, const char *directory, const char *format, RtError *error) {
+static RtStatus write_names(const RtResults *results, const char *directory, const char *format,
+                            RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH];
     RtOutput output;

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAME_CHARS = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
+enum { MOST_TICS = 8, NAME_CHARS = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
 
 typedef struct Line {
     char name[NAME_CHARS];
@@ -179,8 +179,9 @@ static void put_styles(const Figure *figure, FILE *out) {
         fprintf(out,
                 "set style line %u linecolor rgb \"%s\" dashtype %d pointtype %d pointsize %s linewidth 1.6 "
                 "pointinterval %u\n",
-                line + 1, rt_candidate_look(experiment, l->candidate).color, look.dash,
-                l->flat ? 0 : look.marker, l->flat ? "0.1" : "0.55", 1 + figure->value_count / 16);
+                line + 1, rt_candidate_look(experiment, l->candidate).color,
+                l->flat ? 2 + (int)(line % 4) : look.dash, l->flat ? 0 : look.marker,
+                l->flat ? "0.1" : "0.55", 1 + figure->value_count / 16);
     }
 }
 
@@ -224,6 +225,11 @@ static void put_axis(const Figure *figure, FILE *out) {
         fprintf(out, ")\nset xrange [-0.2:%.9g]\n", count - 0.8);
     } else if (rt_swept_logarithmic(x, count)) {
         fprintf(out, "set logscale x\nset xrange [%.9g:%.9g]\n", x[0] / 1.05, x[count - 1] * 1.05);
+        /* Few powers of ten lie within: the values themselves. */
+        if (count <= MOST_TICS && x[count - 1] / x[0] < 1000) {
+            for (uint32_t i = 0; i < count; i++) fprintf(out, "%s%.4g", i ? "," : "set xtics (", x[i]);
+            fputs(")\n", out);
+        }
         if (x[count - 1] / x[0] >= 1000) fputs("set format x \"10^{%T}\"\n", out);
     } else {
         double margin = 0.02 * (x[count - 1] - x[0]);
@@ -278,8 +284,14 @@ static void put_figure(const Figure *figure, uint32_t number, const char *group,
     uint32_t needed = 48 + 18 * figure->line_count, panels = figure->timed ? 3 : 2;
     double height = needed > 420 ? needed : 420;
     double legend = 70 + 7.0 * (double)(longest < RT_MAX_LABEL ? longest : RT_MAX_LABEL);
-    double width = 340 * panels + legend;
-    fprintf(out, "\nreset session\nload \"plots/names.gp\"; load \"plots/style.gp\"\n");
+    double width = 270 * panels + legend;
+    fprintf(out,
+            "\n#: %02u-sweep-%s: %s per ray of the accelerators on %s over %s.\n#:   All kinds of rays "
+            "together%s; the legend has the order of the lines at their right ends in the first panel.\n",
+            number, figure->key->key,
+            figure->timed ? "Time, object tests and steps" : "Object tests and steps", group,
+            figure->key->key, figure->timed ? ", times with intervals" : "");
+    fprintf(out, "reset session\nload \"plots/names.gp\"; load \"plots/style.gp\"\n");
     put_data(figure, out);
     put_styles(figure, out);
     put_order(figure, out);
