@@ -180,7 +180,8 @@ void rt_table_csv(const RtTable *table, FILE *out);
 void rt_table_text(const RtTable *table, FILE *out);
 void rt_table_markdown(const RtTable *table, FILE *out);
 
-/* A table environment for the package booktabs. */
+/* A table environment for the packages booktabs and graphicx, made smaller where it is wider than the column.
+ */
 void rt_table_tex(const RtTable *table, FILE *out);
 
 /* <table>; data-id of a header and data-value of a number serve for sorting. */

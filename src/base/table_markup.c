@@ -60,7 +60,9 @@ static void put_tex(RtTableWriter *w, const RtTableLine *line, const void *row) 
     const bool bold = standing_of(w, row) != RT_STANDING_BEHIND;
     char room[RT_MAX_FIELD];
     if (!row) {
-        fputs("\\begin{tabular}{@{}", w->out);
+        fputs("\\resizebox{\\ifdim\\width>\\columnwidth\\columnwidth\\else\\width\\fi}{!}{%\n\\begin{tabular}"
+              "{@{}",
+              w->out);
         for (size_t i = 0; i < line->count; i++)
             fputc(rt_column_is_number(line->columns[i]) ? 'r' : 'l', w->out);
         fputs("@{}}\n\\toprule\n", w->out);
@@ -79,14 +81,14 @@ static void put_tex(RtTableWriter *w, const RtTableLine *line, const void *row) 
 }
 
 void rt_table_tex(const RtTable *table, FILE *out) {
-    fputs("\\begin{table}\n\\footnotesize\\centering\n", out);
+    fputs("\\begin{table}\n\\scriptsize\\centering\\setlength{\\tabcolsep}{3pt}\n", out);
     if (table->caption) {
         fputs("\\caption{", out);
         put_tex_text(table->caption, out);
         fputs("}\n", out);
     }
     rt_table_walk((RtTableWriter){.table = table, .put = put_tex, .out = out});
-    fputs("\\bottomrule\n\\end{tabular}\n\\end{table}\n", out);
+    fputs("\\bottomrule\n\\end{tabular}}\n\\end{table}\n", out);
 }
 
 /* ---- HTML ---- */

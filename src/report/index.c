@@ -120,7 +120,7 @@ RtStatus rt_index_write(const char *folder, size_t *count, RtError *error) {
     char path[RT_MAX_PATH], plain[RT_MAX_PATH];
     RtOutput output;
     /* Without slashes at its end, so that the rest of a path is the name seen from it. */
-    snprintf(plain, sizeof plain, "%s", folder);
+    snprintf(plain, sizeof plain, "%s", *folder ? folder : ".");
     for (size_t size = strlen(plain); size > 1 && plain[size - 1] == '/'; size--) plain[size - 1] = '\0';
     *count = 0;
     RT_TRY(rt_path_join(plain, "index.html", path, error));

@@ -54,7 +54,7 @@ static void put_head(const RtResults *results, bool tex, FILE *out) {
     char *sign = strchr(interval, '%');
     if (sign && sign > interval) sign[-1] = '\0';
     fprintf(out,
-            tex ? "%% %s, written by raytally. Needs \\usepackage{booktabs}.\n"
+            tex ? "%% %s, written by raytally. Needs \\usepackage{booktabs,graphicx}.\n"
                 : "# %s\n\nWritten by `raytally`.\n",
             results->experiment->name);
     fprintf(out,

@@ -5,8 +5,8 @@
 
 #include "bench/results.h"
 
-/* Writes `directory`/tables.md and tables.tex (for the package booktabs): a table a scene and ray kind, as
- * wide as a column of a paper. In bold the best, and what intervals do not tell apart from it
+/* Writes `directory`/tables.md and tables.tex (for the packages booktabs and graphicx): a table a scene and
+ * ray kind, as wide as a column of a paper. In bold the best, and what intervals do not tell apart from it
  * (bench/standing.h). */
 RtStatus rt_paper_tables_write(const RtResults *results, const char *directory, RtError *error);
 

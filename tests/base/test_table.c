@@ -109,10 +109,12 @@ RT_TEST(markdown_and_latex_have_the_best_in_bold_and_escape_what_they_must) {
                    "| **a\\|b, `c` **d**** | 12 | 1.5 |\n| <x> | 3456 | |\n");
     assert_written(
         &marked, rt_table_tex,
-        "\\begin{table}\n\\footnotesize\\centering\n\\caption{50 \\% of \\{a\\_b\\}}\n"
-        "\\begin{tabular}{@{}lrr@{}}\n\\toprule\nname & hit count & seconds \\\\\n\\midrule\n"
+        "\\begin{table}\n\\scriptsize\\centering\\setlength{\\tabcolsep}{3pt}\n\\caption{50 \\% of "
+        "\\{a\\_b\\}}\n"
+        "\\resizebox{\\ifdim\\width>\\columnwidth\\columnwidth\\else\\width\\fi}{!}{%\n\\begin{tabular}{@{}"
+        "lrr@{}}\n\\toprule\nname & hit count & seconds \\\\\n\\midrule\n"
         "\\textbf{a\\textbar{}b, `c` **d**} & 12 & 1.5 \\\\\n"
-        "\\textless{}x\\textgreater{} & 3456 & -- \\\\\n\\bottomrule\n\\end{tabular}\n\\end{table}\n");
+        "\\textless{}x\\textgreater{} & 3456 & -- \\\\\n\\bottomrule\n\\end{tabular}}\n\\end{table}\n");
 }
 
 RT_TEST(html_escapes_marks_notes_and_keeps_numbers_for_sorting) {
