@@ -255,7 +255,7 @@ static void put_panels(const Figure *figure, double legend, FILE *out) {
             fputs(", for [i = 1:words(order)] '$line'.word(order, i) using 1:3:(0):($4 - $3) with vectors "
                   "nohead linestyle int(word(order, i)) dashtype 1 linewidth 1 notitle",
                   out);
-        fputc('\n', out);
+        fputs("\nunset label\n", out); /* the group stands over the first */
     }
 }
 
