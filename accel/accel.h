@@ -230,6 +230,9 @@ const char *rt_accel_default(void);
 /* The spec whose answers are right by definition: it tests every object. */
 const char *rt_accel_truth(void);
 
+/* The spec that knows the answers beforehand: the least that any can do, and no competitor. */
+const char *rt_accel_yardstick(void);
+
 /* ---- specs ---- */
 
 #define RT_MAX_LAYERS 4

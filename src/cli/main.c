@@ -23,7 +23,7 @@ static const RtCommand commands[] = {
     {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run},
     {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge},
     {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot},
-    {"report", "DIR", "write the report of a result directory again", rt_command_report},
+    {"report", "DIR", "write the report of a result directory again; an index of all", rt_command_report},
     {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce},
     {"convert", "IN OUT", "write a scene in another format", rt_command_convert},
 };
