@@ -98,10 +98,18 @@ typedef void RtNearestCounted(const RtAccel *accel, const RtScratch *scratch, co
 typedef void RtOccludedCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
                                size_t count, uint32_t *blockers, RtTally *tallies);
 
-/* Who looks at the boxes of a structure: one call of `show` each, with its depth below the root, and whether
- * it is a leaf: one that lists objects. */
+/* A box of a structure. */
+typedef struct RtBoxView {
+    const RtBox *box;                  /* valid during the call */
+    uint32_t depth;                    /* below the root */
+    bool leaf;                         /* it lists objects */
+    const struct RtExtentSet *extents; /* that it is the box of one of (accel/extent.h), or NULL ... */
+    uint32_t extent;                   /* ... and of which */
+} RtBoxView;
+
+/* Who looks at the boxes of a structure: one call of `show` each. */
 typedef struct RtBoxViewer {
-    void (*show)(void *context, const RtBox *box, uint32_t depth, bool leaf);
+    void (*show)(void *context, const RtBoxView *view);
     void *context;
 } RtBoxViewer;
 

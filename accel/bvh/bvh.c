@@ -188,7 +188,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    rt_hierarchy_each_box(&((const RtBvh *)accel)->hierarchy, viewer);
+    rt_hierarchy_each_box(&((const RtBvh *)accel)->hierarchy, NULL, viewer);
 }
 
 static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {

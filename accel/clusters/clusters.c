@@ -141,7 +141,8 @@ RT_KERNEL bool meets(RtExtentKind kind, const RtClusters *self, uint32_t index, 
     const RtBox *box = &self->hierarchy.nodes[index].box;
     RT_COUNT(tally, extent_tests, 1);
     bool met = rt_extent_hit(&self->set, kind, index, box, ray, line, limit, enter);
-    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "node", .index = index, .box = box, .met = met);
+    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "node", .index = index, .box = box,
+               .ball = rt_extent_ball(&self->set, kind, index), .met = met);
     return met;
 }
 
@@ -213,7 +214,8 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    rt_hierarchy_each_box(&((const RtClusters *)accel)->hierarchy, viewer);
+    const RtClusters *self = (const RtClusters *)accel;
+    rt_hierarchy_each_box(&self->hierarchy, &self->set, viewer);
 }
 
 static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {

@@ -256,14 +256,16 @@ static RtStatus show_voxel(void *context, const RtGridVoxel *voxel) {
     const RtGridLevel *level = voxel->level;
     bool leaf = rt_grid_inner(level, voxel->number) == RT_GRID_LEAF;
     bool holds = !leaf || level->first[voxel->number] < level->first[voxel->number + 1];
-    if (holds) show->viewer.show(show->viewer.context, &voxel->box, show->depth, leaf);
+    if (holds)
+        show->viewer.show(show->viewer.context,
+                          &(RtBoxView){.box = &voxel->box, .depth = show->depth, .leaf = leaf});
     return RT_OK;
 }
 
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGrid *grid = (const RtGrid *)accel;
     if (grid->depth == 0) return;
-    viewer.show(viewer.context, &grid->box, 0, false);
+    viewer.show(viewer.context, &(RtBoxView){.box = &grid->box});
     for (uint32_t i = 0; i < grid->depth; i++) {
         Show show = {viewer, i + 1};
         rt_grid_each_voxel(&grid->levels[i], show_voxel, &show);

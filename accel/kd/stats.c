@@ -208,7 +208,8 @@ static RtStatus show_node(void *context, const RtKd *kd, const Place *place) {
     const RtBoxViewer *viewer = context;
     const RtKdNode *node = &kd->nodes[place->node];
     bool leaf = rt_kd_is_leaf(node), empty = leaf && rt_kd_length(node) == 0;
-    if (!empty) viewer->show(viewer->context, &place->cell, place->depth, leaf);
+    if (!empty)
+        viewer->show(viewer->context, &(RtBoxView){.box = &place->cell, .depth = place->depth, .leaf = leaf});
     return RT_OK;
 }
 

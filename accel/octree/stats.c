@@ -206,7 +206,9 @@ void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     for (uint32_t i = 0; i < tree->node_count; i++) {
         const RtOctreeNode *node = &tree->nodes[i];
         bool leaf = !rt_octree_is_inner(node);
-        if (!leaf || node->count > 0) viewer.show(viewer.context, &tree->boxes[i], depth_of(tree, i), leaf);
+        if (!leaf || node->count > 0)
+            viewer.show(viewer.context,
+                        &(RtBoxView){.box = &tree->boxes[i], .depth = depth_of(tree, i), .leaf = leaf});
     }
 }
 

@@ -32,8 +32,9 @@ typedef struct RtTraced {
     const char
         *what; /* "node", "voxel", ... that `index` is the number of; NULL where there is none. Static */
     uint32_t index;
-    const RtBox *box; /* where it is; NULL where it has no box. Valid during the call */
-    bool leaf, empty; /* of a step: is it counted in leaf_steps, and in empty_steps? */
+    const RtBox *box;          /* where it is; NULL where it has no box. Valid during the call */
+    const struct RtBall *ball; /* of an extent test of a sphere (shape/ball.h); else NULL. Valid likewise */
+    bool leaf, empty;          /* of a step: is it counted in leaf_steps, and in empty_steps? */
     bool met;
     float t;
 } RtTraced;

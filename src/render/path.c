@@ -14,7 +14,7 @@ typedef struct Recorder {
     RtError *error;
 } Recorder;
 
-/* Where the ray is in the box, as thin as it is, within tmin..tmax. */
+/* Where the ray is in the box, as thin as it is, within tmin..tmax ... */
 static void find_span(const RtRay *ray, RtPathRow *row) {
     row->enter = (double)ray->tmin, row->leave = (double)ray->tmax;
     for (int a = 0; a < 3; a++) {
@@ -28,6 +28,17 @@ static void find_span(const RtRay *ray, RtPathRow *row) {
         row->enter = fmax(row->enter, fmin(first, second));
         row->leave = fmin(row->leave, fmax(first, second));
     }
+}
+
+/* ... or in the ball. */
+static void find_span_of_ball(const RtRay *ray, RtPathRow *row) {
+    RtVec3d dir = rt_widen(ray->dir), offset = rt_subd(row->ball.center, rt_widen(ray->org));
+    double squared = rt_dotd(dir, dir), nearest = rt_dotd(offset, dir) / squared;
+    RtVec3d across = rt_add_scaledd(offset, dir, -nearest);
+    double inside = row->ball.radius * row->ball.radius - rt_dotd(across, across);
+    double half = sqrt(fmax(inside, 0) / squared);
+    row->enter = inside < 0 ? (double)INFINITY : fmax((double)ray->tmin, nearest - half);
+    row->leave = inside < 0 ? -(double)INFINITY : fmin((double)ray->tmax, nearest + half);
 }
 
 /* The row of the object test that a hit belongs to. */
@@ -67,6 +78,10 @@ static void record(void *context, const RtTraced *event) {
     if (!event->box || !row->boxed) return;
     row->box = *event->box;
     find_span(&path->ray, row);
+    row->round = event->ball;
+    if (!row->round) return;
+    row->ball = *event->ball;
+    find_span_of_ball(&path->ray, row);
 }
 
 static void find_nearest(RtPath *path) {

@@ -5,6 +5,7 @@
 
 #include "accel/accel.h"
 #include "base/observe.h"
+#include "shape/ball.h"
 
 /* A row of the path. An object test and its hit are one row. */
 typedef struct RtPathRow {
@@ -15,7 +16,9 @@ typedef struct RtPathRow {
     bool met;          /* extent test: the ray may find something there; object test: it is hit, at `t` */
     float t;
     bool boxed; /* there is a box, and the thin ray is in it from `enter` to `leave`: not, if enter > leave */
+    bool round; /* it is the box of a ball, and it is the ball that the ray is in */
     RtBox box;
+    RtBall ball;
     double enter, leave; /* t, within tmin..tmax */
     float nearest;       /* t of the nearest hit so far, this row's included; INFINITY while there is none */
 } RtPathRow;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The drawing of a path. Its upper part is a section through the plane of the ray and that axis of the scene
- * which the ray runs least along: boxes are upright rectangles in it, exactly those that the ray goes through
- * are crossed by it, and what is to the right comes later. The lower part has a row for each row of the path,
- * a bar where the ray is in its box: a place on the ray is at the same x in both. */
+ * which the ray runs least along: boxes are upright rectangles in it, spheres circles, exactly those that the
+ * ray goes through are crossed by it, and what is to the right comes later. The lower part has a row for each
+ * row of the path, a bar where the ray is in its box: a place on the ray is at the same x in both. */
 #include "base/file.h"
 #include "base/table.h"
 #include "render/draw.h"
@@ -104,17 +104,34 @@ static double within(double value, double lo, double hi) {
     return fmin(fmax(value, lo), hi);
 }
 
-static void draw_box(const Drawing *d, uint32_t i, bool fill) {
-    const RtPathRow *row = &d->path->rows[i];
+/* The start of a circle's element: false where the plane passes by the ball. */
+static bool draw_circle(const Drawing *d, RtVec3d at, double r) {
+    RtVec3d center = rt_subd(at, d->org);
+    double off = rt_dotd(center, d->normal);
+    if (!(fabs(off) < r)) return false;
+    fprintf(d->out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" ", x_of(d, rt_dotd(center, d->along)),
+            y_of(d, at.at[d->axis]), sqrt(r * r - off * off) * d->scale);
+    return true;
+}
+
+/* The start of the element of a box. */
+static bool draw_rectangle(const Drawing *d, const RtBox *box) {
     double from, to;
-    if (!section_of_box(d, &row->box, &from, &to)) return;
+    if (!section_of_box(d, box, &from, &to)) return false;
     /* What is far outside would be numbers that viewers do not like. */
     double left = within(x_of(d, from), -WIDTH, 2 * WIDTH), right = within(x_of(d, to), -WIDTH, 2 * WIDTH);
-    double top = within(y_of(d, (double)row->box.hi.at[d->axis]), -WIDTH, 2 * WIDTH);
-    double bottom = within(y_of(d, (double)row->box.lo.at[d->axis]), -WIDTH, 2 * WIDTH);
-    bool missed = row->kind == RT_TRACED_EXTENT_TEST && !row->met;
+    double top = within(y_of(d, (double)box->hi.at[d->axis]), -WIDTH, 2 * WIDTH);
+    double bottom = within(y_of(d, (double)box->lo.at[d->axis]), -WIDTH, 2 * WIDTH);
     fprintf(d->out, "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" ", left, top, right - left,
             bottom - top);
+    return true;
+}
+
+static void draw_extent(const Drawing *d, uint32_t i, bool fill) {
+    const RtPathRow *row = &d->path->rows[i];
+    bool missed = row->kind == RT_TRACED_EXTENT_TEST && !row->met;
+    if (row->round ? !draw_circle(d, row->ball.center, row->ball.radius) : !draw_rectangle(d, &row->box))
+        return;
     if (missed) {
         fputs("fill=\"none\" stroke=\"#999\" stroke-dasharray=\"3 3\"", d->out);
     } else {
@@ -126,16 +143,12 @@ static void draw_box(const Drawing *d, uint32_t i, bool fill) {
             fputs("\" fill-opacity=\"0.12\" stroke-width=\"1.5\"", d->out);
         }
     }
-    fprintf(d->out, "><title>%u: %s</title></rect>\n", i + 1, rt_path_row_name(row));
+    fprintf(d->out, "><title>%u: %s</title></%s>\n", i + 1, rt_path_row_name(row),
+            row->round ? "circle" : "rect");
 }
 
 static void draw_sphere(const Drawing *d, const RtSphere *sphere, const char *style) {
-    RtVec3d center = rt_subd(rt_widen(sphere->center), d->org);
-    double off = rt_dotd(center, d->normal), r = (double)sphere->radius;
-    if (fabs(off) >= r) return;
-    double x = x_of(d, rt_dotd(center, d->along)), y = y_of(d, (double)sphere->center.at[d->axis]);
-    fprintf(d->out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" %s/>\n", x, y,
-            sqrt(r * r - off * off) * d->scale, style);
+    if (draw_circle(d, rt_widen(sphere->center), (double)sphere->radius)) fprintf(d->out, "%s/>\n", style);
 }
 
 /* The plane cuts a flat shape in a line: from where it crosses one edge to where it crosses another. */
@@ -192,7 +205,7 @@ static void draw_section(const Drawing *d) {
     for (uint32_t i = 0; i < path->count; i++) {
         const RtPathRow *row = &path->rows[i];
         if (row->boxed && row->kind != RT_TRACED_OBJECT_TEST)
-            draw_box(d, i, row->kind == RT_TRACED_STEP && row->leaf);
+            draw_extent(d, i, row->kind == RT_TRACED_STEP && row->leaf);
     }
     for (uint32_t i = 0; i < path->count; i++) {
         if (path->rows[i].kind == RT_TRACED_OBJECT_TEST) draw_object(d, &path->rows[i]);

@@ -7,6 +7,7 @@
 #include "base/elementary.h"
 #include "base/transform.h"
 #include "render/draw.h"
+#include "render/net.h"
 #include "render/section.h"
 
 #include <stdio.h>
@@ -24,33 +25,42 @@ typedef struct Drawing {
     double near;
     uint32_t first, last; /* levels that are drawn */
     uint32_t level;       /* the one that is being drawn */
-    uint64_t drawn, all;  /* boxes */
-    double least, most;   /* their sizes: lengths of diagonals, but for points */
-    int across, up;       /* of a section: axes of the image */
+    RtColor color;        /* of the box that is */
+    double opacity;
+    RtExtentKind kind;   /* of what is drawn */
+    uint64_t drawn, all; /* boxes */
+    double least, most;  /* their sizes: lengths of diagonals, but for points */
+    int across, up;      /* of a section: axes of the image */
     double left, top, scale;
 } Drawing;
 
 /* ---- which boxes ---- */
 
-static bool is_asked_for(const Drawing *d, const RtBox *box, uint32_t depth, bool leaf) {
+static bool is_asked_for(const Drawing *d, const RtBoxView *view) {
     const RtStructureOptions *o = d->options;
-    if (rt_box_is_empty(*box) || depth < o->first_level || depth > o->last_level || (o->leaves && !leaf))
+    const RtBox *box = view->box;
+    RtVec3d corners[RT_NET_CORNERS];
+    if (rt_box_is_empty(*box) || view->depth < o->first_level || view->depth > o->last_level ||
+        (o->leaves && !view->leaf))
         return false;
-    return !o->slice || ((double)box->lo.at[o->axis] <= o->at && o->at <= (double)box->hi.at[o->axis]);
+    if (!o->slice) return true;
+    if (rt_net_is_other(view)) return rt_net_section(view, o->axis, o->at, corners) > 0;
+    return (double)box->lo.at[o->axis] <= o->at && o->at <= (double)box->hi.at[o->axis];
 }
 
 static double size_of(const RtBox *box) {
     return rt_lengthd(rt_subd(rt_widen(box->hi), rt_widen(box->lo)));
 }
 
-static void count_box(void *context, const RtBox *box, uint32_t depth, bool leaf) {
+static void count_box(void *context, const RtBoxView *view) {
     Drawing *d = context;
     d->all++;
-    if (!is_asked_for(d, box, depth, leaf)) return;
-    if (d->drawn++ == 0) d->first = d->last = depth;
-    if (depth < d->first) d->first = depth;
-    if (depth > d->last) d->last = depth;
-    double size = size_of(box);
+    if (!is_asked_for(d, view)) return;
+    if (d->drawn++ == 0) d->first = d->last = view->depth;
+    if (view->depth < d->first) d->first = view->depth;
+    if (view->depth > d->last) d->last = view->depth;
+    if (rt_net_is_other(view)) d->kind = view->extents->kind;
+    double size = size_of(view->box);
     if (size > 0 && (d->most == 0 || size < d->least)) d->least = size;
     d->most = fmax(d->most, size);
 }
@@ -70,8 +80,8 @@ static RtColor color_of_size(const Drawing *d, double size) {
     return rt_color_scale(1 - 0.7 * small);
 }
 
-static RtColor color_of(const Drawing *d, const RtBox *box, uint32_t depth) {
-    return is_by_size(d) ? color_of_size(d, size_of(box)) : color_of_level(d, depth);
+static RtColor color_of(const Drawing *d, const RtBoxView *view) {
+    return is_by_size(d) ? color_of_size(d, size_of(view->box)) : color_of_level(d, view->depth);
 }
 
 /* ---- in perspective ---- */
@@ -115,7 +125,9 @@ static bool is_hidden(const Drawing *d, int x, int y, double w) {
 }
 
 /* 1 / w is linear along the line on the image. */
-static void draw_edge(const Drawing *d, RtVec3d a, RtVec3d b, RtColor color, double opacity) {
+static void draw_edge(void *context, RtVec3d from, RtVec3d to) {
+    const Drawing *d = context;
+    RtVec3d a = project(&d->view, from), b = project(&d->view, to);
     if (!clip(d, &a, &b)) return;
     double x0 = (a.x / a.z + 1) / 2 * d->width, y0 = (a.y / a.z + 1) / 2 * d->height;
     double dx = (b.x / b.z + 1) / 2 * d->width - x0, dy = (b.y / b.z + 1) / 2 * d->height - y0;
@@ -125,27 +137,16 @@ static void draw_edge(const Drawing *d, RtVec3d a, RtVec3d b, RtColor color, dou
         int x = (int)floor(x0 + at * dx), y = (int)floor(y0 + at * dy);
         double w = 1 / ((1 - at) / a.z + at / b.z);
         if (x < (int)d->width && y < (int)d->height)
-            rt_draw_pixel(d->image, x, y, color, is_hidden(d, x, y, w) ? 0.06 * opacity : opacity);
+            rt_draw_pixel(d->image, x, y, d->color, is_hidden(d, x, y, w) ? 0.06 * d->opacity : d->opacity);
     }
 }
 
-static void draw_box(void *context, const RtBox *box, uint32_t depth, bool leaf) {
-    const Drawing *drawing = context;
-    if (depth != drawing->level || !is_asked_for(drawing, box, depth, leaf)) return;
-    double opacity = drawing->options->leaves ? 1 : fmax(0.25, 1 / (1 + 0.15 * (depth - drawing->first)));
-    RtColor color = color_of(drawing, box, depth);
-    RtVec3d corners[8]; /* bit a of the index: lo or hi along axis a */
-    for (int i = 0; i < 8; i++) {
-        RtVec3d corner;
-        for (int a = 0; a < 3; a++) corner.at[a] = (double)(i >> a & 1 ? box->hi : box->lo).at[a];
-        corners[i] = project(&drawing->view, corner);
-    }
-    for (int i = 0; i < 8; i++) {
-        for (int a = 0; a < 3; a++) {
-            if (i >> a & 1) continue;
-            draw_edge(drawing, corners[i], corners[i | 1 << a], color, opacity);
-        }
-    }
+static void draw_box(void *context, const RtBoxView *view) {
+    Drawing *d = context;
+    if (view->depth != d->level || !is_asked_for(d, view)) return;
+    d->opacity = d->options->leaves ? 1 : fmax(0.25, 1 / (1 + 0.15 * (view->depth - d->first)));
+    d->color = color_of(d, view);
+    rt_net_lines(view, d->view.eye, (RtLineViewer){draw_edge, d});
 }
 
 static RtStatus draw_perspective(Drawing *d, RtError *error) {
@@ -179,10 +180,7 @@ static double within(double value, double lo, double hi) {
     return fmin(fmax(value, lo), hi);
 }
 
-static void fill_box(void *context, const RtBox *box, uint32_t depth, bool leaf) {
-    const Drawing *d = context;
-    if (!is_asked_for(d, box, depth, leaf)) return;
-    RtColor color = color_of(d, box, depth);
+static void fill_rectangle(const Drawing *d, const RtBox *box, RtColor color, double opacity) {
     double from = within(x_of(d, (double)box->lo.at[d->across]), 0, d->width);
     double to = within(x_of(d, (double)box->hi.at[d->across]), -1, d->width - 1);
     double top = within(y_of(d, (double)box->hi.at[d->up]), 0, d->height);
@@ -190,17 +188,54 @@ static void fill_box(void *context, const RtBox *box, uint32_t depth, bool leaf)
     for (int y = (int)top; y <= (int)bottom; y++) {
         for (int x = (int)from; x <= (int)to; x++) {
             bool edge = x == (int)from || x == (int)to || y == (int)top || y == (int)bottom;
-            rt_draw_pixel(d->image, x, y, color, edge ? 0.9 : leaf ? 0.18 : 0.05);
+            rt_draw_pixel(d->image, x, y, color, edge ? 0.9 : opacity);
         }
     }
 }
 
-/* Lines of objects that are far outside go no farther than a picture beyond its sides. */
-static void line_between(const Drawing *d, double x0, double y0, double x1, double y1) {
+/* Lines that are far outside go no farther than a picture beyond its sides. */
+static void line_between(const Drawing *d, double x0, double y0, double x1, double y1, RtColor color) {
     double w = d->width, h = d->height;
     if (fmin(y0, y1) >= h) return;
     rt_draw_line(d->image, within(x0, -w, 2 * w), within(y0, -h, h - 1), within(x1, -w, 2 * w),
-                 within(y1, -h, h - 1), RT_WHITE, 0.8);
+                 within(y1, -h, h - 1), color, 0.8);
+}
+
+/* Row by row, from the edge on the left to the edge on the right. */
+static void fill_section(const Drawing *d, const RtVec3d *corners, uint32_t count, RtColor color,
+                         double opacity) {
+    for (int y = 0; y < (int)d->height; y++) {
+        double from = d->width, to = -1, row = y + 0.5;
+        for (uint32_t i = 0; i < count; i++) {
+            RtVec3d a = corners[i], b = corners[(i + 1) % count];
+            double ya = y_of(d, a.at[d->up]), yb = y_of(d, b.at[d->up]);
+            if ((ya < row) == (yb < row)) continue;
+            double xa = x_of(d, a.at[d->across]), xb = x_of(d, b.at[d->across]);
+            double x = xa + (xb - xa) * (row - ya) / (yb - ya);
+            from = fmin(from, x), to = fmax(to, x);
+        }
+        int last = (int)within(to, -1, d->width - 1);
+        for (int x = (int)within(from, 0, d->width); x <= last; x++)
+            rt_draw_pixel(d->image, x, y, color, opacity);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d a = corners[i], b = corners[(i + 1) % count];
+        line_between(d, x_of(d, a.at[d->across]), y_of(d, a.at[d->up]), x_of(d, b.at[d->across]),
+                     y_of(d, b.at[d->up]), color);
+    }
+}
+
+static void fill_box(void *context, const RtBoxView *view) {
+    const Drawing *d = context;
+    RtVec3d corners[RT_NET_CORNERS];
+    if (!is_asked_for(d, view)) return;
+    RtColor color = color_of(d, view);
+    double opacity = view->leaf ? 0.18 : 0.05;
+    if (rt_net_is_other(view))
+        fill_section(d, corners, rt_net_section(view, d->options->axis, d->options->at, corners), color,
+                     opacity);
+    else
+        fill_rectangle(d, view->box, color, opacity);
 }
 
 static void outline_sphere(const Drawing *d, const RtSphere *sphere) {
@@ -213,7 +248,7 @@ static void outline_sphere(const Drawing *d, const RtSphere *sphere) {
     for (int i = 1; i <= SIDES; i++) {
         RtTurn to = rt_turn(360.0 * i / SIDES);
         line_between(d, x + around * from.cosine, y + around * from.sine, x + around * to.cosine,
-                     y + around * to.sine);
+                     y + around * to.sine, RT_WHITE);
         from = to;
     }
 }
@@ -224,7 +259,7 @@ static void outline_flat(const Drawing *d, const RtVec3 *corners, uint32_t count
     normal.at[d->options->axis] = 1;
     if (!rt_section_flat(corners, count, on, normal, cut)) return;
     line_between(d, x_of(d, cut[0].at[d->across]), y_of(d, cut[0].at[d->up]), x_of(d, cut[1].at[d->across]),
-                 y_of(d, cut[1].at[d->up]));
+                 y_of(d, cut[1].at[d->up]), RT_WHITE);
 }
 
 /* As much as the camera sees at its aim, or all that there is. */
@@ -290,6 +325,8 @@ static void draw_colors(const Drawing *d, int x, int y, int dot) {
 
 static void draw_legend(const Drawing *d) {
     static const char axes[] = "xyz";
+    static const char *const names[RT_EXTENT_KIND_COUNT] = {"boxes", "spheres", "oriented boxes",
+                                                            "bodies of slabs"};
     int dot = rt_text_dot(d->image->width), left = MARGIN * dot, y = (int)d->height + MARGIN * dot;
     char text[128];
     rt_draw_rectangle(d->image, 0, (int)d->height, (int)d->image->width, legend_height(d->image->width),
@@ -300,8 +337,8 @@ static void draw_legend(const Drawing *d) {
     else
         snprintf(text, sizeof text, "%s", d->layer->ops->name);
     rt_draw_text(d->image, left, y, dot, text, RT_WHITE);
-    snprintf(text, sizeof text, "%llu of %llu %s", (unsigned long long)d->drawn, (unsigned long long)d->all,
-             d->options->leaves ? "boxes: leaves" : "boxes");
+    snprintf(text, sizeof text, "%llu of %llu %s%s", (unsigned long long)d->drawn, (unsigned long long)d->all,
+             names[d->kind], d->options->leaves ? ": leaves" : "");
     rt_draw_text(d->image, left, y + LINE * dot, dot, text, RT_WHITE);
     draw_colors(d, left, y + 2 * LINE * dot, dot);
 }

@@ -23,10 +23,11 @@ typedef struct RtStructureOptions {
 RtStatus rt_structure_layer(const RtAccel *accel, const char *name, const RtAccel **layer, RtError *error);
 RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *error);
 
-/* Draws the edges of the boxes that `layer` shows (each_box) over a dimmed picture of its scene, which
- * `frame` is, with a legend below. What lies behind the surfaces that the frame sees is faint: one looks at
- * the scene through a net. The colour of a box is its level (rt_color_scale, yellow for the first that is
- * drawn), deep ones are fainter; where all are of one level it is their size, on a logarithmic scale.
+/* Draws the edges of the boxes that `layer` shows (each_box), or nets of what else extents are
+ * (render/net.h), over a dimmed picture of its scene, which `frame` is, with a legend below. What lies behind
+ * the surfaces that the frame sees is faint: one looks at the scene through a net. The colour of a box is its
+ * level (rt_color_scale, yellow for the first that is drawn), deep ones are fainter; where all are of one
+ * level it is their size, on a logarithmic scale.
  *
  * With `slice` it is a section instead, seen along the axis, as large as what the camera sees at its aim:
  * each box that the plane cuts is filled, and objects are outlined in white where it cuts them (spheres and
