@@ -178,8 +178,8 @@ static void draw_cube_legend(RtImage *image, const Cube *cube, const RtScale *sc
              cube->layer->ops->name, cube->light, scale->most);
     rt_draw_text(image, left, top + MARGIN * dot, dot, text, RT_WHITE);
     rt_draw_scale(image, left, top + (MARGIN + LINE) * dot, (int)image->width - 2 * left, dot, scale);
-    put_line(image, top, 3, RT_BLACK, "black: an empty list   grey: nothing is seen there");
-    put_line(image, top, 4, red, "dotted: the list was cut, rays may be passed on");
+    put_line(image, top, 3, nowhere, "grey: nothing is seen there   black: an empty list");
+    put_line(image, top, 4, red, "dotted red: the list was cut, rays may be passed on");
     if (!marked) return;
     if (cube->layer->ops->look_up(cube->layer, marked, &cell)) {
         snprintf(text, sizeof text, "ringed: the ray reads cell %u, with %u objects%s", cell.number,

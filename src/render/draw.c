@@ -142,26 +142,38 @@ static double mark_value(const RtScale *scale, int i) {
     return (ceil(scale->least / step) + i) * step;
 }
 
+/* A number under the scale at a value, and a mark. Gives where the next may begin: the same, where there was
+ * no room. */
+static int put_number(RtImage *image, int x, int marks, int width, int dot, const RtScale *scale,
+                      double value, int free_from, int free_to) {
+    char text[32];
+    snprintf(text, sizeof text, "%.10g", value);
+    int at = x + (int)(rt_scale_position(scale, value) * (width - 1)), half = rt_text_width(text) * dot / 2;
+    int from = at - half > x ? at - half : x;
+    if (from + 2 * half > x + width) from = x + width - 2 * half;
+    rt_draw_rectangle(image, at, marks, dot, MARK * dot, RT_WHITE);
+    if (from < free_from || from + 2 * half > free_to) return free_from;
+    rt_draw_text(image, from, marks + (MARK + 1) * dot, dot, text, RT_WHITE);
+    return from + 2 * half + 6 * dot;
+}
+
 int rt_draw_scale(RtImage *image, int x, int y, int width, int dot, const RtScale *scale) {
-    int marks = y + BAR * dot, numbers = marks + (MARK + 1) * dot, free_from = x;
+    int marks = y + BAR * dot, free_from = x, free_to = x + width;
     for (int i = 0; i < width; i++) {
         double position = (double)i / (width - 1);
         RtColor color = scale->least < 0 ? rt_color_difference(2 * position - 1) : rt_color_scale(position);
         rt_draw_rectangle(image, x + i, y, 1, BAR * dot, color);
     }
-    for (int i = 0; i < MOST_MARKS; i++) { /* numbers that would run into the one before are left out */
-        double value = mark_value(scale, i);
-        if (value > scale->most) break;
+    if (scale->logarithmic && scale->most == floor(scale->most)) { /* its end is hardly ever a power of ten */
         char text[32];
-        snprintf(text, sizeof text, "%.10g", value);
-        int at = x + (int)(rt_scale_position(scale, value) * (width - 1)),
-            half = rt_text_width(text) * dot / 2;
-        rt_draw_rectangle(image, at, marks, dot, MARK * dot, RT_WHITE);
-        int from = at - half > x ? at - half : x;
-        if (from + 2 * half > x + width) from = x + width - 2 * half;
-        if (from < free_from) continue;
-        rt_draw_text(image, from, numbers, dot, text, RT_WHITE);
-        free_from = from + 2 * half + 6 * dot;
+        put_number(image, x, marks, width, dot, scale, scale->most, free_from, free_to);
+        snprintf(text, sizeof text, "%.10g", scale->most);
+        free_to -= (rt_text_width(text) + 6) * dot;
+    }
+    for (int i = 0; i < MOST_MARKS; i++) { /* numbers that would run into another are left out */
+        double value = mark_value(scale, i);
+        if (value > scale->most || (scale->logarithmic && value == scale->most)) break;
+        free_from = put_number(image, x, marks, width, dot, scale, value, free_from, free_to);
     }
     return (BAR + MARK + 1 + RT_TEXT_HEIGHT) * dot;
 }

@@ -92,7 +92,10 @@ static RtVec3d on_circle(RtVec3d center, RtVec3d u, RtVec3d v, uint32_t i) {
     return rt_add_scaledd(rt_add_scaledd(center, u, turn.cosine), v, turn.sine);
 }
 
+/* A little wider, so that its chords lie outside: extents of spheres are the spheres that are seen. */
 static void show_circle(RtVec3d center, RtVec3d u, RtVec3d v, RtLineViewer viewer) {
+    const double wider = 1.003;
+    u = rt_scaled(u, wider), v = rt_scaled(v, wider);
     for (uint32_t i = 0; i < RT_NET_CORNERS; i++)
         viewer.line(viewer.context, on_circle(center, u, v, i), on_circle(center, u, v, i + 1));
 }

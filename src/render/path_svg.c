@@ -75,7 +75,8 @@ static void choose_window(Drawing *d) {
         const RtPathRow *row = &path->rows[i];
         if (!row->boxed || !(row->enter <= row->leave)) continue;
         first = fmin(first, row->enter);
-        if (isfinite(row->leave)) last = fmax(last, row->leave);
+        double end = row->round ? row->enter : row->leave; /* large balls end far behind what is in them */
+        if (isfinite(end)) last = fmax(last, end);
     }
     if (isfinite((double)path->hit.t))
         last = fmax(last, (double)path->hit.t), first = fmin(first, (double)path->hit.t);
@@ -279,7 +280,7 @@ static void draw_axis(const Drawing *d, double y, double bottom) {
     else if (2 * step < (to - from) / 4)
         step *= 2;
     for (double k = ceil(from / step); k * step <= to; k++) {
-        double t = k * step, x = x_of(d, t * d->speed);
+        double t = k * step + 0.0, x = x_of(d, t * d->speed);
         fprintf(d->out,
                 "<line x1=\"%.2f\" y1=\"%.1f\" x2=\"%.2f\" y2=\"%.1f\" stroke=\"#ddd\"/>"
                 "<text x=\"%.2f\" y=\"%.1f\" text-anchor=\"middle\" fill=\"#555\">t = %.6g</text>\n",

@@ -350,7 +350,10 @@ static bool has_picture(const RtAccelOps *ops) {
 }
 
 static RtStatus refuse(const RtAccelOps *ops, RtError *error) {
-    return rt_fail(error, RT_NOT_AVAILABLE, "accelerator %s has no boxes to draw: choose another", ops->name);
+    return rt_fail(
+        error, RT_NOT_AVAILABLE,
+        "there is no picture of %s, which has neither boxes nor cells: choose another, such as bvh or grid",
+        ops->name);
 }
 
 /* Is this layer the one? `last`: there is none below. */

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "render/cells.h"
 #include "render/draw.h"
+#include "render/net.h"
 #include "render/structure.h"
 
 #include <string.h>
@@ -81,6 +82,86 @@ RT_TEST(boxes_behind_what_is_seen_are_faint) {
     assert_memory_equal(pixel(&image, near, 100), yellow.rgb, 3);
     assert_memory_not_equal(pixel(&image, far, 100), yellow.rgb, 3);
     rt_image_clear(&image);
+    rt_scene_clear(&scene);
+}
+
+/* What is told of lines of nets, and of the corners of sections: how far from a ball's surface. */
+typedef struct Seen {
+    const RtBoxView *view;
+    uint32_t lines;
+    double least, most;
+} Seen;
+
+static void see_line(void *context, RtVec3d from, RtVec3d to) {
+    Seen *seen = context;
+    const RtBall *ball = &seen->view->extents->balls[seen->view->extent];
+    double away = rt_lengthd(rt_subd(rt_scaled(rt_add_scaledd(from, to, 1), 0.5), ball->center));
+    seen->least = seen->lines ? fmin(seen->least, away / ball->radius) : away / ball->radius;
+    seen->most = fmax(seen->most, away / ball->radius);
+    seen->lines++;
+}
+
+static void check_ball(void *context, const RtBoxView *view) {
+    Seen seen = {.view = view};
+    RtVec3d corners[RT_NET_CORNERS];
+    const RtBall *ball = &view->extents->balls[view->extent];
+    double cut = ball->center.z + 0.6 * ball->radius;
+    rt_net_lines(view, rt_vec3d(0, 0, 10), (RtLineViewer){see_line, &seen});
+    assert_int_equal(seen.lines, 4 * RT_NET_CORNERS);
+    assert_true(seen.least >= 1 && seen.most < 1.01);
+    assert_int_equal(rt_net_section(view, 2, cut, corners), RT_NET_CORNERS);
+    for (int i = 0; i < RT_NET_CORNERS; i++)
+        assert_true(fabs(rt_lengthd(rt_subd(corners[i], ball->center)) / ball->radius - 1) < 1e-9);
+    assert_int_equal(rt_net_section(view, 2, ball->center.z + 1.01 * ball->radius, corners), 0);
+    ++*(int *)context;
+}
+
+RT_TEST(spheres_are_drawn_as_nets_around_them_and_cut_in_circles) {
+    RtScene scene;
+    RtAccel *accel;
+    int count = 0;
+    open_scene(&scene);
+    assert_ok(rt_accel_open("clusters:extent=sphere", &scene, &accel, error));
+    accel->ops->each_box(accel, (RtBoxViewer){check_ball, &count});
+    assert_int_equal(count, 9);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static void count_line(void *context, RtVec3d from, RtVec3d to) {
+    (void)from, (void)to;
+    ++*(int *)context;
+}
+
+/* Its three slabs are the box: the twelve edges of either, and the four corners of a section. */
+static void check_body(void *context, const RtBoxView *view) {
+    RtVec3d corners[RT_NET_CORNERS];
+    double middle = (double)rt_box_center(*view->box).z;
+    int lines = 0;
+    rt_net_lines(view, rt_vec3d(0, 0, 10), (RtLineViewer){count_line, &lines});
+    assert_int_equal(lines, 12);
+    assert_int_equal(rt_net_section(view, 2, middle, corners), 4);
+    for (int i = 0; i < 4; i++) {
+        for (int a = 0; a < 2; a++) {
+            double lo = (double)view->box->lo.at[a], hi = (double)view->box->hi.at[a];
+            assert_true(fmin(fabs(corners[i].at[a] - lo), fabs(corners[i].at[a] - hi)) < 1e-4);
+        }
+    }
+    ++*(int *)context;
+}
+
+RT_TEST(three_slabs_and_oriented_boxes_of_spheres_have_the_edges_of_boxes) {
+    static const char *const specs[] = {"extents:kind=slabs,slabs=3", "extents:kind=obb"};
+    RtScene scene;
+    open_scene(&scene);
+    for (int i = 0; i < 2; i++) {
+        RtAccel *accel;
+        int count = 0;
+        assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
+        accel->ops->each_box(accel, (RtBoxViewer){check_body, &count});
+        assert_int_equal(count, 5);
+        rt_accel_destroy(accel);
+    }
     rt_scene_clear(&scene);
 }
 
