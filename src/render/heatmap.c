@@ -97,7 +97,8 @@ static void draw_difference(RtImage *image, const Drawing *d) {
             put_pixel(image, d, 2, x, y, rt_color_difference(most > 0 ? value / most : 0));
         }
     }
-    put_text(image, d, 2, MARGIN * d->dot, "first - second");
+    snprintf(text, sizeof text, "%s - %s", d->panels[0].label, d->panels[1].label);
+    put_text(image, d, 2, MARGIN * d->dot, text);
     snprintf(text, sizeof text, "mean %.4g", sum / ((double)d->width * d->height));
     put_text(image, d, 2, d->top + (int)d->height + MARGIN * d->dot, text);
 }
