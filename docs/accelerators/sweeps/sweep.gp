@@ -26,15 +26,14 @@ title_of(counter) = counter eq "passed_on" ? "passed on, a part of the rays" : \
 words_are_values = system("tail -n 1 counts.csv | sed 's/.*,//' | grep -c '^[a-z]'") eq "1"
 
 panels = words(counters)
-eval svg(experiment, 40 + 340 * panels, 310)
-set multiplot layout 1, panels margins screen 0.14 / panels, 1 - 0.04 / panels, 0.2, 0.87 spacing screen 0.19 / panels
-set key top right samplen 1.5 font ',11' textcolor rgb ink noenhanced
+eval canvas(experiment, 40 + 340 * panels, 330)
+set multiplot layout 1, panels margins screen 0.14 / panels, 1 - 0.04 / panels, 0.19, words(scenes) > 3 ? 0.75 : 0.8 spacing screen 0.19 / panels
+set key at screen 0.5, 0.985 center top horizontal samplen 1.5 font ',11' textcolor rgb ink noenhanced
 set xlabel param[7:] noenhanced textcolor rgb ink offset 0, 0.4
 set grid ytics
 if (words_are_values) {
     set style data histograms; set style histogram clustered gap 1
     set xtics rotate by (words(system("sed 1d counts.csv | sed 's/.*,//' | sort -u")) > 3 ? 22 : 0) right noenhanced
-    set offsets 0, 0, graph 0.3, 0
 } else {
     least = real(system("sed 1d counts.csv | sed 's/.*,//' | sort -g | head -n 1"))
     most = real(system("sed 1d counts.csv | sed 's/.*,//' | sort -g | tail -n 1"))
@@ -42,16 +41,15 @@ if (words_are_values) {
     set format x "%g"
     set xrange [least:most]
 }
-colour(i) = word("#0072b2 #d55e00 #009e73 #cc79a7", i)
 do for [counter in counters] {
     set title title_of(counter) textcolor rgb ink
     if (words_are_values) {
         set yrange [0:*]
-        plot for [i = 1:words(scenes)] table(counter) using i + 1:xtic(1) linecolor rgb colour(i) title word(scenes, i)
+        plot for [i = 1:words(scenes)] table(counter) using i + 1:xtic(1) linecolor rgb hue(i) title word(scenes, i)
     } else {
         if (counter eq "passed_on") { unset logscale y; set yrange [0:*] } else { set logscale y }
-        plot for [i = 1:words(scenes)] table(counter) using 1:i + 1 with linespoints linewidth 1.8 pointtype 7 pointsize 0.5 \
-             linecolor rgb colour(i) title word(scenes, i)
+        plot for [i = 1:words(scenes)] table(counter) using 1:i + 1 with linespoints linewidth 1.8 pointtype mark(i) pointsize 0.5 \
+             linecolor rgb hue(i) title word(scenes, i)
     }
     unset key
 }
