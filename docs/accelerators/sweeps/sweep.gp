@@ -27,7 +27,7 @@ words_are_values = system("tail -n 1 counts.csv | sed 's/.*,//' | grep -c '^[a-z
 
 panels = words(counters)
 eval canvas(experiment, 40 + 340 * panels, 330)
-set multiplot layout 1, panels margins screen 0.14 / panels, 1 - 0.04 / panels, 0.19, words(scenes) > 3 ? 0.75 : 0.8 spacing screen 0.19 / panels
+set multiplot layout 1, panels margins screen 0.14 / panels, 1 - 0.04 / panels, 0.19, words(scenes) > 3 || panels == 1 ? 0.75 : 0.8 spacing screen 0.19 / panels
 set key at screen 0.5, 0.985 center top horizontal samplen 1.5 font ',11' textcolor rgb ink noenhanced
 set xlabel param[7:] noenhanced textcolor rgb ink offset 0, 0.4
 set grid ytics
@@ -40,6 +40,7 @@ if (words_are_values) {
     if (most > 20 * least) { set logscale x 2 }
     set format x "%g"
     set xrange [least:most]
+    if (most - least < 5) { set xtics 1 }
 }
 do for [counter in counters] {
     set title title_of(counter) textcolor rgb ink
