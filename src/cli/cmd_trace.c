@@ -213,7 +213,7 @@ static RtStatus trace(const Options *o, const RtScene *scene, RtAccel *accel, co
     snprintf(title, sizeof title, "%s: the %s ray of pixel %u,%u of %u x %u",
              scene->name[0] ? scene->name : o->scene, rt_ray_kind_name(o->kind), o->x, o->y,
              scene->sampling.width, scene->sampling.height);
-    RtStatus status = o->svg ? rt_path_draw(&path, scene, title, spec, o->svg, error) : RT_OK;
+    RtStatus status = o->svg ? rt_path_draw(&path, scene, title, o->accel, o->svg, error) : RT_OK;
     if (status == RT_OK && o->json) {
         rt_cli_print_json(path_json(&path, o, spec));
     } else if (status == RT_OK) {

@@ -66,8 +66,8 @@ static bool section_of_box(const Drawing *d, const RtBox *box, double *from, dou
     return *from <= *to;
 }
 
-/* What is to be seen: the ray from where it first enters something to where it last leaves something, or
- * hits. */
+/* What is to be seen: the ray from where it first enters something, or from the surface that it leaves, to
+ * where it last leaves something, or hits. */
 static void choose_window(Drawing *d) {
     const RtPath *path = d->path;
     double first = (double)INFINITY, last = 0;
@@ -83,6 +83,7 @@ static void choose_window(Drawing *d) {
     if (!(first <= last))
         first = (double)path->ray.tmin,
         last = isfinite((double)path->ray.tmax) ? (double)path->ray.tmax : first + 1;
+    if (path->ray.kind != RT_RAY_PRIMARY) first = fmin(first, 0);
     if (last <= first) last = first + fmax(1e-3, 1e-3 * first);
     d->farthest = last + 0.04 * (last - first);
     double from = (first - 0.06 * (last - first)) * d->speed, to = d->farthest * d->speed;
@@ -192,6 +193,8 @@ static void draw_ray(const Drawing *d) {
             "marker-end=\"url(#arrow)\"/>\n",
             x_of(d, from * d->speed), y_of(d, v + slope * from), x_of(d, fmin(until, hit) * d->speed),
             y_of(d, v + slope * fmin(until, hit)));
+    if (ray->kind != RT_RAY_PRIMARY)
+        fprintf(d->out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\"/>\n", x_of(d, 0), y_of(d, v));
     if (!isfinite(hit)) return;
     fprintf(d->out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"5\" fill=\"#c00\" stroke=\"#fff\"/>\n",
             x_of(d, hit * d->speed), y_of(d, v + slope * hit));
