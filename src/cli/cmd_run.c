@@ -168,6 +168,10 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
         }
     }
     RtForecast forecast = rt_forecast(results, &how->workload);
+    if (forecast.finished == forecast.cells) {
+        printf("%u cells, all of them finished\n", forecast.cells);
+        return RT_OK;
+    }
     rt_format_duration(forecast.left, duration);
     printf("%u cells, %u of them finished; the others take %s %s%s\n", forecast.cells, forecast.finished,
            forecast.guessed ? "at least" : "about", duration,
