@@ -186,18 +186,6 @@ static RtStatus make_near_list(RtLightBuffer *buffer, uint32_t light, RtError *e
  * in less time than it takes to find their cells and look at the entry that is their own object. */
 enum { FEW_OBJECTS = 12000 };
 
-static RtStatus make_light(RtLightBuffer *buffer, uint32_t light, uint32_t most_of_tile, int threads,
-                           RtError *error) {
-    RtLightBins bins = {NULL, NULL};
-    RtStatus status = make_near_list(buffer, light, error);
-    if (status == RT_OK) status = rt_light_fill_bins(buffer, light, threads, &bins, error);
-    if (status == RT_OK) status = rt_light_make_lists(buffer, light, &bins, most_of_tile, threads, error);
-    rt_free(bins.first);
-    rt_free(bins.objects);
-    buffer->serves = buffer->cubes[light].serves = status == RT_OK;
-    return status;
-}
-
 static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError *error) {
     double cells = 0, limit = (double)what->limit;
     if (buffer->cells == 0 && what->scene->geometry.object_count < FEW_OBJECTS) return RT_OK;
@@ -205,8 +193,10 @@ static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError 
     double entries = (limit - cells * (double)sizeof(uint32_t)) / sizeof(RtLightEntry), tiles = 1;
     for (uint32_t i = 0; i < buffer->base.scene->light_count; i++) tiles += buffer->cubes[i].tile_count;
     uint32_t most_of_tile = (uint32_t)(fmin(entries, 0x1p30) / tiles);
-    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++)
-        RT_TRY(make_light(buffer, i, most_of_tile, what->threads, error));
+    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++) RT_TRY(make_near_list(buffer, i, error));
+    RT_TRY(rt_light_make_lists(buffer, most_of_tile, what->threads, error));
+    buffer->serves = buffer->base.scene->light_count > 0;
+    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++) buffer->cubes[i].serves = true;
     return RT_OK;
 }
 

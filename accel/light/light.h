@@ -257,9 +257,8 @@ RtStatus rt_light_fill_bins(const RtLightBuffer *buffer, uint32_t light, int thr
 
 /* ---- tile.c ---- */
 
-/* Makes the lists of a light, each tile's of no more than `most` entries. */
-RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t light, const RtLightBins *bins, uint32_t most,
-                             int threads, RtError *error);
+/* Makes the lists of all lights, each tile's of no more than `most` entries. */
+RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t most, int threads, RtError *error);
 
 /* ---- build.c ---- */
 RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error);
