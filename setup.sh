@@ -38,12 +38,12 @@ apt() {
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# install_missing SECTION...: what cannot be installed is named, and is fatal unless it is optional, or of the cluster
+# install_missing SECTION...: what cannot be installed is named, and is fatal unless it is optional, or of the cluster or the pages
 install_missing() {
     local section wanted=() needed=()
     for section; do
         case $section in
-        optional | cluster) wanted+=("$section") ;;
+        optional | cluster | pages) wanted+=("$section") ;;
         *) needed+=("$section") ;;
         esac
     done

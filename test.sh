@@ -36,7 +36,7 @@ case "${1-}" in
     run_tests debug -LE 'tree|slow|long'
     ;;
 --all)
-    install_missing build optional data test check cluster
+    install_missing build optional data test check cluster pages
     fetch_bunny
     build release -DRT_WERROR=ON
     run_tests release

@@ -98,11 +98,29 @@ typedef void RtNearestCounted(const RtAccel *accel, const RtScratch *scratch, co
 typedef void RtOccludedCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
                                size_t count, uint32_t *blockers, RtTally *tallies);
 
-/* Who looks at the boxes of a structure: one call of `show` each, with its depth below the root. */
+/* A box of a structure. */
+typedef struct RtBoxView {
+    const RtBox *box;                  /* valid during the call */
+    uint32_t depth;                    /* below the root */
+    bool leaf;                         /* it lists objects */
+    const struct RtExtentSet *extents; /* that it is the box of one of (accel/extent.h), or NULL ... */
+    uint32_t extent;                   /* ... and of which */
+} RtBoxView;
+
+/* Who looks at the boxes of a structure: one call of `show` each. */
 typedef struct RtBoxViewer {
-    void (*show)(void *context, const RtBox *box, uint32_t depth);
+    void (*show)(void *context, const RtBoxView *view);
     void *context;
 } RtBoxViewer;
+
+/* What an overlay has in a cell: a sample of the image, or a direction as seen from a light. */
+typedef struct RtCellView {
+    uint32_t number; /* of the cell */
+    uint32_t length; /* objects in its list */
+    uint32_t
+        object; /* the first of them; RT_NO_OBJECT if there is none, RT_UNNAMED_OBJECT if it is undecided */
+    bool cut;   /* a ray that finds nothing in it is passed on */
+} RtCellView;
 
 /* Who looks at the leaves of a structure, or its voxels: one call of `show` each, with the number of objects
  * in its list and its depth below the root. */
@@ -173,6 +191,11 @@ struct RtAccelOps {
     /* Optional: shows the boxes of the structure, for pictures. */
     void (*each_box)(const RtAccel *accel, RtBoxViewer viewer);
 
+    /* Optional, of an overlay, for pictures: the cell in which it looks up `ray`, one of those that it
+     * answers, of which only the direction and the source matter. False if there is no cell: nothing is seen
+     * there. */
+    bool (*look_up)(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
+
     /* Optional: shows all leaves, the empty ones included: those that `describe` counts. RT_NO_MEMORY. */
     RtStatus (*each_leaf)(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
@@ -214,6 +237,9 @@ const char *rt_accel_default(void);
 
 /* The spec whose answers are right by definition: it tests every object. */
 const char *rt_accel_truth(void);
+
+/* The spec that knows the answers beforehand: the least that any can do, and no competitor. */
+const char *rt_accel_yardstick(void);
 
 /* ---- specs ---- */
 

@@ -51,6 +51,7 @@ RT_KERNEL uint32_t shade(const Cache *self, const RtScratch *scratch, const RtRa
         rt_hit_ray(&prepared, &scene->geometry, ray, scratch->room);
         RtHit hit = RT_MISS;
         RT_COUNT(tally, steps, 1);
+        RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "object", .index = *last);
         if (rt_test_object(&scene->geometry, *last, &prepared, true, &hit, tally)) {
             return rt_answer_occluded(*last, tally);
         }

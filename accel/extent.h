@@ -191,6 +191,11 @@ RT_KERNEL bool rt_extent_hit(const RtExtentSet *set, RtExtentKind kind, uint32_t
     return rt_line_meets_slabs(line, set->slabs + (size_t)index * set->slabs_each, set->slabs_each);
 }
 
+/* Extent `index` for an onlooker (base/observe.h): NULL where it is no ball. */
+RT_KERNEL const RtBall *rt_extent_ball(const RtExtentSet *set, RtExtentKind kind, uint32_t index) {
+    return kind == RT_EXTENT_SPHERE ? &set->balls[index] : NULL;
+}
+
 /* Calls one of four copies of the inlined function f(kind, ...), in each of which `kind` is a constant. */
 #define RT_BY_EXTENT_KIND(kind, f, ...)                                                                      \
     do {                                                                                                     \

@@ -14,6 +14,7 @@
 #define RT_ACCEL_KERNEL_H
 
 #include "accel/accel.h"
+#include "base/observe.h"
 
 #define RT_KERNEL static inline __attribute__((always_inline))
 
@@ -23,8 +24,10 @@ RT_KERNEL bool rt_test_object(const RtGeometry *geometry, uint32_t id, const RtP
                               RtHit *best, RtTally *tally) {
     float t;
     RT_COUNT(tally, object_tests, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &geometry->boxes[id]);
     if (!rt_object_hit(geometry, id, ray, &t, tally)) return false;
     RT_COUNT(tally, object_hits, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t);
     if (rt_hit_before(t, id, *best)) *best = (RtHit){t, id};
     return any;
 }
@@ -140,6 +143,7 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
                                            RtTally *tallies) {                                               \
         Answer answer;                                                                                       \
         if (tallies) tallies[ray->kind].passed_on++;                                                         \
+        RT_OBSERVE(tallies, .kind = RT_TRACED_PASSED_ON, .what = accel->ops->name);                          \
         rt_hand_down_##question(accel, scratch, ray, 1, &answer, tallies);                                   \
         return answer;                                                                                       \
     }

@@ -37,6 +37,7 @@ RT_KERNEL bool rt_test_list(const RtGeometry *geometry, RtMailbox *mailbox, cons
         if (mailbox) {
             if (mailbox->last[id] == mailbox->ray) {
                 RT_COUNT(tally, repeats_avoided, 1);
+                RT_OBSERVE(tally, .kind = RT_TRACED_REPEAT_AVOIDED, .index = id);
                 continue;
             }
             mailbox->last[id] = mailbox->ray;

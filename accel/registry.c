@@ -57,6 +57,10 @@ const char *rt_accel_truth(void) {
     return "brute";
 }
 
+const char *rt_accel_yardstick(void) {
+    return "ideal";
+}
+
 RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error) {
     const char *names[REGISTRY_COUNT];
     for (size_t i = 0; i < REGISTRY_COUNT; i++) {

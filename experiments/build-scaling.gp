@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # build-scaling: time to build per object, over the number of objects; exponents of the powers fitted to it.
+#: 1-build-scaling: Time to build each structure in nanoseconds per object, over the number of objects.
+#:   Both axes logarithmic; the legend has the order of the lines at their right ends, and the exponents of fitted powers.
 
 n_accels = words(accels)
 own(a) = strcol("accel") eq word(accels, a) ? column("objects") : NaN
@@ -17,7 +19,16 @@ do for [a = 1:n_accels] {
 }
 unset print
 
-eval svg("1-build-scaling", 1000, 600)
+array last[n_accels]
+do for [a = 1:n_accels] {
+  stats "times.csv" using (own(a)):(column("build_seconds") / column("objects")) nooutput
+  most = STATS_max_x
+  stats "times.csv" using (own(a) == most ? column("build_seconds") / column("objects") : NaN) nooutput
+  last[a] = STATS_max
+}
+eval sort_last
+
+eval canvas("1-build-scaling", 960, 560)
 set logscale xy
 set grid xtics ytics
 set format x "10^{%T}"
@@ -26,7 +37,7 @@ set ylabel "time to build, ns per object" textcolor rgb ink
 set key outside right center Left reverse font ",12" textcolor rgb ink samplen 1.5 spacing 1.2 \
     title "time grows with objects to the power" left
 set xrange [700 : 1.4e7]
-plot for [a = 1:n_accels] "times.csv" using (own(a)):(column("build_seconds") / column("objects") * 1e9) \
-       with linespoints linewidth 1.5 pointtype 7 pointsize 0.6 linecolor rgb color(a) \
+plot for [i in order] a = int(i) "times.csv" using (own(a)):(column("build_seconds") / column("objects") * 1e9) \
+       with linespoints linewidth 1.5 dashtype dash(a) pointtype marker(a) pointsize 0.7 linecolor rgb color(a) \
        title sprintf("%.3f ± %.3f  %s", exponent[a], deviation[a], word(accels, a))
 unset output

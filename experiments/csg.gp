@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # csg: what extents on the inner nodes of CSG trees save, a row of panels for the small trees and one for the large.
+#: 1-csg: Solids tested, extents tested and time per ray with extents on the inner nodes of CSG trees and without, an accelerator
+#:   a line. Means over all kinds of rays; axes begin at 0. Above: trees of 8 to 64 solids; below: of 512.
 
 n_accels = words(accels)
 sizes = "small large"
 caption = "'trees of 8 to 64 solids' 'trees of 512 solids'"
-array title[3] = ["solids tested / ray (csg\\_tests)", "extents tested / ray", "ns / ray"]
+array title[3] = ["solids tested / ray", "extents tested / ray", "ns / ray"]
 
 # Means over all kinds of rays, each weighed by what its whole set has.
 chosen(size, inner, a) = strcol("scene") eq size."-".inner && strcol("accel") eq word(accels, a)
@@ -26,13 +28,13 @@ do for [s = 1:2] {
   }
 }
 
-eval svg("1-csg", 1240, 760)
+eval canvas("1-csg", 960, 760)
 set multiplot
 set yrange [n_accels + 0.6 : 0.4]
 set border 2 linecolor rgb soft
-set xtics format "" scale 0
-left = 0.105; width = 0.885 / 3
-on_color = "#2f6f9f"; off_color = "#c1543c"
+set xtics scale 0.4 font ",11" offset 0, 0.3
+left = 0.125; width = 0.87 / 3
+on_color = "#0072b2"; off_color = "#e9a27a"
 do for [s = 1:2] {
   do for [m = 1:3] {
     highest = 0
@@ -40,22 +42,23 @@ do for [s = 1:2] {
       v = value[place(s, m, i, a)]
       if (v == v && v > highest) { highest = v }
     } }
-    set xrange [0 : highest * 1.2]
+    set xrange [0 : highest * 1.25]
+    set xtics auto; set xtics highest > 0 ? 10 ** floor(log10(highest)) * (highest / 10 ** floor(log10(highest)) > 4 ? 2 : highest / 10 ** floor(log10(highest)) > 2 ? 1 : 0.5) : 1
     set lmargin at screen left + (m - 1) * width + 0.012
     set rmargin at screen left + m * width
     set tmargin at screen 0.875 - (s - 1) * 0.455
-    set bmargin at screen 0.505 - (s - 1) * 0.455
+    set bmargin at screen 0.515 - (s - 1) * 0.455
     unset label
     unset ytics
     if (s == 1 && m == 1) {
-      set label 3 "with inner extents" at screen left + 0.012, screen 0.975 left font ",15" textcolor rgb on_color
-      set label 4 "without" at screen left + 0.16, screen 0.975 left font ",15" textcolor rgb off_color
+      set label 3 "■ with inner extents" at screen left + 0.012, screen 0.975 left font ",14" textcolor rgb on_color
+      set label 4 "■ without" at screen left + 0.19, screen 0.975 left font ",14" textcolor rgb "#b4521f"
       set label 5 "Means over all kinds of rays." at screen 0.985, screen 0.975 right font ",12" textcolor rgb soft
     }
     set label 1 word(caption, s).": ".title[m] at graph 0, 1.045 left font ",12" textcolor rgb ink
     if (m == 1) {
       do for [a = 1:n_accels] {
-        set label 100 + a word(accels, a) at graph -0.03, first a right textcolor rgb color(a) font ",13"
+        set label 100 + a word(accels, a) at graph -0.03, first a right textcolor rgb ink font ",13"
       }
     }
     do for [i = 1:2] { do for [a = 1:n_accels] {

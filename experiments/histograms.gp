@@ -18,7 +18,7 @@ set grid xtics ytics linecolor rgb faint linetype 1 linewidth 0.5
 set key at screen 0.5, 0.01 center bottom maxrows 2 samplen 1 textcolor rgb ink
 
 do for [scene in scenes] {
-  eval svg("histograms-".scene, 300 * (n_kinds + 1), 640)
+  eval canvas("histograms-".scene, 300 * (n_kinds + 1), 640)
   set multiplot layout 2, n_kinds + 1 columnsfirst margins 0.06, 0.99, 0.16, 0.9 spacing 0.055, 0.14 \
     title scene.": part of all, per doubling of its value" noenhanced
   do for [i = 1:n_kinds + 1] {
@@ -32,7 +32,7 @@ do for [scene in scenes] {
         plot for [a = 1:n_accels] "histograms.csv" \
           using (is_panel(scene, kind, quantity) && strcol("accel") eq word(accels, a) ? \
                  middle(column("low"), column("end")) : NaN):(height(column("low"), column("end"), column("part"))) \
-          with linespoints pointtype 7 pointsize 0.3 linewidth 1.5 linecolor rgb color(a) title word(accels, a) noenhanced
+          with linespoints pointtype marker(a) pointsize 0.4 dashtype dash(a) linewidth 1.5 linecolor rgb color(a) title word(accels, a) noenhanced
         unset key
       } else { set multiplot next }
     }

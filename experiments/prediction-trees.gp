@@ -2,6 +2,8 @@
 # prediction-trees: of hierarchies over the same triangles, the correlation of time with (1 - alpha) SAH cost + alpha
 # end-point overlap + beta leaf-count variability: a family of hierarchies a panel, a ray kind a curve. Means over scenes;
 # alpha and beta are the same for all scenes.
+#: 4-trees: Correlation of time with a weighed sum of cost and end-point overlap, over the weight of the overlap, a family of
+#:   hierarchies a panel, a ray kind a line. Means over scenes; the marker stands at the best weight.
 
 scenes = all_scenes; accels = all_accels
 tree_scenes = "soup crowd bunny dragon hall forest"
@@ -75,22 +77,21 @@ unset print
 
 # ---- drawing ----
 
-eval svg("4-trees", 1100, 420)
-set multiplot layout 1, n_families margins screen 0.06, 0.985, 0.15, 0.9 spacing screen 0.02, 0.1
+eval canvas("4-trees", 960, 400)
+set multiplot layout 1, n_families margins screen 0.08, 0.985, 0.15, 0.9 spacing screen 0.02, 0.1
 set grid xtics ytics
-set border 3; set xtics nomirror; set ytics nomirror
+set border 3; set xtics nomirror; set ytics nomirror textcolor rgb ink
 set xrange [0 : 1]; set yrange [0.5 : 1]
 set samples 101
-kind_hue(k) = word("#222222 #c1543c #2f6f9f #3a8a4d", k)
 do for [f = 1:n_families] {
   set title word(families, f) textcolor rgb ink font ",14"
-  set xlabel "α: weight of end-point overlap; the cost has 1 - α" textcolor rgb ink
+  set xlabel "α: weight of overlap; of cost 1 - α" textcolor rgb ink
   set format y (f == 1 ? "%g" : "")
   set ylabel (f == 1 ? "correlation with ns per ray" : "") textcolor rgb ink
   if (f == 1) { set key left bottom font ",12" textcolor rgb ink samplen 1.5 } else { unset key }
-  plot for [k = 1:n_kinds] mean(f, k, x, 0) with lines linewidth 2 linecolor rgb kind_hue(k) title word(kinds, k), \
+  plot for [k = 1:n_kinds] mean(f, k, x, 0) with lines linewidth 2 dashtype stroke(k) linecolor rgb hue(k) title word(kinds, k), \
        for [k = 1:n_kinds] "+" using (best_alpha[(f - 1) * n_kinds + k]):(mean(f, k, best_alpha[(f - 1) * n_kinds + k], 0)) every ::0::0 \
-         with points pointtype 7 pointsize 0.7 linecolor rgb kind_hue(k) notitle
+         with points pointtype mark(k) pointsize 0.9 linecolor rgb hue(k) notitle
 }
 unset multiplot
 unset key

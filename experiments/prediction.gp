@@ -2,6 +2,12 @@
 # prediction: tests and steps of random lines against what areas say; of all kinds of rays, as a ratio; and time from a
 # time per ray, test and step fitted to each accelerator. On the eight scenes of every kind of object: what is measured on
 # triangles alone is for prediction-trees.gp.
+#: 1-random-lines: Object tests and steps of random lines as measured, over those that areas predict, a marker a scene.
+#:   A point an accelerator; on the line they agree. Both axes logarithmic.
+#: 2-by-kind: Tests and steps measured over those predicted, by kind of ray, a scene a line, a point an accelerator.
+#:   Logarithmic; at 1 they agree. Points are spread within a line so that they are seen.
+#: 3-time: Nanoseconds per ray as measured, over those from fitted times of a ray, a test and a step, a marker a scene.
+#:   Left with tests and steps as measured, right as predicted. Both axes logarithmic.
 
 all_scenes = scenes; all_accels = accels
 scenes = "points spheres balls tetra mount lattice tree stadium"
@@ -9,8 +15,6 @@ accels = "box grid-0.25 grid-1 grid-4 grid-16 grid-64 grid-nested octree-4 octre
 agglomerative rubin-whitted"
 here(s) = strstrt(" ".scenes." ", " ".s." ") > 0
 n_scenes = words(scenes); n_accels = words(accels); n_kinds = words(kinds)
-hues = "#2f6f9f #c1543c #4f9d69 #8e5ea2 #d4a017 #5ab4c5 #a0662d #7a7a7a"
-hue(s) = word(hues, 1 + (s - 1) % words(hues))
 
 # ---- what part of the random lines meets the box of the scene: the steps of a grid of one voxel ----
 
@@ -26,16 +30,16 @@ measured(what, s) = column(what eq "tests" ? "object_tests" : "steps") / column(
 
 # ---- random lines ----
 
-eval svg("1-random-lines", 1100, 560)
+eval canvas("1-random-lines", 960, 500)
 set multiplot
 set logscale xy
 set grid ytics
-set key left top font ",11" textcolor rgb ink samplen 0.5 spacing 0.95
+set key left top font ",12" textcolor rgb ink samplen 0.5 spacing 1.05
 do for [m = 1:2] {
   what = word("tests steps", m)
-  set lmargin at screen 0.06 + (m - 1) * 0.485
-  set rmargin at screen 0.49 + (m - 1) * 0.485
-  set tmargin at screen 0.92; set bmargin at screen 0.12
+  set lmargin at screen 0.085 + (m - 1) * 0.475
+  set rmargin at screen 0.505 + (m - 1) * 0.475
+  set tmargin at screen 0.91; set bmargin at screen 0.12
   set title (m == 1 ? "object tests" : "steps")." of a random line through the box" textcolor rgb ink font ",14"
   set xlabel "predicted from areas" textcolor rgb ink
   set ylabel (m == 1 ? "measured" : "") textcolor rgb ink
@@ -44,14 +48,14 @@ do for [m = 1:2] {
   set yrange [(m == 1 ? 0.003 : 3) : (m == 1 ? 3000 : 1000)]
   plot x with lines linecolor rgb soft linewidth 1 notitle, \
        for [s = 1:n_scenes] "counts.csv" using (is(s, "random") ? predicted(what) : NaN):(measured(what, s)) \
-         with points pointtype 7 pointsize 0.55 linecolor rgb hue(s) title word(scenes, s)
+         with points pointtype mark(s) pointsize 0.7 linecolor rgb hue(s) title word(scenes, s)
 }
 unset multiplot
 unset key
 
 # ---- measured over predicted, for each kind of ray; the part that misses the box counts as it is ----
 
-eval svg("2-by-kind", 1100, 680)
+eval canvas("2-by-kind", 960, 680)
 set multiplot
 unset logscale y
 set grid xtics noytics
@@ -72,12 +76,12 @@ do for [m = 1:2] {
     unset ytics; unset label
     if (k == 1) {
       do for [s = 1:n_scenes] {
-        set label s word(scenes, s) at graph -0.04, first s right textcolor rgb hue(s) font ",12"
+        set label s word(scenes, s) at graph -0.04, first s right textcolor rgb ink font ",12"
       }
     }
     set arrow 1 from 1, graph 0 to 1, graph 1 nohead linecolor rgb soft
     plot for [s = 1:n_scenes] "counts.csv" using (is(s, kind) ? measured(what, s) * (kind eq "random" ? 1 : meets[s]) / predicted(what) : NaN): \
-           (s + 0.5 * rand(0) - 0.25) with points pointtype 7 pointsize 0.4 linecolor rgb hue(s)
+           (s + 0.5 * rand(0) - 0.25) with points pointtype mark(s) pointsize 0.55 linecolor rgb hue(s)
     unset arrow 1
   }
 }
@@ -135,17 +139,17 @@ do for [family in "grid octree hierarchy"] {
 }
 unset print
 
-eval svg("3-time", 1100, 560)
+eval canvas("3-time", 960, 500)
 set multiplot
 set logscale xy
 set grid xtics ytics
 set xtics autofreq; set ytics autofreq
 set xrange [20 : 200000]; set yrange [20 : 200000]
-set key left top font ",11" textcolor rgb ink samplen 0.5 spacing 0.95
+set key left top font ",12" textcolor rgb ink samplen 0.5 spacing 1.05
 do for [m = 1:2] {
-  set lmargin at screen 0.06 + (m - 1) * 0.485
-  set rmargin at screen 0.49 + (m - 1) * 0.485
-  set tmargin at screen 0.92; set bmargin at screen 0.12
+  set lmargin at screen 0.085 + (m - 1) * 0.475
+  set rmargin at screen 0.505 + (m - 1) * 0.475
+  set tmargin at screen 0.91; set bmargin at screen 0.12
   set title (m == 1 ? "from tests and steps as measured" : "from tests and steps as predicted") textcolor rgb ink font ",14"
   set xlabel "ns per ray by fitted times of a ray, a test and a step" textcolor rgb ink
   set ylabel (m == 1 ? "ns per ray, measured" : "") textcolor rgb ink
@@ -154,9 +158,9 @@ do for [m = 1:2] {
   model(a, s) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a) ? \
                 base_ns[a] + test_ns[a] * per_ray("tests") + step_ns[a] * per_ray("steps") : NaN
   plot x with lines linecolor rgb soft notitle, \
-       for [s = 1:n_scenes] NaN with points pointtype 7 pointsize 0.55 linecolor rgb hue(s) title word(scenes, s), \
+       for [s = 1:n_scenes] NaN with points pointtype mark(s) pointsize 0.7 linecolor rgb hue(s) title word(scenes, s), \
        for [s = 1:n_scenes] for [a = 1:n_accels] "times.csv" using (word(accels, a) eq "box" ? NaN : model(a, s)):(column("ns")) \
-         with points pointtype 7 pointsize 0.4 linecolor rgb hue(s) notitle
+         with points pointtype mark(s) pointsize 0.55 linecolor rgb hue(s) notitle
 }
 unset multiplot
 unset key

@@ -123,10 +123,21 @@ typedef struct Objects {
     RtShape shape;
 } Objects;
 
+/* Tells of the tests of objects first..end-1; gives end. */
+RT_COLD static uint32_t observe_tests(const RtGeometry *g, const Objects *objects, uint32_t first,
+                                      uint32_t end) {
+    for (uint32_t i = first; i < end; i++) {
+        uint32_t id = objects->ids[i];
+        rt_observe(&(RtTraced){.kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &g->boxes[id]});
+    }
+    return end;
+}
+
 /* Tests objects first..first+count-1, which are the chunk; true when the search is over. */
 RT_KERNEL bool test_chunk(const Desk *desk, const RtGeometry *g, Asking *a, const Objects *objects,
                           uint32_t first, uint32_t count, bool any, RtTally *tally) {
     Line line;
+    uint32_t told = first;
     make_line(&line, &a->ray);
     for (uint32_t i = 0; i < count; i += LANES) {
         const Block *block = &desk->chunk[i / LANES];
@@ -137,12 +148,15 @@ RT_KERNEL bool test_chunk(const Desk *desk, const RtGeometry *g, Asking *a, cons
             float t;
             if (!rt_object_hit(g, id, &a->ray, &t, NULL)) continue;
             RT_COUNT(tally, object_hits, 1);
+            if (RT_OBSERVED(tally)) told = observe_tests(g, objects, told, index + 1);
+            RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t);
             if (rt_hit_before(t, id, a->best)) a->best = (RtHit){t, id};
             if (!any) continue;
             RT_COUNT(tally, object_tests, index + 1);
             return true;
         }
     }
+    if (RT_OBSERVED(tally)) observe_tests(g, objects, told, first + count);
     return false;
 }
 

@@ -97,6 +97,16 @@ typedef struct StackEntry {
     float enter;
 } StackEntry;
 
+RT_COLD static void observe_children(const RtNode *nodes, uint32_t first, bool left, bool right) {
+    for (uint32_t i = first; i < first + 2; i++) {
+        rt_observe(&(RtTraced){.kind = RT_TRACED_EXTENT_TEST,
+                               .what = "node",
+                               .index = i,
+                               .box = &nodes[i].box,
+                               .met = i == first ? left : right});
+    }
+}
+
 RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *ray, bool any, RtHit *best,
                     RtTally *tally) {
     const RtGeometry *g = &self->base.scene->geometry;
@@ -107,15 +117,20 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
     float enter[2];
     if (self->hierarchy.node_count == 0) return;
     RT_COUNT(tally, extent_tests, 1);
-    if (!rt_box_hit(&nodes[0].box, ray, ray->tmax, &enter[0])) return;
+    bool met = rt_box_hit(&nodes[0].box, ray, ray->tmax, &enter[0]);
+    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "node", .box = &nodes[0].box, .met = met);
+    if (!met) return;
     for (;;) {
         const RtNode *node = &nodes[index];
         RT_COUNT(tally, steps, 1);
+        RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "node", .index = index, .box = &node->box,
+                   .leaf = rt_node_is_leaf(node));
         if (!rt_node_is_leaf(node)) {
             float limit = rt_limit(ray, best);
             bool left = rt_box_hit(&nodes[node->first].box, ray, limit, &enter[0]);
             bool right = rt_box_hit(&nodes[node->first + 1].box, ray, limit, &enter[1]);
             RT_COUNT(tally, extent_tests, 2);
+            if (RT_OBSERVED(tally)) observe_children(nodes, node->first, left, right);
             if (left || right) {
                 uint32_t near = left && right ? enter[1] < enter[0] : right;
                 if (left && right) stack[stacked++] = (StackEntry){node->first + 1 - near, enter[1 - near]};
@@ -173,7 +188,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    rt_hierarchy_each_box(&((const RtBvh *)accel)->hierarchy, viewer);
+    rt_hierarchy_each_box(&((const RtBvh *)accel)->hierarchy, NULL, viewer);
 }
 
 static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {

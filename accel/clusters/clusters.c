@@ -135,7 +135,17 @@ static inline void push_by_entry(StackEntry *stack, uint32_t bottom, uint32_t to
     stack[top] = entry;
 }
 
-/* `kind` is a constant where this is inlined. */
+/* One extent test. `kind` is a constant where this is inlined, and below. */
+RT_KERNEL bool meets(RtExtentKind kind, const RtClusters *self, uint32_t index, const RtPreparedRay *ray,
+                     const RtLine *line, float limit, float *enter, RtTally *tally) {
+    const RtBox *box = &self->hierarchy.nodes[index].box;
+    RT_COUNT(tally, extent_tests, 1);
+    bool met = rt_extent_hit(&self->set, kind, index, box, ray, line, limit, enter);
+    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "node", .index = index, .box = box,
+               .ball = rt_extent_ball(&self->set, kind, index), .met = met);
+    return met;
+}
+
 RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPreparedRay *ray, bool any,
                         RtHit *best, RtTally *tally) {
     const RtGeometry *geometry = &self->base.scene->geometry;
@@ -145,8 +155,7 @@ RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPrepa
     float enter;
     if (self->hierarchy.node_count == 0) return;
     RtLine line = rt_line(&self->set, kind, &geometry->box, ray);
-    RT_COUNT(tally, extent_tests, 1);
-    if (!rt_extent_hit(&self->set, kind, 0, &nodes[0].box, ray, &line, ray->tmax, &enter)) return;
+    if (!meets(kind, self, 0, ray, &line, ray->tmax, &enter, tally)) return;
     stack[stacked++] = (StackEntry){0, enter};
     while (stacked > 0) {
         StackEntry at = stack[--stacked];
@@ -154,11 +163,11 @@ RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPrepa
         if (self->nearest_first) {
             if (at.enter > rt_limit(ray, best)) continue;
         } else if (at.node > 0) {
-            RT_COUNT(tally, extent_tests, 1);
-            float limit = rt_limit(ray, best);
-            if (!rt_extent_hit(&self->set, kind, at.node, &node->box, ray, &line, limit, &enter)) continue;
+            if (!meets(kind, self, at.node, ray, &line, rt_limit(ray, best), &enter, tally)) continue;
         }
         RT_COUNT(tally, steps, 1);
+        RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "node", .index = at.node, .box = &node->box,
+                   .leaf = rt_node_is_leaf(node));
         uint32_t first = node->first, end = first + rt_node_fanout(node);
         if (rt_node_is_leaf(node)) {
             RT_COUNT(tally, leaf_steps, 1);
@@ -168,10 +177,8 @@ RT_KERNEL void traverse(RtExtentKind kind, const RtClusters *self, const RtPrepa
         } else if (self->nearest_first) {
             uint32_t bottom = stacked;
             float limit = rt_limit(ray, best);
-            RT_COUNT(tally, extent_tests, end - first);
             for (uint32_t i = first; i < end; i++) {
-                const RtBox *box = &nodes[i].box;
-                if (!rt_extent_hit(&self->set, kind, i, box, ray, &line, limit, &enter)) continue;
+                if (!meets(kind, self, i, ray, &line, limit, &enter, tally)) continue;
                 push_by_entry(stack, bottom, stacked++, (StackEntry){i, enter});
             }
         } else {
@@ -207,7 +214,8 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    rt_hierarchy_each_box(&((const RtClusters *)accel)->hierarchy, viewer);
+    const RtClusters *self = (const RtClusters *)accel;
+    rt_hierarchy_each_box(&self->hierarchy, &self->set, viewer);
 }
 
 static RtStatus each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error) {

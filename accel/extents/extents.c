@@ -56,7 +56,11 @@ RT_KERNEL void scan(RtExtentKind kind, const RtExtents *self, const RtPreparedRa
         RT_COUNT(tally, steps, 1);
         RT_COUNT(tally, extent_tests, 1);
         const RtBox *own = &geometry->boxes[id];
-        if (!rt_extent_hit(set, kind, id, own, ray, &line, rt_limit(ray, best), &enter)) continue;
+        RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "extent", .index = id);
+        bool met = rt_extent_hit(set, kind, id, own, ray, &line, rt_limit(ray, best), &enter);
+        RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "extent", .index = id, .box = own,
+                   .ball = rt_extent_ball(set, kind, id), .met = met);
+        if (!met) continue;
         if (rt_test_object(geometry, id, ray, any, best, tally)) return;
     }
 }
@@ -100,8 +104,9 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGeometry *geometry = &accel->scene->geometry;
+    const RtExtentSet *set = &((const RtExtents *)accel)->set;
     for (uint32_t id = 0; id < geometry->object_count; id++)
-        viewer.show(viewer.context, &geometry->boxes[id], 0);
+        viewer.show(viewer.context, &(RtBoxView){&geometry->boxes[id], 0, true, set, id});
 }
 
 const RtAccelOps rt_extents_ops = {

@@ -158,12 +158,23 @@ RT_KERNEL bool next_moment(Walk *walk, float limit) {
     return true;
 }
 
+RT_COLD static void observe_voxel(const RtGridLevel *level, size_t voxel, bool leaf, bool empty) {
+    RtBox box = rt_grid_voxel_box(level, (uint32_t)voxel);
+    rt_observe(&(RtTraced){.kind = RT_TRACED_STEP,
+                           .what = "voxel",
+                           .index = (uint32_t)voxel,
+                           .box = &box,
+                           .leaf = leaf,
+                           .empty = empty});
+}
+
 RT_KERNEL bool visit_voxel(const RtGrid *self, const RtGridLevel *level, RtMailbox *mailbox, size_t voxel,
                            const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     uint32_t first = level->first[voxel], count = level->first[voxel + 1] - first;
     RT_COUNT(tally, steps, 1);
     RT_COUNT(tally, leaf_steps, 1);
     RT_COUNT(tally, empty_steps, count == 0);
+    if (RT_OBSERVED(tally)) observe_voxel(level, voxel, true, count == 0);
     return rt_test_list(&self->base.scene->geometry, mailbox, level->ids + first, count, ray, any, best,
                         tally);
 }
@@ -240,6 +251,7 @@ RT_KERNEL void walk_nested(const RtGrid *self, RtMailbox *mailbox, float t, cons
     Interrupted stack[RT_GRID_MAX_LEVELS], *at = stack;
     const RtGridLevel *level = self->levels;
     RT_COUNT(tally, steps, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "grid", .box = &self->box);
     begin_walk(&at->walk, level->blocks, ray, t);
     at->moment = begin_moment(&at->walk, true);
     for (;;) {
@@ -260,6 +272,7 @@ RT_KERNEL void walk_nested(const RtGrid *self, RtMailbox *mailbox, float t, cons
             if (visit_voxel(self, level, mailbox, voxel, ray, any, best, tally)) return;
         } else {
             RT_COUNT(tally, steps, 1);
+            if (RT_OBSERVED(tally)) observe_voxel(level, voxel, false, false);
             level++;
             begin_walk(&at[1].walk, &level->blocks[inner], ray, at->walk.t);
             at++;
@@ -288,7 +301,9 @@ RT_KERNEL void search(const RtGrid *self, void *scratch, const RtPreparedRay *ra
     float t;
     if (self->depth == 0) return;
     RT_COUNT(tally, extent_tests, 1);
-    if (!rt_box_hit(&self->box, ray, ray->tmax, &t)) return;
+    bool met = rt_box_hit(&self->box, ray, ray->tmax, &t);
+    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "grid", .box = &self->box, .met = met);
+    if (!met) return;
     if (self->surfaces && !rt_surface_serves(&self->served, ray)) {
         rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
         return;

@@ -132,6 +132,9 @@ RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);
 RtStatus rt_grid_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
+/* The box of a voxel, by its number in the level. */
+RtBox rt_grid_voxel_box(const RtGridLevel *level, uint32_t voxel);
+
 /* The voxel of `block` at a place, as a number in the level. */
 static inline size_t rt_grid_voxel_at(const RtGridBlock *block, const uint32_t at[3]) {
     return block->voxel + ((size_t)at[2] * block->n[1] + at[1]) * block->n[0] + at[0];

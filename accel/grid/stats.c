@@ -24,6 +24,14 @@ RtStatus rt_grid_each_voxel(const RtGridLevel *level,
     return RT_OK;
 }
 
+RtBox rt_grid_voxel_box(const RtGridLevel *level, uint32_t voxel) {
+    const RtGridBlock *block = &level->blocks[level->block_count - 1];
+    while (block->voxel > voxel) block--;
+    uint32_t within = voxel - block->voxel, x = within % block->n[0], y = within / block->n[0] % block->n[1];
+    uint32_t z = within / block->n[0] / block->n[1];
+    return rt_grid_range_box(block, &(RtGridRange){{x, y, z}, {x, y, z}});
+}
+
 static size_t plane_count(const RtGridLevel *level) {
     size_t planes = 0;
     for (uint32_t b = 0; b < level->block_count; b++) {
@@ -246,16 +254,18 @@ typedef struct Show {
 static RtStatus show_voxel(void *context, const RtGridVoxel *voxel) {
     const Show *show = context;
     const RtGridLevel *level = voxel->level;
-    bool holds = level->first[voxel->number] < level->first[voxel->number + 1] ||
-                 rt_grid_inner(level, voxel->number) != RT_GRID_LEAF;
-    if (holds) show->viewer.show(show->viewer.context, &voxel->box, show->depth);
+    bool leaf = rt_grid_inner(level, voxel->number) == RT_GRID_LEAF;
+    bool holds = !leaf || level->first[voxel->number] < level->first[voxel->number + 1];
+    if (holds)
+        show->viewer.show(show->viewer.context,
+                          &(RtBoxView){.box = &voxel->box, .depth = show->depth, .leaf = leaf});
     return RT_OK;
 }
 
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtGrid *grid = (const RtGrid *)accel;
     if (grid->depth == 0) return;
-    viewer.show(viewer.context, &grid->box, 0);
+    viewer.show(viewer.context, &(RtBoxView){.box = &grid->box});
     for (uint32_t i = 0; i < grid->depth; i++) {
         Show show = {viewer, i + 1};
         rt_grid_each_voxel(&grid->levels[i], show_voxel, &show);

@@ -78,6 +78,7 @@ RtStatus rt_item_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_item_destroy(RtAccel *accel);
 
 /* stats.c */
+bool rt_item_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 void rt_item_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_item_validate(const RtAccel *accel, RtError *error);
 

@@ -38,6 +38,7 @@ RT_KERNEL void pass_waiting(Question *q, RtTally *tallies) {
     Passed *p = &q->passed;
     RtHit hits[PASSED];
     if (tallies) tallies[RT_RAY_PRIMARY].passed_on += p->count;
+    RT_OBSERVE(tallies, .kind = RT_TRACED_PASSED_ON, .what = "item");
     rt_hand_down_nearest(&q->buffer->isa.base, q->scratch, p->ray, p->count, hits, tallies);
     for (uint32_t i = 0; i < p->count; i++) q->hits[p->place[i]] = hits[i];
     p->count = 0;
@@ -57,6 +58,14 @@ RT_KERNEL void answer(Question *q, size_t i, RtHit hit, RtTally *tallies) {
         pass_on(q, i, tallies);
     else
         q->hits[i] = rt_answer_nearest(hit, tally);
+}
+
+RT_COLD static void observe_waiting(const RtGeometry *g, const Waiting *w, uint32_t hit, const float *t) {
+    for (uint32_t k = 0; k < w->count; k++) {
+        uint32_t id = w->id[k];
+        rt_observe(&(RtTraced){.kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &g->boxes[id]});
+        if (hit >> k & 1) rt_observe(&(RtTraced){.kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t[k]});
+    }
 }
 
 /* Tests up to sixteen rays, all from the eye. */
@@ -81,6 +90,7 @@ RT_KERNEL void test_waiting(Question *q, RtTally *tallies) {
     if (tallies) {
         tallies[RT_RAY_PRIMARY].object_tests += w->count;
         tallies[RT_RAY_PRIMARY].object_hits += (uint32_t)__builtin_popcount(hit & ((1u << w->count) - 1));
+        if (RT_OBSERVED(tallies)) observe_waiting(&buffer->isa.base.scene->geometry, w, hit, t);
     }
     for (uint32_t k = 0; k < w->count; k++)
         answer(q, w->ray[k], hit >> k & 1 ? (RtHit){t[k], w->id[k]} : RT_MISS, tallies);
@@ -131,6 +141,7 @@ RT_KERNEL void see(const RtAccel *accel, const RtScratch *scratch, const RtRay *
         }
         uint32_t id = self->samples[ray->source], triangle = id;
         RT_COUNT(tally, steps, 1);
+        RT_OBSERVE(tally, .kind = RT_TRACED_STEP, .what = "sample", .index = ray->source);
         __builtin_prefetch(ray + AHEAD);
         if (id == RT_NO_OBJECT) {
             hits[i] = rt_answer_nearest(RT_MISS, tally);

@@ -36,12 +36,25 @@ typedef struct Span {
     float enter, leave;
 } Span;
 
+RT_COLD static void observe_node(const RtKd *self, uint32_t index) {
+    const RtKdNode *node = &self->nodes[index];
+    RtBox cell = rt_kd_cell(self, index);
+    bool leaf = rt_kd_is_leaf(node);
+    rt_observe(&(RtTraced){.kind = RT_TRACED_STEP,
+                           .what = "node",
+                           .index = index,
+                           .box = &cell,
+                           .leaf = leaf,
+                           .empty = leaf && rt_kd_length(node) == 0});
+}
+
 /* From the node of *span down to a leaf, nearest first; the others are put on the stack. */
 RT_KERNEL const RtKdNode *descend(const RtKd *self, const RtPreparedRay *ray, Span *span, Span *stack,
                                   uint32_t *stacked, RtTally *tally) {
     for (;;) {
         const RtKdNode *node = &self->nodes[span->node];
         RT_COUNT(tally, steps, 1);
+        if (RT_OBSERVED(tally)) observe_node(self, span->node);
         if (rt_kd_is_leaf(node)) return node;
         uint32_t axis = rt_kd_axis(node), child = rt_kd_child(node);
         float enter = (node->split - ray->org_near[axis]) * ray->inv[axis]; /* the second child */
@@ -64,7 +77,9 @@ RT_KERNEL void search(const RtKd *self, void *scratch, const RtPreparedRay *ray,
     if (self->node_count == 0) return;
     RT_COUNT(tally, extent_tests, 1);
     rt_box_cut(&self->box, ray, &span.enter, &span.leave);
-    if (!(span.enter <= span.leave)) return;
+    bool met = span.enter <= span.leave;
+    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "node", .box = &self->box, .met = met);
+    if (!met) return;
     if (self->surfaces && !rt_surface_serves(&self->served, ray)) {
         rt_test_all(g, ray, any, best, tally);
         return;

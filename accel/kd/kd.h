@@ -210,4 +210,7 @@ RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);
 RtStatus rt_kd_each_leaf(const RtAccel *accel, RtLeafViewer viewer, RtError *error);
 
+/* The cell of a node, found by going through the tree: for pictures. */
+RtBox rt_kd_cell(const RtKd *kd, uint32_t node);
+
 #endif

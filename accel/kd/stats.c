@@ -207,13 +207,32 @@ RtStatus rt_kd_validate(const RtAccel *accel, RtError *error) {
 static RtStatus show_node(void *context, const RtKd *kd, const Place *place) {
     const RtBoxViewer *viewer = context;
     const RtKdNode *node = &kd->nodes[place->node];
-    bool empty = rt_kd_is_leaf(node) && rt_kd_length(node) == 0;
-    if (!empty) viewer->show(viewer->context, &place->cell, place->depth);
+    bool leaf = rt_kd_is_leaf(node), empty = leaf && rt_kd_length(node) == 0;
+    if (!empty)
+        viewer->show(viewer->context, &(RtBoxView){.box = &place->cell, .depth = place->depth, .leaf = leaf});
     return RT_OK;
 }
 
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     each_node((const RtKd *)accel, show_node, &viewer);
+}
+
+typedef struct Sought {
+    uint32_t node;
+    RtBox cell;
+} Sought;
+
+static RtStatus compare_node(void *context, const RtKd *kd, const Place *place) {
+    (void)kd;
+    Sought *sought = context;
+    if (place->node == sought->node) sought->cell = place->cell;
+    return RT_OK;
+}
+
+RtBox rt_kd_cell(const RtKd *kd, uint32_t node) {
+    Sought sought = {node, RT_EMPTY_BOX};
+    each_node(kd, compare_node, &sought);
+    return sought.cell;
 }
 
 static RtStatus show_leaf(void *context, const RtKd *kd, const Place *place) {

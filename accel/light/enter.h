@@ -147,6 +147,7 @@ RT_KERNEL uint32_t test_near(const Asking *a, const RtLightCube *cube, uint32_t 
         rt_hit_ray(&prepared, g, &a->rays[order[i]], a->scratch->room);
         for (uint32_t k = 0; k < cube->near_count && hit.object == RT_NO_OBJECT; k++) {
             RT_COUNT(a->tally, steps, 1);
+            RT_OBSERVE(a->tally, .kind = RT_TRACED_STEP, .what = "object", .index = cube->near[k]);
             rt_test_object(g, cube->near[k], &prepared, true, &hit, a->tally);
         }
         if (hit.object == RT_NO_OBJECT) continue;

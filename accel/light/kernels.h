@@ -45,6 +45,21 @@ RT_KERNEL void add_pairs(const Asking *a, Round *round, uint32_t met, RtW16 ray,
     round->pairs = after;
 }
 
+/* Not of an Asking: were its address handed out, the compiler could not tell that its tally stays NULL. */
+RT_COLD static void observe_entries(const RtGeometry *g, bool extents, const RtW16 *object, uint32_t lanes,
+                                    uint32_t met) {
+    uint32_t objects[16];
+    rt_w16_put_some(objects, 0xffff, *object);
+    for (; lanes; lanes &= lanes - 1) {
+        uint32_t lane = (uint32_t)__builtin_ctz(lanes), id = rt_light_id_of(g, objects[lane]);
+        const char *what = "entry of object";
+        rt_observe(&(RtTraced){.kind = RT_TRACED_STEP, .what = what, .index = id});
+        if (!extents) continue;
+        rt_observe(
+            &(RtTraced){.kind = RT_TRACED_EXTENT_TEST, .what = what, .index = id, .met = met >> lane & 1});
+    }
+}
+
 /* Sixteen rays on their way look at their next `deep` entries. */
 RT_KERNEL void look_up(const Asking *a, const RtLightEntry *entries, uint32_t first, uint32_t count,
                        uint32_t deep, Round *round) {
@@ -72,6 +87,8 @@ RT_KERNEL void look_up(const Asking *a, const RtLightEntry *entries, uint32_t fi
             RT_COUNT(a->tally, extent_tests, __builtin_popcount(lanes));
             met &= rt_w16_equal(rt_w16_and(rt_w16_down(of_entry, part), one), one);
         }
+        if (RT_OBSERVED(a->tally))
+            observe_entries(&a->self->base.scene->geometry, a->self->extents, &object, lanes, met);
         if (met) add_pairs(a, round, met, ray, object);
         RtW16 next = rt_w16_add(at, one);
         lanes &= rt_w16_below(next, end);
@@ -91,6 +108,8 @@ RT_KERNEL uint32_t take_round(const Asking *a, uint32_t light, uint32_t count, u
     Round round = {0, 0, 0, all_triangles};
     for (uint32_t first = 0; first < count; first += 16) look_up(a, entries, first, count, deep, &round);
     RT_COUNT(a->tally, object_tests, round.pairs);
+    if (RT_OBSERVED(a->tally))
+        observe_pairs(&a->self->base.scene->geometry, a->stream->pair_object, round.pairs);
     test_pairs(a, light, round.pairs);
     test_others(a, round.others);
     return round.left;
@@ -119,6 +138,7 @@ RT_KERNEL void pass_on(const Asking *a, RtTally *tallies) {
     uint32_t count = stream->passed_count;
     if (count == 0) return;
     RT_COUNT(a->tally, passed_on, count);
+    RT_OBSERVE(a->tally, .kind = RT_TRACED_PASSED_ON, .what = "light");
     for (uint32_t i = 0; i < count; i++) stream->passed_rays[i] = a->rays[stream->passed[i]];
     rt_hand_down_occluded(&a->self->base, a->scratch, stream->passed_rays, count, stream->passed_blockers,
                           tallies);
@@ -195,6 +215,7 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
             shade_block(&a, (uint32_t)(next - i), tallies);
         } else {
             RT_COUNT(a.tally, passed_on, next - i);
+            RT_OBSERVE(a.tally, .kind = RT_TRACED_PASSED_ON, .what = "light");
             rt_hand_down_occluded(accel, scratch, rays + i, next - i, blockers + i, tallies);
         }
     }

@@ -57,4 +57,5 @@ const RtAccelOps rt_light_ops = {
     .scratch_bytes = scratch_bytes,
     .describe = rt_light_describe,
     .validate = rt_light_validate,
+    .look_up = rt_light_look_up,
 };

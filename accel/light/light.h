@@ -265,6 +265,7 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_light_destroy(RtAccel *accel);
 
 /* stats.c */
+bool rt_light_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell);
 void rt_light_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_light_validate(const RtAccel *accel, RtError *error);
 

@@ -45,6 +45,22 @@ RT_KERNEL uint32_t sieve_pairs(const RtPairs *p) {
     return rt_sieve(x, y);
 }
 
+RT_COLD static void observe_hits(const RtGeometry *g, const uint32_t *object, uint32_t hit, const RtV16 *at) {
+    _Alignas(64) float t[16];
+    rt_v16_store(t, *at);
+    for (; hit; hit &= hit - 1) {
+        uint32_t i = (uint32_t)__builtin_ctz(hit), id = g->triangle_ids[rt_ref_index(object[i])];
+        rt_observe(&(RtTraced){.kind = RT_TRACED_OBJECT_HIT, .index = id, .t = t[i]});
+    }
+}
+
+RT_COLD static void observe_pairs(const RtGeometry *g, const uint32_t *object, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t id = g->triangle_ids[rt_ref_index(object[i])];
+        rt_observe(&(RtTraced){.kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &g->boxes[id]});
+    }
+}
+
 /* Tests pairs in full. */
 RT_KERNEL void hit_pairs(const Asking *a, const uint32_t *ray, const uint32_t *object, uint32_t count,
                          RtPairs *pairs) {
@@ -55,6 +71,7 @@ RT_KERNEL void hit_pairs(const Asking *a, const uint32_t *ray, const uint32_t *o
     pairs->tmax = rt_v16_load(tmax);
     uint32_t hit = rt_pairs_hit(pairs, &t) & ((1u << count) - 1);
     RT_COUNT(a->tally, object_hits, __builtin_popcount(hit));
+    if (RT_OBSERVED(a->tally)) observe_hits(g, object, hit, &t);
     for (; hit; hit &= hit - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(hit);
         a->blockers[ray[i]] = g->triangle_ids[rt_ref_index(object[i])];
@@ -95,7 +112,10 @@ RT_KERNEL void test_others(const Asking *a, uint32_t count) {
         const RtRay *ray = &a->rays[number];
         if (a->self->extents && rt_light_has_side(object)) {
             RT_COUNT(a->tally, extent_tests, 1);
-            if (rt_light_is_aside(g, id, ray)) continue;
+            bool aside = rt_light_is_aside(g, id, ray);
+            RT_OBSERVE(a->tally, .kind = RT_TRACED_EXTENT_TEST, .what = "side of object", .index = id,
+                       .met = !aside);
+            if (aside) continue;
         }
         RtPreparedRay prepared;
         RtHit hit = RT_MISS;

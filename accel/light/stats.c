@@ -4,6 +4,28 @@
 
 #include "base/memory.h"
 
+bool rt_light_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell) {
+    const RtLightCube *cube = &((const RtLightBuffer *)accel)->cubes[ray->source];
+    int z = rt_major_axis(ray->dir);
+    bool down = ray->dir.at[z] < 0; /* as the ray comes to the light: it is seen from there along +z */
+    const RtLightGrid *grid = &cube->grids[2 * z + down];
+    if (!cube->serves || grid->columns == 0) return false;
+    float depth = fabsf(ray->dir.at[z]);
+    float u = (-ray->dir.at[(z + 1) % 3] / depth - grid->u) * grid->scale;
+    float w = (-ray->dir.at[(z + 2) % 3] / depth - grid->w) * grid->scale;
+    if (!(u >= 0 && w >= 0 && u < (float)grid->columns && w < (float)grid->rows)) return false;
+    uint32_t column = (uint32_t)u, row = (uint32_t)w;
+    uint32_t tile = cube->tiles[grid->first_tile + row * grid->columns + column], n = rt_light_fineness(tile);
+    uint32_t x = (uint32_t)((u - (float)column) * (float)n), y = (uint32_t)((w - (float)row) * (float)n);
+    cell->number = rt_light_first_cell(tile) + (y < n ? y : n - 1) * n + (x < n ? x : n - 1);
+    uint32_t first = cube->first[cell->number], end = cube->first[cell->number + 1];
+    cell->cut = end > first && cube->entries[end - 1].object == RT_LIGHT_BEYOND;
+    cell->length = end - first - cell->cut;
+    cell->object = cell->length == 0 ? RT_NO_OBJECT
+                                     : rt_light_id_of(&accel->scene->geometry, cube->entries[first].object);
+    return true;
+}
+
 void rt_light_describe(const RtAccel *accel, RtDescription *out) {
     const RtLightBuffer *buffer = (const RtLightBuffer *)accel;
     *out = (RtDescription){RT_NO_PREDICTION};

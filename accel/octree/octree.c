@@ -56,6 +56,18 @@ RT_KERNEL void count_leaf(bool empty, RtTally *tally) {
     RT_COUNT(tally, empty_steps, empty);
 }
 
+/* `again`: a leaf that has been visited, and is not now. */
+RT_COLD static void observe_node(const RtOctree *self, uint32_t index, bool again) {
+    const RtOctreeNode *node = &self->nodes[index];
+    bool leaf = !rt_octree_is_inner(node) && !again;
+    rt_observe(&(RtTraced){.kind = RT_TRACED_STEP,
+                           .what = "node",
+                           .index = index,
+                           .box = &self->boxes[index],
+                           .leaf = leaf,
+                           .empty = leaf && node->count == 0});
+}
+
 RT_KERNEL bool visit_leaf(const RtOctree *self, RtMailbox *mailbox, const RtOctreeNode *leaf,
                           const RtPreparedRay *ray, bool any, RtHit *best, RtTally *tally) {
     count_leaf(leaf->count == 0, tally);
@@ -161,6 +173,7 @@ RT_KERNEL void descend(const RtOctree *self, RtMailbox *mailbox, const RtPrepare
     for (;;) {
         const RtOctreeNode *node = &self->nodes[at.node];
         RT_COUNT(tally, steps, 1);
+        if (RT_OBSERVED(tally)) observe_node(self, at.node, false);
         if (at.empty) {
             count_leaf(true, tally);
         } else if (rt_octree_is_inner(node)) {
@@ -254,6 +267,8 @@ RT_KERNEL bool enter_leaves(const RtOctree *self, RtMailbox *mailbox, const Cros
     for (;;) {
         const RtOctreeNode *node = &self->nodes[index];
         RT_COUNT(tally, steps, 1);
+        if (RT_OBSERVED(tally))
+            observe_node(self, index, *count == MAX_CELLS || is_current(cells, *count, index));
         if (rt_octree_is_inner(node)) {
             uint32_t children = children_at(ray, node, at);
             for (; children; children &= children - 1) {
@@ -302,6 +317,7 @@ RT_KERNEL uint32_t climb(const RtOctree *self, const RtPreparedRay *ray, uint32_
         index = self->nodes[index].parent;
         if (first) return index;
         RT_COUNT(tally, steps, 1);
+        if (RT_OBSERVED(tally)) observe_node(self, index, false);
     }
     return NOWHERE;
 }
@@ -330,7 +346,9 @@ RT_KERNEL void search(const RtOctree *self, void *scratch, const RtPreparedRay *
     float enter;
     if (self->node_count == 0) return;
     RT_COUNT(tally, extent_tests, 1);
-    if (!rt_box_hit(&self->boxes[0], ray, ray->tmax, &enter)) return;
+    bool met = rt_box_hit(&self->boxes[0], ray, ray->tmax, &enter);
+    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "node", .box = &self->boxes[0], .met = met);
+    if (!met) return;
     RtMailbox *mailbox = self->mailbox ? scratch : NULL;
     rt_mailbox_next_ray(mailbox, &self->base.scene->geometry);
     if (self->traversal != RT_OCTREE_PARAMETRIC && walk(self, mailbox, enter, ray, any, best, tally)) return;

@@ -204,7 +204,11 @@ RtStatus rt_octree_validate(const RtAccel *accel, RtError *error) {
 void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer) {
     const RtOctree *tree = (const RtOctree *)accel;
     for (uint32_t i = 0; i < tree->node_count; i++) {
-        if (tree->nodes[i].count > 0) viewer.show(viewer.context, &tree->boxes[i], depth_of(tree, i));
+        const RtOctreeNode *node = &tree->nodes[i];
+        bool leaf = !rt_octree_is_inner(node);
+        if (!leaf || node->count > 0)
+            viewer.show(viewer.context,
+                        &(RtBoxView){.box = &tree->boxes[i], .depth = depth_of(tree, i), .leaf = leaf});
     }
 }
 

@@ -56,7 +56,8 @@ void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, 
 /* quality.c, for describe: sets the qualities. */
 void rt_hierarchy_measure(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out);
 
-void rt_hierarchy_each_box(const RtHierarchy *self, RtBoxViewer viewer);
+/* `extents`: of the nodes, by their index; or NULL. */
+void rt_hierarchy_each_box(const RtHierarchy *self, const struct RtExtentSet *extents, RtBoxViewer viewer);
 void rt_hierarchy_each_leaf(const RtHierarchy *self, RtLeafViewer viewer);
 
 /* RT_OK, or RT_MISMATCH and the first broken invariant, told of `name`. */

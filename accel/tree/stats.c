@@ -40,15 +40,16 @@ void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, 
     out->predicted_cost = (stats.tests + self->traversal_cost * stats.inner) / area;
 }
 
-static void show_node(const RtHierarchy *self, uint32_t index, uint32_t depth, RtBoxViewer viewer) {
+static void show_node(const RtHierarchy *self, const struct RtExtentSet *extents, uint32_t index,
+                      uint32_t depth, RtBoxViewer viewer) {
     const RtNode *node = &self->nodes[index];
-    viewer.show(viewer.context, &node->box, depth);
+    viewer.show(viewer.context, &(RtBoxView){&node->box, depth, rt_node_is_leaf(node), extents, index});
     if (rt_node_is_leaf(node)) return;
-    for (uint32_t i = 0; i < node->count; i++) show_node(self, node->first + i, depth + 1, viewer);
+    for (uint32_t i = 0; i < node->count; i++) show_node(self, extents, node->first + i, depth + 1, viewer);
 }
 
-void rt_hierarchy_each_box(const RtHierarchy *self, RtBoxViewer viewer) {
-    if (self->node_count > 0) show_node(self, 0, 0, viewer);
+void rt_hierarchy_each_box(const RtHierarchy *self, const struct RtExtentSet *extents, RtBoxViewer viewer) {
+    if (self->node_count > 0) show_node(self, extents, 0, 0, viewer);
 }
 
 static void show_leaves(const RtHierarchy *self, uint32_t index, uint32_t depth, RtLeafViewer viewer) {

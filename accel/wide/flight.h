@@ -139,6 +139,28 @@ RT_KERNEL uint32_t meet(const RtWideNode *node, const Flight *f, __m256 *enter) 
     return rt_v8_at_most(near, far);
 }
 
+/* A node has no box of its own but those of its children, which are tested together. */
+RT_COLD static void observe_node(const RtWideNode *node, RtWideRef ref, uint32_t mask) {
+    RtBox child[RT_WIDE], all = RT_EMPTY_BOX;
+    for (uint32_t i = 0; i < node->count; i++) {
+        for (size_t a = 0; a < 3; a++) {
+            child[i].lo.at[a] = node->plane[2 * a][i];
+            child[i].hi.at[a] = node->plane[2 * a + 1][i];
+        }
+        all = rt_box_union(all, child[i]);
+    }
+    rt_observe(
+        &(RtTraced){.kind = RT_TRACED_STEP, .what = "node at", .index = rt_wide_place(ref), .box = &all});
+    for (uint32_t i = 0; i < node->count; i++) {
+        bool leaf = rt_wide_kind(node->child[i]) != RT_WIDE_NODE;
+        rt_observe(&(RtTraced){.kind = RT_TRACED_EXTENT_TEST,
+                               .what = leaf ? "leaf at" : "node at",
+                               .index = rt_wide_place(node->child[i]),
+                               .box = &child[i],
+                               .met = mask >> i & 1});
+    }
+}
+
 /* The lane of a mask with the least entry, but for the last three bits, by which ties are few; any lane of no
  * mask. Entries are at least 0, so their bits are in their order. */
 RT_KERNEL uint32_t least_lane(uint32_t mask, __m256i enter) {
@@ -256,6 +278,7 @@ RT_KERNEL bool test_block(const RtWideTriangles *block, uint32_t mask, const Axe
         uint32_t lane = (uint32_t)__builtin_ctz(mask);
         if (!admit(&block->v[0][0][lane], ray, &at[lane])) continue;
         RT_COUNT(tally, object_hits, 1);
+        RT_OBSERVE(tally, .kind = RT_TRACED_OBJECT_HIT, .index = block->id[lane], .t = at[lane]);
         if (rt_hit_before(at[lane], block->id[lane], *best)) *best = (RtHit){at[lane], block->id[lane]};
         if (any) return true;
     }
@@ -282,10 +305,25 @@ RT_KERNEL bool test_objects(const RtWideTree *tree, const RtGeometry *g, RtWideR
     return false;
 }
 
-RT_KERNEL void count_leaf(RtTally *tally, RtWideRef ref) {
+/* The objects of triangles are tested there and then, in lanes. */
+RT_COLD static void observe_leaf(const RtWideTree *tree, const RtGeometry *g, RtWideRef ref) {
+    RtBox box = RT_EMPTY_BOX;
+    bool triangles = rt_wide_kind(ref) == RT_WIDE_TRIANGLES;
+    for (uint32_t i = 0; i < rt_wide_count(ref); i++)
+        box = rt_box_union(box, g->boxes[rt_wide_leaf_object(tree, ref, i)]);
+    rt_observe(&(RtTraced){
+        .kind = RT_TRACED_STEP, .what = "leaf at", .index = rt_wide_place(ref), .box = &box, .leaf = true});
+    for (uint32_t i = 0; triangles && i < rt_wide_count(ref); i++) {
+        uint32_t id = rt_wide_leaf_object(tree, ref, i);
+        rt_observe(&(RtTraced){.kind = RT_TRACED_OBJECT_TEST, .index = id, .box = &g->boxes[id]});
+    }
+}
+
+RT_KERNEL void count_leaf(RtTally *tally, const RtWideTree *tree, const RtGeometry *g, RtWideRef ref) {
     RT_COUNT(tally, steps, 1);
     RT_COUNT(tally, leaf_steps, 1);
     if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) RT_COUNT(tally, object_tests, rt_wide_count(ref));
+    if (RT_OBSERVED(tally)) observe_leaf(tree, g, ref);
 }
 
 /* What follows a leaf in which something was tested: what waits and is entered beyond the best hit is

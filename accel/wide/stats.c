@@ -98,7 +98,7 @@ void rt_wide_describe(const RtWideTree *self, const RtGeometry *geometry, RtDesc
 void rt_wide_each_box(const RtWideTree *self, RtBoxViewer viewer) {
     RtHierarchy plain;
     if (self->node_count == 0 || !flatten(self, &plain)) return;
-    rt_hierarchy_each_box(&plain, viewer);
+    rt_hierarchy_each_box(&plain, NULL, viewer);
     rt_hierarchy_clear(&plain);
 }
 

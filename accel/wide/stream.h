@@ -52,6 +52,7 @@ RT_KERNEL void fly_alone(const Question *q, Flight *f, bool any, bool counted) {
             uint32_t mask = meet(node, f, &enter);
             RT_COUNT(tally, steps, 1);
             RT_COUNT(tally, extent_tests, node->count);
+            if (RT_OBSERVED(tally)) observe_node(node, ref, mask);
             if ((mask & (mask - 1)) == 0 && mask != 0) {
                 ref = node->child[__builtin_ctz(mask)];
             } else {
@@ -60,7 +61,7 @@ RT_KERNEL void fly_alone(const Question *q, Flight *f, bool any, bool counted) {
             }
             continue;
         }
-        count_leaf(tally, ref);
+        count_leaf(tally, tree, q->geometry, ref);
         if (rt_wide_kind(ref) == RT_WIDE_TRIANGLES) {
             const RtWideTriangles *blocks = rt_wide_leaf_at(tree, ref);
             uint32_t mask = sieve_leaf(blocks, ref, &f->axes);
@@ -120,7 +121,10 @@ RT_KERNEL void visit_nodes(const Question *q, Traffic *t, bool any, bool counted
         __m256 enter;
         masks[i] = meet(node, f, &enter);
         if (!any) _mm256_store_ps(enters[i], enter);
-        if (counted) f->tally->steps++, f->tally->extent_tests += node->count;
+        if (counted) {
+            f->tally->steps++, f->tally->extent_tests += node->count;
+            if (RT_OBSERVED(f->tally)) observe_node(node, f->next, masks[i]);
+        }
     }
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_NODE][i];
@@ -142,7 +146,7 @@ RT_KERNEL uint32_t sieve_leaves(const Question *q, Traffic *t, Suspects *found, 
     const RtWideTree tree = *q->tree;
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_TRIANGLES][i];
-        if (counted) count_leaf(f->tally, f->next);
+        if (counted) count_leaf(f->tally, &tree, q->geometry, f->next);
         masks[i] = sieve_leaf(rt_wide_leaf_at(&tree, f->next), f->next, &f->axes);
     }
     for (uint32_t i = 0; i < n; i++) {
@@ -172,7 +176,7 @@ RT_KERNEL void visit_objects(const Question *q, Traffic *t, bool any, bool count
     for (uint32_t i = 0; i < n; i++) {
         Flight *f = t->list[RT_WIDE_OBJECTS][i];
         RtTally *tally = counted ? f->tally : NULL;
-        count_leaf(tally, f->next);
+        count_leaf(tally, q->tree, q->geometry, f->next);
         leave_leaf(q, t, f, test_objects(q->tree, q->geometry, f->next, &f->ray, any, &f->best, tally), any,
                    ahead);
     }

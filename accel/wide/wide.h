@@ -97,6 +97,13 @@ static inline const void *rt_wide_leaf_at(const RtWideTree *tree, RtWideRef ref)
     return tree->arena + rt_wide_place(ref);
 }
 
+/* Object `i` of a leaf. */
+static inline uint32_t rt_wide_leaf_object(const RtWideTree *tree, RtWideRef ref, uint32_t i) {
+    if (rt_wide_kind(ref) == RT_WIDE_OBJECTS) return ((const RtWideList *)rt_wide_leaf_at(tree, ref))->id[i];
+    const RtWideTriangles *blocks = rt_wide_leaf_at(tree, ref);
+    return blocks[i / RT_WIDE_BLOCK].id[i % RT_WIDE_BLOCK];
+}
+
 /* How a tree is laid out. */
 typedef struct RtWideLayout {
     uint32_t leaf_limit; /* objects of a leaf at most */

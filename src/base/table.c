@@ -3,6 +3,7 @@
 
 #include "base/csv.h"
 #include "base/json.h"
+#include "base/table_line.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -23,12 +24,8 @@ const char *rt_form_name(RtForm form) {
     return forms[form].says;
 }
 
-static bool is_number(const RtTableColumn *column) {
+bool rt_column_is_number(const RtTableColumn *column) {
     return column->form >= RT_FORM_integer;
-}
-
-static bool is_sortable(const RtTableColumn *column) {
-    return is_number(column) || column->form == RT_FORM_interval;
 }
 
 /* ---- fields ---- */
@@ -168,20 +165,13 @@ static json_t *field_json(RtForm form, const RtField *field) {
 
 /* ---- rows ---- */
 
-/* The fields of a row, in the order of the columns. */
-typedef struct Line {
-    size_t count;
-    const RtTableColumn *columns[RT_MAX_TABLE_COLUMNS];
-    RtField fields[RT_MAX_TABLE_COLUMNS];
-} Line;
-
 static RtField field_of(const RtColumnGroup *group, size_t i, const void *row) {
     if (row && group->of) row = group->of(row);
     return row ? group->columns[i].get(row, &group->columns[i]) : rt_field_missing();
 }
 
 /* Without a row the columns alone. */
-static void take(Line *line, const RtTable *table, const void *row) {
+static void take(RtTableLine *line, const RtTable *table, const void *row) {
     line->count = 0;
     for (size_t g = 0; g < table->group_count; g++) {
         const RtColumnGroup *group = &table->groups[g];
@@ -193,25 +183,17 @@ static void take(Line *line, const RtTable *table, const void *row) {
     }
 }
 
-static const char *show(const Line *line, size_t i, char room[RT_MAX_FIELD]) {
+const char *rt_line_show(const RtTableLine *line, size_t i, char room[RT_MAX_FIELD]) {
     return rt_field_show(line->columns[i]->form, &line->fields[i], room);
 }
 
-typedef struct Writer Writer;
-struct Writer {
-    const RtTable *table;
-    void (*put)(Writer *writer, const Line *line, const void *row); /* `row` is NULL: the header */
-    FILE *out;
-    int *widths; /* of text */
-};
-
-static void write_row(Writer *w, const void *row) {
-    Line line;
+static void write_row(RtTableWriter *w, const void *row) {
+    RtTableLine line;
     take(&line, w->table, row);
     w->put(w, &line, row);
 }
 
-static void write_all(Writer w) {
+void rt_table_walk(RtTableWriter w) {
     write_row(&w, NULL);
     for (size_t i = 0; i < w.table->row_count; i++) {
         const void *row = w.table->row(w.table->context, i);
@@ -221,27 +203,27 @@ static void write_all(Writer w) {
 
 /* ---- CSV ---- */
 
-static void put_csv(Writer *w, const Line *line, const void *row) {
+static void put_csv(RtTableWriter *w, const RtTableLine *line, const void *row) {
     char room[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
         if (i) fputc(',', w->out);
-        rt_csv_put(w->out, row ? show(line, i, room) : line->columns[i]->id);
+        rt_csv_put(w->out, row ? rt_line_show(line, i, room) : line->columns[i]->id);
     }
     fputc('\n', w->out);
 }
 
 void rt_table_csv(const RtTable *table, FILE *out) {
-    write_all((Writer){.table = table, .put = put_csv, .out = out});
+    rt_table_walk((RtTableWriter){.table = table, .put = put_csv, .out = out});
 }
 
 /* ---- text ---- */
 
-static const char *show_text(const Line *line, size_t i, const void *row, char room[RT_MAX_FIELD]) {
-    const char *text = row ? show(line, i, room) : line->columns[i]->name;
+static const char *show_text(const RtTableLine *line, size_t i, const void *row, char room[RT_MAX_FIELD]) {
+    const char *text = row ? rt_line_show(line, i, room) : line->columns[i]->name;
     return *text ? text : "-";
 }
 
-static void widen(Writer *w, const Line *line, const void *row) {
+static void widen(RtTableWriter *w, const RtTableLine *line, const void *row) {
     char room[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
         int width = (int)strlen(show_text(line, i, row, room));
@@ -249,10 +231,10 @@ static void widen(Writer *w, const Line *line, const void *row) {
     }
 }
 
-static void put_text(Writer *w, const Line *line, const void *row) {
+static void put_text(RtTableWriter *w, const RtTableLine *line, const void *row) {
     char room[RT_MAX_FIELD];
     for (size_t i = 0; i < line->count; i++) {
-        bool last = i + 1 == line->count, left = !is_number(line->columns[i]);
+        bool last = i + 1 == line->count, left = !rt_column_is_number(line->columns[i]);
         int width = left && last ? 0 : w->widths[i];
         fprintf(w->out, left ? "%-*s%s" : "%*s%s", width, show_text(line, i, row, room), last ? "\n" : "  ");
     }
@@ -260,118 +242,17 @@ static void put_text(Writer *w, const Line *line, const void *row) {
 
 void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]) {
     memset(widths, 0, RT_MAX_TABLE_COLUMNS * sizeof *widths);
-    write_all((Writer){.table = table, .put = widen, .widths = widths});
+    rt_table_walk((RtTableWriter){.table = table, .put = widen, .widths = widths});
 }
 
 void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out) {
-    write_row(&(Writer){table, put_text, out, widths}, row);
+    write_row(&(RtTableWriter){table, put_text, out, widths}, row);
 }
 
 void rt_table_text(const RtTable *table, FILE *out) {
     int widths[RT_MAX_TABLE_COLUMNS];
     rt_table_widths(table, widths);
-    write_all((Writer){table, put_text, out, widths});
-}
-
-/* ---- Markdown ---- */
-
-static void put_markdown(Writer *w, const Line *line, const void *row) {
-    char room[RT_MAX_FIELD];
-    fputc('|', w->out);
-    for (size_t i = 0; i < line->count; i++) {
-        const char *text = row ? show(line, i, room) : line->columns[i]->name;
-        if (*text) fputc(' ', w->out);
-        for (; *text; text++) fprintf(w->out, *text == '|' ? "\\|" : "%c", *text);
-        fputs(" |", w->out);
-    }
-    fputs(row ? "\n" : "\n|", w->out);
-    for (size_t i = 0; !row && i < line->count; i++) {
-        bool right = is_number(line->columns[i]) && !w->table->ragged;
-        fprintf(w->out, " ---%s |%s", right ? ":" : "", i + 1 < line->count ? "" : "\n");
-    }
-}
-
-void rt_table_markdown(const RtTable *table, FILE *out) {
-    write_all((Writer){.table = table, .put = put_markdown, .out = out});
-}
-
-/* ---- HTML ---- */
-
-static void put_character(FILE *out, char c) {
-    switch (c) {
-    case '<': fputs("&lt;", out); break;
-    case '>': fputs("&gt;", out); break;
-    case '&': fputs("&amp;", out); break;
-    case '"': fputs("&quot;", out); break;
-    default: fputc(c, out);
-    }
-}
-
-void rt_html_put(FILE *out, const char *text) {
-    for (; text && *text; text++) put_character(out, *text);
-}
-
-void rt_html_markup(FILE *out, const char *text) {
-    bool code = false, bold = false;
-    for (; *text; text++) {
-        if (*text == '`') {
-            fputs((code = !code) ? "<code>" : "</code>", out);
-        } else if (text[0] == '*' && text[1] == '*') {
-            fputs((bold = !bold) ? "<b>" : "</b>", out);
-            text++;
-        } else {
-            put_character(out, *text);
-        }
-    }
-}
-
-/* ` NAME="TEXT"` */
-static void put_attribute(FILE *out, const char *name, const char *text) {
-    fprintf(out, " %s=\"", name);
-    rt_html_put(out, text);
-    fputc('"', out);
-}
-
-static void put_header(const RtTableColumn *column, FILE *out) {
-    fputs(is_sortable(column) ? "<th class=\"number\"" : "<th", out);
-    put_attribute(out, "data-id", column->id);
-    put_attribute(out, "title", column->meaning);
-    fputc('>', out);
-    rt_html_put(out, column->name);
-    fputs("</th>", out);
-}
-
-static void put_field(const RtTableColumn *column, const RtField *field, FILE *out) {
-    char room[RT_MAX_FIELD], value[32] = "";
-    const char *text = rt_field_show(column->form, field, room);
-    fputs(field->missed ? "<td class=\"missed\"" : "<td", out);
-    if (field->is == RT_FIELD_INTEGER) snprintf(value, sizeof value, "%" PRIu64, field->integer);
-    if (field->is >= RT_FIELD_REAL && *text) snprintf(value, sizeof value, "%.9g", field->real);
-    if (is_sortable(column)) put_attribute(out, "data-value", value);
-    if (field->note) put_attribute(out, "title", field->note);
-    fputc('>', out);
-    (column->form == RT_FORM_markup ? rt_html_markup : rt_html_put)(out, *text ? text : "-");
-    fputs("</td>", out);
-}
-
-static void put_html(Writer *w, const Line *line, const void *row) {
-    const char *color = row && w->table->color ? w->table->color(row) : NULL;
-    fputs(row ? "<tr" : "<div class=\"wide\"><table><thead><tr", w->out);
-    if (color) fprintf(w->out, " style=\"--dot:%s\"", color);
-    fputc('>', w->out);
-    for (size_t i = 0; i < line->count; i++) {
-        if (row) {
-            put_field(line->columns[i], &line->fields[i], w->out);
-        } else {
-            put_header(line->columns[i], w->out);
-        }
-    }
-    fputs(row ? "</tr>\n" : "</tr></thead><tbody>\n", w->out);
-}
-
-void rt_table_html(const RtTable *table, FILE *out) {
-    write_all((Writer){.table = table, .put = put_html, .out = out});
-    fputs("</tbody></table></div>\n", out);
+    rt_table_walk((RtTableWriter){table, put_text, out, widths});
 }
 
 /* ---- JSON ---- */

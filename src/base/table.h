@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables: what was found, described once and written in every form: CSV, text for a terminal, Markdown, HTML
- * and JSON.
+/* Tables: what was found, described once and written in every form: CSV, text for a terminal, Markdown,
+ * LaTeX, HTML and JSON.
  *
  * A column says what it is called, what it means, in which unit and form its fields are written, and how one
  * is got from a row. Columns come in groups; a table is some groups over some rows. A row is whatever the
@@ -158,14 +158,19 @@ typedef struct RtColumnGroup {
 
 #define RT_MAX_TABLE_COLUMNS 80
 
+/* How a row compares with the others: the best is marked, and what intervals do not tell apart from it. */
+typedef enum RtStanding { RT_STANDING_BEHIND, RT_STANDING_LEVEL, RT_STANDING_BEST } RtStanding;
+
 typedef struct RtTable {
     const RtColumnGroup *groups;
     size_t group_count;
     size_t row_count;
     const void *(*row)(void *context, size_t i); /* NULL: there is no such row; the next call may reuse it */
     void *context;
-    const char *(*color)(const void *row); /* HTML: of a dot before the row; or NULL */
-    bool ragged;                           /* Markdown: numbers do not stand to the right */
+    const char *(*color)(const void *row);   /* HTML: of a dot before the row; or NULL */
+    RtStanding (*standing)(const void *row); /* Markdown, LaTeX, HTML; or NULL: none is marked */
+    const char *caption;                     /* LaTeX, HTML; or NULL */
+    bool ragged;                             /* Markdown: numbers do not stand to the right */
 } RtTable;
 
 /* The first two members of a table of all groups of an array; the others are named. */
@@ -174,6 +179,10 @@ typedef struct RtTable {
 void rt_table_csv(const RtTable *table, FILE *out);
 void rt_table_text(const RtTable *table, FILE *out);
 void rt_table_markdown(const RtTable *table, FILE *out);
+
+/* A table environment for the packages booktabs and graphicx, made smaller where it is wider than the column.
+ */
+void rt_table_tex(const RtTable *table, FILE *out);
 
 /* <table>; data-id of a header and data-value of a number serve for sorting. */
 void rt_table_html(const RtTable *table, FILE *out);

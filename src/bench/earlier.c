@@ -9,9 +9,9 @@
 #include <string.h>
 
 static const char *const result_files[] = {
-    RT_RUN_JOURNAL, RT_VERIFY_JOURNAL, RT_MANIFEST,          "counts.csv",      "times.csv",
-    "rounds.csv",   "published.csv",   "best.csv",           "published.md",    "report.html",
-    "verify.csv",   "verify.md",       RT_DISTRIBUTIONS_CSV, RT_HISTOGRAMS_CSV, RT_HARDWARE_CSV};
+    RT_RUN_JOURNAL,  RT_VERIFY_JOURNAL, RT_MANIFEST,          "counts.csv",      "times.csv",    "rounds.csv",
+    "published.csv", "best.csv",        "published.md",       "report.html",     "verify.csv",   "verify.md",
+    "tables.md",     "tables.tex",      RT_DISTRIBUTIONS_CSV, RT_HISTOGRAMS_CSV, RT_HARDWARE_CSV};
 
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
@@ -73,5 +73,6 @@ void rt_earlier_remove(const char *directory, const char *journal) {
         if (rt_path_join(directory, result_files[i], path, NULL) == RT_OK) remove(path);
     }
     remove_each(directory, "plots", ".svg");
+    remove_each(directory, "plots", ".pdf");
     remove_each(directory, "images", ".png");
 }

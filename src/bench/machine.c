@@ -7,22 +7,45 @@
 
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
-/* The model name of the first processor, "" where /proc does not tell. */
-static void read_cpu(char *out, size_t room) {
+/* What /proc says of the first processor under `key`, "" where it does not tell. */
+static void read_cpu(const char *key, char *out, size_t room) {
     char line[512];
     out[0] = '\0';
     FILE *file = fopen("/proc/cpuinfo", "r");
     while (file && !out[0] && fgets(line, sizeof line, file)) {
         char *value = strchr(line, ':');
-        if (strncmp(line, "model name", 10) != 0 || !value) continue;
+        if (strncmp(line, key, strlen(key)) != 0 || !value) continue;
         line[strcspn(line, "\n")] = '\0';
         snprintf(out, room, "%s", value + 1 + strspn(value + 1, " \t"));
     }
     if (file) fclose(file);
+}
+
+/* The first line of a file of the kernel's, "" where there is none. */
+static void read_line(const char *path, char *out, int room) {
+    out[0] = '\0';
+    FILE *file = fopen(path, "r");
+    if (file && !fgets(out, room, file)) out[0] = '\0';
+    if (file) fclose(file);
+    out[strcspn(out, "\n")] = '\0';
+}
+
+#define CPUFREQ "/sys/devices/system/cpu/cpu0/cpufreq/"
+
+static json_t *clock_mhz(void) {
+    char text[64];
+    read_line(CPUFREQ "cpuinfo_max_freq", text, sizeof text);
+    double mhz = 1e-3 * strtod(text, NULL);
+    if (!(mhz > 0)) {
+        read_cpu("cpu MHz", text, sizeof text);
+        mhz = strtod(text, NULL);
+    }
+    return mhz > 0 ? json_real(mhz) : json_null();
 }
 
 static const char *simd_level(void) {
@@ -43,16 +66,18 @@ static json_t *text_or_null(const char *text) {
 }
 
 json_t *rt_machine_json(void) {
-    char cpu[256], system[256] = "";
+    char cpu[256], governor[64], system[256] = "";
     struct utsname name;
-    read_cpu(cpu, sizeof cpu);
+    read_cpu("model name", cpu, sizeof cpu);
+    read_line(CPUFREQ "scaling_governor", governor, sizeof governor);
     if (uname(&name) == 0) {
         snprintf(system, sizeof system, "%.64s %.64s %.64s", name.sysname, name.release, name.machine);
     }
-    json_t *machine = json_pack("{s:o, s:o, s:i, s:o, s:s, s:s, s:s, s:s, s:b}", "cpu", text_or_null(cpu),
-                                "simd", text_or_null(simd_level()), "processors", rt_processor_count(), "os",
-                                text_or_null(system), "compiler", RT_COMPILER, "flags", RT_FLAGS, "version",
-                                RT_VERSION, "commit", RT_COMMIT, "dirty", RT_DIRTY);
+    json_t *machine = json_pack(
+        "{s:o, s:o, s:o, s:o, s:i, s:o, s:s, s:s, s:s, s:s, s:b}", "cpu", text_or_null(cpu), "clock_mhz",
+        clock_mhz(), "governor", text_or_null(governor), "simd", text_or_null(simd_level()), "processors",
+        rt_processor_count(), "os", text_or_null(system), "compiler", RT_COMPILER, "flags", RT_FLAGS,
+        "version", RT_VERSION, "commit", RT_COMMIT, "dirty", RT_DIRTY);
     for (size_t i = 0; i < rt_accel_count(); i++) {
         const RtAccelOps *ops = rt_accel_at(i);
         char library[64];
@@ -70,7 +95,7 @@ const char *rt_build_identity(void) {
 
 RtMachine rt_machine_here(void) {
     RtMachine machine = {"", ""};
-    read_cpu(machine.cpu, sizeof machine.cpu);
+    read_cpu("model name", machine.cpu, sizeof machine.cpu);
     if (gethostname(machine.host, sizeof machine.host - 1) != 0) machine.host[0] = '\0';
     return machine;
 }

@@ -7,9 +7,10 @@
 
 #include <jansson.h>
 
-/* {"cpu", "simd", "processors", "os", "compiler", "flags", "version", "commit", "dirty"}, and by the name
- * of each accelerator that a library does the work of, its version; what cannot be found out is null. NULL
- * where memory is short; the caller owns the reference. */
+/* {"cpu", "clock_mhz" (the highest of the first processor, or what it has just now), "governor", "simd",
+ * "processors", "os", "compiler", "flags", "version", "commit", "dirty"}, and by the name of each accelerator
+ * that a library does the work of, its version; what cannot be found out is null. NULL where memory is short;
+ * the caller owns the reference. */
 json_t *rt_machine_json(void);
 
 /* Version, commit and dirty flag in one line: only what was measured by one and the same build may be

@@ -2,6 +2,7 @@
 #include "bench/result_tables.h"
 
 #include "accel/structure_json.h"
+#include "bench/standing.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -36,7 +37,7 @@ static RtField short_label_of(const Row *r) {
 }
 
 static RtField ratio_of(const Row *r) {
-    bool ends = r->which != RT_TOTALS;
+    bool ends = r->which != RT_TOTALS && r->which != RT_TOTALS_MORE;
     return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN,
                              ends ? r->cell->ratio.high : (double)NAN);
 }
@@ -47,6 +48,12 @@ static RtField pay_off_of(const Row *r) {
            : isinf(rays) ? rt_field_text("never")
            : rays == 0   ? rt_field_text("always")
                          : rt_field_print(rays > 0 ? "from %.3g" : "to %.3g", 1e-6 * fabs(rays));
+}
+
+static RtField ns_of(const Row *r) {
+    const bool total = r->which == RT_TOTALS_MORE;
+    return rt_field_interval(1e9 * r->all.seconds, 1e9 * (total ? r->all.seconds_low : r->cell->seconds.low),
+                             1e9 * (total ? r->all.seconds_high : r->cell->seconds.high));
 }
 
 static RtField baseline_of(const Row *r) {
@@ -144,6 +151,7 @@ static double each_ns(const Row *r, RtEach each) {
     X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
     X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->all.steps)                                   \
     X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->all.seconds)                         \
+    X(ns_interval, "ns/ray", interval, "ns", "median time per ray, with its interval", ns_of(r))             \
     X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds)                            \
     X(interval, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                        \
     X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
@@ -235,6 +243,8 @@ static const RtColumnGroup null_runs[] = {RT_ONE(columns, scene_spec), RT_ONE(co
 
 static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, eye_ratio)};
 
+static const RtColumnGroup for_papers[] = {RT_ONE(columns, accel), RT_FROM_TO(columns, eye_tests, eye_ratio)};
+
 static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label),
                                            RT_FROM_TO(columns, build_ms, pay_off)};
 
@@ -247,10 +257,10 @@ static const RtColumnGroup counted_structures[] = {
 };
 
 static const RtColumnGroup cells[] = {
-    RT_ONE(columns, accel),         RT_ONE(columns, kind),
-    RT_ONE(columns, rays),          RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
-    RT_FROM_TO(columns, mrays, mb), RT_ONE(columns, ns_a_ray),
-    RT_ONE(columns, min_ns),        RT_ONE(columns, differ)};
+    RT_ONE(columns, accel),       RT_ONE(columns, kind),
+    RT_ONE(columns, rays),        RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
+    RT_ONE(columns, ns_interval), RT_FROM_TO(columns, mrays, interval),
+    RT_ONE(columns, min_ns),      RT_ONE(columns, differ)};
 
 static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, rays),
                                        RT_FROM_TO(columns, tests_a_ray, ns_a_ray),
@@ -265,10 +275,14 @@ static const RtColumnGroup leaf_spreads[] = {RT_ONE(columns, eye_label),
 static const RtColumnGroup machine_cells[] = {RT_ONE(columns, eye_label),
                                               RT_FROM_TO(columns, eye_instructions, eye_branch)};
 
+static const RtColumnGroup totals_more[] = {
+    RT_ONE(columns, accel), RT_ONE(columns, rays), RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
+    RT_ONE(columns, ns_interval), RT_FROM_TO(columns, interval, pay_off)};
+
 /* ---- rows ---- */
 
-/* A workload after the other, in each an accelerator after the other, the null run last, in each all kinds;
- * for the eye and bench, of one workload, a kind after the other. */
+/* A workload after the other, in each an accelerator after the other, the null run last, in each all
+ * kinds; for the eye and bench, of one workload, a kind after the other. */
 static bool is_by_workload(RtResultTable which) {
     return which <= RT_ROUNDS;
 }
@@ -296,7 +310,8 @@ static double per_ray(const Row *r, uint64_t counter) {
 
 static RtTotal all_of(const Row *r) {
     const RtTally *tally = &r->cell->tally;
-    if (r->which == RT_TOTALS) return rt_results_total(r->results, r->workload, r->candidate);
+    if (r->which == RT_TOTALS || r->which == RT_TOTALS_MORE)
+        return rt_results_total(r->results, r->workload, r->candidate);
     return (RtTotal){.rays = tally->rays,
                      .object_tests = per_ray(r, tally->object_tests),
                      .extent_tests = per_ray(r, tally->extent_tests),
@@ -333,6 +348,7 @@ static const void *row_at(void *context, size_t i) {
         [RT_BENCH] = counted && !null,
         [RT_NULL_RUNS] = timed && null,
         [RT_CELLS] = (counted || timed) && !is_lost(r, r->cell),
+        [RT_CELLS_PAPER] = (counted || timed) && !null && !is_lost(r, r->cell),
         [RT_STRUCTURES] = is_shown(r) && !null && i < r->results->experiment->candidate_count,
         [RT_COUNTED_CELLS] = r->cell->counted,
         [RT_COUNTED_STRUCTURES] = is_shown(r) && i < r->results->experiment->candidate_count,
@@ -341,10 +357,17 @@ static const void *row_at(void *context, size_t i) {
         [RT_SPREADS] = r->cell->distributions && !isnan(per_ray(r, r->cell->tally.object_tests)),
         [RT_LEAF_SPREADS] = r->build->leaves && !null && i < r->results->experiment->candidate_count,
         [RT_MACHINE_CELLS] = r->cell->hardware.known && !*r->cell->hardware.why,
+        [RT_TOTALS_MORE] = r->build->known && !null && i < r->results->experiment->candidate_count,
     };
     if (!there[r->which]) return NULL;
     r->all = all_of(r);
     return r;
+}
+
+static RtStanding standing_of(const void *row) {
+    const Row *r = row;
+    const bool total = r->which == RT_TOTALS || r->which == RT_TOTALS_MORE;
+    return rt_standing(r->results, r->workload, r->candidate, total ? RT_RAY_KIND_COUNT : r->kind);
 }
 
 /* ---- what is swept ---- */
@@ -391,11 +414,13 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
         [RT_STRUCTURES] = {RT_GROUPS(structures)},
         [RT_COUNTED_CELLS] = {RT_GROUPS(counted_cells)},
         [RT_COUNTED_STRUCTURES] = {RT_GROUPS(counted_structures)},
-        [RT_CELLS_MORE] = {RT_GROUPS(cells)},
-        [RT_TOTALS] = {RT_GROUPS(totals)},
         [RT_SPREADS] = {RT_GROUPS(spreads)},
         [RT_LEAF_SPREADS] = {RT_GROUPS(leaf_spreads)},
         [RT_MACHINE_CELLS] = {RT_GROUPS(machine_cells)},
+        [RT_CELLS_PAPER] = {RT_GROUPS(for_papers)},
+        [RT_CELLS_MORE] = {RT_GROUPS(cells)},
+        [RT_TOTALS] = {RT_GROUPS(totals)},
+        [RT_TOTALS_MORE] = {RT_GROUPS(totals_more)},
     };
     const RtExperiment *e = row->results->experiment;
     const size_t workloads = is_by_workload(which) ? e->workload_count : 1;
@@ -404,6 +429,7 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     if (which == RT_ROUNDS) table.row_count *= RT_MAX_ROUNDS;
     table.row = row_at;
     table.context = row;
+    table.standing = which >= RT_CELLS_PAPER ? standing_of : NULL;
     row->which = which;
     if (which <= RT_BENCH) add_swept(&table, row);
     return table;

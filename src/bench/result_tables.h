@@ -23,12 +23,15 @@ typedef enum RtResultTable {
     RT_STRUCTURES,    /* for the eye: of each accelerator in it, what its structure takes */
     RT_COUNTED_CELLS, /* both where nothing was timed, with the sizes of structures in place of times */
     RT_COUNTED_STRUCTURES,
-    RT_CELLS_MORE, /* cells with more columns, and all rows */
-    RT_TOTALS,     /* one workload by accelerator, all kinds together */
     RT_SPREADS, /* for the eye: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
                    of object tests and steps */
     RT_LEAF_SPREADS,  /* for the eye: by accelerator: those of sizes and depths of leaves */
     RT_MACHINE_CELLS, /* for the eye: one workload by accelerator and ray kind: what the machine did */
+    /* Those from here on mark the best. */
+    RT_CELLS_PAPER, /* as RT_CELLS, with whole labels and without null runs */
+    RT_CELLS_MORE,  /* cells with more columns, and all rows */
+    RT_TOTALS,      /* one workload by accelerator, all kinds together */
+    RT_TOTALS_MORE, /* these with the intervals of their times */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;
 
@@ -46,7 +49,7 @@ typedef struct RtResultRow {
     const RtWorkloadResult *scene;
     const RtBuildResult *build;
     const RtCell *cell;
-    RtTotal all; /* of the cell, or of RT_TOTALS */
+    RtTotal all; /* of the cell, or of RT_TOTALS... */
     uint32_t swept_count;
     RtSweptKey swept[RT_MAX_SWEPT_KEYS]; /* what the experiment sweeps */
     char swept_names[RT_MAX_SWEPT_KEYS]

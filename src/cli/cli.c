@@ -71,6 +71,12 @@ void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, ui
                RT_MAX_IMAGE_SIDE);
 }
 
+void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y) {
+    char end;
+    if (sscanf(text, "%u,%u%c", x, y, &end) == 2 && !strchr(text, '-')) return;
+    argp_error(state, "--pixel: invalid value '%s': expected X,Y, as in 256,200", text);
+}
+
 const struct argp_option rt_list_options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};
 
 int rt_list_parse(int key, char *argument, struct argp_state *state) {

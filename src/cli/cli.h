@@ -23,6 +23,7 @@ int rt_command_accels(int argc, char **argv);
 int rt_command_scenes(int argc, char **argv);
 int rt_command_info(int argc, char **argv);
 int rt_command_render(int argc, char **argv);
+int rt_command_trace(int argc, char **argv);
 int rt_command_verify(int argc, char **argv);
 int rt_command_bench(int argc, char **argv);
 int rt_command_rays(int argc, char **argv);
@@ -76,6 +77,9 @@ typedef struct RtListOptions {
 
 extern const struct argp_option rt_list_options[];
 int rt_list_parse(int key, char *argument, struct argp_state *state);
+
+/* "X,Y", of --pixel */
+void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y);
 
 /* "WxH" */
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);

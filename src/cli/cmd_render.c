@@ -9,9 +9,8 @@
 #include "base/words.h"
 #include "bench/rayset.h"
 #include "cli/cli.h"
-#include "render/heatmap.h"
+#include "cli/pictures.h"
 #include "render/image.h"
-#include "render/structure.h"
 #include "scenes/open.h"
 #include "verify/equivalence.h"
 
@@ -22,32 +21,30 @@
 #include <unistd.h>
 
 typedef struct Options {
-    const char *scene, *accel;
+    const char *scene;
+    const char *accels[RT_MAX_PANELS]; /* the first makes all but heatmaps */
+    uint32_t accel_count;
     uint32_t width, height; /* 0: the camera's */
     uint32_t samples, depth;
     int threads;
     bool corners, check;
-    const char *png, *exr, *structure, *stats;    /* paths, or NULL */
-    const char *heatmaps[RT_TALLY_COUNTER_COUNT]; /* by counter */
+    const char *png, *exr, *stats; /* paths, or NULL */
+    RtPictureOptions pictures;
 } Options;
 
 enum { MOST_OUTPUTS = RT_TALLY_COUNTER_COUNT + 4 };
 
-enum { KEY_CORNERS = 256, KEY_HEATMAP, KEY_STRUCTURE, KEY_STATS, KEY_CHECK };
+enum { KEY_CORNERS = 256, KEY_STATS, KEY_CHECK };
 
 static const struct argp_option options[] = {
-    {"accel", 'a', "SPEC", 0, "Accelerator (default bvh); `raytally accels` lists them", 0},
+    {"accel", 'a', "SPEC", 0,
+     "Accelerator (default bvh); `raytally accels` lists them. With --heatmap up to 8 times, to compare", 0},
     {"size", 's', "WxH", 0, "Size of the image in pixels (default: the scene's)", 0},
     {"corners", KEY_CORNERS, 0, 0, "Sample the corners of pixels, (W+1) x (H+1) rays, as SPD asks", 0},
     {"samples", 'n', "N", 0, "N x N samples per pixel, 1..64 (default 1)", 0},
     {"depth", 'd', "N", 0, "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)", 0},
     {"threads", 't', "N", 0, "Threads (default: all processors)", 0},
     {"output", 'o', "FILE", 0, "The image, .png or .exr; may be given once for each", 0},
-    {"heatmap", KEY_HEATMAP, "COUNTER FILE.png", 0,
-     "What each pixel cost: object_tests, extent_tests, steps, or any other counter; may be given once for "
-     "each",
-     0},
-    {"structure", KEY_STRUCTURE, "FILE.png", 0, "The boxes of the accelerator over the image", 0},
     {"stats", KEY_STATS, "FILE.json", 0, "Counts by ray kind, times and sizes", 0},
     {"check", KEY_CHECK, 0, 0,
      "Compare the answer to every ray, and the frame, with brute's; exit 1 if one differs. brute is slow: "
@@ -60,30 +57,6 @@ static bool has_extension(const char *path, const char *extension) {
     return length > tail && strcmp(path + length - tail, extension) == 0;
 }
 
-static void set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
-                     const char *extension) {
-    if (!has_extension(path, extension)) {
-        argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
-                   extension);
-    }
-    if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
-    *slot = path;
-}
-
-static size_t counter_by_name(struct argp_state *state, const char *name) {
-    const char *names[RT_TALLY_COUNTER_COUNT];
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        names[i] = rt_tally_name(i);
-        if (strcmp(names[i], name) == 0) return i;
-    }
-    char list[256], suggestion[RT_MAX_SUGGESTION];
-    rt_join_names(names, RT_TALLY_COUNTER_COUNT, list, sizeof list);
-    rt_suggest(name, names, RT_TALLY_COUNTER_COUNT, suggestion);
-    argp_error(state, "--heatmap: there is no counter '%s'%s%s%s", name, suggestion,
-               *suggestion ? " The counters are: " : ": the counters are ", list);
-    return 0;
-}
-
 static void parse_output(Options *o, struct argp_state *state, const char *path) {
     if (!has_extension(path, ".png") && !has_extension(path, ".exr")) {
         argp_error(state, "-o: invalid value '%s': expected a file name that ends in .png or .exr", path);
@@ -93,36 +66,25 @@ static void parse_output(Options *o, struct argp_state *state, const char *path)
     *slot = path;
 }
 
-static void parse_heatmap(Options *o, struct argp_state *state, const char *counter) {
-    const char **slot = &o->heatmaps[counter_by_name(state, counter)];
-    if (state->next >= state->argc) argp_error(state, "--heatmap: a FILE.png is needed after the counter");
-    char option[64];
-    snprintf(option, sizeof option, "--heatmap %s", counter);
-    set_path(state, option, slot, state->argv[state->next++], ".png");
-}
-
-static bool any_heatmap(const Options *o) {
-    size_t i = 0;
-    while (i < RT_TALLY_COUNTER_COUNT && !o->heatmaps[i]) i++;
-    return i < RT_TALLY_COUNTER_COUNT;
+static void add_accel(Options *o, struct argp_state *state, const char *spec) {
+    if (o->accel_count == RT_MAX_PANELS) argp_error(state, "--accel: %d at most", RT_MAX_PANELS);
+    o->accels[o->accel_count++] = spec;
 }
 
 /* All that is to be written; returns how many files. */
 static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
-    const char *const others[] = {o->png, o->exr, o->structure, o->stats};
+    const char *const others[] = {o->png, o->exr, o->stats};
     size_t count = 0;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         if (others[i]) paths[count++] = others[i];
     }
-    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
-        if (o->heatmaps[i]) paths[count++] = o->heatmaps[i];
-    }
-    return count;
+    return rt_pictures_list(&o->pictures, paths, count);
 }
 
-static void check_options(const Options *o, struct argp_state *state) {
+static void check_options(Options *o, struct argp_state *state) {
     const char *paths[MOST_OUTPUTS];
     size_t count = list_outputs(o, paths);
+    if (o->accel_count == 0) add_accel(o, state, rt_accel_default());
     if (!o->scene)
         argp_error(state,
                    "a SCENE is needed: a file or a built-in, as in `raytally render balls -o balls.png`");
@@ -135,12 +97,14 @@ static void check_options(const Options *o, struct argp_state *state) {
             argp_error(state, "'%s' would be written twice: give each its own file", paths[i]);
         }
     }
+    rt_pictures_finish(&o->pictures, o->accel_count, state);
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     Options *o = state->input;
     switch (key) {
-    case 'a': o->accel = argument; return 0;
+    case ARGP_KEY_INIT: state->child_inputs[0] = &o->pictures; return 0;
+    case 'a': add_accel(o, state, argument); return 0;
     case 's': rt_cli_size(state, argument, &o->width, &o->height); return 0;
     case 'n': o->samples = (uint32_t)rt_cli_integer(state, "--samples", argument, 1, 64); return 0;
     case 'd': o->depth = (uint32_t)rt_cli_integer(state, "--depth", argument, 1, RT_MAX_DEPTH); return 0;
@@ -148,9 +112,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'o': parse_output(o, state, argument); return 0;
     case KEY_CORNERS: o->corners = true; return 0;
     case KEY_CHECK: o->check = true; return 0;
-    case KEY_STRUCTURE: set_path(state, "--structure", &o->structure, argument, ".png"); return 0;
-    case KEY_STATS: set_path(state, "--stats", &o->stats, argument, ".json"); return 0;
-    case KEY_HEATMAP: parse_heatmap(o, state, argument); return 0;
+    case KEY_STATS: rt_cli_set_path(state, "--stats", &o->stats, argument, ".json"); return 0;
     case ARGP_KEY_ARG:
         if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
         o->scene = argument;
@@ -171,6 +133,8 @@ typedef struct Run {
     double build_seconds;
     RtFrameOptions frame_options;
     RtFrame timed, counted;
+    bool by_default; /* the picture of the structure is all there is to make: its background is made in a
+                        quicker way */
     atomic_uint_fast64_t rays[RT_RAY_KIND_COUNT];
 } Run;
 
@@ -192,6 +156,15 @@ static void show_progress(void *context, size_t tiles_done, size_t tiles) {
     if (tiles_done == tiles) fprintf(stderr, "\r%*s\r", (int)strlen(context) + 6, "");
 }
 
+/* The same image bit for bit, by the default accelerator. Overlays' cells are drawn without any. */
+static RtStatus trace_background(Run *run, const RtFrameOptions *f, RtError *error) {
+    RtAccel *quick;
+    RT_TRY(rt_accel_open_on(rt_accel_default(), &run->scene, f->threads, &quick, error));
+    RtStatus status = rt_frame_trace(&run->timed, quick, f, error);
+    rt_accel_destroy(quick);
+    return status;
+}
+
 static RtStatus trace_frames(Run *run, RtError *error) {
     const Options *o = run->options;
     RtFrameOptions *f = &run->frame_options;
@@ -200,10 +173,14 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->progress_context = "tracing";
     f->sink = count_by_kind;
     f->sink_context = run;
+    const char *paths[MOST_OUTPUTS];
+    run->by_default = o->pictures.structure && list_outputs(o, paths) == 1 && !o->check && run->accel->exact;
+    if (run->by_default) return trace_background(run, f, error);
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
-    if (!o->stats && !o->exr && !any_heatmap(o)) return RT_OK;
+    if (!o->stats && !o->exr && !rt_pictures_any_heatmap(&o->pictures)) return RT_OK;
     f->progress_context = "counting";
     f->counted = true;
+    f->cost_kinds = o->pictures.kinds;
     f->sink = NULL;
     return rt_frame_trace(&run->counted, run->accel, f, error);
 }
@@ -211,9 +188,9 @@ static RtStatus trace_frames(Run *run, RtError *error) {
 static RtStatus prepare(Run *run, RtError *error) {
     const Options *o = run->options;
     RtSpec spec;
-    RT_TRY(rt_spec_parse(o->accel, &spec, error));
+    for (uint32_t i = o->accel_count; i-- > 0;) RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
     rt_spec_format(&spec, run->spec);
-    if (o->structure) RT_TRY(rt_structure_available(spec.layers[spec.layer_count - 1].ops, error));
+    if (o->pictures.structure) RT_TRY(rt_structure_available(&spec, o->pictures.layer, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
     double start = rt_wall_seconds();
@@ -224,24 +201,38 @@ static RtStatus prepare(Run *run, RtError *error) {
 
 /* ---- what is written ---- */
 
+/* Counts the image again by each of the accelerators, but the first, which has been; and draws the heatmaps.
+ */
+static RtStatus write_heatmaps(const Run *run, RtError *error) {
+    const Options *o = run->options;
+    RtFrame frames[RT_MAX_PANELS] = {{.cost = NULL}};
+    RtHeatmapPanel panels[RT_MAX_PANELS] = {{&run->counted, o->accel_count > 1 ? o->accels[0] : NULL}};
+    RtStatus status = RT_OK;
+    for (uint32_t i = 1; i < o->accel_count && status == RT_OK; i++) {
+        RtAccel *accel = NULL;
+        panels[i] = (RtHeatmapPanel){&frames[i], o->accels[i]};
+        status = rt_accel_open_on(o->accels[i], &run->scene, o->threads, &accel, error);
+        if (status == RT_OK) status = rt_frame_trace(&frames[i], accel, &run->frame_options, error);
+        rt_accel_destroy(accel);
+    }
+    if (status == RT_OK) status = rt_pictures_heatmaps(&o->pictures, panels, o->accel_count, error);
+    for (uint32_t i = 1; i < o->accel_count; i++) rt_frame_clear(&frames[i]);
+    return status;
+}
+
 static RtStatus write_images(const Run *run, RtError *error) {
     const Options *o = run->options;
     RtImage image = {0};
     RtStatus status = RT_OK;
     if (o->exr) RT_TRY(rt_exr_write(&run->counted, o->exr, error));
-    if (o->png || o->structure) {
+    if (o->png) {
         status = rt_image_from_frame(&image, &run->timed, error);
-        if (status == RT_OK && o->png) status = rt_png_write(&image, o->png, error);
-        if (status == RT_OK && o->structure) status = rt_draw_structure(&image, run->accel, error);
-        if (status == RT_OK && o->structure) status = rt_png_write(&image, o->structure, error);
+        if (status == RT_OK) status = rt_png_write(&image, o->png, error);
         rt_image_clear(&image);
     }
-    for (size_t i = 0; status == RT_OK && i < RT_TALLY_COUNTER_COUNT; i++) {
-        if (!o->heatmaps[i]) continue;
-        status = rt_heatmap(&image, &run->counted, i, error);
-        if (status == RT_OK) status = rt_png_write(&image, o->heatmaps[i], error);
-        rt_image_clear(&image);
-    }
+    if (status == RT_OK && o->pictures.structure)
+        status = rt_pictures_structure(&o->pictures, run->accel, &run->timed, error);
+    if (status == RT_OK && rt_pictures_any_heatmap(&o->pictures)) status = write_heatmaps(run, error);
     return status;
 }
 
@@ -295,6 +286,7 @@ static void print_summary(const Run *run) {
     uint64_t rays = total_rays(run);
     printf("%llu rays in %.3g s on %d threads: %.3g Mrays/s.", (unsigned long long)rays, run->timed.seconds,
            rt_thread_count(o->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
+    if (run->by_default) printf(" (By %s, for the picture alone.)", rt_accel_default());
     const char *written[MOST_OUTPUTS];
     size_t count = list_outputs(o, written);
     for (size_t i = 0; i < count; i++) printf("%s%s", i ? ", " : " Wrote ", written[i]);
@@ -364,9 +356,19 @@ static RtStatus check_rays(const Run *run, RtError *error) {
 int rt_command_render(int argc, char **argv) {
     static const char doc[] =
         "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
-        "For example: raytally render balls -o balls.png";
-    const struct argp argp = {.options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc};
-    Options o = {.accel = rt_accel_default(), .samples = 1, .depth = RT_DEFAULT_DEPTH};
+        "For example:\n"
+        "  raytally render balls -o balls.png\n"
+        "  raytally render balls --accel octree --structure leaves.png --leaves --level 0..6\n"
+        "  raytally render balls --accel grid --structure section.png --slice z\n"
+        "  raytally render balls --accel item:settle=off+bvh --structure samples.png\n"
+        "  raytally render balls --accel light:cells=64+bvh --structure cells.png --pixel 256,400\n"
+        "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
+        "--heatmap-difference\n"
+        "`raytally trace` follows a single ray. What the counters count is in docs/columns.md.";
+    const struct argp_child children[] = {{&rt_picture_argp, 0, NULL, 0}, {0}};
+    const struct argp argp = {
+        .options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc, .children = children};
+    Options o = {.samples = 1, .depth = RT_DEFAULT_DEPTH, .pictures = {.boxes = RT_ALL_LEVELS}};
     argp_parse(&argp, argc, argv, 0, 0, &o);
     RtError error = {RT_OK, ""};
     Run *run = rt_alloc(1, sizeof(Run));

@@ -14,6 +14,7 @@ static const RtCommand commands[] = {
     {"info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene", rt_command_info},
     {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
      rt_command_render},
+    {"trace", "SCENE", "one ray's path through an accelerator, step by step", rt_command_trace},
     {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
     {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench},
     {"compare", "BEFORE AFTER", "faster or slower: two results, or two programs run in turns",
@@ -22,7 +23,7 @@ static const RtCommand commands[] = {
     {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run},
     {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge},
     {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot},
-    {"report", "DIR", "write the report of a result directory again", rt_command_report},
+    {"report", "DIR", "write the report of a result directory again; an index of all", rt_command_report},
     {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce},
     {"convert", "IN OUT", "write a scene in another format", rt_command_convert},
 };

@@ -71,7 +71,8 @@ static void add_light(Worker *worker, Path path, RtVec3 light) {
 
 /* Moves what one ray cost from `cost` to its sample and its kind. */
 static void charge(Worker *worker, uint32_t sample, uint32_t kind, RtTally cost[RT_RAY_KIND_COUNT]) {
-    rt_tally_add(&worker->job->frame->cost[sample], &cost[kind]);
+    uint32_t kinds = worker->job->options->cost_kinds;
+    if (kinds == 0 || kinds >> kind & 1) rt_tally_add(&worker->job->frame->cost[sample], &cost[kind]);
     rt_tally_add(&worker->tallies[kind], &cost[kind]);
     cost[kind] = (RtTally){0};
 }

@@ -26,9 +26,10 @@
 typedef RtStatus RtRaySink(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error);
 
 typedef struct RtFrameOptions {
-    uint32_t depth;          /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
-    int threads;             /* 0 = all processors */
-    bool counted;            /* fill tallies and the count channels; else the timed kernels run */
+    uint32_t depth;      /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
+    int threads;         /* 0 = all processors */
+    bool counted;        /* fill tallies and the count channels; else the timed kernels run */
+    uint32_t cost_kinds; /* rays that are added to a sample's cost, bits 1 << RtRayKind; 0: of all kinds */
     bool light_from_outside; /* ask for light on the outside of surfaces, whatever side a ray comes from */
     RtRaySink *sink;         /* or NULL */
     void *sink_context;
@@ -43,7 +44,7 @@ typedef struct RtFrame {
     RtVec3 *color;    /* linear rgb */
     uint32_t *object; /* primary hit, RT_NO_OBJECT for none */
     float *depth;     /* t of the primary hit (distance along the camera's axis), INFINITY for none */
-    RtTally *cost;    /* all rays of the sample's tree; NULL unless counted */
+    RtTally *cost;    /* rays of the sample's tree, of cost_kinds; NULL unless counted */
     RtTally tallies[RT_RAY_KIND_COUNT]; /* zero unless counted */
     double seconds;                     /* wall time of the tracing */
 } RtFrame;

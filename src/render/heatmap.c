@@ -1,99 +1,141 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "render/heatmap.h"
 
-#include "base/elementary.h"
 #include "render/draw.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { MARGIN = 4, BAR_HEIGHT = 8, LEGEND_HEIGHT = 34, LEGEND_WIDTH = 200 }; /* in dots */
-enum { MOST_MARKS = 24 };
+enum { MARGIN = 4, LINE = 11, BARS = 24, LEAST_WIDTH = 240, GAP = 4 }; /* dots, dots, dots, pixels, pixels */
 
-static const RtColor black = {{0, 0, 0}}, white = {{255, 255, 255}};
-
-/* How values become positions on the colour scale. */
-typedef struct Scale {
+typedef struct Statistics {
     double most, mean;
-    bool logarithmic;
-} Scale;
+} Statistics;
 
-static Scale find_scale(const RtFrame *frame, size_t counter) {
-    Scale scale = {0};
-    uint32_t width = frame->sampling.width, height = frame->sampling.height;
-    for (uint32_t y = 0; y < height; y++) {
-        for (uint32_t x = 0; x < width; x++) {
-            double value = rt_frame_cost(frame, counter, x, y);
-            scale.most = fmax(scale.most, value);
-            scale.mean += value;
+typedef struct Drawing {
+    const RtHeatmapPanel *panels;
+    const RtHeatmapOptions *options;
+    uint32_t count;         /* of panels, without the difference */
+    uint32_t width, height; /* of a panel's picture */
+    uint32_t pitch;         /* from a panel to the next, pixels */
+    int dot, top;           /* where pictures begin */
+    RtScale scale, difference;
+} Drawing;
+
+static double cost(const Drawing *d, uint32_t panel, uint32_t x, uint32_t y) {
+    return rt_frame_cost(d->panels[panel].frame, d->options->counter, x, y);
+}
+
+static double difference(const Drawing *d, uint32_t x, uint32_t y) {
+    return cost(d, 0, x, y) - cost(d, 1, x, y);
+}
+
+static Statistics look_at(const Drawing *d, uint32_t panel) {
+    Statistics found = {0};
+    for (uint32_t y = 0; y < d->height; y++) {
+        for (uint32_t x = 0; x < d->width; x++) {
+            double value = cost(d, panel, x, y);
+            found.most = fmax(found.most, value);
+            found.mean += value / ((double)d->width * d->height);
         }
     }
-    scale.mean /= (double)width * height;
-    scale.logarithmic = scale.mean < scale.most / 8;
-    return scale;
+    return found;
 }
 
-static double position(const Scale *scale, double value) {
-    if (!(scale->most > 0)) return 0;
-    return scale->logarithmic ? rt_log(1 + value) / rt_log(1 + scale->most) : value / scale->most;
-}
-
-static double power_of_ten(int n) {
-    double power = 1;
-    for (int i = 0; i < n; i++) power *= 10;
-    return power;
-}
-
-/* The value of mark `i`: 0 and powers of ten, or steps of fifths to halves of the range in round numbers. */
-static double mark_value(const Scale *scale, int i) {
-    if (scale->logarithmic) return i > 0 ? power_of_ten(i - 1) : 0;
-    if (!(scale->most > 0)) return i;
-    double power = 1; /* of ten, the greatest up to half the range */
-    while (10 * power <= scale->most / 2) power *= 10;
-    while (power > scale->most / 2) power /= 10;
-    double step = scale->most / power >= 10 ? 5 * power : scale->most / power >= 5 ? 2 * power : power;
-    return i * step;
-}
-
-static void draw_legend(RtImage *image, const Scale *scale, const char *name, int top, int dot) {
-    int left = MARGIN * dot, width = (int)image->width - 2 * left;
-    int marks = top + (MARGIN + BAR_HEIGHT) * dot, numbers = marks + 3 * dot;
-    for (int x = 0; x < width; x++) {
-        RtColor color = rt_color_scale((double)x / (width - 1));
-        rt_draw_rectangle(image, left + x, top + MARGIN * dot, 1, BAR_HEIGHT * dot, color);
+static void find_scales(Drawing *d) {
+    double most = 0, mean = 0;
+    for (uint32_t i = 0; i < d->count; i++) {
+        Statistics panel = look_at(d, i);
+        most = fmax(most, panel.most);
+        mean += panel.mean / d->count;
     }
-    int free_from = 0; /* numbers that would run into the one before are left out */
-    for (int i = 0; i < MOST_MARKS; i++) {
-        double value = mark_value(scale, i);
-        if (value > scale->most) break;
-        char text[32];
-        snprintf(text, sizeof text, "%.10g", value);
-        int x = left + (int)(position(scale, value) * (width - 1)), half = rt_text_width(text) * dot / 2;
-        rt_draw_rectangle(image, x, marks, dot, 2 * dot, white);
-        int from = x - half > left ? x - half : left;
-        if (from < free_from || from + 2 * half > (int)image->width) continue;
-        rt_draw_text(image, from, numbers, dot, text, white);
-        free_from = from + 2 * half + 4 * dot;
-    }
-    char title[128];
-    snprintf(title, sizeof title, "%s  mean %.4g  most %.4g  %s", name, scale->mean, scale->most,
-             scale->logarithmic ? "log" : "linear");
-    rt_draw_text(image, left, numbers + (RT_TEXT_HEIGHT + MARGIN) * dot, dot, title, white);
+    bool skewed = mean < most / 8; /* a linear scale would be one dark field */
+    d->scale = (RtScale){.most = d->options->most > 0 ? d->options->most : most,
+                         .logarithmic = d->options->scale == RT_HEATMAP_LOG ||
+                                        (d->options->scale == RT_HEATMAP_AUTO && skewed)};
+    for (uint32_t i = 0; d->options->difference && i < d->width * d->height; i++)
+        d->difference.most = fmax(d->difference.most, fabs(difference(d, i % d->width, i / d->width)));
+    if (d->options->difference && d->options->most > 0) d->difference.most = d->options->most;
+    d->difference.least = -d->difference.most;
 }
 
-RtStatus rt_heatmap(RtImage *image, const RtFrame *frame, size_t counter, RtError *error) {
-    uint32_t width = frame->sampling.width, height = frame->sampling.height;
-    uint32_t dot = width / LEGEND_WIDTH > 1 ? width / LEGEND_WIDTH : 1;
-    uint32_t full_width = width > LEGEND_WIDTH * dot ? width : LEGEND_WIDTH * dot;
-    RT_TRY(rt_image_init(image, full_width, height + LEGEND_HEIGHT * dot, error));
-    rt_draw_rectangle(image, 0, 0, (int)image->width, (int)image->height, black);
-    Scale scale = find_scale(frame, counter);
-    for (uint32_t y = 0; y < height; y++) {
-        for (uint32_t x = 0; x < width; x++) {
-            RtColor color = rt_color_scale(position(&scale, rt_frame_cost(frame, counter, x, y)));
-            memcpy(image->rgb + 3 * ((size_t)y * image->width + x), color.rgb, 3);
+static void put_pixel(RtImage *image, const Drawing *d, uint32_t panel, uint32_t x, uint32_t y,
+                      RtColor color) {
+    memcpy(image->rgb + 3 * (((size_t)y + (uint32_t)d->top) * image->width + (size_t)panel * d->pitch + x),
+           color.rgb, 3);
+}
+
+/* As much of a text as fits into a panel, or, in a single one, into the image. */
+static void put_text(RtImage *image, const Drawing *d, uint32_t panel, int y, const char *text) {
+    char part[160];
+    uint32_t room = d->options->difference || d->count > 1 ? d->width : image->width;
+    size_t fits = (room - 2 * MARGIN * (uint32_t)d->dot) / (6 * (uint32_t)d->dot);
+    snprintf(part, sizeof part, "%.*s", (int)(fits < sizeof part ? fits : sizeof part - 1), text);
+    rt_draw_text(image, (int)(panel * d->pitch) + MARGIN * d->dot, y, d->dot, part, RT_WHITE);
+}
+
+static void draw_panel(RtImage *image, const Drawing *d, uint32_t panel) {
+    Statistics found = look_at(d, panel);
+    char text[160];
+    for (uint32_t y = 0; y < d->height; y++) {
+        for (uint32_t x = 0; x < d->width; x++)
+            put_pixel(image, d, panel, x, y,
+                      rt_color_scale(rt_scale_position(&d->scale, cost(d, panel, x, y))));
+    }
+    if (d->top > 0) put_text(image, d, panel, MARGIN * d->dot, d->panels[panel].label);
+    snprintf(text, sizeof text, "mean %.4g  most %.4g", found.mean, found.most);
+    put_text(image, d, panel, d->top + (int)d->height + MARGIN * d->dot, text);
+}
+
+static void draw_difference(RtImage *image, const Drawing *d) {
+    double sum = 0;
+    char text[160];
+    for (uint32_t y = 0; y < d->height; y++) {
+        for (uint32_t x = 0; x < d->width; x++) {
+            double value = difference(d, x, y), most = d->difference.most;
+            sum += value;
+            put_pixel(image, d, 2, x, y, rt_color_difference(most > 0 ? value / most : 0));
         }
     }
-    draw_legend(image, &scale, rt_tally_name(counter), (int)height, (int)dot);
+    snprintf(text, sizeof text, "%s - %s", d->panels[0].label, d->panels[1].label);
+    put_text(image, d, 2, MARGIN * d->dot, text);
+    snprintf(text, sizeof text, "mean %.4g", sum / ((double)d->width * d->height));
+    put_text(image, d, 2, d->top + (int)d->height + MARGIN * d->dot, text);
+}
+
+static void draw_legend(RtImage *image, const Drawing *d) {
+    int top = d->top + (int)d->height + (MARGIN + LINE) * d->dot, left = MARGIN * d->dot;
+    uint32_t width = d->options->difference ? 2 * d->pitch - GAP : image->width;
+    char text[160];
+    rt_draw_scale(image, left, top, (int)width - 2 * left, d->dot, &d->scale);
+    if (d->options->difference)
+        rt_draw_scale(image, (int)(2 * d->pitch) + left, top, (int)d->width - 2 * left, d->dot,
+                      &d->difference);
+    snprintf(text, sizeof text, "%s  %s  %s rays", rt_tally_name(d->options->counter),
+             d->scale.logarithmic ? "log" : "linear", d->options->rays ? d->options->rays : "all");
+    rt_draw_text(image, left, top + BARS * d->dot, d->dot, text, RT_WHITE);
+}
+
+RtStatus rt_heatmap(RtImage *image, const RtHeatmapPanel *panels, uint32_t count,
+                    const RtHeatmapOptions *options, RtError *error) {
+    const RtSampling *s = &panels[0].frame->sampling;
+    uint32_t all = count + options->difference;
+    uint32_t pitch = s->width + GAP > LEAST_WIDTH || all == 1 ? s->width + GAP : LEAST_WIDTH;
+    uint32_t width = all * pitch - GAP > LEAST_WIDTH ? all * pitch - GAP : LEAST_WIDTH;
+    int dot = rt_text_dot(all > 1 ? s->width : width);
+    Drawing d = {.panels = panels,
+                 .options = options,
+                 .count = count,
+                 .width = s->width,
+                 .height = s->height,
+                 .pitch = pitch,
+                 .dot = dot,
+                 .top = panels[0].label ? (MARGIN + LINE) * dot : 0};
+    find_scales(&d);
+    uint32_t below = (uint32_t)((2 * MARGIN + 2 * LINE + BARS) * dot);
+    RT_TRY(rt_image_init(image, width, (uint32_t)d.top + s->height + below, error));
+    for (uint32_t i = 0; i < count; i++) draw_panel(image, &d, i);
+    if (options->difference) draw_difference(image, &d);
+    draw_legend(image, &d);
     return RT_OK;
 }

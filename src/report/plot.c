@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "histograms_gp.h"
 #include "report/color.h"
+#include "report/page.h"
 #include "report/sweep_plot.h"
 #include "style_gp.h"
 
@@ -71,7 +72,8 @@ static bool has_rays(const RtResults *results, RtRayKind kind) {
 }
 
 /* Labels hold nothing that gnuplot's double quotes would interpret (rt_experiment_check). */
-static RtStatus write_names(const RtResults *results, const char *directory, RtError *error) {
+static RtStatus write_names(const RtResults *results, const char *directory, const char *format,
+                            RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH];
     RtOutput output;
@@ -80,8 +82,8 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
     FILE *out = output.file;
     fprintf(out,
             "# What counts.csv and times.csv have rows of, in the order of the experiment.\n"
-            "experiment = \"%s\"\nscenes = \"",
-            experiment->name);
+            "experiment = \"%s\"\nformat = \"%s\"\nscenes = \"",
+            experiment->name, format);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (results->workloads[t].known) fprintf(out, "%s ", experiment->workloads[t].label);
     }
@@ -89,9 +91,15 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         if (has_rows(results, c)) fprintf(out, "%s ", experiment->candidates[c].label);
     }
-    fprintf(out, "\"\ncolors = \"");
-    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (has_rows(results, c)) fprintf(out, "%s ", rt_candidate_color(c));
+    static const char *const lists[] = {"colors", "markers", "dashes"};
+    for (int i = 0; i < 3; i++) {
+        fprintf(out, "\"\n%s = \"", lists[i]);
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            const RtLook look = rt_candidate_look(experiment, c);
+            if (!has_rows(results, c)) continue;
+            if (i == 0) fprintf(out, "%s ", look.color);
+            if (i > 0) fprintf(out, "%d ", i == 1 ? look.marker : look.dash);
+        }
     }
     fprintf(out, "\"\nkinds = \"");
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
@@ -103,12 +111,22 @@ static RtStatus write_names(const RtResults *results, const char *directory, RtE
 }
 
 /* The script that draws histograms.csv, after whatever was drawn before it: with what it needs. */
-static RtStatus write_histograms(const char *directory, RtError *error) {
+static RtStatus write_histograms(const RtResults *results, const char *directory, RtError *error) {
     char path[RT_MAX_PATH];
     RtOutput output;
     RT_TRY(rt_path_join(directory, "plots/" HISTOGRAM_SCRIPT, path, error));
     RT_TRY(rt_output_open(&output, path, error));
-    fprintf(output.file, "reset session\nload \"plots/names.gp\"\n%s\n%s", style_gp, histograms_gp);
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        const char *scene = results->experiment->workloads[t].label;
+        fprintf(
+            output.file,
+            "#: histograms-%s: Object tests and steps of each ray on %s, and sizes and depths of leaves, as\n"
+            "#:   parts of all per doubling of the value. Both axes are logarithmic; 0 stands at 1/2.\n",
+            scene, scene);
+    }
+    fputs("reset session\nload \"plots/names.gp\"\n", output.file);
+    rt_page_lines(output.file, style_gp);
+    rt_page_lines(output.file, histograms_gp);
     return rt_output_commit(&output, error);
 }
 
@@ -182,6 +200,7 @@ static RtStatus settle(const char *directory, bool keep, RtError *error) {
     Settling settling = {keep, RT_OK, error};
     RT_TRY(rt_path_join(directory, "plots", plots, error));
     rt_directory_each(plots, ".svg.tmp", settle_file, &settling);
+    rt_directory_each(plots, ".pdf.tmp", settle_file, &settling);
     return settling.status;
 }
 
@@ -194,7 +213,6 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
     const bool sweeps = rt_sweep_plots_needed(experiment);
     if (experiment->plot_count == 0 && !sweeps && !experiment->distributions) return RT_OK;
     settle(directory, false, NULL); /* of a drawing that was cut short */
-    RT_TRY(write_names(results, directory, error));
     if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
         snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
@@ -202,10 +220,16 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
     }
     if (sweeps) arguments[1] = sweep_script;
     if (experiment->distributions) {
-        RT_TRY(write_histograms(directory, error));
+        RT_TRY(write_histograms(results, directory, error));
         arguments[experiment->plot_count + 2] = histogram_script;
     }
-    RtStatus status = run_gnuplot(arguments, directory, error);
+    /* names.gp stays as it is for SVG. */
+    static const char *const formats[] = {"pdf", "svg"};
+    RtStatus status = RT_OK;
+    for (int i = 0; i < 2 && status == RT_OK; i++) {
+        RT_TRY(write_names(results, directory, formats[i], error));
+        status = run_gnuplot(arguments, directory, error);
+    }
     if (status != RT_OK) {
         settle(directory, false, NULL);
         return status;

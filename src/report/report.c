@@ -10,133 +10,198 @@
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
 #include "report/color.h"
+#include "report/page.h"
+#include "report/paper_tables.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { MOST_IMAGE_BYTES = 1 << 26 };
+enum { MOST_FILE_BYTES = 1 << 26, MAX_CAPTION = 1024 };
 
-static const char style[] =
-    "body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#fafafa;margin:0}"
-    "main{max-width:1180px;margin:0 auto;padding:1.5rem}"
-    "h1{font-size:1.9rem;margin:.2rem 0}h2{font-size:1.25rem;margin:2.2rem 0 .6rem}h3{margin:1.4rem 0 .3rem}"
-    ".meta{color:#666;font-size:.9rem}"
-    ".card{background:#fff;border:1px solid #e4e4e4;border-radius:8px;padding:.8rem 1.1rem;margin:.7rem 0}"
-    ".card b{display:block;color:#666;font-size:.8rem;font-weight:600;text-transform:uppercase;"
-    "letter-spacing:.05em}"
-    "figure{margin:1rem 0;background:#fff;border:1px solid #e4e4e4;border-radius:8px;padding:.6rem}"
-    "figure img{width:100%;height:auto;display:block}"
-    ".scenes{display:flex;flex-wrap:wrap;gap:1rem}.scenes figure{flex:1 1 240px;max-width:360px;margin:0}"
-    "figcaption{color:#666;font-size:.85rem;padding:.4rem .2rem 0}"
-    "table{border-collapse:collapse;background:#fff;font-size:.9rem;font-variant-numeric:tabular-nums;width:"
-    "100%}"
-    "th,td{padding:.28rem .7rem;border-bottom:1px solid #eee;text-align:left;white-space:nowrap}"
-    "th{color:#666;font-weight:600;border-bottom:2px solid #ddd}.number,[data-value]{text-align:right}"
-    "tbody tr:hover{background:#f4f8ff}.wide{overflow-x:auto}"
-    ".missed{background:#fde8dc}"
-    "tr[style] td:first-child::before{content:'';display:inline-block;width:.75em;height:.75em;"
-    "border-radius:2px;margin-right:.5em;background:var(--dot)}"
-    "details{margin:.8rem 0}summary{cursor:pointer;color:#0059b3}"
-    "dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1rem;font-size:.9rem}dt{color:#666}"
-    "dd{margin:0;overflow-wrap:anywhere}";
+/* ---- sections ---- */
 
-/* ---- text and files ---- */
+/* What came out stands above what was expected. */
+static void put_claims(FILE *out, const RtResults *results) {
+    static const char *const classes[] = {
+        [RT_CLAIM_HOLDS] = "holds", [RT_CLAIM_UNDECIDED] = "open", [RT_CLAIM_FALSE] = "false"};
+    const RtExperiment *experiment = results->experiment;
+    fputs("<section class=\"card\" id=\"verdict\"><h2>Verdict</h2><p>", out);
+    rt_page_verdict(out, results);
+    if (!experiment->claim_count)
+        fputs(" The prediction states no claim (<code>expect</code>) that could be held against the results.",
+              out);
+    fputs("</p>\n<ul class=\"claims\">", out);
+    for (uint32_t i = 0; i < experiment->claim_count; i++) {
+        RtClaimResult result;
+        rt_claim_judge(results, i, &result);
+        fprintf(out, "<li><span class=\"verdict %s\">%s</span> ", classes[result.verdict],
+                rt_claim_verdict_name(result.verdict));
+        rt_html_put(out, experiment->claims[i]);
+        fputs("<small>", out);
+        rt_html_put(out, result.figures);
+        fputs("</small></li>\n", out);
+    }
+    fputs("</ul></section>\n", out);
+}
 
-static void put_base64(FILE *out, const unsigned char *data, size_t size) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
-        uint32_t left = size - i < 3 ? (uint32_t)(size - i) : 3, word = 0;
-        for (uint32_t k = 0; k < 3; k++) word = word << 8 | (k < left ? data[i + k] : 0u);
-        for (uint32_t k = 0; k < 4; k++) fputc(k <= left ? digits[word >> (18 - 6 * k) & 63] : '=', out);
+static bool is_beside(const char *directory, const char *name) {
+    char path[RT_MAX_PATH];
+    return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);
+}
+
+static void put_link(FILE *out, const char *directory, const char *name) {
+    if (!is_beside(directory, name)) return;
+    fputs("<a", out);
+    rt_page_href(out, name);
+    fprintf(out, ">%s</a> ", name);
+}
+
+static void put_links(FILE *out, const char *directory) {
+    static const char *const files[] = {
+        "counts.csv",    "times.csv",     "rounds.csv",     RT_DISTRIBUTIONS_CSV, RT_HISTOGRAMS_CSV,
+        RT_HARDWARE_CSV, "published.csv", "best.csv",       "tables.md",          "tables.tex",
+        "published.md",  "manifest.json", "experiment.yaml"};
+    fputs("<nav class=\"here\" aria-label=\"Sections\"><a href=\"#plots\">Plots</a> <a "
+          "href=\"#scenes\">Scenes</a> "
+          "<a href=\"#tables\">Tables</a> <a href=\"#method\">How it was measured</a></nav>\n"
+          "<nav class=\"here\" aria-label=\"Files\"><span class=\"meta\">Data:</span> ",
+          out);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) put_link(out, directory, files[i]);
+    fputs("</nav>\n", out);
+}
+
+static void put_head(FILE *out, const RtResults *results, const json_t *manifest, const char *directory) {
+    const RtExperiment *experiment = results->experiment;
+    rt_page_begin(out, experiment->name);
+    fputs("<p class=\"lede\">", out);
+    rt_html_put(out, experiment->question);
+    fputs("</p>\n", out);
+    put_claims(out, results);
+    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "None is written yet.");
+    rt_page_card(out, "Prediction, written before the run", experiment->prediction);
+    rt_page_provenance(out, manifest);
+    put_links(out, directory);
+}
+
+/* ---- plots ---- */
+
+/* What a script says of a plot: lines "#: NAME: text", gone on with in lines "#:   text". */
+typedef struct Caption {
+    const char *name;
+    char text[MAX_CAPTION];
+} Caption;
+
+static void take_caption(Caption *caption, const char *script) {
+    const size_t length = strlen(caption->name);
+    bool ours = false;
+    for (const char *line = script; *line; line += strcspn(line, "\n"), line += *line == '\n') {
+        const char *text = line + 2 + strspn(line + (strncmp(line, "#:", 2) == 0 ? 2 : 0), " ");
+        if (strncmp(line, "#:", 2) != 0) continue;
+        if (strncmp(line, "#:   ", 5) != 0) {
+            ours = strncmp(text, caption->name, length) == 0 && text[length] == ':';
+            text += ours ? length + 1 + strspn(text + length + 1, " ") : 0;
+        }
+        const size_t used = strlen(caption->text);
+        if (ours)
+            snprintf(caption->text + used, sizeof caption->text - used, "%s%.*s", used ? " " : "",
+                     (int)strcspn(text, "\n"), text);
     }
 }
 
-/* <img> with the file inside, or nothing where it cannot be read. */
-static void put_image(FILE *out, const char *path, const char *type, const char *alt) {
+static void look_for_caption(void *context, const char *path) {
+    Caption *caption = context;
+    char *script;
+    size_t size;
+    if (*caption->text || rt_file_read(path, MOST_FILE_BYTES, &script, &size, NULL) != RT_OK) return;
+    take_caption(caption, script);
+    rt_free(script);
+}
+
+typedef struct Plots {
+    FILE *out;
+    const char *directory;
+} Plots;
+
+/* Its size in pixels: gnuplot writes viewBox="0 0 WIDTH HEIGHT". */
+static void read_size(const char *svg, int *width, int *height) {
+    static const char box[] = "viewBox=\"0 0 ";
+    const char *at = strstr(svg, box);
+    char *end = NULL;
+    *width = at ? (int)strtol(at + strlen(box), &end, 10) : 0;
+    *height = end ? (int)strtol(end, NULL, 10) : 0;
+    if (*width > 0 && *height > 0) return;
+    *width = 960;
+    *height = 480;
+}
+
+static void put_svg(FILE *out, const char *svg, size_t size, const Caption *caption) {
+    int width, height;
+    read_size(svg, &width, &height);
+    /* The first sentence says what is drawn. */
+    const char *end = strstr(caption->text, ". ");
+    fprintf(out,
+            "<figure><div class=\"plot\" style=\"--w:%dpx\" tabindex=\"0\" role=\"region\" aria-label=\"plot "
+            "%s\">"
+            "<img width=\"%d\" height=\"%d\" alt=\"Plot: ",
+            width, caption->name, width, height);
+    char text[MAX_CAPTION];
+    snprintf(text, sizeof text, "%.*s", end ? (int)(end - caption->text) : MAX_CAPTION - 1, caption->text);
+    rt_html_put(out, *text ? text : caption->name);
+    fputs(". Its figures are in the tables and files of this page.\" src=\"", out);
+    rt_page_data_url(out, "image/svg+xml", svg, size);
+    fputs("\"></div>", out);
+}
+
+static void put_plot(void *context, const char *path) {
+    const Plots *plots = context;
+    const char *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
+    char name[RT_MAX_PATH], folder[RT_MAX_PATH], pdf[RT_MAX_PATH + 16], *svg;
+    size_t size;
+    snprintf(name, sizeof name, "%.*s", (int)(strlen(file) - strlen(".svg")), file);
+    snprintf(pdf, sizeof pdf, "plots/%s.pdf", name);
+    Caption caption = {.name = name};
+    rt_path_folder(path, folder);
+    rt_directory_each(folder, ".gp", look_for_caption, &caption);
+    if (rt_file_read(path, MOST_FILE_BYTES, &svg, &size, NULL) != RT_OK) return;
+    put_svg(plots->out, svg, size, &caption);
+    rt_free(svg);
+    fputs("<figcaption>", plots->out);
+    rt_html_put(plots->out, *caption.text ? caption.text : name);
+    if (is_beside(plots->directory, pdf)) {
+        fputs(" <a", plots->out);
+        rt_page_href(plots->out, pdf);
+        fputs(">PDF</a>", plots->out);
+    }
+    fputs("</figcaption></figure>\n", plots->out);
+}
+
+static void put_plots(FILE *out, const char *directory) {
+    Plots context = {out, directory};
+    char plots[RT_MAX_PATH];
+    fputs("<h2 id=\"plots\">Plots</h2>\n", out);
+    if (rt_path_join(directory, "plots", plots, NULL) != RT_OK) return;
+    if (rt_directory_each(plots, ".svg", put_plot, &context) > 0) return;
+    fputs("<p class=\"meta\">No plots were drawn.</p>\n", out);
+}
+
+/* ---- scenes and tables ---- */
+
+static void put_picture(FILE *out, const char *path, const char *label) {
     char *data;
     size_t size;
-    if (rt_file_read(path, MOST_IMAGE_BYTES, &data, &size, NULL) != RT_OK) return;
-    fprintf(out, "<img alt=\"");
-    rt_html_put(out, alt);
-    fprintf(out, "\" src=\"data:%s;base64,", type);
-    put_base64(out, (const unsigned char *)data, size);
+    if (rt_file_read(path, MOST_FILE_BYTES, &data, &size, NULL) != RT_OK) return;
+    fputs("<img alt=\"Picture of the scene ", out);
+    rt_html_put(out, label);
+    fputs("\" src=\"", out);
+    rt_page_data_url(out, "image/png", data, size);
     fputs("\">", out);
     rt_free(data);
 }
 
-/* ---- sections ---- */
-
-static void put_card(FILE *out, const char *title, const char *text) {
-    if (!*text) return;
-    fprintf(out, "<div class=\"card\"><b>%s</b>", title);
-    rt_html_put(out, text);
-    fputs("</div>\n", out);
-}
-
-static void put_claims(FILE *out, const RtResults *results) {
-    const RtExperiment *experiment = results->experiment;
-    if (!experiment->claim_count) return;
-    fputs("<div class=\"card\"><b>Claims</b><table><tbody>\n", out);
-    for (uint32_t i = 0; i < experiment->claim_count; i++) {
-        RtClaimResult result;
-        rt_claim_judge(results, i, &result);
-        fprintf(out, "<tr><td%s>%s</td><td>", result.verdict == RT_CLAIM_FALSE ? " class=\"missed\"" : "",
-                rt_claim_verdict_name(result.verdict));
-        rt_html_put(out, experiment->claims[i]);
-        fputs("</td><td>", out);
-        rt_html_put(out, result.figures);
-        fputs("</td></tr>\n", out);
-    }
-    fputs("</tbody></table></div>\n", out);
-}
-
-static const char *text_at(const json_t *object, const char *key) {
-    const char *text = json_string_value(json_object_get(object, key));
-    return text ? text : "unknown";
-}
-
-static void put_head(FILE *out, const RtResults *results, const json_t *manifest) {
-    const RtExperiment *experiment = results->experiment;
-    const json_t *machine = json_object_get(manifest, "machine");
-    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-          "<meta name=\"viewport\" content=\"width=device-width\"><title>",
-          out);
-    rt_html_put(out, experiment->name);
-    fprintf(out, "</title><style>%s</style></head>\n<body><main>\n<h1>", style);
-    rt_html_put(out, experiment->name);
-    fputs("</h1>\n<div class=\"meta\">", out);
-    rt_html_put(out, text_at(manifest, "date"));
-    fputs(" &middot; ", out);
-    rt_html_put(out, text_at(machine, "cpu"));
-    fputs(" &middot; raytally ", out);
-    rt_html_put(out, text_at(machine, "version"));
-    fputs(" (", out);
-    rt_html_put(out, text_at(machine, "commit"));
-    fprintf(out, "%s)%s</div>\n", json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
-            experiment->quick ? " &middot; <strong>quick variant</strong>" : "");
-    put_card(out, "Question", experiment->question);
-    put_card(out, "Prediction, written before the run", experiment->prediction);
-    put_claims(out, results);
-    put_card(out, "Finding", experiment->finding);
-}
-
-static void put_plot(void *context, const char *path) {
-    FILE *out = context;
-    fputs("<figure>", out);
-    put_image(out, path, "image/svg+xml", "plot");
-    fputs("</figure>\n", out);
-}
-
-static void put_plots(FILE *out, const char *directory) {
-    char plots[RT_MAX_PATH];
-    if (rt_path_join(directory, "plots", plots, NULL) != RT_OK) return;
-    if (rt_directory_each(plots, ".svg", put_plot, out) > 0) return;
-    fputs("<p class=\"meta\">No plots were drawn.</p>\n", out);
-}
-
 static void put_scenes(FILE *out, const RtResults *results, const char *directory) {
-    fputs("<h2>Scenes</h2>\n<div class=\"scenes\">", out);
+    fputs("<h2 id=\"scenes\">Scenes</h2>\n<div class=\"scenes\">", out);
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         const RtWorkload *setup = &results->experiment->workloads[t];
         const RtWorkloadResult *workload = &results->workloads[t];
@@ -144,7 +209,7 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
         snprintf(name, sizeof name, "images/%s.png", setup->label);
         if (!workload->known || rt_path_join(directory, name, path, NULL) != RT_OK) continue;
         fputs("<figure>", out);
-        put_image(out, path, "image/png", setup->label);
+        put_picture(out, path, setup->label);
         fputs("<figcaption><strong>", out);
         rt_html_put(out, setup->label);
         fprintf(out,
@@ -157,46 +222,66 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
 }
 
 static const char *dot_of(const void *row) {
+    static char color[sizeof((RtLook *)0)->color]; /* until the next row */
     const RtResultRow *r = row;
-    bool null = r->candidate == r->results->experiment->candidate_count;
-    return null ? "#ddd" : rt_candidate_color(r->candidate);
+    strcpy(color, rt_candidate_look(r->results->experiment, r->candidate).color);
+    return color;
 }
 
-static void put_table(FILE *out, const RtResults *results, uint32_t t, RtResultTable which) {
+static void put_table(FILE *out, const RtResults *results, uint32_t t, RtResultTable which,
+                      const char *what) {
     RtResultRow row = {.results = results, .workload = t};
     RtTable table = rt_result_table(which, &row);
+    char caption[RT_MAX_LABEL + 64];
+    snprintf(caption, sizeof caption, "%s, %s", results->experiment->workloads[t].label, what);
+    table.caption = caption;
     table.color = dot_of;
     rt_table_html(&table, out);
 }
 
-static void put_details(FILE *out, const char *summary, const RtTable *table) {
-    fprintf(out, "<details><summary>%s</summary><div class=\"wide\">", summary);
+static void put_details(FILE *out, const char *summary, RtTable *table) {
+    table->caption = summary;
+    fprintf(out, "<details><summary>%s</summary>", summary);
     rt_table_html(table, out);
-    fputs("</div></details>\n", out);
+    fputs("</details>\n", out);
 }
 
 /* What an experiment may ask for besides, of all scenes. */
 static void put_more_tables(FILE *out, const RtResults *results) {
     RtDistributionRow distribution = {.results = results};
     RtHardwareRow cell = {.results = results};
-    const RtTable distributions = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
-    const RtTable hardware = rt_hardware_table(&cell);
+    RtTable distributions = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
+    RtTable hardware = rt_hardware_table(&cell);
     if (results->experiment->distributions)
         put_details(out, "How counts are distributed, over rays and over leaves", &distributions);
     if (results->experiment->hardware) put_details(out, "What the machine did for a ray", &hardware);
 }
 
 static void put_tables(FILE *out, const RtResults *results) {
-    fputs("<h2>Tables</h2>\n", out);
+    char interval[RT_MAX_INTERVAL_TITLE];
+    rt_interval_title(results->experiment, interval);
+    fprintf(
+        out,
+        "<h2 id=\"tables\">Tables</h2>\n<p>In brackets intervals of %s. &#9733; is the best of a scene and "
+        "kind "
+        "of rays, by %s; &asymp; is not told apart from it by its interval. Times of all kinds together have "
+        "intervals that are rather too wide.</p>\n"
+        "<div class=\"filter\" id=\"filter\" hidden><label for=\"words\">Rows with</label> "
+        "<input type=\"search\" id=\"words\" placeholder=\"words, e.g. of a scene, an accelerator, a kind\"> "
+        "<output for=\"words\" class=\"meta\"></output></div>\n",
+        interval, results->experiment->count_only ? "object tests" : "time");
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        const char *label = results->experiment->workloads[t].label;
         if (!results->workloads[t].known) continue;
-        fputs("<h3>", out);
-        rt_html_put(out, results->experiment->workloads[t].label);
+        fputs("<section class=\"scene-tables\" data-scene=\"", out);
+        rt_html_put(out, label);
+        fputs("\"><h3>", out);
+        rt_html_put(out, label);
         fputs("</h3>\n", out);
-        put_table(out, results, t, RT_TOTALS);
-        fputs("<details><summary>By ray kind, with intervals</summary>", out);
-        put_table(out, results, t, RT_CELLS_MORE);
-        fputs("</details>\n", out);
+        put_table(out, results, t, RT_TOTALS_MORE, "all kinds of rays together");
+        fputs("<details><summary>By kind of rays</summary>", out);
+        put_table(out, results, t, RT_CELLS_MORE, "by kind of rays");
+        fputs("</details></section>\n", out);
     }
     put_more_tables(out, results);
 }
@@ -233,7 +318,8 @@ static void put_timing(FILE *out, const RtResults *results) {
 }
 
 static void put_method(FILE *out, const RtResults *results, const json_t *manifest) {
-    fputs("<h2>How it was measured</h2>\n<p>Every accelerator got the same recorded rays. Totals weigh each "
+    fputs("<h2 id=\"method\">How it was measured</h2>\n<p>Every accelerator got the same recorded rays. "
+          "Totals weigh each "
           "ray "
           "kind by the size of its set. Shadow rays stop at any hit. <em>ideal</em> knows the answers "
           "beforehand: "
@@ -264,14 +350,15 @@ RtStatus rt_report_write(const RtResults *results, const RtPublished *published,
                          const char *directory, RtError *error) {
     char path[RT_MAX_PATH];
     RtOutput output;
+    RT_TRY(rt_paper_tables_write(results, directory, error));
     RT_TRY(rt_path_join(directory, "report.html", path, error));
     RT_TRY(rt_output_open(&output, path, error));
-    put_head(output.file, results, manifest);
+    put_head(output.file, results, manifest, directory);
     put_plots(output.file, directory);
     rt_published_page(published, true, output.file);
     put_scenes(output.file, results, directory);
     put_tables(output.file, results);
     put_method(output.file, results, manifest);
-    fputs("</main></body></html>\n", output.file);
+    rt_page_end(output.file);
     return rt_output_commit(&output, error);
 }

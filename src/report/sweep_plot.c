@@ -3,13 +3,14 @@
 
 #include "base/memory.h"
 #include "report/color.h"
+#include "report/page.h"
 #include "style_gp.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAME_CHARS = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
+enum { MOST_TICS = 8, NAME_CHARS = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
 
 typedef struct Line {
     char name[NAME_CHARS];
@@ -169,17 +170,18 @@ static void put_data(const Figure *figure, FILE *out) {
     }
 }
 
-/* Colour, dash and marker have 12, 5 and 7 values: no two of 420 lines look alike. */
+/* The colour is that of the line's first accelerator; marker and dash tell lines apart in grey print, too. */
 static void put_styles(const Figure *figure, FILE *out) {
-    static const int markers[] = {7, 5, 9, 11, 13, 6, 4};
+    const RtExperiment *experiment = figure->results->experiment;
     for (uint32_t line = 0; line < figure->line_count; line++) {
         const Line *l = &figure->lines[line];
-        uint32_t marks = 1 + figure->value_count / 16;
+        const RtLook look = rt_look(line);
         fprintf(out,
-                "set style line %u linecolor rgb \"%s\" dashtype %u pointtype %d pointsize %s linewidth 1.6 "
+                "set style line %u linecolor rgb \"%s\" dashtype %d pointtype %d pointsize %s linewidth 1.6 "
                 "pointinterval %u\n",
-                line + 1, rt_candidate_color(figure->key->scene ? l->candidate : line),
-                l->flat ? 3 : 1 + line % 5, l->flat ? 0 : markers[line % 7], l->flat ? "0.1" : "0.55", marks);
+                line + 1, rt_candidate_look(experiment, l->candidate).color,
+                l->flat ? 2 + (int)(line % 4) : look.dash, l->flat ? 0 : look.marker,
+                l->flat ? "0.1" : "0.55", 1 + figure->value_count / 16);
     }
 }
 
@@ -223,6 +225,11 @@ static void put_axis(const Figure *figure, FILE *out) {
         fprintf(out, ")\nset xrange [-0.2:%.9g]\n", count - 0.8);
     } else if (rt_swept_logarithmic(x, count)) {
         fprintf(out, "set logscale x\nset xrange [%.9g:%.9g]\n", x[0] / 1.05, x[count - 1] * 1.05);
+        /* Few powers of ten lie within: the values themselves. */
+        if (count <= MOST_TICS && x[count - 1] / x[0] < 1000) {
+            for (uint32_t i = 0; i < count; i++) fprintf(out, "%s%.4g", i ? "," : "set xtics (", x[i]);
+            fputs(")\n", out);
+        }
         if (x[count - 1] / x[0] >= 1000) fputs("set format x \"10^{%T}\"\n", out);
     } else {
         double margin = 0.02 * (x[count - 1] - x[0]);
@@ -248,7 +255,7 @@ static void put_panels(const Figure *figure, double legend, FILE *out) {
             fputs(", for [i = 1:words(order)] '$line'.word(order, i) using 1:3:(0):($4 - $3) with vectors "
                   "nohead linestyle int(word(order, i)) dashtype 1 linewidth 1 notitle",
                   out);
-        fputc('\n', out);
+        fputs("\nunset label\n", out); /* the group stands over the first */
     }
 }
 
@@ -277,14 +284,20 @@ static void put_figure(const Figure *figure, uint32_t number, const char *group,
     uint32_t needed = 48 + 18 * figure->line_count, panels = figure->timed ? 3 : 2;
     double height = needed > 420 ? needed : 420;
     double legend = 70 + 7.0 * (double)(longest < RT_MAX_LABEL ? longest : RT_MAX_LABEL);
-    double width = 340 * panels + legend;
-    fprintf(out, "\nreset session\nload \"plots/names.gp\"; load \"plots/style.gp\"\n");
+    double width = 270 * panels + legend;
+    fprintf(out,
+            "\n#: %02u-sweep-%s: %s per ray of the accelerators on %s over %s.\n#:   All kinds of rays "
+            "together%s; the legend has the order of the lines at their right ends in the first panel.\n",
+            number, figure->key->key,
+            figure->timed ? "Time, object tests and steps" : "Object tests and steps", group,
+            figure->key->key, figure->timed ? ", times with intervals" : "");
+    fprintf(out, "reset session\nload \"plots/names.gp\"; load \"plots/style.gp\"\n");
     put_data(figure, out);
     put_styles(figure, out);
     put_order(figure, out);
     fputs("names = \"", out);
     for (uint32_t i = 0; i < figure->line_count; i++) fprintf(out, "%s ", figure->lines[i].name);
-    fprintf(out, "\"\neval svg(\"%02u-sweep-%s\", %.0f, %.0f)\n", number, figure->key->key, width, height);
+    fprintf(out, "\"\neval canvas(\"%02u-sweep-%s\", %.0f, %.0f)\n", number, figure->key->key, width, height);
     put_axis(figure, out);
     fprintf(out,
             "set grid xtics ytics\nset multiplot\n"
@@ -328,13 +341,20 @@ static RtStatus write_script(Figure *figure, const char *directory, RtError *err
     return rt_output_commit(&output, error);
 }
 
+static RtStatus write_style(const char *path, RtError *error) {
+    RtOutput output;
+    RT_TRY(rt_output_open(&output, path, error));
+    rt_page_lines(output.file, style_gp);
+    return rt_output_commit(&output, error);
+}
+
 RtStatus rt_sweep_plots_write(const RtResults *results, const char *directory, RtError *error) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH];
     size_t candidates = experiment->candidate_count;
     size_t points = 2 * candidates * experiment->workload_count;
     RT_TRY(rt_path_join(directory, "plots/style.gp", path, error));
-    RT_TRY(rt_file_write(path, style_gp, strlen(style_gp), error));
+    RT_TRY(write_style(path, error));
     Figure *figure = rt_alloc(1, sizeof *figure);
     if (!figure) return rt_fail_memory(error, "plots", sizeof *figure);
     figure->results = results;

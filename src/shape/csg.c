@@ -4,6 +4,8 @@
  * to where they began. */
 #include "shape/csg.h"
 
+#include "base/observe.h"
+
 #include <assert.h>
 #include <string.h>
 
@@ -96,12 +98,17 @@ INLINE void push_solid(Machine *m, const RtSolidSet *set, uint32_t index, const 
     float near = -INFINITY, far = INFINITY;
     RT_COUNT(tally, extent_tests, 1);
     rt_box_cut(&set->solids[index].box, &ray->thick, &near, &far);
-    if (!(near <= far && near <= ray->thick.tmax && far >= ray->thick.tmin)) {
+    bool met = near <= far && near <= ray->thick.tmax && far >= ray->thick.tmin;
+    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "solid", .index = index,
+               .box = &set->solids[index].box, .met = met);
+    if (!met) {
         push(m, 0);
         return;
     }
     assert(has_room(m, rt_solid_most_crossings(&set->solids[index])));
     RT_COUNT(tally, csg_tests, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_CSG_TEST, .what = "solid", .index = index,
+               .box = &set->solids[index].box);
     push(m, rt_solid_crossings(set, index, ray, near, far, m->crossings + m->starts[m->depth]));
 }
 
@@ -115,7 +122,11 @@ INLINE void run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const 
         switch ((RtCsgOpcode)instruction.code) {
         case RT_CSG_TEST:
             RT_COUNT(tally, extent_tests, 1);
-            if (rt_box_hit(&forest->boxes[instruction.operand], &ray->thick, ray->thick.tmax, &enter)) break;
+            const RtBox *box = &forest->boxes[instruction.operand];
+            bool met = rt_box_hit(box, &ray->thick, ray->thick.tmax, &enter);
+            RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "solids", .index = instruction.operand,
+                       .box = box, .met = met);
+            if (met) break;
             push(m, 0);
             i = instruction.to - 1;
             break;

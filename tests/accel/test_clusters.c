@@ -94,10 +94,10 @@ RT_TEST(objects_share_a_leaf_where_that_costs_no_more) {
     rt_scene_clear(&scene);
 }
 
-static void count_box(void *context, const RtBox *box, uint32_t depth) {
+static void count_box(void *context, const RtBoxView *view) {
     uint32_t *at_depth = context;
-    assert_false(rt_box_is_empty(*box));
-    at_depth[depth]++;
+    assert_false(rt_box_is_empty(*view->box));
+    at_depth[view->depth]++;
 }
 
 RT_TEST(pictures_get_every_node_with_its_depth) {

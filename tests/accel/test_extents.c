@@ -105,9 +105,9 @@ RT_TEST(describe_tells_references_bytes_and_expected_tests) {
     rt_scene_clear(&scene);
 }
 
-static void count_box(void *context, const RtBox *box, uint32_t depth) {
-    (void)box;
-    assert_int_equal(depth, 0);
+static void count_box(void *context, const RtBoxView *view) {
+    assert_int_equal(view->depth, 0);
+    assert_true(view->leaf);
     ++*(uint32_t *)context;
 }
 

@@ -189,11 +189,12 @@ RT_TEST(nested_grids_beyond_the_limit_of_memory_are_refused_with_the_depth_that_
     rt_scene_clear(&scene);
 }
 
-static void count_box(void *context, const RtBox *box, uint32_t depth) {
+static void count_box(void *context, const RtBoxView *view) {
     uint32_t *boxes = context;
-    assert_false(rt_box_is_empty(*box));
-    assert_in_range(depth, 0, 2);
-    boxes[depth]++;
+    if (view->leaf) assert_true(view->depth > 0);
+    assert_false(rt_box_is_empty(*view->box));
+    assert_in_range(view->depth, 0, 2);
+    boxes[view->depth]++;
 }
 
 RT_TEST(boxes_of_nested_grids_are_shown_a_level_deeper) {

@@ -17,11 +17,10 @@ typedef struct Bench {
     bool blocked[ALL];
 } Bench;
 
-static void note_box(void *context, const RtBox *box, uint32_t depth) {
+static void note_box(void *context, const RtBoxView *view) {
     Target *target = context;
-    (void)depth;
     if (target->box_count < sizeof target->boxes / sizeof target->boxes[0])
-        target->boxes[target->box_count++] = *box;
+        target->boxes[target->box_count++] = *view->box;
 }
 
 static Target aim_at(const RtScene *scene, uint64_t seed) {

@@ -93,19 +93,47 @@ RT_TEST(markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged) {
                    "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.50 [0.750, 3.00] |\n");
 }
 
+static RtStanding first_is_best(const void *row) {
+    return row == things ? RT_STANDING_BEST : RT_STANDING_BEHIND;
+}
+
+RT_TEST(markdown_and_latex_have_the_best_in_bold_and_escape_what_they_must) {
+    RtTable marked = table;
+    const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
+    marked.groups = first;
+    marked.group_count = 1;
+    marked.caption = "50 % of {a_b}";
+    marked.standing = first_is_best;
+    assert_written(&marked, rt_table_markdown,
+                   "| name | hit count | seconds |\n| --- | ---: | ---: |\n"
+                   "| **a\\|b, `c` **d**** | 12 | 1.5 |\n| <x> | 3456 | |\n");
+    assert_written(
+        &marked, rt_table_tex,
+        "\\begin{table}\n\\scriptsize\\centering\\setlength{\\tabcolsep}{3pt}\n\\caption{50 \\% of "
+        "\\{a\\_b\\}}\n"
+        "\\resizebox{\\ifdim\\width>\\columnwidth\\columnwidth\\else\\width\\fi}{!}{%\n\\begin{tabular}{@{}"
+        "lrr@{}}\n\\toprule\nname & hit count & seconds \\\\\n\\midrule\n"
+        "\\textbf{a\\textbar{}b, `c` **d**} & 12 & 1.5 \\\\\n"
+        "\\textless{}x\\textgreater{} & 3456 & -- \\\\\n\\bottomrule\n\\end{tabular}}\n\\end{table}\n");
+}
+
 RT_TEST(html_escapes_marks_notes_and_keeps_numbers_for_sorting) {
     RtTable narrow = table;
     const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
     narrow.groups = first;
     narrow.group_count = 1;
+    narrow.caption = "a & b";
+    narrow.standing = first_is_best;
     assert_written(
         &narrow, rt_table_html,
-        "<div class=\"wide\"><table><thead><tr>"
-        "<th data-id=\"name\" title=\"what it is called\">name</th>"
-        "<th class=\"number\" data-id=\"hits\" title=\"hits\">hit count</th>"
-        "<th class=\"number\" data-id=\"seconds\" title=\"how long it took\">seconds</th>"
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"a &amp; b\"><table>"
+        "<caption>a &amp; b</caption><thead><tr>"
+        "<th scope=\"col\" data-id=\"name\" title=\"what it is called\">name</th>"
+        "<th scope=\"col\" class=\"number\" data-id=\"hits\" title=\"hits\">hit count</th>"
+        "<th scope=\"col\" class=\"number\" data-id=\"seconds\" title=\"how long it took\">seconds</th>"
         "</tr></thead><tbody>\n"
-        "<tr style=\"--dot:red\"><td>a|b, <code>c</code> <b>d</b></td><td data-value=\"12\">12</td>"
+        "<tr class=\"best\" style=\"--dot:red\"><td>a|b, <code>c</code> <b>d</b> <span class=\"mark\">"
+        "&#9733;&#8239;best</span></td><td data-value=\"12\">12</td>"
         "<td class=\"missed\" data-value=\"1.5\" title=\"a &quot;slow&quot; one\">1.5</td></tr>\n"
         "<tr><td>&lt;x&gt;</td><td data-value=\"3456\">3456</td><td data-value=\"\">-</td></tr>\n"
         "</tbody></table></div>\n");

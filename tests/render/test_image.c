@@ -7,7 +7,6 @@
 #include "render/draw.h"
 #include "render/heatmap.h"
 #include "render/image.h"
-#include "render/structure.h"
 #include "scenes/open.h"
 
 #include <openexr.h>
@@ -215,10 +214,12 @@ RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
     enum { W = 240, H = 20 };
     static RtTally cost[W * H];
     RtFrame frame = {.cost = cost};
+    const RtHeatmapPanel panel = {&frame, NULL};
+    const RtHeatmapOptions options = {.counter = offsetof(RtTally, object_tests) / sizeof(uint64_t)};
     assert_ok(rt_sampling_init(&frame.sampling, W, H, 1, false, error));
     for (int i = 0; i < W * H; i++) cost[i].object_tests = i == 0 ? 0 : i == 1 ? 100 : 50;
     RtImage image;
-    assert_ok(rt_heatmap(&image, &frame, offsetof(RtTally, object_tests) / sizeof(uint64_t), error));
+    assert_ok(rt_heatmap(&image, &panel, 1, &options, error));
     RtColor none = rt_color_scale(0), half = rt_color_scale(0.5), most = rt_color_scale(1);
     assert_memory_equal(image.rgb, none.rgb, 3);
     assert_memory_equal(image.rgb + 3, most.rgb, 3);
@@ -227,7 +228,7 @@ RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
     rt_image_clear(&image);
     /* One pixel far above all others: a logarithmic scale still tells 0 from 50. */
     cost[1].object_tests = 1000000;
-    assert_ok(rt_heatmap(&image, &frame, offsetof(RtTally, object_tests) / sizeof(uint64_t), error));
+    assert_ok(rt_heatmap(&image, &panel, 1, &options, error));
     RtColor some = rt_color_scale(log1p(50) / log1p(1e6));
     assert_memory_equal(image.rgb + 6, some.rgb, 3);
     rt_image_clear(&image);
@@ -236,14 +237,72 @@ RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
 RT_TEST(a_heatmap_of_nothing_or_of_one_pixel_has_its_legend) {
     RtTally cost = {0};
     RtFrame frame = {.cost = &cost};
+    const RtHeatmapPanel panel = {&frame, NULL};
+    const RtHeatmapOptions options = {.counter = offsetof(RtTally, steps) / sizeof(uint64_t)};
     assert_ok(rt_sampling_init(&frame.sampling, 1, 1, 1, false, error));
     for (uint64_t steps = 0; steps < 3; steps++) {
         cost.steps = steps == 2 ? UINT64_MAX : steps;
         RtImage image;
-        assert_ok(rt_heatmap(&image, &frame, offsetof(RtTally, steps) / sizeof(uint64_t), error));
+        assert_ok(rt_heatmap(&image, &panel, 1, &options, error));
         assert_true(image.width > 100);
         rt_image_clear(&image);
     }
+}
+
+/* Two pictures of one row of pixels, beside one another. */
+enum { WIDE = 300 };
+static RtTally costs[2][WIDE];
+
+static RtImage two_heatmaps(RtHeatmapOptions options) {
+    RtFrame frames[2] = {{.cost = costs[0]}, {.cost = costs[1]}};
+    RtHeatmapPanel panels[2] = {{&frames[0], "one"}, {&frames[1], "two"}};
+    RtImage image;
+    for (int i = 0; i < 2; i++) assert_ok(rt_sampling_init(&frames[i].sampling, WIDE, 1, 1, false, error));
+    options.counter = offsetof(RtTally, steps) / sizeof(uint64_t);
+    assert_ok(rt_heatmap(&image, panels, 2, &options, error));
+    return image;
+}
+
+/* Is there the colour, with as many panels, in row y of panel `panel` at x? Panels begin 4 pixels after
+ * another. */
+static bool has_color(const RtImage *image, int panel, int x, RtColor color) {
+    int y = 15; /* below the label */
+    const uint8_t *at = image->rgb + 3 * ((size_t)y * image->width + (size_t)(panel * (WIDE + 4) + x));
+    return memcmp(at, color.rgb, 3) == 0;
+}
+
+RT_TEST(heatmaps_of_two_accelerators_have_one_scale) {
+    for (int i = 0; i < WIDE; i++) costs[0][i].steps = 50, costs[1][i].steps = i == 0 ? 100 : 25;
+    RtImage image = two_heatmaps((RtHeatmapOptions){0});
+    assert_true(has_color(&image, 0, 0, rt_color_scale(0.5)));
+    assert_true(has_color(&image, 1, 0, rt_color_scale(1)));
+    assert_true(has_color(&image, 1, 1, rt_color_scale(0.25)));
+    rt_image_clear(&image);
+    image = two_heatmaps((RtHeatmapOptions){.most = 50});
+    assert_true(has_color(&image, 0, 0, rt_color_scale(1)));
+    assert_true(has_color(&image, 1, 0, rt_color_scale(1)));
+    assert_true(has_color(&image, 1, 1, rt_color_scale(0.5)));
+    rt_image_clear(&image);
+    image = two_heatmaps((RtHeatmapOptions){.scale = RT_HEATMAP_LOG});
+    assert_true(has_color(&image, 0, 0, rt_color_scale(log1p(50) / log1p(100))));
+    rt_image_clear(&image);
+    costs[0][5].steps = 200; /* the most is the first's */
+    image = two_heatmaps((RtHeatmapOptions){0});
+    assert_true(has_color(&image, 0, 5, rt_color_scale(1)));
+    assert_true(has_color(&image, 1, 0, rt_color_scale(0.5)));
+    rt_image_clear(&image);
+}
+
+RT_TEST(a_difference_is_red_where_the_first_costs_more_and_blue_where_the_second_does) {
+    for (int i = 0; i < WIDE; i++)
+        costs[0][i].steps = 50, costs[1][i].steps = i == 0 ? 100 : i == 1 ? 50 : 25;
+    RtImage image = two_heatmaps((RtHeatmapOptions){.difference = true});
+    assert_true(has_color(&image, 2, 0, rt_color_difference(-1)));
+    assert_true(has_color(&image, 2, 1, rt_color_difference(0)));
+    assert_true(has_color(&image, 2, 2, rt_color_difference(0.5)));
+    RtColor blue = rt_color_difference(-1), red = rt_color_difference(1);
+    assert_true(blue.rgb[2] > blue.rgb[0] && red.rgb[0] > red.rgb[2]);
+    rt_image_clear(&image);
 }
 
 RT_TEST(the_scale_grows_in_lightness) {
@@ -254,37 +313,6 @@ RT_TEST(the_scale_grows_in_lightness) {
         assert_true(lightness >= before);
         before = lightness;
     }
-}
-
-RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
-    RtScene scene;
-    RtAccel *accel;
-    RtImage image;
-    RtError refusal;
-    open_scene(&scene);
-    assert_ok(rt_accel_open("bvh:max_leaf_size=64", &scene, &accel, error));
-    assert_ok(rt_image_init(&image, 200, 200, error));
-    assert_ok(rt_draw_structure(&image, accel, error));
-    /* The near face of the box is x, y in -3..3 at z = 1, 9 in front of the eye. */
-    double reach = 3 / 9.0 / tan(45 * 3.14159265358979 / 360) * 100;
-    int left = (int)floor(100 - reach);
-    RtColor yellow = rt_color_scale(1);
-    assert_memory_equal(image.rgb + 3 * (100 * 200 + left), yellow.rgb, 3);
-    assert_int_equal(image.rgb[3 * (100 * 200 + left - 1)], 0);
-    rt_image_clear(&image);
-    rt_accel_destroy(accel);
-
-    /* From inside the box, with corners behind the eye: clipped, and no crash. */
-    scene.camera.from = rt_vec3(0, 0, 0.5f);
-    assert_ok(rt_accel_open("bvh", &scene, &accel, error));
-    assert_ok(rt_image_init(&image, 200, 200, error));
-    assert_ok(rt_draw_structure(&image, accel, error));
-    rt_image_clear(&image);
-    rt_accel_destroy(accel);
-    const RtAccelOps *brute = NULL;
-    assert_ok(rt_accel_find("brute", &brute, error));
-    assert_int_equal(rt_structure_available(brute, &refusal), RT_NOT_AVAILABLE);
-    rt_scene_clear(&scene);
 }
 
 RT_TESTS(image, NULL, NULL)

@@ -53,7 +53,7 @@ RT_TEST_IN_PLACE(a_finding_is_added_to_a_run_that_is_there_and_nothing_else_is) 
                   "finding: >-\n  Four it is,\n  indeed.\ncount_only");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
     assert_in_file(place, "message", "nothing was left to measure");
-    assert_in_file(place, "out/report.html", "<b>Finding</b>Four it is, indeed.");
+    assert_in_file(place, "out/report.html", "<h2>Finding</h2><p>Four it is, indeed.");
     assert_int_equal(raytally(place, "report out"), 0);
     assert_int_equal(raytally(place, "reproduce out"), 0);
     write_changed(place, "small.yaml", claiming, "limit: 100", "finding: Four.\nlimit: 99");

@@ -194,10 +194,12 @@ RT_TEST_IN_PLACE(what_begins_anew_leaves_nothing_of_what_was_there) {
     assert_ends(place, "run small.yaml --out out --resume", 2, "no cells.jsonl");
     assert_ends(place, "run small.yaml --out out --force", 0, "");
     write_in(place, "out/plots/old.svg", "<svg/>");
+    write_in(place, "out/plots/old.pdf", "%PDF");
     write_in(place, "out/notes.txt", "mine");
     assert_ends(place, "run small.yaml --out out --force", 0, "");
-    for (int i = 0; i < 3; i++) {
-        const char *const gone[] = {"out/rows.jsonl", "out/verify.csv", "out/plots/old.svg"};
+    for (int i = 0; i < 4; i++) {
+        const char *const gone[] = {"out/rows.jsonl", "out/verify.csv", "out/plots/old.svg",
+                                    "out/plots/old.pdf"};
         assert_false(rt_file_exists(path_in(place, gone[i]).text));
     }
     assert_in_file(place, "out/notes.txt", "mine");

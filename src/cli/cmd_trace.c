@@ -1,0 +1,272 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* raytally trace: one ray's path through an accelerator, step by step. */
+#include "base/json.h"
+#include "base/table.h"
+#include "cli/cli.h"
+#include "render/path.h"
+#include "scenes/open.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct Options {
+    const char *scene, *accel, *svg;
+    uint32_t x, y, width, height, light;
+    int64_t rows;
+    RtRayKind kind;
+    bool aimed, json;
+} Options;
+
+enum { KEY_LIGHT = 256, KEY_SVG, KEY_ROWS };
+enum { DEFAULT_ROWS = 200 };
+
+static const struct argp_option options[] = {
+    {"pixel", 'p', "X,Y", 0, "The ray through the middle of this pixel, 0,0 being the upper left", 0},
+    {"accel", 'a', "SPEC", 0, "Accelerator (default bvh); `raytally accels` lists them", 0},
+    {"size", 's', "WxH", 0, "Size of the image in pixels (default: the scene's)", 0},
+    {"rays", 'k', "KIND", 0,
+     "primary (default), or the shadow, reflection or transmission ray that starts where the primary ray "
+     "hits",
+     0},
+    {"light", KEY_LIGHT, "N", 0, "The light that the shadow ray goes to (default 0)", 0},
+    {"svg", KEY_SVG, "FILE.svg", 0, "Draw it: a section through the ray, and where on it what was met", 0},
+    {"rows", KEY_ROWS, "N", 0, "Print so many rows at most, 0 for all (200); rows of hits are printed always",
+     0},
+    {"json", 'j', 0, 0, "One JSON document on stdout, with all rows", 0},
+    {0}};
+
+static void parse_kind(Options *o, struct argp_state *state, const char *text) {
+    RtError error;
+    if (rt_ray_kind_parse(text, &o->kind, &error) == RT_OK && o->kind <= RT_RAY_TRANSMISSION) return;
+    argp_error(state, "--rays: invalid value '%s': expected primary, shadow, reflection or transmission",
+               text);
+}
+
+static void check_options(const Options *o, struct argp_state *state) {
+    if (!o->scene) argp_error(state, "a SCENE is needed: a file or a built-in, as `raytally scenes` lists");
+    if (!o->aimed) argp_error(state, "say which ray: --pixel X,Y");
+    size_t length = o->svg ? strlen(o->svg) : 0;
+    if (o->svg && (length < 5 || strcmp(o->svg + length - 4, ".svg") != 0))
+        argp_error(state, "--svg: invalid value '%s': expected a file name that ends in .svg", o->svg);
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    Options *o = state->input;
+    switch (key) {
+    case 'p': rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true; return 0;
+    case 'a': o->accel = argument; return 0;
+    case 's': rt_cli_size(state, argument, &o->width, &o->height); return 0;
+    case 'k': parse_kind(o, state, argument); return 0;
+    case 'j': o->json = true; return 0;
+    case KEY_LIGHT: o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX); return 0;
+    case KEY_SVG: o->svg = argument; return 0;
+    case KEY_ROWS: o->rows = rt_cli_integer(state, "--rows", argument, 0, UINT32_MAX); return 0;
+    case ARGP_KEY_ARG:
+        if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
+        o->scene = argument;
+        return 0;
+    case ARGP_KEY_END: check_options(o, state); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* ---- in words ---- */
+
+/* A t; "-" for none, which INFINITY stands for. */
+static void print_t(double t) {
+    if (t < (double)INFINITY)
+        printf("  %9.6g", t);
+    else
+        printf("  %9s", "-");
+}
+
+static const char *shape_of(const RtGeometry *g, uint32_t id) {
+    return id < g->object_count ? rt_shape_name(rt_ref_shape(g->objects[id])) : "of unknown id";
+}
+
+static void print_row(const RtPathRow *row, uint32_t number, const RtGeometry *g) {
+    char of[64] = "";
+    if (row->kind == RT_TRACED_OBJECT_TEST)
+        snprintf(of, sizeof of, "object %u, %s", row->index, shape_of(g, row->index));
+    else if (row->kind == RT_TRACED_PASSED_ON)
+        snprintf(of, sizeof of, "by %s", row->what);
+    else if (row->what)
+        snprintf(of, sizeof of, "%s %u", row->what, row->index);
+    bool answers = row->kind == RT_TRACED_EXTENT_TEST || row->kind == RT_TRACED_OBJECT_TEST;
+    bool is_in = row->boxed && row->enter <= row->leave;
+    printf("%5u  %-14s  %-24s", number, rt_path_row_name(row), of);
+    print_t(is_in ? row->enter : (double)INFINITY);
+    print_t(is_in ? row->leave : (double)INFINITY);
+    if (!answers)
+        printf("  %-18s", "");
+    else if (row->kind == RT_TRACED_OBJECT_TEST && row->met)
+        printf("  hit at %-11.6g", (double)row->t);
+    else
+        printf("  %-18s", row->met ? "met" : "missed");
+    print_t((double)row->nearest);
+    putchar('\n');
+}
+
+static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g) {
+    uint32_t left_out = 0, joined = 0;
+    printf("\n%5s  %-14s  %-24s  %-20s  %-18s  %9s\n", "", "", "", " ray in its box, t", "", "nearest t");
+    for (uint32_t i = 0, run; i < path->count; i += run) {
+        const RtPathRow *row = &path->rows[i];
+        bool hits = row->kind == RT_TRACED_OBJECT_TEST && row->met;
+        run = o->rows > 0 ? rt_path_run(path, i) : 1;
+        joined += run - 1;
+        if (o->rows > 0 && (int64_t)i >= o->rows && !hits) {
+            left_out += run;
+        } else if (run == 1) {
+            print_row(row, i + 1, g);
+        } else {
+            printf("%5u  %-14s  %u objects, to row %-41u  %-18s", i + 1, "object tests", run, i + run,
+                   "all missed");
+            print_t((double)row->nearest);
+            putchar('\n');
+        }
+    }
+    if (left_out) printf("       and %u more rows\n", left_out);
+    if (joined + left_out > 0) puts("       --rows 0 prints each");
+}
+
+static void print_answer(const RtPath *path, const RtGeometry *g) {
+    const RtTally *t = &path->tally;
+    printf("\nin all:");
+    for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
+        if (rt_tally_get(t, i) == 0) continue;
+        printf(" %llu %s,", (unsigned long long)rt_tally_get(t, i), rt_tally_name(i));
+    }
+    printf(" as the counted kernel says too\n");
+    if (path->hit.object == RT_NO_OBJECT) {
+        puts(path->any ? "nothing blocks it" : "it hits nothing");
+        return;
+    }
+    RtVec3d p = rt_ray_point(&path->ray, path->hit.t);
+    printf("%s object %u, %s", path->any ? "it is blocked by" : "its nearest hit is", path->hit.object,
+           shape_of(g, path->hit.object));
+    if (isfinite(path->hit.t))
+        printf(", at t = %.9g, (%.6g, %.6g, %.6g)", (double)path->hit.t, p.x, p.y, p.z);
+    putchar('\n');
+}
+
+static void print_path(const RtPath *path, const Options *o, const char *title, const RtGeometry *g) {
+    const RtRay *r = &path->ray;
+    printf("%s\nfrom (%.6g, %.6g, %.6g) along (%.6g, %.6g, %.6g), t from %.6g to %.6g\n", title,
+           (double)r->org.x, (double)r->org.y, (double)r->org.z, (double)r->dir.x, (double)r->dir.y,
+           (double)r->dir.z, (double)r->tmin, (double)r->tmax);
+    print_rows(path, o, g);
+    print_answer(path, g);
+}
+
+/* ---- as JSON ---- */
+
+static json_t *vector_json(RtVec3 v) {
+    return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
+}
+
+static json_t *row_json(const RtPathRow *row) {
+    bool is_in = row->boxed && row->enter <= row->leave;
+    json_t *json = json_pack(
+        "{s:s, s:s?, s:I, s:b, s:o, s:o, s:o, s:o}", "event", rt_path_row_name(row), "of", row->what, "index",
+        (json_int_t)row->index, "met", (int)row->met, "enter",
+        rt_json_number(is_in ? row->enter : (double)NAN), "leave",
+        rt_json_number(is_in ? row->leave : (double)NAN), "t",
+        rt_json_number(row->kind == RT_TRACED_OBJECT_TEST && row->met ? (double)row->t : (double)NAN),
+        "nearest", rt_json_number((double)row->nearest));
+    if (json && row->boxed)
+        json_object_set_new(json, "box",
+                            json_pack("[o, o]", vector_json(row->box.lo), vector_json(row->box.hi)));
+    return json;
+}
+
+static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
+    const RtRay *r = &path->ray;
+    json_t *rows = json_array();
+    for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
+    return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene", o->scene,
+                     "accel", spec, "pixel", (int)o->x, (int)o->y, "kind", rt_ray_kind_name(o->kind), "org",
+                     vector_json(r->org), "dir", vector_json(r->dir), "tmin", rt_json_number((double)r->tmin),
+                     "tmax", rt_json_number((double)r->tmax), "rows", rows, "counts",
+                     rt_json_tally(&path->tally), "object",
+                     path->hit.object == RT_NO_OBJECT ? json_null() : json_integer(path->hit.object), "t",
+                     rt_json_number((double)path->hit.t));
+}
+
+/* ---- the command ---- */
+
+static RtStatus check_pixel(const Options *o, const RtSampling *s, RtError *error) {
+    if (o->x < s->width && o->y < s->height) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "--pixel %u,%u is outside of the image, which is %u x %u: choose 0..%u,0..%u", o->x, o->y,
+                   s->width, s->height, s->width - 1, s->height - 1);
+}
+
+static RtStatus trace(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
+                      RtError *error) {
+    char title[512];
+    RtRay ray;
+    RtPath path;
+    RT_TRY(rt_path_ray(accel, o->kind, o->x, o->y, o->light, &ray, error));
+    RT_TRY(rt_path_trace(&path, accel, &ray, error));
+    snprintf(title, sizeof title, "%s: the %s ray of pixel %u,%u of %u x %u",
+             scene->name[0] ? scene->name : o->scene, rt_ray_kind_name(o->kind), o->x, o->y,
+             scene->sampling.width, scene->sampling.height);
+    RtStatus status = o->svg ? rt_path_draw(&path, scene, title, spec, o->svg, error) : RT_OK;
+    if (status == RT_OK && o->json) {
+        rt_cli_print_json(path_json(&path, o, spec));
+    } else if (status == RT_OK) {
+        printf("%s\n", spec);
+        print_path(&path, o, title, &scene->geometry);
+        if (o->svg) printf("wrote %s\n", o->svg);
+    }
+    rt_path_clear(&path);
+    return status;
+}
+
+static RtStatus run(const Options *o, RtError *error) {
+    RtSpec spec;
+    char text[RT_MAX_SPEC_CHARS];
+    RtScene scene;
+    RtAccel *accel = NULL;
+    RT_TRY(rt_spec_parse(o->accel, &spec, error));
+    rt_spec_format(&spec, text);
+    RT_TRY(rt_scene_open(o->scene, &scene, error));
+    RtStatus status = rt_scene_sample(&scene, o->width, o->height, 1, false, error);
+    if (status == RT_OK) status = check_pixel(o, &scene.sampling, error);
+    if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
+    if (status == RT_OK) status = trace(o, &scene, accel, text, error);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+    return status;
+}
+
+int rt_command_trace(int argc, char **argv) {
+    RtError error;
+    Options o = {.accel = rt_accel_default(), .rows = DEFAULT_ROWS};
+    const struct argp argp = {
+        .options = options,
+        .parser = parse_option,
+        .args_doc = "SCENE",
+        .doc =
+            "Follow one ray through an accelerator: each step, extent test and object test, in order."
+            "\vA row says what was visited or tested, from which t to which the ray is in its box (as far as "
+            "it has one), whether an extent was met or an object hit, and the t of the nearest hit so far. "
+            "An "
+            "extent that the ray goes through is missed where it is entered only behind that hit. A step is "
+            "a "
+            "node, voxel, sample or list entry visited; what else the words mean, and what each accelerator "
+            "counts, is in accel/README.md. The rows come from the counted kernel itself and add up to its "
+            "tally, which is checked.\n\n"
+            "Of the drawing the upper part is a section along the ray and one axis of the scene: a box is "
+            "in it where the ray goes through it. The bars below say where on the ray that is, in the order "
+            "of "
+            "the rows. Examples:\n"
+            "  raytally trace balls --pixel 256,256\n"
+            "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
+            "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
+            "Through embree no steps are seen, for it counts none; with mode=user, object tests."};
+    argp_parse(&argp, argc, argv, 0, 0, &o);
+    return run(&o, &error) == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
+}

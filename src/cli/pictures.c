@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "cli/pictures.h"
+
+#include "base/words.h"
+#include "cli/cli.h"
+#include "render/cells.h"
+#include "render/path.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    KEY_HEATMAP = 512,
+    KEY_STRUCTURE,
+    KEY_LAYER,
+    KEY_LEVEL,
+    KEY_LEAVES,
+    KEY_SLICE,
+    KEY_LIGHT,
+    KEY_PIXEL,
+    KEY_MAX,
+    KEY_SCALE,
+    KEY_RAYS,
+    KEY_DIFFERENCE
+};
+
+static const struct argp_option options[] = {
+    {0, 0, 0, 0, "What a structure looks like:", 1},
+    {"structure", KEY_STRUCTURE, "FILE.png", 0,
+     "The boxes of the accelerator over the image; of item the objects that samples name, of light the "
+     "lengths of "
+     "lists on an unfolded cube",
+     1},
+    {"layer", KEY_LAYER, "NAME", 0, "Of overlays: the layer to draw (default: the topmost that can be drawn)",
+     1},
+    {"level", KEY_LEVEL, "A[..B]", 0, "Boxes of this level alone, or of these; the root's is 0", 1},
+    {"leaves", KEY_LEAVES, 0, 0, "Leaves alone: boxes that list objects", 1},
+    {"slice", KEY_SLICE, "AXIS[=AT]", 0,
+     "A section instead, where x, y or z is AT (default: in the middle of the scene), with what it cuts of "
+     "boxes and "
+     "objects",
+     1},
+    {"light", KEY_LIGHT, "N", 0, "Of light: the light whose cells are drawn (default 0)", 1},
+    {"pixel", KEY_PIXEL, "X,Y", 0, "Of light: mark the cell that the shadow ray of this pixel reads", 1},
+    {0, 0, 0, 0, "What each pixel cost:", 2},
+    {"heatmap", KEY_HEATMAP, "COUNTER FILE.png", 0,
+     "object_tests, extent_tests, steps, or any other counter; may be given once for each. With several "
+     "--accel a "
+     "picture each, side by side on one scale",
+     2},
+    {"heatmap-max", KEY_MAX, "VALUE", 0,
+     "The value of the brightest colour, and of all above it (default: the most)", 2},
+    {"heatmap-scale", KEY_SCALE, "linear|log", 0,
+     "How values become colours (default: log where the mean is below an eighth of the most)", 2},
+    {"heatmap-rays", KEY_RAYS, "KIND", 0, "Count primary, shadow, reflection or transmission rays alone", 2},
+    {"heatmap-difference", KEY_DIFFERENCE, 0, 0,
+     "Of two --accel: the first less the second, too, red where the first costs more", 2},
+    {0}};
+
+void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
+                     const char *extension) {
+    size_t length = strlen(path), tail = strlen(extension);
+    if (length <= tail || strcmp(path + length - tail, extension) != 0) {
+        argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
+                   extension);
+    }
+    if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
+    *slot = path;
+}
+
+static size_t counter_by_name(struct argp_state *state, const char *name) {
+    const char *names[RT_TALLY_COUNTER_COUNT];
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        names[i] = rt_tally_name(i);
+        if (strcmp(names[i], name) == 0) return i;
+    }
+    char list[256], suggestion[RT_MAX_SUGGESTION];
+    rt_join_names(names, RT_TALLY_COUNTER_COUNT, list, sizeof list);
+    rt_suggest(name, names, RT_TALLY_COUNTER_COUNT, suggestion);
+    argp_error(state, "--heatmap: there is no counter '%s'%s%s%s", name, suggestion,
+               *suggestion ? " The counters are: " : ": the counters are ", list);
+    return 0;
+}
+
+static void parse_heatmap(RtPictureOptions *o, struct argp_state *state, const char *counter) {
+    const char **slot = &o->heatmaps[counter_by_name(state, counter)];
+    if (state->next >= state->argc) argp_error(state, "--heatmap: a FILE.png is needed after the counter");
+    char option[64];
+    snprintf(option, sizeof option, "--heatmap %s", counter);
+    rt_cli_set_path(state, option, slot, state->argv[state->next++], ".png");
+}
+
+/* "3" or "2..5" */
+static void parse_level(RtStructureOptions *boxes, struct argp_state *state, const char *text) {
+    char end;
+    bool one = sscanf(text, "%u%c", &boxes->first_level, &end) == 1;
+    bool range = !one && sscanf(text, "%u..%u%c", &boxes->first_level, &boxes->last_level, &end) == 2;
+    if (one) boxes->last_level = boxes->first_level;
+    if ((!one && !range) || strchr(text, '-') || boxes->first_level > boxes->last_level)
+        argp_error(state, "--level: invalid value '%s': expected a level or a range, as in 3 or 2..5", text);
+}
+
+/* "y" or "y=0.5" */
+static void parse_slice(RtPictureOptions *o, struct argp_state *state, const char *text) {
+    const char *axis = strchr("xyz", text[0]);
+    char *end = NULL;
+    o->boxes.slice = true;
+    o->in_middle = text[0] && text[1] == 0;
+    if (text[0] && text[1] == '=') o->boxes.at = strtod(text + 2, &end);
+    bool number = end && end > text + 2 && *end == 0 && isfinite(o->boxes.at);
+    if (!text[0] || !axis || (!o->in_middle && !number))
+        argp_error(state, "--slice: invalid value '%s': expected an axis, and where, as in z or z=0.5", text);
+    o->boxes.axis = (int)(axis - "xyz");
+}
+
+static void parse_rays(RtPictureOptions *o, struct argp_state *state, const char *text) {
+    RtError error;
+    RtRayKind kind;
+    if (rt_ray_kind_parse(text, &kind, &error) != RT_OK || kind > RT_RAY_TRANSMISSION)
+        argp_error(state,
+                   "--heatmap-rays: invalid value '%s': expected primary, shadow, reflection or transmission",
+                   text);
+    o->kinds = 1u << kind;
+    o->heat.rays = rt_ray_kind_name(kind);
+}
+
+static void parse_max(RtPictureOptions *o, struct argp_state *state, const char *text) {
+    char *end;
+    o->heat.most = strtod(text, &end);
+    if (end == text || *end || !(o->heat.most > 0) || !isfinite(o->heat.most))
+        argp_error(state, "--heatmap-max: invalid value '%s': expected a number above 0", text);
+}
+
+static void parse_scale(RtPictureOptions *o, struct argp_state *state, const char *text) {
+    bool linear = strcmp(text, "linear") == 0;
+    if (!linear && strcmp(text, "log") != 0)
+        argp_error(state, "--heatmap-scale: invalid value '%s': expected linear or log", text);
+    o->heat.scale = linear ? RT_HEATMAP_LINEAR : RT_HEATMAP_LOG;
+}
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    RtPictureOptions *o = state->input;
+    switch (key) {
+    case KEY_STRUCTURE: rt_cli_set_path(state, "--structure", &o->structure, argument, ".png"); return 0;
+    case KEY_HEATMAP: parse_heatmap(o, state, argument); return 0;
+    case KEY_LAYER: o->layer = argument, o->structural = "--layer"; return 0;
+    case KEY_LEVEL: parse_level(&o->boxes, state, argument), o->structural = "--level"; return 0;
+    case KEY_LEAVES: o->boxes.leaves = true, o->structural = "--leaves"; return 0;
+    case KEY_SLICE: parse_slice(o, state, argument), o->structural = "--slice"; return 0;
+    case KEY_LIGHT:
+        o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX),
+        o->structural = "--light";
+        return 0;
+    case KEY_PIXEL:
+        rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true, o->structural = "--pixel";
+        return 0;
+    case KEY_MAX: parse_max(o, state, argument), o->thermal = "--heatmap-max"; return 0;
+    case KEY_SCALE: parse_scale(o, state, argument), o->thermal = "--heatmap-scale"; return 0;
+    case KEY_RAYS: parse_rays(o, state, argument), o->thermal = "--heatmap-rays"; return 0;
+    case KEY_DIFFERENCE: o->heat.difference = true, o->thermal = "--heatmap-difference"; return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp rt_picture_argp = {.options = options, .parser = parse_option};
+
+void rt_pictures_finish(RtPictureOptions *o, uint32_t accels, struct argp_state *state) {
+    bool heats = rt_pictures_any_heatmap(o);
+    if (o->structural && !o->structure)
+        argp_error(state, "%s is about the picture of a structure: say where it goes, --structure FILE.png",
+                   o->structural);
+    if (o->thermal && !heats)
+        argp_error(state, "%s is about heatmaps: say of what, --heatmap COUNTER FILE.png", o->thermal);
+    if (o->heat.difference && accels != 2)
+        argp_error(state, "--heatmap-difference is of two accelerators: give --accel twice");
+    if (accels > 1 && !heats) argp_error(state, "several accelerators are for --heatmap: give one --accel");
+}
+
+bool rt_pictures_any_heatmap(const RtPictureOptions *o) {
+    size_t i = 0;
+    while (i < RT_TALLY_COUNTER_COUNT && !o->heatmaps[i]) i++;
+    return i < RT_TALLY_COUNTER_COUNT;
+}
+
+size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t count) {
+    if (o->structure) paths[count++] = o->structure;
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        if (o->heatmaps[i]) paths[count++] = o->heatmaps[i];
+    }
+    return count;
+}
+
+/* ---- writing ---- */
+
+static RtStatus image_of_cells(const RtPictureOptions *o, const RtAccel *accel, const RtAccel *layer,
+                               RtImage *image, RtError *error) {
+    RtRay ray;
+    const RtSampling *s = &accel->scene->sampling;
+    if (o->aimed && (o->x >= s->width || o->y >= s->height))
+        return rt_fail(error, RT_BAD_INPUT, "--pixel %u,%u is outside of the image, which is %u x %u", o->x,
+                       o->y, s->width, s->height);
+    if (o->aimed && o->light < accel->scene->light_count) {
+        RtFootprint f = rt_pixel_footprint(s, o->x, o->y);
+        RT_TRY(rt_path_ray(accel, RT_RAY_SHADOW, f.column + f.span / 2, f.row + f.span / 2, o->light, &ray,
+                           error));
+    }
+    return rt_cells_image(image, layer, o->light, o->aimed ? &ray : NULL, error);
+}
+
+RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, const RtFrame *frame,
+                               RtError *error) {
+    const RtAccel *layer;
+    RtImage image;
+    RtStructureOptions boxes = o->boxes;
+    RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
+    if (o->in_middle) boxes.at = (double)rt_box_center(accel->scene->geometry.box).at[boxes.axis];
+    if (layer->ops->look_up)
+        RT_TRY(image_of_cells(o, accel, layer, &image, error));
+    else
+        RT_TRY(rt_structure_image(&image, layer, frame, &boxes, error));
+    RtStatus status = rt_png_write(&image, o->structure, error);
+    rt_image_clear(&image);
+    return status;
+}
+
+RtStatus rt_pictures_heatmaps(const RtPictureOptions *o, const RtHeatmapPanel *panels, uint32_t count,
+                              RtError *error) {
+    RtStatus status = RT_OK;
+    for (size_t i = 0; status == RT_OK && i < RT_TALLY_COUNTER_COUNT; i++) {
+        RtImage image = {0};
+        RtHeatmapOptions heat = o->heat;
+        heat.counter = i;
+        if (!o->heatmaps[i]) continue;
+        status = rt_heatmap(&image, panels, count, &heat, error);
+        if (status == RT_OK) status = rt_png_write(&image, o->heatmaps[i], error);
+        rt_image_clear(&image);
+    }
+    return status;
+}

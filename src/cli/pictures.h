@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Options of `render` about pictures of what an accelerator is and costs: structures and heatmaps. A child
+ * parser of argp. */
+#ifndef RT_CLI_PICTURES_H
+#define RT_CLI_PICTURES_H
+
+#include "render/heatmap.h"
+#include "render/structure.h"
+
+#include <argp.h>
+
+/* The input of the parser; zero at first, but for `boxes`, RT_ALL_LEVELS. */
+typedef struct RtPictureOptions {
+    const char *structure, *layer;                /* a path or NULL; a name or NULL */
+    const char *heatmaps[RT_TALLY_COUNTER_COUNT]; /* paths, by counter */
+    RtStructureOptions boxes;
+    bool in_middle; /* the slice is in the middle of the scene, and boxes.at is not set */
+    RtHeatmapOptions heat;
+    uint32_t kinds;         /* of rays, bits; 0: all */
+    uint32_t light, x, y;   /* of an overlay for shadow rays; the pixel of the ray that is marked */
+    bool aimed;             /* there is such a pixel */
+    const char *structural; /* an option that was given and needs --structure, or NULL */
+    const char *thermal;    /* one that needs --heatmap */
+} RtPictureOptions;
+
+extern const struct argp rt_picture_argp;
+
+/* To be called at ARGP_KEY_END of the parent, which has `accels` accelerators. */
+void rt_pictures_finish(RtPictureOptions *o, uint32_t accels, struct argp_state *state);
+
+bool rt_pictures_any_heatmap(const RtPictureOptions *o);
+
+/* Appends the paths that will be written to paths[0..count); gives how many there are then. */
+size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t count);
+
+/* For parsers: stores `path` in *slot, or argp_error's exit where it does not end in `extension` or there is
+ * one. */
+void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
+                     const char *extension);
+
+/* Writes the picture of the structure. `frame` is of the accelerator's scene; overlays that have cells need
+ * none. */
+RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, const RtFrame *frame,
+                               RtError *error);
+
+/* Writes the heatmaps that are asked for. Panels' frames are counted, with o->kinds. */
+RtStatus rt_pictures_heatmaps(const RtPictureOptions *o, const RtHeatmapPanel *panels, uint32_t count,
+                              RtError *error);
+
+#endif

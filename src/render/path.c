@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "render/path.h"
+
+#include "base/memory.h"
+#include "render/illumination.h"
+
+#include <string.h>
+
+/* ---- recording ---- */
+
+typedef struct Recorder {
+    RtPath *path;
+    RtStatus status;
+    RtError *error;
+} Recorder;
+
+/* Where the ray is in the box, as thin as it is, within tmin..tmax ... */
+static void find_span(const RtRay *ray, RtPathRow *row) {
+    row->enter = (double)ray->tmin, row->leave = (double)ray->tmax;
+    for (int a = 0; a < 3; a++) {
+        double org = (double)ray->org.at[a], dir = (double)ray->dir.at[a];
+        double lo = (double)row->box.lo.at[a], hi = (double)row->box.hi.at[a];
+        if (dir == 0) {
+            if (org < lo || org > hi) row->leave = -(double)INFINITY;
+            continue;
+        }
+        double first = (lo - org) / dir, second = (hi - org) / dir;
+        row->enter = fmax(row->enter, fmin(first, second));
+        row->leave = fmin(row->leave, fmax(first, second));
+    }
+}
+
+/* ... or in the ball. */
+static void find_span_of_ball(const RtRay *ray, RtPathRow *row) {
+    RtVec3d dir = rt_widen(ray->dir), offset = rt_subd(row->ball.center, rt_widen(ray->org));
+    double squared = rt_dotd(dir, dir), nearest = rt_dotd(offset, dir) / squared;
+    RtVec3d across = rt_add_scaledd(offset, dir, -nearest);
+    double inside = row->ball.radius * row->ball.radius - rt_dotd(across, across);
+    double half = sqrt(fmax(inside, 0) / squared);
+    row->enter = inside < 0 ? (double)INFINITY : fmax((double)ray->tmin, nearest - half);
+    row->leave = inside < 0 ? -(double)INFINITY : fmin((double)ray->tmax, nearest + half);
+}
+
+/* The row of the object test that a hit belongs to. */
+static void note_hit(RtPath *path, const RtTraced *event) {
+    for (uint32_t i = path->count; i-- > 0;) {
+        RtPathRow *row = &path->rows[i];
+        if (row->kind != RT_TRACED_OBJECT_TEST || row->index != event->index || row->met) continue;
+        row->met = true;
+        row->t = event->t;
+        return;
+    }
+}
+
+static void record(void *context, const RtTraced *event) {
+    Recorder *recorder = context;
+    RtPath *path = recorder->path;
+    if (recorder->status != RT_OK) return;
+    rt_traced_count(event, &path->tally);
+    if (event->kind == RT_TRACED_OBJECT_HIT) {
+        note_hit(path, event);
+        return;
+    }
+    recorder->status = rt_reserve(&path->rows, &path->capacity, (uint64_t)path->count + 1, sizeof *path->rows,
+                                  recorder->error);
+    if (recorder->status != RT_OK) return;
+    RtPathRow *row = &path->rows[path->count++];
+    *row = (RtPathRow){.kind = event->kind,
+                       .what = event->what,
+                       .index = event->index,
+                       .leaf = event->leaf,
+                       .empty = event->empty,
+                       .met = event->met,
+                       .boxed = event->box && !rt_box_is_empty(*event->box),
+                       .enter = INFINITY,
+                       .leave = -INFINITY};
+    if (event->kind == RT_TRACED_OBJECT_TEST || event->kind == RT_TRACED_REPEAT_AVOIDED) row->what = "object";
+    if (!event->box || !row->boxed) return;
+    row->box = *event->box;
+    find_span(&path->ray, row);
+    row->round = event->ball;
+    if (!row->round) return;
+    row->ball = *event->ball;
+    find_span_of_ball(&path->ray, row);
+}
+
+static void find_nearest(RtPath *path) {
+    float nearest = INFINITY;
+    for (uint32_t i = 0; i < path->count; i++) {
+        RtPathRow *row = &path->rows[i];
+        if (row->kind == RT_TRACED_OBJECT_TEST && row->met) nearest = rt_minf(row->t, nearest);
+        row->nearest = nearest;
+    }
+    if (path->any && path->hit.object != RT_NO_OBJECT) path->hit.t = nearest;
+}
+
+/* ---- tracing ---- */
+
+/* What the ray hits, learnt by accelerators that replay answers. */
+static RtStatus teach(RtAccel *accel, RtQuery *query, const RtRay *ray, RtError *error) {
+    RtHit hit;
+    rt_nearest(query, ray, 1, &hit, NULL);
+    return rt_accel_learn(accel, ray, &hit, 1, error);
+}
+
+/* By the kernels of the top layer itself, which name the blocker. */
+static void ask(const RtQuery *query, const RtRay *ray, RtPath *path, RtTally *tallies) {
+    const RtAccel *accel = query->accel;
+    if (path->any)
+        accel->ops->occluded_counted(accel, query->scratch, ray, 1, &path->hit.object, tallies);
+    else
+        accel->ops->nearest_counted(accel, query->scratch, ray, 1, &path->hit, tallies);
+}
+
+static RtStatus compare(RtPath *path, const RtTally *counted, RtError *error) {
+    path->tally.rays = counted->rays;
+    path->tally.hits = counted->hits;
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        uint64_t seen = rt_tally_get(&path->tally, i), right = rt_tally_get(counted, i);
+        if (seen == right) continue;
+        return rt_fail(error, RT_MISMATCH, "the path has %llu %s where the kernel counted %llu",
+                       (unsigned long long)seen, rt_tally_name(i), (unsigned long long)right);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_path_trace(RtPath *path, RtAccel *accel, const RtRay *ray, RtError *error) {
+    RtQuery query;
+    RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+    *path = (RtPath){.ray = *ray, .any = rt_ray_kind_is_occlusion((RtRayKind)ray->kind), .hit = RT_MISS};
+    RT_TRY(rt_query_init(&query, accel, error));
+    RtStatus status = teach(accel, &query, &path->ray, error);
+    if (status == RT_OK) {
+        Recorder recorder = {path, RT_OK, error};
+        rt_query_begin(&query);
+        rt_onlooker = &(RtOnlooker){record, &recorder};
+        ask(&query, &path->ray, path, tallies);
+        rt_onlooker = NULL;
+        status = recorder.status;
+    }
+    rt_query_clear(&query);
+    if (status == RT_OK) status = compare(path, &tallies[ray->kind], error);
+    if (status == RT_OK) status = rt_accel_check(accel, error);
+    if (status == RT_OK) find_nearest(path);
+    if (status != RT_OK) rt_path_clear(path);
+    return status;
+}
+
+void rt_path_clear(RtPath *path) {
+    rt_free(path->rows);
+    path->rows = NULL;
+    path->count = path->capacity = 0;
+}
+
+const char *rt_path_row_name(const RtPathRow *row) {
+    switch (row->kind) {
+    case RT_TRACED_STEP: return row->empty ? "step, empty" : row->leaf ? "step, leaf" : "step";
+    case RT_TRACED_EXTENT_TEST: return "extent test";
+    case RT_TRACED_OBJECT_TEST: return "object test";
+    case RT_TRACED_CSG_TEST: return "csg test";
+    case RT_TRACED_REPEAT_AVOIDED: return "repeat avoided";
+    case RT_TRACED_PASSED_ON: return "passed on";
+    case RT_TRACED_OBJECT_HIT:
+    case RT_TRACED_KIND_COUNT: break;
+    }
+    return "";
+}
+
+uint32_t rt_path_run(const RtPath *path, uint32_t first) {
+    uint32_t end = first;
+    while (end < path->count && path->rows[end].kind == RT_TRACED_OBJECT_TEST && !path->rows[end].met) end++;
+    return end - first >= 4 ? end - first : 1;
+}
+
+/* ---- which ray ---- */
+
+static RtStatus spawn(const RtAccel *accel, RtRayKind kind, uint32_t light, RtRay *ray, RtCrossing *room,
+                      RtHit hit, RtError *error) {
+    const RtScene *scene = accel->scene;
+    RtRay spawned[RT_MAX_SPAWN];
+    float factors[RT_MAX_SPAWN];
+    RtVec3 arrives;
+    if (hit.object == RT_NO_OBJECT)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the primary ray hits nothing, so no %s ray follows: choose another pixel",
+                       rt_ray_kind_name(kind));
+    RtSurface surface = rt_surface(scene, ray, hit, room);
+    if (kind == RT_RAY_SHADOW) {
+        if (light >= scene->light_count)
+            return rt_fail(error, RT_BAD_INPUT, "there is no light %u: the scene has %u, the first being 0",
+                           light, scene->light_count);
+        if (rt_shadow_ray(scene, &surface, light, ray, &arrives)) return RT_OK;
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "object %u turns away from light %u there, and sends no shadow ray: choose another pixel "
+            "or light",
+            hit.object, light);
+    }
+    for (uint32_t i = 0, n = rt_spawn_rays(&surface, spawned, factors); i < n; i++) {
+        if (spawned[i].kind != (uint32_t)kind) continue;
+        *ray = spawned[i];
+        return RT_OK;
+    }
+    return rt_fail(error, RT_BAD_INPUT, "object %u, which the primary ray hits, sends no %s ray", hit.object,
+                   rt_ray_kind_name(kind));
+}
+
+RtStatus rt_path_ray(const RtAccel *accel, RtRayKind kind, uint32_t column, uint32_t row, uint32_t light,
+                     RtRay *ray, RtError *error) {
+    RtView view;
+    RtQuery query;
+    RtHit hit;
+    RT_TRY(rt_view_init(&view, &accel->scene->camera, accel->scene->sampling, error));
+    *ray = rt_view_ray(&view, column, row);
+    if (kind == RT_RAY_PRIMARY) return RT_OK;
+    RT_TRY(rt_query_init(&query, accel, error));
+    rt_nearest(&query, ray, 1, &hit, NULL);
+    RtStatus status = spawn(accel, kind, light, ray, rt_query_room(&query), hit, error);
+    rt_query_clear(&query);
+    return status;
+}

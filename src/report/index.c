@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "report/index.h"
+
+#include "base/memory.h"
+#include "base/table.h"
+#include "bench/manifest.h"
+#include "report/page.h"
+#include "report/result_directory.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+typedef struct Index {
+    FILE *out;
+    const char *folder;
+    RtExperiment *experiment;
+    size_t count;
+} Index;
+
+/* ---- an experiment ---- */
+
+static void put_size(FILE *out, const RtResults *results) {
+    const RtExperiment *experiment = results->experiment;
+    uint32_t scenes = 0;
+    uint64_t cells = 0;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        scenes += results->workloads[t].known;
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            for (uint32_t k = 0; k < experiment->kind_count; k++) {
+                const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
+                cells += cell->counted || cell->timed;
+            }
+        }
+    }
+    fprintf(out,
+            "<p class=\"meta\">Scenes: %" PRIu32 " &middot; accelerators: %" PRIu32
+            " &middot; cells: %" PRIu64 "%s</p>\n",
+            scenes, experiment->candidate_count, cells,
+            experiment->count_only ? " &middot; counted only" : "");
+}
+
+static void put_paragraph(FILE *out, const char *title, const char *text) {
+    if (!*text) return;
+    fprintf(out, "<p><strong>%s</strong> ", title);
+    rt_html_put(out, text);
+    fputs("</p>\n", out);
+}
+
+/* `name`: of the directory, seen from the page. */
+static void put_title(const Index *index, const char *directory, const char *name, const char *title) {
+    char report[RT_MAX_PATH], link[RT_MAX_PATH];
+    const bool there = rt_path_join(directory, "report.html", report, NULL) == RT_OK &&
+                       rt_file_exists(report) && rt_path_join(name, "report.html", link, NULL) == RT_OK;
+    fputs("<section class=\"card\"><h2>", index->out);
+    if (there) {
+        fputs("<a", index->out);
+        rt_page_href(index->out, link);
+        fputc('>', index->out);
+    }
+    rt_html_put(index->out, title);
+    fputs(there ? "</a></h2>\n" : "</h2>\n", index->out);
+}
+
+static void put_experiment(Index *index, const char *directory, const char *name) {
+    FILE *out = index->out;
+    RtResults results;
+    RtError error = {RT_OK, ""};
+    json_t *manifest = NULL;
+    RtStatus status = rt_run_load(directory, index->experiment, &results, &error);
+    if (status == RT_OK) status = rt_manifest_read(directory, &manifest, &error);
+    put_title(index, directory, name, status == RT_OK ? index->experiment->name : name);
+    if (status == RT_OK) {
+        fputs("<p>", out);
+        rt_page_verdict(out, &results);
+        fputs("</p>\n", out);
+        put_paragraph(out, "Question:", index->experiment->question);
+        put_paragraph(out, "Finding:", index->experiment->finding);
+        rt_page_provenance(out, manifest);
+        put_size(out, &results);
+    } else {
+        put_paragraph(out, "It cannot be read:", error.message);
+    }
+    fputs("</section>\n", out);
+    json_decref(manifest);
+    rt_results_clear(&results);
+    index->count++;
+}
+
+/* ---- all of them ---- */
+
+/* Where a folder holds an experiment.yaml and a manifest. */
+static bool is_result(const char *directory) {
+    char path[RT_MAX_PATH], manifest[RT_MAX_PATH];
+    return rt_path_join(directory, "experiment.yaml", path, NULL) == RT_OK && rt_file_exists(path) &&
+           rt_path_join(directory, RT_MANIFEST, manifest, NULL) == RT_OK && rt_file_exists(manifest);
+}
+
+/* A folder itself, the one above, and what is hidden. */
+static bool is_hidden(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return (slash ? slash[1] : path[0]) == '.';
+}
+
+static void visit_inner(void *context, const char *path) {
+    Index *index = context;
+    if (!is_hidden(path) && is_result(path)) put_experiment(index, path, path + strlen(index->folder) + 1);
+}
+
+static void visit(void *context, const char *path) {
+    Index *index = context;
+    if (is_hidden(path)) return;
+    if (is_result(path)) {
+        put_experiment(index, path, path + strlen(index->folder) + 1);
+    } else {
+        rt_directory_each(path, "", visit_inner, index);
+    }
+}
+
+RtStatus rt_index_write(const char *folder, size_t *count, RtError *error) {
+    char path[RT_MAX_PATH], plain[RT_MAX_PATH];
+    RtOutput output;
+    /* Without slashes at its end, so that the rest of a path is the name seen from it. */
+    snprintf(plain, sizeof plain, "%s", *folder ? folder : ".");
+    for (size_t size = strlen(plain); size > 1 && plain[size - 1] == '/'; size--) plain[size - 1] = '\0';
+    *count = 0;
+    RT_TRY(rt_path_join(plain, "index.html", path, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    Index index = {.out = output.file, .folder = plain, .experiment = rt_alloc(1, sizeof(RtExperiment))};
+    if (!index.experiment) {
+        rt_output_discard(&output);
+        return rt_fail_memory(error, "an experiment", sizeof(RtExperiment));
+    }
+    rt_page_begin(index.out, "Experiments");
+    rt_directory_each(plain, "", visit, &index);
+    rt_page_end(index.out);
+    rt_free(index.experiment);
+    *count = index.count;
+    if (index.count) return rt_output_commit(&output, error);
+    rt_output_discard(&output);
+    return rt_fail(error, RT_BAD_INPUT, "%s holds no result directory", folder);
+}

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "report/page.h"
+
+#include "base/table.h"
+#include "bench/claims.h"
+#include "page_css.h"
+#include "page_js.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <string.h>
+
+/* ---- the frame ---- */
+
+void rt_page_lines(FILE *out, const char *const *lines) {
+    for (; *lines; lines++) fputs(*lines, out);
+}
+
+/* The policy lets the page load nothing: what it shows lies in it. */
+void rt_page_begin(FILE *out, const char *title) {
+    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+          "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<link rel=\"icon\" "
+          "href=\"data:,\">\n<title>",
+          out);
+    rt_html_put(out, title);
+    fputs("</title>\n<style>\n", out);
+    rt_page_lines(out, page_css);
+    fputs("</style></head>\n<body><main>\n<h1>", out);
+    rt_html_put(out, title);
+    fputs("</h1>\n", out);
+}
+
+void rt_page_end(FILE *out) {
+    fputs("</main>\n<script>\n", out);
+    rt_page_lines(out, page_js);
+    fputs("</script></body></html>\n", out);
+}
+
+/* ---- files ---- */
+
+void rt_page_data_url(FILE *out, const char *type, const void *data, size_t size) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const unsigned char *bytes = data;
+    fprintf(out, "data:%s;base64,", type);
+    for (size_t i = 0; i < size; i += 3) {
+        uint32_t left = size - i < 3 ? (uint32_t)(size - i) : 3, word = 0;
+        for (uint32_t k = 0; k < 3; k++) word = word << 8 | (k < left ? bytes[i + k] : 0u);
+        for (uint32_t k = 0; k < 4; k++) fputc(k <= left ? digits[word >> (18 - 6 * k) & 63] : '=', out);
+    }
+}
+
+void rt_page_href(FILE *out, const char *file) {
+    fputs(" href=\"", out);
+    for (const char *c = file; *c; c++) {
+        fprintf(out, isalnum((unsigned char)*c) || strchr("-_.~/", *c) ? "%c" : "%%%02X", (unsigned char)*c);
+    }
+    fputc('"', out);
+}
+
+/* ---- what is said ---- */
+
+void rt_page_card(FILE *out, const char *title, const char *text) {
+    if (!*text) return;
+    fprintf(out, "<section class=\"card\"><h2>%s</h2><p>", title);
+    rt_html_put(out, text);
+    fputs("</p></section>\n", out);
+}
+
+void rt_page_verdict(FILE *out, const RtResults *results) {
+    const uint32_t claims = results->experiment->claim_count;
+    uint32_t counts[RT_CLAIM_FALSE + 1] = {0};
+    for (uint32_t i = 0; i < claims; i++) {
+        RtClaimResult result;
+        rt_claim_judge(results, i, &result);
+        counts[result.verdict]++;
+    }
+    const uint32_t wrong = counts[RT_CLAIM_FALSE], open = counts[RT_CLAIM_UNDECIDED];
+    fprintf(out, "<span class=\"verdict %s\">", wrong ? "false" : open || !claims ? "open" : "holds");
+    if (!claims) {
+        fputs("not judged", out);
+    } else {
+        fprintf(out, "%" PRIu32 " of %" PRIu32 " claims hold", counts[RT_CLAIM_HOLDS], claims);
+    }
+    if (wrong) fprintf(out, ", %" PRIu32 " do%s not", wrong, wrong == 1 ? "es" : "");
+    if (open) fprintf(out, ", %" PRIu32 " undecided", open);
+    fputs("</span>\n", out);
+}
+
+static const char *text_at(const json_t *object, const char *key) {
+    const char *text = json_string_value(json_object_get(object, key));
+    return text ? text : "unknown";
+}
+
+void rt_page_provenance(FILE *out, const json_t *manifest) {
+    const json_t *machine = json_object_get(manifest, "machine");
+    const json_t *clock = json_object_get(machine, "clock_mhz");
+    fputs("<p class=\"meta\">", out);
+    rt_html_put(out, text_at(manifest, "date"));
+    fputs(" &middot; ", out);
+    rt_html_put(out, text_at(machine, "cpu"));
+    if (json_is_number(clock)) {
+        fprintf(out, " &middot; clock %.2f GHz", 1e-3 * json_number_value(clock));
+    } else {
+        fputs(" &middot; clock unknown", out);
+    }
+    fputs(" &middot; governor ", out);
+    rt_html_put(out, text_at(machine, "governor"));
+    fputs(" &middot; raytally ", out);
+    rt_html_put(out, text_at(machine, "version"));
+    fputs(" (", out);
+    rt_html_put(out, text_at(machine, "commit"));
+    fprintf(out, "%s)%s</p>\n", json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
+            json_is_true(json_object_get(manifest, "quick")) ? " &middot; <strong>quick variant</strong>"
+                                                             : "");
+}

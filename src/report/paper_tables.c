@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "report/paper_tables.h"
+
+#include "base/file.h"
+#include "bench/result_tables.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* A table of one kind of rays: the rows of another that are of that kind. */
+typedef struct OfKind {
+    RtTable table;
+    const RtResultRow *row;
+    RtRayKind kind;
+} OfKind;
+
+static const void *row_of_kind(void *context, size_t i) {
+    const OfKind *of = context;
+    const void *row = of->table.row(of->table.context, i);
+    return row && of->row->kind == of->kind ? row : NULL;
+}
+
+static bool has_rows(const RtTable *table) {
+    for (size_t i = 0; i < table->row_count; i++) {
+        if (table->row(table->context, i)) return true;
+    }
+    return false;
+}
+
+static void put_table(const RtResults *results, uint32_t t, RtRayKind kind, bool tex, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    RtResultRow row = {.results = results, .workload = t};
+    OfKind of = {.table = rt_result_table(RT_CELLS_PAPER, &row), .row = &row, .kind = kind};
+    RtTable table = of.table;
+    char caption[RT_MAX_LABEL + 128];
+    table.row = row_of_kind;
+    table.context = &of;
+    if (!has_rows(&table)) return;
+    snprintf(caption, sizeof caption, "%s, %" PRIu64 " %s rays.", experiment->workloads[t].label,
+             results->workloads[t].rays[kind], rt_experiment_kind_name(experiment, kind));
+    table.caption = caption;
+    if (tex) {
+        fputc('\n', out);
+        rt_table_tex(&table, out);
+    } else {
+        fprintf(out, "\n%s\n\n", caption);
+        rt_table_markdown(&table, out);
+    }
+}
+
+static void put_head(const RtResults *results, bool tex, FILE *out) {
+    char interval[RT_MAX_INTERVAL_TITLE];
+    rt_interval_title(results->experiment, interval);
+    char *sign = strchr(interval, '%');
+    if (sign && sign > interval) sign[-1] = '\0';
+    fprintf(out,
+            tex ? "%% %s, written by raytally. Needs \\usepackage{booktabs,graphicx}.\n"
+                : "# %s\n\nWritten by `raytally`.\n",
+            results->experiment->name);
+    fprintf(out,
+            "%sTests, extent tests (ext.) and steps are those of a ray. Ratios are of throughput, to %s's; "
+            "intervals of %s percent.\n%sBold: the best, and what its interval does not tell apart.\n",
+            tex ? "% " : "", rt_baseline_label(results->experiment), interval, tex ? "% " : "");
+}
+
+static RtStatus write_tables(const RtResults *results, const char *directory, const char *name, bool tex,
+                             RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    char path[RT_MAX_PATH];
+    RtOutput output;
+    RT_TRY(rt_path_join(directory, name, path, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    put_head(results, tex, output.file);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        for (uint32_t k = 0; k < experiment->kind_count; k++)
+            put_table(results, t, experiment->kinds[k], tex, output.file);
+    }
+    return rt_output_commit(&output, error);
+}
+
+RtStatus rt_paper_tables_write(const RtResults *results, const char *directory, RtError *error) {
+    RT_TRY(write_tables(results, directory, "tables.md", false, error));
+    return write_tables(results, directory, "tables.tex", true, error);
+}

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* raytally trace, as a user runs it. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "base/tally.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define OUT RT_BINARY_DIR "/test_cmd_trace"
+
+/* Runs `raytally trace ARGUMENTS`, output to OUT.txt, messages to OUT.err; gives the exit code. */
+static int trace(const char *arguments) {
+    char command[2048];
+    snprintf(command, sizeof command, "'%s' trace %s > '%s.txt' 2> '%s.err'", RT_PROGRAM, arguments, OUT,
+             OUT);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static bool says(const char *path, const char *what) {
+    static char text[1 << 18];
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return strstr(text, what) != NULL;
+}
+
+static json_t *path_of(const char *arguments) {
+    char all[1024];
+    snprintf(all, sizeof all, "%s --json", arguments);
+    assert_int_equal(trace(all), 0);
+    json_t *path = json_load_file(OUT ".txt", 0, NULL);
+    assert_non_null(path);
+    return path;
+}
+
+static json_int_t rows_of(const json_t *path, const char *event) {
+    json_int_t count = 0;
+    size_t i;
+    json_t *row;
+    json_array_foreach(json_object_get(path, "rows"), i, row) {
+        const char *name = json_string_value(json_object_get(row, "event"));
+        count += strncmp(name, event, strlen(event)) == 0;
+    }
+    return count;
+}
+
+static json_int_t count_of(const json_t *path, const char *counter) {
+    return json_integer_value(json_object_get(json_object_get(path, "counts"), counter));
+}
+
+RT_TEST(rows_are_steps_extent_tests_and_object_tests_as_many_as_are_counted) {
+    static const char *const specs[] = {"bvh",  "grid",     "octree",  "kd",
+                                        "wide", "clusters", "extents", "brute"};
+    for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
+        char arguments[256];
+        snprintf(arguments, sizeof arguments, "balls:size=2 --size 64x64 --pixel 32,30 --accel %s", specs[i]);
+        json_t *path = path_of(arguments);
+        assert_int_equal(rows_of(path, "step"), count_of(path, "steps"));
+        assert_int_equal(rows_of(path, "step, "), count_of(path, "leaf_steps"));
+        assert_int_equal(rows_of(path, "extent test"), count_of(path, "extent_tests"));
+        assert_int_equal(rows_of(path, "object test"), count_of(path, "object_tests"));
+        assert_true(count_of(path, "object_tests") > 0);
+        assert_int_equal(count_of(path, "rays"), 1);
+        json_decref(path);
+    }
+    unlink(OUT ".txt");
+}
+
+RT_TEST(every_accelerator_says_the_same_of_where_a_ray_ends) {
+    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel brute"), 0);
+    static char line[256];
+    FILE *file = fopen(OUT ".txt", "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file) && strncmp(line, "its nearest hit is", 18) != 0) {
+    }
+    fclose(file);
+    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel item+kd"), 0);
+    assert_true(says(OUT ".txt", line));
+    unlink(OUT ".txt");
+}
+
+RT_TEST(a_shadow_ray_is_followed_through_overlays) {
+    assert_int_equal(
+        trace("balls:size=2 --size 64x64 --pixel 32,50 --rays shadow --accel light:cells=16+bvh"), 0);
+    assert_true(says(OUT ".txt", "the shadow ray of pixel 32,50"));
+    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,50 --rays shadow --accel cache+bvh"), 0);
+    assert_true(says(OUT ".txt", "passed on       by cache"));
+    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,32 --rays reflection"), 0);
+    assert_true(says(OUT ".txt", "the reflection ray"));
+    unlink(OUT ".txt");
+}
+
+RT_TEST(many_object_tests_that_miss_are_one_row_unless_each_is_asked_for) {
+    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel brute"), 0);
+    assert_true(says(OUT ".txt", "all missed"));
+    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel brute --rows 0"), 0);
+    assert_false(says(OUT ".txt", "all missed"));
+    assert_true(says(OUT ".txt", "object 91, "));
+    unlink(OUT ".txt");
+}
+
+RT_TEST(the_path_is_drawn) {
+    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel kd --svg " OUT ".svg"), 0);
+    assert_true(says(OUT ".svg", "<svg xmlns"));
+    assert_true(says(OUT ".svg", "the primary ray of pixel 32,30 of 64 x 64"));
+    assert_true(says(OUT ".svg", "1  extent test, node 0: met"));
+    assert_true(says(OUT ".svg", "</svg>"));
+    unlink(OUT ".svg");
+    unlink(OUT ".txt");
+}
+
+RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
+    const struct {
+        const char *arguments, *says;
+    } cases[] = {
+        {"", "a SCENE is needed"},
+        {"balls", "--pixel X,Y"},
+        {"balls --pixel 3", "as in 256,200"},
+        {"balls --pixel -1,2", "as in 256,200"},
+        {"balls --pixel 512,0", "choose 0..511,0..511"},
+        {"balls --pixel 0,0 --accel bvhh", "mean 'bvh'"},
+        {"balls --pixel 0,0 --rays random", "expected primary"},
+        {"balls --pixel 0,0 --svg a.png", ".svg"},
+        {"balls --pixel 0,0 tetra", "one SCENE"},
+        {"balls --pixel 256,256 --rays shadow --light 3", "there is no light 3"},
+        {"tetra --pixel 0,0 --rays shadow", "hits nothing"},
+        {"tetra --pixel 256,256 --rays transmission", "transmission"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        if (trace(cases[i].arguments) != 2) fail_msg("'%s' did not exit with 2", cases[i].arguments);
+        if (!says(OUT ".err", cases[i].says))
+            fail_msg("'%s' does not say '%s'", cases[i].arguments, cases[i].says);
+    }
+    unlink(OUT ".txt");
+    unlink(OUT ".err");
+}
+
+RT_TESTS(cmd_trace, NULL, NULL)

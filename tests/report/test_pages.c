@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What people look at: the order of the report, who is marked as best, looks, captions, tables for papers,
+ * the index. In a browser: tests/check_pages.sh. */
+#include "experiment_testing.h"
+
+#include "bench/results.h"
+#include "bench/standing.h"
+#include "report/color.h"
+
+#include <unistd.h>
+
+static const char experiment_yaml[] =
+    "name: small\n"
+    "question: Which is <cheaper>?\n"
+    "prediction: The hierarchy.\n"
+    "scenes: [{scene: \"random:n=60\", label: cloud, size: 12x12}]\n"
+    "accelerators: [{accel: bvh}, {accel: grid}, {accel: brute}, {accel: ideal}]\n"
+    "rays: [primary, random]\n"
+    "limit: 50\n"
+    "rounds: 2\n"
+    "milliseconds: 0\n"
+    "expect: [object_tests of bvh < object_tests]\n";
+
+static int make_small(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_changed(*state, "small.yaml", experiment_yaml, "bvh < object_tests", "bvh < 30");
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
+
+/* ---- the report ---- */
+
+RT_TEST_IN_PLACE(the_report_has_verdict_finding_and_prediction_first_then_plots_then_tables) {
+    const Place *place = *state;
+    const char *const parts[] = {"Which is &lt;cheaper&gt;?",
+                                 "<h2>Verdict</h2>",
+                                 "1 of 1 claims hold",
+                                 "<h2>Finding</h2>",
+                                 "<h2>Prediction",
+                                 "clock ",
+                                 "governor ",
+                                 "href=\"times.csv\"",
+                                 "id=\"plots\"",
+                                 "id=\"tables\"",
+                                 "<script>"};
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    char *page = read_in(place, "out/report.html");
+    const char *at = page;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        const char *found = strstr(at, parts[i]);
+        if (!found) fail_msg("the report lacks '%s' after what stands before it", parts[i]);
+        if (found) at = found;
+    }
+    rt_free(page);
+}
+
+RT_TEST_IN_PLACE(a_plot_has_the_caption_that_its_script_says_and_its_first_sentence_for_who_does_not_see_it) {
+    const Place *place = *state;
+    if (access("/usr/bin/gnuplot", X_OK) != 0) skip();
+    write_in(place, "my.gp",
+             "#: other: Not this.\n#: mine: Time & tests. All\n#:   kinds together.\n# Not this.\n"
+             "set terminal svg size 300,200\nset output \"plots/mine.svg.tmp\"\nplot x\nunset output\n");
+    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
+                  "plots: [my.gp]");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/report.html",
+                   "<figcaption>Time &amp; tests. All kinds together.</figcaption>");
+    assert_in_file(place, "out/report.html", "alt=\"Plot: Time &amp; tests. Its figures");
+    assert_in_file(place, "out/report.html", "--w:300px");
+}
+
+RT_TEST_IN_PLACE(plots_are_drawn_as_pdf_too_as_wide_as_a_column_of_a_paper) {
+    const Place *place = *state;
+    if (access("/usr/bin/gnuplot", X_OK) != 0) skip();
+    write_in(place, "my.gp",
+             "load \"plots/style.gp\"\neval canvas(\"mine\", 480, 240)\nplot x\nunset output\n");
+    char copy[512];
+    snprintf(copy, sizeof copy, "cp '%s/experiments/style.gp' '%s'", RT_SOURCE_DIR, place->folder);
+    assert_int_equal(system(copy), 0);
+    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
+                  "plots: [style.gp, my.gp]");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 480 240\"");
+    assert_in_file(place, "out/report.html", "<a href=\"plots/mine.pdf\">PDF</a>");
+    assert_in_file(place, "out/plots/names.gp", "format = \"svg\"");
+    char command[512];
+    snprintf(command, sizeof command, "grep -aq '/MediaBox \\[ 0 0 252 126 \\]' '%s'",
+             path_in(place, "out/plots/mine.pdf").text);
+    assert_int_equal(system(command), 0);
+}
+
+RT_TEST_IN_PLACE(tables_for_papers_have_the_best_in_bold) {
+    const Place *place = *state;
+    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
+                  "count_only: yes");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "out/tables.md", "cloud, 50 random rays.");
+    assert_in_file(place, "out/tables.md", "| **bvh** | ");
+    assert_in_file(place, "out/tables.md", "| brute | ");
+    assert_in_file(place, "out/tables.md", "| ideal | ");
+    assert_in_file(place, "out/tables.tex", "\\textbf{bvh} & ");
+    assert_in_file(place, "out/tables.tex", "\\bottomrule");
+    assert_in_file(place, "out/report.html", "bvh <span class=\"mark\">&#9733;");
+}
+
+/* ---- who is best ---- */
+
+static void set_time(const RtResults *results, uint32_t candidate, double low, double median, double high) {
+    RtCell *cell = rt_cell_at(results, 0, candidate, RT_RAY_PRIMARY);
+    cell->timed = true;
+    cell->seconds = (RtEstimate){.median = median, .low = low, .high = high};
+}
+
+RT_TEST_IN_PLACE(
+    the_best_has_the_least_median_and_level_is_whose_interval_overlaps_but_the_yardstick_is_none) {
+    const Place *place = *state;
+    RtResults results;
+    assert_ok(load_small(place, false, error));
+    assert_ok(rt_results_init(&results, place->experiment, error));
+    results.workloads[0].known = true;
+    results.workloads[0].rays[RT_RAY_PRIMARY] = 10;
+    set_time(&results, 0, 8, 10, 12);
+    set_time(&results, 1, 11.9, 13, 14);
+    set_time(&results, 2, 12.1, 13, 14);
+    set_time(&results, 3, 1, 1, 1); /* ideal */
+    const RtStanding expected[] = {RT_STANDING_BEST, RT_STANDING_LEVEL, RT_STANDING_BEHIND,
+                                   RT_STANDING_BEHIND, RT_STANDING_BEHIND};
+    for (uint32_t c = 0; c <= 4; c++) {
+        assert_int_equal(rt_standing(&results, 0, c, RT_RAY_PRIMARY), expected[c]);
+        assert_int_equal(rt_standing(&results, 0, c, RT_RAY_KIND_COUNT), expected[c]);
+        assert_int_equal(rt_standing(&results, 0, c, RT_RAY_RANDOM), RT_STANDING_BEHIND); /* not measured */
+    }
+    rt_results_clear(&results);
+}
+
+/* ---- looks ---- */
+
+static void take_accelerators(RtExperiment *experiment, const char *const *specs, uint32_t count) {
+    experiment->candidate_count = count;
+    for (uint32_t c = 0; c < count; c++)
+        snprintf(experiment->candidates[c].spec, RT_MAX_SPEC_CHARS, "%s", specs[c]);
+}
+
+RT_TEST_IN_PLACE(an_accelerator_has_its_colour_in_every_experiment) {
+    const Place *place = *state;
+    const char *const one[] = {"brute", "bvh", "grid:density=4"}, *const other[] = {"grid", "wide",
+                                                                                    "bvh:bins=8+brute"};
+    RtExperiment *experiment = place->experiment;
+    take_accelerators(experiment, one, 3);
+    const RtLook bvh = rt_candidate_look(experiment, 1), grid = rt_candidate_look(experiment, 2);
+    take_accelerators(experiment, other, 3);
+    assert_string_equal(rt_candidate_look(experiment, 0).color, grid.color);
+    assert_string_equal(rt_candidate_look(experiment, 2).color, bvh.color);
+    assert_string_not_equal(grid.color, bvh.color);
+}
+
+RT_TEST_IN_PLACE(of_fifty_accelerators_no_two_have_a_colour_and_in_grey_print_marker_or_dash_differ) {
+    const Place *place = *state;
+    RtExperiment *experiment = place->experiment;
+    const char *specs[50];
+    for (int c = 0; c < 50; c++) specs[c] = c % 5 == 0 ? "bvh" : "grid:density=2";
+    take_accelerators(experiment, specs, 50);
+    for (uint32_t a = 0; a < 50; a++) {
+        const RtLook look = rt_candidate_look(experiment, a), line = rt_look(a);
+        for (uint32_t b = 0; b < a; b++) {
+            const RtLook before = rt_candidate_look(experiment, b);
+            assert_string_not_equal(look.color, before.color);
+            assert_string_not_equal(line.color, rt_look(b).color);
+            assert_true(look.marker != before.marker || look.dash != before.dash);
+        }
+    }
+}
+
+/* ---- the index ---- */
+
+RT_TEST_IN_PLACE(the_index_has_each_experiment_with_verdict_finding_and_link_and_names_what_cannot_be_read) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --out all/one --threads 1"), 0);
+    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
+                  "finding: It <was>.");
+    assert_int_equal(raytally(place, "run small.yaml --out 'all/deeper/two & a half' --threads 1"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out all/damaged --threads 1"), 0);
+    write_in(place, "all/damaged/manifest.json", "{");
+    assert_int_equal(raytally(place, "report --index all/"), 0);
+    assert_in_file(place, "output", "all//index.html, of 3 experiments");
+    assert_in_file(place, "all/index.html", "<a href=\"one/report.html\">small</a>");
+    assert_in_file(place, "all/index.html", "<a href=\"deeper/two%20%26%20a%20half/report.html\">");
+    assert_in_file(place, "all/index.html", "1 of 1 claims hold");
+    assert_in_file(place, "all/index.html", "It &lt;was&gt;.");
+    assert_in_file(place, "all/index.html", "It cannot be read:");
+    assert_int_equal(raytally(place, "report --index nowhere"), 2);
+    assert_int_equal(raytally(place, "report --index all small"), 2);
+    assert_int_equal(system("test ! -e nowhere"), 0);
+}
+
+RT_TESTS(pages, NULL, NULL)
