@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally completion: what can be completed, from the tables of commands, options, accelerators and scenes, as a
- * function of bash that tells it by name; behind it cli/completion.bash, which asks that function. */
+/* raytally completion: what can be completed, from the tables of commands, options, accelerators and scenes,
+ * as a function of bash that tells it by name; behind it cli/completion.bash, which asks that function. */
 #include "accel/accel.h"
 #include "base/ray.h"
-#include "base/tally.h"
+#include "base/table.h"
 #include "cli/cli.h"
 #include "completion_bash.h"
 #include "scenes/builtin.h"
@@ -23,7 +23,8 @@ static void end(void) {
 
 /* ---- options ---- */
 
-/* --NAME=VALUE and -cVALUE, VALUE as the table calls it up to a blank; without one where it may be left out. */
+/* --NAME=VALUE and -cVALUE, VALUE as the table calls it up to a blank; without one where it may be left out.
+ */
 static void print_options(const struct argp *argp) {
     for (const struct argp_option *o = argp->options; o && (o->name || o->doc); o++) {
         if (!o->name || o->flags & (OPTION_HIDDEN | OPTION_DOC)) continue;
@@ -32,7 +33,8 @@ static void print_options(const struct argp *argp) {
         printf(" --%s%s%.*s", o->name, length ? "=" : "", length, value);
         if (o->key > ' ' && o->key < 127) printf(" -%c%.*s", o->key, length, value);
     }
-    for (const struct argp_child *child = argp->children; child && child->argp; child++) print_options(child->argp);
+    for (const struct argp_child *child = argp->children; child && child->argp; child++)
+        print_options(child->argp);
 }
 
 static void print_commands(void) {
@@ -67,7 +69,8 @@ static void print_params(const char *table, const char *name, const RtParam *par
         if (!is_word(&params[i])) continue;
         snprintf(entry, sizeof entry, "%s:%s", name, params[i].name);
         begin(table, entry);
-        for (size_t n = 0; rt_param_try(&params[i], n, value, sizeof value); n++) printf(" %s", value);
+        rt_param_range(&params[i], value, sizeof value);
+        for (char *words = value, *word; (word = strsep(&words, "|"));) printf(" %s", word);
         end();
     }
 }
@@ -111,7 +114,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     switch (key) {
     case ARGP_KEY_ARG:
         if (*shell) argp_error(state, "one SHELL at a time; '%s' is a second one", argument);
-        if (strcmp(argument, "bash") != 0) argp_error(state, "there is none for '%s', only for bash", argument);
+        if (strcmp(argument, "bash") != 0)
+            argp_error(state, "there is none for '%s', only for bash", argument);
         *shell = argument;
         return 0;
     case ARGP_KEY_END:
@@ -121,12 +125,13 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     }
 }
 
-const struct argp rt_completion_argp = {
-    .parser = parse_option,
-    .args_doc = "bash",
-    .doc = "Print a script that completes commands, options, accelerators and scenes with their parameters in bash."
-           "\vIn the shell at hand: source <(raytally completion bash)\n"
-           "For all shells to come: raytally completion bash > ~/.local/share/bash-completion/completions/raytally"};
+const struct argp rt_completion_argp = {.parser = parse_option,
+                                        .args_doc = "bash",
+                                        .doc = "Print a script that completes commands, options, "
+                                               "accelerators and scenes with their parameters in bash."
+                                               "\vIn the shell at hand: source <(raytally completion bash)\n"
+                                               "For all shells to come: raytally completion bash > "
+                                               "~/.local/share/bash-completion/completions/raytally"};
 
 int rt_command_completion(int argc, char **argv) {
     const char *shell = NULL;
@@ -137,6 +142,6 @@ int rt_command_completion(int argc, char **argv) {
     print_scenes();
     print_words();
     puts("    esac\n}");
-    fputs(completion_bash, stdout);
+    for (const char *const *line = completion_bash; *line; line++) fputs(*line, stdout);
     return RT_EXIT_OK;
 }

@@ -44,8 +44,9 @@ static void print_usage(FILE *to) {
     fprintf(to, "raytally " RT_VERSION ": a testbed for ray-tracing acceleration structures\n\n"
                 "Usage: raytally COMMAND [ARGUMENT...]\n\nCommands:\n");
     for (int i = 0; i < COMMAND_COUNT; i++) {
-        fprintf(to, "  %-10s %-14s %s\n", rt_commands[i].name, rt_commands[i].arguments,
-                rt_commands[i].summary);
+        char usage[32];
+        snprintf(usage, sizeof usage, "%s %s", rt_commands[i].name, rt_commands[i].arguments);
+        fprintf(to, "  %-21s %s\n", usage, rt_commands[i].summary);
     }
     fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. To start with:\n"
                 "  raytally accels                          what there is to compare\n"
