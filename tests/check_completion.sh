@@ -8,9 +8,9 @@ work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 touch mine.yaml
 failures=0
-"$program" completion bash >completion || exit 1
+"$program" completion bash >script || exit 1
 # shellcheck disable=SC1091
-source ./completion || exit 1
+source ./script || exit 1
 
 # complete_line LINE: COMPREPLY, its words as readline parts them: at blanks, and : and = are words of their own
 complete_line() {
@@ -28,7 +28,7 @@ offers() {
     local word
     complete_line "$1"
     for word in "${@:2}"; do
-        printf '%s\n' "${COMPREPLY[@]}" | grep -qxF -e "$word" || {
+        grep -qxF -e "$word" <<<"$(printf '%s\n' "${COMPREPLY[@]}")" || {
             echo "'$1' is not completed by '$word' but by '${COMPREPLY[*]}'"
             failures=$((failures + 1))
         }
@@ -54,7 +54,7 @@ offers 'raytally bench balls --accel ' brute bvh grid octree item+ all
 offers 'raytally bench balls -a ' brute bvh
 offers_only 'raytally bench balls --accel gr' grid
 offers_only 'raytally bench balls --accel=gr' grid
-offers_only 'raytally bench balls --accel=' $("$program" completion bash | sed -n "s/^    accels) echo '\(.*\)'.*/\1/p") all
+offers 'raytally bench balls --accel=' kd all
 offers_only 'raytally bench balls --accel grid:dens' density=
 offers 'raytally bench balls --accel grid:' density= mailbox= rule=
 offers_only 'raytally bench balls --accel grid:mailbox=' on off
@@ -73,6 +73,8 @@ offers_only 'raytally verify --rays ' # a number
 offers_only 'raytally accels oct' octree
 offers_only 'raytally scenes sta' stadium
 offers_only 'raytally render balls --heatmap object_t' object_tests
+offers_only 'raytally render balls --heatmap-scale ' linear log
+offers_only 'raytally trace balls --rays sha' shadow
 offers_only 'raytally run mi' mine.yaml
 offers_only 'raytally completion ' bash
 offers_only 'raytally nonsense --'

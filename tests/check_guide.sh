@@ -51,7 +51,7 @@ as_expected() {
 
 # What is left of a text without figures, blanks, and what follows from times: verdicts, who is ahead, null runs.
 without_figures() {
-    sed -E '/^Null runs/d; s/[-+<]?[0-9][0-9.,]*(e[-+]?[0-9]+)?/0/g; s/faster|slower|no difference/verdict/g
+    sed -E '/^Null runs/,/^$/d; s/[-+<]?[0-9][0-9.,]*(e[-+]?[0-9]+)?/0/g; s/faster|slower|no difference/verdict/g
         s/ ((from|to) 0|always|never)$/ ahead/; s/[-=|+ ]+/ /g; s/^ //; s/ $//' "$1"
 }
 
@@ -92,7 +92,7 @@ $(diff "$work/want" "$work/got")"
 
 # end_block PLACE WORD...: the words behind the fence
 end_block() {
-    local place=$1 language=${2-} name=
+    local place=$1 language=${2-} name=''
     shift $(($# > 1 ? 2 : 1))
     case "$language ${*-}" in
     *" file="*)
@@ -103,13 +103,12 @@ end_block() {
     "text exact" | "text alike") compare_block "$place" "$1" ;;
     "text "?*) complain "$place: output is 'text', 'text exact' or 'text alike', not 'text $*'" ;;
     esac
-    [ "$language" = sh ] || last=
+    [ "$language" = sh ] || last=''
 }
 
 check_document() {
-    local document=$1 number=0 line place= words=()
-    local -a info=()
-    last= scratch=$work/scratch
+    local document=$1 number=0 line place='' words=()
+    last='' scratch=$work/scratch
     rm -rf "$scratch" && mkdir "$scratch"
     for folder in scenes experiments results; do
         [ ! -d "$root/$folder" ] || cp -r "$root/$folder" "$scratch/"
@@ -119,7 +118,7 @@ check_document() {
         if [ -n "$place" ]; then
             if [ "$line" = '```' ]; then
                 end_block "$place" ${words[@]+"${words[@]}"}
-                place=
+                place=''
             else
                 printf '%s\n' "$line" >>"$work/block"
             fi

@@ -35,6 +35,7 @@ _raytally_value() {
         ;;
     COUNTER*) _raytally_names counters ;;
     SHELL) echo bash ;;
+    [a-z]*\|*) tr '|' ' ' <<<"$2" ;;
     FILE* | *DIR* | FOLDER | PROGRAM | EXPERIMENT*) compgen -f -- "$3" ;;
     esac
 }

@@ -114,6 +114,7 @@ RT_TEST(tests_that_documents_name_are_there) {
     size_t files = 0;
     assert_int_equal(glob("*.md", 0, NULL, &found), 0);
     assert_int_equal(glob("*/*.md", GLOB_APPEND, NULL, &found), 0);
+    assert_int_equal(glob("docs/*/*.md", GLOB_APPEND, NULL, &found), 0);
     for (size_t i = 0; i < found.gl_pathc; i++) {
         char *text = read_document(found.gl_pathv[i]), *rest = text;
         while (rest) files += check_line(found.gl_pathv[i], strsep(&rest, "\n"));
