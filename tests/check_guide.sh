@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_guide.sh [--slow] [DOCUMENT...]: runs the commands of docs/guide/*.md and docs/accelerators/*.md, or of those
-# named. Uses $RT_PROGRAM. Of a document, in order and in one scratch directory that has copies of scenes/,
-# experiments/ and results/:
+# named. Uses $RT_PROGRAM. Of a document, in order and in one scratch directory that has copies of docs/,
+# experiments/, results/ and scenes/:
 #   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; it must end with exit code 0
 #   ```sh exit=1          with that one
 #   ```sh slow            run with --slow alone
@@ -110,7 +110,7 @@ check_document() {
     local document=$1 number=0 line place='' words=()
     last='' scratch=$work/scratch
     rm -rf "$scratch" && mkdir "$scratch"
-    for folder in scenes experiments results; do
+    for folder in docs experiments results scenes; do
         [ ! -d "$root/$folder" ] || cp -r "$root/$folder" "$scratch/"
     done
     while IFS= read -r line || [ -n "$line" ]; do
