@@ -153,6 +153,7 @@ guide passes "what it prints" "${command[@]}" "$exact" '1.5  tests' last "$fence
 guide passes "what it prints at the end" "${command[@]}" "$exact" ... last "$fence"
 guide passes "what it prints, with another figure where those are times" "${command[@]}" "${fence}text alike" '20 tests' last "$fence"
 guide passes "a file and a command that reads it" "${fence}yaml file=a.yaml" b "$fence" "${fence}sh" 'grep -x b a.yaml' "$fence"
+guide passes "a document of the tree" "${fence}sh" 'test -s docs/scenes.md' "$fence"
 guide passes "a scene of the tree" "${fence}sh" 'test -s scenes/lecture.yaml' "$fence"
 guide passes "an exit code that is told" "${fence}sh exit=2" 'exit 2' "$fence"
 guide passes "a program that is not there" "${command[@]}" "${fence}sh needs=no-such-program" no-such-program "$fence" "$exact" a "$fence"

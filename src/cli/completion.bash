@@ -1,4 +1,4 @@
-
+# SPDX-License-Identifier: Apache-2.0
 # _raytally_spec TABLE WORD: what NAME:KEY=VALUE,KEY=VALUE may go on with, TABLE being accels or scenes
 _raytally_spec() {
     local table=$1 word=$2 before='' name key each
