@@ -10,7 +10,8 @@
 #   ```text exact         what the block before it prints, stderr too; a line ... stands for one or more lines
 #   ```text alike         likewise, but for figures, blanks, and what follows from times, which are others on each machine
 #   ```LANG file=NAME     is written to NAME first
-# Prints what does not hold, and how many blocks were run, compared and skipped; exit code 1 where anything does not.
+# Links into the tree must lead somewhere. Prints what does not hold, and how many blocks were run, compared and skipped; exit
+# code 1 where anything does not.
 set -uo pipefail
 here=$PWD
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
@@ -106,6 +107,14 @@ end_block() {
     [ "$language" = sh ] || last=''
 }
 
+# check_links DOCUMENT: what it links to in the tree is there
+check_links() {
+    local link
+    while read -r link; do
+        [ -e "$(dirname "$1")/$link" ] || complain "$1: there is no $link"
+    done < <(grep -oE '\]\([^)# ]+' "$1" | sed 's/^](//; /:/d' | sort -u)
+}
+
 check_document() {
     local document=$1 number=0 line place='' words=()
     last='' scratch=$work/scratch
@@ -141,7 +150,10 @@ else
     shopt -s nullglob
     documents=(docs/guide/*.md docs/accelerators/*.md)
 fi
-for document in "${documents[@]}"; do check_document "$document"; done
+for document in "${documents[@]}"; do
+    check_document "$document"
+    check_links "$document"
+done
 
 echo "${#documents[@]} documents: $ran commands run, $compared outputs compared, $left_slow slow ones left out"
 [ ${#lacking[@]} = 0 ] || printf '%s\n' "${lacking[@]}" | sort | uniq -c | while read -r count what; do

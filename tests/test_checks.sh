@@ -158,6 +158,8 @@ guide passes "a scene of the tree" "${fence}sh" 'test -s scenes/lecture.yaml' "$
 guide passes "an exit code that is told" "${fence}sh exit=2" 'exit 2' "$fence"
 guide passes "a program that is not there" "${command[@]}" "${fence}sh needs=no-such-program" no-such-program "$fence" "$exact" a "$fence"
 guide passes "a slow command, which is left out" "${command[@]}" "${fence}sh slow" false "$fence"
+guide passes "a link to a document, and one to the net" "${command[@]}" '[this](guide.md#a) [that](https://localhost/nowhere)'
+guide fails "a link that leads nowhere" "${command[@]}" '[that](nowhere.md)'
 guide fails "no command at all" 'only text'
 guide fails "a command that fails" "${fence}sh" false "$fence"
 guide fails "a command that fails before another" "${fence}sh" 'false' 'true' "$fence"

@@ -150,8 +150,8 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     assert_int_equal(raytally(place, "compare b a --strict"), 0);
 }
 
-/* The other program has another accelerator in the place of the grid in the second round, as one has none whose
- * limit of time it goes beyond. */
+/* The other program has another accelerator in the place of the grid in the second round, as one has none
+ * whose limit of time it goes beyond. */
 RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {
     const Place *place = *state;
     char script[1024];
@@ -162,8 +162,9 @@ RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {
     write_in(place, "other", script);
     snprintf(script, sizeof script, "chmod +x '%s/other'", place->folder);
     assert_int_equal(system(script), 0);
-    assert_int_equal(raytally(place, "compare balls:size=1 --accel bvh --accel grid --rays random --limit 100 "
-                                     "--rounds 6 --with ./other"),
+    assert_int_equal(raytally(place,
+                              "compare balls:size=1 --accel bvh --accel grid --rays random --limit 100 "
+                              "--rounds 6 --with ./other"),
                      0);
     assert_in_file(place, "output", "not timed");
     assert_in_file(place, "output", "only before");
