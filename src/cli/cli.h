@@ -20,10 +20,6 @@ typedef struct RtCommand {
     const struct argp *argp;           /* its options; NULL: it has none but --help */
 } RtCommand;
 
-/* All of them, in the order in which they are listed. */
-extern const RtCommand rt_commands[];
-extern const int rt_command_count;
-
 int rt_command_accels(int argc, char **argv);
 int rt_command_scenes(int argc, char **argv);
 int rt_command_info(int argc, char **argv);
@@ -39,7 +35,6 @@ int rt_command_plot(int argc, char **argv);
 int rt_command_report(int argc, char **argv);
 int rt_command_reproduce(int argc, char **argv);
 int rt_command_convert(int argc, char **argv);
-int rt_command_completion(int argc, char **argv);
 
 extern const struct argp rt_accels_argp;
 extern const struct argp rt_scenes_argp;
@@ -52,9 +47,13 @@ extern const struct argp rt_rays_argp;
 extern const struct argp rt_compare_argp;
 extern const struct argp rt_report_argp;
 extern const struct argp rt_run_argp;
-extern const struct argp rt_completion_argp;
 extern const struct argp rt_merge_argp;
 extern const struct argp rt_convert_argp;
+
+/* Of the command that completes all others, whose table main has: its parser, whose input is a const char *,
+ * the shell; and what it prints, a script for bash. */
+extern const struct argp rt_completion_argp;
+void rt_completion_print(const RtCommand *commands, int count);
 
 /* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
 int rt_cli_fail(const RtError *error);

@@ -7,7 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
-const RtCommand rt_commands[] = {
+static int run_completion(int argc, char **argv);
+
+static const RtCommand commands[] = {
     {"accels", "[NAME]", "list the accelerators, their parameters, defaults, ranges and papers",
      rt_command_accels, &rt_accels_argp},
     {"scenes", "[NAME]", "list the built-in scenes and their parameters", rt_command_scenes, &rt_scenes_argp},
@@ -33,20 +35,26 @@ const RtCommand rt_commands[] = {
     {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce,
      NULL},
     {"convert", "IN OUT", "write a scene in another format", rt_command_convert, &rt_convert_argp},
-    {"completion", "SHELL", "print a script that completes all this in bash", rt_command_completion,
+    {"completion", "SHELL", "print a script that completes all this in bash", run_completion,
      &rt_completion_argp},
 };
 
-enum { COMMAND_COUNT = sizeof rt_commands / sizeof rt_commands[0] };
-const int rt_command_count = COMMAND_COUNT;
+enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static int run_completion(int argc, char **argv) {
+    const char *shell = NULL;
+    argp_parse(&rt_completion_argp, argc, argv, 0, 0, &shell);
+    rt_completion_print(commands, COMMAND_COUNT);
+    return RT_EXIT_OK;
+}
 
 static void print_usage(FILE *to) {
     fprintf(to, "raytally " RT_VERSION ": a testbed for ray-tracing acceleration structures\n\n"
                 "Usage: raytally COMMAND [ARGUMENT...]\n\nCommands:\n");
     for (int i = 0; i < COMMAND_COUNT; i++) {
         char usage[32];
-        snprintf(usage, sizeof usage, "%s %s", rt_commands[i].name, rt_commands[i].arguments);
-        fprintf(to, "  %-21s %s\n", usage, rt_commands[i].summary);
+        snprintf(usage, sizeof usage, "%s %s", commands[i].name, commands[i].arguments);
+        fprintf(to, "  %-21s %s\n", usage, commands[i].summary);
     }
     fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. To start with:\n"
                 "  raytally accels                          what there is to compare\n"
@@ -57,7 +65,7 @@ static void print_usage(FILE *to) {
 
 static int run_unknown(const char *name) {
     const char *names[COMMAND_COUNT];
-    for (int i = 0; i < COMMAND_COUNT; i++) names[i] = rt_commands[i].name;
+    for (int i = 0; i < COMMAND_COUNT; i++) names[i] = commands[i].name;
     char suggestion[RT_MAX_SUGGESTION];
     rt_suggest(name, names, COMMAND_COUNT, suggestion);
     fprintf(stderr, "raytally: there is no command '%s'%s\n`raytally --help` lists the commands.\n", name,
@@ -67,7 +75,7 @@ static int run_unknown(const char *name) {
 
 static const RtCommand *find_command(const char *name) {
     for (int i = 0; i < COMMAND_COUNT; i++) {
-        if (strcmp(rt_commands[i].name, name) == 0) return &rt_commands[i];
+        if (strcmp(commands[i].name, name) == 0) return &commands[i];
     }
     return NULL;
 }

@@ -37,12 +37,12 @@ static void print_options(const struct argp *argp) {
         print_options(child->argp);
 }
 
-static void print_commands(void) {
+static void print_commands(const RtCommand *commands, int count) {
     begin("commands", "");
-    for (int i = 0; i < rt_command_count; i++) printf(" %s", rt_commands[i].name);
+    for (int i = 0; i < count; i++) printf(" %s", commands[i].name);
     end();
-    for (int i = 0; i < rt_command_count; i++) {
-        const RtCommand *command = &rt_commands[i];
+    for (int i = 0; i < count; i++) {
+        const RtCommand *command = &commands[i];
         begin("options", command->name);
         fputs("--help --usage", stdout);
         if (command->argp) print_options(command->argp);
@@ -133,15 +133,12 @@ const struct argp rt_completion_argp = {.parser = parse_option,
                                                "For all shells to come: raytally completion bash > "
                                                "~/.local/share/bash-completion/completions/raytally"};
 
-int rt_command_completion(int argc, char **argv) {
-    const char *shell = NULL;
-    argp_parse(&rt_completion_argp, argc, argv, 0, 0, &shell);
+void rt_completion_print(const RtCommand *commands, int count) {
     puts("# Made by `raytally completion bash`.\n_raytally_names() {\n    case $1 in");
-    print_commands();
+    print_commands(commands, count);
     print_accelerators();
     print_scenes();
     print_words();
     puts("    esac\n}");
     for (const char *const *line = completion_bash; *line; line++) fputs(*line, stdout);
-    return RT_EXIT_OK;
 }
