@@ -24,7 +24,7 @@ eval canvas("1-frames", 960, 400)
 set multiplot layout 1, 3 margins screen 0.075, 0.985, 0.14, 0.84 spacing screen 0.04, 0.1
 set title "buffer built" font ",14" textcolor rgb ink
 set ylabel "throughput / Embree's best" textcolor rgb ink
-set key top left samplen 2 textcolor rgb ink
+set key top right samplen 2 textcolor rgb ink
 plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
      for [i = 1:words(names)] "times.csv" using (side(word(names, i))):(column("ratio")):(column("ratio_low")):(column("ratio_high")) \
        with yerrorbars linewidth 1.8 pointtype mark(i) linecolor rgb hue(i) title word(names, i)

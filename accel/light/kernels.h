@@ -196,8 +196,24 @@ RT_KERNEL void shade_block(Asking *a, uint32_t count, RtTally *tallies) {
     RT_COUNT(a->tally, hits, hits);
 }
 
+/* Of a buffer that serves no light: all at once, for packets are made of what comes together. */
+RT_KERNEL void pass_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                        uint32_t *blockers, RtTally *tallies) {
+    for (size_t i = 0; tallies && i < count; i++) {
+        if (rays[i].kind != RT_RAY_SHADOW) continue;
+        RT_COUNT(&tallies[RT_RAY_SHADOW], passed_on, 1);
+        RT_OBSERVE(&tallies[RT_RAY_SHADOW], .kind = RT_TRACED_PASSED_ON, .what = "light");
+    }
+    rt_hand_down_occluded(accel, scratch, rays, count, blockers, tallies);
+}
+
 RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                             uint32_t *blockers, RtTally *tallies) {
+    const RtLightBuffer *self = (const RtLightBuffer *)accel;
+    if (!self->serves) {
+        pass_all(accel, scratch, rays, count, blockers, tallies);
+        return;
+    }
     for (size_t i = 0, next; i < count; i = next) {
         for (next = i; next < count && rays[next].kind != RT_RAY_SHADOW; next++) {
         }
@@ -205,19 +221,9 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
         i = next;
         while (next < count && next - i < BLOCK && rays[next].kind == RT_RAY_SHADOW) next++;
         if (next == i) continue;
-        Asking a = {(const RtLightBuffer *)accel,
-                    scratch,
-                    scratch->own,
-                    rays + i,
-                    blockers + i,
-                    tallies ? &tallies[RT_RAY_SHADOW] : NULL};
-        if (a.self->serves) {
-            shade_block(&a, (uint32_t)(next - i), tallies);
-        } else {
-            RT_COUNT(a.tally, passed_on, next - i);
-            RT_OBSERVE(a.tally, .kind = RT_TRACED_PASSED_ON, .what = "light");
-            rt_hand_down_occluded(accel, scratch, rays + i, next - i, blockers + i, tallies);
-        }
+        Asking a = {self,     scratch,      scratch->own,
+                    rays + i, blockers + i, tallies ? &tallies[RT_RAY_SHADOW] : NULL};
+        shade_block(&a, (uint32_t)(next - i), tallies);
     }
 }
 

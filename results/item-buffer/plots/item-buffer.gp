@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+# item-buffer: throughput of whole frames over that of Embree's best, by samples along a side, with the buffer built and with its
+# build counted in one frame or ten.
+#: 1-frames: Throughput of whole frames over that of Embree's best, over the samples along a side, with the buffer built, and with
+#:   its build counted in one frame or ten. Medians, with intervals where the buffer is built; above 1 the item buffer is faster.
+#: 2-triangles: The same of a frame of 1024 x 1024 samples over the triangles of the dragon.
+
+names = "bunny dragon hall forest"
+of(name) = strcol("scene")[1:strlen(name) + 1] eq name."-" && strcol("accel") eq "item"
+side(name) = of(name) ? column("width") : NaN
+
+# Of `frames` frames with the build counted, Embree's time over ours; its own build is not counted.
+theirs(x) = column("ns") * column("ratio")
+with_build(frames) = theirs(0) / (column("ns") + 1e9 * column("build_seconds") / (frames * column("set_rays")))
+
+set logscale x 2
+set xrange [200 : 2600]
+set yrange [0 : *]
+set grid ytics
+set xtics (256, 512, 1024, 2048)
+set xlabel "samples along a side of the frame" textcolor rgb ink
+
+eval canvas("1-frames", 960, 400)
+set multiplot layout 1, 3 margins screen 0.075, 0.985, 0.14, 0.84 spacing screen 0.04, 0.1
+set title "buffer built" font ",14" textcolor rgb ink
+set ylabel "throughput / Embree's best" textcolor rgb ink
+set key top right samplen 2 textcolor rgb ink
+plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
+     for [i = 1:words(names)] "times.csv" using (side(word(names, i))):(column("ratio")):(column("ratio_low")):(column("ratio_high")) \
+       with yerrorbars linewidth 1.8 pointtype mark(i) linecolor rgb hue(i) title word(names, i)
+unset ylabel; unset key
+set title "build counted, one frame" font ",14" textcolor rgb ink
+plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
+     for [i = 1:words(names)] "times.csv" using (side(word(names, i))):(with_build(1)) \
+       with points linewidth 1.8 pointtype mark(i) linecolor rgb hue(i) notitle
+set title "build counted, ten frames" font ",14" textcolor rgb ink
+plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
+     for [i = 1:words(names)] "times.csv" using (side(word(names, i))):(with_build(10)) \
+       with points linewidth 1.8 pointtype mark(i) linecolor rgb hue(i) notitle
+unset multiplot
+unset output
+
+# The dragon at 11, 48, 202 and 871 thousand triangles.
+is_dragon(x) = strcol("scene")[1:6] eq "dragon" && column("width") == 1024 && strcol("accel") eq "item"
+set xrange [8000 : 1200000]
+set xtics auto
+set logscale x 10
+set format x "10^{%L}"
+set xlabel "triangles of the dragon, 1024 x 1024 samples" textcolor rgb ink
+set ylabel "throughput / Embree's best" textcolor rgb ink
+set key top left samplen 2 textcolor rgb ink
+unset title
+eval canvas("2-triangles", 480, 400)
+plot 1 with lines linewidth 1.5 dashtype 2 linecolor rgb soft notitle, \
+     "times.csv" using (is_dragon(0) ? column("objects") : NaN):(column("ratio")):(column("ratio_low")):(column("ratio_high")) \
+       with yerrorbars linewidth 2 pointtype 7 linecolor rgb hue(2) title "buffer built", \
+     "times.csv" using (is_dragon(0) ? column("objects") : NaN):(with_build(1)) \
+       with points linewidth 2 pointtype 6 linecolor rgb hue(2) title "build counted, one frame", \
+     "times.csv" using (is_dragon(0) ? column("objects") : NaN):(with_build(10)) \
+       with points linewidth 2 pointtype 8 linecolor rgb hue(1) title "build counted, ten frames"
+unset output
