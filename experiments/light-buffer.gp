@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # light-buffer: throughput of shadow rays over that of `wide` alone, and time to build, a line for each choice of cells.
 #: 1-light-buffer: Throughput of shadow rays over that of wide alone, and seconds to build, by scene, a marker a choice of cells.
-#:   Medians with intervals, on logarithmic axes; right of 1 the light buffer is faster. In each scene from top to bottom in the
+#:   Medians with intervals; right of 1 the light buffer is faster. Times to build are on a logarithmic axis. In each scene from top to bottom in the
 #:   order of the legend.
 
 n_scenes = words(scenes); n_accels = words(accels)
@@ -15,7 +15,7 @@ set bars small
 height = 140 + 62 * n_scenes
 eval canvas("1-light-buffer", 960, height)
 set multiplot layout 1, 2 margins screen 0.15, 0.985, 72.0 / height, 1 - 44.0 / height spacing screen 0.05, 0.1
-set logscale x
+set arrow 1 from 1, graph 0 to 1, graph 1 nohead linewidth 1.5 dashtype 2 linecolor rgb soft back
 set xlabel "throughput / that of wide" textcolor rgb ink
 set ytics ()
 do for [s = 1:n_scenes] { set ytics add (word(scenes, s) n_scenes - s) }
@@ -25,6 +25,8 @@ plot keyentry with points pointtype marker(1) pointsize 0.8 linecolor rgb color(
        using (chosen(s, a) ? column("ratio") : NaN):(place(s, a)):(column("ratio_low")):(column("ratio_high")) \
        with xerrorbars linewidth 1.5 pointtype marker(a) pointsize 0.8 linecolor rgb color(a) title (s == 1 ? word(accels, a) : "")
 unset key
+unset arrow 1
+set logscale x
 set ytics ()
 do for [s = 1:n_scenes] { set ytics add ("" n_scenes - s) }
 set xlabel "time to build, in seconds" textcolor rgb ink

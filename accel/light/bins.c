@@ -31,7 +31,7 @@ static void place_object(const Binning *b, Chunk *chunk, uint32_t id, int face_f
     for (int face = face_from; face <= face_to; face++) {
         if (!rt_light_footprint(b->buffer, b->light, face, id, &at)) continue;
         chunk->places[chunk->count++] =
-            (RtLightPlace){.object = b->buffer->base.scene->geometry.objects[id] | RT_LIGHT_ALONE,
+            (RtLightPlace){.object = b->buffer->isa.base.scene->geometry.objects[id] | RT_LIGHT_ALONE,
                            .lo = {(uint16_t)at.lo[0], (uint16_t)at.lo[1]},
                            .hi = {(uint16_t)at.hi[0], (uint16_t)at.hi[1]},
                            .face = (uint8_t)face};
@@ -40,9 +40,9 @@ static void place_object(const Binning *b, Chunk *chunk, uint32_t id, int face_f
 
 /* Up to sixteen triangles. */
 static void place_triangles(const Binning *b, Chunk *chunk, uint32_t first, uint32_t count) {
-    const RtGeometry *g = &b->buffer->base.scene->geometry;
+    const RtGeometry *g = &b->buffer->isa.base.scene->geometry;
     RtLightPlace found[6 * 16];
-    uint32_t found_count = b->buffer->kernels->place(b->buffer, b->light, first, count, found);
+    uint32_t found_count = b->buffer->painting->place(b->buffer, b->light, first, count, found);
     for (uint32_t i = 0; i < found_count; i++) {
         if (!found[i].drawn) {
             place_object(b, chunk, g->triangle_ids[found[i].object], found[i].face, found[i].face);
@@ -75,7 +75,7 @@ static uint32_t other_object(const RtGeometry *g, uint32_t number) {
 static RtStatus place_chunk(void *context, size_t item, int thread, RtError *error) {
     (void)thread;
     Binning *b = context;
-    const RtGeometry *g = &b->buffer->base.scene->geometry;
+    const RtGeometry *g = &b->buffer->isa.base.scene->geometry;
     Chunk *chunk = &b->chunks[item];
     uint32_t first = (uint32_t)item * b->of_chunk, end = first + b->of_chunk;
     if (end > b->objects) end = b->objects;
@@ -138,7 +138,7 @@ RtStatus rt_light_fill_bins(const RtLightBuffer *buffer, uint32_t light, int thr
     Binning b = {.buffer = buffer,
                  .light = light,
                  .tiles = buffer->cubes[light].tile_count,
-                 .objects = buffer->base.scene->geometry.object_count};
+                 .objects = buffer->isa.base.scene->geometry.object_count};
     b.of_chunk = (b.objects + MAX_CHUNKS - 1) / MAX_CHUNKS;
     if (b.of_chunk < LEAST_OF_CHUNK) b.of_chunk = LEAST_OF_CHUNK;
     b.of_chunk = (b.of_chunk + 15) / 16 * 16;

@@ -24,7 +24,7 @@ static RtBox choose_domain(const RtScene *scene) {
 }
 
 static RtStatus make_cubes(RtLightBuffer *buffer, RtError *error) {
-    const RtScene *scene = buffer->base.scene;
+    const RtScene *scene = buffer->isa.base.scene;
     buffer->cubes = rt_alloc(scene->light_count, sizeof(RtLightCube));
     if (!buffer->cubes)
         return rt_fail_memory(error, "a light buffer", scene->light_count * sizeof(RtLightCube));
@@ -48,7 +48,7 @@ typedef struct Outlook {
 /* From every kth object. */
 static void look_at_objects(const RtLightBuffer *buffer, uint32_t light, Outlook outlooks[6]) {
     enum { SAMPLE = 2048 };
-    const RtGeometry *g = &buffer->base.scene->geometry;
+    const RtGeometry *g = &buffer->isa.base.scene->geometry;
     uint32_t stride = g->object_count / SAMPLE + 1;
     for (int face = 0; g->object_count > 0 && face < 6; face++) {
         Outlook *o = &outlooks[face];
@@ -108,7 +108,7 @@ enum { LEAST_OF_CELL = sizeof(uint32_t) + 2 * sizeof(RtLightEntry) };
  * most. */
 static double make_grids(RtLightBuffer *buffer, const Outlook *outlooks, double cells) {
     double all = 0;
-    for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
+    for (uint32_t light = 0; light < buffer->isa.base.scene->light_count; light++) {
         RtLightCube *cube = &buffer->cubes[light];
         double tiles = 0;
         for (uint32_t face = 0; face < 6; face++) {
@@ -126,7 +126,7 @@ static double make_grids(RtLightBuffer *buffer, const Outlook *outlooks, double 
 /* Makes tiles less fine where they are chosen, so that all fit. */
 static double make_coarser(RtLightBuffer *buffer, double part) {
     double all = 0;
-    for (uint32_t light = 0; light < buffer->base.scene->light_count; light++) {
+    for (uint32_t light = 0; light < buffer->isa.base.scene->light_count; light++) {
         for (int face = 0; face < 6; face++) {
             RtLightGrid *grid = &buffer->cubes[light].grids[face];
             grid->finest = (uint32_t)fmax(grid->finest * sqrt(part), 1);
@@ -151,11 +151,11 @@ static RtStatus fit_grids(RtLightBuffer *buffer, const Outlook *outlooks, double
         error, RT_BAD_INPUT,
         "a light buffer of %u cells along the edge of a face for %u lights would take more than %.3g "
         "GiB: cells=%u would fit",
-        buffer->cells, buffer->base.scene->light_count, limit / 0x1p30, fits);
+        buffer->cells, buffer->isa.base.scene->light_count, limit / 0x1p30, fits);
 }
 
 static RtStatus choose_grids(RtLightBuffer *buffer, double limit, double *cells, RtError *error) {
-    const RtScene *scene = buffer->base.scene;
+    const RtScene *scene = buffer->isa.base.scene;
     Outlook *outlooks = rt_alloc(6 * (size_t)scene->light_count, sizeof(Outlook));
     if (!outlooks)
         return rt_fail_memory(error, "a light buffer", 6 * (size_t)scene->light_count * sizeof(Outlook));
@@ -168,7 +168,7 @@ static RtStatus choose_grids(RtLightBuffer *buffer, double limit, double *cells,
 /* ---- near lists ---- */
 
 static RtStatus make_near_list(RtLightBuffer *buffer, uint32_t light, RtError *error) {
-    const RtGeometry *g = &buffer->base.scene->geometry;
+    const RtGeometry *g = &buffer->isa.base.scene->geometry;
     RtLightCube *cube = &buffer->cubes[light];
     uint32_t capacity = 0;
     if (!rt_light_is_in(buffer, light, &g->box)) return RT_OK;
@@ -191,12 +191,13 @@ static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError 
     if (buffer->cells == 0 && what->scene->geometry.object_count < FEW_OBJECTS) return RT_OK;
     RT_TRY(choose_grids(buffer, limit, &cells, error));
     double entries = (limit - cells * (double)sizeof(uint32_t)) / sizeof(RtLightEntry), tiles = 1;
-    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++) tiles += buffer->cubes[i].tile_count;
+    for (uint32_t i = 0; i < buffer->isa.base.scene->light_count; i++) tiles += buffer->cubes[i].tile_count;
     uint32_t most_of_tile = (uint32_t)(fmin(entries, 0x1p30) / tiles);
-    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++) RT_TRY(make_near_list(buffer, i, error));
+    for (uint32_t i = 0; i < buffer->isa.base.scene->light_count; i++)
+        RT_TRY(make_near_list(buffer, i, error));
     RT_TRY(rt_light_make_lists(buffer, most_of_tile, what->threads, error));
-    buffer->serves = buffer->base.scene->light_count > 0;
-    for (uint32_t i = 0; i < buffer->base.scene->light_count; i++) buffer->cubes[i].serves = true;
+    buffer->serves = buffer->isa.base.scene->light_count > 0;
+    for (uint32_t i = 0; i < buffer->isa.base.scene->light_count; i++) buffer->cubes[i].serves = true;
     return RT_OK;
 }
 
@@ -221,7 +222,9 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
     buffer->longest = (uint32_t)values[RT_LIGHT_LONGEST].i;
     buffer->full_occlusion = values[RT_LIGHT_FULL_OCCLUSION].flag;
     buffer->extents = values[RT_LIGHT_EXTENTS].flag;
-    buffer->kernels = rt_light_kernels(rt_isa_best());
+    RtIsa isa = rt_isa_best();
+    buffer->isa.kernels = RT_KERNELS_FOR(light, isa);
+    buffer->painting = RT_KERNELS_FOR(light_painting, isa);
     RtStatus status = make_cubes(buffer, error);
     if (status == RT_OK) status = make_lights(buffer, what, error);
     return rt_accel_built(accel, status, out);

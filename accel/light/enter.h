@@ -50,7 +50,7 @@ typedef struct Sixteen {
 /* Their origins, and all that follows from them. */
 RT_KERNEL void load_origins(const Asking *a, uint32_t light, const uint32_t *order, uint32_t count,
                             Sixteen *s) {
-    const RtVec3 position = a->self->base.scene->lights[light].position;
+    const RtVec3 position = a->self->isa.base.scene->lights[light].position;
     const float *from[16];
     RtV16 four[4];
     for (uint32_t i = 0; i < 16; i++) from[i] = &a->rays[order[i < count ? i : 0]].org.x;
@@ -138,7 +138,7 @@ RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const Sixteen 
 /* Tests the objects that touch the light; gives the rays that are left. */
 RT_KERNEL uint32_t test_near(const Asking *a, const RtLightCube *cube, uint32_t lanes,
                              const uint32_t *order) {
-    const RtGeometry *g = &a->self->base.scene->geometry;
+    const RtGeometry *g = &a->self->isa.base.scene->geometry;
     uint32_t left = lanes;
     for (; lanes; lanes &= lanes - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(lanes);

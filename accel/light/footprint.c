@@ -47,7 +47,7 @@ static RtVec3d face_axes(int face, RtVec3d v) {
 }
 
 RtVec3d rt_light_offset(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3d point) {
-    return face_axes(face, rt_subd(point, rt_widen(buffer->base.scene->lights[light].position)));
+    return face_axes(face, rt_subd(point, rt_widen(buffer->isa.base.scene->lights[light].position)));
 }
 
 static RtVec3d offset(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3 point) {
@@ -71,7 +71,7 @@ bool rt_light_is_in(const RtLightBuffer *buffer, uint32_t light, const RtBox *bo
 }
 
 bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id) {
-    return rt_light_is_in(buffer, light, &buffer->base.scene->geometry.boxes[id]);
+    return rt_light_is_in(buffer, light, &buffer->isa.base.scene->geometry.boxes[id]);
 }
 
 /* The least and largest x / z with x in [lo, hi] and z in [near, far], far > 0; z <= 0 does not count. */
@@ -119,7 +119,7 @@ static bool narrow_view(const RtLightBuffer *buffer, uint32_t light, int face, u
                         RtLightView *view) {
     uint32_t count;
     double warp, least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
-    const RtVec3 *vertices = vertices_of(&buffer->base.scene->geometry, id, &count, &warp);
+    const RtVec3 *vertices = vertices_of(&buffer->isa.base.scene->geometry, id, &count, &warp);
     double grow = buffer->cubes[light].margin + warp;
     for (uint32_t i = 0; vertices && i < count; i++) {
         RtVec3d at = offset(buffer, light, face, vertices[i]);
@@ -144,7 +144,7 @@ bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, u
     const RtLightGrid *grid = &buffer->cubes[light].grids[face];
     RtLightView view;
     if (grid->columns == 0) return false;
-    if (!rt_light_view(buffer, light, face, &buffer->base.scene->geometry.boxes[id], &view)) return false;
+    if (!rt_light_view(buffer, light, face, &buffer->isa.base.scene->geometry.boxes[id], &view)) return false;
     if (!narrow_view(buffer, light, face, id, &view)) return false;
     for (int k = 0; k < 2; k++) {
         double corner = (double)(k ? grid->w : grid->u), scale = (double)grid->scale;
@@ -258,7 +258,7 @@ static void add_plane(RtLightOutline *o, const Frame *frame, RtVec3d point, RtVe
 
 void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at, RtLightOutline *o) {
     const RtLightBuffer *buffer = tile->buffer;
-    const RtGeometry *g = &buffer->base.scene->geometry;
+    const RtGeometry *g = &buffer->isa.base.scene->geometry;
     const Frame frame = frame_of(tile);
     const uint32_t light = tile->light;
     const int face = tile->face;
@@ -302,7 +302,7 @@ static double distance_squared(RtVec3d point, RtVec3d axis) {
 bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row) {
     const RtLightBuffer *buffer = tile->buffer;
     const Frame frame = frame_of(tile);
-    RtBall ball = rt_object_ball(&buffer->base.scene->geometry, id);
+    RtBall ball = rt_object_ball(&buffer->isa.base.scene->geometry, id);
     RtVec3d center = rt_light_offset(buffer, tile->light, tile->face, ball.center);
     double radius = ball.radius + 2 * buffer->cubes[tile->light].margin;
     double half = 1.5 * ((0.5 + SLACK) / frame.scale + RT_LIGHT_EDGE); /* above sqrt(2) */
@@ -311,7 +311,7 @@ bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uin
 }
 
 bool rt_light_covers(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row, float *depth) {
-    const RtGeometry *g = &tile->buffer->base.scene->geometry;
+    const RtGeometry *g = &tile->buffer->isa.base.scene->geometry;
     if (rt_ref_shape(g->objects[id]) != RT_SHAPE_SPHERE) return false;
     const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
     const Frame frame = frame_of(tile);

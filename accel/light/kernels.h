@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Answering shadow rays in streams; included once for each instruction set: RT_LIGHT_KERNELS is the name of
- * the table that is defined.
+/* Answering shadow rays in streams, and drawing from the light; included once for each instruction set
+ * (accel/isa.h).
  *
  * Of a stream a block of rays is taken at a time, light by light. First each ray finds its cell, sixteen in
  * lanes. Then the rays that have a list go through it in rounds, of one entry, of two, and of four: those
@@ -24,7 +24,7 @@ typedef struct Round {
 
 /* Appends the pairs of lanes `met`. */
 RT_KERNEL void add_pairs(const Asking *a, Round *round, uint32_t met, RtW16 ray, RtW16 object) {
-    const RtGeometry *g = &a->self->base.scene->geometry;
+    const RtGeometry *g = &a->self->isa.base.scene->geometry;
     Stream *stream = a->stream;
     if (!round->all_triangles) {
         const RtW16 triangle = rt_w16_all(RT_SHAPE_TRIANGLE);
@@ -88,7 +88,7 @@ RT_KERNEL void look_up(const Asking *a, const RtLightEntry *entries, uint32_t fi
             met &= rt_w16_equal(rt_w16_and(rt_w16_down(of_entry, part), one), one);
         }
         if (RT_OBSERVED(a->tally))
-            observe_entries(&a->self->base.scene->geometry, a->self->extents, &object, lanes, met);
+            observe_entries(&a->self->isa.base.scene->geometry, a->self->extents, &object, lanes, met);
         if (met) add_pairs(a, round, met, ray, object);
         RtW16 next = rt_w16_add(at, one);
         lanes &= rt_w16_below(next, end);
@@ -109,7 +109,7 @@ RT_KERNEL uint32_t take_round(const Asking *a, uint32_t light, uint32_t count, u
     for (uint32_t first = 0; first < count; first += 16) look_up(a, entries, first, count, deep, &round);
     RT_COUNT(a->tally, object_tests, round.pairs);
     if (RT_OBSERVED(a->tally))
-        observe_pairs(&a->self->base.scene->geometry, a->stream->pair_object, round.pairs);
+        observe_pairs(&a->self->isa.base.scene->geometry, a->stream->pair_object, round.pairs);
     test_pairs(a, light, round.pairs);
     test_others(a, round.others);
     return round.left;
@@ -140,7 +140,7 @@ RT_KERNEL void pass_on(const Asking *a, RtTally *tallies) {
     RT_COUNT(a->tally, passed_on, count);
     RT_OBSERVE(a->tally, .kind = RT_TRACED_PASSED_ON, .what = "light");
     for (uint32_t i = 0; i < count; i++) stream->passed_rays[i] = a->rays[stream->passed[i]];
-    rt_hand_down_occluded(&a->self->base, a->scratch, stream->passed_rays, count, stream->passed_blockers,
+    rt_hand_down_occluded(&a->self->isa.base, a->scratch, stream->passed_rays, count, stream->passed_blockers,
                           tallies);
     for (uint32_t i = 0; i < count; i++) a->blockers[stream->passed[i]] = stream->passed_blockers[i];
 }
@@ -164,7 +164,7 @@ RT_KERNEL uint32_t gather_light(const RtRay *rays, uint32_t *order, uint32_t cou
 
 /* A block of shadow rays. */
 RT_KERNEL void shade_block(Asking *a, uint32_t count, RtTally *tallies) {
-    const RtScene *scene = a->self->base.scene;
+    const RtScene *scene = a->self->isa.base.scene;
     const bool all_triangles = scene->geometry.triangle_count == scene->geometry.object_count;
     Stream *stream = a->stream;
     uint32_t two[2][BLOCK], *order = two[0], *others = two[1];
@@ -230,6 +230,5 @@ RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, cons
 RT_REFUSE_QUESTION(nearest, RtHit)
 RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
 
-const RtLightKernels RT_LIGHT_KERNELS = {nearest_timed,  occluded_timed, nearest_counted, occluded_counted,
-                                         sizeof(Stream), place,          cover,           draw,
-                                         cover_outline,  draw_outline};
+RT_DEFINE_KERNEL_TABLE(sizeof(Stream));
+const RtLightPainting RT_PAINTING = {place, cover, draw, cover_outline, draw_outline};

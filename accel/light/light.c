@@ -14,34 +14,6 @@
  * ray is: from inside the domain, dir = light - origin, tmax at most 1. */
 #include "accel/light/light.h"
 
-static const RtLightKernels *kernels_of(const RtAccel *accel) {
-    return ((const RtLightBuffer *)accel)->kernels;
-}
-
-static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                    RtHit *hits) {
-    kernels_of(accel)->nearest(accel, scratch, rays, count, hits);
-}
-
-static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *blockers) {
-    kernels_of(accel)->occluded(accel, scratch, rays, count, blockers);
-}
-
-static void count_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits, RtTally *tallies) {
-    kernels_of(accel)->nearest_counted(accel, scratch, rays, count, hits, tallies);
-}
-
-static void count_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                           uint32_t *blockers, RtTally *tallies) {
-    kernels_of(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
-}
-
-static size_t scratch_bytes(const RtAccel *accel) {
-    return kernels_of(accel)->scratch_bytes;
-}
-
 const RtAccelOps rt_light_ops = {
     .name = "light",
     .summary = "overlay: a cube of cells around each light, with the objects seen in each cell by depth",
@@ -50,11 +22,8 @@ const RtAccelOps rt_light_ops = {
     .kinds = 1u << RT_RAY_SHADOW,
     .build = rt_light_build,
     .destroy = rt_light_destroy,
-    .nearest = nearest,
-    .occluded = occluded,
-    .nearest_counted = count_nearest,
-    .occluded_counted = count_occluded,
-    .scratch_bytes = scratch_bytes,
+    RT_ISA_OPS,
+    .scratch_bytes = rt_isa_scratch_bytes,
     .describe = rt_light_describe,
     .validate = rt_light_validate,
     .look_up = rt_light_look_up,

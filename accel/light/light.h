@@ -76,17 +76,17 @@ typedef struct RtLightCube {
     uint32_t *near; /* [near_count] ids */
 } RtLightCube;
 
-typedef struct RtLightKernels RtLightKernels;
+typedef struct RtLightPainting RtLightPainting;
 
 typedef struct RtLightBuffer {
-    RtAccel base;
+    RtIsaAccel isa;
+    const RtLightPainting *painting;
     uint32_t cells; /* as asked for */
     uint32_t longest;
     bool full_occlusion, extents;
     bool serves;        /* whether some light does */
     RtBox domain;       /* where rays start that are answered; empty without objects */
     RtLightCube *cubes; /* [lights] */
-    const RtLightKernels *kernels;
 } RtLightBuffer;
 
 /* By how much cells grow in u and w on all sides: more than u can be wrong by where a ray is looked up. */
@@ -217,13 +217,7 @@ typedef struct RtLightDesk {
 /* What a small triangle adds at most. */
 enum { RT_LIGHT_SMALL_ROOM = RT_LIGHT_SMALL_CELLS * RT_LIGHT_SMALL_CELLS };
 
-struct RtLightKernels {
-    RtNearestKernel *nearest;
-    RtOccludedKernel *occluded;
-    RtNearestCounted *nearest_counted;
-    RtOccludedCounted *occluded_counted;
-    size_t scratch_bytes;
-
+struct RtLightPainting {
     /* Triangles first..first+count-1 (at most 16): where they are seen, to `places`, at most six each; gives
      * how many that are. */
     uint32_t (*place)(const RtLightBuffer *buffer, uint32_t light, uint32_t first, uint32_t count,
@@ -238,10 +232,8 @@ struct RtLightKernels {
                          const RtLightCells *at, RtRef object, RtLightDesk *desk);
 };
 
-extern const RtLightKernels rt_light_portable, rt_light_avx2, rt_light_avx512;
-
-/* Those for an instruction set, which this machine must have. */
-const RtLightKernels *rt_light_kernels(RtIsa isa);
+RT_DECLARE_KERNELS(light);
+extern const RtLightPainting rt_light_painting_portable, rt_light_painting_avx2, rt_light_painting_avx512;
 
 /* ---- bins.c ---- */
 

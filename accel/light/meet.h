@@ -16,7 +16,7 @@ RT_KERNEL void load_triangles(const RtGeometry *g, const uint32_t *objects, uint
 /* Sixteen pairs, or fewer, of a ray to one light and a triangle. */
 RT_KERNEL void load_pairs(const Asking *a, uint32_t light, const uint32_t *ray, const uint32_t *object,
                           uint32_t count, RtPairs *pairs) {
-    const RtGeometry *g = &a->self->base.scene->geometry;
+    const RtGeometry *g = &a->self->isa.base.scene->geometry;
     const RtTriangle *at[16];
     Sixteen s;
     load_origins(a, light, ray, count, &s);
@@ -64,7 +64,7 @@ RT_COLD static void observe_pairs(const RtGeometry *g, const uint32_t *object, u
 /* Tests pairs in full. */
 RT_KERNEL void hit_pairs(const Asking *a, const uint32_t *ray, const uint32_t *object, uint32_t count,
                          RtPairs *pairs) {
-    const RtGeometry *g = &a->self->base.scene->geometry;
+    const RtGeometry *g = &a->self->isa.base.scene->geometry;
     _Alignas(64) float tmax[16];
     RtV16 t;
     for (uint32_t i = 0; i < 16; i++) tmax[i] = a->rays[ray[i < count ? i : 0]].tmax;
@@ -105,7 +105,7 @@ RT_KERNEL void test_pairs(const Asking *a, uint32_t light, uint32_t count) {
 
 /* Tests objects of other shapes one by one. */
 RT_KERNEL void test_others(const Asking *a, uint32_t count) {
-    const RtGeometry *g = &a->self->base.scene->geometry;
+    const RtGeometry *g = &a->self->isa.base.scene->geometry;
     for (uint32_t i = 0; i < count; i++) {
         RtRef object = a->stream->other_object[i];
         uint32_t number = a->stream->other_ray[i], id = rt_light_id_of(g, object);

@@ -35,7 +35,7 @@ typedef struct Eye {
 RT_KERNEL Eye make_eye(const RtLightBuffer *buffer, uint32_t light) {
     Eye eye;
     for (int a = 0; a < 3; a++)
-        eye.position[a] = rt_v16_all(buffer->base.scene->lights[light].position.at[a]);
+        eye.position[a] = rt_v16_all(buffer->isa.base.scene->lights[light].position.at[a]);
     eye.margin = rt_v16_all(rt_float_above(1.25 * buffer->cubes[light].margin));
     return eye;
 }
@@ -123,7 +123,7 @@ static uint32_t place(const RtLightBuffer *buffer, uint32_t light, uint32_t firs
     RtV16 v[3][3];
     uint32_t found = 0;
     for (uint32_t i = 0; i < 16; i++)
-        at[i] = &buffer->base.scene->geometry.triangles[first + (i < count ? i : 0)];
+        at[i] = &buffer->isa.base.scene->geometry.triangles[first + (i < count ? i : 0)];
     offsets_of(&eye, at, v);
     for (int face = 0; face < 6; face++) {
         const RtLightGrid *grid = &cube->grids[face];

@@ -33,7 +33,7 @@ RT_KERNEL void prepare_small(const RtLightTile *tile, const uint32_t *triangles,
     RtV16 v[3][3];
     Projected p;
     for (uint32_t i = 0; i < 16; i++)
-        at[i] = &buffer->base.scene->geometry.triangles[triangles[i < count ? i : 0]];
+        at[i] = &buffer->isa.base.scene->geometry.triangles[triangles[i < count ? i : 0]];
     offsets_of(&eye, at, v);
     project(&eye, grid, tile->face, tile->n, tile->column * tile->n, tile->row * tile->n, v, &p);
     s->large = ~p.small & ((1u << count) - 1);

@@ -124,7 +124,7 @@ static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFo
     const RtLightCube *cube = &buffer->cubes[tile->light];
     const RtLightGrid *grid = &cube->grids[tile->face];
     const RtLightCells at = rt_light_cells(tile, from);
-    RtRef object = buffer->base.scene->geometry.objects[id];
+    RtRef object = buffer->isa.base.scene->geometry.objects[id];
     RtShape shape = rt_ref_shape(object);
     RtLightOutline outline;
     bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
@@ -167,7 +167,7 @@ static RtStatus check_object(const RtLightBuffer *buffer, uint32_t light, int fa
 static RtStatus check_near(const RtLightBuffer *buffer, uint32_t light, RtError *error) {
     const RtLightCube *cube = &buffer->cubes[light];
     uint32_t at = 0;
-    for (uint32_t id = 0; id < buffer->base.scene->geometry.object_count; id++) {
+    for (uint32_t id = 0; id < buffer->isa.base.scene->geometry.object_count; id++) {
         if (!rt_light_is_near(buffer, light, id)) continue;
         if (at < cube->near_count && cube->near[at++] == id) continue;
         at = UINT32_MAX;

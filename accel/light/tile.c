@@ -61,7 +61,7 @@ static uint32_t choose_fineness(const RtLightTile *tile, const uint32_t *objects
     if (grid->least == grid->finest) return grid->finest;
     for (uint32_t i = 0; i < count && i < SAMPLE; i++) {
         uint32_t object = objects[count < SAMPLE ? i : (uint32_t)((uint64_t)i * count / SAMPLE)];
-        uint32_t id = rt_light_id_of(&tile->buffer->base.scene->geometry, object & ~RT_LIGHT_ALONE);
+        uint32_t id = rt_light_id_of(&tile->buffer->isa.base.scene->geometry, object & ~RT_LIGHT_ALONE);
         RtLightFootprint at;
         if (!rt_light_footprint(tile->buffer, tile->light, tile->face, id, &at)) continue;
         double size[2];
@@ -110,7 +110,7 @@ static void draw_round(const RtLightTile *tile, uint32_t id, RtRef object, const
                        const RtLightCells *at, RtLightDesk *desk) {
     uint32_t cells = 0, before = desk->count;
     const RtLightOutline nothing = {.slope = {0, 0, INFINITY}};
-    tile->buffer->kernels->draw_outline(tile, &nothing, from, at, object, desk);
+    tile->buffer->painting->draw_outline(tile, &nothing, from, at, object, desk);
     if (desk->count == before) return;
     for (uint32_t i = before; i < desk->count; i++) {
         uint32_t cell = desk->cell[i];
@@ -133,7 +133,7 @@ static RtStatus make_room(RtLightDesk *desk, uint32_t cells, RtError *error) {
 static RtStatus take_alone(const RtLightTile *tile, RtRef object, bool cover, RtLightDesk *desk,
                            RtError *error) {
     const RtLightBuffer *buffer = tile->buffer;
-    uint32_t id = rt_light_id_of(&buffer->base.scene->geometry, object);
+    uint32_t id = rt_light_id_of(&buffer->isa.base.scene->geometry, object);
     RtLightFootprint from;
     RtLightOutline outline;
     if (!rt_light_footprint(buffer, tile->light, tile->face, id, &from)) return RT_OK;
@@ -143,9 +143,9 @@ static RtStatus take_alone(const RtLightTile *tile, RtRef object, bool cover, Rt
     if (is_flat(object)) {
         rt_light_outline(tile, id, &from, &outline);
         if (cover) {
-            buffer->kernels->cover_outline(&outline, &at, desk);
+            buffer->painting->cover_outline(&outline, &at, desk);
         } else {
-            buffer->kernels->draw_outline(tile, &outline, &from, &at, object, desk);
+            buffer->painting->draw_outline(tile, &outline, &from, &at, object, desk);
         }
     } else if (cover) {
         cover_round(tile, id, &at, desk);
@@ -158,9 +158,9 @@ static RtStatus take_alone(const RtLightTile *tile, RtRef object, bool cover, Rt
 /* Covers the tile's corners with up to sixteen triangles, or draws them. */
 static RtStatus take_sixteen(const RtLightTile *tile, const uint32_t *triangles, uint32_t count, bool cover,
                              RtLightDesk *desk, RtError *error) {
-    const RtLightKernels *kernels = tile->buffer->kernels;
+    const RtLightPainting *painting = tile->buffer->painting;
     if (!cover) RT_TRY(make_room(desk, 16 * RT_LIGHT_SMALL_ROOM, error));
-    uint32_t large = (cover ? kernels->cover : kernels->draw)(tile, triangles, count, desk);
+    uint32_t large = (cover ? painting->cover : painting->draw)(tile, triangles, count, desk);
     for (; large; large &= large - 1) {
         RtRef object = rt_ref(RT_SHAPE_TRIANGLE, triangles[__builtin_ctz(large)]);
         RT_TRY(take_alone(tile, object, cover, desk, error));
@@ -405,7 +405,7 @@ RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t most, int threads, 
     int count = rt_thread_count(threads);
     Worker *workers = rt_alloc((size_t)count, sizeof *workers);
     RtStatus status = workers ? RT_OK : rt_fail_memory(error, "a light buffer", sizeof *workers);
-    for (uint32_t i = 0; status == RT_OK && i < buffer->base.scene->light_count; i++)
+    for (uint32_t i = 0; status == RT_OK && i < buffer->isa.base.scene->light_count; i++)
         status = make_light(buffer, i, most, workers, count, error);
     for (int i = 0; workers && i < count; i++) {
         RtLightDesk *desk = &workers[i].desk;

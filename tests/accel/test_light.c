@@ -108,7 +108,7 @@ RT_TEST(it_counts_what_was_counted_by_hand) {
 /* ---- the same on all machines ---- */
 
 static void check_same_lists(const RtLightBuffer *a, const RtLightBuffer *b) {
-    for (uint32_t i = 0; i < a->base.scene->light_count; i++) {
+    for (uint32_t i = 0; i < a->isa.base.scene->light_count; i++) {
         const RtLightCube *x = &a->cubes[i], *y = &b->cubes[i];
         assert_int_equal(x->tile_count, y->tile_count);
         assert_int_equal(x->cell_count, y->cell_count);
@@ -164,7 +164,8 @@ RT_TEST(every_instruction_set_makes_the_same_lists_and_counts) {
         answer(accel, rays, expected, &by_best);
         for (RtIsa isa = RT_ISA_PORTABLE; isa <= rt_isa_best(); isa++) {
             RtLightBuffer other = *best;
-            other.kernels = rt_light_kernels(isa);
+            other.isa.kernels = RT_KERNELS_FOR(light, isa);
+            other.painting = RT_KERNELS_FOR(light_painting, isa);
             other.cubes = rt_alloc(scene.light_count, sizeof(RtLightCube));
             assert_non_null(other.cubes);
             for (uint32_t light = 0; light < scene.light_count; light++) {
@@ -173,10 +174,10 @@ RT_TEST(every_instruction_set_makes_the_same_lists_and_counts) {
             }
             assert_ok(rt_light_make_lists(&other, UINT32_MAX, 1, error));
             check_same_lists(best, &other);
-            const RtLightKernels *kept = best->kernels;
-            best->kernels = other.kernels;
+            const RtKernels *kept = best->isa.kernels;
+            best->isa.kernels = other.isa.kernels;
             answer(accel, rays, blocked, &tally);
-            best->kernels = kept;
+            best->isa.kernels = kept;
             assert_memory_equal(blocked, expected, sizeof blocked);
             assert_memory_equal(&tally, &by_best, sizeof tally);
             for (uint32_t light = 0; light < scene.light_count; light++) {

@@ -87,6 +87,25 @@ RT_TEST(the_readme_lists_every_accelerator) {
     free(readme);
 }
 
+RT_TEST(every_accelerator_has_a_page_that_names_its_parameters) {
+    char *index = read_document("docs/accelerators/README.md");
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        char path[96], entry[96];
+        snprintf(path, sizeof path, "docs/accelerators/%s.md", ops->name);
+        snprintf(entry, sizeof entry, "\n| [%s](%s.md) |", ops->name, ops->name);
+        if (!strstr(index, entry)) fail_msg("the table of docs/accelerators/README.md lacks a row%s", entry);
+        char *page = read_document(path);
+        for (size_t p = 0; p < ops->param_count; p++) {
+            char name[96];
+            snprintf(name, sizeof name, "`%s`", ops->params[p].name);
+            if (!strstr(page, name)) fail_msg("%s does not say what %s does", path, name);
+        }
+        free(page);
+    }
+    free(index);
+}
+
 static bool is_name(const char *code) {
     return code[strspn(code, "abcdefghijklmnopqrstuvwxyz0123456789_.")] == '\0' && strchr(code, '_');
 }
@@ -114,7 +133,7 @@ RT_TEST(tests_that_documents_name_are_there) {
     size_t files = 0;
     assert_int_equal(glob("*.md", 0, NULL, &found), 0);
     assert_int_equal(glob("*/*.md", GLOB_APPEND, NULL, &found), 0);
-    assert_int_equal(glob("docs/*/*.md", GLOB_APPEND, NULL, &found), 0);
+    assert_int_equal(glob("*/*/*.md", GLOB_APPEND, NULL, &found), 0);
     for (size_t i = 0; i < found.gl_pathc; i++) {
         char *text = read_document(found.gl_pathv[i]), *rest = text;
         while (rest) files += check_line(found.gl_pathv[i], strsep(&rest, "\n"));

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# pictures.sh [PAGE.md...]: makes the pictures of docs/accelerators anew, by the commands that stand beside them in the
+# pages (all pages, or those named). A picture X.svg of a sweep is plots/X.svg, or the first plot, of the directory X.
+# RT_PROGRAM: the program (build/release/raytally). Exit code 1 if a command fails or makes no picture for a page.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+root=$PWD program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+pages=("$@")
+[ $# -gt 0 ] || pages=(docs/accelerators/*.md)
+
+# The commands of a page that draw: in fences marked sh alone, for others take long or need meshes.
+commands() {
+    awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$1" | grep -E '^raytally (render|trace|run) ' || true
+}
+
+room=$(mktemp -d)
+trap 'rm -rf "$room"' EXIT
+mkdir "$room/bin"
+ln -s "$program" "$room/bin/raytally"
+for tree in docs experiments scenes; do ln -s "$root/$tree" "$room/$tree"; done
+export PATH="$room/bin:$PATH"
+
+status=0
+for page in "${pages[@]}"; do
+    while read -r line; do
+        (cd "$room" && eval "$line" >log 2>&1) || {
+            echo "$page: fails: $line"
+            cat "$room/log"
+            status=1
+        }
+    done < <(commands "$page")
+    while read -r name; do
+        for made in "$room/$name" "$room/${name%.svg}/plots/$name" "$room/${name%.svg}"/plots/01-*.svg; do
+            [ -e "$made" ] && break
+        done
+        if [ -e "$made" ]; then
+            cp "$made" "docs/images/accelerators/$name"
+        else
+            echo "$page: no command makes $name"
+            status=1
+        fi
+    done < <(grep -oE 'images/accelerators/[a-z0-9.-]+' "$page" | sed 's|.*/||' | sort -u)
+done
+exit $status
