@@ -135,4 +135,42 @@ if command -v nm >/dev/null && command -v "${CC:-cc}" >/dev/null; then
     expect fails check_circles.sh "a build without objects"
 fi
 
+# guide passes|fails WHAT LINE...: a document of those lines
+guide() {
+    local outcome=passes wanted=$1 what=$2
+    shift 2
+    printf '%s\n' "$@" >"$tree/guide.md"
+    RT_PROGRAM=$(type -P true) "$here/check_guide.sh" "$tree/guide.md" >/dev/null 2>&1 || outcome=fails
+    [ "$outcome" = "$wanted" ] && return
+    echo "check_guide.sh $outcome on $what"
+    failures=$((failures + 1))
+}
+fence='```'
+command=("${fence}sh" 'echo "1.5  tests"; echo last' "$fence")
+exact="${fence}text exact"
+guide passes "a command that works" "${command[@]}"
+guide passes "what it prints" "${command[@]}" "$exact" '1.5  tests' last "$fence"
+guide passes "what it prints at the end" "${command[@]}" "$exact" ... last "$fence"
+guide passes "what it prints, with another figure where those are times" "${command[@]}" "${fence}text alike" '20 tests' last "$fence"
+guide passes "a file and a command that reads it" "${fence}yaml file=a.yaml" b "$fence" "${fence}sh" 'grep -x b a.yaml' "$fence"
+guide passes "a document of the tree" "${fence}sh" 'test -s docs/scenes.md' "$fence"
+guide passes "a scene of the tree" "${fence}sh" 'test -s scenes/lecture.yaml' "$fence"
+guide passes "an exit code that is told" "${fence}sh exit=2" 'exit 2' "$fence"
+guide passes "a program that is not there" "${command[@]}" "${fence}sh needs=no-such-program" no-such-program "$fence" "$exact" a "$fence"
+guide passes "a slow command, which is left out" "${command[@]}" "${fence}sh slow" false "$fence"
+guide passes "a link to a document, and one to the net" "${command[@]}" '[this](guide.md#a) [that](https://localhost/nowhere)'
+guide fails "a link that leads nowhere" "${command[@]}" '[that](nowhere.md)'
+guide fails "no command at all" 'only text'
+guide fails "a command that fails" "${fence}sh" false "$fence"
+guide fails "a command that fails before another" "${fence}sh" 'false' 'true' "$fence"
+guide fails "a command that fails in a pipe" "${fence}sh" 'false | cat' "$fence"
+guide fails "another exit code" "${fence}sh exit=2" 'exit 1' "$fence"
+guide fails "another figure" "${command[@]}" "$exact" '1.6  tests' last "$fence"
+guide fails "another word where figures are times" "${command[@]}" "${fence}text alike" '1.5 steps' last "$fence"
+guide fails "a line too few" "${command[@]}" "$exact" '1.5  tests' "$fence"
+guide fails "output without a command" "${command[@]}" "${fence}text" a "$fence" "$exact" last "$fence"
+guide fails "a word that means nothing" "${fence}sh slwo" true "$fence"
+guide fails "a block that is indented" "${command[@]}" "  ${fence}sh" '  true' "  $fence"
+guide fails "a block without an end" "${command[@]}" "${fence}sh" true
+
 [ "$failures" = 0 ]

@@ -234,6 +234,12 @@ for says in 'size=1: 11 objects, 8x8, depth 5, seed 1' 'to that of bvh, .* of 2 
     '^  shadow, [0-9]* rays' '^brute \* ' '^\* brute is measured on one of 7 rays' '^wide:in_flight=1,packets=0,' '^bvh (again) '; do
     grep -q "$says" table || complain "bench: the table does not say '$says'"
 done
+"$program" $bench --accel bvh --accel brute --ray-stride 7 --accel $long --rays primary,shadow --count-only >table 2>&1
+awk 'length > 80 { exit 1 }' table || complain "bench --count-only: the table has lines of more than 80 characters"
+for says in '^accelerator .*MB  interior  leaves' '^\* brute is measured on one of 7 rays.$'; do
+    grep -q "$says" table || complain "bench --count-only: the table does not say '$says'"
+done
+! grep -E ' (ms|ratio|Mrays|-)( |$)' table || complain "bench --count-only: the table has columns of times"
 "$program" $bench --accel bvh --rays primary --seed 9 --json >seconds.json
 for says in '"seed": 9' '"rounds": 2' '"width": 8' '"baseline": "bvh"' '"ns_low": [0-9]' '"straddles_1": [tf]'; do
     grep -q "$says" seconds.json || complain "bench --json: does not say '$says'"
@@ -250,7 +256,7 @@ for subject in '' 'a' 'a b c' 'a b --with c' 'a b --accel bvh' 'a b --until 1%' 
     refuses 'raytally compare: ' compare $subject
 done
 refuses "margin: invalid value '3'" compare a b --margin 3
-refuses 'nowhere is not a finished result directory' compare nowhere nowhere
+refuses 'nowhere is not a finished result directory.*raytally run EXPERIMENT --out nowhere --resume' compare nowhere nowhere
 refuses 'an EXPERIMENT says what its rays are' compare a.yaml --rays primary --with "$program"
 refuses 'no/such: cannot be started: No such file' compare balls:size=1 --accel bvh --size 8x8 --with no/such
 refuses '/bin/true cannot be compared with' compare balls:size=1 --accel bvh --size 8x8 --with /bin/true

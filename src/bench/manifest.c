@@ -73,8 +73,10 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
     *manifest = NULL;
     RT_TRY(rt_path_join(directory, "manifest.json", path, error));
     if (!rt_file_exists(path)) {
-        return rt_fail(error, RT_BAD_INPUT, "%s is not a finished result directory: it has no manifest.json",
-                       directory);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s is not a finished result directory: it has no manifest.json; what --only or an "
+                       "interruption left out is measured by `raytally run EXPERIMENT --out %s --resume`",
+                       directory, directory);
     }
     *manifest = json_load_file(path, 0, &fault);
     if (*manifest) return RT_OK;

@@ -32,7 +32,9 @@ void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workl
     RtResultRow row = {.results = results, .workload = workload};
     const RtTable table = rt_result_table(which, &row);
     int widths[RT_MAX_TABLE_COLUMNS];
-    bool by_kind = which == RT_CELLS || which == RT_SPREADS || which == RT_MACHINE_CELLS, any = false;
+    bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_SPREADS ||
+                   which == RT_MACHINE_CELLS,
+         any = false;
     RtRayKind kind = RT_RAY_PRIMARY;
     fputc('\n', out);
     rt_table_widths(&table, widths);
@@ -67,11 +69,9 @@ static uint32_t rounds_of(const RtResults *results, uint32_t t, uint32_t *least)
 }
 
 /* What the ratios refer to, and what intervals are worth. */
-static void print_ratios(const RtResults *results, uint32_t t, FILE *out) {
+static void print_ratios(const RtResults *results, uint32_t least, uint32_t most, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char title[RT_MAX_INTERVAL_TITLE], rounds[32], text[RT_MAX_SENTENCE];
-    uint32_t least = 0, most = rounds_of(results, t, &least);
-    if (most == 0) return;
     rt_interval_title(experiment, title);
     snprintf(rounds, sizeof rounds, least == most ? "%" PRIu32 : "%" PRIu32 " to %" PRIu32, least, most);
     snprintf(text, sizeof text,
@@ -84,28 +84,34 @@ static void print_ratios(const RtResults *results, uint32_t t, FILE *out) {
     rt_print_wrapped(text, out);
 }
 
-/* Why a ratio of part of the rays is not the quotient of the throughputs beside it. */
-static void print_strides(const RtResults *results, uint32_t t, FILE *out) {
+/* What is measured on part of the rays, and why its ratio is not the quotient of the throughputs beside it.
+ */
+static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char text[RT_MAX_SENTENCE];
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtCandidate *candidate = &experiment->candidates[c];
         if (candidate->ray_stride == 1 || !rt_candidate_runs(experiment, c, t)) continue;
-        snprintf(text, sizeof text,
-                 "* %s is measured on one of %" PRIu64
-                 " rays. Its ratio is to %s on those same rays, and so not the "
-                 "quotient of the throughputs above.",
-                 candidate->label, candidate->ray_stride, rt_baseline_label(experiment));
+        size_t n = (size_t)snprintf(text, sizeof text, "* %s is measured on one of %" PRIu64 " rays.",
+                                    candidate->label, candidate->ray_stride);
+        if (timed) {
+            snprintf(text + n, sizeof text - n,
+                     " Its ratio is to %s on those same rays, and so not the quotient of the throughputs "
+                     "above.",
+                     rt_baseline_label(experiment));
+        }
         rt_print_wrapped(text, out);
     }
 }
 
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
+    uint32_t least = 0, most = rounds_of(results, t, &least);
+    const bool timed = most > 0;
     rt_print_wrapped("Object tests, extent tests and steps are those of a ray.", out);
-    print_ratios(results, t, out);
-    rt_print_rows(results, RT_CELLS, t, out);
-    print_strides(results, t, out);
-    rt_print_rows(results, RT_STRUCTURES, t, out);
+    if (timed) print_ratios(results, least, most, out);
+    rt_print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
+    print_strides(results, t, timed, out);
+    rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
 }
 
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {

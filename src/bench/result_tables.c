@@ -248,6 +248,14 @@ static const RtColumnGroup for_papers[] = {RT_ONE(columns, accel), RT_FROM_TO(co
 static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label),
                                            RT_FROM_TO(columns, build_ms, pay_off)};
 
+static const RtColumnGroup counted_cells[] = {RT_FROM_TO(columns, eye_label, eye_steps)};
+
+static const RtColumnGroup counted_structures[] = {
+    RT_ONE(columns, eye_label),
+    RT_ONE(columns, mb),
+    {NULL, rt_structure_columns, RT_SHAPE_COLUMNS, structure_of},
+};
+
 static const RtColumnGroup cells[] = {
     RT_ONE(columns, accel),       RT_ONE(columns, kind),
     RT_ONE(columns, rays),        RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
@@ -342,6 +350,8 @@ static const void *row_at(void *context, size_t i) {
         [RT_CELLS] = (counted || timed) && !is_lost(r, r->cell),
         [RT_CELLS_PAPER] = (counted || timed) && !null && !is_lost(r, r->cell),
         [RT_STRUCTURES] = is_shown(r) && !null && i < r->results->experiment->candidate_count,
+        [RT_COUNTED_CELLS] = r->cell->counted,
+        [RT_COUNTED_STRUCTURES] = is_shown(r) && i < r->results->experiment->candidate_count,
         [RT_CELLS_MORE] = counted || timed,
         [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->candidate_count,
         [RT_SPREADS] = r->cell->distributions && !isnan(per_ray(r, r->cell->tally.object_tests)),
@@ -402,6 +412,8 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
         [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},
         [RT_CELLS] = {RT_GROUPS(for_the_eye)},
         [RT_STRUCTURES] = {RT_GROUPS(structures)},
+        [RT_COUNTED_CELLS] = {RT_GROUPS(counted_cells)},
+        [RT_COUNTED_STRUCTURES] = {RT_GROUPS(counted_structures)},
         [RT_SPREADS] = {RT_GROUPS(spreads)},
         [RT_LEAF_SPREADS] = {RT_GROUPS(leaf_spreads)},
         [RT_MACHINE_CELLS] = {RT_GROUPS(machine_cells)},

@@ -17,10 +17,12 @@ typedef enum RtResultTable {
     RT_TIMES,
     /* rounds.csv: a row per round of a timed cell, null runs included. */
     RT_ROUNDS,
-    RT_BENCH,      /* "rows" of bench --json: of each cell that was counted */
-    RT_NULL_RUNS,  /* "null_runs" there */
-    RT_CELLS,      /* for the eye: one workload by accelerator and ray kind; of a best of only the best */
-    RT_STRUCTURES, /* for the eye: of each accelerator in it, what its structure takes */
+    RT_BENCH,         /* "rows" of bench --json: of each cell that was counted */
+    RT_NULL_RUNS,     /* "null_runs" there */
+    RT_CELLS,         /* for the eye: one workload by accelerator and ray kind; of a best of only the best */
+    RT_STRUCTURES,    /* for the eye: of each accelerator in it, what its structure takes */
+    RT_COUNTED_CELLS, /* both where nothing was timed, with the sizes of structures in place of times */
+    RT_COUNTED_STRUCTURES,
     RT_SPREADS, /* for the eye: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
                    of object tests and steps */
     RT_LEAF_SPREADS,  /* for the eye: by accelerator: those of sizes and depths of leaves */
@@ -66,8 +68,8 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 #define RT_MAX_EYE_LABEL (RT_MAX_LABEL + 16)
 void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
 
-/* RT_CELLS, in 80 columns, with RT_STRUCTURES and what the figures refer to; or RT_TOTALS; of each workload
- * that is known. */
+/* RT_CELLS, in 80 columns, with RT_STRUCTURES and what the figures refer to, or where nothing was timed what
+ * there is then; or RT_TOTALS; of each workload that is known. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
 
 /* The rows of a table for the eye, behind a blank line and the names of its columns. */

@@ -17,6 +17,7 @@ enum { RT_EXIT_OK = 0, RT_EXIT_CHECK_FAILED = 1, RT_EXIT_BAD_INPUT = 2 };
 typedef struct RtCommand {
     const char *name, *arguments, *summary;
     int (*run)(int argc, char **argv); /* argv[0] is "raytally NAME"; returns the exit code */
+    const struct argp *argp;           /* its options; NULL: it has none but --help */
 } RtCommand;
 
 int rt_command_accels(int argc, char **argv);
@@ -34,6 +35,25 @@ int rt_command_plot(int argc, char **argv);
 int rt_command_report(int argc, char **argv);
 int rt_command_reproduce(int argc, char **argv);
 int rt_command_convert(int argc, char **argv);
+
+extern const struct argp rt_accels_argp;
+extern const struct argp rt_scenes_argp;
+extern const struct argp rt_info_argp;
+extern const struct argp rt_render_argp;
+extern const struct argp rt_trace_argp;
+extern const struct argp rt_verify_argp;
+extern const struct argp rt_bench_argp;
+extern const struct argp rt_rays_argp;
+extern const struct argp rt_compare_argp;
+extern const struct argp rt_report_argp;
+extern const struct argp rt_run_argp;
+extern const struct argp rt_merge_argp;
+extern const struct argp rt_convert_argp;
+
+/* Of the command that completes all others, whose table main has: its parser, whose input is a const char *,
+ * the shell; and what it prints, a script for bash. */
+extern const struct argp rt_completion_argp;
+void rt_completion_print(const RtCommand *commands, int count);
 
 /* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
 int rt_cli_fail(const RtError *error);

@@ -40,15 +40,16 @@ static json_t *accelerator_json(const RtAccelOps *ops) {
                      rt_cli_params_json(ops->params, ops->param_count), "best_of", bests);
 }
 
+const struct argp rt_accels_argp = {
+    .options = rt_list_options,
+    .parser = rt_list_parse,
+    .args_doc = "[NAME]",
+    .doc = "List the accelerators, or explain the one called NAME: its parameters with defaults "
+           "and ranges, and the paper it follows."};
+
 int rt_command_accels(int argc, char **argv) {
     RtListOptions o = {0};
-    const struct argp argp = {
-        .options = rt_list_options,
-        .parser = rt_list_parse,
-        .args_doc = "[NAME]",
-        .doc = "List the accelerators, or explain the one called NAME: its parameters with defaults "
-               "and ranges, and the paper it follows."};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_accels_argp, argc, argv, 0, 0, &o);
     RtError error;
     const RtAccelOps *only = NULL;
     if (o.name && rt_accel_find(o.name, &only, &error) != RT_OK) return rt_cli_fail(&error);

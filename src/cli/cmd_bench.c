@@ -302,25 +302,26 @@ static RtStatus bench(Options *o, RtError *error) {
     return status;
 }
 
+static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
+const struct argp rt_bench_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "SCENE",
+    .doc = "Count and time accelerators on the rays of one scene, and compare them."
+           "\vSCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote "
+           "what "
+           "your shell would take for its own: | and *). Every accelerator gets the "
+           "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
+           "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
+           "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
+           "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy",
+    .children = children};
+
 int rt_command_bench(int argc, char **argv) {
     Options o = {.workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
     RtError error;
     if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
-    const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "SCENE",
-        .doc = "Count and time accelerators on the rays of one scene, and compare them."
-               "\vSCENE is a file or a built-in, as in balls:size=3, or several: random:n=1e2..1e5*10 (quote "
-               "what "
-               "your shell would take for its own: | and *). Every accelerator gets the "
-               "same rays and must give the same answers (exit code 1 otherwise). Example:\n"
-               "  raytally bench balls --accel bvh --accel grid --accel brute --ray-stride 100\n"
-               "  raytally bench 'balls:size=2|3' --accel bvh --accel 'grid:density=1..16*4'\n"
-               "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy",
-        .children = children};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_bench_argp, argc, argv, 0, 0, &o);
     RtStatus status = bench(&o, &error);
     rt_recording_clear(&o.recording);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);

@@ -204,32 +204,33 @@ static RtStatus compare(Options *o, int argc, char **argv, bool *slower, RtError
     return status;
 }
 
+static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
+const struct argp rt_compare_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
+    .doc = "Say what is faster, slower or no different after a change, and which counts changed: from "
+           "two result "
+           "directories, or by running this raytally and another one in turns on the same rays, which "
+           "finds much "
+           "smaller differences."
+           "\vRatios are of throughput: above 1 it is faster now. All intervals hold together in 95 %, "
+           "however many "
+           "cells there are. Directories are single runs at two times; what they differ by anyway is "
+           "left to "
+           "--margin. Examples:\n"
+           "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
+           "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
+           "--until 1%\n"
+           "  raytally compare results/last-month results/first-look --strict",
+    .children = children};
+
 int rt_command_compare(int argc, char **argv) {
     RtError error;
     bool slower = false;
     Options o = {.timing = 1, .patience = 600, .margin = -1};
     if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
-    const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "BEFORE AFTER\nEXPERIMENT.yaml --with PROGRAM\nSCENE --accel SPEC --with PROGRAM",
-        .doc = "Say what is faster, slower or no different after a change, and which counts changed: from "
-               "two result "
-               "directories, or by running this raytally and another one in turns on the same rays, which "
-               "finds much "
-               "smaller differences."
-               "\vRatios are of throughput: above 1 it is faster now. All intervals hold together in 95 %, "
-               "however many "
-               "cells there are. Directories are single runs at two times; what they differ by anyway is "
-               "left to "
-               "--margin. Examples:\n"
-               "  raytally compare balls --accel bvh --accel grid --with ../old/build/release/raytally\n"
-               "  raytally compare experiments/first-look.yaml --quick --with ../old/build/release/raytally "
-               "--until 1%\n"
-               "  raytally compare results/last-month results/first-look --strict",
-        .children = children};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_compare_argp, argc, argv, 0, 0, &o);
     RtStatus status = o.worker ? work(&o, &error) : compare(&o, argc, argv, &slower, &error);
     rt_recording_clear(&o.recording);
     if (status != RT_OK) return rt_cli_fail(&error);

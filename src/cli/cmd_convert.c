@@ -29,16 +29,17 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     }
 }
 
+const struct argp rt_convert_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "IN OUT",
+    .doc = "Read the scene IN (a file or a built-in) and write it to OUT, in the format that the "
+           "extension of OUT names.\vFor example:\n  raytally convert balls:size=2 balls.yaml\n"
+           "  raytally convert bunny.obj bunny.ply"};
+
 int rt_command_convert(int argc, char **argv) {
     Options o = {0};
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "IN OUT",
-        .doc = "Read the scene IN (a file or a built-in) and write it to OUT, in the format that the "
-               "extension of OUT names.\vFor example:\n  raytally convert balls:size=2 balls.yaml\n"
-               "  raytally convert bunny.obj bunny.ply"};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_convert_argp, argc, argv, 0, 0, &o);
     RtError error;
     RtScene scene;
     if (rt_scene_open(o.in, &scene, &error) != RT_OK) return rt_cli_fail(&error);

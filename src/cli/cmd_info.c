@@ -172,18 +172,19 @@ static RtStatus show(const RtScene *scene, const Options *o, RtError *error) {
     return RT_OK;
 }
 
+const struct argp rt_info_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "SCENE",
+    .doc = "Say what is in a scene: objects by shape, bounds, materials, lights, the camera, "
+           "memory, and a fingerprint that changes with anything that can change an answer. "
+           "SCENE is a file or a built-in such as balls:size=5."};
+
 int rt_command_info(int argc, char **argv) {
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "SCENE",
-        .doc = "Say what is in a scene: objects by shape, bounds, materials, lights, the camera, "
-               "memory, and a fingerprint that changes with anything that can change an answer. "
-               "SCENE is a file or a built-in such as balls:size=5."};
     Options o = {.rays = 100000, .seed = 1};
     RtScene scene;
     RtError error;
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_info_argp, argc, argv, 0, 0, &o);
     if (rt_scene_open(o.scene, &scene, &error) != RT_OK) return rt_cli_fail(&error);
     RtStatus status = show(&scene, &o, &error);
     rt_scene_clear(&scene);

@@ -45,21 +45,22 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "raytally: %s\n", message);
 }
 
+const struct argp rt_merge_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "DIR...",
+    .doc = "Join what `raytally run --shard I/N` measured on several machines into the "
+           "result directory of one run, with its tables, plots and report. counts.csv "
+           "is the same, byte for byte, as that of one machine; times.csv says which "
+           "machine timed each row, all accelerators on a scene by the same one."
+           "\vShards of different experiments or builds, and one that is missing, not "
+           "finished, or there twice, are refused. Run it with the same build, from "
+           "where the shards were run. Example:\n"
+           "  raytally merge results/first-look-*-of-3 -o results/first-look"};
+
 int rt_command_merge(int argc, char **argv) {
     Options o = {.start = RT_START_FRESH};
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "DIR...",
-        .doc = "Join what `raytally run --shard I/N` measured on several machines into the "
-               "result directory of one run, with its tables, plots and report. counts.csv "
-               "is the same, byte for byte, as that of one machine; times.csv says which "
-               "machine timed each row, all accelerators on a scene by the same one."
-               "\vShards of different experiments or builds, and one that is missing, not "
-               "finished, or there twice, are refused. Run it with the same build, from "
-               "where the shards were run. Example:\n"
-               "  raytally merge results/first-look-*-of-3 -o results/first-look"};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_merge_argp, argc, argv, 0, 0, &o);
     RtError error;
     RtResults results = {0};
     const RtObserver observer = {.notice = on_notice};

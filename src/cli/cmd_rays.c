@@ -67,25 +67,25 @@ static RtStatus record(const Options *o, RtError *error) {
     return status;
 }
 
+static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 0}, {0}};
+const struct argp rt_rays_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "SCENE",
+    .doc = "Write rays of a scene, those that `raytally bench` measures with, to a file that NumPy reads."
+           "\vEach row of the array, float32 of shape (N, 8), is a ray: origin x y z, tmin, direction x y z "
+           "(of any length: t counts in it), tmax. `raytally bench --rays-from` and `raytally verify "
+           "--rays-from` take such a file from any renderer. Example:\n"
+           "  raytally rays balls --rays diffuse -o rays.npy\n"
+           "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy\n"
+           "  python3 -c \"import numpy; print(numpy.load('hits.npy')['object'])\"",
+    .children = children};
+
 int rt_command_rays(int argc, char **argv) {
     RtError error;
     Options o = {.recording = {.one_kind = true}};
     if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
-    const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 0}, {0}};
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "SCENE",
-        .doc =
-            "Write rays of a scene, those that `raytally bench` measures with, to a file that NumPy reads."
-            "\vEach row of the array, float32 of shape (N, 8), is a ray: origin x y z, tmin, direction x y z "
-            "(of any length: t counts in it), tmax. `raytally bench --rays-from` and `raytally verify "
-            "--rays-from` take such a file from any renderer. Example:\n"
-            "  raytally rays balls --rays diffuse -o rays.npy\n"
-            "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy\n"
-            "  python3 -c \"import numpy; print(numpy.load('hits.npy')['object'])\"",
-        .children = children};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_rays_argp, argc, argv, 0, 0, &o);
     RtStatus status = record(&o, &error);
     rt_recording_clear(&o.recording);
     return status == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);

@@ -353,23 +353,24 @@ static RtStatus check_rays(const Run *run, RtError *error) {
     return status;
 }
 
+static const char doc[] =
+    "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
+    "For example:\n"
+    "  raytally render balls -o balls.png\n"
+    "  raytally render balls --accel octree --structure leaves.png --leaves --level 0..6\n"
+    "  raytally render balls --accel grid --structure section.png --slice z\n"
+    "  raytally render balls --accel item:settle=off+bvh --structure samples.png\n"
+    "  raytally render balls --accel light:cells=64+bvh --structure cells.png --pixel 256,400\n"
+    "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
+    "--heatmap-difference\n"
+    "`raytally trace` follows a single ray. What the counters count is in docs/columns.md.";
+static const struct argp_child children[] = {{&rt_picture_argp, 0, NULL, 0}, {0}};
+const struct argp rt_render_argp = {
+    .options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc, .children = children};
+
 int rt_command_render(int argc, char **argv) {
-    static const char doc[] =
-        "Trace SCENE, a file or a built-in (as in balls:size=4), under the standard illumination model.\v"
-        "For example:\n"
-        "  raytally render balls -o balls.png\n"
-        "  raytally render balls --accel octree --structure leaves.png --leaves --level 0..6\n"
-        "  raytally render balls --accel grid --structure section.png --slice z\n"
-        "  raytally render balls --accel item:settle=off+bvh --structure samples.png\n"
-        "  raytally render balls --accel light:cells=64+bvh --structure cells.png --pixel 256,400\n"
-        "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
-        "--heatmap-difference\n"
-        "`raytally trace` follows a single ray. What the counters count is in docs/columns.md.";
-    const struct argp_child children[] = {{&rt_picture_argp, 0, NULL, 0}, {0}};
-    const struct argp argp = {
-        .options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc, .children = children};
     Options o = {.samples = 1, .depth = RT_DEFAULT_DEPTH, .pictures = {.boxes = RT_ALL_LEVELS}};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_render_argp, argc, argv, 0, 0, &o);
     RtError error = {RT_OK, ""};
     Run *run = rt_alloc(1, sizeof(Run));
     if (!run) {

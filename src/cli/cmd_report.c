@@ -52,14 +52,15 @@ static int write_index(const char *folder) {
     return RT_EXIT_OK;
 }
 
+static const struct argp_option options[] = {
+    {"index", 'i', "FOLDER", 0,
+     "Write FOLDER/index.html over all result directories in it, as in `--index results`", 0},
+    {0}};
+const struct argp rt_report_argp = {
+    .options = options, .parser = parse_option, .args_doc = "DIR\n--index FOLDER", .doc = help};
+
 int rt_command_report(int argc, char **argv) {
-    static const struct argp_option options[] = {
-        {"index", 'i', "FOLDER", 0,
-         "Write FOLDER/index.html over all result directories in it, as in `--index results`", 0},
-        {0}};
-    const struct argp argp = {
-        .options = options, .parser = parse_option, .args_doc = "DIR\n--index FOLDER", .doc = help};
     const char *folder = NULL;
-    argp_parse(&argp, argc, argv, 0, 0, &folder);
+    argp_parse(&rt_report_argp, argc, argv, 0, 0, &folder);
     return folder ? write_index(folder) : rt_cli_directory(argc, argv, help, true, report);
 }

@@ -168,6 +168,10 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
         }
     }
     RtForecast forecast = rt_forecast(results, &how->workload);
+    if (forecast.finished == forecast.cells) {
+        printf("%u cells, all of them finished\n", forecast.cells);
+        return RT_OK;
+    }
     rt_format_duration(forecast.left, duration);
     printf("%u cells, %u of them finished; the others take %s %s%s\n", forecast.cells, forecast.finished,
            forecast.guessed ? "at least" : "about", duration,
@@ -249,22 +253,23 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     return status;
 }
 
+const struct argp rt_run_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "EXPERIMENT.yaml|DIR/manifest.json",
+    .doc = "Run an experiment and write its result directory: counts.csv, times.csv, "
+           "manifest.json, plots, images and report.html. By the manifest of a "
+           "directory, run its experiment again, from where it was run. A directory with results, "
+           "finished or not, is refused without --resume or --force; so is one that "
+           "another process writes into. Ctrl-C at any time: what is measured is kept."
+           "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
+           "gnuplot there is a note), a published figure is missed, or with "
+           "--strict a claim does not hold. "
+           "experiments/README.md says how to write an experiment."};
+
 int rt_command_run(int argc, char **argv) {
     Options o = {.timing = 1, .patience = RT_PATIENCE};
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "EXPERIMENT.yaml|DIR/manifest.json",
-        .doc = "Run an experiment and write its result directory: counts.csv, times.csv, "
-               "manifest.json, plots, images and report.html. By the manifest of a "
-               "directory, run its experiment again, from where it was run. A directory with results, "
-               "finished or not, is refused without --resume or --force; so is one that "
-               "another process writes into. Ctrl-C at any time: what is measured is kept."
-               "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
-               "gnuplot there is a note), a published figure is missed, or with "
-               "--strict a claim does not hold. "
-               "experiments/README.md says how to write an experiment."};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_run_argp, argc, argv, 0, 0, &o);
     RtError error;
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
     RtStatus status = experiment ? run(&o, experiment, &error)

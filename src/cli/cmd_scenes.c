@@ -17,15 +17,16 @@ static json_t *scene_json(const RtBuiltin *builtin) {
                      builtin->source, "params", rt_cli_params_json(builtin->params, builtin->param_count));
 }
 
+const struct argp rt_scenes_argp = {
+    .options = rt_list_options,
+    .parser = rt_list_parse,
+    .args_doc = "[NAME]",
+    .doc = "List the built-in scenes, or explain the one called NAME: its parameters "
+           "with defaults and ranges, and where it comes from."};
+
 int rt_command_scenes(int argc, char **argv) {
     RtListOptions o = {0};
-    const struct argp argp = {.options = rt_list_options,
-                              .parser = rt_list_parse,
-                              .args_doc = "[NAME]",
-                              .doc =
-                                  "List the built-in scenes, or explain the one called NAME: its parameters "
-                                  "with defaults and ranges, and where it comes from."};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_scenes_argp, argc, argv, 0, 0, &o);
     RtError error;
     const RtBuiltin *only = NULL;
     if (o.name && rt_builtin_named(o.name, &only, &error) != RT_OK) return rt_cli_fail(&error);

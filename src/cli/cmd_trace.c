@@ -242,31 +242,31 @@ static RtStatus run(const Options *o, RtError *error) {
     return status;
 }
 
+const struct argp rt_trace_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "SCENE",
+    .doc = "Follow one ray through an accelerator: each step, extent test and object test, in order."
+           "\vA row says what was visited or tested, from which t to which the ray is in its box (as far as "
+           "it has one), whether an extent was met or an object hit, and the t of the nearest hit so far. "
+           "An "
+           "extent that the ray goes through is missed where it is entered only behind that hit. A step is "
+           "a "
+           "node, voxel, sample or list entry visited; what else the words mean, and what each accelerator "
+           "counts, is in accel/README.md. The rows come from the counted kernel itself and add up to its "
+           "tally, which is checked.\n\n"
+           "Of the drawing the upper part is a section along the ray and one axis of the scene: a box is "
+           "in it where the ray goes through it. The bars below say where on the ray that is, in the order "
+           "of "
+           "the rows. Examples:\n"
+           "  raytally trace balls --pixel 256,256\n"
+           "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
+           "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
+           "Through embree no steps are seen, for it counts none; with mode=user, object tests."};
+
 int rt_command_trace(int argc, char **argv) {
     RtError error;
     Options o = {.accel = rt_accel_default(), .rows = DEFAULT_ROWS};
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "SCENE",
-        .doc =
-            "Follow one ray through an accelerator: each step, extent test and object test, in order."
-            "\vA row says what was visited or tested, from which t to which the ray is in its box (as far as "
-            "it has one), whether an extent was met or an object hit, and the t of the nearest hit so far. "
-            "An "
-            "extent that the ray goes through is missed where it is entered only behind that hit. A step is "
-            "a "
-            "node, voxel, sample or list entry visited; what else the words mean, and what each accelerator "
-            "counts, is in accel/README.md. The rows come from the counted kernel itself and add up to its "
-            "tally, which is checked.\n\n"
-            "Of the drawing the upper part is a section along the ray and one axis of the scene: a box is "
-            "in it where the ray goes through it. The bars below say where on the ray that is, in the order "
-            "of "
-            "the rows. Examples:\n"
-            "  raytally trace balls --pixel 256,256\n"
-            "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
-            "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
-            "Through embree no steps are seen, for it counts none; with mode=user, object tests."};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_trace_argp, argc, argv, 0, 0, &o);
     return run(&o, &error) == RT_OK ? RT_EXIT_OK : rt_cli_fail(&error);
 }

@@ -384,23 +384,23 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     return rt_fail(error, RT_BAD_INPUT, "%s: none of it can be asked again", o->replay);
 }
 
+const struct argp rt_verify_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "[SCENE...]\n--replay FILE",
+    .doc = "Verify that accelerators answer every ray of each SCENE (a few small built-in ones if none is "
+           "given) like brute: the same object and the same bits of t, timed and counted, singly and in "
+           "streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
+           "them, as in family:kind=slivers,seed=7 (`raytally scenes family` names them all).\v"
+           "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
+           "marginal (explained by rounding) or wrong. The first wrong answer of each row is written to a "
+           "file (in --out DIR, else in verify-failures/), with the scene shrunk to the objects that it "
+           "takes; --replay asks it again. Exit code 1 if anything is wrong."};
+
 int rt_command_verify(int argc, char **argv) {
     static Options o;
     o = (Options){.rays = 100000, .seed = 1};
-    const struct argp argp = {
-        .options = options,
-        .parser = parse_option,
-        .args_doc = "[SCENE...]\n--replay FILE",
-        .doc =
-            "Verify that accelerators answer every ray of each SCENE (a few small built-in ones if none is "
-            "given) like brute: the same object and the same bits of t, timed and counted, singly and in "
-            "streams. SCENE may be `families`, generated scenes that are hard on accelerators, or one of "
-            "them, as in family:kind=slivers,seed=7 (`raytally scenes family` names them all).\v"
-            "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
-            "marginal (explained by rounding) or wrong. The first wrong answer of each row is written to a "
-            "file (in --out DIR, else in verify-failures/), with the scene shrunk to the objects that it "
-            "takes; --replay asks it again. Exit code 1 if anything is wrong."};
-    argp_parse(&argp, argc, argv, 0, 0, &o);
+    argp_parse(&rt_verify_argp, argc, argv, 0, 0, &o);
     RtError error;
     bool failed = false;
     RtStatus status = o.replay ? replay(&o, &failed, &error) : choose_specs(&o, &error);

@@ -7,34 +7,54 @@
 #include <stdio.h>
 #include <string.h>
 
+static int run_completion(int argc, char **argv);
+
 static const RtCommand commands[] = {
     {"accels", "[NAME]", "list the accelerators, their parameters, defaults, ranges and papers",
-     rt_command_accels},
-    {"scenes", "[NAME]", "list the built-in scenes and their parameters", rt_command_scenes},
-    {"info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene", rt_command_info},
+     rt_command_accels, &rt_accels_argp},
+    {"scenes", "[NAME]", "list the built-in scenes and their parameters", rt_command_scenes, &rt_scenes_argp},
+    {"info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene", rt_command_info,
+     &rt_info_argp},
     {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
-     rt_command_render},
-    {"trace", "SCENE", "one ray's path through an accelerator, step by step", rt_command_trace},
-    {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify},
-    {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench},
+     rt_command_render, &rt_render_argp},
+    {"trace", "SCENE", "one ray's path through an accelerator, step by step", rt_command_trace,
+     &rt_trace_argp},
+    {"verify", "[SCENE...]", "check that accelerators answer every ray like brute", rt_command_verify,
+     &rt_verify_argp},
+    {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench,
+     &rt_bench_argp},
     {"compare", "BEFORE AFTER", "faster or slower: two results, or two programs run in turns",
-     rt_command_compare},
-    {"rays", "SCENE", "write rays of a scene for NumPy; bench and verify take such files", rt_command_rays},
-    {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run},
-    {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge},
-    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot},
-    {"report", "DIR", "write the report of a result directory again; an index of all", rt_command_report},
-    {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce},
-    {"convert", "IN OUT", "write a scene in another format", rt_command_convert},
+     rt_command_compare, &rt_compare_argp},
+    {"rays", "SCENE", "write rays of a scene for NumPy; bench and verify take such files", rt_command_rays,
+     &rt_rays_argp},
+    {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run, &rt_run_argp},
+    {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge, &rt_merge_argp},
+    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, NULL},
+    {"report", "DIR", "write the report of a result directory again; an index of all", rt_command_report,
+     &rt_report_argp},
+    {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce,
+     NULL},
+    {"convert", "IN OUT", "write a scene in another format", rt_command_convert, &rt_convert_argp},
+    {"completion", "SHELL", "print a script that completes all this in bash", run_completion,
+     &rt_completion_argp},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
+
+static int run_completion(int argc, char **argv) {
+    const char *shell = NULL;
+    argp_parse(&rt_completion_argp, argc, argv, 0, 0, &shell);
+    rt_completion_print(commands, COMMAND_COUNT);
+    return RT_EXIT_OK;
+}
 
 static void print_usage(FILE *to) {
     fprintf(to, "raytally " RT_VERSION ": a testbed for ray-tracing acceleration structures\n\n"
                 "Usage: raytally COMMAND [ARGUMENT...]\n\nCommands:\n");
     for (int i = 0; i < COMMAND_COUNT; i++) {
-        fprintf(to, "  %-9s %-14s %s\n", commands[i].name, commands[i].arguments, commands[i].summary);
+        char usage[32];
+        snprintf(usage, sizeof usage, "%s %s", commands[i].name, commands[i].arguments);
+        fprintf(to, "  %-21s %s\n", usage, commands[i].summary);
     }
     fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. To start with:\n"
                 "  raytally accels                          what there is to compare\n"

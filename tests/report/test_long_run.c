@@ -155,6 +155,8 @@ RT_TEST_IN_PLACE(a_part_is_measured_and_then_the_rest) {
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out"), 2);
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume"), 0);
     assert_same_file(place, "whole/counts.csv", "out/counts.csv");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume --dry-run"), 0);
+    assert_in_file(place, "output", "56 cells, all of them finished\n");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --only nowhere --resume"), 2);
 }
 

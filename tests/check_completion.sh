@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_completion.sh: what `raytally completion bash` prints completes commands, options, accelerators, scenes and what is
+# set of them; the function is called as bash calls it. Uses $RT_PROGRAM.
+set -uo pipefail
+program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+touch mine.yaml
+failures=0
+"$program" completion bash >script || exit 1
+# shellcheck disable=SC1091
+source ./script || exit 1
+
+# complete_line LINE: COMPREPLY, its words as readline parts them: at blanks, and : and = are words of their own
+complete_line() {
+    local parted
+    COMP_LINE=$1 COMP_POINT=${#1} COMPREPLY=()
+    parted=$(sed -E 's/[:=]+/ & /g' <<<"$1")
+    read -ra COMP_WORDS <<<"$parted"
+    case $1 in *' ') COMP_WORDS+=('') ;; esac
+    COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+    _raytally
+}
+
+# offers LINE WORD...: those, among others
+offers() {
+    local word
+    complete_line "$1"
+    for word in "${@:2}"; do
+        grep -qxF -e "$word" <<<"$(printf '%s\n' "${COMPREPLY[@]}")" || {
+            echo "'$1' is not completed by '$word' but by '${COMPREPLY[*]}'"
+            failures=$((failures + 1))
+        }
+    done
+}
+
+# offers_only LINE WORD...: those and no others
+offers_only() {
+    offers "$@"
+    [ ${#COMPREPLY[@]} = $(($# - 1)) ] || {
+        echo "'$1' is completed by '${COMPREPLY[*]}'"
+        failures=$((failures + 1))
+    }
+}
+
+offers 'raytally ' accels bench render completion help --version
+offers_only 'raytally be' bench
+offers_only 'raytally help ver' verify
+offers 'raytally bench --' --accel --count-only --rays --until --help
+offers_only 'raytally bench --count' --count-only --counts
+offers_only 'raytally bench --callgrind-' # hidden
+offers 'raytally bench balls --accel ' brute bvh grid octree item+ all
+offers 'raytally bench balls -a ' brute bvh
+offers_only 'raytally bench balls --accel gr' grid
+offers_only 'raytally bench balls --accel=gr' grid
+offers 'raytally bench balls --accel=' kd all
+offers_only 'raytally bench balls --accel grid:dens' density=
+offers 'raytally bench balls --accel grid:' density= mailbox= rule=
+offers_only 'raytally bench balls --accel grid:mailbox=' on off
+offers_only 'raytally bench balls --accel=grid:mailbox=of' off
+offers_only 'raytally bench balls --accel grid:mailbox=on,dep' on,depth=
+offers_only 'raytally bench balls --accel item+bv' item+bvh
+offers 'raytally bench balls --accel item:settle=off+bvh:' build=
+offers_only 'raytally bench balls --accel item:settle=off+bvh:build=sw' sweep
+offers_only 'raytally bench tet' tetra
+offers 'raytally info ' balls stadium mine.yaml
+offers_only 'raytally info mi' mine.yaml
+offers_only 'raytally info balls:' size=
+offers_only 'raytally info family:kind=sli' slivers slivers-scaled
+offers_only 'raytally bench balls --rays shadow,dif' shadow,diffuse
+offers_only 'raytally verify --rays ' # a number
+offers_only 'raytally accels oct' octree
+offers_only 'raytally scenes sta' stadium
+offers_only 'raytally render balls --heatmap object_t' object_tests
+offers_only 'raytally render balls --heatmap-scale ' linear log
+offers_only 'raytally trace balls --rays sha' shadow
+offers_only 'raytally run mi' mine.yaml
+offers_only 'raytally completion ' bash
+offers_only 'raytally nonsense --'
+
+# Every option that --help lists, but for those of argp's own.
+for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+    for option in $("$program" "$command" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -o -e '--.*'); do
+        offers "raytally $command --" "$option"
+    done
+done
+
+[ $failures = 0 ]

@@ -1,0 +1,162 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_guide.sh [--slow] [DOCUMENT...]: runs the commands of docs/guide/*.md and docs/accelerators/*.md, or of those
+# named. Uses $RT_PROGRAM. Of a document, in order and in one scratch directory that has copies of docs/,
+# experiments/, results/ and scenes/:
+#   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; it must end with exit code 0
+#   ```sh exit=1          with that one
+#   ```sh slow            run with --slow alone
+#   ```sh needs=X         only where X is there: numpy, embree, a file of the tree (X has a /), or else a command
+#   ```text exact         what the block before it prints, stderr too; a line ... stands for one or more lines
+#   ```text alike         likewise, but for figures, blanks, and what follows from times, which are others on each machine
+#   ```LANG file=NAME     is written to NAME first
+# Links into the tree must lead somewhere. Prints what does not hold, and how many blocks were run, compared and skipped; exit
+# code 1 where anything does not.
+set -uo pipefail
+here=$PWD
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
+root=$PWD
+program=$(cd "$here" && realpath "${RT_PROGRAM:-$root/build/release/raytally}")
+[ -x "$program" ] || { echo "check_guide: no program $program" >&2 && exit 2; }
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
+export PATH=$work/bin:$PATH
+slow=no failures=0 ran=0 compared=0 left_slow=0 lacking=()
+
+complain() {
+    printf '%s\n' "$*" >&2
+    failures=$((failures + 1))
+}
+
+# available X: as in needs=X
+available() {
+    case $1 in
+    numpy) # of a python3 that may not be the first in PATH
+        python3 -c 'import numpy' 2>/dev/null && return
+        /usr/bin/python3 -c 'import numpy' 2>/dev/null && ln -sf /usr/bin/python3 "$work/bin/python3"
+        ;;
+    embree) raytally info balls:size=1 >/dev/null && raytally render balls:size=1 --size 2x2 --accel embree -o "$work/x.png" >/dev/null 2>&1 ;;
+    */*) [ -e "$root/$1" ] ;;
+    *) command -v "$1" >/dev/null ;;
+    esac
+}
+
+# as_expected EXPECTED GOT: the same lines, but for blank ones at the end; a line ... in EXPECTED stands for some others
+as_expected() {
+    local pattern got
+    pattern=$(sed -E 's/[][*?\\]/\\&/g; s/^\.\.\.$/*/' "$1")
+    got=$(cat "$2")
+    # shellcheck disable=SC2053 # it is a pattern
+    [[ $got == $pattern ]]
+}
+
+# What is left of a text without figures, blanks, and what follows from times: verdicts, who is ahead, null runs.
+without_figures() {
+    sed -E '/^Null runs/,/^$/d; s/[-+<]?[0-9][0-9.,]*(e[-+]?[0-9]+)?/0/g; s/faster|slower|no difference/verdict/g
+        s/ ((from|to) 0|always|never)$/ ahead/; s/[-=|+ ]+/ /g; s/^ //; s/ $//' "$1"
+}
+
+# run_block PLACE WORD...: the lines in $work/block; leaves what was printed in $work/printed, and `last`
+run_block() {
+    local place=$1 word expected=0 code=0
+    shift
+    last=skipped
+    for word; do
+        case $word in
+        slow) [ "$slow" = yes ] || { left_slow=$((left_slow + 1)) && return; } ;;
+        exit=*) expected=${word#exit=} ;;
+        needs=*) available "${word#needs=}" || { lacking+=("${word#needs=}") && return; } ;;
+        *) complain "$place: '$word' is not a word that a block of sh can have: slow, exit=N, needs=X" ;;
+        esac
+    done
+    last=ran ran=$((ran + 1))
+    (cd "$scratch" && exec timeout 300 bash -euo pipefail "$work/block") >"$work/printed" 2>&1 </dev/null || code=$?
+    [ "$code" = "$expected" ] || complain "$place: exit code $code, not $expected:
+$(tail -n 20 "$work/printed")"
+}
+
+# compare_block PLACE HOW: the lines in $work/block with what was printed
+compare_block() {
+    local place=$1
+    [ "$last" = ran ] || { [ "$last" = skipped ] || complain "$place: no command stands before this output" && return; }
+    cp "$work/block" "$work/want" && cp "$work/printed" "$work/got"
+    case $2 in
+    alike)
+        without_figures "$work/block" >"$work/want"
+        without_figures "$work/printed" >"$work/got"
+        ;;
+    esac
+    compared=$((compared + 1))
+    as_expected "$work/want" "$work/got" || complain "$place: not what its command prints:
+$(diff "$work/want" "$work/got")"
+}
+
+# end_block PLACE WORD...: the words behind the fence
+end_block() {
+    local place=$1 language=${2-} name=''
+    shift $(($# > 1 ? 2 : 1))
+    case "$language ${*-}" in
+    *" file="*)
+        name=${*##*file=} name=${name%% *}
+        cp "$work/block" "$scratch/$name"
+        ;;
+    "sh"*) run_block "$place" "$@" ;;
+    "text exact" | "text alike") compare_block "$place" "$1" ;;
+    "text "?*) complain "$place: output is 'text', 'text exact' or 'text alike', not 'text $*'" ;;
+    esac
+    [ "$language" = sh ] || last=''
+}
+
+# check_links DOCUMENT: what it links to in the tree is there
+check_links() {
+    local link
+    while read -r link; do
+        [ -e "$(dirname "$1")/$link" ] || complain "$1: there is no $link"
+    done < <(grep -oE '\]\([^)# ]+' "$1" | sed 's/^](//; /:/d' | sort -u)
+}
+
+check_document() {
+    local document=$1 number=0 line place='' words=()
+    last='' scratch=$work/scratch
+    rm -rf "$scratch" && mkdir "$scratch"
+    for folder in docs experiments results scenes; do
+        [ ! -d "$root/$folder" ] || cp -r "$root/$folder" "$scratch/"
+    done
+    while IFS= read -r line || [ -n "$line" ]; do
+        number=$((number + 1))
+        if [ -n "$place" ]; then
+            if [ "$line" = '```' ]; then
+                end_block "$place" ${words[@]+"${words[@]}"}
+                place=''
+            else
+                printf '%s\n' "$line" >>"$work/block"
+            fi
+        elif [[ $line == '```'* ]]; then
+            place=$document:$number
+            read -ra words <<<"${line#'```'}"
+            : >"$work/block"
+        elif [[ $line =~ ^[[:space:]]+'```sh' ]]; then
+            complain "$document:$number: an indented block is not run: begin it in the first column"
+        fi
+    done <"$document"
+    [ -z "$place" ] || complain "$place: this block has no end"
+}
+
+[ "${1-}" != --slow ] || { slow=yes && shift; }
+if [ $# -gt 0 ]; then
+    documents=()
+    for document; do documents+=("$(cd "$here" && realpath "$document")"); done
+else
+    shopt -s nullglob
+    documents=(docs/guide/*.md docs/accelerators/*.md)
+fi
+for document in "${documents[@]}"; do
+    check_document "$document"
+    check_links "$document"
+done
+
+echo "${#documents[@]} documents: $ran commands run, $compared outputs compared, $left_slow slow ones left out"
+[ ${#lacking[@]} = 0 ] || printf '%s\n' "${lacking[@]}" | sort | uniq -c | while read -r count what; do
+    echo "$count left out for want of $what"
+done
+[ $failures = 0 ] && [ "$ran" -gt 0 ]

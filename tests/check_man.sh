@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_man.sh: cmake/man_pages.sh makes a manual page for raytally and one for each command, with its options, and neither man
+# nor mandoc (as far as they are there) finds fault with them. Uses $RT_PROGRAM. Skipped (77) without help2man.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+command -v help2man >/dev/null || { echo 'check_man: skipped: help2man is not installed' >&2 && exit 77; }
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+status=0
+
+complain() {
+    echo "$*" >&2
+    status=1
+}
+
+mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
+cmake/man_pages.sh "$work/bin/raytally" "$work/man"
+for command in '' $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+    name=raytally${command:+-$command} page=$work/man/raytally${command:+-$command}.1
+    [ -s "$page" ] || { complain "there is no page $name" && continue; }
+    grep -qF -e "${name/-/\\-} \\- " "$page" || complain "$name: the NAME is another one"
+    if command -v man >/dev/null; then
+        faults=$(LC_ALL=C.UTF-8 man --warnings -E UTF-8 -l "$page" 2>&1 >"$work/text")
+        [ -z "$faults" ] || complain "$name: man says: $faults"
+        for option in $([ -z "$command" ] || "$program" "$command" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -o -e '--.*'); do
+            grep -q -e "$option" "$work/text" || complain "$name: lacks $option"
+        done
+    fi
+    if command -v mandoc >/dev/null; then
+        faults=$(mandoc -Tlint -Wwarning "$page" | sed "s|$work/man/||") || true
+        [ -z "$faults" ] || complain "$name: mandoc says: $faults"
+    fi
+done
+exit $status
