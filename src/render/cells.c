@@ -126,9 +126,8 @@ static void draw_faces(RtImage *image, const Cube *cube, const RtScale *scale) {
         for (int y = top; y < top + side; y++) {
             for (int x = left; x < left + side; x++) {
                 const RtCellView *cell = &cube->cells[y * 4 * side + x];
-                RtColor color = cell->number == NO_CELL ? nowhere
-                                : cell->length == 0 && !cell->cut
-                                    ? RT_BLACK
+                RtColor color = cell->number == NO_CELL
+                                    ? nowhere
                                     : rt_color_scale(rt_scale_position(scale, cell->length));
                 if (cell->number != NO_CELL && cell->cut && x % 2 == 0 && y % 2 == 0) color = red;
                 bool border = x == left || y == top || x == left + side - 1 || y == top + side - 1;
@@ -178,8 +177,8 @@ static void draw_cube_legend(RtImage *image, const Cube *cube, const RtScale *sc
              cube->layer->ops->name, cube->light, scale->most);
     rt_draw_text(image, left, top + MARGIN * dot, dot, text, RT_WHITE);
     rt_draw_scale(image, left, top + (MARGIN + LINE) * dot, (int)image->width - 2 * left, dot, scale);
-    put_line(image, top, 3, nowhere, "grey: nothing is seen there   black: an empty list");
-    put_line(image, top, 4, red, "dotted red: the list was cut, rays may be passed on");
+    put_line(image, top, 3, nowhere, "grey: nothing is seen there");
+    put_line(image, top, 4, red, "red dots: the list was cut, rays may be passed on");
     if (!marked) return;
     if (cube->layer->ops->look_up(cube->layer, marked, &cell)) {
         snprintf(text, sizeof text, "ringed: the ray reads cell %u, with %u objects%s", cell.number,

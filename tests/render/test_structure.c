@@ -299,6 +299,13 @@ RT_TEST(the_cells_around_a_light_are_drawn_and_a_light_without_cells_is_refused)
     ray.dir = rt_sub(scene.lights[0].position, ray.org);
     assert_ok(rt_cells_image(&image, accel, 0, &ray, error));
     assert_true(image.width > 900 && image.height > 700);
+    const uint8_t *hidden = pixel(&image, 4 * 240 - 10, 10); /* beside the cross */
+    assert_memory_equal(hidden, RT_BLACK.rgb, 3);
+    RtColor none = rt_color_scale(0);
+    int empty = 0;
+    for (uint32_t i = 0; i < 720 * image.width; i++)
+        empty += memcmp(image.rgb + 3 * (size_t)i, none.rgb, 3) == 0;
+    assert_true(empty > 1000); /* lists without an object have the scale's colour of 0 */
     rt_image_clear(&image);
     assert_int_equal(rt_cells_image(&image, accel, 7, NULL, &refusal), RT_BAD_INPUT);
     rt_accel_destroy(accel);
