@@ -22,7 +22,10 @@ typedef struct Worker {
     uint32_t sorted_capacity;
     /* The lists of all tiles of a light, in blocks that stay where they are: to move what has become too
      * large takes longer than to draw it. The next light writes over them. */
-    RtLightEntry **blocks;
+    struct Block {
+        RtLightEntry *entries;
+        uint32_t room;
+    } * blocks;
     uint32_t block_count, block_capacity, blocks_used;
     RtLightEntry *next; /* in the last block used, in which there is room for */
     uint32_t room;
@@ -258,23 +261,21 @@ enum { BLOCK_ENTRIES = 1 << 19 };
 
 static RtStatus add_block(Worker *worker, uint32_t room, RtError *error) {
     RT_TRY(rt_reserve(&worker->blocks, &worker->block_capacity, worker->block_count + UINT64_C(1),
-                      sizeof(RtLightEntry *), error));
+                      sizeof *worker->blocks, error));
     RtLightEntry *block = rt_alloc_unset(room, sizeof *block);
     if (!block) return rt_fail_memory(error, "the lists of a light buffer", room * sizeof *block);
-    worker->blocks[worker->block_count] = block;
-    RtLightEntry **next = &worker->blocks[worker->blocks_used];
-    worker->blocks[worker->block_count++] = *next;
-    *next = block;
+    struct Block *next = &worker->blocks[worker->blocks_used], *last = &worker->blocks[worker->block_count++];
+    *last = *next;
+    *next = (struct Block){block, room};
     return RT_OK;
 }
 
 static RtStatus reserve_entries(Worker *worker, uint32_t needed, RtError *error) {
     if (needed <= worker->room) return RT_OK;
-    uint32_t room = needed < BLOCK_ENTRIES ? BLOCK_ENTRIES : needed;
-    if (room > BLOCK_ENTRIES || worker->blocks_used == worker->block_count)
-        RT_TRY(add_block(worker, room, error));
-    worker->next = worker->blocks[worker->blocks_used++];
-    worker->room = room;
+    if (worker->blocks_used == worker->block_count || worker->blocks[worker->blocks_used].room < needed)
+        RT_TRY(add_block(worker, needed < BLOCK_ENTRIES ? BLOCK_ENTRIES : needed, error));
+    worker->next = worker->blocks[worker->blocks_used].entries;
+    worker->room = worker->blocks[worker->blocks_used++].room;
     return RT_OK;
 }
 
@@ -413,7 +414,7 @@ RtStatus rt_light_make_lists(RtLightBuffer *buffer, uint32_t most, int threads, 
         rt_free(desk->key);
         rt_free(desk->runs);
         rt_free(workers[i].sorted);
-        for (uint32_t k = 0; k < workers[i].block_count; k++) rt_free(workers[i].blocks[k]);
+        for (uint32_t k = 0; k < workers[i].block_count; k++) rt_free(workers[i].blocks[k].entries);
         rt_free(workers[i].blocks);
         rt_free(workers[i].lengths);
     }

@@ -245,6 +245,9 @@ static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, eye_r
 
 static const RtColumnGroup for_papers[] = {RT_ONE(columns, accel), RT_FROM_TO(columns, eye_tests, eye_ratio)};
 
+static const RtColumnGroup counted_for_papers[] = {RT_ONE(columns, accel),
+                                                   RT_FROM_TO(columns, eye_tests, eye_steps)};
+
 static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label),
                                            RT_FROM_TO(columns, build_ms, pay_off)};
 
@@ -349,6 +352,7 @@ static const void *row_at(void *context, size_t i) {
         [RT_NULL_RUNS] = timed && null,
         [RT_CELLS] = (counted || timed) && !is_lost(r, r->cell),
         [RT_CELLS_PAPER] = (counted || timed) && !null && !is_lost(r, r->cell),
+        [RT_COUNTED_PAPER] = counted && !null,
         [RT_STRUCTURES] = is_shown(r) && !null && i < r->results->experiment->candidate_count,
         [RT_COUNTED_CELLS] = r->cell->counted,
         [RT_COUNTED_STRUCTURES] = is_shown(r) && i < r->results->experiment->candidate_count,
@@ -418,6 +422,7 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
         [RT_LEAF_SPREADS] = {RT_GROUPS(leaf_spreads)},
         [RT_MACHINE_CELLS] = {RT_GROUPS(machine_cells)},
         [RT_CELLS_PAPER] = {RT_GROUPS(for_papers)},
+        [RT_COUNTED_PAPER] = {RT_GROUPS(counted_for_papers)},
         [RT_CELLS_MORE] = {RT_GROUPS(cells)},
         [RT_TOTALS] = {RT_GROUPS(totals)},
         [RT_TOTALS_MORE] = {RT_GROUPS(totals_more)},

@@ -28,10 +28,11 @@ typedef enum RtResultTable {
     RT_LEAF_SPREADS,  /* for the eye: by accelerator: those of sizes and depths of leaves */
     RT_MACHINE_CELLS, /* for the eye: one workload by accelerator and ray kind: what the machine did */
     /* Those from here on mark the best. */
-    RT_CELLS_PAPER, /* as RT_CELLS, with whole labels and without null runs */
-    RT_CELLS_MORE,  /* cells with more columns, and all rows */
-    RT_TOTALS,      /* one workload by accelerator, all kinds together */
-    RT_TOTALS_MORE, /* these with the intervals of their times */
+    RT_CELLS_PAPER,   /* as RT_CELLS, with whole labels and without null runs */
+    RT_COUNTED_PAPER, /* the same where nothing was timed */
+    RT_CELLS_MORE,    /* cells with more columns, and all rows */
+    RT_TOTALS,        /* one workload by accelerator, all kinds together */
+    RT_TOTALS_MORE,   /* these with the intervals of their times */
     RT_RESULT_TABLE_COUNT
 } RtResultTable;
 

@@ -17,8 +17,7 @@ void rt_page_end(FILE *out);
 /* Strings ended by NULL, such as generated headers have. */
 void rt_page_lines(FILE *out, const char *const *lines);
 
-/* A file of at most 64 MiB as a data URL, `type` being "image/png" and the like; nothing where it cannot be
- * read. `data` instead of the path's contents where it is known. */
+/* `size` bytes at `data` as a data URL in base64, `type` being "image/png" and the like. */
 void rt_page_data_url(FILE *out, const char *type, const void *data, size_t size);
 
 /* A heading with text under it; nothing where there is no text. */

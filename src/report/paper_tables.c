@@ -30,7 +30,8 @@ static bool has_rows(const RtTable *table) {
 static void put_table(const RtResults *results, uint32_t t, RtRayKind kind, bool tex, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     RtResultRow row = {.results = results, .workload = t};
-    OfKind of = {.table = rt_result_table(RT_CELLS_PAPER, &row), .row = &row, .kind = kind};
+    const RtResultTable which = experiment->count_only ? RT_COUNTED_PAPER : RT_CELLS_PAPER;
+    OfKind of = {.table = rt_result_table(which, &row), .row = &row, .kind = kind};
     RtTable table = of.table;
     char caption[RT_MAX_LABEL + 128];
     table.row = row_of_kind;
@@ -57,10 +58,16 @@ static void put_head(const RtResults *results, bool tex, FILE *out) {
             tex ? "%% %s, written by raytally. Needs \\usepackage{booktabs,graphicx}.\n"
                 : "# %s\n\nWritten by `raytally`.\n",
             results->experiment->name);
+    const char *lead = tex ? "% " : "";
+    fprintf(out, "%sTests, extent tests (ext.) and steps are those of a ray.", lead);
+    if (results->experiment->count_only) {
+        fprintf(out, "\n%sBold: the fewest object tests.\n", lead);
+        return;
+    }
     fprintf(out,
-            "%sTests, extent tests (ext.) and steps are those of a ray. Ratios are of throughput, to %s's; "
-            "intervals of %s percent.\n%sBold: the best, and what its interval does not tell apart.\n",
-            tex ? "% " : "", rt_baseline_label(results->experiment), interval, tex ? "% " : "");
+            " Ratios are of throughput, to %s's; intervals of %s percent.\n"
+            "%sBold: the best, and those whose intervals of times overlap with its interval.\n",
+            rt_baseline_label(results->experiment), interval, lead);
 }
 
 static RtStatus write_tables(const RtResults *results, const char *directory, const char *name, bool tex,

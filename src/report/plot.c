@@ -195,13 +195,24 @@ static void settle_file(void *context, const char *path) {
     }
 }
 
-static RtStatus settle(const char *directory, bool keep, RtError *error) {
-    char plots[RT_MAX_PATH];
+/* Those in a format, "svg" or "pdf". */
+static RtStatus settle(const char *directory, const char *format, bool keep, RtError *error) {
+    char plots[RT_MAX_PATH], end[16];
     Settling settling = {keep, RT_OK, error};
+    snprintf(end, sizeof end, ".%s.tmp", format);
     RT_TRY(rt_path_join(directory, "plots", plots, error));
-    rt_directory_each(plots, ".svg.tmp", settle_file, &settling);
-    rt_directory_each(plots, ".pdf.tmp", settle_file, &settling);
+    rt_directory_each(plots, end, settle_file, &settling);
     return settling.status;
+}
+
+static RtStatus draw(const RtResults *results, const char *directory, const char *format, char **arguments,
+                     RtError *error) {
+    settle(directory, format, false, NULL); /* of a drawing that was cut short */
+    RtStatus status = write_names(results, directory, format, error);
+    if (status == RT_OK) status = run_gnuplot(arguments, directory, error);
+    if (status == RT_OK) return settle(directory, format, true, error);
+    settle(directory, format, false, NULL);
+    return status;
 }
 
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error) {
@@ -212,7 +223,6 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
     char *arguments[MOST_ARGUMENTS] = {program};
     const bool sweeps = rt_sweep_plots_needed(experiment);
     if (experiment->plot_count == 0 && !sweeps && !experiment->distributions) return RT_OK;
-    settle(directory, false, NULL); /* of a drawing that was cut short */
     if (sweeps) RT_TRY(rt_sweep_plots_write(results, directory, error));
     for (uint32_t i = 0; i <= experiment->plot_count; i++) {
         snprintf(paths[i], sizeof paths[i], "plots/%s", i ? rt_plot_name(experiment, i - 1) : "names.gp");
@@ -223,16 +233,9 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
         RT_TRY(write_histograms(results, directory, error));
         arguments[experiment->plot_count + 2] = histogram_script;
     }
-    /* names.gp stays as it is for SVG. */
-    static const char *const formats[] = {"pdf", "svg"};
-    RtStatus status = RT_OK;
-    for (int i = 0; i < 2 && status == RT_OK; i++) {
-        RT_TRY(write_names(results, directory, formats[i], error));
-        status = run_gnuplot(arguments, directory, error);
-    }
-    if (status != RT_OK) {
-        settle(directory, false, NULL);
-        return status;
-    }
-    return settle(directory, true, error);
+    RT_TRY(draw(results, directory, "svg", arguments, error));
+    /* Where scripts draw and PDF fails, it is gnuplot that cannot: there are none, then. */
+    RtError reason;
+    draw(results, directory, "pdf", arguments, &reason);
+    return write_names(results, directory, "svg", error); /* as it is kept */
 }

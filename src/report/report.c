@@ -97,8 +97,8 @@ static void take_caption(Caption *caption, const char *script) {
     const size_t length = strlen(caption->name);
     bool ours = false;
     for (const char *line = script; *line; line += strcspn(line, "\n"), line += *line == '\n') {
-        const char *text = line + 2 + strspn(line + (strncmp(line, "#:", 2) == 0 ? 2 : 0), " ");
         if (strncmp(line, "#:", 2) != 0) continue;
+        const char *text = line + 2 + strspn(line + 2, " ");
         if (strncmp(line, "#:   ", 5) != 0) {
             ours = strncmp(text, caption->name, length) == 0 && text[length] == ':';
             text += ours ? length + 1 + strspn(text + length + 1, " ") : 0;
@@ -141,13 +141,16 @@ static void put_svg(FILE *out, const char *svg, size_t size, const Caption *capt
     read_size(svg, &width, &height);
     /* The first sentence says what is drawn. */
     const char *end = strstr(caption->text, ". ");
-    fprintf(out,
-            "<figure><div class=\"plot\" style=\"--w:%dpx\" tabindex=\"0\" role=\"region\" aria-label=\"plot "
-            "%s\">"
-            "<img width=\"%d\" height=\"%d\" alt=\"Plot: ",
-            width, caption->name, width, height);
+    size_t length = end ? (size_t)(end - caption->text) : strlen(caption->text);
+    if (length > 0 && caption->text[length - 1] == '.') length--;
+    fprintf(
+        out,
+        "<figure><div class=\"plot\" style=\"--w:%dpx\" tabindex=\"0\" role=\"region\" aria-label=\"plot ",
+        width);
+    rt_html_put(out, caption->name);
+    fprintf(out, "\"><img width=\"%d\" height=\"%d\" alt=\"Plot: ", width, height);
     char text[MAX_CAPTION];
-    snprintf(text, sizeof text, "%.*s", end ? (int)(end - caption->text) : MAX_CAPTION - 1, caption->text);
+    snprintf(text, sizeof text, "%.*s", (int)length, caption->text);
     rt_html_put(out, *text ? text : caption->name);
     fputs(". Its figures are in the tables and files of this page.\" src=\"", out);
     rt_page_data_url(out, "image/svg+xml", svg, size);
@@ -264,8 +267,8 @@ static void put_tables(FILE *out, const RtResults *results) {
         out,
         "<h2 id=\"tables\">Tables</h2>\n<p>In brackets intervals of %s. &#9733; is the best of a scene and "
         "kind "
-        "of rays, by %s; &asymp; is not told apart from it by its interval. Times of all kinds together have "
-        "intervals that are rather too wide.</p>\n"
+        "of rays, by %s; &asymp; has an interval that overlaps with its interval. Times of all kinds "
+        "together have intervals that are rather too wide.</p>\n"
         "<div class=\"filter\" id=\"filter\" hidden><label for=\"words\">Rows with</label> "
         "<input type=\"search\" id=\"words\" placeholder=\"words, e.g. of a scene, an accelerator, a kind\"> "
         "<output for=\"words\" class=\"meta\"></output></div>\n",
@@ -298,6 +301,7 @@ static void put_members(FILE *out, const json_t *object) {
         fputs("</dt><dd>", out);
         if (json_is_string(value)) rt_html_put(out, json_string_value(value));
         if (json_is_integer(value)) fprintf(out, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
+        if (json_is_real(value)) fprintf(out, "%.9g", json_real_value(value));
         if (json_is_boolean(value)) fputs(json_is_true(value) ? "yes" : "no", out);
         fputs("</dd>\n", out);
     }

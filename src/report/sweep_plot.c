@@ -227,7 +227,8 @@ static void put_axis(const Figure *figure, FILE *out) {
         fprintf(out, "set logscale x\nset xrange [%.9g:%.9g]\n", x[0] / 1.05, x[count - 1] * 1.05);
         /* Few powers of ten lie within: the values themselves. */
         if (count <= MOST_TICS && x[count - 1] / x[0] < 1000) {
-            for (uint32_t i = 0; i < count; i++) fprintf(out, "%s%.4g", i ? "," : "set xtics (", x[i]);
+            for (uint32_t i = 0; i < count; i++)
+                fprintf(out, "%s\"%.4g\" %.9g", i ? "," : "set xtics (", x[i], x[i]);
             fputs(")\n", out);
         }
         if (x[count - 1] / x[0] >= 1000) fputs("set format x \"10^{%T}\"\n", out);

@@ -90,6 +90,31 @@ RT_TEST_IN_PLACE(plots_are_drawn_as_pdf_too_as_wide_as_a_column_of_a_paper) {
     assert_int_equal(system(command), 0);
 }
 
+/* `gnuplot` before the real one in PATH, which fails where PDF is asked for. */
+RT_TEST_IN_PLACE(where_gnuplot_cannot_draw_pdf_plots_are_svg_alone) {
+    const Place *place = *state;
+    if (access("/usr/bin/gnuplot", X_OK) != 0) skip();
+    write_in(place, "gnuplot",
+             "#!/bin/sh\ngrep -q pdf plots/names.gp && exit 1\nexec /usr/bin/gnuplot \"$@\"\n");
+    write_in(place, "my.gp", "set terminal svg\nset output sprintf(\"plots/mine.%s.tmp\", format)\nplot x\n");
+    char command[1024], *path = getenv("PATH");
+    snprintf(command, sizeof command, "chmod +x '%s'", path_in(place, "gnuplot").text);
+    assert_int_equal(system(command), 0);
+    char *before = strdup(path);
+    snprintf(command, sizeof command, "%s:%s", place->folder, path);
+    setenv("PATH", command, 1);
+    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
+                  "plots: [my.gp]");
+    int code = raytally(place, "run small.yaml --out out --threads 1");
+    setenv("PATH", before, 1);
+    free(before);
+    assert_int_equal(code, 0);
+    assert_in_file(place, "out/plots/mine.svg", "<svg");
+    assert_int_not_equal(access(path_in(place, "out/plots/mine.pdf").text, F_OK), 0);
+    assert_int_not_equal(access(path_in(place, "out/plots/mine.pdf.tmp").text, F_OK), 0);
+    assert_in_file(place, "out/plots/names.gp", "format = \"svg\"");
+}
+
 RT_TEST_IN_PLACE(tables_for_papers_have_the_best_in_bold) {
     const Place *place = *state;
     write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
@@ -99,6 +124,13 @@ RT_TEST_IN_PLACE(tables_for_papers_have_the_best_in_bold) {
     assert_in_file(place, "out/tables.md", "| **bvh** | ");
     assert_in_file(place, "out/tables.md", "| brute | ");
     assert_in_file(place, "out/tables.md", "| ideal | ");
+    assert_in_file(place, "out/tables.md", "Bold: the fewest object tests.");
+    char *text = read_in(place, "out/tables.md");
+    assert_null(strstr(text, "Mrays"));
+    rt_free(text);
+    text = read_in(place, "out/report.html");
+    assert_null(strstr(text, "<dd></dd>")); /* real numbers of the manifest, too */
+    rt_free(text);
     assert_in_file(place, "out/tables.tex", "\\textbf{bvh} & ");
     assert_in_file(place, "out/tables.tex", "\\bottomrule");
     assert_in_file(place, "out/report.html", "bvh <span class=\"mark\">&#9733;");
