@@ -5,7 +5,7 @@
 # experiments/, results/ and scenes/:
 #   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; it must end with exit code 0
 #   ```sh exit=1          with that one
-#   ```sh slow            run with --slow alone
+#   ```sh slow            run with --slow alone, by hand
 #   ```sh needs=X         only where X is there: numpy, embree, a file of the tree (X has a /), or else a command
 #   ```text exact         what the block before it prints, stderr too; a line ... stands for one or more lines
 #   ```text alike         likewise, but for figures, blanks, and what follows from times, which are others on each machine
@@ -21,7 +21,7 @@ program=$(cd "$here" && realpath "${RT_PROGRAM:-$root/build/release/raytally}")
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
 export PATH=$work/bin:$PATH
-slow=no failures=0 ran=0 compared=0 left_slow=0 lacking=()
+slow=no patience=300 failures=0 ran=0 compared=0 left_slow=0 lacking=()
 
 complain() {
     printf '%s\n' "$*" >&2
@@ -70,7 +70,7 @@ run_block() {
         esac
     done
     last=ran ran=$((ran + 1))
-    (cd "$scratch" && exec timeout 300 bash -euo pipefail "$work/block") >"$work/printed" 2>&1 </dev/null || code=$?
+    (cd "$scratch" && exec timeout "$patience" bash -euo pipefail "$work/block") >"$work/printed" 2>&1 </dev/null || code=$?
     [ "$code" = "$expected" ] || complain "$place: exit code $code, not $expected:
 $(tail -n 20 "$work/printed")"
 }
@@ -142,7 +142,7 @@ check_document() {
     [ -z "$place" ] || complain "$place: this block has no end"
 }
 
-[ "${1-}" != --slow ] || { slow=yes && shift; }
+[ "${1-}" != --slow ] || { slow=yes patience=1800 && shift; }
 if [ $# -gt 0 ]; then
     documents=()
     for document; do documents+=("$(cd "$here" && realpath "$document")"); done
