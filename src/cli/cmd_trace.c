@@ -131,16 +131,24 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
     if (joined + left_out > 0) puts("       --rows 0 prints each");
 }
 
-static void print_answer(const RtPath *path, const RtGeometry *g) {
-    const RtTally *t = &path->tally;
+static void print_counts(const RtTally *t) {
+    bool any = false;
     printf("\nin all:");
     for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
         if (rt_tally_get(t, i) == 0) continue;
         printf(" %llu %s,", (unsigned long long)rt_tally_get(t, i), rt_tally_name(i));
+        any = true;
     }
-    printf(" as the counted kernel says too\n");
+    puts(any ? " as the counted kernel says too" : " nothing is counted");
+}
+
+static void print_answer(const RtPath *path, const RtGeometry *g) {
     if (path->hit.object == RT_NO_OBJECT) {
         puts(path->any ? "nothing blocks it" : "it hits nothing");
+        return;
+    }
+    if (path->hit.object == RT_UNNAMED_OBJECT) {
+        puts("it is blocked");
         return;
     }
     RtVec3d p = rt_ray_point(&path->ray, path->hit.t);
@@ -157,6 +165,7 @@ static void print_path(const RtPath *path, const Options *o, const char *title, 
            (double)r->org.x, (double)r->org.y, (double)r->org.z, (double)r->dir.x, (double)r->dir.y,
            (double)r->dir.z, (double)r->tmin, (double)r->tmax);
     print_rows(path, o, g);
+    print_counts(&path->tally);
     print_answer(path, g);
 }
 
@@ -181,16 +190,19 @@ static json_t *row_json(const RtPathRow *row) {
     return json;
 }
 
+/* `object` is null where none is hit, and where it is only known that one blocks the ray; `blocked` is null
+ * for rays of which the nearest hit is asked. */
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
     json_t *rows = json_array();
     for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
-    return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene", o->scene,
-                     "accel", spec, "pixel", (int)o->x, (int)o->y, "kind", rt_ray_kind_name(o->kind), "org",
-                     vector_json(r->org), "dir", vector_json(r->dir), "tmin", rt_json_number((double)r->tmin),
-                     "tmax", rt_json_number((double)r->tmax), "rows", rows, "counts",
-                     rt_json_tally(&path->tally), "object",
-                     path->hit.object == RT_NO_OBJECT ? json_null() : json_integer(path->hit.object), "t",
+    return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+                     o->scene, "accel", spec, "pixel", (int)o->x, (int)o->y, "kind",
+                     rt_ray_kind_name(o->kind), "org", vector_json(r->org), "dir", vector_json(r->dir),
+                     "tmin", rt_json_number((double)r->tmin), "tmax", rt_json_number((double)r->tmax), "rows",
+                     rows, "counts", rt_json_tally(&path->tally), "object",
+                     path->hit.object >= RT_UNNAMED_OBJECT ? json_null() : json_integer(path->hit.object),
+                     "blocked", path->any ? json_boolean(path->hit.object != RT_NO_OBJECT) : json_null(), "t",
                      rt_json_number((double)path->hit.t));
 }
 
