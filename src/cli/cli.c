@@ -57,6 +57,17 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
     return value;
 }
 
+bool rt_cli_digits(const char **text, uint32_t *number) {
+    char *end;
+    if (**text < '0' || **text > '9') return false; /* strtoull takes blanks and signs, too */
+    errno = 0;
+    unsigned long long value = strtoull(*text, &end, 10);
+    if (errno || value > UINT32_MAX) return false;
+    *text = end;
+    *number = (uint32_t)value;
+    return true;
+}
+
 double rt_cli_percent(struct argp_state *state, const char *option, const char *text) {
     char *end;
     double percent = strtod(text, &end);
@@ -72,8 +83,8 @@ void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, ui
 }
 
 void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y) {
-    char end;
-    if (sscanf(text, "%u,%u%c", x, y, &end) == 2 && !strchr(text, '-')) return;
+    const char *at = text;
+    if (rt_cli_digits(&at, x) && *at++ == ',' && rt_cli_digits(&at, y) && *at == '\0') return;
     argp_error(state, "--pixel: invalid value '%s': expected X,Y, as in 256,200", text);
 }
 

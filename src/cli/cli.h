@@ -70,6 +70,10 @@ json_t *rt_cli_params_json(const RtParam *table, size_t count);
 int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
                        int64_t hi);
 
+/* For parsers of what has several numbers: reads the digits at *text, up to UINT32_MAX, and goes on to what
+ * follows them; false where there are none, or the number is larger. */
+bool rt_cli_digits(const char **text, uint32_t *number);
+
 /* A share such as "1%", more than 0 and at most 100 of a hundred, as a part: 0.01. */
 double rt_cli_percent(struct argp_state *state, const char *option, const char *text);
 

@@ -94,11 +94,14 @@ static void parse_heatmap(RtPictureOptions *o, struct argp_state *state, const c
 
 /* "3" or "2..5" */
 static void parse_level(RtStructureOptions *boxes, struct argp_state *state, const char *text) {
-    char end;
-    bool one = sscanf(text, "%u%c", &boxes->first_level, &end) == 1;
-    bool range = !one && sscanf(text, "%u..%u%c", &boxes->first_level, &boxes->last_level, &end) == 2;
-    if (one) boxes->last_level = boxes->first_level;
-    if ((!one && !range) || strchr(text, '-') || boxes->first_level > boxes->last_level)
+    const char *at = text;
+    bool good = rt_cli_digits(&at, &boxes->first_level);
+    boxes->last_level = boxes->first_level;
+    if (good && strncmp(at, "..", 2) == 0) {
+        at += 2;
+        good = rt_cli_digits(&at, &boxes->last_level);
+    }
+    if (!good || *at || boxes->first_level > boxes->last_level)
         argp_error(state, "--level: invalid value '%s': expected a level or a range, as in 3 or 2..5", text);
 }
 
