@@ -196,7 +196,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, o->threads, &run->accel, error));
     run->build_seconds = rt_wall_seconds() - start;
-    return RT_OK;
+    return rt_pictures_check(&o->pictures, run->accel, error);
 }
 
 /* ---- what is written ---- */

@@ -148,16 +148,16 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     switch (key) {
     case KEY_STRUCTURE: rt_cli_set_path(state, "--structure", &o->structure, argument, ".png"); return 0;
     case KEY_HEATMAP: parse_heatmap(o, state, argument); return 0;
-    case KEY_LAYER: o->layer = argument, o->structural = "--layer"; return 0;
-    case KEY_LEVEL: parse_level(&o->boxes, state, argument), o->structural = "--level"; return 0;
-    case KEY_LEAVES: o->boxes.leaves = true, o->structural = "--leaves"; return 0;
-    case KEY_SLICE: parse_slice(o, state, argument), o->structural = "--slice"; return 0;
+    case KEY_LAYER: o->layer = argument; return 0;
+    case KEY_LEVEL: parse_level(&o->boxes, state, argument), o->of_boxes = "--level"; return 0;
+    case KEY_LEAVES: o->boxes.leaves = true, o->of_boxes = "--leaves"; return 0;
+    case KEY_SLICE: parse_slice(o, state, argument), o->of_boxes = "--slice"; return 0;
     case KEY_LIGHT:
         o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX),
-        o->structural = "--light";
+        o->of_light = "--light";
         return 0;
     case KEY_PIXEL:
-        rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true, o->structural = "--pixel";
+        rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true, o->of_light = "--pixel";
         return 0;
     case KEY_MAX: parse_max(o, state, argument), o->thermal = "--heatmap-max"; return 0;
     case KEY_SCALE: parse_scale(o, state, argument), o->thermal = "--heatmap-scale"; return 0;
@@ -171,9 +171,10 @@ const struct argp rt_picture_argp = {.options = options, .parser = parse_option}
 
 void rt_pictures_finish(RtPictureOptions *o, uint32_t accels, struct argp_state *state) {
     bool heats = rt_pictures_any_heatmap(o);
-    if (o->structural && !o->structure)
+    const char *structural = o->layer ? "--layer" : o->of_boxes ? o->of_boxes : o->of_light;
+    if (structural && !o->structure)
         argp_error(state, "%s is about the picture of a structure: say where it goes, --structure FILE.png",
-                   o->structural);
+                   structural);
     if (o->thermal && !heats)
         argp_error(state, "%s is about heatmaps: say of what, --heatmap COUNTER FILE.png", o->thermal);
     if (o->heat.difference && accels != 2)
@@ -196,6 +197,29 @@ size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t co
 }
 
 /* ---- writing ---- */
+
+/* Of the overlays that look rays up in cells, those for shadow rays. */
+static bool has_cells_of_lights(const RtAccel *layer) {
+    return layer->ops->look_up && layer->ops->kinds >> RT_RAY_SHADOW & 1;
+}
+
+RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtError *error) {
+    const RtAccel *layer;
+    if (!o->structure) return RT_OK;
+    RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
+    if (o->of_boxes && layer->ops->look_up)
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s is for layers that have boxes, such as bvh or grid, and the picture is of %s: leave "
+            "it out, or choose another layer by --layer",
+            o->of_boxes, layer->ops->name);
+    if (o->of_light && !has_cells_of_lights(layer))
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s is for the cells around a light, which the layer light has, and the picture is of "
+                       "%s: leave it out, or draw light, as of --accel light:cells=64+bvh",
+                       o->of_light, layer->ops->name);
+    return RT_OK;
+}
 
 static RtStatus image_of_cells(const RtPictureOptions *o, const RtAccel *accel, const RtAccel *layer,
                                RtImage *image, RtError *error) {

@@ -16,11 +16,12 @@ typedef struct RtPictureOptions {
     RtStructureOptions boxes;
     bool in_middle; /* the slice is in the middle of the scene, and boxes.at is not set */
     RtHeatmapOptions heat;
-    uint32_t kinds;         /* of rays, bits; 0: all */
-    uint32_t light, x, y;   /* of an overlay for shadow rays; the pixel of the ray that is marked */
-    bool aimed;             /* there is such a pixel */
-    const char *structural; /* an option that was given and needs --structure, or NULL */
-    const char *thermal;    /* one that needs --heatmap */
+    uint32_t kinds;       /* of rays, bits; 0: all */
+    uint32_t light, x, y; /* of an overlay for shadow rays; the pixel of the ray that is marked */
+    bool aimed;           /* there is such a pixel */
+    /* Options that were given, or NULL: one of pictures of boxes alone, one of pictures of the cells around a
+     * light alone, and one that needs --heatmap. */
+    const char *of_boxes, *of_light, *thermal;
 } RtPictureOptions;
 
 extern const struct argp rt_picture_argp;
@@ -38,8 +39,11 @@ size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t co
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
                      const char *extension);
 
-/* Writes the picture of the structure. `frame` is of the accelerator's scene; overlays that have cells need
- * none. */
+/* With --structure: RT_BAD_INPUT where an option was given that the layer to be drawn does not take. */
+RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtError *error);
+
+/* Writes the picture of the structure, after rt_pictures_check. `frame` is of the accelerator's scene;
+ * overlays that have cells need none. */
 RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, const RtFrame *frame,
                                RtError *error);
 

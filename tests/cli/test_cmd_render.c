@@ -15,6 +15,7 @@
 
 #define OUT   RT_BINARY_DIR "/test_cmd_render"
 #define STATS OUT ".json"
+#define SMALL "balls:size=1 --size 8x8 "
 
 /* Runs `raytally render ARGUMENTS`, output and messages to OUT.txt; gives the exit code. */
 static int render(const char *arguments) {
@@ -156,6 +157,16 @@ RT_TEST(work_of_the_build_is_reported_apart_from_tracing) {
     }
 }
 
+RT_TEST(options_of_structures_are_taken_by_the_layer_that_they_are_for) {
+    assert_int_equal(render(SMALL "--accel light:cells=8+bvh --light 1 --pixel 4,6 --structure " OUT ".png"),
+                     0);
+    assert_int_equal(render(SMALL "--accel light:cells=8+bvh --layer bvh --level 0..9 --leaves --slice z "
+                                  "--structure " OUT ".png"),
+                     0);
+    unlink(OUT ".png");
+    unlink(OUT ".txt");
+}
+
 RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
     const struct {
         const char *arguments, *says;
@@ -192,6 +203,13 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls:size=1 --size 8x8 --layer grid --structure " OUT ".png", "no layer 'grid'"},
         {"balls:size=1 --size 8x8 --accel light:cells=8+bvh --light 3 --structure " OUT ".png", "no light 3"},
         {"balls:size=1 --size 8x8 --accel light:cells=8+bvh --pixel 8,0 --structure " OUT ".png", "8 x 8"},
+        {SMALL "--light 99 --structure " OUT ".png", "--light is for the cells around a light"},
+        {SMALL "--pixel 4,4 --structure " OUT ".png", "--pixel is for the cells around a light"},
+        {SMALL "--accel item+bvh --pixel 0,0 --structure " OUT ".png", "the picture is of item"},
+        {SMALL "--accel item+bvh --slice z --structure " OUT ".png", "--slice is for layers that have boxes"},
+        {SMALL "--accel light:cells=8+bvh --level 2 --structure " OUT ".png", "the picture is of light"},
+        {SMALL "--accel light:cells=8+bvh --leaves --structure " OUT ".png", "--leaves is for layers"},
+        {SMALL "--accel light:cells=8+bvh --layer bvh --light 0 --structure " OUT ".png", "of bvh"},
         {"balls --heatmap step " OUT ".png", "mean 'steps'"},
         {"balls --heatmap steps " OUT ".png --heatmap steps " OUT ".2.png", "--heatmap steps: both"},
         {"balls --heatmap steps " OUT ".png --heatmap object_tests " OUT ".png", "written twice"},
