@@ -14,6 +14,15 @@ int rt_cli_fail(const RtError *error) {
     return error->status == RT_MISMATCH ? RT_EXIT_CHECK_FAILED : RT_EXIT_BAD_INPUT;
 }
 
+RtStatus rt_cli_check_json_name(const char *name, RtError *error) {
+    json_t *text = json_string_nocheck(name), *checked = json_string(name);
+    bool good = checked || !text; /* without either it is memory that is short, which others say */
+    json_decref(text);
+    json_decref(checked);
+    if (good) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "the name '%s' is not UTF-8, as JSON asks: rename the file", name);
+}
+
 void rt_cli_print_json(json_t *document) {
     if (!document) {
         fprintf(stderr, "raytally: out of memory for the JSON document\n");

@@ -58,6 +58,10 @@ void rt_completion_print(const RtCommand *commands, int count);
 /* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
 int rt_cli_fail(const RtError *error);
 
+/* RT_BAD_INPUT, and why, where `name`, of a file, cannot be in a JSON document since it is not UTF-8; to be
+ * asked before there is one, for json_pack would only give NULL. */
+RtStatus rt_cli_check_json_name(const char *name, RtError *error);
+
 /* Prints one JSON document to stdout, indented, and takes the reference. */
 void rt_cli_print_json(json_t *document);
 

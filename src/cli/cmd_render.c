@@ -191,6 +191,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     for (uint32_t i = o->accel_count; i-- > 0;) RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
     rt_spec_format(&spec, run->spec);
     if (o->pictures.structure) RT_TRY(rt_structure_available(&spec, o->pictures.layer, error));
+    if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
     double start = rt_wall_seconds();

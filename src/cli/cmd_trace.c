@@ -184,23 +184,33 @@ static json_t *row_json(const RtPathRow *row) {
         rt_json_number(is_in ? row->leave : (double)NAN), "t",
         rt_json_number(row->kind == RT_TRACED_OBJECT_TEST && row->met ? (double)row->t : (double)NAN),
         "nearest", rt_json_number((double)row->nearest));
-    if (json && row->boxed)
-        json_object_set_new(json, "box",
-                            json_pack("[o, o]", vector_json(row->box.lo), vector_json(row->box.hi)));
-    return json;
+    if (!json || !row->boxed) return json;
+    json_t *box = json_pack("[o, o]", vector_json(row->box.lo), vector_json(row->box.hi));
+    if (json_object_set_new(json, "box", box) == 0) return json;
+    json_decref(json);
+    return NULL;
+}
+
+/* All rows or, where memory is short, NULL. */
+static json_t *rows_json(const RtPath *path) {
+    json_t *rows = json_array();
+    for (uint32_t i = 0; rows && i < path->count; i++) {
+        if (json_array_append_new(rows, row_json(&path->rows[i])) == 0) continue;
+        json_decref(rows);
+        return NULL;
+    }
+    return rows;
 }
 
 /* `object` is null where none is hit, and where it is only known that one blocks the ray; `blocked` is null
  * for rays of which the nearest hit is asked. */
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
-    json_t *rows = json_array();
-    for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
     return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
                      o->scene, "accel", spec, "pixel", (int)o->x, (int)o->y, "kind",
                      rt_ray_kind_name(o->kind), "org", vector_json(r->org), "dir", vector_json(r->dir),
                      "tmin", rt_json_number((double)r->tmin), "tmax", rt_json_number((double)r->tmax), "rows",
-                     rows, "counts", rt_json_tally(&path->tally), "object",
+                     rows_json(path), "counts", rt_json_tally(&path->tally), "object",
                      path->hit.object >= RT_UNNAMED_OBJECT ? json_null() : json_integer(path->hit.object),
                      "blocked", path->any ? json_boolean(path->hit.object != RT_NO_OBJECT) : json_null(), "t",
                      rt_json_number((double)path->hit.t));
@@ -244,6 +254,7 @@ static RtStatus run(const Options *o, RtError *error) {
     RtAccel *accel = NULL;
     RT_TRY(rt_spec_parse(o->accel, &spec, error));
     rt_spec_format(&spec, text);
+    if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &scene, error));
     RtStatus status = rt_scene_sample(&scene, o->width, o->height, 1, false, error);
     if (status == RT_OK) status = check_pixel(o, &scene.sampling, error);

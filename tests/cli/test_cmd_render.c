@@ -216,6 +216,7 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls -o " OUT ".png --structure " OUT ".png", "written twice"},
         {"balls --structure " OUT ".png --structure " OUT ".2.png", "--structure: both"},
         {"balls --stats " OUT ".txt", ".json"},
+        {"'no\xff.yaml' --stats " OUT ".json", "is not UTF-8"},
         {"balls --accel brute --structure " OUT ".png", "no picture of"},
         {"balls:size=1 --size 8x8 -o " OUT "/nowhere/a.png", "nowhere"},
     };
