@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
-#include "scene/camera.h"
-
 #include <argp.h>
 #include <errno.h>
 #include <stdio.h>
@@ -95,6 +93,37 @@ void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint3
     const char *at = text;
     if (rt_cli_digits(&at, x) && *at++ == ',' && rt_cli_digits(&at, y) && *at == '\0') return;
     argp_error(state, "--pixel: invalid value '%s': expected X,Y, as in 256,200", text);
+}
+
+RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, RtError *error) {
+    if (x < sampling->width && y < sampling->height) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "--pixel %u,%u is outside of the image, which is %u x %u: choose 0..%u,0..%u", x, y,
+                   sampling->width, sampling->height, sampling->width - 1, sampling->height - 1);
+}
+
+RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text) {
+    RtError error;
+    RtRayKind kind;
+    if (rt_ray_kind_parse(text, &kind, &error) == RT_OK && kind <= RT_RAY_TRANSMISSION) return kind;
+    argp_error(state, "%s: invalid value '%s': expected primary, shadow, reflection or transmission", option,
+               text);
+    return RT_RAY_PRIMARY;
+}
+
+bool rt_cli_has_extension(const char *path, const char *extension) {
+    size_t length = strlen(path), tail = strlen(extension);
+    return length > tail && strcmp(path + length - tail, extension) == 0;
+}
+
+void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
+                     const char *extension) {
+    if (!rt_cli_has_extension(path, extension)) {
+        argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
+                   extension);
+    }
+    if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
+    *slot = path;
 }
 
 const struct argp_option rt_list_options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};

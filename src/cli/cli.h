@@ -5,7 +5,9 @@
 #define RT_CLI_CLI_H
 
 #include "base/param.h"
+#include "base/ray.h"
 #include "base/status.h"
+#include "scene/camera.h"
 
 #include <argp.h>
 #include <jansson.h>
@@ -106,8 +108,19 @@ typedef struct RtListOptions {
 extern const struct argp_option rt_list_options[];
 int rt_list_parse(int key, char *argument, struct argp_state *state);
 
-/* "X,Y", of --pixel */
+/* "X,Y", of --pixel; RT_BAD_INPUT, once the image is known, if the pixel is not in it. */
 void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y);
+RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, RtError *error);
+
+/* The name of a kind of rays that an image is made of: primary, shadow, reflection or transmission. */
+RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text);
+
+bool rt_cli_has_extension(const char *path, const char *extension);
+
+/* For parsers: stores `path` in *slot, or argp_error's exit where it does not end in `extension` or there is
+ * one. */
+void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
+                     const char *extension);
 
 /* "WxH" */
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);

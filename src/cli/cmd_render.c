@@ -52,16 +52,11 @@ static const struct argp_option options[] = {
      0},
     {0}};
 
-static bool has_extension(const char *path, const char *extension) {
-    size_t length = strlen(path), tail = strlen(extension);
-    return length > tail && strcmp(path + length - tail, extension) == 0;
-}
-
 static void parse_output(Options *o, struct argp_state *state, const char *path) {
-    if (!has_extension(path, ".png") && !has_extension(path, ".exr")) {
+    if (!rt_cli_has_extension(path, ".png") && !rt_cli_has_extension(path, ".exr")) {
         argp_error(state, "-o: invalid value '%s': expected a file name that ends in .png or .exr", path);
     }
-    const char **slot = has_extension(path, ".png") ? &o->png : &o->exr;
+    const char **slot = rt_cli_has_extension(path, ".png") ? &o->png : &o->exr;
     if (*slot) argp_error(state, "-o: both '%s' and '%s': one file of each format is written", *slot, path);
     *slot = path;
 }

@@ -36,19 +36,9 @@ static const struct argp_option options[] = {
     {"json", 'j', 0, 0, "One JSON document on stdout, with all rows", 0},
     {0}};
 
-static void parse_kind(Options *o, struct argp_state *state, const char *text) {
-    RtError error;
-    if (rt_ray_kind_parse(text, &o->kind, &error) == RT_OK && o->kind <= RT_RAY_TRANSMISSION) return;
-    argp_error(state, "--rays: invalid value '%s': expected primary, shadow, reflection or transmission",
-               text);
-}
-
 static void check_options(const Options *o, struct argp_state *state) {
     if (!o->scene) argp_error(state, "a SCENE is needed: a file or a built-in, as `raytally scenes` lists");
     if (!o->aimed) argp_error(state, "say which ray: --pixel X,Y");
-    size_t length = o->svg ? strlen(o->svg) : 0;
-    if (o->svg && (length < 5 || strcmp(o->svg + length - 4, ".svg") != 0))
-        argp_error(state, "--svg: invalid value '%s': expected a file name that ends in .svg", o->svg);
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
@@ -57,10 +47,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'p': rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true; return 0;
     case 'a': o->accel = argument; return 0;
     case 's': rt_cli_size(state, argument, &o->width, &o->height); return 0;
-    case 'k': parse_kind(o, state, argument); return 0;
+    case 'k': o->kind = rt_cli_image_ray_kind(state, "--rays", argument); return 0;
     case 'j': o->json = true; return 0;
     case KEY_LIGHT: o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX); return 0;
-    case KEY_SVG: o->svg = argument; return 0;
+    case KEY_SVG: rt_cli_set_path(state, "--svg", &o->svg, argument, ".svg"); return 0;
     case KEY_ROWS: o->rows = rt_cli_integer(state, "--rows", argument, 0, UINT32_MAX); return 0;
     case ARGP_KEY_ARG:
         if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
@@ -218,13 +208,6 @@ static json_t *path_json(const RtPath *path, const Options *o, const char *spec)
 
 /* ---- the command ---- */
 
-static RtStatus check_pixel(const Options *o, const RtSampling *s, RtError *error) {
-    if (o->x < s->width && o->y < s->height) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "--pixel %u,%u is outside of the image, which is %u x %u: choose 0..%u,0..%u", o->x, o->y,
-                   s->width, s->height, s->width - 1, s->height - 1);
-}
-
 static RtStatus trace(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
                       RtError *error) {
     char title[512];
@@ -257,7 +240,7 @@ static RtStatus run(const Options *o, RtError *error) {
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &scene, error));
     RtStatus status = rt_scene_sample(&scene, o->width, o->height, 1, false, error);
-    if (status == RT_OK) status = check_pixel(o, &scene.sampling, error);
+    if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
     if (status == RT_OK) status = trace(o, &scene, accel, text, error);
     rt_accel_destroy(accel);

@@ -59,17 +59,6 @@ static const struct argp_option options[] = {
      "Of two --accel: the first less the second, too, red where the first costs more", 2},
     {0}};
 
-void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
-                     const char *extension) {
-    size_t length = strlen(path), tail = strlen(extension);
-    if (length <= tail || strcmp(path + length - tail, extension) != 0) {
-        argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
-                   extension);
-    }
-    if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
-    *slot = path;
-}
-
 static size_t counter_by_name(struct argp_state *state, const char *name) {
     const char *names[RT_TALLY_COUNTER_COUNT];
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
@@ -119,12 +108,7 @@ static void parse_slice(RtPictureOptions *o, struct argp_state *state, const cha
 }
 
 static void parse_rays(RtPictureOptions *o, struct argp_state *state, const char *text) {
-    RtError error;
-    RtRayKind kind;
-    if (rt_ray_kind_parse(text, &kind, &error) != RT_OK || kind > RT_RAY_TRANSMISSION)
-        argp_error(state,
-                   "--heatmap-rays: invalid value '%s': expected primary, shadow, reflection or transmission",
-                   text);
+    RtRayKind kind = rt_cli_image_ray_kind(state, "--heatmap-rays", text);
     o->kinds = 1u << kind;
     o->heat.rays = rt_ray_kind_name(kind);
 }
@@ -225,9 +209,7 @@ static RtStatus image_of_cells(const RtPictureOptions *o, const RtAccel *accel, 
                                RtImage *image, RtError *error) {
     RtRay ray;
     const RtSampling *s = &accel->scene->sampling;
-    if (o->aimed && (o->x >= s->width || o->y >= s->height))
-        return rt_fail(error, RT_BAD_INPUT, "--pixel %u,%u is outside of the image, which is %u x %u", o->x,
-                       o->y, s->width, s->height);
+    if (o->aimed) RT_TRY(rt_cli_check_pixel(s, o->x, o->y, error));
     if (o->aimed && o->light < accel->scene->light_count) {
         RtFootprint f = rt_pixel_footprint(s, o->x, o->y);
         RT_TRY(rt_path_ray(accel, RT_RAY_SHADOW, f.column + f.span / 2, f.row + f.span / 2, o->light, &ray,

@@ -34,11 +34,6 @@ bool rt_pictures_any_heatmap(const RtPictureOptions *o);
 /* Appends the paths that will be written to paths[0..count); gives how many there are then. */
 size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t count);
 
-/* For parsers: stores `path` in *slot, or argp_error's exit where it does not end in `extension` or there is
- * one. */
-void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
-                     const char *extension);
-
 /* With --structure: RT_BAD_INPUT where an option was given that the layer to be drawn does not take. */
 RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtError *error);
 
