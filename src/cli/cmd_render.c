@@ -128,8 +128,8 @@ typedef struct Run {
     double build_seconds;
     RtFrameOptions frame_options;
     RtFrame timed, counted;
-    bool by_default; /* the picture of the structure is all there is to make: its background is made in a
-                        quicker way */
+    bool by_default; /* the picture of the structure is all there is to make: its background, where it has
+                        one, is made in a quicker way */
     atomic_uint_fast64_t rays[RT_RAY_KIND_COUNT];
 } Run;
 
@@ -151,7 +151,7 @@ static void show_progress(void *context, size_t tiles_done, size_t tiles) {
     if (tiles_done == tiles) fprintf(stderr, "\r%*s\r", (int)strlen(context) + 6, "");
 }
 
-/* The same image bit for bit, by the default accelerator. Overlays' cells are drawn without any. */
+/* The same image bit for bit, by the default accelerator. */
 static RtStatus trace_background(Run *run, const RtFrameOptions *f, RtError *error) {
     RtAccel *quick;
     RT_TRY(rt_accel_open_on(rt_accel_default(), &run->scene, f->threads, &quick, error));
@@ -169,7 +169,9 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->sink = count_by_kind;
     f->sink_context = run;
     const char *paths[MOST_OUTPUTS];
-    run->by_default = o->pictures.structure && list_outputs(o, paths) == 1 && !o->check && run->accel->exact;
+    bool alone = o->pictures.structure && list_outputs(o, paths) == 1 && !o->check;
+    if (alone && !rt_pictures_need_frame(&o->pictures, run->accel)) return RT_OK;
+    run->by_default = alone && run->accel->exact;
     if (run->by_default) return trace_background(run, f, error);
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
     if (!o->stats && !o->exr && !rt_pictures_any_heatmap(&o->pictures)) return RT_OK;
@@ -266,23 +268,31 @@ static RtStatus write_stats(const Run *run, RtError *error) {
     return path ? rt_json_save(path, stats_json(run), error) : RT_OK;
 }
 
-static void print_summary(const Run *run) {
-    const Options *o = run->options;
-    const RtSampling *s = &run->timed.sampling;
-    RtDescription d;
-    rt_accel_describe(run->accel, &d);
-    printf("%s: %u objects, %u lights. %s: built in %.3g s, %.3g MB. %u x %u pixels%s, %u levels: ",
-           run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
-           run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,
-           s->corners ? " at their corners" : "", o->depth);
+static void print_rays(const Run *run) {
+    uint64_t rays = total_rays(run);
+    printf(", %u levels: ", run->options->depth);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         if (run->rays[kind])
             printf("%llu %s, ", (unsigned long long)run->rays[kind], rt_ray_kind_name((RtRayKind)kind));
     }
-    uint64_t rays = total_rays(run);
     printf("%llu rays in %.3g s on %d threads: %.3g Mrays/s.", (unsigned long long)rays, run->timed.seconds,
-           rt_thread_count(o->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
+           rt_thread_count(run->options->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
     if (run->by_default) printf(" (By %s, for the picture alone.)", rt_accel_default());
+}
+
+static void print_summary(const Run *run) {
+    const Options *o = run->options;
+    const RtSampling *s = &run->scene.sampling;
+    RtDescription d;
+    rt_accel_describe(run->accel, &d);
+    printf("%s: %u objects, %u lights. %s: built in %.3g s, %.3g MB. %u x %u pixels%s",
+           run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
+           run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,
+           s->corners ? " at their corners" : "");
+    if (total_rays(run) > 0)
+        print_rays(run);
+    else
+        printf(", not traced: the picture shows cells alone.");
     const char *written[MOST_OUTPUTS];
     size_t count = list_outputs(o, written);
     for (size_t i = 0; i < count; i++) printf("%s%s", i ? ", " : " Wrote ", written[i]);

@@ -205,6 +205,12 @@ RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtEr
     return RT_OK;
 }
 
+bool rt_pictures_need_frame(const RtPictureOptions *o, const RtAccel *accel) {
+    RtError error;
+    const RtAccel *layer;
+    return rt_structure_layer(accel, o->layer, &layer, &error) == RT_OK && !layer->ops->look_up;
+}
+
 static RtStatus image_of_cells(const RtPictureOptions *o, const RtAccel *accel, const RtAccel *layer,
                                RtImage *image, RtError *error) {
     RtRay ray;

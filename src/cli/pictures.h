@@ -37,8 +37,12 @@ size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t co
 /* With --structure: RT_BAD_INPUT where an option was given that the layer to be drawn does not take. */
 RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtError *error);
 
-/* Writes the picture of the structure, after rt_pictures_check. `frame` is of the accelerator's scene;
- * overlays that have cells need none. */
+/* With --structure, after rt_pictures_check: whether the picture shows the image of the scene, too, which
+ * that of an overlay's cells does not. */
+bool rt_pictures_need_frame(const RtPictureOptions *o, const RtAccel *accel);
+
+/* Writes the picture of the structure, after rt_pictures_check. `frame` is of the accelerator's scene, and
+ * empty where there is no need of it. */
 RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, const RtFrame *frame,
                                RtError *error);
 

@@ -157,6 +157,28 @@ RT_TEST(work_of_the_build_is_reported_apart_from_tracing) {
     }
 }
 
+RT_TEST(a_picture_of_cells_alone_takes_no_image_of_the_scene) {
+    const char *const layers[] = {"item:settle=off", "light:cells=8"};
+    for (int i = 0; i < 2; i++) {
+        char arguments[512];
+        snprintf(arguments, sizeof arguments, SMALL "--accel %s+bvh --structure " OUT ".png", layers[i]);
+        assert_int_equal(render(arguments), 0);
+        assert_says("8 x 8 pixels, not traced: the picture shows cells alone");
+        snprintf(arguments, sizeof arguments,
+                 SMALL "--accel %s+bvh --structure " OUT ".with.png -o " OUT ".image.png", layers[i]);
+        assert_int_equal(render(arguments), 0);
+        assert_says("64 primary");
+        assert_int_equal(system("cmp '" OUT ".png' '" OUT ".with.png'"), 0);
+    }
+    assert_int_equal(render(SMALL "--accel item+bvh --layer bvh --structure " OUT ".png"), 0);
+    assert_says("64 primary");
+    assert_says("for the picture alone");
+    unlink(OUT ".png");
+    unlink(OUT ".with.png");
+    unlink(OUT ".image.png");
+    unlink(OUT ".txt");
+}
+
 RT_TEST(options_of_structures_are_taken_by_the_layer_that_they_are_for) {
     assert_int_equal(render(SMALL "--accel light:cells=8+bvh --light 1 --pixel 4,6 --structure " OUT ".png"),
                      0);
