@@ -6,18 +6,23 @@ set -uo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-touch mine.yaml
+touch mine.yaml 'our scene.yaml' && mkdir folder
 failures=0
 "$program" completion bash >script || exit 1
 # shellcheck disable=SC1091
 source ./script || exit 1
 
-# complete_line LINE: COMPREPLY, its words as readline parts them: at blanks, and : and = are words of their own
+# Outside of a completion bash has none of its own.
+compopt() { told="$told $2"; }
+
+# complete_line LINE: COMPREPLY, and in told what compopt was. Words are as readline parts them: at blanks without a
+# backslash, which stays, and : and = are words of their own.
 complete_line() {
     local parted
-    COMP_LINE=$1 COMP_POINT=${#1} COMPREPLY=()
-    parted=$(sed -E 's/[:=]+/ & /g' <<<"$1")
-    read -ra COMP_WORDS <<<"$parted"
+    COMP_LINE=$1 COMP_POINT=${#1} COMPREPLY=() told=''
+    parted=$(sed -E 's/[:=]+/ & /g; s/\\ /\\\t/g' <<<"$1")
+    IFS=' ' read -ra COMP_WORDS <<<"$parted"
+    COMP_WORDS=("${COMP_WORDS[@]//$'\t'/ }")
     case $1 in *' ') COMP_WORDS+=('') ;; esac
     COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
     _raytally
@@ -78,6 +83,38 @@ offers_only 'raytally trace balls --rays sha' shadow
 offers_only 'raytally run mi' mine.yaml
 offers_only 'raytally completion ' bash
 offers_only 'raytally nonsense --'
+
+offers_only 'raytally info our' 'our scene.yaml'
+offers_only 'raytally info our\ sc' 'our scene.yaml'
+offers_only 'raytally run --out=fol' folder
+offers_only 'raytally render balls --le' --level --leaves
+
+# tells LINE WHAT: so compopt was told to add no blank, or to treat words as paths
+tells() {
+    complete_line "$1"
+    [ "$told" = "$2" ] || {
+        echo "'$1' tells compopt '$told', not '$2'"
+        failures=$((failures + 1))
+    }
+}
+tells 'raytally info fol' ' filenames'
+tells 'raytally info our' ' filenames'
+tells 'raytally info tet' ''
+tells 'raytally bench balls --accel fol' ''
+tells 'raytally bench balls --accel grid:dens' ' nospace'
+
+# Words are no patterns for files: --level=A[..B] is offered however the shell takes those that match none. In a shell of
+# its own, which failglob would end.
+for option in failglob nullglob; do
+    (
+        shopt -s "$option"
+        offers 'raytally render balls --' --level --slice --heatmap
+        offers_only 'raytally render balls --lev' --level
+        offers_only 'raytally bench balls --accel gr' grid
+        offers_only 'raytally trace balls --rays sha' shadow
+        [ $failures = 0 ]
+    ) || failures=$((failures + 1))
+done
 
 # Every option that --help lists, but for those of argp's own.
 for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do

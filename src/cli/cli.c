@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/cli.h"
 
-#include "scene/camera.h"
-
 #include <argp.h>
 #include <errno.h>
 #include <stdio.h>
@@ -12,6 +10,15 @@
 int rt_cli_fail(const RtError *error) {
     fprintf(stderr, "raytally: %s\n", error->message);
     return error->status == RT_MISMATCH ? RT_EXIT_CHECK_FAILED : RT_EXIT_BAD_INPUT;
+}
+
+RtStatus rt_cli_check_json_name(const char *name, RtError *error) {
+    json_t *text = json_string_nocheck(name), *checked = json_string(name);
+    bool good = checked || !text; /* without either it is memory that is short, which others say */
+    json_decref(text);
+    json_decref(checked);
+    if (good) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "the name '%s' is not UTF-8, as JSON asks: rename the file", name);
 }
 
 void rt_cli_print_json(json_t *document) {
@@ -57,6 +64,17 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
     return value;
 }
 
+bool rt_cli_digits(const char **text, uint32_t *number) {
+    char *end;
+    if (**text < '0' || **text > '9') return false; /* strtoull takes blanks and signs, too */
+    errno = 0;
+    unsigned long long value = strtoull(*text, &end, 10);
+    if (errno || value > UINT32_MAX) return false;
+    *text = end;
+    *number = (uint32_t)value;
+    return true;
+}
+
 double rt_cli_percent(struct argp_state *state, const char *option, const char *text) {
     char *end;
     double percent = strtod(text, &end);
@@ -72,9 +90,40 @@ void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, ui
 }
 
 void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y) {
-    char end;
-    if (sscanf(text, "%u,%u%c", x, y, &end) == 2 && !strchr(text, '-')) return;
+    const char *at = text;
+    if (rt_cli_digits(&at, x) && *at++ == ',' && rt_cli_digits(&at, y) && *at == '\0') return;
     argp_error(state, "--pixel: invalid value '%s': expected X,Y, as in 256,200", text);
+}
+
+RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, RtError *error) {
+    if (x < sampling->width && y < sampling->height) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "--pixel %u,%u is outside of the image, which is %u x %u: choose 0..%u,0..%u", x, y,
+                   sampling->width, sampling->height, sampling->width - 1, sampling->height - 1);
+}
+
+RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text) {
+    RtError error;
+    RtRayKind kind;
+    if (rt_ray_kind_parse(text, &kind, &error) == RT_OK && kind <= RT_RAY_TRANSMISSION) return kind;
+    argp_error(state, "%s: invalid value '%s': expected primary, shadow, reflection or transmission", option,
+               text);
+    return RT_RAY_PRIMARY;
+}
+
+bool rt_cli_has_extension(const char *path, const char *extension) {
+    size_t length = strlen(path), tail = strlen(extension);
+    return length > tail && strcmp(path + length - tail, extension) == 0;
+}
+
+void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
+                     const char *extension) {
+    if (!rt_cli_has_extension(path, extension)) {
+        argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
+                   extension);
+    }
+    if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
+    *slot = path;
 }
 
 const struct argp_option rt_list_options[] = {{"json", 'j', 0, 0, "One JSON document on stdout", 0}, {0}};

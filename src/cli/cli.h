@@ -5,7 +5,9 @@
 #define RT_CLI_CLI_H
 
 #include "base/param.h"
+#include "base/ray.h"
 #include "base/status.h"
+#include "scene/camera.h"
 
 #include <argp.h>
 #include <jansson.h>
@@ -58,6 +60,10 @@ void rt_completion_print(const RtCommand *commands, int count);
 /* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
 int rt_cli_fail(const RtError *error);
 
+/* RT_BAD_INPUT, and why, where `name`, of a file, cannot be in a JSON document since it is not UTF-8; to be
+ * asked before there is one, for json_pack would only give NULL. */
+RtStatus rt_cli_check_json_name(const char *name, RtError *error);
+
 /* Prints one JSON document to stdout, indented, and takes the reference. */
 void rt_cli_print_json(json_t *document);
 
@@ -69,6 +75,10 @@ json_t *rt_cli_params_json(const RtParam *table, size_t count);
  * `state` is argp's. */
 int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
                        int64_t hi);
+
+/* For parsers of what has several numbers: reads the digits at *text, up to UINT32_MAX, and goes on to what
+ * follows them; false where there are none, or the number is larger. */
+bool rt_cli_digits(const char **text, uint32_t *number);
 
 /* A share such as "1%", more than 0 and at most 100 of a hundred, as a part: 0.01. */
 double rt_cli_percent(struct argp_state *state, const char *option, const char *text);
@@ -98,8 +108,19 @@ typedef struct RtListOptions {
 extern const struct argp_option rt_list_options[];
 int rt_list_parse(int key, char *argument, struct argp_state *state);
 
-/* "X,Y", of --pixel */
+/* "X,Y", of --pixel; RT_BAD_INPUT, once the image is known, if the pixel is not in it. */
 void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y);
+RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, RtError *error);
+
+/* The name of a kind of rays that an image is made of: primary, shadow, reflection or transmission. */
+RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text);
+
+bool rt_cli_has_extension(const char *path, const char *extension);
+
+/* For parsers: stores `path` in *slot, or argp_error's exit where it does not end in `extension` or there is
+ * one. */
+void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
+                     const char *extension);
 
 /* "WxH" */
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);

@@ -185,6 +185,7 @@ int rt_command_info(int argc, char **argv) {
     RtScene scene;
     RtError error;
     argp_parse(&rt_info_argp, argc, argv, 0, 0, &o);
+    if (o.json && rt_cli_check_json_name(o.scene, &error) != RT_OK) return rt_cli_fail(&error);
     if (rt_scene_open(o.scene, &scene, &error) != RT_OK) return rt_cli_fail(&error);
     RtStatus status = show(&scene, &o, &error);
     rt_scene_clear(&scene);

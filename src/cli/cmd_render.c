@@ -52,16 +52,11 @@ static const struct argp_option options[] = {
      0},
     {0}};
 
-static bool has_extension(const char *path, const char *extension) {
-    size_t length = strlen(path), tail = strlen(extension);
-    return length > tail && strcmp(path + length - tail, extension) == 0;
-}
-
 static void parse_output(Options *o, struct argp_state *state, const char *path) {
-    if (!has_extension(path, ".png") && !has_extension(path, ".exr")) {
+    if (!rt_cli_has_extension(path, ".png") && !rt_cli_has_extension(path, ".exr")) {
         argp_error(state, "-o: invalid value '%s': expected a file name that ends in .png or .exr", path);
     }
-    const char **slot = has_extension(path, ".png") ? &o->png : &o->exr;
+    const char **slot = rt_cli_has_extension(path, ".png") ? &o->png : &o->exr;
     if (*slot) argp_error(state, "-o: both '%s' and '%s': one file of each format is written", *slot, path);
     *slot = path;
 }
@@ -133,8 +128,8 @@ typedef struct Run {
     double build_seconds;
     RtFrameOptions frame_options;
     RtFrame timed, counted;
-    bool by_default; /* the picture of the structure is all there is to make: its background is made in a
-                        quicker way */
+    bool by_default; /* the picture of the structure is all there is to make: its background, where it has
+                        one, is made in a quicker way */
     atomic_uint_fast64_t rays[RT_RAY_KIND_COUNT];
 } Run;
 
@@ -156,7 +151,7 @@ static void show_progress(void *context, size_t tiles_done, size_t tiles) {
     if (tiles_done == tiles) fprintf(stderr, "\r%*s\r", (int)strlen(context) + 6, "");
 }
 
-/* The same image bit for bit, by the default accelerator. Overlays' cells are drawn without any. */
+/* The same image bit for bit, by the default accelerator. */
 static RtStatus trace_background(Run *run, const RtFrameOptions *f, RtError *error) {
     RtAccel *quick;
     RT_TRY(rt_accel_open_on(rt_accel_default(), &run->scene, f->threads, &quick, error));
@@ -174,7 +169,9 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->sink = count_by_kind;
     f->sink_context = run;
     const char *paths[MOST_OUTPUTS];
-    run->by_default = o->pictures.structure && list_outputs(o, paths) == 1 && !o->check && run->accel->exact;
+    bool alone = o->pictures.structure && list_outputs(o, paths) == 1 && !o->check;
+    if (alone && !rt_pictures_need_frame(&o->pictures, run->accel)) return RT_OK;
+    run->by_default = alone && run->accel->exact;
     if (run->by_default) return trace_background(run, f, error);
     RT_TRY(rt_frame_trace(&run->timed, run->accel, f, error));
     if (!o->stats && !o->exr && !rt_pictures_any_heatmap(&o->pictures)) return RT_OK;
@@ -191,12 +188,13 @@ static RtStatus prepare(Run *run, RtError *error) {
     for (uint32_t i = o->accel_count; i-- > 0;) RT_TRY(rt_spec_parse(o->accels[i], &spec, error));
     rt_spec_format(&spec, run->spec);
     if (o->pictures.structure) RT_TRY(rt_structure_available(&spec, o->pictures.layer, error));
+    if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
     RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, o->threads, &run->accel, error));
     run->build_seconds = rt_wall_seconds() - start;
-    return RT_OK;
+    return rt_pictures_check(&o->pictures, run->accel, error);
 }
 
 /* ---- what is written ---- */
@@ -270,23 +268,31 @@ static RtStatus write_stats(const Run *run, RtError *error) {
     return path ? rt_json_save(path, stats_json(run), error) : RT_OK;
 }
 
-static void print_summary(const Run *run) {
-    const Options *o = run->options;
-    const RtSampling *s = &run->timed.sampling;
-    RtDescription d;
-    rt_accel_describe(run->accel, &d);
-    printf("%s: %u objects, %u lights. %s: built in %.3g s, %.3g MB. %u x %u pixels%s, %u levels: ",
-           run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
-           run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,
-           s->corners ? " at their corners" : "", o->depth);
+static void print_rays(const Run *run) {
+    uint64_t rays = total_rays(run);
+    printf(", %u levels: ", run->options->depth);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         if (run->rays[kind])
             printf("%llu %s, ", (unsigned long long)run->rays[kind], rt_ray_kind_name((RtRayKind)kind));
     }
-    uint64_t rays = total_rays(run);
     printf("%llu rays in %.3g s on %d threads: %.3g Mrays/s.", (unsigned long long)rays, run->timed.seconds,
-           rt_thread_count(o->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
+           rt_thread_count(run->options->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
     if (run->by_default) printf(" (By %s, for the picture alone.)", rt_accel_default());
+}
+
+static void print_summary(const Run *run) {
+    const Options *o = run->options;
+    const RtSampling *s = &run->scene.sampling;
+    RtDescription d;
+    rt_accel_describe(run->accel, &d);
+    printf("%s: %u objects, %u lights. %s: built in %.3g s, %.3g MB. %u x %u pixels%s",
+           run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
+           run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,
+           s->corners ? " at their corners" : "");
+    if (total_rays(run) > 0)
+        print_rays(run);
+    else
+        printf(", not traced: the picture shows cells alone.");
     const char *written[MOST_OUTPUTS];
     size_t count = list_outputs(o, written);
     for (size_t i = 0; i < count; i++) printf("%s%s", i ? ", " : " Wrote ", written[i]);

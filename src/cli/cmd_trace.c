@@ -36,19 +36,9 @@ static const struct argp_option options[] = {
     {"json", 'j', 0, 0, "One JSON document on stdout, with all rows", 0},
     {0}};
 
-static void parse_kind(Options *o, struct argp_state *state, const char *text) {
-    RtError error;
-    if (rt_ray_kind_parse(text, &o->kind, &error) == RT_OK && o->kind <= RT_RAY_TRANSMISSION) return;
-    argp_error(state, "--rays: invalid value '%s': expected primary, shadow, reflection or transmission",
-               text);
-}
-
 static void check_options(const Options *o, struct argp_state *state) {
     if (!o->scene) argp_error(state, "a SCENE is needed: a file or a built-in, as `raytally scenes` lists");
     if (!o->aimed) argp_error(state, "say which ray: --pixel X,Y");
-    size_t length = o->svg ? strlen(o->svg) : 0;
-    if (o->svg && (length < 5 || strcmp(o->svg + length - 4, ".svg") != 0))
-        argp_error(state, "--svg: invalid value '%s': expected a file name that ends in .svg", o->svg);
 }
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
@@ -57,10 +47,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'p': rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true; return 0;
     case 'a': o->accel = argument; return 0;
     case 's': rt_cli_size(state, argument, &o->width, &o->height); return 0;
-    case 'k': parse_kind(o, state, argument); return 0;
+    case 'k': o->kind = rt_cli_image_ray_kind(state, "--rays", argument); return 0;
     case 'j': o->json = true; return 0;
     case KEY_LIGHT: o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX); return 0;
-    case KEY_SVG: o->svg = argument; return 0;
+    case KEY_SVG: rt_cli_set_path(state, "--svg", &o->svg, argument, ".svg"); return 0;
     case KEY_ROWS: o->rows = rt_cli_integer(state, "--rows", argument, 0, UINT32_MAX); return 0;
     case ARGP_KEY_ARG:
         if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);
@@ -131,16 +121,24 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
     if (joined + left_out > 0) puts("       --rows 0 prints each");
 }
 
-static void print_answer(const RtPath *path, const RtGeometry *g) {
-    const RtTally *t = &path->tally;
+static void print_counts(const RtTally *t) {
+    bool any = false;
     printf("\nin all:");
     for (size_t i = 2; i < RT_TALLY_COUNTER_COUNT; i++) { /* without rays and hits */
         if (rt_tally_get(t, i) == 0) continue;
         printf(" %llu %s,", (unsigned long long)rt_tally_get(t, i), rt_tally_name(i));
+        any = true;
     }
-    printf(" as the counted kernel says too\n");
+    puts(any ? " as the counted kernel says too" : " nothing is counted");
+}
+
+static void print_answer(const RtPath *path, const RtGeometry *g) {
     if (path->hit.object == RT_NO_OBJECT) {
         puts(path->any ? "nothing blocks it" : "it hits nothing");
+        return;
+    }
+    if (path->hit.object == RT_UNNAMED_OBJECT) {
+        puts("it is blocked");
         return;
     }
     RtVec3d p = rt_ray_point(&path->ray, path->hit.t);
@@ -157,6 +155,7 @@ static void print_path(const RtPath *path, const Options *o, const char *title, 
            (double)r->org.x, (double)r->org.y, (double)r->org.z, (double)r->dir.x, (double)r->dir.y,
            (double)r->dir.z, (double)r->tmin, (double)r->tmax);
     print_rows(path, o, g);
+    print_counts(&path->tally);
     print_answer(path, g);
 }
 
@@ -175,33 +174,39 @@ static json_t *row_json(const RtPathRow *row) {
         rt_json_number(is_in ? row->leave : (double)NAN), "t",
         rt_json_number(row->kind == RT_TRACED_OBJECT_TEST && row->met ? (double)row->t : (double)NAN),
         "nearest", rt_json_number((double)row->nearest));
-    if (json && row->boxed)
-        json_object_set_new(json, "box",
-                            json_pack("[o, o]", vector_json(row->box.lo), vector_json(row->box.hi)));
-    return json;
+    if (!json || !row->boxed) return json;
+    json_t *box = json_pack("[o, o]", vector_json(row->box.lo), vector_json(row->box.hi));
+    if (json_object_set_new(json, "box", box) == 0) return json;
+    json_decref(json);
+    return NULL;
 }
 
+/* All rows or, where memory is short, NULL. */
+static json_t *rows_json(const RtPath *path) {
+    json_t *rows = json_array();
+    for (uint32_t i = 0; rows && i < path->count; i++) {
+        if (json_array_append_new(rows, row_json(&path->rows[i])) == 0) continue;
+        json_decref(rows);
+        return NULL;
+    }
+    return rows;
+}
+
+/* `object` is null where none is hit, and where it is only known that one blocks the ray; `blocked` is null
+ * for rays of which the nearest hit is asked. */
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
-    json_t *rows = json_array();
-    for (uint32_t i = 0; i < path->count; i++) json_array_append_new(rows, row_json(&path->rows[i]));
-    return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene", o->scene,
-                     "accel", spec, "pixel", (int)o->x, (int)o->y, "kind", rt_ray_kind_name(o->kind), "org",
-                     vector_json(r->org), "dir", vector_json(r->dir), "tmin", rt_json_number((double)r->tmin),
-                     "tmax", rt_json_number((double)r->tmax), "rows", rows, "counts",
-                     rt_json_tally(&path->tally), "object",
-                     path->hit.object == RT_NO_OBJECT ? json_null() : json_integer(path->hit.object), "t",
+    return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",
+                     o->scene, "accel", spec, "pixel", (int)o->x, (int)o->y, "kind",
+                     rt_ray_kind_name(o->kind), "org", vector_json(r->org), "dir", vector_json(r->dir),
+                     "tmin", rt_json_number((double)r->tmin), "tmax", rt_json_number((double)r->tmax), "rows",
+                     rows_json(path), "counts", rt_json_tally(&path->tally), "object",
+                     path->hit.object >= RT_UNNAMED_OBJECT ? json_null() : json_integer(path->hit.object),
+                     "blocked", path->any ? json_boolean(path->hit.object != RT_NO_OBJECT) : json_null(), "t",
                      rt_json_number((double)path->hit.t));
 }
 
 /* ---- the command ---- */
-
-static RtStatus check_pixel(const Options *o, const RtSampling *s, RtError *error) {
-    if (o->x < s->width && o->y < s->height) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "--pixel %u,%u is outside of the image, which is %u x %u: choose 0..%u,0..%u", o->x, o->y,
-                   s->width, s->height, s->width - 1, s->height - 1);
-}
 
 static RtStatus trace(const Options *o, const RtScene *scene, RtAccel *accel, const char *spec,
                       RtError *error) {
@@ -232,9 +237,10 @@ static RtStatus run(const Options *o, RtError *error) {
     RtAccel *accel = NULL;
     RT_TRY(rt_spec_parse(o->accel, &spec, error));
     rt_spec_format(&spec, text);
+    if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &scene, error));
     RtStatus status = rt_scene_sample(&scene, o->width, o->height, 1, false, error);
-    if (status == RT_OK) status = check_pixel(o, &scene.sampling, error);
+    if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
     if (status == RT_OK) status = trace(o, &scene, accel, text, error);
     rt_accel_destroy(accel);

@@ -59,17 +59,6 @@ static const struct argp_option options[] = {
      "Of two --accel: the first less the second, too, red where the first costs more", 2},
     {0}};
 
-void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
-                     const char *extension) {
-    size_t length = strlen(path), tail = strlen(extension);
-    if (length <= tail || strcmp(path + length - tail, extension) != 0) {
-        argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
-                   extension);
-    }
-    if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
-    *slot = path;
-}
-
 static size_t counter_by_name(struct argp_state *state, const char *name) {
     const char *names[RT_TALLY_COUNTER_COUNT];
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
@@ -94,11 +83,14 @@ static void parse_heatmap(RtPictureOptions *o, struct argp_state *state, const c
 
 /* "3" or "2..5" */
 static void parse_level(RtStructureOptions *boxes, struct argp_state *state, const char *text) {
-    char end;
-    bool one = sscanf(text, "%u%c", &boxes->first_level, &end) == 1;
-    bool range = !one && sscanf(text, "%u..%u%c", &boxes->first_level, &boxes->last_level, &end) == 2;
-    if (one) boxes->last_level = boxes->first_level;
-    if ((!one && !range) || strchr(text, '-') || boxes->first_level > boxes->last_level)
+    const char *at = text;
+    bool good = rt_cli_digits(&at, &boxes->first_level);
+    boxes->last_level = boxes->first_level;
+    if (good && strncmp(at, "..", 2) == 0) {
+        at += 2;
+        good = rt_cli_digits(&at, &boxes->last_level);
+    }
+    if (!good || *at || boxes->first_level > boxes->last_level)
         argp_error(state, "--level: invalid value '%s': expected a level or a range, as in 3 or 2..5", text);
 }
 
@@ -116,12 +108,7 @@ static void parse_slice(RtPictureOptions *o, struct argp_state *state, const cha
 }
 
 static void parse_rays(RtPictureOptions *o, struct argp_state *state, const char *text) {
-    RtError error;
-    RtRayKind kind;
-    if (rt_ray_kind_parse(text, &kind, &error) != RT_OK || kind > RT_RAY_TRANSMISSION)
-        argp_error(state,
-                   "--heatmap-rays: invalid value '%s': expected primary, shadow, reflection or transmission",
-                   text);
+    RtRayKind kind = rt_cli_image_ray_kind(state, "--heatmap-rays", text);
     o->kinds = 1u << kind;
     o->heat.rays = rt_ray_kind_name(kind);
 }
@@ -145,16 +132,16 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     switch (key) {
     case KEY_STRUCTURE: rt_cli_set_path(state, "--structure", &o->structure, argument, ".png"); return 0;
     case KEY_HEATMAP: parse_heatmap(o, state, argument); return 0;
-    case KEY_LAYER: o->layer = argument, o->structural = "--layer"; return 0;
-    case KEY_LEVEL: parse_level(&o->boxes, state, argument), o->structural = "--level"; return 0;
-    case KEY_LEAVES: o->boxes.leaves = true, o->structural = "--leaves"; return 0;
-    case KEY_SLICE: parse_slice(o, state, argument), o->structural = "--slice"; return 0;
+    case KEY_LAYER: o->layer = argument; return 0;
+    case KEY_LEVEL: parse_level(&o->boxes, state, argument), o->of_boxes = "--level"; return 0;
+    case KEY_LEAVES: o->boxes.leaves = true, o->of_boxes = "--leaves"; return 0;
+    case KEY_SLICE: parse_slice(o, state, argument), o->of_boxes = "--slice"; return 0;
     case KEY_LIGHT:
         o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX),
-        o->structural = "--light";
+        o->of_light = "--light";
         return 0;
     case KEY_PIXEL:
-        rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true, o->structural = "--pixel";
+        rt_cli_pixel(state, argument, &o->x, &o->y), o->aimed = true, o->of_light = "--pixel";
         return 0;
     case KEY_MAX: parse_max(o, state, argument), o->thermal = "--heatmap-max"; return 0;
     case KEY_SCALE: parse_scale(o, state, argument), o->thermal = "--heatmap-scale"; return 0;
@@ -168,9 +155,10 @@ const struct argp rt_picture_argp = {.options = options, .parser = parse_option}
 
 void rt_pictures_finish(RtPictureOptions *o, uint32_t accels, struct argp_state *state) {
     bool heats = rt_pictures_any_heatmap(o);
-    if (o->structural && !o->structure)
+    const char *structural = o->layer ? "--layer" : o->of_boxes ? o->of_boxes : o->of_light;
+    if (structural && !o->structure)
         argp_error(state, "%s is about the picture of a structure: say where it goes, --structure FILE.png",
-                   o->structural);
+                   structural);
     if (o->thermal && !heats)
         argp_error(state, "%s is about heatmaps: say of what, --heatmap COUNTER FILE.png", o->thermal);
     if (o->heat.difference && accels != 2)
@@ -194,13 +182,40 @@ size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t co
 
 /* ---- writing ---- */
 
+/* Of the overlays that look rays up in cells, those for shadow rays. */
+static bool has_cells_of_lights(const RtAccel *layer) {
+    return layer->ops->look_up && layer->ops->kinds >> RT_RAY_SHADOW & 1;
+}
+
+RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtError *error) {
+    const RtAccel *layer;
+    if (!o->structure) return RT_OK;
+    RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
+    if (o->of_boxes && layer->ops->look_up)
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s is for layers that have boxes, such as bvh or grid, and the picture is of %s: leave "
+            "it out, or choose another layer by --layer",
+            o->of_boxes, layer->ops->name);
+    if (o->of_light && !has_cells_of_lights(layer))
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s is for the cells around a light, which the layer light has, and the picture is of "
+                       "%s: leave it out, or draw light, as of --accel light:cells=64+bvh",
+                       o->of_light, layer->ops->name);
+    return RT_OK;
+}
+
+bool rt_pictures_need_frame(const RtPictureOptions *o, const RtAccel *accel) {
+    RtError error;
+    const RtAccel *layer;
+    return rt_structure_layer(accel, o->layer, &layer, &error) == RT_OK && !layer->ops->look_up;
+}
+
 static RtStatus image_of_cells(const RtPictureOptions *o, const RtAccel *accel, const RtAccel *layer,
                                RtImage *image, RtError *error) {
     RtRay ray;
     const RtSampling *s = &accel->scene->sampling;
-    if (o->aimed && (o->x >= s->width || o->y >= s->height))
-        return rt_fail(error, RT_BAD_INPUT, "--pixel %u,%u is outside of the image, which is %u x %u", o->x,
-                       o->y, s->width, s->height);
+    if (o->aimed) RT_TRY(rt_cli_check_pixel(s, o->x, o->y, error));
     if (o->aimed && o->light < accel->scene->light_count) {
         RtFootprint f = rt_pixel_footprint(s, o->x, o->y);
         RT_TRY(rt_path_ray(accel, RT_RAY_SHADOW, f.column + f.span / 2, f.row + f.span / 2, o->light, &ray,

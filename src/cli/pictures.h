@@ -16,11 +16,12 @@ typedef struct RtPictureOptions {
     RtStructureOptions boxes;
     bool in_middle; /* the slice is in the middle of the scene, and boxes.at is not set */
     RtHeatmapOptions heat;
-    uint32_t kinds;         /* of rays, bits; 0: all */
-    uint32_t light, x, y;   /* of an overlay for shadow rays; the pixel of the ray that is marked */
-    bool aimed;             /* there is such a pixel */
-    const char *structural; /* an option that was given and needs --structure, or NULL */
-    const char *thermal;    /* one that needs --heatmap */
+    uint32_t kinds;       /* of rays, bits; 0: all */
+    uint32_t light, x, y; /* of an overlay for shadow rays; the pixel of the ray that is marked */
+    bool aimed;           /* there is such a pixel */
+    /* Options that were given, or NULL: one of pictures of boxes alone, one of pictures of the cells around a
+     * light alone, and one that needs --heatmap. */
+    const char *of_boxes, *of_light, *thermal;
 } RtPictureOptions;
 
 extern const struct argp rt_picture_argp;
@@ -33,13 +34,15 @@ bool rt_pictures_any_heatmap(const RtPictureOptions *o);
 /* Appends the paths that will be written to paths[0..count); gives how many there are then. */
 size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t count);
 
-/* For parsers: stores `path` in *slot, or argp_error's exit where it does not end in `extension` or there is
- * one. */
-void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
-                     const char *extension);
+/* With --structure: RT_BAD_INPUT where an option was given that the layer to be drawn does not take. */
+RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtError *error);
 
-/* Writes the picture of the structure. `frame` is of the accelerator's scene; overlays that have cells need
- * none. */
+/* With --structure, after rt_pictures_check: whether the picture shows the image of the scene, too, which
+ * that of an overlay's cells does not. */
+bool rt_pictures_need_frame(const RtPictureOptions *o, const RtAccel *accel);
+
+/* Writes the picture of the structure, after rt_pictures_check. `frame` is of the accelerator's scene, and
+ * empty where there is no need of it. */
 RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, const RtFrame *frame,
                                RtError *error);
 

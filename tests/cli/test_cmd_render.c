@@ -15,6 +15,7 @@
 
 #define OUT   RT_BINARY_DIR "/test_cmd_render"
 #define STATS OUT ".json"
+#define SMALL "balls:size=1 --size 8x8 "
 
 /* Runs `raytally render ARGUMENTS`, output and messages to OUT.txt; gives the exit code. */
 static int render(const char *arguments) {
@@ -156,6 +157,38 @@ RT_TEST(work_of_the_build_is_reported_apart_from_tracing) {
     }
 }
 
+RT_TEST(a_picture_of_cells_alone_takes_no_image_of_the_scene) {
+    const char *const layers[] = {"item:settle=off", "light:cells=8"};
+    for (int i = 0; i < 2; i++) {
+        char arguments[512];
+        snprintf(arguments, sizeof arguments, SMALL "--accel %s+bvh --structure " OUT ".png", layers[i]);
+        assert_int_equal(render(arguments), 0);
+        assert_says("8 x 8 pixels, not traced: the picture shows cells alone");
+        snprintf(arguments, sizeof arguments,
+                 SMALL "--accel %s+bvh --structure " OUT ".with.png -o " OUT ".image.png", layers[i]);
+        assert_int_equal(render(arguments), 0);
+        assert_says("64 primary");
+        assert_int_equal(system("cmp '" OUT ".png' '" OUT ".with.png'"), 0);
+    }
+    assert_int_equal(render(SMALL "--accel item+bvh --layer bvh --structure " OUT ".png"), 0);
+    assert_says("64 primary");
+    assert_says("for the picture alone");
+    unlink(OUT ".png");
+    unlink(OUT ".with.png");
+    unlink(OUT ".image.png");
+    unlink(OUT ".txt");
+}
+
+RT_TEST(options_of_structures_are_taken_by_the_layer_that_they_are_for) {
+    assert_int_equal(render(SMALL "--accel light:cells=8+bvh --light 1 --pixel 4,6 --structure " OUT ".png"),
+                     0);
+    assert_int_equal(render(SMALL "--accel light:cells=8+bvh --layer bvh --level 0..9 --leaves --slice z "
+                                  "--structure " OUT ".png"),
+                     0);
+    unlink(OUT ".png");
+    unlink(OUT ".txt");
+}
+
 RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
     const struct {
         const char *arguments, *says;
@@ -182,18 +215,31 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --accel bvh --accel kd -o " OUT ".png", "several accelerators are for --heatmap"},
         {"balls --level 3 -o " OUT ".png", "--structure FILE.png"},
         {"balls --level 5..3 --structure " OUT ".png", "as in 3 or 2..5"},
+        {"balls --level 4294967296 --structure " OUT ".png", "as in 3 or 2..5"},
+        {"balls --level 0..4294967297 --structure " OUT ".png", "as in 3 or 2..5"},
+        {"balls --level 2.. --structure " OUT ".png", "as in 3 or 2..5"},
+        {"balls --level -1 --structure " OUT ".png", "as in 3 or 2..5"},
         {"balls --slice w --structure " OUT ".png", "as in z or z=0.5"},
         {"balls --slice z= --structure " OUT ".png", "as in z or z=0.5"},
         {"balls:size=1 --size 8x8 --level 40 --structure " OUT ".png", "none of the"},
         {"balls:size=1 --size 8x8 --layer grid --structure " OUT ".png", "no layer 'grid'"},
         {"balls:size=1 --size 8x8 --accel light:cells=8+bvh --light 3 --structure " OUT ".png", "no light 3"},
-        {"balls:size=1 --size 8x8 --accel light:cells=8+bvh --pixel 8,0 --structure " OUT ".png", "8 x 8"},
+        {"balls:size=1 --size 8x8 --accel light:cells=8+bvh --pixel 8,0 --structure " OUT ".png",
+         "choose 0..7,0..7"},
+        {SMALL "--light 99 --structure " OUT ".png", "--light is for the cells around a light"},
+        {SMALL "--pixel 4,4 --structure " OUT ".png", "--pixel is for the cells around a light"},
+        {SMALL "--accel item+bvh --pixel 0,0 --structure " OUT ".png", "the picture is of item"},
+        {SMALL "--accel item+bvh --slice z --structure " OUT ".png", "--slice is for layers that have boxes"},
+        {SMALL "--accel light:cells=8+bvh --level 2 --structure " OUT ".png", "the picture is of light"},
+        {SMALL "--accel light:cells=8+bvh --leaves --structure " OUT ".png", "--leaves is for layers"},
+        {SMALL "--accel light:cells=8+bvh --layer bvh --light 0 --structure " OUT ".png", "of bvh"},
         {"balls --heatmap step " OUT ".png", "mean 'steps'"},
         {"balls --heatmap steps " OUT ".png --heatmap steps " OUT ".2.png", "--heatmap steps: both"},
         {"balls --heatmap steps " OUT ".png --heatmap object_tests " OUT ".png", "written twice"},
         {"balls -o " OUT ".png --structure " OUT ".png", "written twice"},
         {"balls --structure " OUT ".png --structure " OUT ".2.png", "--structure: both"},
         {"balls --stats " OUT ".txt", ".json"},
+        {"'no\xff.yaml' --stats " OUT ".json", "is not UTF-8"},
         {"balls --accel brute --structure " OUT ".png", "no picture of"},
         {"balls:size=1 --size 8x8 -o " OUT "/nowhere/a.png", "nowhere"},
     };

@@ -79,9 +79,10 @@ RT_TEST(every_accelerator_says_the_same_of_where_a_ray_ends) {
     static char line[256];
     FILE *file = fopen(OUT ".txt", "r");
     assert_non_null(file);
-    while (fgets(line, sizeof line, file) && strncmp(line, "its nearest hit is", 18) != 0) {
-    }
+    bool found = false;
+    while (!found && fgets(line, sizeof line, file)) found = strncmp(line, "its nearest hit is", 18) == 0;
     fclose(file);
+    assert_true(found);
     assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel item+kd"), 0);
     assert_true(says(OUT ".txt", line));
     unlink(OUT ".txt");
@@ -96,6 +97,32 @@ RT_TEST(a_shadow_ray_is_followed_through_overlays) {
     assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,32 --rays reflection"), 0);
     assert_true(says(OUT ".txt", "the reflection ray"));
     unlink(OUT ".txt");
+}
+
+/* Embree's own kernels count nothing and name no blocker; skipped where it was not built in. */
+RT_TEST(a_blocker_that_is_not_named_has_no_number) {
+    const char *arguments = "balls:size=2 --size 64x64 --pixel 20,44 --rays shadow --accel embree";
+    if (trace(arguments) == 2 && says(OUT ".err", "without Embree")) return;
+    assert_int_equal(trace(arguments), 0);
+    assert_true(says(OUT ".txt", "it is blocked\n"));
+    assert_true(says(OUT ".txt", "in all: nothing is counted\n"));
+    json_t *path = path_of(arguments);
+    assert_true(json_is_null(json_object_get(path, "object")));
+    assert_true(json_is_true(json_object_get(path, "blocked")));
+    json_decref(path);
+    path = path_of("balls:size=2 --size 64x64 --pixel 20,44 --rays shadow --accel bvh");
+    assert_true(json_is_integer(json_object_get(path, "object")));
+    assert_true(json_is_true(json_object_get(path, "blocked")));
+    json_decref(path);
+    path = path_of("balls:size=2 --size 64x64 --pixel 20,40 --rays shadow --accel bvh");
+    assert_true(json_is_null(json_object_get(path, "object")));
+    assert_true(json_is_false(json_object_get(path, "blocked")));
+    json_decref(path);
+    path = path_of("balls:size=2 --size 64x64 --pixel 20,44 --accel bvh");
+    assert_true(json_is_null(json_object_get(path, "blocked")));
+    json_decref(path);
+    unlink(OUT ".txt");
+    unlink(OUT ".err");
 }
 
 RT_TEST(many_object_tests_that_miss_are_one_row_unless_each_is_asked_for) {
@@ -125,10 +152,17 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls", "--pixel X,Y"},
         {"balls --pixel 3", "as in 256,200"},
         {"balls --pixel -1,2", "as in 256,200"},
+        {"balls --pixel 4294967300,1", "as in 256,200"},
+        {"balls --pixel 1,4294967296", "as in 256,200"},
+        {"balls --pixel 18446744073709551620,1", "as in 256,200"},
+        {"balls --pixel ' 1,1'", "as in 256,200"},
+        {"balls --pixel 1,1,", "as in 256,200"},
         {"balls --pixel 512,0", "choose 0..511,0..511"},
         {"balls --pixel 0,0 --accel bvhh", "mean 'bvh'"},
         {"balls --pixel 0,0 --rays random", "expected primary"},
         {"balls --pixel 0,0 --svg a.png", ".svg"},
+        {"'no\xff.yaml' --pixel 0,0 --json", "is not UTF-8"},
+        {"balls --pixel 0,0 --svg a.svg --svg b.svg", "one file is written"},
         {"balls --pixel 0,0 tetra", "one SCENE"},
         {"balls --pixel 256,256 --rays shadow --light 3", "there is no light 3"},
         {"tetra --pixel 0,0 --rays shadow", "hits nothing"},
