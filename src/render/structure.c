@@ -4,6 +4,7 @@
  * with alike. */
 #include "render/structure.h"
 
+#include "base/clamp.h"
 #include "base/elementary.h"
 #include "base/transform.h"
 #include "render/draw.h"
@@ -176,15 +177,11 @@ static double y_of(const Drawing *d, double at) {
     return (d->top - at) * d->scale;
 }
 
-static double within(double value, double lo, double hi) {
-    return fmin(fmax(value, lo), hi);
-}
-
 static void fill_rectangle(const Drawing *d, const RtBox *box, RtColor color, double opacity) {
-    double from = within(x_of(d, (double)box->lo.at[d->across]), 0, d->width);
-    double to = within(x_of(d, (double)box->hi.at[d->across]), -1, d->width - 1);
-    double top = within(y_of(d, (double)box->hi.at[d->up]), 0, d->height);
-    double bottom = within(y_of(d, (double)box->lo.at[d->up]), -1, d->height - 1);
+    double from = rt_clampd(x_of(d, (double)box->lo.at[d->across]), 0, d->width);
+    double to = rt_clampd(x_of(d, (double)box->hi.at[d->across]), -1, d->width - 1);
+    double top = rt_clampd(y_of(d, (double)box->hi.at[d->up]), 0, d->height);
+    double bottom = rt_clampd(y_of(d, (double)box->lo.at[d->up]), -1, d->height - 1);
     for (int y = (int)top; y <= (int)bottom; y++) {
         for (int x = (int)from; x <= (int)to; x++) {
             bool edge = x == (int)from || x == (int)to || y == (int)top || y == (int)bottom;
@@ -193,12 +190,11 @@ static void fill_rectangle(const Drawing *d, const RtBox *box, RtColor color, do
     }
 }
 
-/* Lines that are far outside go no farther than a picture beyond its sides. */
+/* Of a line what is over the section, whose last row and column end just before d->height and d->width. */
 static void line_between(const Drawing *d, double x0, double y0, double x1, double y1, RtColor color) {
-    double w = d->width, h = d->height;
-    if (fmin(y0, y1) >= h) return;
-    rt_draw_line(d->image, within(x0, -w, 2 * w), within(y0, -h, h - 1), within(x1, -w, 2 * w),
-                 within(y1, -h, h - 1), color, 0.8);
+    double a[2] = {x0, y0}, b[2] = {x1, y1}, hi[2] = {d->width - 1e-6, d->height - 1e-6};
+    if (rt_section_clip(a, b, (double[2]){0, 0}, hi))
+        rt_draw_line(d->image, a[0], a[1], b[0], b[1], color, 0.8);
 }
 
 /* Row by row, from the edge on the left to the edge on the right. */
@@ -214,8 +210,8 @@ static void fill_section(const Drawing *d, const RtVec3d *corners, uint32_t coun
             double x = xa + (xb - xa) * (row - ya) / (yb - ya);
             from = fmin(from, x), to = fmax(to, x);
         }
-        int last = (int)within(to, -1, d->width - 1);
-        for (int x = (int)within(from, 0, d->width); x <= last; x++)
+        int last = (int)rt_clampd(to, -1, d->width - 1);
+        for (int x = (int)rt_clampd(from, 0, d->width); x <= last; x++)
             rt_draw_pixel(d->image, x, y, color, opacity);
     }
     for (uint32_t i = 0; i < count; i++) {
