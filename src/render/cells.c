@@ -198,11 +198,7 @@ static RtStatus image_of_cube(RtImage *image, const RtAccel *layer, uint32_t lig
     if (light >= scene->light_count)
         return rt_fail(error, RT_BAD_INPUT, "there is no light %u: the scene has %u, the first being 0",
                        light, scene->light_count);
-    Cube cube = {.layer = layer,
-                 .light = light,
-                 .side = SIDE,
-                 .up = rt_major_axis((RtVec3){
-                     {fabsf(scene->camera.up.x), fabsf(scene->camera.up.y), fabsf(scene->camera.up.z)}})};
+    Cube cube = {.layer = layer, .light = light, .side = SIDE, .up = rt_major_axis(scene->camera.up)};
     cube.cells = rt_alloc((size_t)12 * SIDE * SIDE, sizeof(RtCellView));
     if (!cube.cells)
         return rt_fail_memory(error, "a picture of cells", (size_t)12 * SIDE * SIDE * sizeof(RtCellView));

@@ -68,7 +68,7 @@ static void put_pixel(RtImage *image, const Drawing *d, uint32_t panel, uint32_t
 /* As much of a text as fits into a panel, or, in a single one, into the image. */
 static void put_text(RtImage *image, const Drawing *d, uint32_t panel, int y, const char *text) {
     char part[160];
-    uint32_t room = d->options->difference || d->count > 1 ? d->width : image->width;
+    uint32_t room = d->options->difference || d->count > 1 ? d->pitch - GAP : image->width;
     size_t fits = (room - 2 * MARGIN * (uint32_t)d->dot) / (6 * (uint32_t)d->dot);
     snprintf(part, sizeof part, "%.*s", (int)(fits < sizeof part ? fits : sizeof part - 1), text);
     rt_draw_text(image, (int)(panel * d->pitch) + MARGIN * d->dot, y, d->dot, part, RT_WHITE);
@@ -109,7 +109,7 @@ static void draw_legend(RtImage *image, const Drawing *d) {
     char text[160];
     rt_draw_scale(image, left, top, (int)width - 2 * left, d->dot, &d->scale);
     if (d->options->difference)
-        rt_draw_scale(image, (int)(2 * d->pitch) + left, top, (int)d->width - 2 * left, d->dot,
+        rt_draw_scale(image, (int)(2 * d->pitch) + left, top, (int)(d->pitch - GAP) - 2 * left, d->dot,
                       &d->difference);
     snprintf(text, sizeof text, "%s  %s  %s rays", rt_tally_name(d->options->counter),
              d->scale.logarithmic ? "log" : "linear", d->options->rays ? d->options->rays : "all");

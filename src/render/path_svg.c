@@ -3,6 +3,7 @@
  * which the ray runs least along: boxes are upright rectangles in it, spheres circles, exactly those that the
  * ray goes through are crossed by it, and what is to the right comes later. The lower part has a row for each
  * row of the path, a bar where the ray is in its box: a place on the ray is at the same x in both. */
+#include "base/clamp.h"
 #include "base/file.h"
 #include "base/table.h"
 #include "render/draw.h"
@@ -10,7 +11,8 @@
 #include "render/section.h"
 
 enum { WIDTH = 1000, LEFT = 250, PLOT = WIDTH - LEFT - 20 }; /* of the common x axis, pixels */
-enum { TOP = 64, SECTION = 330, GAP = 46, ROW = 14, MOST_ROWS = 90 };
+enum { FAR = 1000000 };                                      /* the largest radius, pixels */
+enum { TOP = 64, SECTION = 330, GAP = 46, ROW = 14, MOST_ROWS = 90, MOST_TICKS = 20 };
 
 /* Across the picture goes s, world units along the ray without what it does along `axis`; up goes `axis`. */
 typedef struct Drawing {
@@ -84,7 +86,7 @@ static void choose_window(Drawing *d) {
         first = (double)path->ray.tmin,
         last = isfinite((double)path->ray.tmax) ? (double)path->ray.tmax : first + 1;
     if (path->ray.kind != RT_RAY_PRIMARY) first = fmin(first, 0);
-    if (last <= first) last = first + fmax(1e-3, 1e-3 * first);
+    if (last - first <= 1e-6 * fabs(last)) last = first + fmax(1e-3, 1e-3 * first); /* room for ticks */
     d->farthest = last + 0.04 * (last - first);
     double from = (first - 0.06 * (last - first)) * d->speed, to = d->farthest * d->speed;
     d->scale = PLOT / (to - from);
@@ -102,8 +104,17 @@ static void put_color(const Drawing *d, uint32_t row) {
     fprintf(d->out, "#%02x%02x%02x", c.rgb[0], c.rgb[1], c.rgb[2]);
 }
 
-static double within(double value, double lo, double hi) {
-    return fmin(fmax(value, lo), hi);
+/* Numbers that viewers do not like, of a circle that is far larger than the picture or far outside, become a
+ * circle's of up to radius FAR: it goes by the middle of the picture on the same side and as near, where its
+ * arc is within a tenth of a pixel as straight. */
+static void limit_circle(double *x, double *y, double *r) {
+    double middle[2] = {LEFT + PLOT / 2.0, TOP + SECTION / 2.0}, dx = *x - middle[0], dy = *y - middle[1];
+    double away = sqrt(dx * dx + dy * dy), radius = fmin(*r, FAR);
+    if (*r <= FAR && away <= FAR) return;
+    double moved = radius + rt_clampd(away - *r, -2 * WIDTH, 2 * WIDTH);
+    *x = middle[0] + (away > 0 ? dx / away * moved : 0);
+    *y = middle[1] + (away > 0 ? dy / away * moved : 0);
+    *r = radius;
 }
 
 /* The start of a circle's element: false where the plane passes by the ball. */
@@ -111,8 +122,10 @@ static bool draw_circle(const Drawing *d, RtVec3d at, double r) {
     RtVec3d center = rt_subd(at, d->org);
     double off = rt_dotd(center, d->normal);
     if (!(fabs(off) < r)) return false;
-    fprintf(d->out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" ", x_of(d, rt_dotd(center, d->along)),
-            y_of(d, at.at[d->axis]), sqrt(r * r - off * off) * d->scale);
+    double x = x_of(d, rt_dotd(center, d->along)), y = y_of(d, at.at[d->axis]);
+    double around = sqrt(r * r - off * off) * d->scale;
+    limit_circle(&x, &y, &around);
+    fprintf(d->out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" ", x, y, around);
     return true;
 }
 
@@ -121,9 +134,10 @@ static bool draw_rectangle(const Drawing *d, const RtBox *box) {
     double from, to;
     if (!section_of_box(d, box, &from, &to)) return false;
     /* What is far outside would be numbers that viewers do not like. */
-    double left = within(x_of(d, from), -WIDTH, 2 * WIDTH), right = within(x_of(d, to), -WIDTH, 2 * WIDTH);
-    double top = within(y_of(d, (double)box->hi.at[d->axis]), -WIDTH, 2 * WIDTH);
-    double bottom = within(y_of(d, (double)box->lo.at[d->axis]), -WIDTH, 2 * WIDTH);
+    double left = rt_clampd(x_of(d, from), -WIDTH, 2 * WIDTH),
+           right = rt_clampd(x_of(d, to), -WIDTH, 2 * WIDTH);
+    double top = rt_clampd(y_of(d, (double)box->hi.at[d->axis]), -WIDTH, 2 * WIDTH);
+    double bottom = rt_clampd(y_of(d, (double)box->lo.at[d->axis]), -WIDTH, 2 * WIDTH);
     fprintf(d->out, "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" ", left, top, right - left,
             bottom - top);
     return true;
@@ -157,13 +171,14 @@ static void draw_sphere(const Drawing *d, const RtSphere *sphere, const char *st
 static void draw_flat(const Drawing *d, const RtVec3 *corners, uint32_t count, const char *style) {
     RtVec3d cut[2];
     if (!rt_section_flat(corners, count, d->org, d->normal, cut)) return;
-    double x[2], y[2];
+    double ends[2][2], lo[2] = {-WIDTH, -WIDTH}, hi[2] = {2 * WIDTH, 2 * WIDTH};
     for (int i = 0; i < 2; i++) {
-        x[i] = within(x_of(d, rt_dotd(rt_subd(cut[i], d->org), d->along)), -WIDTH, 2 * WIDTH);
-        y[i] = within(y_of(d, cut[i].at[d->axis]), -WIDTH, 2 * WIDTH);
+        ends[i][0] = x_of(d, rt_dotd(rt_subd(cut[i], d->org), d->along));
+        ends[i][1] = y_of(d, cut[i].at[d->axis]);
     }
-    fprintf(d->out, "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" %s/>\n", x[0], y[0], x[1], y[1],
-            style);
+    if (!rt_section_clip(ends[0], ends[1], lo, hi)) return;
+    fprintf(d->out, "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" %s/>\n", ends[0][0], ends[0][1],
+            ends[1][0], ends[1][1], style);
 }
 
 static void draw_object(const Drawing *d, const RtPathRow *row) {
@@ -222,8 +237,8 @@ static void draw_section(const Drawing *d) {
 
 static void draw_bar(const Drawing *d, uint32_t i, double y) {
     const RtPathRow *row = &d->path->rows[i];
-    double from = within(x_of(d, row->enter * d->speed), LEFT, LEFT + PLOT);
-    double to = within(x_of(d, row->leave * d->speed), LEFT, LEFT + PLOT);
+    double from = rt_clampd(x_of(d, row->enter * d->speed), LEFT, LEFT + PLOT);
+    double to = rt_clampd(x_of(d, row->leave * d->speed), LEFT, LEFT + PLOT);
     bool leaf = row->kind == RT_TRACED_STEP && row->leaf;
     bool missed = row->kind == RT_TRACED_EXTENT_TEST && !row->met;
     if (!row->boxed || !(row->enter <= row->leave)) return;
@@ -282,8 +297,9 @@ static void draw_axis(const Drawing *d, double y, double bottom) {
         step *= 5;
     else if (2 * step < (to - from) / 4)
         step *= 2;
-    for (double k = ceil(from / step); k * step <= to; k++) {
-        double t = k * step + 0.0, x = x_of(d, t * d->speed);
+    double first = ceil(from / step);
+    for (int i = 0; i < MOST_TICKS && (first + i) * step <= to; i++) {
+        double t = (first + i) * step + 0.0, x = x_of(d, t * d->speed);
         fprintf(d->out,
                 "<line x1=\"%.2f\" y1=\"%.1f\" x2=\"%.2f\" y2=\"%.1f\" stroke=\"#ddd\"/>"
                 "<text x=\"%.2f\" y=\"%.1f\" text-anchor=\"middle\" fill=\"#555\">t = %.6g</text>\n",

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where a plane cuts flat shapes. */
+/* Where a plane cuts flat shapes, and what of the cut is to be seen. */
 #ifndef RT_RENDER_SECTION_H
 #define RT_RENDER_SECTION_H
 
+#include "base/clamp.h"
 #include "base/vec.h"
 
 #include <stdbool.h>
@@ -20,6 +21,27 @@ static inline bool rt_section_flat(const RtVec3 *corners, uint32_t count, RtVec3
             cut[crossings++] = rt_add_scaledd(a, rt_subd(b, a), at_a / (at_a - at_b));
     }
     return crossings == 2;
+}
+
+/* Cuts the line from (a[0], a[1]) to (b[0], b[1]) to the rectangle lo..hi, sides included (Liang & Barsky
+ * 1984): an end that is inside keeps its bits. False, and nothing is changed, where no part is inside. */
+static inline bool rt_section_clip(double a[2], double b[2], const double lo[2], const double hi[2]) {
+    double from = 0, to = 1, start[2] = {a[0], a[1]}, along[2] = {b[0] - a[0], b[1] - a[1]};
+    for (int i = 0; i < 2; i++) {
+        if (along[i] == 0) {
+            if (a[i] < lo[i] || a[i] > hi[i]) return false;
+            continue;
+        }
+        double at_lo = (lo[i] - a[i]) / along[i], at_hi = (hi[i] - a[i]) / along[i];
+        from = fmax(from, fmin(at_lo, at_hi));
+        to = fmin(to, fmax(at_lo, at_hi));
+    }
+    if (!(from <= to)) return false;
+    for (int i = 0; i < 2; i++) { /* rounding may have left a cut a little outside */
+        if (from > 0) a[i] = rt_clampd(start[i] + from * along[i], lo[i], hi[i]);
+        if (to < 1) b[i] = rt_clampd(start[i] + to * along[i], lo[i], hi[i]);
+    }
+    return true;
 }
 
 #endif

@@ -5,38 +5,17 @@
 #include "render/structure.h"
 
 #include "base/elementary.h"
-#include "base/transform.h"
-#include "render/draw.h"
 #include "render/net.h"
-#include "render/section.h"
+#include "render/structure_parts.h"
 
 #include <stdio.h>
 #include <string.h>
 
 enum { MARGIN = 6, LINE = 11 }; /* of the legend, dots */
 
-typedef struct Drawing {
-    RtImage *image;
-    const RtFrame *frame;
-    const RtAccel *layer;
-    const RtStructureOptions *options;
-    double width, height; /* of what is drawn on: the image without its legend */
-    RtView view;
-    double near;
-    uint32_t first, last; /* levels that are drawn */
-    uint32_t level;       /* the one that is being drawn */
-    RtColor color;        /* of the box that is */
-    double opacity;
-    RtExtentKind kind;   /* of what is drawn */
-    uint64_t drawn, all; /* boxes */
-    double least, most;  /* their sizes: lengths of diagonals, but for points */
-    int across, up;      /* of a section: axes of the image */
-    double left, top, scale;
-} Drawing;
-
 /* ---- which boxes ---- */
 
-static bool is_asked_for(const Drawing *d, const RtBoxView *view) {
+bool rt_structure_shows(const RtStructureDrawing *d, const RtBoxView *view) {
     const RtStructureOptions *o = d->options;
     const RtBox *box = view->box;
     RtVec3d corners[RT_NET_CORNERS];
@@ -53,9 +32,9 @@ static double size_of(const RtBox *box) {
 }
 
 static void count_box(void *context, const RtBoxView *view) {
-    Drawing *d = context;
+    RtStructureDrawing *d = context;
     d->all++;
-    if (!is_asked_for(d, view)) return;
+    if (!rt_structure_shows(d, view)) return;
     if (d->drawn++ == 0) d->first = d->last = view->depth;
     if (view->depth < d->first) d->first = view->depth;
     if (view->depth > d->last) d->last = view->depth;
@@ -65,22 +44,22 @@ static void count_box(void *context, const RtBoxView *view) {
     d->most = fmax(d->most, size);
 }
 
-static RtColor color_of_level(const Drawing *d, uint32_t depth) {
+static RtColor color_of_level(const RtStructureDrawing *d, uint32_t depth) {
     double deep = d->last > d->first ? (double)(depth - d->first) / (d->last - d->first) : 0;
     return rt_color_scale(1 - 0.7 * deep);
 }
 
 /* Where levels tell nothing. */
-static bool is_by_size(const Drawing *d) {
+static bool is_by_size(const RtStructureDrawing *d) {
     return d->first == d->last && d->most > 1.5 * d->least;
 }
 
-static RtColor color_of_size(const Drawing *d, double size) {
+static RtColor color_of_size(const RtStructureDrawing *d, double size) {
     double small = rt_log(d->most / fmax(fmin(size, d->most), d->least)) / rt_log(d->most / d->least);
     return rt_color_scale(1 - 0.7 * small);
 }
 
-static RtColor color_of(const Drawing *d, const RtBoxView *view) {
+RtColor rt_structure_color(const RtStructureDrawing *d, const RtBoxView *view) {
     return is_by_size(d) ? color_of_size(d, size_of(view->box)) : color_of_level(d, view->depth);
 }
 
@@ -93,7 +72,7 @@ static RtVec3d project(const RtView *view, RtVec3d point) {
 }
 
 /* Distance of `p` to side `plane` of the visible space, negative outside. */
-static double inside(const Drawing *drawing, RtVec3d p, int plane) {
+static double inside(const RtStructureDrawing *drawing, RtVec3d p, int plane) {
     switch (plane) {
     case 0: return p.z - drawing->near;
     case 1: return p.z - p.x;
@@ -104,7 +83,7 @@ static double inside(const Drawing *drawing, RtVec3d p, int plane) {
 }
 
 /* Cuts the segment to what is visible; false if nothing is. */
-static bool clip(const Drawing *drawing, RtVec3d *a, RtVec3d *b) {
+static bool clip(const RtStructureDrawing *drawing, RtVec3d *a, RtVec3d *b) {
     for (int plane = 0; plane < 5; plane++) {
         double at_a = inside(drawing, *a, plane), at_b = inside(drawing, *b, plane);
         if (at_a < 0 && at_b < 0) return false;
@@ -116,7 +95,7 @@ static bool clip(const Drawing *drawing, RtVec3d *a, RtVec3d *b) {
 }
 
 /* Is a point at depth `w` behind what the frame sees in a pixel? */
-static bool is_hidden(const Drawing *d, int x, int y, double w) {
+static bool is_hidden(const RtStructureDrawing *d, int x, int y, double w) {
     const RtSampling *s = &d->frame->sampling;
     if (x < 0 || y < 0 || (uint32_t)x >= s->width || (uint32_t)y >= s->height) return true;
     RtFootprint f = rt_pixel_footprint(s, (uint32_t)x, (uint32_t)y);
@@ -126,7 +105,7 @@ static bool is_hidden(const Drawing *d, int x, int y, double w) {
 
 /* 1 / w is linear along the line on the image. */
 static void draw_edge(void *context, RtVec3d from, RtVec3d to) {
-    const Drawing *d = context;
+    const RtStructureDrawing *d = context;
     RtVec3d a = project(&d->view, from), b = project(&d->view, to);
     if (!clip(d, &a, &b)) return;
     double x0 = (a.x / a.z + 1) / 2 * d->width, y0 = (a.y / a.z + 1) / 2 * d->height;
@@ -142,14 +121,14 @@ static void draw_edge(void *context, RtVec3d from, RtVec3d to) {
 }
 
 static void draw_box(void *context, const RtBoxView *view) {
-    Drawing *d = context;
-    if (view->depth != d->level || !is_asked_for(d, view)) return;
+    RtStructureDrawing *d = context;
+    if (view->depth != d->level || !rt_structure_shows(d, view)) return;
     d->opacity = d->options->leaves ? 1 : fmax(0.25, 1 / (1 + 0.15 * (view->depth - d->first)));
-    d->color = color_of(d, view);
+    d->color = rt_structure_color(d, view);
     rt_net_lines(view, d->view.eye, (RtLineViewer){draw_edge, d});
 }
 
-static RtStatus draw_perspective(Drawing *d, RtError *error) {
+static RtStatus draw_perspective(RtStructureDrawing *d, RtError *error) {
     const RtCamera *camera = &d->layer->scene->camera;
     RtSampling sampling;
     RT_TRY(rt_sampling_init(&sampling, (uint32_t)d->width, (uint32_t)d->height, 1, false, error));
@@ -166,132 +145,6 @@ static RtStatus draw_perspective(Drawing *d, RtError *error) {
     return RT_OK;
 }
 
-/* ---- a section ---- */
-
-static double x_of(const Drawing *d, double at) {
-    return (at - d->left) * d->scale;
-}
-
-static double y_of(const Drawing *d, double at) {
-    return (d->top - at) * d->scale;
-}
-
-static double within(double value, double lo, double hi) {
-    return fmin(fmax(value, lo), hi);
-}
-
-static void fill_rectangle(const Drawing *d, const RtBox *box, RtColor color, double opacity) {
-    double from = within(x_of(d, (double)box->lo.at[d->across]), 0, d->width);
-    double to = within(x_of(d, (double)box->hi.at[d->across]), -1, d->width - 1);
-    double top = within(y_of(d, (double)box->hi.at[d->up]), 0, d->height);
-    double bottom = within(y_of(d, (double)box->lo.at[d->up]), -1, d->height - 1);
-    for (int y = (int)top; y <= (int)bottom; y++) {
-        for (int x = (int)from; x <= (int)to; x++) {
-            bool edge = x == (int)from || x == (int)to || y == (int)top || y == (int)bottom;
-            rt_draw_pixel(d->image, x, y, color, edge ? 0.9 : opacity);
-        }
-    }
-}
-
-/* Lines that are far outside go no farther than a picture beyond its sides. */
-static void line_between(const Drawing *d, double x0, double y0, double x1, double y1, RtColor color) {
-    double w = d->width, h = d->height;
-    if (fmin(y0, y1) >= h) return;
-    rt_draw_line(d->image, within(x0, -w, 2 * w), within(y0, -h, h - 1), within(x1, -w, 2 * w),
-                 within(y1, -h, h - 1), color, 0.8);
-}
-
-/* Row by row, from the edge on the left to the edge on the right. */
-static void fill_section(const Drawing *d, const RtVec3d *corners, uint32_t count, RtColor color,
-                         double opacity) {
-    for (int y = 0; y < (int)d->height; y++) {
-        double from = d->width, to = -1, row = y + 0.5;
-        for (uint32_t i = 0; i < count; i++) {
-            RtVec3d a = corners[i], b = corners[(i + 1) % count];
-            double ya = y_of(d, a.at[d->up]), yb = y_of(d, b.at[d->up]);
-            if ((ya < row) == (yb < row)) continue;
-            double xa = x_of(d, a.at[d->across]), xb = x_of(d, b.at[d->across]);
-            double x = xa + (xb - xa) * (row - ya) / (yb - ya);
-            from = fmin(from, x), to = fmax(to, x);
-        }
-        int last = (int)within(to, -1, d->width - 1);
-        for (int x = (int)within(from, 0, d->width); x <= last; x++)
-            rt_draw_pixel(d->image, x, y, color, opacity);
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        RtVec3d a = corners[i], b = corners[(i + 1) % count];
-        line_between(d, x_of(d, a.at[d->across]), y_of(d, a.at[d->up]), x_of(d, b.at[d->across]),
-                     y_of(d, b.at[d->up]), color);
-    }
-}
-
-static void fill_box(void *context, const RtBoxView *view) {
-    const Drawing *d = context;
-    RtVec3d corners[RT_NET_CORNERS];
-    if (!is_asked_for(d, view)) return;
-    RtColor color = color_of(d, view);
-    double opacity = view->leaf ? 0.18 : 0.05;
-    if (rt_net_is_other(view))
-        fill_section(d, corners, rt_net_section(view, d->options->axis, d->options->at, corners), color,
-                     opacity);
-    else
-        fill_rectangle(d, view->box, color, opacity);
-}
-
-static void outline_sphere(const Drawing *d, const RtSphere *sphere) {
-    enum { SIDES = 48 };
-    double off = (double)sphere->center.at[d->options->axis] - d->options->at, r = (double)sphere->radius;
-    if (fabs(off) >= r) return;
-    double around = sqrt(r * r - off * off) * d->scale, x = x_of(d, (double)sphere->center.at[d->across]);
-    double y = y_of(d, (double)sphere->center.at[d->up]);
-    RtTurn from = rt_turn(0);
-    for (int i = 1; i <= SIDES; i++) {
-        RtTurn to = rt_turn(360.0 * i / SIDES);
-        line_between(d, x + around * from.cosine, y + around * from.sine, x + around * to.cosine,
-                     y + around * to.sine, RT_WHITE);
-        from = to;
-    }
-}
-
-static void outline_flat(const Drawing *d, const RtVec3 *corners, uint32_t count) {
-    RtVec3d on = {{0, 0, 0}}, normal = {{0, 0, 0}}, cut[2];
-    on.at[d->options->axis] = d->options->at;
-    normal.at[d->options->axis] = 1;
-    if (!rt_section_flat(corners, count, on, normal, cut)) return;
-    line_between(d, x_of(d, cut[0].at[d->across]), y_of(d, cut[0].at[d->up]), x_of(d, cut[1].at[d->across]),
-                 y_of(d, cut[1].at[d->up]), RT_WHITE);
-}
-
-/* As much as the camera sees at its aim, or all that there is. */
-static void choose_window(Drawing *d) {
-    const RtBox *box = &d->layer->scene->geometry.box;
-    const RtCamera *camera = &d->layer->scene->camera;
-    RtVec3d size = rt_subd(rt_widen(box->hi), rt_widen(box->lo)), center = rt_widen(rt_box_center(*box));
-    double distance = rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)));
-    RtTurn half = rt_turn((double)camera->fov / 2);
-    double seen = d->height / (2 * distance * half.sine / half.cosine);
-    d->scale =
-        0.96 * fmin(d->width / fmax(size.at[d->across], 1e-30), d->height / fmax(size.at[d->up], 1e-30));
-    if (seen > d->scale) d->scale = seen, center = rt_widen(camera->at);
-    d->left = center.at[d->across] - d->width / 2 / d->scale;
-    d->top = center.at[d->up] + d->height / 2 / d->scale;
-}
-
-static void draw_section(Drawing *d) {
-    const RtGeometry *g = &d->layer->scene->geometry;
-    RtVec3 up = d->layer->scene->camera.up;
-    up.at[d->options->axis] = 0;
-    d->up = rt_major_axis(up) != d->options->axis ? rt_major_axis(up) : (d->options->axis + 1) % 3;
-    d->across = 3 - d->up - d->options->axis;
-    choose_window(d);
-    rt_draw_rectangle(d->image, 0, 0, (int)d->width, (int)d->height, (RtColor){{20, 20, 24}});
-    d->layer->ops->each_box(d->layer, (RtBoxViewer){fill_box, d});
-    for (uint32_t i = 0; i < g->sphere_count; i++) outline_sphere(d, &g->spheres[i]);
-    for (uint32_t i = 0; i < g->triangle_count; i++) outline_flat(d, g->triangles[i].v, 3);
-    for (uint32_t i = 0; i < g->polygon_count; i++)
-        outline_flat(d, g->polygon_vertices + g->polygons[i].first, g->polygons[i].count);
-}
-
 /* ---- the legend ---- */
 
 static int legend_height(uint32_t width) {
@@ -299,7 +152,7 @@ static int legend_height(uint32_t width) {
 }
 
 /* Squares with the colours of levels, every nth if they are many, or of sizes. */
-static void draw_colors(const Drawing *d, int x, int y, int dot) {
+static void draw_colors(const RtStructureDrawing *d, int x, int y, int dot) {
     enum { MOST = 7, SIZES = 5 };
     bool by_size = is_by_size(d);
     uint32_t levels = d->last - d->first + 1, count = by_size ? SIZES : levels < MOST ? levels : MOST;
@@ -323,7 +176,7 @@ static void draw_colors(const Drawing *d, int x, int y, int dot) {
     }
 }
 
-static void draw_legend(const Drawing *d) {
+static void draw_legend(const RtStructureDrawing *d) {
     static const char axes[] = "xyz";
     static const char *const names[RT_EXTENT_KIND_COUNT] = {"boxes", "spheres", "oriented boxes",
                                                             "bodies of slabs"};
@@ -397,12 +250,12 @@ static RtStatus make_image(RtImage *image, const RtFrame *frame, RtError *error)
 
 RtStatus rt_structure_image(RtImage *image, const RtAccel *layer, const RtFrame *frame,
                             const RtStructureOptions *options, RtError *error) {
-    Drawing d = {.image = image,
-                 .frame = frame,
-                 .layer = layer,
-                 .options = options,
-                 .width = frame->sampling.width,
-                 .height = frame->sampling.height};
+    RtStructureDrawing d = {.image = image,
+                            .frame = frame,
+                            .layer = layer,
+                            .options = options,
+                            .width = frame->sampling.width,
+                            .height = frame->sampling.height};
     const RtCamera *camera = &layer->scene->camera;
     layer->ops->each_box(layer, (RtBoxViewer){count_box, &d});
     /* The floor, which is larger than all that is seen, does not set the scale. */
@@ -415,7 +268,7 @@ RtStatus rt_structure_image(RtImage *image, const RtAccel *layer, const RtFrame 
     RT_TRY(make_image(image, frame, error));
     RtStatus status = RT_OK;
     if (options->slice)
-        draw_section(&d);
+        rt_structure_draw_section(&d);
     else
         status = draw_perspective(&d, error);
     if (status == RT_OK) draw_legend(&d);

@@ -4,6 +4,7 @@
 #ifndef RT_SHAPE_SOLID_PARTS_H
 #define RT_SHAPE_SOLID_PARTS_H
 
+#include "base/clamp.h"
 #include "shape/solid.h"
 
 /* What solid.h promises of all solids, by kind. */
@@ -73,10 +74,6 @@ typedef struct RtSpan {
     double open, close; /* t */
     uint32_t open_face, close_face;
 } RtSpan;
-
-static inline double rt_clampd(double t, double lo, double hi) {
-    return t < lo ? lo : t > hi ? hi : t;
-}
 
 /* Adds the crossings of a span, which opens at or after the close of the one before, to the `count` there are
  * by now; gives their new number. */

@@ -305,6 +305,42 @@ RT_TEST(a_difference_is_red_where_the_first_costs_more_and_blue_where_the_second
     rt_image_clear(&image);
 }
 
+/* Is any pixel of the columns from..to, in the rows of the labels, white? */
+static bool has_label(const RtImage *image, uint32_t from, uint32_t to) {
+    bool found = false;
+    for (uint32_t y = 4; y < 4 + RT_TEXT_HEIGHT; y++) {
+        for (uint32_t x = from; x < to; x++)
+            found |= memcmp(image->rgb + 3 * ((size_t)y * image->width + x), RT_WHITE.rgb, 3) == 0;
+    }
+    return found;
+}
+
+RT_TEST(panels_of_four_pixels_have_the_labels_and_bars_of_their_pitch_and_no_more) {
+    enum { SIDE = 4, PITCH = 240, ROOM = 236, MARGIN = 4, BAR = 15 + SIDE + 15 };
+    static RtTally spent[2][SIDE * SIDE];
+    RtFrame frames[2] = {{.cost = spent[0]}, {.cost = spent[1]}};
+    char first[100] = {0}, second[] = "11111111111111111111";
+    RtHeatmapPanel panels[2] = {{&frames[0], first}, {&frames[1], second}};
+    RtHeatmapOptions options = {.counter = offsetof(RtTally, steps) / sizeof(uint64_t), .difference = true};
+    RtImage image;
+    memset(first, '1', sizeof first - 1);
+    spent[0][0].steps = 9;
+    for (int i = 0; i < 2; i++) assert_ok(rt_sampling_init(&frames[i].sampling, SIDE, SIDE, 1, false, error));
+    assert_ok(rt_heatmap(&image, panels, 2, &options, error));
+    assert_int_equal(image.width, 2 * PITCH + ROOM);
+    /* Characters are 6 pixels wide: 38 fit. */
+    assert_true(has_label(&image, MARGIN + 37 * 6, MARGIN + 38 * 6));
+    assert_false(has_label(&image, MARGIN + 38 * 6, PITCH + MARGIN));
+    assert_true(has_label(&image, PITCH + MARGIN + 19 * 6, PITCH + MARGIN + 20 * 6));
+    assert_false(has_label(&image, PITCH + MARGIN + 20 * 6, 2 * PITCH + MARGIN));
+    const uint8_t *bar = image.rgb + 3 * ((size_t)BAR * image.width + 2 * PITCH);
+    RtColor blue = rt_color_difference(-1), red = rt_color_difference(1);
+    assert_memory_equal(bar + (size_t)3 * MARGIN, blue.rgb, 3);
+    assert_memory_equal(bar + (size_t)3 * (ROOM - MARGIN - 1), red.rgb, 3);
+    assert_memory_equal(bar + (size_t)3 * (ROOM - MARGIN), RT_BLACK.rgb, 3);
+    rt_image_clear(&image);
+}
+
 RT_TEST(the_scale_grows_in_lightness) {
     double before = -1;
     for (int i = 0; i <= 100; i++) {

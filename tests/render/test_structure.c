@@ -6,6 +6,7 @@
 #include "render/cells.h"
 #include "render/draw.h"
 #include "render/net.h"
+#include "render/section.h"
 #include "render/structure.h"
 
 #include <string.h>
@@ -209,6 +210,48 @@ RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
     rt_image_clear(&image);
     options.at = 5;
     assert_int_equal(draw(&scene, "extents", options, &image, &refusal), RT_BAD_INPUT);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(a_line_is_cut_where_it_leaves_the_rectangle_and_keeps_its_slope) {
+    const double lo[2] = {0, 0}, hi[2] = {10, 20};
+    double a[2] = {-10, -15}, b[2] = {30, 45}; /* y = 1.5 x */
+    assert_true(rt_section_clip(a, b, lo, hi));
+    assert_true(a[0] == 0 && a[1] == 0 && b[0] == 10 && b[1] == 15);
+    assert_true(rt_section_clip(b, a, lo, hi)); /* inside: as it is */
+    assert_true(a[0] == 0 && a[1] == 0 && b[0] == 10 && b[1] == 15);
+    double c[2] = {-4, 10}, d[2] = {4, 26}; /* past a corner, though each end lies beside the rectangle */
+    assert_true(rt_section_clip(c, d, lo, hi));
+    assert_true(c[0] == 0 && c[1] == 18 && d[0] == 1 && d[1] == 20);
+    double e[2] = {-4, 14}, f[2] = {4, 30};
+    assert_false(rt_section_clip(e, f, lo, hi));
+    double g[2] = {5, -1}, h[2] = {5, 90}, i[2] = {11, -1}, j[2] = {11, 90}; /* upright */
+    assert_true(rt_section_clip(g, h, lo, hi));
+    assert_true(g[0] == 5 && g[1] == 0 && h[0] == 5 && h[1] == 20);
+    assert_false(rt_section_clip(i, j, lo, hi));
+}
+
+RT_TEST(a_wall_that_is_far_larger_than_a_section_is_outlined_where_it_is) {
+    RtScene scene;
+    RtImage image = {0};
+    RtVec3 wall[4] = {
+        {{-1000, -1499.5f, -9}}, {{1000, 1500.5f, -9}}, {{1000, 1500.5f, 9}}, {{-1000, -1499.5f, 9}}};
+    start_scene(&scene, rt_default_material());
+    scene.camera.fov = 45;
+    assert_ok(rt_scene_add_polygon(&scene, 0, wall, 4, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
+    RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = -0.5};
+    assert_ok(draw(&scene, "extents", options, &image, error));
+    double scale = 100 / (10 * tan(45 * 3.14159265358979 / 360)); /* what the camera sees at its aim */
+    for (int i = -8; i <= 8; i++) {
+        double x = 0.25 * i, y = 1.5 * x + 0.5;
+        int column = (int)floor(100 + scale * x), row = (int)floor(100 - scale * y), white = 0;
+        for (int near = row - 2; near <= row + 2; near++)
+            white += near >= 0 && near < SIDE && pixel(&image, column, near)[2] > 190;
+        assert_true(white > 0);
+    }
+    rt_image_clear(&image);
     rt_scene_clear(&scene);
 }
 

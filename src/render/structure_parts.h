@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the pictures of structures in perspective and in section share. For structure*.c alone. */
+#ifndef RT_RENDER_STRUCTURE_PARTS_H
+#define RT_RENDER_STRUCTURE_PARTS_H
+
+#include "render/draw.h"
+#include "render/structure.h"
+
+typedef struct RtStructureDrawing {
+    RtImage *image;
+    const RtFrame *frame;
+    const RtAccel *layer;
+    const RtStructureOptions *options;
+    double width, height; /* of what is drawn on: the image without its legend */
+    RtView view;
+    double near;
+    uint32_t first, last; /* levels that are drawn */
+    uint32_t level;       /* the one that is being drawn */
+    RtColor color;        /* of the box that is */
+    double opacity;
+    RtExtentKind kind;   /* of what is drawn */
+    uint64_t drawn, all; /* boxes */
+    double least, most;  /* their sizes: lengths of diagonals, but for points */
+    int across, up;      /* of a section: axes of the image */
+    double left, top, scale;
+} RtStructureDrawing;
+
+/* Is the box on the levels, and in the slice, that are asked for? */
+bool rt_structure_shows(const RtStructureDrawing *d, const RtBoxView *view);
+
+/* By its level, or by its size where all are of one level. */
+RtColor rt_structure_color(const RtStructureDrawing *d, const RtBoxView *view);
+
+/* Chooses the window, and draws the section where the picture of the scene was. */
+void rt_structure_draw_section(RtStructureDrawing *d);
+
+#endif
