@@ -13,56 +13,6 @@
 
 enum { MARGIN = 6, LINE = 11 }; /* of the legend, dots */
 
-/* ---- which boxes ---- */
-
-bool rt_structure_shows(const RtStructureDrawing *d, const RtBoxView *view) {
-    const RtStructureOptions *o = d->options;
-    const RtBox *box = view->box;
-    RtVec3d corners[RT_NET_CORNERS];
-    if (rt_box_is_empty(*box) || view->depth < o->first_level || view->depth > o->last_level ||
-        (o->leaves && !view->leaf))
-        return false;
-    if (!o->slice) return true;
-    if (rt_net_is_other(view)) return rt_net_section(view, o->axis, o->at, corners) > 0;
-    return (double)box->lo.at[o->axis] <= o->at && o->at <= (double)box->hi.at[o->axis];
-}
-
-static double size_of(const RtBox *box) {
-    return rt_lengthd(rt_subd(rt_widen(box->hi), rt_widen(box->lo)));
-}
-
-static void count_box(void *context, const RtBoxView *view) {
-    RtStructureDrawing *d = context;
-    d->all++;
-    if (!rt_structure_shows(d, view)) return;
-    if (d->drawn++ == 0) d->first = d->last = view->depth;
-    if (view->depth < d->first) d->first = view->depth;
-    if (view->depth > d->last) d->last = view->depth;
-    if (rt_net_is_other(view)) d->kind = view->extents->kind;
-    double size = size_of(view->box);
-    if (size > 0 && (d->most == 0 || size < d->least)) d->least = size;
-    d->most = fmax(d->most, size);
-}
-
-static RtColor color_of_level(const RtStructureDrawing *d, uint32_t depth) {
-    double deep = d->last > d->first ? (double)(depth - d->first) / (d->last - d->first) : 0;
-    return rt_color_scale(1 - 0.7 * deep);
-}
-
-/* Where levels tell nothing. */
-static bool is_by_size(const RtStructureDrawing *d) {
-    return d->first == d->last && d->most > 1.5 * d->least;
-}
-
-static RtColor color_of_size(const RtStructureDrawing *d, double size) {
-    double small = rt_log(d->most / fmax(fmin(size, d->most), d->least)) / rt_log(d->most / d->least);
-    return rt_color_scale(1 - 0.7 * small);
-}
-
-RtColor rt_structure_color(const RtStructureDrawing *d, const RtBoxView *view) {
-    return is_by_size(d) ? color_of_size(d, size_of(view->box)) : color_of_level(d, view->depth);
-}
-
 /* ---- in perspective ---- */
 
 static RtVec3d project(const RtView *view, RtVec3d point) {
@@ -154,7 +104,7 @@ static int legend_height(uint32_t width) {
 /* Squares with the colours of levels, every nth if they are many, or of sizes. */
 static void draw_colors(const RtStructureDrawing *d, int x, int y, int dot) {
     enum { MOST = 7, SIZES = 5 };
-    bool by_size = is_by_size(d);
+    bool by_size = rt_structure_is_by_size(d);
     uint32_t levels = d->last - d->first + 1, count = by_size ? SIZES : levels < MOST ? levels : MOST;
     const char *what = by_size ? "size" : "level";
     rt_draw_text(d->image, x, y, dot, what, RT_WHITE);
@@ -168,7 +118,7 @@ static void draw_colors(const RtStructureDrawing *d, int x, int y, int dot) {
             snprintf(text, sizeof text, "%.2g", size);
         else
             snprintf(text, sizeof text, "%u", level);
-        RtColor color = by_size ? color_of_size(d, size) : color_of_level(d, level);
+        RtColor color = by_size ? rt_structure_size_color(d, size) : rt_structure_level_color(d, level);
         rt_draw_rectangle(d->image, x, y, RT_TEXT_HEIGHT * dot, RT_TEXT_HEIGHT * dot, color);
         x += (RT_TEXT_HEIGHT + 2) * dot;
         rt_draw_text(d->image, x, y, dot, text, RT_WHITE);
@@ -257,7 +207,7 @@ RtStatus rt_structure_image(RtImage *image, const RtAccel *layer, const RtFrame 
                             .width = frame->sampling.width,
                             .height = frame->sampling.height};
     const RtCamera *camera = &layer->scene->camera;
-    layer->ops->each_box(layer, (RtBoxViewer){count_box, &d});
+    layer->ops->each_box(layer, (RtBoxViewer){rt_structure_count, &d});
     /* The floor, which is larger than all that is seen, does not set the scale. */
     d.most =
         fmax(d.least, fmin(d.most, 2 * rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)))));

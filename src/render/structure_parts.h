@@ -28,7 +28,16 @@ typedef struct RtStructureDrawing {
 /* Is the box on the levels, and in the slice, that are asked for? */
 bool rt_structure_shows(const RtStructureDrawing *d, const RtBoxView *view);
 
-/* By its level, or by its size where all are of one level. */
+/* Of RtBoxViewer, `context` being the RtStructureDrawing: counts a box, and notes levels and sizes. */
+void rt_structure_count(void *context, const RtBoxView *view);
+
+/* Whether colours are those of sizes: where all boxes are of one level. */
+bool rt_structure_is_by_size(const RtStructureDrawing *d);
+
+RtColor rt_structure_level_color(const RtStructureDrawing *d, uint32_t level);
+RtColor rt_structure_size_color(const RtStructureDrawing *d, double size);
+
+/* By its level or size. */
 RtColor rt_structure_color(const RtStructureDrawing *d, const RtBoxView *view);
 
 /* Chooses the window, and draws the section where the picture of the scene was. */
