@@ -34,7 +34,7 @@ void rt_structure_count(void *context, const RtBoxView *view);
 /* Whether colours are those of sizes: where all boxes are of one level. */
 bool rt_structure_is_by_size(const RtStructureDrawing *d);
 
-RtColor rt_structure_level_color(const RtStructureDrawing *d, uint32_t level);
+RtColor rt_structure_level_color(const RtStructureDrawing *d, uint32_t depth);
 RtColor rt_structure_size_color(const RtStructureDrawing *d, double size);
 
 /* By its level or size. */
