@@ -156,8 +156,7 @@ static void put_field(const RtTableColumn *column, const RtField *field, FILE *o
 /* Seen without colour, and read aloud. */
 static const char *const standings[] = {
     [RT_STANDING_BEHIND] = "",
-    [RT_STANDING_LEVEL] = " <span class=\"mark\" title=\"its interval overlaps with that of the "
-                          "best\">&asymp;&#8239;best</span>",
+    [RT_STANDING_LEVEL] = " <span class=\"mark\" title=\"overlaps with the best\">&asymp;&#8239;best</span>",
     [RT_STANDING_BEST] = " <span class=\"mark\">&#9733;&#8239;best</span>"};
 
 static void put_html(RtTableWriter *w, const RtTableLine *line, const void *row) {
