@@ -27,6 +27,12 @@ static int make_small(void **state) {
     return 0;
 }
 
+/* small.yaml with `members` in the place of its claim. */
+static void write_small(const Place *place, const char *members) {
+    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
+                  members);
+}
+
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
 
 /* ---- the report ---- */
@@ -61,8 +67,7 @@ RT_TEST_IN_PLACE(a_plot_has_the_caption_that_its_script_says_and_its_first_sente
     write_in(place, "my.gp",
              "#: other: Not this.\n#: mine: Time & tests. All\n#:   kinds together.\n# Not this.\n"
              "set terminal svg size 300,200\nset output \"plots/mine.svg.tmp\"\nplot x\nunset output\n");
-    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
-                  "plots: [my.gp]");
+    write_small(place, "plots: [my.gp]");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/report.html",
                    "<figcaption>Time &amp; tests. All kinds together.</figcaption>");
@@ -78,8 +83,7 @@ RT_TEST_IN_PLACE(plots_are_drawn_as_pdf_too_as_wide_as_a_column_of_a_paper) {
     char copy[512];
     snprintf(copy, sizeof copy, "cp '%s/experiments/style.gp' '%s'", RT_SOURCE_DIR, place->folder);
     assert_int_equal(system(copy), 0);
-    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
-                  "plots: [style.gp, my.gp]");
+    write_small(place, "plots: [style.gp, my.gp]");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/plots/mine.svg", "viewBox=\"0 0 480 240\"");
     assert_in_file(place, "out/report.html", "<a href=\"plots/mine.pdf\">PDF</a>");
@@ -103,8 +107,7 @@ RT_TEST_IN_PLACE(where_gnuplot_cannot_draw_pdf_plots_are_svg_alone) {
     char *before = strdup(path);
     snprintf(command, sizeof command, "%s:%s", place->folder, path);
     setenv("PATH", command, 1);
-    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
-                  "plots: [my.gp]");
+    write_small(place, "plots: [my.gp]");
     int code = raytally(place, "run small.yaml --out out --threads 1");
     setenv("PATH", before, 1);
     free(before);
@@ -117,8 +120,7 @@ RT_TEST_IN_PLACE(where_gnuplot_cannot_draw_pdf_plots_are_svg_alone) {
 
 RT_TEST_IN_PLACE(tables_for_papers_have_the_best_in_bold) {
     const Place *place = *state;
-    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
-                  "count_only: yes");
+    write_small(place, "count_only: yes");
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
     assert_in_file(place, "out/tables.md", "cloud, 50 random rays.");
     assert_in_file(place, "out/tables.md", "| **bvh** | ");
@@ -209,8 +211,7 @@ RT_TEST_IN_PLACE(of_fifty_accelerators_no_two_have_a_colour_and_in_grey_print_ma
 RT_TEST_IN_PLACE(the_index_has_each_experiment_with_verdict_finding_and_link_and_names_what_cannot_be_read) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out all/one --threads 1"), 0);
-    write_changed(place, "small.yaml", experiment_yaml, "expect: [object_tests of bvh < object_tests]",
-                  "finding: It <was>.");
+    write_small(place, "finding: It <was>.");
     assert_int_equal(raytally(place, "run small.yaml --out 'all/deeper/two & a half' --threads 1"), 0);
     assert_int_equal(raytally(place, "run small.yaml --out all/damaged --threads 1"), 0);
     write_in(place, "all/damaged/manifest.json", "{");
