@@ -100,6 +100,31 @@ embed
 mv "$prefix" "$work/second" && prefix=$work/second
 embed
 
+# ---- a program that has another locale, where 4.5 is written 4,5 ----
+cat >"$work/comma.c" <<'END'
+#include <locale.h>
+#include <raytally/raytally.h>
+#include <stdio.h>
+int main(void) {
+    char spec[RAYTALLY_SPEC_CHARS];
+    raytally_error error = {RAYTALLY_OK, ""};
+    if (!setlocale(LC_ALL, "") || *localeconv()->decimal_point != ',') return 77;
+    if (raytally_spec_format("grid:density=4.5", spec, &error) != RAYTALLY_OK) puts(error.message);
+    puts(spec);
+    return printf("%.1f\n", 4.5) == 4 ? 0 : 2;
+}
+END
+if localedef -i de_DE -f UTF-8 "$work/de_DE.UTF-8" 2>/dev/null; then
+    libraries=$(dirname "$(find "$prefix" -name libraytally.so)")
+    flags=$(PKG_CONFIG_PATH=$libraries/pkgconfig pkg-config --cflags --libs raytally)
+    # shellcheck disable=SC2086 # they are several
+    quietly "a program does not build" "${CC:-cc}" -std=c99 "$work/comma.c" $flags -o "$work/comma" &&
+        quietly "a program with another locale fails" env LD_LIBRARY_PATH="$libraries" LOCPATH="$work" LC_ALL=de_DE.UTF-8 "$work/comma" &&
+        { grep -q ',density=4\.5,.*' "$work/log" && grep -qx '4,5' "$work/log" || complain "in another locale: $(cat "$work/log")"; }
+else
+    echo "check_library: localedef makes no de_DE: a locale with a decimal comma is not tried" >&2
+fi
+
 # ---- its documentation ----
 if command -v doxygen >/dev/null; then
     { cat docs/Doxyfile && echo "OUTPUT_DIRECTORY=$work"; } >"$work/Doxyfile"

@@ -17,8 +17,11 @@
  * time. A parameter `threads` is the number of threads to work on, 1..1024, or 0 for all processors; it
  * changes no answer, no count and no picture. The library keeps no threads running between calls.
  *
- * **Numbers** are read and written by the rules of the locale "C": a program that calls setlocale keeps
- * LC_NUMERIC as it is. Lengths are in the units of the scene, times in seconds. */
+ * **Numbers** in specs, files and messages are read and written by the rules of the locale "C", whatever the
+ * program has chosen by setlocale. Lengths are in the units of the scene, times in seconds. Answers are the
+ * same bits everywhere in the floating-point environment that a C program starts in: rounding to nearest,
+ * denormals kept. A thread that has set FTZ or DAZ, and a program that was linked with -ffast-math, which
+ * sets them, resets them before it calls. */
 #ifndef RAYTALLY_RAYTALLY_H
 #define RAYTALLY_RAYTALLY_H
 
@@ -147,7 +150,7 @@ RAYTALLY_API const char *raytally_accelerator_name(size_t i);
 #define RAYTALLY_SPEC_CHARS 512
 
 /** Checks `spec` and writes it to `out` with every parameter that is in effect: "grid" becomes
- * "grid:rule=woo,density=10,...". */
+ * "grid:rule=cubic,density=4,...". */
 RAYTALLY_API raytally_status raytally_spec_format(const char *spec, char out[RAYTALLY_SPEC_CHARS],
                                                   raytally_error *error);
 

@@ -15,8 +15,10 @@ const char *raytally_accelerator_name(size_t i) {
 
 raytally_status raytally_spec_format(const char *spec, char out[RAYTALLY_SPEC_CHARS], raytally_error *error) {
     RtSpec parsed;
+    locale_t before = rt_locale_enter();
     RtStatus status = rt_spec_parse(spec, &parsed, rt_error_of(error));
     if (status == RT_OK) rt_spec_format(&parsed, out);
+    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
@@ -38,7 +40,9 @@ raytally_status raytally_accelerator_build(const raytally_scene *scene, const ch
     *out = NULL;
     if (!made) return (raytally_status)rt_fail_memory(rt_error_of(error), "an accelerator", sizeof *made);
     made->scene = (raytally_scene *)(uintptr_t)scene; /* to be counted there */
+    locale_t before = rt_locale_enter();
     RtStatus status = build(made, spec, threads, rt_error_of(error));
+    rt_locale_leave(before);
     if (status == RT_OK) {
         *out = made;
     } else {

@@ -6,6 +6,7 @@
 
 #include "bench/rayset.h"
 
+#include <locale.h>
 #include <raytally/raytally.h>
 #include <stdatomic.h>
 
@@ -30,6 +31,16 @@ struct raytally_rays {
 
 static inline RtError *rt_error_of(raytally_error *error) {
     return (RtError *)error;
+}
+
+/* From here to rt_locale_leave this thread reads and writes numbers by the rules of "C", whatever locale the
+ * program that embeds us has chosen. (That locale is one that the system has: it is not to be freed.) */
+static inline locale_t rt_locale_enter(void) {
+    return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
+}
+
+static inline void rt_locale_leave(locale_t before) {
+    uselocale(before);
 }
 
 /* Takes what a caller says of options: `own` holds the defaults, `given` begins with its size, which an older

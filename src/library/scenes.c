@@ -15,7 +15,9 @@ static raytally_status make(RtStatus (*fill)(RtScene *scene, const void *what, R
     raytally_scene *made = rt_alloc(1, sizeof *made);
     *out = NULL;
     if (!made) return (raytally_status)rt_fail_memory(error, "a scene", sizeof *made);
+    locale_t before = rt_locale_enter();
     RtStatus status = fill(&made->scene, what, error);
+    rt_locale_leave(before);
     if (status == RT_OK) {
         *out = made;
     } else {

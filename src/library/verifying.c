@@ -67,8 +67,10 @@ raytally_status raytally_verify(const raytally_scene *scene, const char *spec, c
                            .families = own.families,
                            .threads = own.threads,
                            .given = own.given ? &own.given->set : NULL};
+    locale_t before = rt_locale_enter();
     RtStatus status = check(&own, rt_error_of(error));
     if (status == RT_OK) status = verify(&stage, &scene->scene, spec, &wanted, out, rt_error_of(error));
+    rt_locale_leave(before);
     rt_reference_clear(&stage.reference);
     rt_free(stage.rays);
     rt_accel_destroy(stage.accel);
