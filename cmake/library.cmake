@@ -29,6 +29,13 @@ foreach(library shared static)
   install(TARGETS raytally_${library} EXPORT raytally-${library})
   install(EXPORT raytally-${library} NAMESPACE raytally:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
 endforeach()
+
+# Of a plugin, which is linked with nothing.
+add_library(raytally_headers INTERFACE)
+set_target_properties(raytally_headers PROPERTIES EXPORT_NAME headers)
+target_include_directories(raytally_headers INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+install(TARGETS raytally_headers EXPORT raytally-headers)
+install(EXPORT raytally-headers NAMESPACE raytally:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/raytally)
 install(DIRECTORY include/raytally DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 
 # Both find what is installed from where they lie themselves, so that all of it may be moved.
