@@ -66,6 +66,10 @@ bool raytally_accelerator_exact(const raytally_accelerator *accelerator) {
     return accelerator->accel->exact;
 }
 
+raytally_status raytally_accelerator_check(const raytally_accelerator *accelerator, raytally_error *error) {
+    return (raytally_status)rt_accel_check(accelerator->accel, rt_error_of(error));
+}
+
 void raytally_accelerator_describe(const raytally_accelerator *accelerator, raytally_structure *out) {
     RtDescription d;
     rt_accel_describe(accelerator->accel, &d);
