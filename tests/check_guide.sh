@@ -6,8 +6,8 @@
 #   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; it must end with exit code 0
 #   ```sh exit=1          with that one
 #   ```sh slow            run with --slow alone, by hand
-#   ```sh needs=X         only where X is there: numpy, embree, installed (raytally with its headers, which a program that is
-#                         not in its build folder is not), a file of the tree (X has a /), or else a command
+#   ```sh needs=X         only where X is there: numpy, embree, library (installed to $PREFIX from beside $RT_PROGRAM), a
+#                         file of the tree (X has a /), or else a command
 #   ```text exact         what the block before it prints, stderr too; a line ... stands for one or more lines
 #   ```text alike         likewise, but for figures, blanks, and what follows from times, which are others on each machine
 #   ```LANG file=NAME     is written to NAME first
@@ -20,9 +20,8 @@ root=$PWD
 program=$(cd "$here" && realpath "${RT_PROGRAM:-$root/build/release/raytally}")
 [ -x "$program" ] || { echo "check_guide: no program $program" >&2 && exit 2; }
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
-mkdir "$work/bin"
-cmake --install "${program%/*}" --prefix "$work/prefix" >/dev/null 2>&1 || ln -s "$program" "$work/bin/raytally"
-export PATH=$work/prefix/bin:$work/bin:$PATH
+mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
+export PATH=$work/bin:$PATH
 slow=no patience=300 failures=0 ran=0 compared=0 left_slow=0 lacking=()
 
 complain() {
@@ -38,7 +37,12 @@ available() {
         /usr/bin/python3 -c 'import numpy' 2>/dev/null && ln -sf /usr/bin/python3 "$work/bin/python3"
         ;;
     embree) raytally info balls:size=1 >/dev/null && raytally render balls:size=1 --size 2x2 --accel embree -o "$work/x.png" >/dev/null 2>&1 ;;
-    installed) [ -d "$work/prefix/include/raytally" ] ;;
+    library) # with what it takes to link with it
+        command -v cc >/dev/null && command -v pkg-config >/dev/null || return
+        export PREFIX=$work/prefix PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
+        [ -d "$PREFIX" ] && return
+        cmake --install "$(dirname "$program")" --prefix "$PREFIX" >/dev/null 2>&1 && PATH=$PREFIX/bin:$PATH
+        ;;
     */*) [ -e "$root/$1" ] ;;
     *) command -v "$1" >/dev/null ;;
     esac
