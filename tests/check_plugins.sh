@@ -53,6 +53,7 @@ fault() {
 }
 
 at_ray='at the ray org \([-0-9., e]+\) dir \([-0-9., e]+\)'
+differs='answered'
 crash='crashed \(Segmentation fault'
 fault not ''
 fault print ''
@@ -70,20 +71,20 @@ fault recursion "$crash\) .*$at_ray"
 fault free "crashed \(Aborted\) .*$at_ray"
 fault object 'an object that there is not, 1[0-9] \(the scene has 11 objects\)'
 fault nan 't = nan'
-fault wrong 'expected .* got '
-fault null 'expected .* got '
+fault wrong 'expected .* got ' "$differs"
+fault null 'expected .* got ' "$differs"
 fault memory "wrote past the 48 bytes of its query's memory"
 fault page 'past the memory of its query'
 fault huge 'memory'
 fault refused 'scenes of 11 objects are beneath it'
 fault nonsense 'returned 42'
-fault validate 'node 3 is its own parent'
-fault boxes ''
-fault moody ''
-patience=0.2
+fault validate 'node 3 is its own parent' ''
+fault boxes 'expected .* got ' "$differs"
+fault moody '' # nobody counts twice
+fault loop-nearest "no progress for 1 s .*$at_ray"
+fault loop-timed "no progress for 1 s .*$at_ray"
+patience=0.2 # it has ten times as long to build
 fault loop-build 'no progress for 0.2 s .* while it was built'
-fault loop-nearest "no progress for 0.2 s .*$at_ray"
-fault loop-timed "no progress for 0.2 s .*$at_ray"
 unset patience
 ulimit -S -d 2000000 # KiB, or it takes as much as raytally allows
 fault greedy 'memory is short'

@@ -150,7 +150,7 @@ SEARCH(loop_timed, if (!counters) loop();)
 SEARCH(call_abort, abort();)
 SEARCH(call_exit, exit(0);)
 SEARCH(killed, kill(getpid(), SIGKILL);)
-SEARCH(divide, zero = 1 / zero;)
+SEARCH(divide, zero = 7 / zero;)
 SEARCH(overflow, zero = recurse(&zero) & 0;)
 SEARCH(freed_twice, free_twice();)
 SEARCH(
