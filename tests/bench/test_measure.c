@@ -231,7 +231,8 @@ RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
     assert_ok(rt_rayset_record(sets, accels[0], &recording, error));
     for (int attempt = 0; attempt < 5 && best < 0.98; attempt++) {
         const RtRaySet *set = &sets[RT_RAY_RANDOM];
-        RtTimed timed[2] = {{accels[0], set, seconds[0], wall[0]}, {accels[1], set, seconds[1], wall[1]}};
+        RtTimed timed[2] = {{.accel = accels[0], .set = set, .seconds = seconds[0], .wall = wall[0]},
+                            {.accel = accels[1], .set = set, .seconds = seconds[1], .wall = wall[1]}};
         uint32_t done;
         double rounds = 0, start = rt_thread_seconds();
         assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
