@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_library.sh: raytally as others have it. Installs the build beside $RT_PROGRAM into a scratch prefix and demands:
-# each header compiles by itself as C99, C17 and C++17 without a warning, by every compiler there is, and so do all; both libraries
-# export raytally_* and nothing else; examples/embed builds by the CMake package and by pkg-config, runs, and counts what
-# the program counts, there and where the prefix was moved to; doxygen finds every declaration described. Skipped (77)
-# without cmake, pkg-config or nm; what else is missing is said and left out.
+# each header compiles as C99, C17 and C++17 without a warning, by every compiler there is, and so do all of them in one
+# file; both libraries export raytally_* and nothing else; examples/embed builds by the CMake package and by pkg-config,
+# runs, and counts what the program counts, there and where the prefix was moved to; doxygen finds every declaration
+# described. Skipped (77) without cmake, pkg-config or nm; what else is missing is said and left out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(cd "$(dirname "${RT_PROGRAM:-build/release/raytally}")" && pwd)
