@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_library.sh: raytally as others have it. Installs the build beside $RT_PROGRAM into a scratch prefix and demands:
-# each header compiles by itself as C99, C17 and C++17 without a warning, by every compiler there is; both libraries
-# export raytally_* and nothing else; examples/embed builds by the CMake package and by pkg-config, runs, and counts what
-# the program counts, there and where the prefix was moved to; doxygen finds every declaration described. Skipped (77)
-# without cmake, pkg-config or nm; what else is missing is said and left out.
+# each header compiles as C99, C17 and C++17 without a warning, by every compiler there is, and so do all of them in one
+# file; both libraries export raytally_* and nothing else; examples/embed builds by the CMake package and by pkg-config,
+# runs, and counts what the program counts, there and where the prefix was moved to; doxygen finds every declaration
+# described. Skipped (77) without cmake, pkg-config or nm; what else is missing is said and left out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(cd "$(dirname "${RT_PROGRAM:-build/release/raytally}")" && pwd)
@@ -36,14 +36,17 @@ for file in bin/raytally include/raytally/raytally.h include/raytally/types.h; d
     [ -s "$prefix/$file" ] || complain "$file is not installed"
 done
 
-# compiles COMPILER LANGUAGE STANDARD: every installed header by itself
+# compiles COMPILER LANGUAGE STANDARD: every installed header by itself, and all of them together
 compiles() {
-    local header
+    local header all=()
     command -v "$1" >/dev/null || { echo "check_library: no $1: headers are not compiled by it" >&2 && return; }
     for header in "$prefix"/include/raytally/*.h; do
         quietly "$1 -std=$3 warns about ${header##*/}" "$1" -x "$2" -std="$3" -Wall -Wextra -Wpedantic -Wconversion \
             -Werror -fsyntax-only -I "$prefix/include" -include "raytally/${header##*/}" /dev/null || true
+        all+=(-include "raytally/${header##*/}")
     done
+    quietly "$1 -std=$3 does not take all headers together" "$1" -x "$2" -std="$3" -fsyntax-only -I "$prefix/include" \
+        "${all[@]}" /dev/null || true
 }
 for compiler in gcc clang; do
     compiles "$compiler" c c99

@@ -9,7 +9,8 @@
 #define RT_ACCEL_PLUGIN_HOST_H
 
 #include "accel/accel.h"
-#include "raytally/accel.h"
+
+#include <raytally/accel.h>
 
 /* The operations of a plugin's table, which the registry knows by the first member. */
 typedef struct RtPluginOps {
