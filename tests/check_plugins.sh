@@ -53,7 +53,7 @@ fault() {
 }
 
 at_ray='at the ray org \([-0-9., e]+\) dir \([-0-9., e]+\)'
-differs='answered'
+differs='answers [0-9]+ of [0-9]+ [a-z]+ rays unlike'
 crash='crashed \(Segmentation fault'
 fault not ''
 fault print ''
