@@ -37,6 +37,7 @@ typedef struct RtAccel {
     size_t scratch_room; /* bytes of a query's scratch memory that are this layer's. Set by rt_accel_build */
     bool exact;          /* bit for bit like brute; false: judged by verdicts */
     bool counts;         /* its counts are the same on every machine and belong into counts.csv */
+    double build_seconds; /* wall seconds that building it took, with all below. Set by rt_accel_build */
     RtTally build_tally; /* what hit functions were asked while building; kept apart from tracing */
 } RtAccel;
 
@@ -162,6 +163,7 @@ struct RtAccelOps {
     const RtParam *params;
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
+    bool away;      /* it is a plugin's, and built in a process of its own (accel/away.h) */
     const RtBestOf *bests; /* [best_count], or NULL */
     size_t best_count;
 
@@ -177,6 +179,11 @@ struct RtAccelOps {
 
     /* Optional: bytes of scratch memory per query; it starts zeroed and 64-byte aligned. */
     size_t (*scratch_bytes)(const RtAccel *accel);
+
+    /* Optional, both or none: what scratch memory needs that is not memory, before the first ray and after
+     * the last. Where `open` fails nothing is to be closed. */
+    RtStatus (*open)(const RtAccel *accel, void *scratch, RtError *error);
+    void (*close)(const RtAccel *accel, void *scratch);
 
     /* Optional: brings the scratch memory back to what a fresh query has, as far as later counts could tell
      * (rt_query_begin). */
@@ -229,6 +236,9 @@ RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out);
 size_t rt_accel_count(void);
 const RtAccelOps *rt_accel_at(size_t i);
 
+/* Adds one of a plugin behind them; it stays where it is. RT_BAD_INPUT where the name is taken. */
+RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error);
+
 /* By name, to *out; where there is none, RT_BAD_INPUT and a message that suggests the nearest name. */
 RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error);
 
@@ -260,6 +270,9 @@ typedef struct RtSpec {
 /* Parses `name[:key=value[,key=value]...]`, several of them joined by '+': overlays over one base. */
 RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
 
+/* Whether one of its layers is a plugin's, so that all of it is built away. */
+bool rt_spec_is_away(const RtSpec *spec);
+
 /* The spec with every effective parameter, "grid:rule=woo,density=10,...", to out[0..RT_MAX_SPEC_CHARS). */
 void rt_spec_format(const RtSpec *spec, char *out);
 
@@ -276,8 +289,11 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
 /* ---- using an accelerator ---- */
 
 /* Builds what the spec says over `scene`, on `threads` threads (0 = all processors), which does not change
- * the structure. rt_accel_open_on takes the spec as text, rt_accel_open too, and all processors. Destroy with
+ * the structure; away (accel/away.h) where a layer asks for that, and always here by rt_accel_build_here.
+ * rt_accel_open_on takes the spec as text, rt_accel_open too, and all processors. Destroy with
  * rt_accel_destroy. */
+RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error);
 RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
 RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error);

@@ -2,7 +2,9 @@
 /* Layers: what is common to all accelerators, overlays stacked upon a base. Building, looking at and
  * destroying a stack, and the queries that are asked of it. */
 #include "accel/accel.h"
+#include "accel/away.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 
 /* Puts `accel`, just built, upon `below`, which may be NULL. */
@@ -15,9 +17,10 @@ static void stack(RtAccel *accel, RtAccel *below) {
     accel->counts = accel->counts && below->counts;
 }
 
-RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
-                        RtError *error) {
+RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                             RtError *error) {
     RtAccel *top = NULL;
+    double start = rt_wall_seconds();
     *out = NULL;
     for (uint32_t i = spec->layer_count; i-- > 0;) {
         RtAccel *accel = NULL;
@@ -31,8 +34,15 @@ RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, R
         stack(accel, top);
         top = accel;
     }
+    top->build_seconds = rt_wall_seconds() - start;
     *out = top;
     return RT_OK;
+}
+
+RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                        RtError *error) {
+    return rt_spec_is_away(spec) ? rt_away_build(spec, scene, threads, out, error)
+                                 : rt_accel_build_here(spec, scene, threads, out, error);
 }
 
 RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out,
@@ -101,14 +111,41 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 
 /* ---- queries ---- */
 
+/* Of the layers above `end`. */
+static void close_layers(const RtQuery *query, const RtAccel *end) {
+    const RtScratch *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer != end; layer = layer->below, scratch++) {
+        if (layer->ops->close) layer->ops->close(layer, scratch->own);
+    }
+}
+
+/* Where one cannot be opened nothing is left of the query. */
+static RtStatus open_layers(RtQuery *query, RtError *error) {
+    const RtScratch *scratch = query->scratch;
+    for (const RtAccel *layer = query->accel; layer; layer = layer->below, scratch++) {
+        RtStatus status = layer->ops->open ? layer->ops->open(layer, scratch->own, error) : RT_OK;
+        if (status == RT_OK) continue;
+        close_layers(query, layer);
+        query->accel = NULL;
+        rt_query_clear(query);
+        return status;
+    }
+    return RT_OK;
+}
+
 RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
     *query = (RtQuery){.accel = accel};
     RtScratch scratch = {NULL, NULL};
-    RT_TRY(rt_hit_room(&accel->scene->geometry, &scratch.room, error));
+    RtStatus status = rt_hit_room(&accel->scene->geometry, &scratch.room, error);
+    if (status != RT_OK) {
+        query->accel = NULL;
+        return status;
+    }
     size_t bytes = 0;
     for (const RtAccel *layer = accel; layer; layer = layer->below) bytes += layer->scratch_room;
     if (bytes > 0 && !(scratch.own = rt_alloc(bytes, 1))) {
         rt_free(scratch.room);
+        query->accel = NULL;
         return rt_fail_memory(error, "the scratch memory of a query", bytes);
     }
     uint32_t layers = 0;
@@ -116,11 +153,13 @@ RtStatus rt_query_init(RtQuery *query, const RtAccel *accel, RtError *error) {
         query->scratch[layers++] = scratch;
         if (scratch.own) scratch.own = (char *)scratch.own + layer->scratch_room;
     }
+    RT_TRY(open_layers(query, error));
     if (bytes > 0) rt_query_begin(query);
     return RT_OK;
 }
 
 void rt_query_clear(RtQuery *query) {
+    close_layers(query, NULL);
     rt_free(query->scratch[0].own);
     rt_free(query->scratch[0].room);
     *query = (RtQuery){0};

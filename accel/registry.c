@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The one list of accelerators. To add one: write its file, add a line here, add the file to
- * CMakeLists.txt. */
+/* The one list of accelerators. To add one: write its file, add a line here, add the file to CMakeLists.txt.
+ * Those of plugins join it at run time. */
 #include "accel/accel.h"
 
 #include "base/words.h"
@@ -33,16 +33,29 @@ ACCELERATORS(DECLARE)
 EMBREE_ACCELERATORS(DECLARE)
 #undef DECLARE
 
-static const RtAccelOps *const registry[] = {
-#define ENTRY(ops) &ops,
-    ACCELERATORS(ENTRY) EMBREE_ACCELERATORS(ENTRY)
-#undef ENTRY
-};
+enum { MOST_PLUGINS = 64 }; /* accelerators of plugins */
 
-enum { REGISTRY_COUNT = sizeof registry / sizeof registry[0] };
+#define ENTRY(ops) &ops,
+#define ONE(ops)   +1
+enum { BUILT_IN = 0 ACCELERATORS(ONE) EMBREE_ACCELERATORS(ONE) };
+static const RtAccelOps *registry[BUILT_IN + MOST_PLUGINS] = {
+    ACCELERATORS(ENTRY) EMBREE_ACCELERATORS(ENTRY)};
+static size_t count = BUILT_IN;
 
 size_t rt_accel_count(void) {
-    return REGISTRY_COUNT;
+    return count;
+}
+
+RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error) {
+    if (count == BUILT_IN + MOST_PLUGINS)
+        return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators of plugins", MOST_PLUGINS);
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(registry[i]->name, ops->name) == 0)
+            return rt_fail(error, RT_BAD_INPUT, "there is an accelerator '%s' already: give it another name",
+                           ops->name);
+    }
+    registry[count++] = ops;
+    return RT_OK;
 }
 
 const RtAccelOps *rt_accel_at(size_t i) {
@@ -62,8 +75,8 @@ const char *rt_accel_yardstick(void) {
 }
 
 RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error) {
-    const char *names[REGISTRY_COUNT];
-    for (size_t i = 0; i < REGISTRY_COUNT; i++) {
+    const char *names[BUILT_IN + MOST_PLUGINS];
+    for (size_t i = 0; i < count; i++) {
         names[i] = registry[i]->name;
         if (strcmp(names[i], name) != 0) continue;
         *out = registry[i];
@@ -76,7 +89,7 @@ RtStatus rt_accel_find(const char *name, const RtAccelOps **out, RtError *error)
     }
 #endif
     char suggestion[RT_MAX_SUGGESTION];
-    rt_suggest(name, names, REGISTRY_COUNT, suggestion);
+    rt_suggest(name, names, count, suggestion);
     return rt_fail(error, RT_BAD_INPUT, "there is no accelerator '%s'%s%s `raytally accels` lists them", name,
                    suggestion, *suggestion ? "" : ";");
 }

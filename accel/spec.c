@@ -66,6 +66,13 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
     }
 }
 
+bool rt_spec_is_away(const RtSpec *spec) {
+    for (uint32_t i = 0; i < spec->layer_count; i++) {
+        if (spec->layers[i].ops->away) return true;
+    }
+    return false;
+}
+
 void rt_spec_format(const RtSpec *spec, char *out) {
     size_t used = 0;
     for (uint32_t i = 0; i < spec->layer_count && used < RT_MAX_SPEC_CHARS; i++) {

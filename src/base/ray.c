@@ -4,6 +4,7 @@
 #include "base/words.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <string.h>
 
 static const char *const kind_names[RT_RAY_KIND_COUNT] = {
@@ -26,4 +27,10 @@ RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error) {
     char list[256];
     rt_join_names(kind_names, RT_RAY_KIND_COUNT, list, sizeof list);
     return rt_fail(error, RT_BAD_INPUT, "there is no ray kind '%.40s'; the kinds are %s", name, list);
+}
+
+void rt_ray_format(const RtRay *ray, char *out, size_t room) {
+    snprintf(out, room, "org (%.9g, %.9g, %.9g) dir (%.9g, %.9g, %.9g) t in [%.9g, %.9g]", (double)ray->org.x,
+             (double)ray->org.y, (double)ray->org.z, (double)ray->dir.x, (double)ray->dir.y,
+             (double)ray->dir.z, (double)ray->tmin, (double)ray->tmax);
 }

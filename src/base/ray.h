@@ -72,6 +72,10 @@ typedef struct RtRay {
     uint32_t source; /* primary: index of the sample in the frame's sample grid; shadow: index of the light */
 } RtRay;
 
+/* "org (0, 0, 5) dir (0, 0, -1) t in [0, inf]", of nine digits, which read back to the same bits. */
+#define RT_RAY_TEXT 192
+void rt_ray_format(const RtRay *ray, char *out, size_t room);
+
 #define RT_NO_OBJECT UINT32_MAX
 
 /* The nearest hit: the least (t, object) in that order. A miss is {INFINITY, RT_NO_OBJECT}. */

@@ -9,6 +9,7 @@
 typedef enum RtStatus {
     RT_OK = 0,
     RT_MISMATCH,      /* a check failed: answers or counts differ (exit code 1) */
+    RT_BROKEN,        /* an accelerator of a plugin crashed, hung or answered nonsense (exit code 1) */
     RT_BAD_INPUT,     /* a file, a spec or an argument is wrong (exit code 2) */
     RT_NOT_AVAILABLE, /* asked for something this build or machine does not have (exit code 2) */
     RT_NO_MEMORY,     /* an allocation failed (exit code 2) */

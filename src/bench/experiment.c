@@ -81,8 +81,22 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
     return RT_OK;
 }
 
+/* The first that is not of a plugin: with one that breaks nothing could be compared. */
+static uint32_t default_baseline(const RtExperiment *experiment) {
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        RtSpec spec;
+        if (rt_spec_parse(experiment->candidates[c].spec, &spec, NULL) != RT_OK || !rt_spec_is_away(&spec))
+            return c;
+    }
+    return 0;
+}
+
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
     uint32_t c = 0;
+    if (!label) {
+        experiment->baseline = default_baseline(experiment);
+        return RT_OK;
+    }
     while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
     experiment->baseline = c;
     if (c < experiment->candidate_count || !rt_best_is(label)) return RT_OK;

@@ -133,7 +133,7 @@ bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
 
 /* The baseline by its label; or, where that is the name of a best of (accel.h: "embree:best"), what it stands
  * for here, appended to the candidates. A label that is none leaves an index that rt_experiment_check
- * refuses. */
+ * refuses. NULL chooses the first that is not of a plugin. */
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error);
 
 /* Whether candidate `c` is one of those that ratios refer to. */

@@ -157,7 +157,7 @@ static RtStatus read_rays(const RtYaml *y, const RtYamlNode *list, RtExperiment 
 
 static RtStatus read_baseline(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment,
                               RtError *error) {
-    const char *label = experiment->candidates[0].label;
+    const char *label = NULL;
     RT_TRY(rt_yaml_text(y, n, "baseline", RT_MAX_LABEL - 1, &label));
     return rt_yaml_place(y, rt_experiment_set_baseline(experiment, label, error), n, "baseline");
 }

@@ -97,6 +97,7 @@ static json_t *hardware_json(const RtResults *results, const RtCell *cell) {
 static json_t *event_json(const RtResults *results, const RtEvent *event) {
     const RtExperiment *experiment = results->experiment;
     const RtCell *cell = rt_cell_at(results, event->workload, event->candidate, event->kind);
+    const RtBuildResult *build = rt_build_at(results, event->workload, event->candidate);
     const char *scene = experiment->workloads[event->workload].label;
     const char *accel = rt_candidate_label(experiment, event->candidate);
     const char *kind = rt_ray_kind_name(event->kind);
@@ -106,7 +107,7 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
                          workload_json(&results->workloads[event->workload]));
     case RT_EVENT_BUILD:
         return json_pack("{s:s, s:s, s:o}", "scene", scene, "accel", accel, "built",
-                         build_json(rt_build_at(results, event->workload, event->candidate)));
+                         build_json(build));
     case RT_EVENT_COUNT:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "counted",
                          count_json(cell));
@@ -120,11 +121,13 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "hardware",
                          hardware_json(results, cell));
     case RT_EVENT_TOO_LARGE:
-        return json_pack("{s:s, s:s, s:s}", "scene", scene, "accel", accel, "too_large",
-                         rt_build_at(results, event->workload, event->candidate)->limit);
+    case RT_EVENT_BROKEN_BUILD:
+        return json_pack("{s:s, s:s, s:s, s:b}", "scene", scene, "accel", accel, "too_large", build->limit,
+                         "broken", build->broken);
     case RT_EVENT_TOO_LONG:
-        return json_pack("{s:s, s:s, s:s, s:s}", "scene", scene, "accel", accel, "kind", kind, "too_long",
-                         cell->limit);
+    case RT_EVENT_BROKEN:
+        return json_pack("{s:s, s:s, s:s, s:s, s:b}", "scene", scene, "accel", accel, "kind", kind,
+                         "too_long", cell->limit, "broken", cell->broken);
     }
     return NULL;
 }
@@ -287,6 +290,11 @@ static RtStatus take_time(RtResults *results, uint32_t workload, RtCell *cell, c
     return take_rounds(cell, object, error);
 }
 
+static void take_limit(const char *text, bool is_broken, char *limit, bool *broken) {
+    snprintf(limit, RT_MAX_LIMIT, "%s", text);
+    *broken = is_broken;
+}
+
 /* Places a line where its labels say; lines about what the experiment does not have are passed over. */
 static RtStatus take_line(RtResults *results, const json_t *line, RtError *error) {
     const RtExperiment *experiment = results->experiment;
@@ -303,15 +311,17 @@ static RtStatus take_line(RtResults *results, const json_t *line, RtError *error
     if (candidate > experiment->candidate_count) return RT_OK;
     if ((object = json_object_get(line, "built")))
         RT_TRY(take_build(rt_build_at(results, workload, candidate), object, error));
+    bool broken = json_is_true(json_object_get(line, "broken"));
     const char *limit = json_string_value(json_object_get(line, "too_large"));
-    if (limit) snprintf(rt_build_at(results, workload, candidate)->limit, RT_MAX_LIMIT, "%s", limit);
+    RtBuildResult *build = rt_build_at(results, workload, candidate);
+    if (limit) take_limit(limit, broken, build->limit, &build->broken);
     if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return RT_OK;
     RtCell *cell = rt_cell_at(results, workload, candidate, kind);
     if ((object = json_object_get(line, "counted"))) take_count(cell, object);
     RT_TRY(take_distributions(&cell->distributions, 0, RT_RAY_QUANTITY_COUNT,
                               json_object_get(line, "distributed"), error));
     limit = json_string_value(json_object_get(line, "too_long"));
-    if (limit) snprintf(cell->limit, RT_MAX_LIMIT, "%s", limit);
+    if (limit) take_limit(limit, broken, cell->limit, &cell->broken);
     if ((object = json_object_get(line, "hardware"))) take_hardware(results, cell, object);
     object = json_object_get(line, "timed");
     return object ? take_time(results, workload, cell, object, error) : RT_OK;

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/machine.h"
 
-#include "accel/accel.h"
+#include "accel/plugin.h"
+#include "base/json.h"
 #include "base/parallel.h"
 #include "build_info.h"
 
+#include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,6 +67,19 @@ static json_t *text_or_null(const char *text) {
     return *text ? json_string(text) : json_null();
 }
 
+/* Which plugins were loaded, and the hash of each file. */
+static json_t *plugins_json(void) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < rt_plugin_count(); i++) {
+        const RtPlugin *plugin = rt_plugin_at(i);
+        json_t *names = json_array();
+        for (uint32_t n = 0; n < plugin->count; n++) json_array_append_new(names, json_string(plugin->names[n]));
+        json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "file", plugin->path, "hash",
+                                              rt_json_hex(plugin->fingerprint), "accelerators", names));
+    }
+    return list;
+}
+
 json_t *rt_machine_json(void) {
     char cpu[256], governor[64], system[256] = "";
     struct utsname name;
@@ -85,12 +100,19 @@ json_t *rt_machine_json(void) {
         ops->library(library, sizeof library);
         json_object_set_new(machine, ops->name, text_or_null(library));
     }
+    if (rt_plugin_count() > 0) json_object_set_new(machine, "plugins", plugins_json());
     return machine;
 }
 
 const char *rt_build_identity(void) {
-    return RT_DIRTY ? RT_VERSION " " RT_COMMIT " with changes, " RT_COMPILER
-                    : RT_VERSION " " RT_COMMIT ", " RT_COMPILER;
+    static char identity[1024];
+    int used = snprintf(identity, sizeof identity, "%s %s%s, %s", RT_VERSION, RT_COMMIT,
+                        RT_DIRTY ? " with changes" : "", RT_COMPILER);
+    for (size_t i = 0; i < rt_plugin_count() && used < (int)sizeof identity; i++) {
+        used += snprintf(identity + used, sizeof identity - (size_t)used, ", plugin %016" PRIx64,
+                         rt_plugin_at(i)->fingerprint);
+    }
+    return identity;
 }
 
 RtMachine rt_machine_here(void) {

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/measure.h"
 
+#include "accel/away.h"
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "bench/measure_here.h"
 #include "bench/rounds.h"
 
 #include <string.h>
@@ -54,6 +56,7 @@ static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set,
 
 static void trace(Pass *pass, int thread, size_t first, size_t count) {
     const RtRay *rays = pass->set->rays + first;
+    rt_away_beat();
     rt_query_begin(&pass->queries[thread]);
     RtTally *tallies = pass->tallies ? pass->tallies[thread] : NULL;
     if (pass->blocked) {
@@ -202,7 +205,7 @@ static RtStatus warm_runner(void *context, double seconds, double *part, RtError
     return rt_accel_check(pass->queries[0].accel, error);
 }
 
-RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
+RtStatus rt_runner_open_here(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
     Pass *pass = rt_alloc(1, sizeof(Pass));
     *runner = (RtRunner){.run = run_runner,
                          .warm = warm_runner,
@@ -210,27 +213,14 @@ RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtE
                          .work = (double)timed->set->count,
                          .parallel = rt_thread_count(threads) > 1,
                          .seconds = timed->seconds,
-                         .wall = timed->wall};
+                         .wall = timed->wall,
+                         .broken = timed->broken};
     if (!pass) return rt_fail_memory(error, "a pass", sizeof(Pass));
     return pass_init(pass, timed->accel, timed->set, threads, false, error);
 }
 
-void rt_runner_close(RtRunner *runner) {
+void rt_runner_close_here(RtRunner *runner) {
     if (runner->context) pass_clear(runner->context);
     rt_free(runner->context);
     *runner = (RtRunner){0};
-}
-
-RtStatus rt_measure_time(const RtTimed *timed, size_t count, const RtTiming *timing, uint32_t *done,
-                         RtError *error) {
-    RtRunner *runners = rt_alloc(count, sizeof(RtRunner));
-    if (!runners) return rt_fail_memory(error, "the rounds", count * sizeof(RtRunner));
-    RtStatus status = RT_OK;
-    for (size_t i = 0; status == RT_OK && i < count; i++) {
-        status = rt_runner_open(&runners[i], &timed[i], timing->threads, error);
-    }
-    if (status == RT_OK) status = rt_rounds_run(runners, count, &timing->rounds, done, error);
-    for (size_t i = 0; i < count; i++) rt_runner_close(&runners[i]);
-    rt_free(runners);
-    return status;
 }

@@ -47,6 +47,7 @@ typedef struct RtTimed {
     const RtRaySet *set; /* not empty */
     double *seconds;     /* [rounds.most] out: seconds a ray, by the clock of the comparison */
     double *wall;        /* [rounds.most] out: seconds a ray on the wall clock, all threads together */
+    bool *broken;        /* as of RtRunner, or NULL */
 } RtTimed;
 
 typedef struct RtTiming {

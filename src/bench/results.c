@@ -82,6 +82,26 @@ void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddl
     }
 }
 
+static bool any_cell_is_broken(const RtResults *results, uint32_t t, uint32_t c) {
+    bool broken = rt_build_at(results, t, c)->broken;
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) broken |= rt_cell_at(results, t, c, (RtRayKind)k)->broken;
+    return broken;
+}
+
+RtStatus rt_results_check_broken(const RtResults *results, RtError *error) {
+    const RtExperiment *e = results->experiment;
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        for (uint32_t c = 0; c < e->candidate_count; c++) {
+            if (!any_cell_is_broken(results, t, c)) continue;
+            return rt_fail(error, RT_BROKEN,
+                           "'%s' is broken and left out, at least on %s: see above; `raytally verify --accel "
+                           "%s` says more. The others are measured",
+                           e->candidates[c].label, e->workloads[t].label, e->candidates[c].spec);
+        }
+    }
+    return RT_OK;
+}
+
 void rt_print_limits(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     for (uint32_t t = 0; t < experiment->workload_count; t++) {

@@ -12,7 +12,7 @@
 
 #include <stdio.h>
 
-#define RT_MAX_LIMIT 64
+#define RT_MAX_LIMIT 512
 
 typedef struct RtWorkloadResult {
     bool known;   /* the scene was opened and its rays recorded */
@@ -28,7 +28,9 @@ typedef struct RtBuildResult {
     bool known, exact, counts;    /* as in RtAccel */
     char spec[RT_MAX_SPEC_CHARS]; /* every effective parameter */
     double seconds;               /* median of up to three builds */
-    char limit[RT_MAX_LIMIT];     /* which limit it went beyond, so that no cell of it is measured; else "" */
+    /* Which limit it went beyond, so that no cell of it is measured, or if it is `broken` how; else "". */
+    char limit[RT_MAX_LIMIT];
+    bool broken; /* of a plugin, and at fault */
     RtDescription shape;
     RtDistribution
         *leaves; /* [RT_LEAF_QUANTITY_COUNT] owned, of the base; NULL: not asked for, or it has none */
@@ -50,7 +52,9 @@ typedef struct RtCellHardware {
 
 typedef struct RtCell {
     bool counted, timed;
-    char limit[RT_MAX_LIMIT];      /* which limit it would go beyond, so that it is not measured; else "" */
+    /* Which limit it would go beyond, so that it is not measured, or if it is `broken` how; else "". */
+    char limit[RT_MAX_LIMIT];
+    bool broken; /* the accelerator, of a plugin, is at fault */
     RtTally tally;                 /* tally.rays: of the thinned set */
     uint64_t differ;               /* answers unlike the baseline's; of an exact accelerator always 0 */
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */
@@ -100,6 +104,9 @@ const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidat
 
 /* How many of the null runs there are, and how many of them have an interval with 1 inside. */
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
+
+/* RT_BROKEN, and which was the first, where an accelerator of a plugin broke. */
+RtStatus rt_results_check_broken(const RtResults *results, RtError *error);
 
 /* A line for each limit that was hit, and what was left out; nothing where there is none. */
 void rt_print_limits(const RtResults *results, FILE *out);

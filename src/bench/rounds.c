@@ -12,6 +12,7 @@ enum { MOST_REPEATS = 1000000 };
 
 RtStatus rt_runner_time(const RtRunner *runner, uint32_t repeats, double *seconds, double *wall,
                         RtError *error) {
+    if (runner->time) return runner->time(runner->context, repeats, seconds, wall, error);
     double processor_start = rt_thread_seconds(), wall_start = rt_wall_seconds();
     for (uint32_t i = 0; i < repeats; i++) RT_TRY(runner->run(runner->context, error));
     *wall = rt_wall_seconds() - wall_start;
@@ -32,11 +33,20 @@ static RtStatus warm_one(const RtRunner *runner, double least, double *seconds, 
     return RT_OK;
 }
 
+/* Whether a runner that gave `status` is left out from now on. */
+static bool is_broken(const RtRunner *runner, RtStatus status) {
+    if (status != RT_BROKEN || !runner->broken) return false;
+    *runner->broken = true;
+    return true;
+}
+
 /* Brings code and data into the caches, and finds how often each must run to last `least` seconds. */
 static RtStatus warm_up(RtRunner *runners, size_t count, double least, RtError *error) {
     for (size_t i = 0; i < count; i++) {
         double seconds;
-        RT_TRY(warm_one(&runners[i], least, &seconds, error));
+        RtStatus status = warm_one(&runners[i], least, &seconds, error);
+        if (is_broken(&runners[i], status)) continue;
+        RT_TRY(status);
         runners[i].repeats = rt_runner_repeats(seconds, least);
     }
     return RT_OK;
@@ -61,7 +71,10 @@ static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const
         for (size_t i = 0; i < count; i++) {
             RtRunner *runner = &runners[order[i]];
             double seconds, wall, work = runner->repeats * runner->work;
-            RT_TRY(rt_runner_time(runner, runner->repeats, &seconds, &wall, error));
+            if (runner->broken && *runner->broken) continue;
+            RtStatus status = rt_runner_time(runner, runner->repeats, &seconds, &wall, error);
+            if (is_broken(runner, status)) continue;
+            RT_TRY(status);
             runner->seconds[round] = seconds / work;
             if (seconds < rounds->least) /* it was told wrong from a part */
                 runner->repeats = rt_runner_repeats(seconds / runner->repeats, rounds->least);

@@ -19,12 +19,17 @@ typedef struct RtRunner {
      * *part gets how much of a run that was, above 0. NULL: a whole run, which then takes as long as a round.
      */
     RtStatus (*warm)(void *context, double seconds, double *part, RtError *error);
+    /* Of one whose work is done in another process: runs it `repeats` times, and says how long that took
+     * there. NULL: it is run here, and the clocks of this thread say. */
+    RtStatus (*time)(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error);
     void *context;
     double work;      /* pieces of work in one run, > 0: times are per piece */
     bool parallel;    /* runs on several threads: the wall clock is then the clock of the comparison */
     double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */
     double *wall;     /* [most] out: by the wall clock; NULL if nobody asks */
     uint32_t repeats; /* scratch: runs in a round */
+    bool *broken;     /* out, zeroed by the caller: it gave RT_BROKEN, and is left out from then on; or NULL: that
+                         ends the rounds */
 } RtRunner;
 
 typedef struct RtRounds {

@@ -4,7 +4,7 @@
  * counted, and all are timed against each other. */
 #include "bench/workload_state.h"
 
-#include "base/clock.h"
+#include "accel/away.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "bench/ray_file.h"
@@ -92,9 +92,8 @@ static RtStatus build_one(RtWorkloadState *workload, const RtSpec *spec, RtAccel
     do {
         rt_accel_destroy(*out);
         *out = NULL;
-        double start = rt_wall_seconds();
         RT_TRY(rt_accel_build(spec, workload->scene, workload->options->threads, out, error));
-        seconds[builds] = rt_wall_seconds() - start;
+        seconds[builds] = (*out)->build_seconds;
         sum += seconds[builds++];
     } while (builds < MOST_BUILDS && sum < CHEAP_BUILD);
     *median = rt_median(seconds, builds);
@@ -109,8 +108,14 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
     rt_memory_limit(1000000 * experiment->limit_megabytes);
     RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
     rt_memory_limit(0);
-    if (status != RT_OK && (status != RT_NO_MEMORY || !experiment->limit_megabytes)) return status;
-    if (status == RT_NO_MEMORY) {
+    bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
+    if (status != RT_OK && status != RT_BROKEN && !too_large) return status;
+    if (status == RT_BROKEN) {
+        snprintf(result->limit, RT_MAX_LIMIT, "%.511s", error->message);
+        result->broken = true;
+        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, RT_RAY_PRIMARY, result->limit, error);
+    }
+    if (too_large) {
         snprintf(result->limit, RT_MAX_LIMIT, "its structure takes more than %llu MB",
                  (unsigned long long)experiment->limit_megabytes);
     } else if (experiment->limit_seconds > 0 && *seconds > experiment->limit_seconds) {
@@ -232,9 +237,15 @@ static RtStatus count_kind(RtWorkloadState *workload, RtRayKind kind, RtError *e
         const RtWorkloadShare *share = &workload->shares[c];
         RtCount count;
         if (!workload->accels[c] || cell->counted) continue;
-        RT_TRY(rt_measure_count(workload->accels[c], &share->set, share->expected, workload->options->threads,
-                                &count, error));
-        if (workload->accels[c]->exact) RT_TRY(check_answers(workload, c, kind, &count, error));
+        RtStatus status = rt_measure_count(workload->accels[c], &share->set, share->expected,
+                                           workload->options->threads, &count, error);
+        if (status == RT_OK && workload->accels[c]->exact)
+            status = check_answers(workload, c, kind, &count, error);
+        if (rt_workload_is_own_fault(workload, c, status)) {
+            RT_TRY(rt_workload_break(workload, c, kind, error));
+            continue;
+        }
+        RT_TRY(status);
         cell->counted = true;
         cell->tally = count.tally;
         cell->differ = count.differ;
@@ -258,18 +269,31 @@ static RtStatus save_rows(const RtWorkloadState *workload, RtRayKind kind, RtErr
 
 /* ---- all of it ---- */
 
-/* Those that are not known to go beyond a limit. */
-static void choose_accels(RtWorkloadState *workload, RtRayKind kind) {
+/* One that broke on other rays is built anew for these. */
+static RtStatus rebuild_broken(RtWorkloadState *workload, uint32_t c, RtError *error) {
+    RtSpec spec;
+    RtAccel *accel = workload->built[c];
+    if (!accel || !rt_accel_is_away(accel) || rt_accel_check(accel, NULL) == RT_OK) return RT_OK;
+    rt_accel_destroy(accel);
+    workload->built[c] = NULL;
+    RT_TRY(rt_spec_parse(workload->experiment->candidates[rt_workload_origin(workload, c)].spec, &spec, error));
+    return rt_accel_build(&spec, workload->scene, workload->options->threads, &workload->built[c], error);
+}
+
+/* Those that are not known to go beyond a limit, or to break. */
+static RtStatus choose_accels(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     for (uint32_t c = 0; c < workload->count; c++) {
         const RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        RT_TRY(rebuild_broken(workload, c, error));
         workload->accels[c] = *cell->limit ? NULL : workload->built[c];
     }
+    return RT_OK;
 }
 
 static RtStatus measure_kind(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     if (workload->sets[kind].count == 0 || kind_is_done(workload, kind)) return RT_OK;
     if (!rt_only_kind(&workload->options->only, kind)) return RT_OK;
-    choose_accels(workload, kind);
+    RT_TRY(choose_accels(workload, kind, error));
     RtStatus status = deal_shares(workload, &workload->sets[kind], error);
     if (status == RT_OK) status = rt_workload_check_limits(workload, kind, error);
     if (status == RT_OK) status = count_kind(workload, kind, error);

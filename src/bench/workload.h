@@ -15,7 +15,9 @@ typedef enum RtEventKind {
     RT_EVENT_TIME,         /* the cell is timed */
     RT_EVENT_HARDWARE,     /* it is known what the machine did for the rays of the cell, or why not */
     RT_EVENT_TOO_LARGE,    /* the structure of `candidate` went beyond a limit */
-    RT_EVENT_TOO_LONG      /* the cell would go beyond a limit */
+    RT_EVENT_TOO_LONG,     /* the cell would go beyond a limit */
+    RT_EVENT_BROKEN_BUILD, /* `candidate`, of a plugin, broke while it was built */
+    RT_EVENT_BROKEN        /* it broke on the rays of the cell, or answered them wrong */
 } RtEventKind;
 
 /* Which part of the results was just filled. */

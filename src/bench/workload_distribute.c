@@ -46,7 +46,12 @@ RtStatus rt_workload_distribute(RtWorkloadState *workload, RtRayKind kind, RtErr
     for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         if (!workload->accels[c] || cell->distributions) continue;
-        RT_TRY(distribute_cell(workload, c, cell, error));
+        RtStatus status = distribute_cell(workload, c, cell, error);
+        if (rt_workload_is_own_fault(workload, c, status)) {
+            RT_TRY(rt_workload_break(workload, c, kind, error));
+            continue;
+        }
+        RT_TRY(status);
         RT_TRY(rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error));
     }
     return RT_OK;

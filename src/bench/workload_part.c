@@ -34,13 +34,24 @@ bool rt_only_kind(const RtOnly *only, RtRayKind kind) {
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
                                char *limit, RtError *error) {
     const RtExperiment *experiment = workload->experiment;
+    bool broken = what == RT_EVENT_BROKEN || what == RT_EVENT_BROKEN_BUILD;
     if (c == experiment->candidate_count || rt_candidate_is_baseline(experiment, c)) {
-        rt_fail(error, RT_BAD_INPUT, "the baseline '%s' goes beyond a limit on '%s': %s",
-                rt_candidate_label(experiment, c), experiment->workloads[workload->index].label, limit);
+        RtStatus status = broken ? RT_BROKEN : RT_BAD_INPUT;
+        rt_fail(error, status, "the baseline '%s' %s on '%s': %s", rt_candidate_label(experiment, c),
+                broken ? "is broken" : "goes beyond a limit", experiment->workloads[workload->index].label,
+                limit);
         *limit = '\0';
-        return RT_BAD_INPUT;
+        return status;
     }
     return rt_workload_tell(workload, what, c, kind, error);
+}
+
+RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
+    RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+    snprintf(cell->limit, RT_MAX_LIMIT, "%.511s", error->message);
+    cell->broken = true;
+    workload->accels[c] = NULL;
+    return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN, kind, cell->limit, error);
 }
 
 /* Whether a cell would take longer than it may to be counted and timed, by what a part of its rays takes. */
@@ -53,7 +64,10 @@ static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind k
     double all = (double)part.count, passes = workload->count_only ? 1 : 2 + experiment->rounds;
     if (part.count > PROBE) part.count = PROBE;
     double start = rt_wall_seconds();
-    RT_TRY(rt_measure_count(workload->accels[c], &part, workload->shares[c].expected, 1, &count, error));
+    RtStatus status =
+        rt_measure_count(workload->accels[c], &part, workload->shares[c].expected, 1, &count, error);
+    if (rt_workload_is_own_fault(workload, c, status)) return rt_workload_break(workload, c, kind, error);
+    RT_TRY(status);
     double seconds = (rt_wall_seconds() - start) / (double)part.count * all * passes;
     if (seconds <= experiment->limit_seconds) return RT_OK;
     snprintf(cell->limit, RT_MAX_LIMIT, "it would take about %.2g s, more than %g s", seconds,

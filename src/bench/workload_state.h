@@ -4,6 +4,7 @@
 #ifndef RT_BENCH_WORKLOAD_STATE_H
 #define RT_BENCH_WORKLOAD_STATE_H
 
+#include "accel/away.h"
 #include "bench/measure.h"
 #include "bench/workload.h"
 
@@ -50,6 +51,16 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
  * without which there is nothing to compare with, is RT_BAD_INPUT, and no longer named. */
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
                                char *limit, RtError *error);
+
+/* Whether `status` is of what concerns no other candidate: an accelerator of a plugin that is broken, or whose
+ * answers are wrong. */
+static inline bool rt_workload_is_own_fault(const RtWorkloadState *workload, uint32_t candidate,
+                                            RtStatus status) {
+    return status == RT_BROKEN || (status == RT_MISMATCH && rt_accel_is_away(workload->accels[candidate]));
+}
+
+/* Leaves that candidate out on the rays of that kind; *error, whose message it is, is why. */
+RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);
 
 /* Leaves out who would take longer on the rays of that kind than the limit: whose shares are dealt. */
 RtStatus rt_workload_check_limits(RtWorkloadState *workload, RtRayKind kind, RtError *error);

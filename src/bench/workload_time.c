@@ -19,13 +19,15 @@ typedef struct Contest {
     double start;          /* wall seconds */
     RtTimed *timed;        /* [count] */
     double *seconds;       /* [count][2][most], where they go */
+    bool *broken;          /* [count] */
     uint32_t *place;       /* [workload->count] of a candidate among them */
     uint32_t *rival; /* [workload->count] of the first candidate of the baseline on its rays; others follow */
 } Contest;
 
 static uint32_t enter(Contest *contest, const RtAccel *accel, const RtRaySet *set) {
     double *place = contest->seconds + 2 * (size_t)contest->count * contest->most;
-    contest->timed[contest->count] = (RtTimed){accel, set, place, place + contest->most};
+    contest->timed[contest->count] =
+        (RtTimed){accel, set, place, place + contest->most, &contest->broken[contest->count]};
     return contest->count++;
 }
 
@@ -41,9 +43,10 @@ static RtStatus contest_init(Contest *contest, const RtWorkloadState *workload, 
                          .start = rt_wall_seconds(),
                          .timed = rt_alloc(most, sizeof(RtTimed)),
                          .seconds = rt_alloc(doubles, sizeof(double)),
+                         .broken = rt_alloc(most, sizeof(bool)),
                          .place = rt_alloc(workload->count, sizeof(uint32_t)),
                          .rival = rt_alloc(workload->count, sizeof(uint32_t))};
-    if (!contest->timed || !contest->seconds || !contest->place || !contest->rival) {
+    if (!contest->timed || !contest->seconds || !contest->broken || !contest->place || !contest->rival) {
         return rt_fail_memory(error, "times", doubles * sizeof(double));
     }
     for (uint32_t c = 0; c < workload->count; c++) {
@@ -64,6 +67,7 @@ static RtStatus contest_init(Contest *contest, const RtWorkloadState *workload, 
 static void contest_clear(Contest *contest) {
     rt_free(contest->timed);
     rt_free(contest->seconds);
+    rt_free(contest->broken);
     rt_free(contest->place);
     rt_free(contest->rival);
 }
@@ -105,7 +109,7 @@ static double widest_of(const Contest *contest, uint32_t *candidate) {
     double widest = 0;
     *candidate = 0;
     for (uint32_t c = 0; c < contest->workload->count; c++) {
-        if (!contest->workload->accels[c]) continue;
+        if (!contest->workload->accels[c] || contest->broken[contest->place[c]]) continue;
         const RtTimed *rival = &contest->timed[contest->rival[c] + pick_rival(contest, c)];
         RtEstimate ratio =
             rt_estimate_ratio(rival->seconds, contest->timed[contest->place[c]].seconds, contest->rounds);
@@ -150,6 +154,18 @@ static void tell_width(const Contest *contest) {
 
 /* ---- all of it ---- */
 
+/* Leaves out who broke. A rival that did was the baseline, and is told as that. */
+static RtStatus leave_out_broken(RtWorkloadState *workload, RtRayKind kind, const Contest *contest,
+                                 RtError *error) {
+    for (uint32_t c = 0; c < workload->count; c++) {
+        RtAccel *accel = workload->accels[c];
+        if (!accel || (!contest->broken[contest->place[c]] && !contest->broken[contest->rival[c]])) continue;
+        if (rt_accel_check(accel, error) == RT_OK) continue;
+        RT_TRY(rt_workload_break(workload, c, kind, error));
+    }
+    return RT_OK;
+}
+
 /* Takes what was timed into the cells. */
 static RtStatus keep_times(RtWorkloadState *workload, RtRayKind kind, const Contest *contest,
                            RtError *error) {
@@ -192,6 +208,7 @@ RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *er
                        .threads = workload->options->timing};
     if (status == RT_OK)
         status = rt_measure_time(contest.timed, contest.count, &timing, &contest.rounds, error);
+    if (status == RT_OK) status = leave_out_broken(workload, kind, &contest, error);
     if (status == RT_OK) tell_width(&contest);
     if (status == RT_OK) status = keep_times(workload, kind, &contest, error);
     contest_clear(&contest);

@@ -9,7 +9,8 @@
 
 int rt_cli_fail(const RtError *error) {
     fprintf(stderr, "raytally: %s\n", error->message);
-    return error->status == RT_MISMATCH ? RT_EXIT_CHECK_FAILED : RT_EXIT_BAD_INPUT;
+    bool failed = error->status == RT_MISMATCH || error->status == RT_BROKEN;
+    return failed ? RT_EXIT_CHECK_FAILED : RT_EXIT_BAD_INPUT;
 }
 
 RtStatus rt_cli_check_json_name(const char *name, RtError *error) {

@@ -2,6 +2,7 @@
 /* raytally accels: what the tables of the registry say. */
 #include "accel/accel.h"
 #include "cli/cli.h"
+#include "cli/plugins.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -40,12 +41,14 @@ static json_t *accelerator_json(const RtAccelOps *ops) {
                      rt_cli_params_json(ops->params, ops->param_count), "best_of", bests);
 }
 
+static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_accels_argp = {
     .options = rt_list_options,
     .parser = rt_list_parse,
     .args_doc = "[NAME]",
     .doc = "List the accelerators, or explain the one called NAME: its parameters with defaults "
-           "and ranges, and the paper it follows."};
+           "and ranges, and the paper it follows.",
+    .children = children};
 
 int rt_command_accels(int argc, char **argv) {
     RtListOptions o = {0};

@@ -6,6 +6,7 @@
 #include "cli/bench_output.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
+#include "cli/plugins.h"
 #include "cli/recording.h"
 #include "verify/spread.h"
 
@@ -51,7 +52,7 @@ static const struct argp_option options[] = {
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
      "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
     {"baseline", OPT_BASELINE, "SPEC", 0,
-     "The accelerator that ratios refer to (the first); or NAME:best, the fastest of several settings for "
+     "The accelerator that ratios refer to (the first that is not a plugin's); or NAME:best, the fastest of several settings for "
      "each "
      "kind, as in embree:best (`raytally accels NAME`)",
      0},
@@ -222,6 +223,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
             argp_error(state, "a SCENE is missing: a file, or a built-in as `raytally scenes` lists");
         if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
         if (o->baseline) set_baseline(e, o->baseline, state);
+        if (!o->baseline) rt_experiment_set_baseline(e, NULL, NULL);
         if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
         if (e->hardware && o->workload.count_only)
             argp_error(state,
@@ -297,12 +299,13 @@ static RtStatus bench(Options *o, RtError *error) {
     if (status == RT_OK)
         status = rt_bench_report(&results, &callgrind,
                                  &(RtBenchOutput){o->csv, o->json, o->workload.count_only}, error);
+    if (status == RT_OK) status = rt_results_check_broken(&results, error);
     rt_callgrind_clear(&callgrind);
     rt_results_clear(&results);
     return status;
 }
 
-static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
+static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_bench_argp = {
     .options = options,
     .parser = parse_option,

@@ -5,6 +5,7 @@
 #include "bench/compare.h"
 #include "bench/worker.h"
 #include "cli/cli.h"
+#include "cli/plugins.h"
 #include "cli/recording.h"
 #include "report/result_directory.h"
 
@@ -204,7 +205,7 @@ static RtStatus compare(Options *o, int argc, char **argv, bool *slower, RtError
     return status;
 }
 
-static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {0}};
+static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_compare_argp = {
     .options = options,
     .parser = parse_option,

@@ -7,6 +7,7 @@
 #include "bench/manifest.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
+#include "cli/plugins.h"
 #include "cli/progress.h"
 #include "report/result_directory.h"
 
@@ -211,6 +212,7 @@ static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how,
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
     print_all(results, how->directory, !o->only.scene && !o->only.shards);
+    RT_TRY(rt_results_check_broken(results, error));
     return o->strict ? rt_claims_check(results, error) : RT_OK;
 }
 
@@ -253,6 +255,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     return status;
 }
 
+static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_run_argp = {
     .options = options,
     .parser = parse_option,
@@ -265,7 +268,8 @@ const struct argp rt_run_argp = {
            "\vExit code 1 if an accelerator answers wrong, gnuplot fails (without "
            "gnuplot there is a note), a published figure is missed, or with "
            "--strict a claim does not hold. "
-           "experiments/README.md says how to write an experiment."};
+           "experiments/README.md says how to write an experiment.",
+    .children = children};
 
 int rt_command_run(int argc, char **argv) {
     Options o = {.timing = 1, .patience = RT_PATIENCE};

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally trace: one ray's path through an accelerator, step by step. */
+#include "accel/away.h"
 #include "base/json.h"
 #include "base/table.h"
 #include "cli/cli.h"
+#include "cli/plugins.h"
 #include "render/path.h"
 #include "scenes/open.h"
 
@@ -242,12 +244,18 @@ static RtStatus run(const Options *o, RtError *error) {
     RtStatus status = rt_scene_sample(&scene, o->width, o->height, 1, false, error);
     if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
+    if (status == RT_OK && rt_accel_is_away(accel))
+        status = rt_fail(error, RT_BAD_INPUT,
+                         "%s: the path through an accelerator of a plugin is not seen from here, for it lives "
+                         "in a process of its own; `raytally render --heatmap` shows what its rays cost",
+                         text);
     if (status == RT_OK) status = trace(o, &scene, accel, text, error);
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);
     return status;
 }
 
+static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_trace_argp = {
     .options = options,
     .parser = parse_option,
@@ -268,7 +276,8 @@ const struct argp rt_trace_argp = {
            "  raytally trace balls --pixel 256,256\n"
            "  raytally trace balls --pixel 256,256 --accel grid:density=1 --svg path.svg\n"
            "  raytally trace balls --pixel 256,400 --accel light:cells=40+octree --rays shadow --light 1\n"
-           "Through embree no steps are seen, for it counts none; with mode=user, object tests."};
+           "Through embree no steps are seen, for it counts none; with mode=user, object tests.",
+    .children = children};
 
 int rt_command_trace(int argc, char **argv) {
     RtError error;

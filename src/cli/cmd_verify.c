@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "bench/ray_file.h"
 #include "cli/cli.h"
+#include "cli/plugins.h"
 #include "scenes/family.h"
 #include "verify/replay.h"
 #include "verify/spread.h"
@@ -384,6 +385,7 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     return rt_fail(error, RT_BAD_INPUT, "%s: none of it can be asked again", o->replay);
 }
 
+static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_verify_argp = {
     .options = options,
     .parser = parse_option,
@@ -395,7 +397,8 @@ const struct argp rt_verify_argp = {
            "Those that compute in arithmetic of their own (Embree's native mode) get verdicts: equal, tie, "
            "marginal (explained by rounding) or wrong. The first wrong answer of each row is written to a "
            "file (in --out DIR, else in verify-failures/), with the scene shrunk to the objects that it "
-           "takes; --replay asks it again. Exit code 1 if anything is wrong."};
+           "takes; --replay asks it again. Exit code 1 if anything is wrong.",
+    .children = children};
 
 int rt_command_verify(int argc, char **argv) {
     static Options o;

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally: the list of commands. */
+#include "accel/away.h"
 #include "base/words.h"
 #include "cli/cli.h"
+#include "cli/plugins.h"
 
 #include <argp.h>
 #include <stdio.h>
@@ -73,6 +75,13 @@ static int run_unknown(const char *name) {
     return RT_EXIT_BAD_INPUT;
 }
 
+/* Whether its arguments may be about accelerators. */
+static bool takes_plugins(const RtCommand *command) {
+    const struct argp_child *child = command->argp ? command->argp->children : NULL;
+    while (child && child->argp && child->argp != &rt_plugin_argp) child++;
+    return child && child->argp;
+}
+
 static const RtCommand *find_command(const char *name) {
     for (int i = 0; i < COMMAND_COUNT; i++) {
         if (strcmp(commands[i].name, name) == 0) return &commands[i];
@@ -87,7 +96,13 @@ static int run_command(int argc, char **argv) {
     char title[64];
     snprintf(title, sizeof title, "raytally %s", command->name);
     argv[0] = title;
+    RtError error;
+    if (takes_plugins(command) && rt_cli_load_plugins(argc, argv, &error) != RT_OK) return rt_cli_fail(&error);
     int code = command->run(argc, argv);
+    if (rt_away_farewell()) {
+        fprintf(stderr, "raytally: %s\n", rt_away_farewell());
+        if (code == RT_EXIT_OK) code = RT_EXIT_CHECK_FAILED;
+    }
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
     fprintf(stderr, "raytally: writing to standard output failed: is the disk full?\n");
     return RT_EXIT_BAD_INPUT;

@@ -63,7 +63,9 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
                                        [RT_EVENT_DISTRIBUTION] = "distributed",
                                        [RT_EVENT_HARDWARE] = "counted by the machine",
                                        [RT_EVENT_TOO_LARGE] = "left out",
-                                       [RT_EVENT_TOO_LONG] = "left out"};
+                                       [RT_EVENT_TOO_LONG] = "left out",
+                                       [RT_EVENT_BROKEN_BUILD] = "is broken",
+                                       [RT_EVENT_BROKEN] = "is broken"};
     const RtExperiment *experiment = results->experiment;
     bool scene = event->what == RT_EVENT_WORKLOAD, build = event->what == RT_EVENT_BUILD;
     snprintf(progress->doing, sizeof progress->doing, "%s%s%s%s%s: %s",

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/equivalence.h"
 
+#include "accel/away.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -13,12 +14,20 @@
 static const size_t stream_lengths[] = {1, 7, 64, CHUNK};
 enum { STREAM_LENGTHS = sizeof stream_lengths / sizeof stream_lengths[0], KERNELS = 2 };
 
+/* A chunk of rays and the answers to them, in one piece: it goes where the accelerator is (rt_query_do). */
+typedef struct Asked {
+    size_t chunk, count;
+    RtHit hits[KERNELS][CHUNK]; /* timed, counted */
+    bool blocked[KERNELS][CHUNK];
+    RtRay rays[CHUNK];
+} Asked;
+
+_Static_assert(sizeof(Asked) <= RT_AWAY_BYTES, "it fits");
+
 /* What one thread writes to. */
 typedef struct Desk {
     RtQuery query;
-    RtHit hits[KERNELS][CHUNK]; /* timed, counted */
-    bool blocked[KERNELS][CHUNK];
-    RtTally tallies[RT_RAY_KIND_COUNT];
+    Asked asked;
 } Desk;
 
 typedef struct Job {
@@ -87,14 +96,16 @@ void rt_reference_clear(RtReference *reference) {
 /* ---- checking ---- */
 
 /* Answers a chunk by both kernels. */
-static void ask(Desk *desk, const RtRay *rays, size_t count, size_t chunk) {
+static void ask(RtQuery *query, void *message) {
+    Asked *asked = message;
+    RtTally unused[RT_RAY_KIND_COUNT] = {0};
     for (int counted = 0; counted < KERNELS; counted++) {
-        size_t stream = stream_of(chunk, counted);
-        RtTally *tallies = counted ? desk->tallies : NULL;
-        for (size_t first = 0; first < count; first += stream) {
-            size_t n = count - first < stream ? count - first : stream;
-            rt_nearest(&desk->query, rays + first, n, desk->hits[counted] + first, tallies);
-            rt_occluded(&desk->query, rays + first, n, desk->blocked[counted] + first, tallies);
+        size_t stream = stream_of(asked->chunk, counted);
+        RtTally *tallies = counted ? unused : NULL;
+        for (size_t first = 0; first < asked->count; first += stream) {
+            size_t n = asked->count - first < stream ? asked->count - first : stream;
+            rt_nearest(query, asked->rays + first, n, asked->hits[counted] + first, tallies);
+            rt_occluded(query, asked->rays + first, n, asked->blocked[counted] + first, tallies);
         }
     }
 }
@@ -142,8 +153,8 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
     bool occluded_wrong = false;
     const RtHit *doubtful = NULL;
     for (int counted = 0; counted < KERNELS; counted++) {
-        RtHit got = desk->hits[counted][i];
-        bool blocked = desk->blocked[counted][i];
+        RtHit got = desk->asked.hits[counted][i];
+        bool blocked = desk->asked.blocked[counted][i];
         RtWrongAnswer asked = {.index = index,
                                .counted = counted,
                                .stream = stream_of(chunk, counted),
@@ -154,7 +165,7 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
         RtVerdict verdict;
         RT_TRY(rt_answer_verdict(&desk->query, ray, expected, got, &verdict, error));
         if (verdict == RT_WRONG) keep_wrong_answer(part, asked);
-        if (verdict >= RT_MARGINAL) doubtful = &desk->hits[counted][i];
+        if (verdict >= RT_MARGINAL) doubtful = &desk->asked.hits[counted][i];
         if (verdict > worst) worst = verdict;
         RT_TRY(rt_blocked_verdict(&desk->query, ray, expected, blocked, &verdict, error));
         if (verdict == RT_WRONG) {
@@ -178,9 +189,12 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
 static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *error) {
     Job *job = context;
     Desk *desk = &job->desks[thread];
-    size_t count = chunk_count(job, chunk);
-    ask(desk, job->reference->rays + chunk * CHUNK, count, chunk);
-    for (size_t i = 0; i < count; i++) RT_TRY(judge(job, desk, chunk, i, error));
+    Asked *asked = &desk->asked;
+    asked->chunk = chunk;
+    asked->count = chunk_count(job, chunk);
+    memcpy(asked->rays, job->reference->rays + chunk * CHUNK, asked->count * sizeof(RtRay));
+    rt_query_do(&desk->query, ask, asked, sizeof *asked);
+    for (size_t i = 0; i < asked->count; i++) RT_TRY(judge(job, desk, chunk, i, error));
     return RT_OK;
 }
 
@@ -262,15 +276,12 @@ static void format_hit(RtHit hit, char *out, size_t room) {
 }
 
 void rt_wrong_answer_format(const RtWrongAnswer *w, char *out, size_t room) {
-    char expected[64], got[64];
+    char expected[64], got[64], ray[RT_RAY_TEXT];
     format_hit(w->expected, expected, sizeof expected);
     format_hit(w->got, got, sizeof got);
     if (w->occluded) snprintf(got, sizeof got, "%s", w->blocked ? "blocked" : "not blocked");
-    snprintf(out, room,
-             "ray %zu, %s, %s kernel, streams of %zu: org (%.9g, %.9g, %.9g) dir (%.9g, %.9g, %.9g) "
-             "t in [%.9g, %.9g]: expected %s, got %s",
-             w->index, w->occluded ? "occluded" : "nearest", w->counted ? "counted" : "timed", w->stream,
-             (double)w->ray.org.x, (double)w->ray.org.y, (double)w->ray.org.z, (double)w->ray.dir.x,
-             (double)w->ray.dir.y, (double)w->ray.dir.z, (double)w->ray.tmin, (double)w->ray.tmax, expected,
+    rt_ray_format(&w->ray, ray, sizeof ray);
+    snprintf(out, room, "ray %zu, %s, %s kernel, streams of %zu: %s: expected %s, got %s", w->index,
+             w->occluded ? "occluded" : "nearest", w->counted ? "counted" : "timed", w->stream, ray, expected,
              got);
 }

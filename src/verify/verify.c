@@ -234,8 +234,18 @@ static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVeri
     return status;
 }
 
+/* One of a plugin broke before it could be asked all that it was to be: a row without rays, and why. */
+static RtStatus add_broken(Run *run, const Stage *stage, const RtVerifySpec *spec, const char *why,
+                           RtError *error) {
+    const RtEquivalence nothing = {0};
+    json_t *row = rt_equivalence_json(&nothing, stage->name, spec->spec, rt_accel_truth());
+    json_object_set_new(row, "exact", json_true());
+    json_object_set_new(row, "problem", json_string(why));
+    return add_row(run, row, error);
+}
+
 static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *spec, RtError *error) {
-    RtAccel *accel;
+    RtAccel *accel = NULL;
     RtMaker maker = maker_of(run, spec);
     doing(run, spec->spec);
     RtStatus status = rt_maker_build(&maker, stage->scene, &accel, error);
@@ -245,10 +255,11 @@ static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *sp
         run->observer->notice(run->observer->context, notice);
         return RT_OK;
     }
-    RT_TRY(status);
-    status = check(run, stage, accel, spec, error);
+    if (status == RT_OK) status = check(run, stage, accel, spec, error);
     rt_accel_destroy(accel);
-    return status;
+    if (status != RT_BROKEN) return status;
+    const RtError broken = *error;
+    return add_broken(run, stage, spec, broken.message, error);
 }
 
 /* ---- a scene ---- */

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Accelerators that live away, in a process of their own: whatever one of a plugin does there, results of
+ * others are safe.
+ *
+ * rt_accel_build builds a spec away as soon as one of its layers is a plugin's. What it gives back stands in
+ * for the whole stack: an RtAccel without layers, kernels of which send rays there and fetch the answers. If
+ * the process crashes, hangs, ends, or answers nonsense, the accelerator is broken: rays miss,
+ * rt_accel_check says what happened, RT_BROKEN, and so does all else that can. */
+#ifndef RT_ACCEL_AWAY_H
+#define RT_ACCEL_AWAY_H
+
+#include "accel/accel.h"
+
+/* Builds `spec` in a new process. RT_BROKEN where that did not survive it. */
+RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error);
+
+bool rt_accel_is_away(const RtAccel *accel);
+
+/* Runs `work` where the query's accelerator is: here, or away with the query that is there; `message` of
+ * `bytes` <= RT_AWAY_BYTES, which has no pointers that both follow, goes there and comes back. Of a broken
+ * one nothing is run, and the message stays as it is. */
+enum { RT_AWAY_BYTES = 256 * 1024 };
+typedef void RtQueryWork(RtQuery *query, void *message);
+void rt_query_do(RtQuery *query, RtQueryWork *work, void *message, size_t bytes);
+
+/* To be called now and then by work that takes long: it goes on. What does not for rt_away_patience seconds
+ * is taken to hang: 60, or what RAYTALLY_PLUGIN_SECONDS says; ten times that for building. */
+void rt_away_beat(void);
+double rt_away_patience(void);
+
+/* Why the last accelerator that was destroyed did not survive it, or NULL. */
+const char *rt_away_farewell(void);
+
+#endif

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Plugins: accelerators in shared libraries (include/raytally/accel.h).
+ *
+ * A library is first tried in a process of its own (rt_plugin_load), and only one that stands that is loaded
+ * here. Its tables join the registry. What is built of them lives in a process of its own again
+ * (accel/away.h), in which accel/plugin/host.c makes an RtAccel of each. */
+#ifndef RT_ACCEL_PLUGIN_H
+#define RT_ACCEL_PLUGIN_H
+
+#include "accel/accel.h"
+
+/* A library that was loaded. */
+typedef struct RtPlugin {
+    char path[4096];      /* in full */
+    uint64_t fingerprint; /* of its bytes (XXH3) */
+    uint32_t count;
+    const char *names[8]; /* [count] of its accelerators */
+} RtPlugin;
+
+/* Loads the library at `path` and registers its accelerators; one that is loaded already is left as it is.
+ * RT_BAD_INPUT, and nothing is registered, where it is no plugin, is of another version, has a broken table
+ * or a name that is taken, or does not survive being loaded. */
+RtStatus rt_plugin_load(const char *path, RtError *error);
+
+/* Every library in `list`, of files and folders joined by ':'; of a folder, each file in it that ends in .so,
+ * by name. */
+RtStatus rt_plugin_load_all(const char *list, RtError *error);
+
+/* Those that were loaded, in order. */
+size_t rt_plugin_count(void);
+const RtPlugin *rt_plugin_at(size_t i);
+
+#endif

@@ -1,0 +1,440 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Raytally's side of an accelerator that lives away: what stands in for it, and what is said of one that
+ * broke. See wire.h. */
+#include "accel/away.h"
+#include "accel/kernel.h"
+#include "accel/plugin/wire.h"
+
+#include "base/clock.h"
+#include "base/memory.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+typedef struct Away {
+    RtAccel base;
+    char name[RT_MAX_SPEC_CHARS];
+    Wire *wire;
+    pid_t pid;
+    int alive; /* the end of a pipe: closed, it ends the process */
+    RtDescription description;
+    pthread_mutex_t lock;   /* of what follows */
+    atomic_bool broken;     /* error says why */
+    bool gone;              /* the process has ended, and was waited for */
+    bool taken[LANES];      /* by queries; lane 0 is nobody's */
+    pthread_mutex_t master; /* of lane 0 */
+    RtError error;
+} Away;
+
+/* What a query has: its lane, and whether it has begun anew since the last request. */
+typedef struct AwayQuery {
+    uint32_t lane;
+    bool begin;
+} AwayQuery;
+
+static const RtAccelOps away_ops;
+
+static Away *of(const RtAccel *accel) {
+    return (Away *)accel;
+}
+
+bool rt_accel_is_away(const RtAccel *accel) {
+    return accel->ops == &away_ops;
+}
+
+double rt_away_patience(void) {
+    const char *text = getenv("RAYTALLY_PLUGIN_SECONDS");
+    char *end;
+    double seconds = text ? strtod(text, &end) : 0;
+    return text && end != text && *end == '\0' && seconds > 0 && seconds < 1e6 ? seconds : 60;
+}
+
+/* ---- how it ended ---- */
+
+static void say_signal(const Away *away, int number, char *out, size_t room) {
+    const Crash *crash = &away->wire->crash;
+    const char *name = sigdescr_np(number);
+    snprintf(out, room, "it crashed (%s%s)", name ? name : "an unknown signal",
+             crash->out_of_query ? ": it wrote or read past the memory of its query" : "");
+}
+
+/* What became of the process, whose status is of waitpid. */
+static void say_end(const Away *away, int status, char *out, size_t room) {
+    int said = away->wire->crash.signal;
+    if (said) {
+        say_signal(away, said, out, room);
+    } else if (WIFSIGNALED(status)) {
+        say_signal(away, WTERMSIG(status), out, room);
+    } else {
+        snprintf(out, room, "it ended its process (exit code %d)", WEXITSTATUS(status));
+    }
+}
+
+/* "NAME: WHAT while DOING, at the ray ...". The first thing that is said of it stays. */
+static void break_away(Away *away, const char *what, const char *doing, bool ray) {
+    char text[RT_RAY_TEXT] = "";
+    if (ray && away->wire->crash.has_ray) {
+        RtRay traced = away->wire->crash.ray;
+        rt_ray_format(&traced, text, sizeof text);
+    }
+    if (away->broken) return;
+    rt_fail(&away->error, RT_BROKEN, "%s: %s while %s%s%s", away->name, what, doing,
+            *text ? ", at the ray " : "", text);
+    away->broken = true;
+}
+
+/* Of one that hangs: it is asked at which ray, and ended. */
+static void end_hanging(Away *away, const char *doing) {
+    char what[96];
+    int status = 0;
+    away->wire->crash.has_ray = false;
+    kill(away->pid, SIGXCPU);
+    for (int i = 0; i < 50 && waitpid(away->pid, &status, WNOHANG) == 0; i++) {
+        nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+        if (i == 49) {
+            kill(away->pid, SIGKILL);
+            waitpid(away->pid, &status, 0);
+        }
+    }
+    away->gone = true;
+    snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", rt_away_patience());
+    break_away(away, what, doing, true);
+}
+
+/* Has it ended, or hung for longer than it may? */
+static bool look_after(Away *away, const char *doing, bool hangs) {
+    pthread_mutex_lock(&away->lock);
+    int status;
+    if (!away->gone && waitpid(away->pid, &status, WNOHANG) == away->pid) {
+        char what[160];
+        away->gone = true;
+        say_end(away, status, what, sizeof what);
+        break_away(away, what, doing, true);
+    } else if (!away->gone && hangs) {
+        end_hanging(away, doing);
+    }
+    bool broken = away->broken;
+    pthread_mutex_unlock(&away->lock);
+    return broken;
+}
+
+/* Waits for the answer on a lane; false if there will be none. */
+static bool wait_for(Away *away, Lane *lane, const char *doing, double patience) {
+    unsigned long beat = away->wire->beat;
+    double since = rt_wall_seconds();
+    for (;;) {
+        struct timespec until;
+        clock_gettime(CLOCK_MONOTONIC, &until);
+        until.tv_nsec += 50000000;
+        until.tv_sec += until.tv_nsec / 1000000000;
+        until.tv_nsec %= 1000000000;
+        if (sem_clockwait(&lane->answered, CLOCK_MONOTONIC, &until) == 0) return true;
+        if (errno == EINTR) continue;
+        unsigned long seen = away->wire->beat;
+        if (seen != beat) since = rt_wall_seconds();
+        beat = seen;
+        if (look_after(away, doing, rt_wall_seconds() - since > patience)) return false;
+    }
+}
+
+/* ---- asking ---- */
+
+/* Has a message that lies in its lane answered there. False where it is broken, or breaks now. */
+static bool ask_in_place(Away *away, uint32_t number, bool begin, WireWork *work, size_t bytes,
+                         const char *doing) {
+    Lane *lane = &away->wire->lanes[number];
+    if (away->broken) return false;
+    lane->work = work;
+    lane->bytes = bytes;
+    lane->begin = begin;
+    sem_post(&lane->asked);
+    return wait_for(away, lane, doing, rt_away_patience());
+}
+
+/* The same for one that comes from elsewhere, and goes back there only if it was answered. */
+static bool ask(Away *away, uint32_t number, bool begin, WireWork *work, void *message, size_t bytes,
+                const char *doing) {
+    Lane *lane = &away->wire->lanes[number];
+    if (bytes > 0) memcpy(lane->message, message, bytes);
+    if (!ask_in_place(away, number, begin, work, bytes, doing)) return false;
+    if (bytes > 0) memcpy(message, lane->message, bytes);
+    return true;
+}
+
+static bool ask_master(Away *away, WireWork *work, void *message, size_t bytes, const char *doing) {
+    pthread_mutex_lock(&away->master);
+    bool answered = ask(away, 0, false, work, message, bytes, doing);
+    pthread_mutex_unlock(&away->master);
+    return answered;
+}
+
+static RtStatus why(const Away *away, RtError *error) {
+    if (error) *error = away->error;
+    return RT_BROKEN;
+}
+
+void rt_query_do(RtQuery *query, RtQueryWork *work, void *message, size_t bytes) {
+    if (!rt_accel_is_away(query->accel)) {
+        work(query, message);
+        return;
+    }
+    AwayQuery *own = query->scratch[0].own;
+    ask(of(query->accel), own->lane, own->begin, work, message, bytes, "it was traced");
+    own->begin = false;
+}
+
+/* ---- building ---- */
+
+static void destroy(RtAccel *accel);
+
+/* The memory that both have, and the pipe whose end says that raytally is no more. */
+static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
+    away->wire = mmap(NULL, sizeof(Wire), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE,
+                      -1, 0);
+    if (away->wire == MAP_FAILED) {
+        away->wire = NULL;
+        return rt_fail_memory(error, "what is shared with a plugin", sizeof(Wire));
+    }
+    for (int i = 0; i < LANES; i++) {
+        sem_init(&away->wire->lanes[i].asked, 1, 0);
+        sem_init(&away->wire->lanes[i].answered, 1, 0);
+    }
+    if (pipe2(alive, O_CLOEXEC) == 0) return RT_OK;
+    return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
+}
+
+static RtStatus start(Away *away, const RtSpec *spec, int threads, RtError *error) {
+    int alive[2] = {-1, -1};
+    RT_TRY(connect_away(away, alive, error));
+    fflush(NULL); /* or what waits to be written is written twice */
+    away->pid = fork();
+    if (away->pid == 0) {
+        close(alive[1]);
+        rt_wire_serve(away->wire, spec, away->base.scene, threads, alive[0]);
+    }
+    close(alive[0]);
+    away->alive = alive[1];
+    if (away->pid > 0) return RT_OK;
+    away->pid = 0;
+    return rt_fail(error, RT_IO, "a process for the plugin: %s", strerror(errno));
+}
+
+/* What was built, or why not. */
+static RtStatus take_built(Away *away, RtError *error) {
+    char doing[96];
+    WireBuilt built;
+    snprintf(doing, sizeof doing, "it was built over %u objects", away->base.scene->geometry.object_count);
+    if (!wait_for(away, &away->wire->lanes[0], doing, 10 * rt_away_patience())) return why(away, error);
+    memcpy(&built, away->wire->lanes[0].message, sizeof built);
+    if (built.status != RT_OK) {
+        built.error.message[sizeof built.error.message - 1] = '\0';
+        return rt_fail(error, built.status, "%s", built.error.message);
+    }
+    away->base.exact = built.exact;
+    away->base.counts = built.counts;
+    away->base.build_seconds = built.seconds;
+    away->base.build_tally = built.description.build;
+    away->description = built.description;
+    return RT_OK;
+}
+
+RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error) {
+    Away *away = rt_alloc(1, sizeof(Away));
+    *out = NULL;
+    if (!away) return rt_fail_memory(error, "an accelerator", sizeof(Away));
+    *away = (Away){.base = {.ops = &away_ops, .scene = scene, .scratch_room = RT_CACHE_LINE}, .alive = -1};
+    pthread_mutex_init(&away->lock, NULL);
+    pthread_mutex_init(&away->master, NULL);
+    rt_spec_format(spec, away->name);
+    RtStatus status = start(away, spec, threads, error);
+    if (status == RT_OK) status = take_built(away, error);
+    if (status == RT_OK) {
+        *out = &away->base;
+    } else {
+        away->broken = true;
+        destroy(&away->base);
+    }
+    return status;
+}
+
+static char farewell[sizeof(((RtError *)0)->message)];
+
+const char *rt_away_farewell(void) {
+    return *farewell ? farewell : NULL;
+}
+
+/* In peace, if it still can: a plugin may crash as it frees what it has. */
+static void destroy(RtAccel *accel) {
+    Away *away = of(accel);
+    if (away->pid > 0 && !away->broken) {
+        ask_master(away, rt_wire_destroy, NULL, 0, "it was destroyed");
+        if (away->broken) snprintf(farewell, sizeof farewell, "%s", away->error.message);
+    }
+    if (away->alive >= 0) close(away->alive); /* ends it */
+    if (away->pid > 0 && !away->gone) {
+        kill(away->pid, SIGKILL);
+        waitpid(away->pid, NULL, 0);
+    }
+    if (away->wire) munmap(away->wire, sizeof(Wire));
+    pthread_mutex_destroy(&away->lock);
+    pthread_mutex_destroy(&away->master);
+    rt_free(away);
+}
+
+/* ---- queries ---- */
+
+static size_t scratch_bytes(const RtAccel *accel) {
+    (void)accel;
+    return sizeof(AwayQuery);
+}
+
+static uint32_t take_lane(Away *away) {
+    uint32_t lane = 1;
+    pthread_mutex_lock(&away->lock);
+    while (lane < LANES && away->taken[lane]) lane++;
+    if (lane < LANES) away->taken[lane] = true;
+    pthread_mutex_unlock(&away->lock);
+    return lane;
+}
+
+static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
+    Away *away = of(accel);
+    AwayQuery *query = scratch;
+    WireChecked message = {.lane = take_lane(away)};
+    if (away->broken) return why(away, error);
+    if (message.lane == LANES) {
+        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on %d threads at most: give --threads",
+                       away->name, LANES - 1);
+    }
+    if (!ask_master(away, rt_wire_open, &message, sizeof message, "a query was opened"))
+        return why(away, error);
+    query->lane = message.lane;
+    if (message.status == RT_OK) return RT_OK;
+    message.error.message[sizeof message.error.message - 1] = '\0';
+    return rt_fail(error, message.status, "%s", message.error.message);
+}
+
+static void close_query(const RtAccel *accel, void *scratch) {
+    Away *away = of(accel);
+    AwayQuery *query = scratch;
+    ask(away, query->lane, false, NULL, NULL, 0, "a query was closed");
+    pthread_mutex_lock(&away->lock);
+    away->taken[query->lane] = false;
+    pthread_mutex_unlock(&away->lock);
+}
+
+static void begin(const RtAccel *accel, void *scratch) {
+    (void)accel;
+    ((AwayQuery *)scratch)->begin = true;
+}
+
+/* ---- kernels ---- */
+
+/* A stream of at most WIRE_RAYS; the answers lie in the lane's message, which is given back: NULL where it
+ * broke. */
+static const WireRays *trace_some(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                                  uint32_t count, bool any, RtTally *tallies) {
+    Away *away = of(accel);
+    AwayQuery *query = scratch->own;
+    WireRays *asked = (WireRays *)away->wire->lanes[query->lane].message;
+    char doing[64];
+    snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, count == 1 ? "" : "s");
+    *asked = (WireRays){.count = count, .any = any, .counted = tallies != NULL};
+    memcpy(rt_wire_rays(asked), rays, count * sizeof *rays);
+    bool begin_anew = query->begin;
+    query->begin = false;
+    if (!ask_in_place(away, query->lane, begin_anew, rt_wire_trace, rt_wire_rays_bytes(count), doing))
+        return NULL;
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT && tallies; kind++)
+        rt_tally_add(&tallies[kind], &asked->tallies[kind]);
+    return asked;
+}
+
+/* What is written to shared memory is believed as far as it is possible. */
+static RtHit take_hit(const Away *away, RtHit hit) {
+    return hit.object < away->base.scene->geometry.object_count ? hit : RT_MISS;
+}
+
+static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                          RtHit *hits, RtTally *tallies) {
+    for (size_t first = 0; first < count; first += WIRE_RAYS) {
+        uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
+        const WireRays *answer = trace_some(accel, scratch, rays + first, n, false, tallies);
+        for (uint32_t i = 0; i < n; i++)
+            hits[first + i] = answer ? take_hit(of(accel), answer->hits[i]) : RT_MISS;
+    }
+}
+
+static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                           uint32_t *blockers, RtTally *tallies) {
+    for (size_t first = 0; first < count; first += WIRE_RAYS) {
+        uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
+        const WireRays *answer = trace_some(accel, scratch, rays + first, n, true, tallies);
+        for (uint32_t i = 0; i < n; i++) blockers[first + i] = answer ? answer->hits[i].object : RT_NO_OBJECT;
+    }
+}
+
+RT_DEFINE_BOTH(nearest, RtHit, trace_nearest)
+RT_DEFINE_BOTH(occluded, uint32_t, trace_occluded)
+
+/* ---- the structure ---- */
+
+static void describe(const RtAccel *accel, RtDescription *out) {
+    *out = of(accel)->description;
+}
+
+static RtStatus ask_checked(const RtAccel *accel, WireWork *work, const char *doing, RtError *error) {
+    Away *away = of(accel);
+    WireChecked message = {.status = RT_OK};
+    if (!ask_master(away, work, &message, sizeof message, doing)) return why(away, error);
+    if (message.status == RT_OK) return RT_OK;
+    message.error.message[sizeof message.error.message - 1] = '\0';
+    return rt_fail(error, message.status, "%s%s%s", message.status == RT_BROKEN ? away->name : "",
+                   message.status == RT_BROKEN ? ": " : "", message.error.message);
+}
+
+static RtStatus validate(const RtAccel *accel, RtError *error) {
+    return ask_checked(accel, rt_wire_validate, "it was validated", error);
+}
+
+static RtStatus check(const RtAccel *accel, RtError *error) {
+    return ask_checked(accel, rt_wire_check, "it was asked how it went", error);
+}
+
+static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
+    WireBoxes *boxes = rt_alloc(1, sizeof(WireBoxes));
+    while (boxes && ask_master(of(accel), rt_wire_boxes, boxes, sizeof *boxes, "it showed its boxes")) {
+        if (boxes->count == 0 || boxes->count > WIRE_BOXES) break;
+        for (uint32_t i = 0; i < boxes->count; i++) {
+            viewer.show(viewer.context, &(RtBoxView){.box = &boxes->boxes[i],
+                                                     .depth = boxes->depths[i],
+                                                     .leaf = boxes->leaves[i]});
+        }
+        boxes->first += boxes->count;
+    }
+    rt_free(boxes);
+}
+
+static const RtAccelOps away_ops = {
+    .name = "plugin",
+    .summary = "stands in for one that lives in a process of its own",
+    .paper = "",
+    .destroy = destroy,
+    RT_KERNEL_OPS,
+    .scratch_bytes = scratch_bytes,
+    .open = open_query,
+    .close = close_query,
+    .begin = begin,
+    .describe = describe,
+    .validate = validate,
+    .each_box = each_box,
+    .check = check,
+};

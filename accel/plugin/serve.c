@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The process in which an accelerator lives that raytally does not trust: see wire.h. */
+#include "accel/away.h"
+#include "accel/plugin/now.h"
+#include "accel/plugin/wire.h"
+
+#include "base/memory.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+/* All of it, in this process. */
+static struct Served {
+    Wire *wire;
+    RtAccel *accel;
+    int alive;
+} served;
+
+void rt_away_beat(void) {
+    if (served.wire) atomic_fetch_add_explicit(&served.wire->beat, 1, memory_order_relaxed);
+}
+
+/* ---- when it ends ---- */
+
+/* Says what it can: the signal, and the ray. Not more than may be done in a signal handler. */
+static void on_signal(int number, siginfo_t *info, void *unused) {
+    (void)unused;
+    Crash *crash = &served.wire->crash;
+    const RtPluginNow *now = number == SIGXCPU ? rt_plugin_busy() : rt_plugin_now();
+    const RtRay *ray = now ? now->ray : NULL;
+    if (ray) {
+        crash->ray = *ray;
+        crash->has_ray = true;
+        const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
+        crash->out_of_query = at && at >= now->guard && at < now->behind;
+    }
+    crash->signal = number;
+    _exit(EXIT_FAILURE);
+}
+
+/* A plugin that calls exit: what raytally and its libraries have to do at their own end is none of this
+ * process's. */
+static void on_exit_called(int code, void *unused) {
+    (void)unused;
+    _exit(code);
+}
+
+/* Every thread has a stack for that: the crash may be that its own is full. Whoever hangs is told by SIGXCPU
+ * to say at which ray. */
+static void watch_thread(void) {
+    stack_t stack = {.ss_size = 64 * 1024};
+    stack.ss_sp = malloc(stack.ss_size); /* until the process ends */
+    if (stack.ss_sp) sigaltstack(&stack, NULL);
+}
+
+static void watch_signals(void) {
+    static const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU};
+    struct sigaction action = {.sa_flags = SA_SIGINFO | SA_ONSTACK};
+    action.sa_sigaction = on_signal;
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) sigaction(numbers[i], &action, NULL);
+    signal(SIGINT, SIG_IGN); /* is raytally's to take */
+    on_exit(on_exit_called, NULL);
+    watch_thread();
+}
+
+/* Ends when raytally does, whatever the plugin is at. */
+static void *watch_raytally(void *unused) {
+    char byte;
+    while (read(served.alive, &byte, 1) < 0 && errno == EINTR) {
+    }
+    (void)unused;
+    _exit(EXIT_FAILURE);
+}
+
+/* What the plugin allocates beyond the limit of a structure it does not get. */
+static void limit_memory(void) {
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    bool known = file && fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) == 1;
+    if (file) fclose(file);
+    rlim_t bytes = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + 2 * (rlim_t)RT_ACCEL_MAX_BYTES;
+    if (known) setrlimit(RLIMIT_DATA, &(struct rlimit){bytes, bytes});
+    setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+}
+
+/* Keeps nothing of raytally's open but its messages to the user, and the end of `alive`. */
+static void let_go(void) {
+    dup2(STDERR_FILENO, STDOUT_FILENO);
+    int high = dup2(served.alive, STDERR_FILENO + 1);
+    if (high >= 0) served.alive = high;
+    close_range((unsigned)STDERR_FILENO + 2, ~0U, 0);
+}
+
+/* ---- what it is asked ---- */
+
+void rt_wire_validate(RtQuery *query, void *message) {
+    (void)query;
+    WireChecked *checked = message;
+    checked->status = rt_accel_validate(served.accel, &checked->error);
+}
+
+void rt_wire_check(RtQuery *query, void *message) {
+    (void)query;
+    WireChecked *checked = message;
+    checked->status = rt_accel_check(served.accel, &checked->error);
+}
+
+void rt_wire_destroy(RtQuery *query, void *message) {
+    (void)query, (void)message;
+    rt_accel_destroy(served.accel);
+    served.accel = NULL;
+}
+
+/* Shows boxes to a message that has room for some of them. */
+typedef struct Showing {
+    WireBoxes *to;
+    uint64_t seen;
+} Showing;
+
+static void show(void *context, const RtBoxView *view) {
+    Showing *showing = context;
+    WireBoxes *to = showing->to;
+    uint64_t place = showing->seen++;
+    if (place < to->first || to->count == WIRE_BOXES) return;
+    to->boxes[to->count] = *view->box;
+    to->depths[to->count] = view->depth;
+    to->leaves[to->count++] = view->leaf;
+}
+
+void rt_wire_boxes(RtQuery *query, void *message) {
+    (void)query;
+    Showing showing = {message, 0};
+    showing.to->count = 0;
+    const RtAccel *base = rt_accel_base(served.accel);
+    if (base->ops->each_box) base->ops->each_box(base, (RtBoxViewer){show, &showing});
+}
+
+/* Blockers go where the first of the hits lie, and then each to its own. */
+static void trace_any(RtQuery *query, WireRays *asked) {
+    const RtAccelOps *ops = query->accel->ops;
+    uint32_t *blockers = (uint32_t *)asked->hits;
+    if (asked->counted) {
+        ops->occluded_counted(query->accel, query->scratch, rt_wire_rays(asked), asked->count, blockers,
+                              asked->tallies);
+    } else {
+        ops->occluded(query->accel, query->scratch, rt_wire_rays(asked), asked->count, blockers);
+    }
+    for (uint32_t i = asked->count; i-- > 0;) {
+        uint32_t blocker;
+        memcpy(&blocker, (const char *)asked->hits + i * sizeof blocker, sizeof blocker);
+        asked->hits[i].object = blocker;
+    }
+}
+
+void rt_wire_trace(RtQuery *query, void *message) {
+    WireRays *asked = message;
+    const RtAccelOps *ops = query->accel->ops;
+    if (asked->any) {
+        trace_any(query, asked);
+    } else if (asked->counted) {
+        ops->nearest_counted(query->accel, query->scratch, rt_wire_rays(asked), asked->count, asked->hits,
+                             asked->tallies);
+    } else {
+        ops->nearest(query->accel, query->scratch, rt_wire_rays(asked), asked->count, asked->hits);
+    }
+}
+
+/* ---- lanes ---- */
+
+/* Answers one request after the other, of which each is done on memory of this process alone, until there is
+ * none to do: the query is then cleared; lane 0 ends with the accelerator. */
+static void serve_lane(Lane *lane, RtQuery *query) {
+    char *message = rt_alloc_unset(MESSAGE_BYTES, 1);
+    if (!message) _exit(EXIT_FAILURE);
+    for (bool more = true; more;) {
+        while (sem_wait(&lane->asked) != 0) {
+        }
+        WireWork *work = lane->work;
+        size_t bytes = lane->bytes;
+        if (work) {
+            memcpy(message, lane->message, bytes);
+            if (query && lane->begin) rt_query_begin(query);
+            work(query, message);
+            memcpy(lane->message, message, bytes);
+        } else if (query) {
+            rt_query_clear(query);
+        }
+        more = work && served.accel;
+        rt_away_beat();
+        sem_post(&lane->answered);
+    }
+    rt_free(message);
+}
+
+typedef struct Opening {
+    Lane *lane;
+    RtQuery query;
+} Opening;
+
+static void *serve_query(void *context) {
+    Opening opening = *(Opening *)context;
+    free(context);
+    watch_thread();
+    serve_lane(opening.lane, &opening.query);
+    return NULL;
+}
+
+void rt_wire_open(RtQuery *query, void *message) {
+    (void)query;
+    WireChecked *checked = message;
+    pthread_t thread;
+    pthread_attr_t detached;
+    Opening *opening = malloc(sizeof *opening);
+    checked->status = opening ? rt_query_init(&opening->query, served.accel, &checked->error)
+                              : rt_fail_memory(&checked->error, "a query", sizeof *opening);
+    if (checked->status != RT_OK) {
+        free(opening);
+        return;
+    }
+    opening->lane = &served.wire->lanes[checked->lane];
+    pthread_attr_init(&detached);
+    pthread_attr_setdetachstate(&detached, PTHREAD_CREATE_DETACHED);
+    if (pthread_create(&thread, &detached, serve_query, opening) != 0) {
+        rt_query_clear(&opening->query);
+        free(opening);
+        checked->status = rt_fail_memory(&checked->error, "a thread", 0);
+    }
+    pthread_attr_destroy(&detached);
+}
+
+/* ---- all of it ---- */
+
+static void build(const RtSpec *spec, const RtScene *scene, int threads) {
+    WireBuilt built = {.status = RT_OK};
+    built.status = rt_accel_build_here(spec, scene, threads, &served.accel, &built.error);
+    if (built.status == RT_OK) {
+        built.exact = served.accel->exact;
+        built.counts = served.accel->counts;
+        built.seconds = served.accel->build_seconds;
+        rt_accel_describe(served.accel, &built.description);
+    }
+    memcpy(served.wire->lanes[0].message, &built, sizeof built);
+    sem_post(&served.wire->lanes[0].answered);
+}
+
+void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads, int alive) {
+    pthread_t thread;
+    served = (struct Served){.wire = wire, .alive = alive};
+    let_go();
+    limit_memory();
+    watch_signals();
+    pthread_create(&thread, NULL, watch_raytally, NULL);
+    build(spec, scene, threads);
+    if (served.accel) serve_lane(&wire->lanes[0], NULL);
+    _exit(EXIT_SUCCESS);
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Between raytally and the process in which an accelerator lives that it does not trust: what lies in the
+ * memory that both share.
+ *
+ * The process is a fork, so it has the scene, the code, and every function at the same address. What it is
+ * asked to do is therefore a function and a message: raytally writes both into a lane and posts `asked`; over
+ * there the lane's thread runs the function on a copy of the message, writes that back, and posts `answered`.
+ * Lane 0 is the process's main thread: it builds, looks after the other lanes, and destroys. Each of the
+ * others belongs to one RtQuery.
+ *
+ * Invariant: raytally believes nothing that it reads here but numbers that it checks; what it must know of a
+ * lane it keeps on its own side. */
+#ifndef RT_ACCEL_PLUGIN_WIRE_H
+#define RT_ACCEL_PLUGIN_WIRE_H
+
+#include "accel/away.h"
+
+#include <semaphore.h>
+#include <stdatomic.h>
+
+enum { LANES = 65, MESSAGE_BYTES = RT_AWAY_BYTES };
+
+/* What is asked: of the accelerator, by the lane's query, which lane 0 has not. */
+typedef RtQueryWork WireWork;
+
+typedef struct Lane {
+    sem_t asked, answered;
+    WireWork *work; /* NULL: the lane is closed */
+    size_t bytes;   /* of the message */
+    bool begin;     /* rt_query_begin comes first */
+    _Alignas(64) char message[MESSAGE_BYTES];
+} Lane;
+
+/* How the process ended, as far as it could still say so. */
+typedef struct Crash {
+    atomic_int signal; /* 0: it said nothing */
+    bool has_ray, out_of_query;
+    RtRay ray; /* that was being traced */
+} Crash;
+
+typedef struct Wire {
+    atomic_ulong beat; /* grows while work makes progress */
+    Crash crash;
+    Lane lanes[LANES];
+} Wire;
+
+/* What the process does: builds `spec` over `scene`, answers, and ends with it. `alive` is a file that reads
+ * as ended when raytally has. */
+_Noreturn void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads, int alive);
+
+/* Messages to lane 0. */
+typedef struct WireBuilt {
+    RtStatus status;
+    RtError error;
+    bool exact, counts;
+    double seconds;
+    RtDescription description;
+} WireBuilt;
+
+typedef struct WireChecked {
+    uint32_t lane; /* of rt_wire_open */
+    RtStatus status;
+    RtError error;
+} WireChecked;
+
+WireWork rt_wire_validate, rt_wire_check, rt_wire_open; /* of a WireChecked */
+WireWork rt_wire_destroy;                               /* of nothing; the process ends */
+
+/* Boxes number first.. of the structure, as many as there is room for. */
+enum { WIRE_BOXES = 4096 };
+typedef struct WireBoxes {
+    uint64_t first;
+    uint32_t count; /* out */
+    RtBox boxes[WIRE_BOXES];
+    uint32_t depths[WIRE_BOXES];
+    bool leaves[WIRE_BOXES];
+} WireBoxes;
+WireWork rt_wire_boxes;
+
+/* A stream of rays, and behind it in the message: the answers, as RtHit whatever was asked (of `any` the object
+ * alone counts), and the rays. */
+enum { WIRE_RAYS = 4096 };
+typedef struct WireRays {
+    uint32_t count;
+    bool any, counted;
+    RtTally tallies[RT_RAY_KIND_COUNT]; /* out: to be added */
+    RtHit hits[];                       /* [count] out; then RtRay rays[count] */
+} WireRays;
+
+static inline RtRay *rt_wire_rays(WireRays *asked) {
+    return (RtRay *)(asked->hits + asked->count);
+}
+
+static inline size_t rt_wire_rays_bytes(uint32_t count) {
+    return sizeof(WireRays) + count * (sizeof(RtHit) + sizeof(RtRay));
+}
+
+WireWork rt_wire_trace;
+
+_Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES && sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= MESSAGE_BYTES, "it fits a lane");
+
+#endif

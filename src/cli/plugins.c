@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "cli/plugins.h"
+
+#include "accel/plugin.h"
+#include "base/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define VARIABLE "RAYTALLY_PLUGINS"
+
+enum { OPT_PLUGIN = 0x10000 };
+
+static const struct argp_option options[] = {
+    {"plugin", OPT_PLUGIN, "FILE.so", 0,
+     "Load accelerators of your own; may be repeated. $" VARIABLE " names files and folders of them, joined "
+     "by ':'. Each runs in a process of its own, and is given up after $RAYTALLY_PLUGIN_SECONDS (60) without "
+     "progress",
+     100},
+    {0}};
+
+/* What the option says has been done. */
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    RtError error;
+    if (key != OPT_PLUGIN) return ARGP_ERR_UNKNOWN;
+    if (rt_plugin_load(argument, &error) != RT_OK) argp_error(state, "--plugin: %s", error.message);
+    return 0;
+}
+
+const struct argp rt_plugin_argp = {.options = options, .parser = parse_option};
+
+/* Also from the environment of who starts nothing: the names there may be relative, these are not. */
+static RtStatus tell_children(RtError *error) {
+    size_t count = rt_plugin_count(), room = 1;
+    for (size_t i = 0; i < count; i++) room += strlen(rt_plugin_at(i)->path) + 1;
+    char *list = rt_alloc(room, 1);
+    if (!list) return rt_fail_memory(error, "names of plugins", room);
+    for (size_t i = 0, used = 0; i < count; i++)
+        used += (size_t)snprintf(list + used, room - used, "%s%s", i ? ":" : "", rt_plugin_at(i)->path);
+    setenv(VARIABLE, list, 1);
+    rt_free(list);
+    return RT_OK;
+}
+
+RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
+    static const char option[] = "--plugin";
+    const size_t length = sizeof option - 1;
+    const char *list = getenv(VARIABLE);
+    if (list) RT_TRY(rt_plugin_load_all(list, error));
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--") == 0) break;
+        if (strncmp(argv[i], option, length) != 0) continue;
+        if (argv[i][length] == '=') RT_TRY(rt_plugin_load(argv[i] + length + 1, error));
+        if (argv[i][length] == '\0' && i + 1 < argc) RT_TRY(rt_plugin_load(argv[++i], error));
+    }
+    return rt_plugin_count() > 0 ? tell_children(error) : RT_OK;
+}
