@@ -34,11 +34,11 @@ typedef struct RtAccel {
     const RtAccelOps *ops; /* set by rt_accel_build */
     const RtScene *scene;  /* borrowed */
     struct RtAccel *below; /* owned; NULL for a base. Set by rt_accel_build */
-    size_t scratch_room; /* bytes of a query's scratch memory that are this layer's. Set by rt_accel_build */
-    bool exact;          /* bit for bit like brute; false: judged by verdicts */
-    bool counts;         /* its counts are the same on every machine and belong into counts.csv */
+    size_t scratch_room;  /* bytes of a query's scratch memory that are this layer's. Set by rt_accel_build */
+    bool exact;           /* bit for bit like brute; false: judged by verdicts */
+    bool counts;          /* its counts are the same on every machine and belong into counts.csv */
     double build_seconds; /* wall seconds that building it took, with all below. Set by rt_accel_build */
-    RtTally build_tally; /* what hit functions were asked while building; kept apart from tracing */
+    RtTally build_tally;  /* what hit functions were asked while building; kept apart from tracing */
 } RtAccel;
 
 /* Expectations of a random line through the box of a structure, if nothing stopped it and no mailbox knew
@@ -163,7 +163,13 @@ struct RtAccelOps {
     const RtParam *params;
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
+<<<<<<< HEAD
     bool away;      /* it is a plugin's, and built in a process of its own (accel/away.h) */
+=======
+    /* Optional: a spec of it alone, "light:cells=100", that is verified beside the default where that, over
+     * few objects or rays, chooses to leave its own ways unused. */
+    const char *trial;
+>>>>>>> faults
     const RtBestOf *bests; /* [best_count], or NULL */
     size_t best_count;
 

@@ -38,8 +38,7 @@ enum { MOST_PLUGINS = 64 }; /* accelerators of plugins */
 #define ENTRY(ops) &ops,
 #define ONE(ops)   +1
 enum { BUILT_IN = 0 ACCELERATORS(ONE) EMBREE_ACCELERATORS(ONE) };
-static const RtAccelOps *registry[BUILT_IN + MOST_PLUGINS] = {
-    ACCELERATORS(ENTRY) EMBREE_ACCELERATORS(ENTRY)};
+static const RtAccelOps *registry[BUILT_IN + MOST_PLUGINS] = {ACCELERATORS(ENTRY) EMBREE_ACCELERATORS(ENTRY)};
 static size_t count = BUILT_IN;
 
 size_t rt_accel_count(void) {

@@ -24,7 +24,7 @@ objects() {
 # shellcheck disable=SC2016 # the dollars are awk's
 needs() {
     objects | xargs nm -A -g |
-        sed -n 's|^.*/raytally[a-z_]*\.dir/\(src/\)*\(.*\)\.o:.* \([A-Za-z]\) \(rt_[^ ]*\)$|\2 \3 \4|p'
+        sed -n 's|^.*/raytally[a-z_]*\.dir/\(src/\)*\(.*\)\.o:.* \([A-Za-z]\) \(r[a-z]*_[^ ]*\)$|\2 \3 \4|p'
     find src accel scenes tests -name '*.h' | sort | xargs -r awk '
         /^[ \t]*#[ \t]*include[ \t]*"/ {
             split($0, quoted, "\"")

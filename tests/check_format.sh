@@ -7,4 +7,4 @@ cd "$(dirname "$0")/.."
 
 tool=$(command -v clang-format-14 || command -v clang-format) || { echo "clang-format is not installed" && exit 77; }
 "$tool" --version | grep -q 'version 14\.' || { echo "needs clang-format 14, not $("$tool" --version)" && exit 77; }
-find src accel experiments scenes tests examples -name '*.[ch]' -print0 | xargs -0 "$tool" --dry-run --Werror
+find src accel examples experiments include scenes tests -name '*.[ch]' -print0 | xargs -0 "$tool" --dry-run --Werror

@@ -6,7 +6,8 @@
 #   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; it must end with exit code 0
 #   ```sh exit=1          with that one
 #   ```sh slow            run with --slow alone, by hand
-#   ```sh needs=X         only where X is there: numpy, embree, a file of the tree (X has a /), or else a command
+#   ```sh needs=X         only where X is there: numpy, embree, library (installed to $PREFIX from beside $RT_PROGRAM), a
+#                         file of the tree (X has a /), or else a command
 #   ```text exact         what the block before it prints, stderr too; a line ... stands for one or more lines
 #   ```text alike         likewise, but for figures, blanks, and what follows from times, which are others on each machine
 #   ```LANG file=NAME     is written to NAME first
@@ -36,6 +37,11 @@ available() {
         /usr/bin/python3 -c 'import numpy' 2>/dev/null && ln -sf /usr/bin/python3 "$work/bin/python3"
         ;;
     embree) raytally info balls:size=1 >/dev/null && raytally render balls:size=1 --size 2x2 --accel embree -o "$work/x.png" >/dev/null 2>&1 ;;
+    library) # with what it takes to link with it
+        command -v cc >/dev/null && command -v pkg-config >/dev/null || return
+        export PREFIX=$work/prefix PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
+        [ -d "$PREFIX" ] || cmake --install "$(dirname "$program")" --prefix "$PREFIX" >/dev/null 2>&1
+        ;;
     */*) [ -e "$root/$1" ] ;;
     *) command -v "$1" >/dev/null ;;
     esac

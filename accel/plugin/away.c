@@ -197,8 +197,8 @@ static void destroy(RtAccel *accel);
 
 /* The memory that both have, and the pipe whose end says that raytally is no more. */
 static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
-    away->wire = mmap(NULL, sizeof(Wire), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE,
-                      -1, 0);
+    away->wire =
+        mmap(NULL, sizeof(Wire), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (away->wire == MAP_FAILED) {
         away->wire = NULL;
         return rt_fail_memory(error, "what is shared with a plugin", sizeof(Wire));
@@ -414,9 +414,9 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
     while (boxes && ask_master(of(accel), rt_wire_boxes, boxes, sizeof *boxes, "it showed its boxes")) {
         if (boxes->count == 0 || boxes->count > WIRE_BOXES) break;
         for (uint32_t i = 0; i < boxes->count; i++) {
-            viewer.show(viewer.context, &(RtBoxView){.box = &boxes->boxes[i],
-                                                     .depth = boxes->depths[i],
-                                                     .leaf = boxes->leaves[i]});
+            viewer.show(
+                viewer.context,
+                &(RtBoxView){.box = &boxes->boxes[i], .depth = boxes->depths[i], .leaf = boxes->leaves[i]});
         }
         boxes->first += boxes->count;
     }

@@ -175,8 +175,8 @@ static RtStatus map_memory(PluginQuery *query, RtError *error) {
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
     PluginQuery *query = scratch;
-    *query = (PluginQuery){
-        .face.host = &host, .accel = (PluginAccel *)accel, .geometry = &accel->scene->geometry};
+    *query =
+        (PluginQuery){.face.host = &host, .accel = (PluginAccel *)accel, .geometry = &accel->scene->geometry};
     RT_TRY(map_memory(query, error));
     for (int i = 0; i < MOST_QUERIES; i++) {
         PluginQuery *none = NULL;
@@ -406,7 +406,7 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                                         [RAYTALLY_FLAG] = RT_PARAM_FLAG};
     for (uint32_t i = 0; i < table->param_count; i++) {
         const raytally_param *p = &table->params[i];
-        ops->params[i] = (RtParam){p->name,    types[p->type],  p->standard, p->lo,    p->hi,
+        ops->params[i] = (RtParam){p->name,    types[p->type], p->standard, p->lo,    p->hi,
                                    p->choices, p->test_values, p->meaning,  p->source};
     }
     ops->table = table;

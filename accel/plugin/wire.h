@@ -77,8 +77,8 @@ typedef struct WireBoxes {
 } WireBoxes;
 WireWork rt_wire_boxes;
 
-/* A stream of rays, and behind it in the message: the answers, as RtHit whatever was asked (of `any` the object
- * alone counts), and the rays. */
+/* A stream of rays, and behind it in the message: the answers, as RtHit whatever was asked (of `any` the
+ * object alone counts), and the rays. */
 enum { WIRE_RAYS = 4096 };
 typedef struct WireRays {
     uint32_t count;
@@ -97,6 +97,8 @@ static inline size_t rt_wire_rays_bytes(uint32_t count) {
 
 WireWork rt_wire_trace;
 
-_Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES && sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= MESSAGE_BYTES, "it fits a lane");
+_Static_assert(sizeof(WireBoxes) <= MESSAGE_BYTES &&
+                   sizeof(WireRays) + WIRE_RAYS * (sizeof(RtHit) + sizeof(RtRay)) <= MESSAGE_BYTES,
+               "it fits a lane");
 
 #endif

@@ -106,8 +106,7 @@ static json_t *event_json(const RtResults *results, const RtEvent *event) {
         return json_pack("{s:s, s:o}", "scene", scene, "workload",
                          workload_json(&results->workloads[event->workload]));
     case RT_EVENT_BUILD:
-        return json_pack("{s:s, s:s, s:o}", "scene", scene, "accel", accel, "built",
-                         build_json(build));
+        return json_pack("{s:s, s:s, s:o}", "scene", scene, "accel", accel, "built", build_json(build));
     case RT_EVENT_COUNT:
         return json_pack("{s:s, s:s, s:s, s:o}", "scene", scene, "accel", accel, "kind", kind, "counted",
                          count_json(cell));

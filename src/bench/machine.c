@@ -73,7 +73,8 @@ static json_t *plugins_json(void) {
     for (size_t i = 0; i < rt_plugin_count(); i++) {
         const RtPlugin *plugin = rt_plugin_at(i);
         json_t *names = json_array();
-        for (uint32_t n = 0; n < plugin->count; n++) json_array_append_new(names, json_string(plugin->names[n]));
+        for (uint32_t n = 0; n < plugin->count; n++)
+            json_array_append_new(names, json_string(plugin->names[n]));
         json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "file", plugin->path, "hash",
                                               rt_json_hex(plugin->fingerprint), "accelerators", names));
     }

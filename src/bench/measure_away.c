@@ -125,8 +125,7 @@ RtStatus rt_runner_open_away(RtRunner *runner, const RtTimed *timed, int threads
                          .seconds = timed->seconds,
                          .wall = timed->wall,
                          .broken = timed->broken};
-    RtStatus status =
-        remote && message ? RT_OK : rt_fail_memory(error, "a runner", sizeof(RemoteMessage));
+    RtStatus status = remote && message ? RT_OK : rt_fail_memory(error, "a runner", sizeof(RemoteMessage));
     if (status == RT_OK) status = rt_query_init(&remote->query, timed->accel, error);
     if (status == RT_OK) status = send_rays(remote, timed->set, message, error);
     if (status == RT_OK) {

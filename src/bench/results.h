@@ -54,7 +54,7 @@ typedef struct RtCell {
     bool counted, timed;
     /* Which limit it would go beyond, so that it is not measured, or if it is `broken` how; else "". */
     char limit[RT_MAX_LIMIT];
-    bool broken; /* the accelerator, of a plugin, is at fault */
+    bool broken;                   /* the accelerator, of a plugin, is at fault */
     RtTally tally;                 /* tally.rays: of the thinned set */
     uint64_t differ;               /* answers unlike the baseline's; of an exact accelerator always 0 */
     RtDistribution *distributions; /* [RT_RAY_QUANTITY_COUNT] owned; NULL: not asked for */

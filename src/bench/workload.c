@@ -113,7 +113,8 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
     if (status == RT_BROKEN) {
         snprintf(result->limit, RT_MAX_LIMIT, "%.511s", error->message);
         result->broken = true;
-        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, RT_RAY_PRIMARY, result->limit, error);
+        return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, RT_RAY_PRIMARY, result->limit,
+                                     error);
     }
     if (too_large) {
         snprintf(result->limit, RT_MAX_LIMIT, "its structure takes more than %llu MB",
@@ -276,7 +277,8 @@ static RtStatus rebuild_broken(RtWorkloadState *workload, uint32_t c, RtError *e
     if (!accel || !rt_accel_is_away(accel) || rt_accel_check(accel, NULL) == RT_OK) return RT_OK;
     rt_accel_destroy(accel);
     workload->built[c] = NULL;
-    RT_TRY(rt_spec_parse(workload->experiment->candidates[rt_workload_origin(workload, c)].spec, &spec, error));
+    RT_TRY(
+        rt_spec_parse(workload->experiment->candidates[rt_workload_origin(workload, c)].spec, &spec, error));
     return rt_accel_build(&spec, workload->scene, workload->options->threads, &workload->built[c], error);
 }
 

@@ -52,8 +52,8 @@ static inline RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEvent
 RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
                                char *limit, RtError *error);
 
-/* Whether `status` is of what concerns no other candidate: an accelerator of a plugin that is broken, or whose
- * answers are wrong. */
+/* Whether `status` is of what concerns no other candidate: an accelerator of a plugin that is broken, or
+ * whose answers are wrong. */
 static inline bool rt_workload_is_own_fault(const RtWorkloadState *workload, uint32_t candidate,
                                             RtStatus status) {
     return status == RT_BROKEN || (status == RT_MISMATCH && rt_accel_is_away(workload->accels[candidate]));

@@ -5,8 +5,8 @@
 #include "bench/callgrind.h"
 #include "cli/bench_output.h"
 #include "cli/cli.h"
-#include "cli/progress.h"
 #include "cli/plugins.h"
+#include "cli/progress.h"
 #include "cli/recording.h"
 #include "verify/spread.h"
 
@@ -52,7 +52,8 @@ static const struct argp_option options[] = {
     {"ray-stride", OPT_RAY_STRIDE, "K", 0,
      "Measure the preceding --accel on every Kth ray only, for slow ones", 0},
     {"baseline", OPT_BASELINE, "SPEC", 0,
-     "The accelerator that ratios refer to (the first that is not a plugin's); or NAME:best, the fastest of several settings for "
+     "The accelerator that ratios refer to (the first that is not a plugin's); or NAME:best, the fastest of "
+     "several settings for "
      "each "
      "kind, as in embree:best (`raytally accels NAME`)",
      0},
@@ -305,7 +306,8 @@ static RtStatus bench(Options *o, RtError *error) {
     return status;
 }
 
-static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {
+    {&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_bench_argp = {
     .options = options,
     .parser = parse_option,

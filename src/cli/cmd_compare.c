@@ -205,7 +205,8 @@ static RtStatus compare(Options *o, int argc, char **argv, bool *slower, RtError
     return status;
 }
 
-static const struct argp_child children[] = {{&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {
+    {&rt_recording_argp, 0, NULL, 1}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_compare_argp = {
     .options = options,
     .parser = parse_option,

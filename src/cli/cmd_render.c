@@ -371,7 +371,8 @@ static const char doc[] =
     "  raytally render balls --accel grid --accel kd --heatmap object_tests tests.png "
     "--heatmap-difference\n"
     "`raytally trace` follows a single ray. What the counters count is in docs/columns.md.";
-static const struct argp_child children[] = {{&rt_picture_argp, 0, NULL, 0}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
+static const struct argp_child children[] = {
+    {&rt_picture_argp, 0, NULL, 0}, {&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_render_argp = {
     .options = options, .parser = parse_option, .args_doc = "SCENE", .doc = doc, .children = children};
 

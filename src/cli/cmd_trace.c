@@ -245,10 +245,11 @@ static RtStatus run(const Options *o, RtError *error) {
     if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
     if (status == RT_OK && rt_accel_is_away(accel))
-        status = rt_fail(error, RT_BAD_INPUT,
-                         "%s: the path through an accelerator of a plugin is not seen from here, for it lives "
-                         "in a process of its own; `raytally render --heatmap` shows what its rays cost",
-                         text);
+        status =
+            rt_fail(error, RT_BAD_INPUT,
+                    "%s: the path through an accelerator of a plugin is not seen from here, for it lives "
+                    "in a process of its own; `raytally render --heatmap` shows what its rays cost",
+                    text);
     if (status == RT_OK) status = trace(o, &scene, accel, text, error);
     rt_accel_destroy(accel);
     rt_scene_clear(&scene);

@@ -97,7 +97,8 @@ static int run_command(int argc, char **argv) {
     snprintf(title, sizeof title, "raytally %s", command->name);
     argv[0] = title;
     RtError error;
-    if (takes_plugins(command) && rt_cli_load_plugins(argc, argv, &error) != RT_OK) return rt_cli_fail(&error);
+    if (takes_plugins(command) && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
+        return rt_cli_fail(&error);
     int code = command->run(argc, argv);
     if (rt_away_farewell()) {
         fprintf(stderr, "raytally: %s\n", rt_away_farewell());

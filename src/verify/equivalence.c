@@ -12,13 +12,23 @@
 #define CHUNK 1024
 
 static const size_t stream_lengths[] = {1, 7, 64, CHUNK};
-enum { STREAM_LENGTHS = sizeof stream_lengths / sizeof stream_lengths[0], KERNELS = 2 };
+enum { STREAM_LENGTHS = sizeof stream_lengths / sizeof stream_lengths[0], KERNELS = 2, PASSES = 2 };
 
-/* A chunk of rays and the answers to them, in one piece: it goes where the accelerator is (rt_query_do). */
+/* One of the ways in which a chunk is asked. */
+typedef struct Way {
+    bool counted;
+    size_t stream; /* rays at once */
+} Way;
+
+/* A chunk of rays and the answers to them in all ways, in one piece: it goes where the accelerator is
+ * (rt_query_do). */
 typedef struct Asked {
-    size_t chunk, count;
-    RtHit hits[KERNELS][CHUNK]; /* timed, counted */
-    bool blocked[KERNELS][CHUNK];
+    size_t count;
+    Way ways[PASSES * KERNELS];
+    int way_count;
+    RtTally tallies[RT_RAY_KIND_COUNT];
+    RtHit hits[PASSES * KERNELS][CHUNK];
+    bool blocked[PASSES * KERNELS][CHUNK];
     RtRay rays[CHUNK];
 } Asked;
 
@@ -40,8 +50,16 @@ typedef struct Job {
     RtEquivalence *parts; /* [chunks] what a check is summed from, or NULL */
 } Job;
 
-static size_t stream_of(size_t chunk, bool counted) {
-    return stream_lengths[(chunk + (counted ? 1 : 0)) % STREAM_LENGTHS];
+/* Both kernels in streams of one length; an exact accelerator, whose answers must not depend on that, in
+ * short streams and in long ones. */
+static void choose_ways(Desk *desk, size_t chunk) {
+    int passes = desk->query.accel->exact ? PASSES : 1;
+    desk->asked.way_count = 0;
+    for (size_t i = 0; i < (size_t)passes * KERNELS; i++) {
+        size_t pass = i / KERNELS, counted = i % KERNELS;
+        size_t length = (chunk + counted + pass * STREAM_LENGTHS / PASSES) % STREAM_LENGTHS;
+        desk->asked.ways[desk->asked.way_count++] = (Way){counted, stream_lengths[length]};
+    }
 }
 
 /* ---- work in chunks, a desk a thread ---- */
@@ -95,17 +113,16 @@ void rt_reference_clear(RtReference *reference) {
 
 /* ---- checking ---- */
 
-/* Answers a chunk by both kernels. */
+/* Answers a chunk in all ways. */
 static void ask(RtQuery *query, void *message) {
     Asked *asked = message;
-    RtTally unused[RT_RAY_KIND_COUNT] = {0};
-    for (int counted = 0; counted < KERNELS; counted++) {
-        size_t stream = stream_of(asked->chunk, counted);
-        RtTally *tallies = counted ? unused : NULL;
+    for (int w = 0; w < asked->way_count; w++) {
+        size_t stream = asked->ways[w].stream;
+        RtTally *tallies = asked->ways[w].counted ? asked->tallies : NULL;
         for (size_t first = 0; first < asked->count; first += stream) {
             size_t n = asked->count - first < stream ? asked->count - first : stream;
-            rt_nearest(query, asked->rays + first, n, asked->hits[counted] + first, tallies);
-            rt_occluded(query, asked->rays + first, n, asked->blocked[counted] + first, tallies);
+            rt_nearest(query, asked->rays + first, n, asked->hits[w] + first, tallies);
+            rt_occluded(query, asked->rays + first, n, asked->blocked[w] + first, tallies);
         }
     }
 }
@@ -152,12 +169,12 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
     RtVerdict worst = RT_EQUAL;
     bool occluded_wrong = false;
     const RtHit *doubtful = NULL;
-    for (int counted = 0; counted < KERNELS; counted++) {
-        RtHit got = desk->asked.hits[counted][i];
-        bool blocked = desk->asked.blocked[counted][i];
+    for (int w = 0; w < desk->asked.way_count; w++) {
+        RtHit got = desk->asked.hits[w][i];
+        bool blocked = desk->asked.blocked[w][i];
         RtWrongAnswer asked = {.index = index,
-                               .counted = counted,
-                               .stream = stream_of(chunk, counted),
+                               .counted = desk->asked.ways[w].counted,
+                               .stream = desk->asked.ways[w].stream,
                                .ray = *ray,
                                .expected = expected,
                                .got = got,
@@ -165,7 +182,7 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
         RtVerdict verdict;
         RT_TRY(rt_answer_verdict(&desk->query, ray, expected, got, &verdict, error));
         if (verdict == RT_WRONG) keep_wrong_answer(part, asked);
-        if (verdict >= RT_MARGINAL) doubtful = &desk->asked.hits[counted][i];
+        if (verdict >= RT_MARGINAL) doubtful = &desk->asked.hits[w][i];
         if (verdict > worst) worst = verdict;
         RT_TRY(rt_blocked_verdict(&desk->query, ray, expected, blocked, &verdict, error));
         if (verdict == RT_WRONG) {
@@ -190,7 +207,7 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
     Job *job = context;
     Desk *desk = &job->desks[thread];
     Asked *asked = &desk->asked;
-    asked->chunk = chunk;
+    choose_ways(desk, chunk);
     asked->count = chunk_count(job, chunk);
     memcpy(asked->rays, job->reference->rays + chunk * CHUNK, asked->count * sizeof(RtRay));
     rt_query_do(&desk->query, ask, asked, sizeof *asked);

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Counting, timing and statistics for those who embed us. */
+#include "base/memory.h"
+#include "bench/measure.h"
+#include "library/library.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+/* ---- counting ---- */
+
+static bool learns(const RtAccel *accel) {
+    while (accel && !accel->ops->learn) accel = accel->below;
+    return accel != NULL;
+}
+
+/* The right answers, to hits[0..set->count): those of the accelerator itself; but one that learns answers
+ * what it does not know yet as slowly as can be, so another does for it. */
+static RtStatus answer(const RtAccel *accel, const RtRaySet *set, int threads, RtHit *hits, RtError *error) {
+    RtAccel *other;
+    if (!learns(accel)) return rt_measure_answers(accel, set, threads, hits, error);
+    RT_TRY(rt_accel_open_on(rt_accel_default(), accel->scene, threads, &other, error));
+    RtStatus status = rt_measure_answers(other, set, threads, hits, error);
+    rt_accel_destroy(other);
+    return status;
+}
+
+/* Accelerators that learn know rays by their addresses: after `status` they are made to forget them again. */
+static RtStatus forget(RtAccel *accel, RtStatus status, RtError *error) {
+    RtStatus forgotten = rt_accel_learn(accel, NULL, NULL, 0, status == RT_OK ? error : NULL);
+    return status == RT_OK ? forgotten : status;
+}
+
+static RtStatus count_taught(RtAccel *accel, const RtRaySet *set, const RtHit *hits, int threads,
+                             raytally_counters *out, RtError *error) {
+    RtCount count;
+    RT_TRY(rt_measure_count(accel, set, hits, threads, &count, error));
+    rt_counters_add(out, &count.tally);
+    if (!accel->exact || count.differ == 0) return RT_OK;
+    return rt_fail(error, RT_MISMATCH,
+                   "%s: %" PRIu64
+                   " answers differ from those of the kernel that does not count, the first on "
+                   "ray %" PRIu64,
+                   accel->ops->name, count.differ, count.first);
+}
+
+static RtStatus count_rays(RtAccel *accel, const RtRaySet *set, RtHit *hits, int threads,
+                           raytally_counters *out, RtError *error) {
+    RT_TRY(rt_threads_check(threads, error));
+    RT_TRY(answer(accel, set, threads, hits, error));
+    RtStatus status = rt_accel_learn(accel, set->rays, hits, (size_t)set->count, error);
+    if (status == RT_OK) status = count_taught(accel, set, hits, threads, out, error);
+    return forget(accel, status, error);
+}
+
+raytally_status raytally_count(raytally_accelerator *accelerator, const raytally_rays *rays, int threads,
+                               raytally_counters *out, raytally_error *error) {
+    RtHit *hits = rt_alloc((size_t)rays->set.count, sizeof *hits);
+    *out = (raytally_counters){{0}};
+    if (!hits) return (raytally_status)rt_fail_memory(rt_error_of(error), "answers", sizeof *hits);
+    RtStatus status = count_rays(accelerator->accel, &rays->set, hits, threads, out, rt_error_of(error));
+    rt_free(hits);
+    return (raytally_status)status;
+}
+
+/* ---- statistics ---- */
+
+static RtStatus check_rounds(uint32_t count, const char *what, RtError *error) {
+    if (count >= 1 && count <= RT_MAX_ROUNDS) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%" PRIu32 " %s: expected 1..%d", count, what, RT_MAX_ROUNDS);
+}
+
+static raytally_estimate public_estimate(RtEstimate estimate, uint32_t count) {
+    return (raytally_estimate){estimate.median, estimate.low, estimate.high, estimate.least,
+                               rt_interval_coverage(count)};
+}
+
+raytally_status raytally_estimate_median(const double *values, uint32_t count, raytally_estimate *out,
+                                         raytally_error *error) {
+    RtStatus status = check_rounds(count, "measurements", rt_error_of(error));
+    if (status == RT_OK) *out = public_estimate(rt_estimate(values, count), count);
+    return (raytally_status)status;
+}
+
+raytally_status raytally_estimate_ratio(const double *over, const double *under, uint32_t count,
+                                        raytally_estimate *out, raytally_error *error) {
+    RtStatus status = check_rounds(count, "pairs of measurements", rt_error_of(error));
+    if (status == RT_OK) *out = public_estimate(rt_estimate_ratio(over, under, count), count);
+    return (raytally_status)status;
+}
+
+/* ---- timing ---- */
+
+/* What is timed against each other, and where the times go. */
+typedef struct Contest {
+    raytally_accelerator *const *accelerators; /* [count] */
+    size_t count;
+    const RtRaySet *set;
+    RtHit *hits;     /* [set->count] */
+    RtTimed *timed;  /* [count] */
+    double *seconds; /* [count][2][rounds] */
+} Contest;
+
+static RtStatus check_timing(const raytally_timing *how, const Contest *contest, RtError *error) {
+    RT_TRY(check_rounds(how->rounds, "rounds", error));
+    RT_TRY(rt_threads_check(how->threads, error));
+    if (!(how->least >= 0 && how->least <= 60))
+        return rt_fail(error, RT_BAD_INPUT, "a round of at least %g s: expected 0..60", how->least);
+    if (contest->count == 0) return rt_fail(error, RT_BAD_INPUT, "no accelerator to time");
+    if (contest->set->count == 0) return rt_fail(error, RT_BAD_INPUT, "no rays to time accelerators on");
+    return RT_OK;
+}
+
+static RtStatus contest_init(Contest *contest, const raytally_timing *how, RtError *error) {
+    size_t doubles = 2 * (size_t)how->rounds;
+    contest->hits = rt_alloc((size_t)contest->set->count, sizeof(RtHit));
+    contest->timed = rt_alloc(contest->count, sizeof(RtTimed));
+    contest->seconds = rt_alloc(contest->count, doubles * sizeof(double));
+    if (!contest->hits || !contest->timed || !contest->seconds)
+        return rt_fail_memory(error, "times", contest->count * doubles * sizeof(double));
+    for (size_t i = 0; i < contest->count; i++) {
+        double *place = contest->seconds + doubles * i;
+        contest->timed[i] =
+            (RtTimed){contest->accelerators[i]->accel, contest->set, place, place + how->rounds};
+    }
+    return RT_OK;
+}
+
+static RtStatus teach(const Contest *contest, int threads, RtError *error) {
+    const RtRaySet *set = contest->set;
+    for (size_t i = 0; i < contest->count; i++) {
+        RtAccel *accel = contest->accelerators[i]->accel;
+        if (!learns(accel)) continue;
+        RT_TRY(answer(accel, set, threads, contest->hits, error));
+        RT_TRY(rt_accel_learn(accel, set->rays, contest->hits, (size_t)set->count, error));
+    }
+    return RT_OK;
+}
+
+static RtStatus run(Contest *contest, const raytally_timing *how, raytally_time *times, RtError *error) {
+    const RtTiming timing = {
+        .rounds = {.rounds = how->rounds, .most = how->rounds, .least = how->least, .seed = how->seed},
+        .threads = how->threads};
+    uint32_t done = 0;
+    RT_TRY(teach(contest, how->threads, error));
+    RT_TRY(rt_measure_time(contest->timed, contest->count, &timing, &done, error));
+    const double *first = contest->timed[0].seconds;
+    for (size_t i = 0; i < contest->count; i++) {
+        const double *own = contest->timed[i].seconds;
+        times[i].seconds = public_estimate(rt_estimate(own, done), done);
+        times[i].ratio = public_estimate(rt_estimate_ratio(first, own, done), done);
+    }
+    return RT_OK;
+}
+
+raytally_status raytally_time_all(raytally_accelerator *const *accelerators, size_t count,
+                                  const raytally_rays *rays, const raytally_timing *how, raytally_time *times,
+                                  raytally_error *error) {
+    Contest contest = {.accelerators = accelerators, .count = count, .set = &rays->set};
+    raytally_timing own = RAYTALLY_TIMING;
+    rt_options_take(&own, sizeof own, how);
+    RtStatus status = check_timing(&own, &contest, rt_error_of(error));
+    if (status == RT_OK) status = contest_init(&contest, &own, rt_error_of(error));
+    if (status == RT_OK) {
+        status = run(&contest, &own, times, rt_error_of(error));
+        for (size_t i = 0; i < count; i++)
+            status = forget(accelerators[i]->accel, status, rt_error_of(error));
+    }
+    rt_free(contest.hits);
+    rt_free(contest.timed);
+    rt_free(contest.seconds);
+    return (raytally_status)status;
+}

@@ -1,0 +1,435 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* raytally.h: what those who embed us call does what the program does, refuses what it refuses, and leaves
+ * nothing behind. */
+#include "testing.h"
+
+#include "base/memory.h"
+#include "library/library.h"
+#include "scenes/open.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* As assert_ok, for the library. */
+#define assert_fine(expr)                                                                                    \
+    do {                                                                                                     \
+        raytally_error fine_error = {RAYTALLY_OK, ""};                                                       \
+        raytally_error *error = &fine_error;                                                                 \
+        if ((expr) != RAYTALLY_OK) fail_msg("%s: %s", #expr, fine_error.message);                            \
+    } while (0)
+
+#define assert_says(why, text)                                                                               \
+    do {                                                                                                     \
+        if (!strstr((why).message, text)) fail_msg("'%s' does not say '%s'", (why).message, text);           \
+    } while (0)
+
+RT_TEST(counters_and_kinds_of_rays_have_their_names) {
+    static const struct {
+        enum raytally_counter counter;
+        const char *name;
+    } counters[] = {{RAYTALLY_RAYS, "rays"},
+                    {RAYTALLY_HITS, "hits"},
+                    {RAYTALLY_OBJECT_TESTS, "object_tests"},
+                    {RAYTALLY_OBJECT_HITS, "object_hits"},
+                    {RAYTALLY_EXTENT_TESTS, "extent_tests"},
+                    {RAYTALLY_STEPS, "steps"},
+                    {RAYTALLY_LEAF_STEPS, "leaf_steps"},
+                    {RAYTALLY_EMPTY_STEPS, "empty_steps"},
+                    {RAYTALLY_CSG_TESTS, "csg_tests"},
+                    {RAYTALLY_REPEATS_AVOIDED, "repeats_avoided"},
+                    {RAYTALLY_PASSED_ON, "passed_on"}};
+    assert_int_equal(sizeof counters / sizeof counters[0], RAYTALLY_COUNTERS_KNOWN);
+    for (size_t i = 0; i < RAYTALLY_COUNTERS_KNOWN; i++) {
+        assert_string_equal(raytally_counter_name(counters[i].counter), counters[i].name);
+    }
+    assert_null(raytally_counter_name(RAYTALLY_COUNTERS_KNOWN));
+    assert_string_equal(raytally_ray_kind_name(RAYTALLY_OCCLUSION), "occlusion");
+    assert_null(raytally_ray_kind_name(RAYTALLY_RAY_KINDS));
+    assert_int_equal(raytally_abi_version(), RAYTALLY_ABI_VERSION);
+}
+
+/* ---- scenes of arrays ---- */
+
+/* A triangle at z = 0 and a sphere of radius 1 around (0, 0, -3). */
+static const float vertices[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+static const uint32_t corners[] = {0, 1, 2};
+static const float spheres[] = {0, 0, -3, 1};
+
+static raytally_objects two_objects(void) {
+    raytally_objects objects = RAYTALLY_OBJECTS;
+    objects.vertices = vertices;
+    objects.vertex_count = 3;
+    objects.corners = corners;
+    objects.triangle_count = 1;
+    objects.spheres = spheres;
+    objects.sphere_count = 1;
+    return objects;
+}
+
+static raytally_scene *two_object_scene(void) {
+    raytally_objects objects = two_objects();
+    raytally_scene *scene;
+    assert_fine(raytally_scene_make(&objects, &scene, error));
+    return scene;
+}
+
+RT_TEST(rays_hit_the_objects_of_arrays_by_their_numbers) {
+    raytally_scene *scene = two_object_scene();
+    raytally_accelerator *accel;
+    raytally_tracer *tracer;
+    raytally_hit hits[3];
+    bool blocked[3];
+    raytally_counters counters[RAYTALLY_RAY_KINDS] = {{{0}}};
+    const raytally_ray rays[3] = {{{0, 0, 5}, 0, {0, 0, -1}, INFINITY, RAYTALLY_RANDOM, 0},
+                                  {{0, 0, -1}, 0, {0, 0, -0.5f}, INFINITY, RAYTALLY_RANDOM, 0},
+                                  {{0, 3, 5}, 0, {0, 0, -1}, INFINITY, RAYTALLY_SHADOW, 0}};
+    float low[3], high[3];
+    assert_int_equal(raytally_scene_object_count(scene), 2);
+    raytally_scene_bounds(scene, low, high);
+    assert_true(low[2] <= -4 && low[2] > -4.1f && high[1] == 1);
+    assert_fine(raytally_accelerator_build(scene, "bvh", 1, &accel, error));
+    assert_fine(raytally_tracer_new(accel, &tracer, error));
+    raytally_tracer_begin(tracer);
+    raytally_nearest(tracer, rays, 3, hits, NULL);
+    assert_true(hits[0].object == 0 && hits[0].t == 5);
+    assert_true(hits[1].object == 1 && hits[1].t == 2);
+    assert_true(hits[2].object == RAYTALLY_NO_OBJECT && isinf(hits[2].t));
+    raytally_nearest(tracer, rays, 3, hits, counters);
+    raytally_occluded(tracer, rays, 3, blocked, counters);
+    assert_true(blocked[0] && blocked[1] && !blocked[2]);
+    assert_int_equal(counters[RAYTALLY_RANDOM].at[RAYTALLY_RAYS], 4);
+    assert_int_equal(counters[RAYTALLY_RANDOM].at[RAYTALLY_HITS], 4);
+    assert_int_equal(counters[RAYTALLY_SHADOW].at[RAYTALLY_RAYS], 2);
+    assert_int_equal(counters[RAYTALLY_SHADOW].at[RAYTALLY_HITS], 0);
+    raytally_tracer_free(tracer);
+    raytally_accelerator_free(accel);
+    raytally_scene_free(scene);
+}
+
+RT_TEST(objects_that_are_none_are_refused_by_their_number) {
+    const uint32_t beyond[] = {0, 1, 3};
+    const float flat[] = {0, 0, 0, 1, 0, 0, 0, 0}, nowhere[] = {-1, -1, 0, 1, NAN, 0, 0, 1, 0};
+    raytally_error why;
+    raytally_scene *scene;
+    int64_t live = rt_alloc_live();
+    raytally_objects objects = two_objects();
+    objects.corners = beyond;
+    assert_int_equal(raytally_scene_make(&objects, &scene, &why), RAYTALLY_BAD_INPUT);
+    assert_null(scene);
+    assert_says(why, "triangle 0 (the first is 0): corner 2 is vertex 3, and there are 3");
+    objects = two_objects();
+    objects.spheres = flat;
+    objects.sphere_count = 2;
+    assert_int_equal(raytally_scene_make(&objects, &scene, &why), RAYTALLY_BAD_INPUT);
+    assert_says(why, "sphere 1");
+    objects = two_objects();
+    objects.vertices = nowhere;
+    assert_int_equal(raytally_scene_make(&objects, &scene, NULL), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_open("bals", &scene, &why), RAYTALLY_BAD_INPUT);
+    assert_null(scene);
+    assert_says(why, "balls");
+    assert_int_equal(rt_alloc_live(), live);
+}
+
+RT_TEST(the_camera_changes_only_while_no_accelerator_stands_over_the_scene) {
+    raytally_scene *scene = two_object_scene();
+    raytally_accelerator *accel;
+    raytally_error why;
+    raytally_camera camera = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 40};
+    uint32_t width, height;
+    assert_fine(raytally_scene_look(scene, &camera, error));
+    assert_fine(raytally_scene_sample(scene, 30, 20, 2, error));
+    raytally_scene_size(scene, &width, &height);
+    assert_true(width == 30 && height == 20);
+    assert_int_equal(raytally_scene_sample(scene, 30, 20, 65, &why), RAYTALLY_BAD_INPUT);
+    camera.up[1] = 0;
+    assert_int_equal(raytally_scene_look(scene, &camera, &why), RAYTALLY_BAD_INPUT);
+    camera.up[1] = INFINITY;
+    assert_int_equal(raytally_scene_look(scene, &camera, &why), RAYTALLY_BAD_INPUT);
+    camera.up[1] = 1;
+    assert_fine(raytally_accelerator_build(scene, "item+bvh", 1, &accel, error));
+    assert_int_equal(raytally_scene_look(scene, &camera, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_scene_sample(scene, 8, 8, 1, &why), RAYTALLY_BAD_INPUT);
+    assert_says(why, "1 are");
+    raytally_accelerator_free(accel);
+    assert_fine(raytally_scene_sample(scene, 8, 8, 1, error));
+    raytally_scene_free(scene);
+}
+
+/* ---- one scene for what follows ---- */
+
+typedef struct Balls {
+    raytally_scene *scene;
+    raytally_accelerator *accels[3]; /* brute, grid, ideal */
+    raytally_rays *rays;             /* primary, of 16 x 16 samples */
+} Balls;
+
+static Balls balls;
+
+static int open_balls(void **state) {
+    static const char *const specs[3] = {"brute", "grid", "ideal"};
+    assert_fine(raytally_scene_open("balls:size=1", &balls.scene, error));
+    assert_fine(raytally_scene_sample(balls.scene, 16, 16, 1, error));
+    for (int i = 0; i < 3; i++) {
+        assert_fine(raytally_accelerator_build(balls.scene, specs[i], 1, &balls.accels[i], error));
+    }
+    assert_fine(raytally_rays_record(balls.accels[0], RAYTALLY_PRIMARY, NULL, &balls.rays, error));
+    *state = &balls;
+    return 0;
+}
+
+static int close_balls(void **state) {
+    (void)state;
+    raytally_rays_free(balls.rays);
+    for (int i = 0; i < 3; i++) raytally_accelerator_free(balls.accels[i]);
+    raytally_scene_free(balls.scene);
+    return 0;
+}
+
+RT_TEST(accelerators_are_listed_described_and_refused) {
+    char spec[RAYTALLY_SPEC_CHARS];
+    raytally_structure structure;
+    raytally_error why;
+    raytally_accelerator *none;
+    assert_int_equal(raytally_accelerator_count(), rt_accel_count());
+    assert_string_equal(raytally_accelerator_name(0), "brute");
+    assert_fine(raytally_spec_format("grid:density=4", spec, error));
+    assert_non_null(strstr(spec, "density=4,"));
+    assert_non_null(strstr(raytally_accelerator_spec(balls.accels[1]), "grid:rule="));
+    assert_true(raytally_accelerator_exact(balls.accels[1]));
+    raytally_accelerator_describe(balls.accels[1], &structure);
+    assert_true(structure.at[RAYTALLY_LEAVES] > 0 && structure.at[RAYTALLY_BYTES] > 0);
+    assert_true(structure.at[RAYTALLY_FIGURES_KNOWN] == 0);
+    assert_int_equal(raytally_spec_format("gird", spec, &why), RAYTALLY_BAD_INPUT);
+    assert_says(why, "grid");
+    assert_int_equal(raytally_accelerator_build(balls.scene, "gird", 1, &none, &why), RAYTALLY_BAD_INPUT);
+    assert_null(none);
+    assert_int_equal(raytally_accelerator_build(balls.scene, "grid", -1, &none, &why), RAYTALLY_BAD_INPUT);
+    assert_says(why, "threads");
+}
+
+/* ---- rays ---- */
+
+RT_TEST(rays_are_recorded_as_the_program_records_them) {
+    RtRaySet sets[RT_RAY_KIND_COUNT], thin;
+    RtRecording recording = {.depth = 5, .seed = 1, .random = 128, .threads = 1};
+    raytally_recording how = RAYTALLY_RECORDING;
+    how.limit = 128; /* fewer than there are: neighbours are kept together */
+    assert_ok(rt_rayset_record(sets, balls.accels[0]->accel, &recording, error));
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        raytally_rays *rays;
+        assert_fine(raytally_rays_record(balls.accels[1], (enum raytally_ray_kind)kind, &how, &rays, error));
+        assert_ok(rt_rayset_limit(&sets[kind], 128, 256, &thin, error));
+        assert_int_equal(raytally_rays_count(rays), thin.count);
+        assert_int_equal(raytally_rays_fingerprint(rays), thin.fingerprint);
+        if (thin.count > 0) assert_int_equal(raytally_rays_data(rays)[0].kind, kind);
+        rt_rayset_clear(&thin);
+        rt_rayset_clear(&sets[kind]);
+        raytally_rays_free(rays);
+    }
+}
+
+/* A program that was built with a header in which the struct ended sooner. */
+RT_TEST(options_that_are_left_out_have_their_defaults) {
+    raytally_recording how = {offsetof(raytally_recording, threads), 1, -7, 0, 0};
+    raytally_rays *rays;
+    assert_fine(raytally_rays_record(balls.accels[1], RAYTALLY_PRIMARY, &how, &rays, error));
+    assert_int_equal(raytally_rays_fingerprint(rays), raytally_rays_fingerprint(balls.rays));
+    raytally_rays_free(rays);
+}
+
+RT_TEST(rays_of_ones_own_are_checked) {
+    raytally_ray own[2] = {{{0, 0, 0}, 0, {1, 0, 0}, 1, 77, 3}, {{0, 0, 0}, 0, {0, 0, 0}, 1, 0, 0}};
+    raytally_rays *rays;
+    raytally_error why;
+    assert_false(raytally_ray_is_valid(&own[0])); /* there is no such kind */
+    assert_fine(raytally_rays_copy(RAYTALLY_SHADOW, own, 1, &rays, error));
+    assert_int_equal(raytally_rays_data(rays)[0].kind, RAYTALLY_SHADOW);
+    assert_int_equal(raytally_rays_data(rays)[0].source, 3);
+    assert_true(raytally_ray_is_valid(raytally_rays_data(rays)));
+    raytally_rays_free(rays);
+    assert_int_equal(raytally_rays_copy(RAYTALLY_SHADOW, own, 2, &rays, &why), RAYTALLY_BAD_INPUT);
+    assert_null(rays);
+    assert_says(why, "ray 1");
+    assert_int_equal(raytally_rays_copy(RAYTALLY_RAY_KINDS, own, 1, &rays, &why), RAYTALLY_BAD_INPUT);
+    assert_fine(raytally_rays_copy(RAYTALLY_PRIMARY, NULL, 0, &rays, error));
+    assert_int_equal(raytally_rays_count(rays), 0);
+    raytally_rays_free(rays);
+}
+
+/* ---- verifying ---- */
+
+RT_TEST(every_ray_is_accounted_for_in_a_verification) {
+    raytally_verifying how = RAYTALLY_VERIFYING;
+    raytally_verified found;
+    raytally_error why;
+    how.rays = 500;
+    assert_fine(raytally_verify(balls.scene, "grid:density=4", &how, &found, error));
+    assert_true(found.rays == 500 && found.equal == 500 && found.wrong + found.occluded_wrong == 0);
+    how.given = balls.rays;
+    assert_fine(raytally_verify(balls.scene, "octree", &how, &found, error));
+    assert_int_equal(found.equal, raytally_rays_count(balls.rays));
+    how.given = NULL;
+    how.rays = 0;
+    assert_int_equal(raytally_verify(balls.scene, "grid", &how, &found, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(found.rays, 0);
+}
+
+/* ---- measuring ---- */
+
+RT_TEST(counts_are_those_of_the_definition) {
+    raytally_counters counters;
+    uint64_t rays = raytally_rays_count(balls.rays), objects = raytally_scene_object_count(balls.scene);
+    assert_fine(raytally_count(balls.accels[0], balls.rays, 2, &counters, error));
+    assert_int_equal(counters.at[RAYTALLY_RAYS], rays);
+    assert_int_equal(counters.at[RAYTALLY_OBJECT_TESTS], rays * objects);
+    uint64_t hits = counters.at[RAYTALLY_HITS];
+    assert_true(hits > 0 && hits < rays * objects);
+    assert_fine(raytally_count(balls.accels[2], balls.rays, 1, &counters, error));
+    assert_int_equal(counters.at[RAYTALLY_OBJECT_TESTS], hits); /* one for each ray that hits */
+}
+
+/* ideal knows rays by their addresses: what it was taught must not answer for others that come to lie there.
+ */
+RT_TEST(what_was_taught_for_a_count_is_forgotten) {
+    raytally_counters counters[RAYTALLY_RAY_KINDS] = {{{0}}}, taught;
+    raytally_tracer *tracer;
+    raytally_hit hit;
+    assert_fine(raytally_count(balls.accels[2], balls.rays, 1, &taught, error));
+    assert_fine(raytally_tracer_new(balls.accels[2], &tracer, error));
+    raytally_nearest(tracer, raytally_rays_data(balls.rays), 1, &hit, counters);
+    assert_int_equal(counters[RAYTALLY_PRIMARY].at[RAYTALLY_OBJECT_TESTS],
+                     raytally_scene_object_count(balls.scene));
+    raytally_tracer_free(tracer);
+}
+
+/* Answers otherwise when it counts. */
+static void lie(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count, RtHit *hits,
+                RtTally *tallies) {
+    (void)accel;
+    (void)scratch;
+    for (size_t i = 0; i < count; i++) hits[i] = RT_MISS;
+    tallies[rays[0].kind].rays += count;
+}
+
+RT_TEST(a_kernel_that_answers_otherwise_when_it_counts_is_a_mismatch) {
+    raytally_counters counters;
+    raytally_error why;
+    RtAccel *accel = balls.accels[0]->accel;
+    const RtAccelOps *honest = accel->ops;
+    RtAccelOps lying = *honest;
+    lying.nearest_counted = lie;
+    accel->ops = &lying;
+    raytally_status status = raytally_count(balls.accels[0], balls.rays, 1, &counters, &why);
+    accel->ops = honest;
+    assert_int_equal(status, RAYTALLY_MISMATCH);
+    assert_says(why, "answers differ");
+}
+
+RT_TEST(times_are_positive_and_the_first_is_the_measure_of_all) {
+    raytally_timing how = RAYTALLY_TIMING;
+    raytally_time times[3];
+    raytally_rays *none;
+    raytally_error why;
+    how.least = 0.0005;
+    how.rounds = 7;
+    assert_fine(raytally_time_all(balls.accels, 3, balls.rays, &how, times, error));
+    for (int i = 0; i < 3; i++) {
+        const raytally_estimate *s = &times[i].seconds;
+        assert_true(s->least > 0 && s->least <= s->low && s->low <= s->median && s->median <= s->high);
+        assert_true(s->coverage >= 0.95 && times[i].ratio.median > 0);
+    }
+    assert_true(times[0].ratio.low == 1 && times[0].ratio.high == 1);
+    how.rounds = 0;
+    assert_int_equal(raytally_time_all(balls.accels, 3, balls.rays, &how, times, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_time_all(balls.accels, 0, balls.rays, NULL, times, &why), RAYTALLY_BAD_INPUT);
+    assert_fine(raytally_rays_copy(RAYTALLY_PRIMARY, NULL, 0, &none, error));
+    assert_int_equal(raytally_time_all(balls.accels, 1, none, NULL, times, &why), RAYTALLY_BAD_INPUT);
+    raytally_rays_free(none);
+}
+
+RT_TEST(estimates_are_medians_with_the_order_statistics_around_them) {
+    const double over[7] = {14, 2, 6, 10, 4, 12, 8}, under[7] = {7, 1, 3, 5, 2, 6, 4};
+    raytally_estimate estimate;
+    raytally_error why;
+    assert_fine(raytally_estimate_median(under, 7, &estimate, error));
+    assert_true(estimate.median == 4 && estimate.low == 1 && estimate.high == 7 && estimate.least == 1);
+    assert_true(estimate.coverage > 0.984 && estimate.coverage < 0.985); /* 1 - 2 / 2^7 */
+    assert_fine(raytally_estimate_ratio(over, under, 7, &estimate, error));
+    assert_true(estimate.median == 2 && estimate.low == 2 && estimate.high == 2);
+    assert_int_equal(raytally_estimate_median(under, 0, &estimate, &why), RAYTALLY_BAD_INPUT);
+    assert_int_equal(raytally_estimate_ratio(over, under, 1001, &estimate, &why), RAYTALLY_BAD_INPUT);
+}
+
+/* ---- pictures ---- */
+
+RT_TEST(a_picture_is_the_frame_of_the_program) {
+    float rgb[16][16][3];
+    RtFrame frame;
+    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = 1};
+    raytally_error why;
+    assert_fine(raytally_render(balls.accels[1], 0, 2, NULL, rgb[0][0], error));
+    assert_ok(rt_frame_trace(&frame, balls.accels[0]->accel, &options, error));
+    for (uint32_t i = 0; i < 16 * 16; i++) assert_memory_equal(rgb[0][i], &frame.color[i], sizeof rgb[0][0]);
+    rt_frame_clear(&frame);
+    assert_int_equal(raytally_render(balls.accels[1], 0, 1, "no/such/folder.png", NULL, &why), RAYTALLY_IO);
+    assert_int_equal(raytally_render(balls.accels[1], 65, 1, NULL, NULL, &why), RAYTALLY_BAD_INPUT);
+}
+
+/* ---- memory ---- */
+
+/* All that allocates, once. */
+static raytally_status use_all(raytally_error *error) {
+    raytally_objects objects = two_objects();
+    raytally_recording recording = RAYTALLY_RECORDING;
+    raytally_verifying verifying = RAYTALLY_VERIFYING;
+    raytally_timing timing = RAYTALLY_TIMING;
+    raytally_scene *scene = NULL;
+    raytally_accelerator *accels[2] = {NULL, NULL};
+    raytally_rays *rays = NULL, *copy = NULL;
+    raytally_tracer *tracer = NULL;
+    raytally_verified found;
+    raytally_counters counters;
+    raytally_time times[2];
+    recording.threads = verifying.threads = timing.threads = 1;
+    verifying.rays = 20;
+    timing.rounds = 1;
+    timing.least = 0;
+    raytally_status status = raytally_scene_make(&objects, &scene, error);
+    if (status == RAYTALLY_OK) status = raytally_scene_sample(scene, 2, 2, 1, error);
+    if (status == RAYTALLY_OK) status = raytally_accelerator_build(scene, "bvh", 1, &accels[0], error);
+    if (status == RAYTALLY_OK) status = raytally_accelerator_build(scene, "ideal", 1, &accels[1], error);
+    if (status == RAYTALLY_OK)
+        status = raytally_rays_record(accels[0], RAYTALLY_PRIMARY, &recording, &rays, error);
+    if (status == RAYTALLY_OK)
+        status = raytally_rays_copy(RAYTALLY_SHADOW, raytally_rays_data(rays), 1, &copy, error);
+    if (status == RAYTALLY_OK) status = raytally_tracer_new(accels[0], &tracer, error);
+    if (status == RAYTALLY_OK) status = raytally_verify(scene, "grid", &verifying, &found, error);
+    if (status == RAYTALLY_OK) status = raytally_count(accels[1], rays, 1, &counters, error);
+    if (status == RAYTALLY_OK) status = raytally_time_all(accels, 2, rays, &timing, times, error);
+    if (status == RAYTALLY_OK) status = raytally_render(accels[0], 1, 1, NULL, NULL, error);
+    raytally_tracer_free(tracer);
+    raytally_rays_free(copy);
+    raytally_rays_free(rays);
+    raytally_accelerator_free(accels[1]);
+    raytally_accelerator_free(accels[0]);
+    raytally_scene_free(scene);
+    return status;
+}
+
+RT_TEST(every_allocation_may_fail_and_nothing_is_left_behind) {
+    raytally_error why;
+    raytally_status status = RAYTALLY_NO_MEMORY;
+    int64_t live = rt_alloc_live();
+    for (uint64_t n = 1; status != RAYTALLY_OK; n++) {
+        rt_alloc_fail_at(n);
+        status = use_all(&why);
+        rt_alloc_fail_at(0);
+        if (status != RAYTALLY_OK) assert_int_equal(status, RAYTALLY_NO_MEMORY);
+        assert_int_equal(rt_alloc_live(), live);
+        assert_true(n < 10000);
+    }
+}
+
+RT_TESTS(embedding, open_balls, close_balls)
