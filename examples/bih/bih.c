@@ -23,8 +23,8 @@
  * the end of the near child (leave) and the other one at the beginning of the far child (enter). Both
  * crossings are computed by the operations of raytally_box_hit, and maximum and minimum do not depend on the
  * order. So the interval of a node is, bit for bit, what raytally_box_hit finds for its cell, and a child is
- * skipped where that would say no. The classical loop with one origin for both planes would lose hits on flat
- * objects, which lie in both of them.
+ * skipped where that would say no. With one origin for both kinds of planes, as the paper has it, hits at the
+ * faces of cells would be lost.
  *
  * Counting: a step is a node visited; an extent test the root's box, or the interval of a child. */
 #include <raytally/accel.h>
