@@ -14,7 +14,7 @@ typedef struct RtPlugin {
     char path[4096];      /* in full */
     uint64_t fingerprint; /* of its bytes (XXH3) */
     uint32_t count;
-    const char *names[8]; /* [count] of its accelerators */
+    const char *names[64]; /* [count] of its accelerators */
 } RtPlugin;
 
 /* Loads the library at `path` and registers its accelerators; one that is loaded already is left as it is.

@@ -11,9 +11,9 @@ date=$(date -u -d "@${SOURCE_DATE_EPOCH:-$(date +%s)}" +%F)
 # page NAME SUMMARY PROGRAM...: NAME.1
 page() {
     help2man --no-info --section=1 --source="$version" --manual=raytally --version-string="${version##* }" --name="$2" "${*:3}" |
-        sed -E "s/^\.TH [^ ]+ \"?1\"? \"[^\"]*\"/.TH ${1^^} 1 $date/; s/^raytally [a-z]+ \\\\- /${1/-/\\\\-} \\\\- /" >"$folder/$1.1"
+        sed -E "s/^\.TH [^\"1]+\"?1\"? \"[^\"]*\"/.TH ${1^^} 1 $date/; s/^raytally [a-z\\-]+ \\\\- /${1//-/\\\\-} \\\\- /" >"$folder/$1.1"
 }
 
 page raytally "compare ray-tracing acceleration structures" "$program"
-"$program" --help | sed -nE '/^Commands:/,/^$/s/^  ([a-z]+) +(\[?[A-Z][]A-Z. ]*)  +(.*)/\1 \3/p' |
+"$program" --help | sed -nE '/^Commands:/,/^$/s/^  ([a-z-]+) +(\[?[A-Z][]A-Z. ]*)  +(.*)/\1 \3/p' |
     while read -r command summary; do page "raytally-$command" "$summary" "$program $command"; done

@@ -82,6 +82,8 @@ offers_only 'raytally render balls --heatmap-scale ' linear log
 offers_only 'raytally trace balls --rays sha' shadow
 offers_only 'raytally run mi' mine.yaml
 offers_only 'raytally completion ' bash
+offers_only 'raytally new' new-accel
+offers_only 'raytally new-accel mine --out fol' folder
 offers_only 'raytally nonsense --'
 
 offers_only 'raytally info our' 'our scene.yaml'
@@ -117,7 +119,7 @@ for option in failglob nullglob; do
 done
 
 # Every option that --help lists, but for those of argp's own.
-for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
     for option in $("$program" "$command" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -o -e '--.*'); do
         offers "raytally $command --" "$option"
     done

@@ -40,7 +40,8 @@ available() {
     library) # with what it takes to link with it
         command -v cc >/dev/null && command -v pkg-config >/dev/null || return
         export PREFIX=$work/prefix PKG_CONFIG_PATH=$work/prefix/lib/pkgconfig
-        [ -d "$PREFIX" ] || cmake --install "$(dirname "$program")" --prefix "$PREFIX" >/dev/null 2>&1
+        [ -d "$PREFIX" ] && return
+        cmake --install "$(dirname "$program")" --prefix "$PREFIX" >/dev/null 2>&1 && PATH=$PREFIX/bin:$PATH
         ;;
     */*) [ -e "$root/$1" ] ;;
     *) command -v "$1" >/dev/null ;;

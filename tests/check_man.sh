@@ -16,10 +16,10 @@ complain() {
 
 mkdir "$work/bin" && ln -s "$program" "$work/bin/raytally"
 cmake/man_pages.sh "$work/bin/raytally" "$work/man"
-for command in '' $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+for command in '' $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
     name=raytally${command:+-$command} page=$work/man/raytally${command:+-$command}.1
     [ -s "$page" ] || { complain "there is no page $name" && continue; }
-    grep -qF -e "${name/-/\\-} \\- " "$page" || complain "$name: the NAME is another one"
+    grep -qF -e "${name//-/\\-} \\- " "$page" || complain "$name: the NAME is another one"
     if command -v man >/dev/null; then
         faults=$(LC_ALL=C.UTF-8 man --warnings -E UTF-8 -l "$page" 2>&1 >"$work/text")
         [ -z "$faults" ] || complain "$name: man says: $faults"

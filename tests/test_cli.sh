@@ -65,7 +65,7 @@ refuses "no accelerator 'grd': did you mean 'grid'.*raytally accels" accels grd
 "$program" accels >/dev/full 2>stderr
 [ $? = 2 ] && grep -q 'standard output' stderr || complain "raytally accels: a full disk goes unnoticed"
 rm stderr
-for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+for command in $("$program" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]*\) .*/\1/p'); do
     does "$command" --help
     cmp -s <("$program" "$command" --help) <("$program" help "$command") ||
         complain "raytally help $command: says something other than raytally $command --help"
@@ -83,6 +83,32 @@ refuses "rays: invalid value '1000000000000'.*1\.\." verify --rays 1000000000000
 refuses "rays: invalid value '0'.*1\.\." verify --rays 0
 refuses "no accelerator 'nope'" verify --accel nope
 refuses 'nope\.nff: there is no such file' verify nope.nff
+
+# ---- new-accel: a whole folder, or nothing ----
+
+refuses 'a NAME .* is missing.*new-accel --help' new-accel
+refuses 'one NAME at a time' new-accel mine yours
+for name in '' '../mine' 'a b' '3d' '-x' 'mine;' 'grid:density=4' ünicode; do
+    refuses "cannot be the name.*a letter, and then letters, digits, '_' and '-'" new-accel -- "$name"
+done
+refuses "there is an accelerator 'grid' already" new-accel grid
+refuses "'all' means every accelerator" new-accel all
+refuses 'too long for a name' new-accel "$(printf 'a%.0s' {1..100})"
+does new-accel my_grid-2
+[ "$(ls my_grid-2)" = $'CMakeLists.txt\nREADME.md\nmy_grid-2.c' ] || complain "new-accel: makes $(ls my_grid-2)"
+grep -rE 'my-accel|SPDX' my_grid-2 && complain "new-accel: leaves the name, or the licence, of its templates"
+for file in CMakeLists.txt README.md my_grid-2.c; do
+    grep -q 'my_grid-2' "my_grid-2/$file" || complain "new-accel: $file does not know its name"
+done
+refuses 'my_grid-2 is there already' new-accel my_grid-2
+does new-accel mine --out some/where
+[ -f some/where/mine/mine.c ] || complain 'new-accel: --out does not make its folder'
+touch file
+refuses 'file: this is not a directory' new-accel mine --out file
+(ulimit -f 1 && trap '' XFSZ && "$program" new-accel cut) >stdout 2>stderr </dev/null
+[ $? = 2 ] && grep -q 'writing failed' stderr && [ ! -e cut ] ||
+    complain "new-accel: something half-written stays behind: $(ls cut): $(cat stderr)"
+rm -r my_grid-2 some file stdout stderr
 
 # ---- scenes: which files and which built-ins ----
 

@@ -319,7 +319,7 @@ static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) 
     query->lane = message.lane;
     if (message.status == RT_OK) return RT_OK;
     message.error.message[sizeof message.error.message - 1] = '\0';
-    return rt_fail(error, message.status, "%s", message.error.message);
+    return rt_fail(error, RT_BROKEN, "%s: %s", away->name, message.error.message);
 }
 
 static void close_query(const RtAccel *accel, void *scratch) {

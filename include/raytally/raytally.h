@@ -54,6 +54,7 @@ RAYTALLY_API const char *raytally_version(void);
 typedef enum raytally_status {
     RAYTALLY_OK = 0,        /**< As it should. */
     RAYTALLY_MISMATCH,      /**< A check failed: answers or counts differ, or a structure is broken. */
+    RAYTALLY_BROKEN,        /**< An accelerator of a plugin crashed, hung or answered nonsense. */
     RAYTALLY_BAD_INPUT,     /**< A file, a spec or an argument is wrong. */
     RAYTALLY_NOT_AVAILABLE, /**< Asked for something that this build or machine does not have. */
     RAYTALLY_NO_MEMORY,     /**< An allocation failed. */
@@ -169,6 +170,12 @@ RAYTALLY_API const char *raytally_accelerator_spec(const raytally_accelerator *a
 /** Whether its answers are those of `brute` bit for bit; if not, they are judged by verdicts. */
 RAYTALLY_API bool raytally_accelerator_exact(const raytally_accelerator *accelerator);
 
+/** To be asked after tracing, where no tracer traces: RAYTALLY_OK, or why what the accelerator answered is
+ * not to be believed: RAYTALLY_BROKEN where it is a plugin's and has not survived its rays, which all miss
+ * from then on. Functions that trace rays themselves ask it themselves. */
+RAYTALLY_API raytally_status raytally_accelerator_check(const raytally_accelerator *accelerator,
+                                                        raytally_error *error);
+
 /** What a structure looks like, as places in raytally_structure.at. */
 enum raytally_figure {
     RAYTALLY_INTERIOR,        /**< Inner nodes. */
@@ -203,7 +210,8 @@ typedef struct raytally_tracer raytally_tracer;
 /** Whether `ray` is one: see raytally_ray. Tracers take rays that are, and do not look again. */
 RAYTALLY_API bool raytally_ray_is_valid(const raytally_ray *ray);
 
-/** Makes all that one thread's rays need: tracing allocates nothing and cannot fail. */
+/** Makes all that one thread's rays need: tracing allocates nothing and cannot fail (but see
+ * raytally_accelerator_check). */
 RAYTALLY_API raytally_status raytally_tracer_new(const raytally_accelerator *accelerator,
                                                  raytally_tracer **out, raytally_error *error);
 
@@ -282,17 +290,17 @@ RAYTALLY_API uint64_t raytally_rays_fingerprint(const raytally_rays *rays);
 
 /** What to verify by. Initialise with RAYTALLY_VERIFYING. */
 typedef struct raytally_verifying {
-    size_t size;   /**< sizeof(raytally_verifying). */
-    uint64_t rays; /**< How many, 1..20,000,000. Each is tested against every object. */
-    uint64_t seed; /**< Of the rays. */
-    bool families; /**< Mostly rays that are hard: they graze, start, end on surfaces; else chords. */
-    int threads;   /**< See above. */
+    size_t size;                /**< sizeof(raytally_verifying). */
+    uint64_t rays;              /**< How many, 1..20,000,000. Each is tested against every object. */
+    uint64_t seed;              /**< Of the rays. */
+    int threads;                /**< See above. */
     const raytally_rays *given; /**< These rays instead of all that, or NULL. */
 } raytally_verifying;
 
-/** As `raytally verify --families` does, by 10,000 rays. */
+/** As `raytally verify` does, by 10,000 rays: from the camera, chords, and those that are hard on
+ * accelerators, as they graze, start and end on surfaces, run along axes and edges. */
 #define RAYTALLY_VERIFYING                                                                                   \
-    { sizeof(raytally_verifying), 10000, 1, true, 0, NULL }
+    { sizeof(raytally_verifying), 10000, 1, 0, NULL }
 
 /** What came of it, in rays. The verdicts sum up to `rays`. */
 typedef struct raytally_verified {

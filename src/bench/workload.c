@@ -109,8 +109,10 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
     RtStatus status = build_one(workload, spec, &workload->built[c], seconds, error);
     rt_memory_limit(0);
     bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
-    if (status != RT_OK && status != RT_BROKEN && !too_large) return status;
-    if (status == RT_BROKEN) {
+    /* A plugin that refuses the scene, or takes all memory for it, does so for itself alone. */
+    bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_away(spec));
+    if (status != RT_OK && !broken && !too_large) return status;
+    if (broken) {
         snprintf(result->limit, RT_MAX_LIMIT, "%.511s", error->message);
         result->broken = true;
         return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN_BUILD, RT_RAY_PRIMARY, result->limit,

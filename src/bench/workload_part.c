@@ -43,6 +43,13 @@ RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKin
         *limit = '\0';
         return status;
     }
+    const RtObserver *observer = &workload->options->observer;
+    if (broken && observer->notice) {
+        char message[RT_MAX_LIMIT + 2 * RT_MAX_SPEC_CHARS];
+        snprintf(message, sizeof message, "%s on %s: %s", rt_candidate_label(experiment, c),
+                 experiment->workloads[workload->index].label, limit);
+        observer->notice(observer->context, message);
+    }
     return rt_workload_tell(workload, what, c, kind, error);
 }
 

@@ -37,6 +37,7 @@ int rt_command_plot(int argc, char **argv);
 int rt_command_report(int argc, char **argv);
 int rt_command_reproduce(int argc, char **argv);
 int rt_command_convert(int argc, char **argv);
+int rt_command_new_accel(int argc, char **argv);
 
 extern const struct argp rt_accels_argp;
 extern const struct argp rt_scenes_argp;
@@ -51,6 +52,7 @@ extern const struct argp rt_report_argp;
 extern const struct argp rt_run_argp;
 extern const struct argp rt_merge_argp;
 extern const struct argp rt_convert_argp;
+extern const struct argp rt_new_accel_argp;
 
 /* Of the command that completes all others, whose table main has: its parser, whose input is a const char *,
  * the shell; and what it prints, a script for bash. */

@@ -37,6 +37,8 @@ static const RtCommand commands[] = {
     {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce,
      NULL},
     {"convert", "IN OUT", "write a scene in another format", rt_command_convert, &rt_convert_argp},
+    {"new-accel", "NAME", "a folder with an accelerator of your own, to be changed: a plugin",
+     rt_command_new_accel, &rt_new_accel_argp},
     {"completion", "SHELL", "print a script that completes all this in bash", run_completion,
      &rt_completion_argp},
 };

@@ -39,7 +39,7 @@ raytally_status raytally_accelerator_build(const raytally_scene *scene, const ch
     raytally_accelerator *made = rt_alloc(1, sizeof *made);
     *out = NULL;
     if (!made) return (raytally_status)rt_fail_memory(rt_error_of(error), "an accelerator", sizeof *made);
-    made->scene = (raytally_scene *)(uintptr_t)scene; /* to be counted there */
+    made->scene = (raytally_scene *)scene; /* to be counted there */
     locale_t before = rt_locale_enter();
     RtStatus status = build(made, spec, threads, rt_error_of(error));
     rt_locale_leave(before);
@@ -64,6 +64,10 @@ const char *raytally_accelerator_spec(const raytally_accelerator *accelerator) {
 
 bool raytally_accelerator_exact(const raytally_accelerator *accelerator) {
     return accelerator->accel->exact;
+}
+
+raytally_status raytally_accelerator_check(const raytally_accelerator *accelerator, raytally_error *error) {
+    return (raytally_status)rt_accel_check(accelerator->accel, rt_error_of(error));
 }
 
 void raytally_accelerator_describe(const raytally_accelerator *accelerator, raytally_structure *out) {

@@ -121,7 +121,7 @@ static RtStatus contest_init(Contest *contest, const raytally_timing *how, RtErr
     for (size_t i = 0; i < contest->count; i++) {
         double *place = contest->seconds + doubles * i;
         contest->timed[i] =
-            (RtTimed){contest->accelerators[i]->accel, contest->set, place, place + how->rounds};
+            (RtTimed){contest->accelerators[i]->accel, contest->set, place, place + how->rounds, NULL};
     }
     return RT_OK;
 }

@@ -32,7 +32,7 @@ _Static_assert(RAYTALLY_NO_OBJECT == RT_NO_OBJECT, "a miss is the same");
 _Static_assert(RAYTALLY_SPEC_CHARS == RT_MAX_SPEC_CHARS, "specs are as long");
 
 #define SAME_STATUS(name) ((int)RAYTALLY_##name == (int)RT_##name)
-_Static_assert(SAME_STATUS(OK) && SAME_STATUS(MISMATCH) && SAME_STATUS(BAD_INPUT) &&
+_Static_assert(SAME_STATUS(OK) && SAME_STATUS(MISMATCH) && SAME_STATUS(BROKEN) && SAME_STATUS(BAD_INPUT) &&
                    SAME_STATUS(NOT_AVAILABLE) && SAME_STATUS(NO_MEMORY) && SAME_STATUS(IO),
                "a status is the same");
 

@@ -64,7 +64,6 @@ raytally_status raytally_verify(const raytally_scene *scene, const char *spec, c
     *out = (raytally_verified){0};
     RtVerifyRays wanted = {.count = own.given ? own.given->set.count : own.rays,
                            .seed = own.seed,
-                           .families = own.families,
                            .threads = own.threads,
                            .given = own.given ? &own.given->set : NULL};
     locale_t before = rt_locale_enter();

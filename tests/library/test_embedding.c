@@ -102,6 +102,7 @@ RT_TEST(rays_hit_the_objects_of_arrays_by_their_numbers) {
     assert_int_equal(counters[RAYTALLY_RANDOM].at[RAYTALLY_HITS], 4);
     assert_int_equal(counters[RAYTALLY_SHADOW].at[RAYTALLY_RAYS], 2);
     assert_int_equal(counters[RAYTALLY_SHADOW].at[RAYTALLY_HITS], 0);
+    assert_fine(raytally_accelerator_check(accel, error));
     raytally_tracer_free(tracer);
     raytally_accelerator_free(accel);
     raytally_scene_free(scene);

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* raytally new-accel: a folder with an accelerator of one's own, as a plugin that works, to be changed. Its
+ * files are those of cli/new_accel, with the name in the place of `my-accel`, and without the line that says
+ * what their licence is here: what becomes of them is the user's. */
+#include "accel/accel.h"
+#include "base/file.h"
+#include "cli/cli.h"
+#include "new_accel_c.h"
+#include "new_accel_cmake.h"
+#include "new_accel_readme.h"
+
+#include <argp.h>
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct Options {
+    const char *name, *out;
+} Options;
+
+static const struct argp_option options[] = {
+    {"out", 'o', "DIR", 0, "Where the folder NAME is made (the current folder)", 0}, {0}};
+
+static error_t parse_option(int key, char *argument, struct argp_state *state) {
+    Options *o = state->input;
+    switch (key) {
+    case 'o': o->out = argument; return 0;
+    case ARGP_KEY_ARG:
+        if (o->name) argp_error(state, "one NAME at a time; '%s' is a second one", argument);
+        o->name = argument;
+        return 0;
+    case ARGP_KEY_END:
+        if (!o->name) argp_error(state, "a NAME for the accelerator is missing, as in my-grid");
+        return 0;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp rt_new_accel_argp = {
+    .options = options,
+    .parser = parse_option,
+    .args_doc = "NAME",
+    .doc = "Write a folder NAME with an accelerator of your own, a plugin that works and is to be changed: "
+           "its code, how it is built and verified, and how to go on.\vFor example:\n"
+           "  raytally new-accel my-grid\n  raytally new-accel my-grid --out ~/plugins"};
+
+/* ---- names ---- */
+
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+
+static RtStatus check_name(const char *name, RtError *error) {
+    if (strspn(name, LETTERS) == 0 || name[strspn(name, LETTERS "0123456789_-")])
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%.80s' cannot be the name of an accelerator: a letter, and then letters, digits, "
+                       "'_' and '-'",
+                       name);
+    if (strlen(name) >= RT_MAX_NAME)
+        return rt_fail(error, RT_BAD_INPUT, "'%.80s' is too long for a name: at most %d letters", name,
+                       RT_MAX_NAME - 1);
+    if (strcmp(name, "all") == 0)
+        return rt_fail(error, RT_BAD_INPUT, "'all' means every accelerator: choose another name");
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        if (strcmp(name, rt_accel_at(i)->name) != 0) continue;
+        return rt_fail(error, RT_BAD_INPUT, "there is an accelerator '%s' already: choose another name",
+                       name);
+    }
+    return RT_OK;
+}
+
+/* ---- files ---- */
+
+/* A file of the new folder: NAME and `extension`, or a `title` of its own. */
+typedef struct Template {
+    const char *title, *extension;
+    const char *const *lines;
+} Template;
+
+static const Template templates[] = {
+    {NULL, ".c", new_accel_c}, {"CMakeLists.txt", "", new_accel_cmake}, {"README.md", "", new_accel_readme}};
+
+enum { TEMPLATE_COUNT = sizeof templates / sizeof templates[0] };
+
+#define PLACEHOLDER "my-accel"
+
+static void write_line(const char *line, const char *name, FILE *out) {
+    for (const char *at; (at = strstr(line, PLACEHOLDER)); line = at + strlen(PLACEHOLDER)) {
+        fwrite(line, 1, (size_t)(at - line), out);
+        fputs(name, out);
+    }
+    fputs(line, out);
+}
+
+static RtStatus template_path(const Template *file, const char *folder, const char *name, char *path,
+                              RtError *error) {
+    char title[RT_MAX_NAME + 8];
+    snprintf(title, sizeof title, "%s%s", file->title ? file->title : name, file->extension);
+    return rt_path_join(folder, title, path, error);
+}
+
+static RtStatus write_template(const Template *file, const char *folder, const char *name, RtError *error) {
+    char path[RT_MAX_PATH];
+    RtOutput output;
+    RT_TRY(template_path(file, folder, name, path, error));
+    RT_TRY(rt_output_open(&output, path, error));
+    for (const char *const *line = file->lines; *line; line++) {
+        if (!strstr(*line, "SPDX-License-Identifier")) write_line(*line, name, output.file);
+    }
+    return rt_output_commit(&output, error);
+}
+
+/* What was written of it, after a failure. */
+static void remove_folder(const char *folder, const char *name) {
+    char path[RT_MAX_PATH];
+    for (int i = 0; i < TEMPLATE_COUNT; i++) {
+        if (template_path(&templates[i], folder, name, path, NULL) == RT_OK) remove(path);
+    }
+    rmdir(folder);
+}
+
+static RtStatus write_folder(const char *folder, const char *name, RtError *error) {
+    if (mkdir(folder, 0777) != 0) {
+        if (errno == EEXIST)
+            return rt_fail(error, RT_BAD_INPUT, "%s is there already: choose another name or another --out",
+                           folder);
+        return rt_fail(error, RT_IO, "%s: creating the folder failed: %s", folder, strerror(errno));
+    }
+    RtStatus status = RT_OK;
+    for (int i = 0; i < TEMPLATE_COUNT && status == RT_OK; i++)
+        status = write_template(&templates[i], folder, name, error);
+    if (status != RT_OK) remove_folder(folder, name);
+    return status;
+}
+
+/* ---- the command ---- */
+
+int rt_command_new_accel(int argc, char **argv) {
+    Options o = {.out = ""};
+    argp_parse(&rt_new_accel_argp, argc, argv, 0, 0, &o);
+    RtError error;
+    char folder[RT_MAX_PATH];
+    RtStatus status = check_name(o.name, &error);
+    if (status == RT_OK) status = rt_path_join(o.out, o.name, folder, &error);
+    if (status == RT_OK && *o.out) status = rt_directory_create(o.out, &error);
+    if (status == RT_OK) status = write_folder(folder, o.name, &error);
+    if (status != RT_OK) return rt_cli_fail(&error);
+    printf("%s: an accelerator that works. To go on:\n\n"
+           "  cd %s\n"
+           "  cmake -B build && cmake --build build\n"
+           "  cmake --build build --target check\n"
+           "  raytally bench balls:size=3 --plugin build/%s.so --accel %s --accel bvh\n\n"
+           "%s.c says where your structure goes, README.md what else there is.\n",
+           folder, folder, o.name, o.name, o.name);
+    return RT_EXIT_OK;
+}

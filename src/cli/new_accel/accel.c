@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* my-accel: an accelerator of raytally, as a plugin. It works as it is, and saves nothing yet: every object
+ * is looked at for every ray, but where `boxes` is on only those whose own box the ray meets are tested. Put
+ * your structure in the place of the list: what to change says STRUCTURE.
+ *
+ * The contract is in <raytally/accel.h>, why the test of boxes loses no hit in <raytally/box.h>. */
+#include <raytally/accel.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* STRUCTURE: nodes, cells, lists, whatever a search needs. Once built it is only read: all threads have it in
+ * common. What a search writes to, a stack say, is a local variable of it, or the memory of its query. */
+typedef struct Structure {
+    const raytally_box *boxes; /* [count] of the objects; borrowed */
+    uint32_t *ids;             /* [count] the objects in the order in which they are tested */
+    uint32_t count;
+    int test_boxes; /* the parameter `boxes` */
+} Structure;
+
+/* What can be set, as in my-accel:boxes=off. From this table come help, checks of values and what `verify
+ * --spread` tries; `build` finds the values in the same order. Whole numbers and fractions have a range, and
+ * test_values such as "1|4|20" to try. */
+enum { BOXES, PARAMS };
+static const raytally_param params[PARAMS] = {
+    [BOXES] = {.name = "boxes",
+               .type = RAYTALLY_FLAG,
+               .standard = "on",
+               .meaning = "test an object only where the ray meets its box",
+               .source = "a box costs less than most objects"},
+};
+
+/* ---- build ---- */
+
+static void destroy(void *self) {
+    Structure *s = self;
+    free(s->ids);
+    free(s);
+}
+
+/* STRUCTURE: made from the boxes of the objects alone. The same boxes must give the same structure, on any
+ * number of threads. */
+static int build(const raytally_build *from, void **self) {
+    Structure *s = calloc(1, sizeof *s);
+    if (!s) return RAYTALLY_MEMORY;
+    s->boxes = from->boxes;
+    s->count = from->object_count;
+    s->test_boxes = from->values[BOXES].flag != 0;
+    s->ids = malloc((s->count + 1) * sizeof *s->ids);
+    if (!s->ids) {
+        destroy(s);
+        return RAYTALLY_MEMORY;
+    }
+    for (uint32_t i = 0; i < s->count; i++) s->ids[i] = i;
+    *self = s;
+    return RAYTALLY_BUILT;
+}
+
+/* ---- trace ---- */
+
+/* STRUCTURE: finds objects on the way of the ray, and has them tested. raytally_object_hits improves *best
+ * and counts the object tests; of several hits at the same t it keeps the object with the lower number. A box
+ * may be skipped only where raytally_box_hit says no: it is asked up to raytally_limit, the best hit so far.
+ * With any = 1 the question is whether there is a hit at all.
+ *
+ * Whatever else is counted is counted where it is done. Where rays are timed `counters` is a constant NULL,
+ * and nothing is left of RAYTALLY_COUNT. */
+RAYTALLY_INLINE void search(const Structure *s, void *memory, const raytally_prepared *ray, int any,
+                            raytally_hit *best, raytally_counters *counters) {
+    (void)memory; /* of the query, where the table below has query_bytes */
+    float enter;
+    for (uint32_t i = 0; i < s->count; i++) {
+        const uint32_t *id = &s->ids[i];
+        RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
+        if (s->test_boxes) {
+            RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 1);
+            if (!raytally_box_hit(&s->boxes[*id], ray, raytally_limit(ray, best), &enter)) continue;
+        }
+        if (raytally_object_hits(ray, id, 1, any, best, counters)) return;
+    }
+}
+
+/* search_nearest and search_occluded, each with counters and without. */
+RAYTALLY_DEFINE_KERNELS(Structure, search)
+
+/* ---- describe, validate ---- */
+
+/* STRUCTURE: what of it is printed and plotted. */
+static void describe(const void *self, raytally_description *out) {
+    const Structure *s = self;
+    out->leaves = s->count > 0;
+    out->references = s->count;
+    out->bytes = sizeof *s + s->count * sizeof *s->ids;
+}
+
+/* STRUCTURE: what must be true of it, whatever the scene. `verify` asks before it traces any ray. */
+static int validate(const void *self, char *message, size_t room) {
+    const Structure *s = self;
+    for (uint32_t i = 0; i < s->count; i++) {
+        if (s->ids[i] < s->count) continue;
+        snprintf(message, room, "place %u of the list has object %u of %u", i, s->ids[i], s->count);
+        return 1;
+    }
+    return 0;
+}
+
+/* ---- the table that raytally asks for ---- */
+
+static const raytally_accel_ops ops = {
+    .abi = RAYTALLY_ACCEL_ABI,
+    .size = sizeof ops,
+    .name = "my-accel",
+    .summary = "every object for every ray, behind its box",
+    .paper = "none yet",
+    .params = params,
+    .param_count = PARAMS,
+    .build = build,
+    .destroy = destroy,
+    .nearest = search_nearest,
+    .occluded = search_occluded,
+    .describe = describe,
+    .validate = validate,
+};
+
+RAYTALLY_PLUGIN {
+    return index == 0 ? &ops : NULL;
+}

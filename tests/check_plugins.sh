@@ -1,0 +1,182 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_plugins.sh: what is wrong with a plugin stays with it. For each fault of tests/plugins/faulty.c `verify` and `bench`
+# say what it is and end with 1, and what another accelerator has beside it is whole, JSON included. What cannot be loaded is
+# refused with exit code 2 and a sentence. A fresh `raytally new-accel` and the plugins of examples/ are built against an
+# installed raytally, are right and are measured. Uses $RT_PROGRAM, in its build folder, and python3.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
+root=$PWD
+program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+build=$(dirname "$program") plugins=$(dirname "$program")/plugins
+for tool in cmake python3; do
+    command -v $tool >/dev/null || { echo "check_plugins: skipped: $tool is not installed" && exit 77; }
+done
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+unset RAYTALLY_PLUGINS
+failures=0
+
+complain() {
+    printf '%s\n' "$*" >&2
+    failures=$((failures + 1))
+}
+
+# ends WITH FILE ARGUMENT...: raytally's exit code; what it prints is in FILE, what it says in `said`
+ends() {
+    local wanted=$1 file=$2 code=0
+    shift 2
+    RAYTALLY_PLUGIN_SECONDS=${patience-1} timeout 60 "$program" "$@" >"$file" 2>said </dev/null || code=$?
+    [ "$code" = "$wanted" ] || complain "raytally $*: exit code $code, not $wanted: $(cat said)"
+}
+
+# says PATTERN FILE...: an extended regular expression, in any of the files
+says() {
+    [[ $(tr '\n' ' ' <"$2"; tr '\n' ' ' <said) =~ $1 ]] || complain "$2 does not say '$1': $(cat said)
+$(grep -E 'problem|"says"' "$2")"
+}
+
+# ---- faults ----
+
+verify=(verify balls:size=1 --rays 600 --threads 2 --json)
+bench=(bench balls:size=1 --rays 'primary,shadow' --size 16x16 --depth 2 --rounds 1 --json)
+ends 0 alone.json "${bench[@]}" --accel kd
+
+# fault NAME VERIFIED [MEASURED]: what `verify` says of it, and `bench`: the same where that is left out. Where it is
+# empty nothing is said, and all is well.
+fault() {
+    local name=faulty-$1 verified=$2 measured=${3-$2}
+    ends $((${#verified} > 0)) "verify-$1.json" "${verify[@]}" --plugin "$plugins/faulty.so" --accel "$name" --accel kd
+    [ -z "$verified" ] || says "$name.*$verified" "verify-$1.json"
+    ends $((${#measured} > 0)) "bench-$1.json" "${bench[@]}" --plugin "$plugins/faulty.so" --accel kd --accel "$name"
+    [ -z "$measured" ] || says "$name.*$measured" "bench-$1.json"
+}
+
+at_ray='at the ray org \([-0-9., e]+\) dir \([-0-9., e]+\)'
+differs='answered'
+crash='crashed \(Segmentation fault'
+fault not ''
+fault print ''
+fault crash-build "$crash\) while it was built over 11 objects"
+fault crash-nearest "$crash\) .*$at_ray"
+fault crash-timed "$crash\) .*$at_ray"
+fault crash-rare "$crash\) .*$at_ray"
+fault crash-destroy "$crash\) while it was destroyed"
+fault crash-describe "$crash\) while"
+fault abort "crashed \(Aborted\) .*$at_ray"
+fault exit 'ended its process \(exit code 0\)'
+fault killed 'crashed \(Killed\)'
+fault divide "crashed \(Floating point exception\) .*$at_ray"
+fault recursion "$crash\) .*$at_ray"
+fault free "crashed \(Aborted\) .*$at_ray"
+fault object 'an object that there is not, 1[0-9] \(the scene has 11 objects\)'
+fault nan 't = nan'
+fault wrong 'expected .* got ' "$differs"
+fault null 'expected .* got ' "$differs"
+fault memory "wrote past the 48 bytes of its query's memory"
+fault page 'past the memory of its query'
+fault huge 'memory'
+fault refused 'scenes of 11 objects are beneath it'
+fault nonsense 'returned 42'
+fault validate 'node 3 is its own parent' ''
+fault boxes 'expected .* got ' "$differs"
+fault moody '' # nobody counts twice
+fault loop-nearest "no progress for 1 s .*$at_ray"
+fault loop-timed "no progress for 1 s .*$at_ray"
+patience=0.2 # it has ten times as long to build
+fault loop-build 'no progress for 0.2 s .* while it was built'
+unset patience
+ulimit -S -d 2000000 # KiB, or it takes as much as raytally allows
+fault greedy 'memory is short'
+ulimit -S -d unlimited
+
+python3 - <<'END' || failures=$((failures + 1))
+import glob, json, sys
+
+def load(name):
+    try:
+        return json.load(open(name))
+    except ValueError as error:
+        sys.exit(f"{name} is no JSON: {error}")
+
+def of_kd(document):
+    return [(row["kind"], row["counts"], "ns" in row) for row in document["rows"] if row["accelerator"] == "kd"]
+
+alone, failed = of_kd(load("alone.json")), False
+for name in sorted(glob.glob("bench-*.json")):
+    if of_kd(load(name)) != alone:
+        print(f"{name}: what is measured of kd is not what it is without the plugin")
+        failed = True
+for name in sorted(glob.glob("verify-*.json")):
+    rows = [row for row in load(name)["rows"] if row["accel"] == "kd"]
+    if len(rows) != 1 or rows[0]["equal"] != rows[0]["rays"] or rows[0]["problem"]:
+        print(f"{name}: kd is not right beside the plugin: {rows}")
+        failed = True
+sys.exit(failed or len(alone) != 2)
+END
+
+# ---- what cannot be loaded ----
+
+# refuses PATTERN FILE: nothing on stdout, exit code 2, and a message that says what to do
+refuses() {
+    ends 2 printed accels --plugin "$2"
+    [ ! -s printed ] || complain "raytally accels --plugin $2: writes to stdout"
+    says "$1" printed
+}
+
+refuses 'nowhere.so: no plugin there' nowhere.so
+echo text >text.so
+refuses 'text.so.*cannot be loaded.*' ./text.so
+refuses 'no function .raytally_plugin.*new-accel' "$plugins/unloadable-SYMBOL.so"
+refuses 'there is no accelerator in it' "$plugins/unloadable-EMPTY.so"
+refuses 'version 2 .*compile it against the headers' "$plugins/unloadable-ABI.so"
+refuses 'set .size. to sizeof' "$plugins/unloadable-SIZE.so"
+refuses "name of an accelerator is up to .* letters" "$plugins/unloadable-NAME.so"
+refuses "accelerator 'grid' already: give this one another name" "$plugins/unloadable-TAKEN.so"
+refuses "accelerator 'unloadable' already: give this one another name" "$plugins/unloadable-TWICE.so"
+refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
+refuses "'unloadable' has 1 parameters" "$plugins/unloadable-PARAMETERS.so"
+refuses "does not fit itself.*depth" "$plugins/unloadable-STANDARD.so"
+refuses 'does not survive being loaded \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
+refuses 'does not survive being loaded \(Aborted\)' "$plugins/unloadable-ENTRY.so"
+mkdir folder && cp "$plugins/faulty.so" folder/
+for list in folder "$plugins/faulty.so:$plugins/new-accel.so"; do
+    RAYTALLY_PLUGINS=$list "$program" accels | grep -q '^faulty-not' || complain "RAYTALLY_PLUGINS=$list: not loaded"
+done
+
+# ---- plugins that work, against what is installed ----
+
+cmake --install "$build" --prefix "$work/prefix" >log 2>&1 || complain "cmake --install: $(tail -n 5 log)"
+program=$work/prefix/bin/raytally
+export PATH=$work/prefix/bin:$PATH
+
+# works FOLDER: the plugin that is built of it is right, and is measured
+works() {
+    local name=${1##*/} library accel
+    (cmake -S "$1" -B "built-$name" && cmake --build "built-$name") >log 2>&1 ||
+        { complain "$1 cannot be built: $(tail -n 20 log)" && return; }
+    for library in "built-$name"/*.so; do
+        for accel in $(comm -13 <(names) <(names --plugin "$library")); do
+            ends 0 printed verify --quick --plugin "$library" --accel "$accel"
+            ends 0 printed bench balls:size=2 --rays primary --size 16x16 --rounds 1 --plugin "$library" --accel bvh --accel "$accel"
+            says "$accel" printed
+        done
+    done
+}
+
+# names ARGUMENT...: those of all accelerators, in order
+names() {
+    "$program" accels --json "$@" | sed -nE 's/^      "name": "(.*)",?$/\1/p' | sort
+}
+
+(cd "$work" && raytally new-accel mine >/dev/null) || complain 'raytally new-accel mine fails'
+works mine
+(cmake --build built-mine --target check) >log 2>&1 || complain "the test of new-accel fails: $(tail -n 20 log)"
+for example in "$root"/examples/*/CMakeLists.txt; do
+    case $example in
+    *'*'* | */header-only/*) ;; # none is there; needs a library that the user brings
+    *) works "${example%/*}" ;;
+    esac
+done
+
+[ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }

@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A plugin of faults: an accelerator for each, all others of its functions being in order. What raytally is
+ * to say of each of them is in tests/check_plugins.sh. */
+#include <raytally/accel.h>
+
+#include <math.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- in order ---- */
+
+typedef struct List {
+    const raytally_box *boxes;
+    uint32_t *ids; /* [count] */
+    uint32_t count;
+} List;
+
+static void destroy(void *self) {
+    if (self) free(((List *)self)->ids);
+    free(self);
+}
+
+static int build(const raytally_build *from, void **self) {
+    List *list = malloc(sizeof *list);
+    uint32_t *ids = malloc((from->object_count + 1) * sizeof *ids);
+    if (!list || !ids) {
+        free(list);
+        free(ids);
+        return RAYTALLY_MEMORY;
+    }
+    for (uint32_t i = 0; i < from->object_count; i++) ids[i] = i;
+    *list = (List){from->boxes, ids, from->object_count};
+    *self = list;
+    return RAYTALLY_BUILT;
+}
+
+RAYTALLY_INLINE void search(const List *list, void *memory, const raytally_prepared *ray, int any,
+                            raytally_hit *best, raytally_counters *counters) {
+    (void)memory;
+    RAYTALLY_COUNT(counters, RAYTALLY_STEPS, list->count);
+    raytally_object_hits(ray, list->ids, list->count, any, best, counters);
+}
+RAYTALLY_DEFINE_KERNELS(List, search)
+
+/* ---- what can go wrong anywhere ---- */
+
+static int *volatile nowhere;
+static volatile int zero;
+
+static void crash(void) {
+    *nowhere = 1;
+}
+
+static void loop(void) {
+    while (zero == 0) {
+    }
+}
+
+static int recurse(const volatile int *from) {
+    volatile int here[256];
+    here[0] = *from + 1;
+    return *from < 0 ? 0 : recurse(here) + here[0];
+}
+
+static void free_twice(void) {
+    void *volatile block = malloc(16);
+    free(block);
+    free(block);
+}
+
+/* ---- while it builds ---- */
+
+static int build_crash(const raytally_build *from, void **self) {
+    crash();
+    return build(from, self);
+}
+
+static int build_loop(const raytally_build *from, void **self) {
+    loop();
+    return build(from, self);
+}
+
+static int build_refused(const raytally_build *from, void **self) {
+    (void)self;
+    snprintf(from->message, from->message_room, "scenes of %u objects are beneath it", from->object_count);
+    return RAYTALLY_REFUSED;
+}
+
+static int build_nonsense(const raytally_build *from, void **self) {
+    (void)from;
+    (void)self;
+    return 42;
+}
+
+/* Takes all the memory that it is given. */
+static int build_memory(const raytally_build *from, void **self) {
+    enum { BLOCK = 1 << 20 };
+    (void)from;
+    (void)self;
+    for (char *block; (block = malloc(BLOCK));) memset(block, 1, BLOCK);
+    return RAYTALLY_MEMORY;
+}
+
+static int build_print(const raytally_build *from, void **self) {
+    puts("{ faulty-print is built");
+    fflush(stdout);
+    return build(from, self);
+}
+
+/* A structure may be NULL: this one knows no object, and answers so. It is wrong, but no crash. */
+static int build_null(const raytally_build *from, void **self) {
+    (void)from;
+    *self = NULL;
+    return RAYTALLY_BUILT;
+}
+
+RAYTALLY_INLINE void none(const List *list, void *memory, const raytally_prepared *ray, int any,
+                          raytally_hit *best, raytally_counters *counters) {
+    (void)list, (void)memory, (void)ray, (void)any, (void)best, (void)counters;
+}
+RAYTALLY_DEFINE_KERNELS(List, none)
+
+/* ---- while it traces ---- */
+
+/* The search NAME, which does what `search` does and then something else. */
+#define SEARCH(name, ...)                                                                                    \
+    RAYTALLY_INLINE void name(const List *list, void *memory, const raytally_prepared *ray, int any,         \
+                              raytally_hit *best, raytally_counters *counters) {                             \
+        search(list, memory, ray, any, best, counters);                                                      \
+        __VA_ARGS__                                                                                          \
+    }                                                                                                        \
+    RAYTALLY_DEFINE_KERNELS(List, name)
+
+/* One ray of 256. */
+static int is_rare(const raytally_ray *ray) {
+    uint32_t bits;
+    memcpy(&bits, &ray->dir[1], sizeof bits);
+    return bits * 2654435761U >> 24 == 7;
+}
+
+SEARCH(crash_nearest, if (!any) crash();)
+SEARCH(crash_timed, if (!counters) crash();)
+SEARCH(crash_rare, if (is_rare(ray->ray)) crash();)
+SEARCH(loop_nearest, if (!any) loop();)
+SEARCH(loop_timed, if (!counters) loop();)
+SEARCH(call_abort, abort();)
+SEARCH(call_exit, exit(0);)
+SEARCH(killed, kill(getpid(), SIGKILL);)
+SEARCH(divide, zero = 7 / zero;)
+SEARCH(overflow, zero = recurse(&zero) & 0;)
+SEARCH(freed_twice, free_twice();)
+SEARCH(
+    print, if (is_rare(ray->ray)) {
+        puts("{ faulty-print is asked");
+        fflush(stdout);
+    })
+
+/* Into what is not its own: `memory` has MEMORY bytes. */
+enum { MEMORY = 48, FEW = 4, PAGE = 4096 };
+static size_t query_bytes(const void *self) {
+    (void)self;
+    return MEMORY;
+}
+SEARCH(past_memory, memset(memory, 1, MEMORY + FEW);)
+SEARCH(past_page, memset(memory, 1, MEMORY + PAGE);)
+SEARCH(into_boxes, if (list->count)((raytally_box *)(uintptr_t)list->boxes)->lo[0] = 7;)
+static size_t query_bytes_huge(const void *self) {
+    (void)self;
+    return SIZE_MAX / 2;
+}
+
+/* Answers. */
+SEARCH(no_such_object, if (best->object != RAYTALLY_NO_OBJECT) best->object = list->count + 5;)
+SEARCH(not_a_number, if (best->object != RAYTALLY_NO_OBJECT) best->t = NAN;)
+
+/* A plain mistake: its list ends one too early. */
+RAYTALLY_INLINE void forgetful(const List *list, void *memory, const raytally_prepared *ray, int any,
+                               raytally_hit *best, raytally_counters *counters) {
+    (void)memory;
+    raytally_object_hits(ray, list->ids, list->count ? list->count - 1 : 0, any, best, counters);
+}
+RAYTALLY_DEFINE_KERNELS(List, forgetful)
+
+/* Right, but never the same count twice. */
+static atomic_uint calls;
+SEARCH(moody, RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, atomic_fetch_add(&calls, 1));)
+
+/* ---- beside that ---- */
+
+static void destroy_crash(void *self) {
+    destroy(self);
+    crash();
+}
+
+static void describe_crash(const void *self, raytally_description *out) {
+    (void)self;
+    (void)out;
+    crash();
+}
+
+static int validate_broken(const void *self, char *message, size_t room) {
+    (void)self;
+    snprintf(message, room, "node 3 is its own parent");
+    return 1;
+}
+
+/* ---- the tables ---- */
+
+#define KERNELS(name) .nearest = name##_nearest, .occluded = name##_occluded
+
+/* What is not set is in order. */
+static raytally_accel_ops tables[] = {
+    {.name = "faulty-not", .summary = "is in order"},
+    {.name = "faulty-crash-build", .summary = "crashes while it builds", .build = build_crash},
+    {.name = "faulty-crash-nearest", .summary = "crashes at the first ray", KERNELS(crash_nearest)},
+    {.name = "faulty-crash-timed", .summary = "crashes where nothing is counted", KERNELS(crash_timed)},
+    {.name = "faulty-crash-rare", .summary = "crashes at a ray of 256", KERNELS(crash_rare)},
+    {.name = "faulty-crash-destroy", .summary = "crashes when it is done", .destroy = destroy_crash},
+    {.name = "faulty-crash-describe", .summary = "crashes when described", .describe = describe_crash},
+    {.name = "faulty-loop-build", .summary = "builds for ever", .build = build_loop},
+    {.name = "faulty-loop-nearest", .summary = "traces for ever", KERNELS(loop_nearest)},
+    {.name = "faulty-loop-timed", .summary = "traces for ever where nothing is counted", KERNELS(loop_timed)},
+    {.name = "faulty-abort", .summary = "aborts", KERNELS(call_abort)},
+    {.name = "faulty-exit", .summary = "ends its process, without an error", KERNELS(call_exit)},
+    {.name = "faulty-killed", .summary = "is killed, as where memory is short", KERNELS(killed)},
+    {.name = "faulty-divide", .summary = "divides by zero", KERNELS(divide)},
+    {.name = "faulty-recursion", .summary = "recurses for ever", KERNELS(overflow)},
+    {.name = "faulty-free", .summary = "frees a block twice", KERNELS(freed_twice)},
+    {.name = "faulty-object", .summary = "answers with an object that there is not", KERNELS(no_such_object)},
+    {.name = "faulty-nan", .summary = "answers with a t that is no number", KERNELS(not_a_number)},
+    {.name = "faulty-wrong", .summary = "forgets the last object", KERNELS(forgetful)},
+    {.name = "faulty-null",
+     .summary = "has no structure, which it may, and finds nothing, which it may not",
+     .build = build_null,
+     KERNELS(none)},
+    {.name = "faulty-memory",
+     .summary = "writes past the memory of its query, a little",
+     .query_bytes = query_bytes,
+     KERNELS(past_memory)},
+    {.name = "faulty-page",
+     .summary = "writes past the memory of its query, by a page",
+     .query_bytes = query_bytes,
+     KERNELS(past_page)},
+    {.name = "faulty-huge", .summary = "asks for all memory for a query", .query_bytes = query_bytes_huge},
+    {.name = "faulty-boxes", .summary = "writes into the boxes that it borrows", KERNELS(into_boxes)},
+    {.name = "faulty-greedy", .summary = "takes all memory while it builds", .build = build_memory},
+    {.name = "faulty-refused", .summary = "refuses every scene", .build = build_refused},
+    {.name = "faulty-nonsense", .summary = "builds, and says nonsense", .build = build_nonsense},
+    {.name = "faulty-validate", .summary = "is invalid", .validate = validate_broken},
+    {.name = "faulty-moody", .summary = "counts otherwise each time", KERNELS(moody)},
+    {.name = "faulty-print", .summary = "prints, but is right", .build = build_print, KERNELS(print)},
+};
+
+RAYTALLY_PLUGIN {
+    if (index >= sizeof tables / sizeof tables[0]) return NULL;
+    raytally_accel_ops *table = &tables[index];
+    table->abi = RAYTALLY_ACCEL_ABI;
+    table->size = sizeof *table;
+    table->paper = "none";
+    if (!table->build) table->build = build;
+    if (!table->destroy) table->destroy = destroy;
+    if (!table->nearest) table->nearest = search_nearest;
+    if (!table->occluded) table->occluded = search_occluded;
+    return table;
+}
