@@ -16,12 +16,12 @@ RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, Rt
 
 bool rt_accel_is_away(const RtAccel *accel);
 
-/* Runs `work` where the query's accelerator is: here, or away with the query that is there; `message` of
- * `bytes` <= RT_AWAY_BYTES, which has no pointers that both follow, goes there and comes back. Of a broken
- * one nothing is run, and the message stays as it is. */
+/* Runs `work` in the process of the query's accelerator, which is away, with the query that is there;
+ * `message` of `bytes` <= RT_AWAY_BYTES, which has no pointers that both follow, goes there and comes back. Of
+ * a broken one nothing is run, and the message stays as it is. */
 enum { RT_AWAY_BYTES = 256 * 1024 };
-typedef void RtQueryWork(RtQuery *query, void *message);
-void rt_query_do(RtQuery *query, RtQueryWork *work, void *message, size_t bytes);
+typedef void RtAwayWork(RtQuery *query, void *message);
+void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes);
 
 /* To be called now and then by work that takes long: it goes on. What does not for rt_away_patience seconds
  * is taken to hang: 60, or what RAYTALLY_PLUGIN_SECONDS says; ten times that for building. */

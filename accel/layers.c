@@ -2,7 +2,6 @@
 /* Layers: what is common to all accelerators, overlays stacked upon a base. Building, looking at and
  * destroying a stack, and the queries that are asked of it. */
 #include "accel/accel.h"
-#include "accel/away.h"
 
 #include "base/clock.h"
 #include "base/memory.h"
@@ -37,24 +36,6 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
     top->build_seconds = rt_wall_seconds() - start;
     *out = top;
     return RT_OK;
-}
-
-RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
-                        RtError *error) {
-    return rt_spec_is_away(spec) ? rt_away_build(spec, scene, threads, out, error)
-                                 : rt_accel_build_here(spec, scene, threads, out, error);
-}
-
-RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out,
-                          RtError *error) {
-    RtSpec parsed;
-    *out = NULL;
-    RT_TRY(rt_spec_parse(spec, &parsed, error));
-    return rt_accel_build(&parsed, scene, threads, out, error);
-}
-
-RtStatus rt_accel_open(const char *spec, const RtScene *scene, RtAccel **out, RtError *error) {
-    return rt_accel_open_on(spec, scene, 0, out, error);
 }
 
 void rt_accel_destroy(RtAccel *accel) {

@@ -2,7 +2,6 @@
 /* Raytally's side of an accelerator that lives away: what stands in for it, and what is said of one that
  * broke. See wire.h. */
 #include "accel/away.h"
-#include "accel/kernel.h"
 #include "accel/plugin/wire.h"
 
 #include "base/clock.h"
@@ -181,11 +180,7 @@ static RtStatus why(const Away *away, RtError *error) {
     return RT_BROKEN;
 }
 
-void rt_query_do(RtQuery *query, RtQueryWork *work, void *message, size_t bytes) {
-    if (!rt_accel_is_away(query->accel)) {
-        work(query, message);
-        return;
-    }
+void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes) {
     AwayQuery *own = query->scratch[0].own;
     ask(of(query->accel), own->lane, own->begin, work, message, bytes, "it was traced");
     own->begin = false;
@@ -382,8 +377,16 @@ static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const
     }
 }
 
-RT_DEFINE_BOTH(nearest, RtHit, trace_nearest)
-RT_DEFINE_BOTH(occluded, uint32_t, trace_occluded)
+/* What is timed is timed over there: here a counted question differs in its message alone. */
+static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                    RtHit *hits) {
+    trace_nearest(accel, scratch, rays, count, hits, NULL);
+}
+
+static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     uint32_t *blockers) {
+    trace_occluded(accel, scratch, rays, count, blockers, NULL);
+}
 
 /* ---- the structure ---- */
 
@@ -428,7 +431,10 @@ static const RtAccelOps away_ops = {
     .summary = "stands in for one that lives in a process of its own",
     .paper = "",
     .destroy = destroy,
-    RT_KERNEL_OPS,
+    .nearest = nearest,
+    .occluded = occluded,
+    .nearest_counted = trace_nearest,
+    .occluded_counted = trace_occluded,
     .scratch_bytes = scratch_bytes,
     .open = open_query,
     .close = close_query,

@@ -21,7 +21,7 @@
 enum { LANES = 65, MESSAGE_BYTES = RT_AWAY_BYTES };
 
 /* What is asked: of the accelerator, by the lane's query, which lane 0 has not. */
-typedef RtQueryWork WireWork;
+typedef RtAwayWork WireWork;
 
 typedef struct Lane {
     sem_t asked, answered;

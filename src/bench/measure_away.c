@@ -75,11 +75,11 @@ static void time_there(RtQuery *query, void *message) {
 }
 
 /* Has it done there; what that came to, or why the accelerator is broken. */
-static RtStatus remote_do(Remote *remote, RtQueryWork *work, RemoteMessage *message, size_t bytes,
+static RtStatus remote_do(Remote *remote, RtAwayWork *work, RemoteMessage *message, size_t bytes,
                           RtError *error) {
     message->there = remote->there;
     message->status = RT_OK;
-    rt_query_do(&remote->query, work, message, bytes);
+    rt_away_do(&remote->query, work, message, bytes);
     remote->there = message->there;
     RtStatus status = message->status;
     if (status == RT_OK) return rt_accel_check(remote->query.accel, error);

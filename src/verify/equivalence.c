@@ -20,8 +20,7 @@ typedef struct Way {
     size_t stream; /* rays at once */
 } Way;
 
-/* A chunk of rays and the answers to them in all ways, in one piece: it goes where the accelerator is
- * (rt_query_do). */
+/* The answers to a chunk in all ways; in one piece with its rays, for an accelerator that is away. */
 typedef struct Asked {
     size_t count;
     Way ways[PASSES * KERNELS];
@@ -29,7 +28,7 @@ typedef struct Asked {
     RtTally tallies[RT_RAY_KIND_COUNT];
     RtHit hits[PASSES * KERNELS][CHUNK];
     bool blocked[PASSES * KERNELS][CHUNK];
-    RtRay rays[CHUNK];
+    RtRay rays[CHUNK]; /* unset for others: they are asked about the reference's, by which some know them */
 } Asked;
 
 _Static_assert(sizeof(Asked) <= RT_AWAY_BYTES, "it fits");
@@ -114,17 +113,21 @@ void rt_reference_clear(RtReference *reference) {
 /* ---- checking ---- */
 
 /* Answers a chunk in all ways. */
-static void ask(RtQuery *query, void *message) {
-    Asked *asked = message;
+static void ask(RtQuery *query, Asked *asked, const RtRay *rays) {
     for (int w = 0; w < asked->way_count; w++) {
         size_t stream = asked->ways[w].stream;
         RtTally *tallies = asked->ways[w].counted ? asked->tallies : NULL;
         for (size_t first = 0; first < asked->count; first += stream) {
             size_t n = asked->count - first < stream ? asked->count - first : stream;
-            rt_nearest(query, asked->rays + first, n, asked->hits[w] + first, tallies);
-            rt_occluded(query, asked->rays + first, n, asked->blocked[w] + first, tallies);
+            rt_nearest(query, rays + first, n, asked->hits[w] + first, tallies);
+            rt_occluded(query, rays + first, n, asked->blocked[w] + first, tallies);
         }
     }
+}
+
+static void ask_away(RtQuery *query, void *message) {
+    Asked *asked = message;
+    ask(query, asked, asked->rays);
 }
 
 RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
@@ -209,8 +212,13 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
     Asked *asked = &desk->asked;
     choose_ways(desk, chunk);
     asked->count = chunk_count(job, chunk);
-    memcpy(asked->rays, job->reference->rays + chunk * CHUNK, asked->count * sizeof(RtRay));
-    rt_query_do(&desk->query, ask, asked, sizeof *asked);
+    const RtRay *rays = job->reference->rays + chunk * CHUNK;
+    if (rt_accel_is_away(job->accel)) {
+        memcpy(asked->rays, rays, asked->count * sizeof(RtRay));
+        rt_away_do(&desk->query, ask_away, asked, sizeof *asked);
+    } else {
+        ask(&desk->query, asked, rays);
+    }
     for (size_t i = 0; i < asked->count; i++) RT_TRY(judge(job, desk, chunk, i, error));
     return RT_OK;
 }
