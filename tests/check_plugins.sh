@@ -115,6 +115,32 @@ for name in sorted(glob.glob("verify-*.json")):
 sys.exit(failed or len(alone) != 2)
 END
 
+# ---- an experiment ----
+
+cat >faulty.yaml <<'END'
+name: faulty
+question: Does an experiment outlive what it measures?
+prediction: It does.
+scenes:
+  - {scene: "balls:size=1", size: 16x16, depth: 2}
+accelerators:
+  - {accel: kd}
+  - {accel: faulty-crash-rare}
+  - {accel: faulty-refused}
+baseline: kd
+rays: [primary, shadow]
+rounds: 1
+milliseconds: 1
+END
+ends 1 printed run faulty.yaml --plugin "$plugins/faulty.so"
+says "faulty-crash-rare on .*$crash" printed
+says 'faulty-refused on .*beneath it' printed
+[ "$(grep -c ',kd,' results/faulty/counts.csv)" = 2 ] || complain "an experiment lacks rows of kd: $(cat results/faulty/counts.csv)"
+[ -s results/faulty/report.html ] || complain 'an experiment with a faulty plugin has no report'
+ends 1 printed run faulty.yaml --plugin "$plugins/faulty.so" --resume
+ends 0 printed reproduce results/faulty --plugin "$plugins/faulty.so"
+ends 0 printed report results/faulty --plugin "$plugins/faulty.so"
+
 # ---- what cannot be loaded ----
 
 # refuses PATTERN FILE: nothing on stdout, exit code 2, and a message that says what to do

@@ -4,6 +4,7 @@
 #include "bench/claims.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
+#include "cli/plugins.h"
 #include "report/merge.h"
 
 #include <argp.h>
@@ -45,7 +46,9 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "raytally: %s\n", message);
 }
 
+static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
 const struct argp rt_merge_argp = {
+    .children = children,
     .options = options,
     .parser = parse_option,
     .args_doc = "DIR...",

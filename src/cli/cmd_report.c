@@ -3,6 +3,7 @@
 #include "bench/manifest.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
+#include "cli/plugins.h"
 #include "report/index.h"
 #include "report/report.h"
 
@@ -56,8 +57,12 @@ static const struct argp_option options[] = {
     {"index", 'i', "FOLDER", 0,
      "Write FOLDER/index.html over all result directories in it, as in `--index results`", 0},
     {0}};
-const struct argp rt_report_argp = {
-    .options = options, .parser = parse_option, .args_doc = "DIR\n--index FOLDER", .doc = help};
+static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
+const struct argp rt_report_argp = {.options = options,
+                                    .parser = parse_option,
+                                    .args_doc = "DIR\n--index FOLDER",
+                                    .doc = help,
+                                    .children = children};
 
 int rt_command_report(int argc, char **argv) {
     const char *folder = NULL;

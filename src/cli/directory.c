@@ -4,6 +4,7 @@
 #include "base/lock.h"
 #include "base/memory.h"
 #include "cli/cli.h"
+#include "cli/plugins.h"
 
 #include <argp.h>
 
@@ -21,9 +22,13 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     }
 }
 
+static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
+const struct argp rt_directory_argp = {.parser = parse_option, .args_doc = "DIR", .children = children};
+
 int rt_cli_directory(int argc, char **argv, const char *help, bool writes, RtDirectoryWork *work) {
     const char *directory = NULL;
-    const struct argp argp = {.parser = parse_option, .args_doc = "DIR", .doc = help};
+    struct argp argp = rt_directory_argp;
+    argp.doc = help;
     argp_parse(&argp, argc, argv, 0, 0, &directory);
     RtError error;
     RtLock lock = RT_NO_LOCK;

@@ -5,6 +5,11 @@
 
 #include "report/result_directory.h"
 
+#include <argp.h>
+
+/* Their options, without what explains each of them. */
+extern const struct argp rt_directory_argp;
+
 /* What such a command does with the directory once experiment and results are loaded from it. */
 typedef RtStatus RtDirectoryWork(const char *directory, const RtExperiment *experiment, RtResults *results,
                                  RtError *error);

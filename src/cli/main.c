@@ -3,6 +3,7 @@
 #include "accel/away.h"
 #include "base/words.h"
 #include "cli/cli.h"
+#include "cli/directory.h"
 #include "cli/plugins.h"
 
 #include <argp.h>
@@ -31,11 +32,11 @@ static const RtCommand commands[] = {
      &rt_rays_argp},
     {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run, &rt_run_argp},
     {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge, &rt_merge_argp},
-    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, NULL},
+    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, &rt_directory_argp},
     {"report", "DIR", "write the report of a result directory again; an index of all", rt_command_report,
      &rt_report_argp},
     {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce,
-     NULL},
+     &rt_directory_argp},
     {"convert", "IN OUT", "write a scene in another format", rt_command_convert, &rt_convert_argp},
     {"new-accel", "NAME", "a folder with an accelerator of your own, to be changed: a plugin",
      rt_command_new_accel, &rt_new_accel_argp},
