@@ -167,7 +167,8 @@ refuses 'does not survive being loaded \(Aborted\)' "$plugins/unloadable-CONSTRU
 refuses 'does not survive being loaded \(Aborted\)' "$plugins/unloadable-ENTRY.so"
 mkdir folder && cp "$plugins/faulty.so" folder/
 for list in folder "$plugins/faulty.so:$plugins/new-accel.so"; do
-    RAYTALLY_PLUGINS=$list "$program" accels | grep -q '^faulty-not' || complain "RAYTALLY_PLUGINS=$list: not loaded"
+    RAYTALLY_PLUGINS=$list "$program" accels >printed
+    grep -q '^faulty-not' printed || complain "RAYTALLY_PLUGINS=$list: not loaded"
 done
 
 # ---- plugins that work, against what is installed ----

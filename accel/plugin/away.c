@@ -20,6 +20,7 @@
 
 typedef struct Away {
     RtAccel base;
+    RtAccelOps ops; /* away_ops, by the name of the base */
     char name[RT_MAX_SPEC_CHARS];
     Wire *wire;
     pid_t pid;
@@ -40,13 +41,14 @@ typedef struct AwayQuery {
 } AwayQuery;
 
 static const RtAccelOps away_ops;
+static void destroy(RtAccel *accel);
 
 static Away *of(const RtAccel *accel) {
     return (Away *)accel;
 }
 
 bool rt_accel_is_away(const RtAccel *accel) {
-    return accel->ops == &away_ops;
+    return accel->ops->destroy == destroy;
 }
 
 double rt_away_patience(void) {
@@ -188,8 +190,6 @@ void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes) {
 
 /* ---- building ---- */
 
-static void destroy(RtAccel *accel);
-
 /* The memory that both have, and the pipe whose end says that raytally is no more. */
 static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
     away->wire =
@@ -245,7 +245,10 @@ RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, Rt
     Away *away = rt_alloc(1, sizeof(Away));
     *out = NULL;
     if (!away) return rt_fail_memory(error, "an accelerator", sizeof(Away));
-    *away = (Away){.base = {.ops = &away_ops, .scene = scene, .scratch_room = RT_CACHE_LINE}, .alive = -1};
+    *away = (Away){.base = {.ops = &away->ops, .scene = scene, .scratch_room = RT_CACHE_LINE},
+                   .ops = away_ops,
+                   .alive = -1};
+    away->ops.name = spec->layers[spec->layer_count - 1].ops->name;
     pthread_mutex_init(&away->lock, NULL);
     pthread_mutex_init(&away->master, NULL);
     rt_spec_format(spec, away->name);

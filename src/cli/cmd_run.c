@@ -182,13 +182,14 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
 
 /* The command that goes on. */
 static void go_on(const Options *o, const RtExperiment *e, const char *directory, char *out, size_t room) {
-    char threads[32] = "", shard[32] = "", until[64] = "";
+    char threads[32] = "", shard[32] = "", until[64] = "", plugins[1024];
     if (o->timing != 1 || o->threads) snprintf(threads, sizeof threads, " --threads %d", o->threads);
     if (o->only.shards) snprintf(shard, sizeof shard, " --shard %u/%u", o->only.shard, o->only.shards);
     if (o->until > 0)
         snprintf(until, sizeof until, " --until %g%% --patience %g", 100 * o->until, o->patience);
-    snprintf(out, room, "raytally run %s --out %s%s%s%s%s --resume", e->path, directory,
-             e->quick ? " --quick" : "", threads, shard, until);
+    rt_cli_plugin_arguments(plugins, sizeof plugins);
+    snprintf(out, room, "raytally run %s --out %s%s%s%s%s%s --resume", e->path, directory,
+             e->quick ? " --quick" : "", threads, shard, until, plugins);
 }
 
 static void print_all(const RtResults *results, const char *directory, bool report) {
@@ -203,7 +204,7 @@ static void print_all(const RtResults *results, const char *directory, bool repo
 }
 
 static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how, RtError *error) {
-    char command[RT_MAX_PATH + 256];
+    char command[RT_MAX_PATH + 1280];
     RtProgress progress = rt_progress_begin(&how->workload);
     go_on(o, results->experiment, how->directory, command, sizeof command);
     rt_progress_watch(&progress, how->directory, command);

@@ -179,6 +179,7 @@ static long long number(const json_t *row, const char *key) {
 }
 
 static void print_row(Show *show, const json_t *row) {
+    char plugins[1024];
     const json_t *wrong = json_object_get(row, "first_wrong");
     print_header(show);
     rt_table_line(&columns, show->widths, row, stdout);
@@ -192,7 +193,8 @@ static void print_row(Show *show, const json_t *row) {
         } else {
             printf("    The scene is left whole: enough failures have been shrunk. ");
         }
-        printf("To repeat: raytally verify --replay '%s'\n", text(wrong, "replay"));
+        rt_cli_plugin_arguments(plugins, sizeof plugins);
+        printf("To repeat: raytally verify --replay '%s'%s\n", text(wrong, "replay"), plugins);
     }
     fflush(stdout);
 }

@@ -56,3 +56,9 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
     }
     return rt_plugin_count() > 0 ? tell_children(error) : RT_OK;
 }
+
+void rt_cli_plugin_arguments(char *out, size_t room) {
+    out[0] = '\0';
+    for (size_t i = 0, used = 0; i < rt_plugin_count() && used < room; i++)
+        used += (size_t)snprintf(out + used, room - used, " --plugin '%s'", rt_plugin_at(i)->path);
+}

@@ -323,6 +323,20 @@ static void describe(const void *self, raytally_description *out) {
     out->bytes = bvh->node_count * sizeof(Node) + bvh->id_count * sizeof(uint32_t);
 }
 
+static void show_below(const Bvh *bvh, uint32_t index, uint32_t depth, raytally_show_box *show,
+                       void *viewer) {
+    const Node *node = &bvh->nodes[index];
+    show(viewer, &node->box, depth, (node->count & LEAF) != 0);
+    if (node->count & LEAF) return;
+    show_below(bvh, node->first, depth + 1, show, viewer);
+    show_below(bvh, node->first + 1, depth + 1, show, viewer);
+}
+
+static void each_box(const void *self, raytally_show_box *show, void *viewer) {
+    const Bvh *bvh = (const Bvh *)self;
+    if (bvh->node_count > 0) show_below(bvh, 0, 0, show, viewer);
+}
+
 static const raytally_accel_ops bvh_copy_ops = {
     .abi = RAYTALLY_ACCEL_ABI,
     .size = sizeof(raytally_accel_ops),
@@ -334,6 +348,7 @@ static const raytally_accel_ops bvh_copy_ops = {
     .nearest = search_nearest,
     .occluded = search_occluded,
     .describe = describe,
+    .each_box = each_box,
 };
 
 RAYTALLY_PLUGIN {
