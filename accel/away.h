@@ -17,8 +17,8 @@ RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, Rt
 bool rt_accel_is_away(const RtAccel *accel);
 
 /* Runs `work` in the process of the query's accelerator, which is away, with the query that is there;
- * `message` of `bytes` <= RT_AWAY_BYTES, which has no pointers that both follow, goes there and comes back. Of
- * a broken one nothing is run, and the message stays as it is. */
+ * `message` of `bytes` <= RT_AWAY_BYTES, which has no pointers that both follow, goes there and comes back.
+ * Of a broken one nothing is run, and the message stays as it is. */
 enum { RT_AWAY_BYTES = 256 * 1024 };
 typedef void RtAwayWork(RtQuery *query, void *message);
 void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes);
