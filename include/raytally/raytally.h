@@ -155,6 +155,13 @@ RAYTALLY_API const char *raytally_accelerator_name(size_t i);
 RAYTALLY_API raytally_status raytally_spec_format(const char *spec, char out[RAYTALLY_SPEC_CHARS],
                                                   raytally_error *error);
 
+/** Loads the accelerators of the plugin at `path` (raytally/accel.h), which are then there like the others;
+ * one that is loaded already is left as it is. Not while another thread calls anything of raytally. What is
+ * built of them lives in a process of its own, a fork of the program: best before it has many threads.
+ * RAYTALLY_BAD_INPUT, and nothing is loaded, where it is no plugin, of another version, or does not survive
+ * being loaded. */
+RAYTALLY_API raytally_status raytally_plugin_load(const char *path, raytally_error *error);
+
 /** Builds the accelerator that `spec` describes, `NAME[:KEY=VALUE[,KEY=VALUE]...]`, overlays before it as in
  * `OVERLAY+NAME` (`raytally accels` lists all of them and their parameters). */
 RAYTALLY_API raytally_status raytally_accelerator_build(const raytally_scene *scene, const char *spec,

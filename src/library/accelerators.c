@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Accelerators for those who embed us, and tracers. */
+#include "accel/plugin.h"
 #include "base/memory.h"
 #include "library/library.h"
 
@@ -23,6 +24,13 @@ raytally_status raytally_spec_format(const char *spec, char out[RAYTALLY_SPEC_CH
 }
 
 /* ---- accelerators ---- */
+
+raytally_status raytally_plugin_load(const char *path, raytally_error *error) {
+    locale_t before = rt_locale_enter();
+    RtStatus status = rt_plugin_load(path, rt_error_of(error));
+    rt_locale_leave(before);
+    return (raytally_status)status;
+}
 
 static RtStatus build(raytally_accelerator *made, const char *text, int threads, RtError *error) {
     RtSpec spec;

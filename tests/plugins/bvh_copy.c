@@ -25,7 +25,7 @@ typedef struct Node {
 typedef struct Bvh {
     Node *nodes; /* [node_count] */
     uint32_t *ids;
-    uint32_t node_count;
+    uint32_t node_count, id_count;
 } Bvh;
 
 /* ---- the tree ---- */
@@ -238,6 +238,7 @@ static int fill(Bvh *bvh, const raytally_build *what, Ref *refs, TreeNode *tree)
     Taken taken = {1, 0};
     place(bvh, 0, tree, &taken);
     bvh->node_count = taken.nodes;
+    bvh->id_count = taken.ids;
     return RAYTALLY_BUILT;
 }
 
@@ -304,6 +305,24 @@ RAYTALLY_INLINE void search(const Bvh *bvh, void *memory, const raytally_prepare
 
 RAYTALLY_DEFINE_KERNELS(Bvh, search)
 
+/* Of the subtree of a node. */
+static uint64_t depth_of(const Bvh *bvh, uint32_t index) {
+    const Node *node = &bvh->nodes[index];
+    if (node->count & LEAF) return 0;
+    const uint64_t left = depth_of(bvh, node->first), right = depth_of(bvh, node->first + 1);
+    return 1 + (left > right ? left : right);
+}
+
+static void describe(const void *self, raytally_description *out) {
+    const Bvh *bvh = (const Bvh *)self;
+    if (bvh->node_count == 0) return;
+    out->interior = bvh->node_count / 2;
+    out->leaves = bvh->node_count - out->interior;
+    out->references = bvh->id_count;
+    out->depth = depth_of(bvh, 0);
+    out->bytes = bvh->node_count * sizeof(Node) + bvh->id_count * sizeof(uint32_t);
+}
+
 static const raytally_accel_ops bvh_copy_ops = {
     .abi = RAYTALLY_ACCEL_ABI,
     .size = sizeof(raytally_accel_ops),
@@ -314,6 +333,7 @@ static const raytally_accel_ops bvh_copy_ops = {
     .destroy = destroy,
     .nearest = search_nearest,
     .occluded = search_occluded,
+    .describe = describe,
 };
 
 RAYTALLY_PLUGIN {

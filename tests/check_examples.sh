@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_examples.sh: the plugins of examples/ and tests/plugins/bvh_copy.c, built against the public headers alone by every
+# compiler there is, without a warning: verify finds no wrong hit; bvh_copy counts what bvh counts; a bih with one origin for
+# both kinds of planes is found out. examples/header-only says how to get what it needs, and is built and verified too
+# where $BVH_DIR is a copy of madmann91/bvh.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=${RT_PROGRAM:-build/release/raytally}
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+status=0
+
+complain() {
+    echo "$*" >&2
+    status=1
+}
+
+# builds COMPILER STANDARD SOURCE NAME [OPTION...]: to $work/NAME.so; false where there is no such compiler
+builds() {
+    command -v "$1" >/dev/null || { echo "check_examples: no $1: $4 is not built by it" >&2 && return 1; }
+    "$1" -std="$2" -O2 -fPIC -shared -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror "${@:5}" -I include "$3" \
+        -o "$work/$4.so" 2>"$work/log" && return
+    complain "$1 -std=$2 does not build $3: $(cat "$work/log")"
+    return 1
+}
+
+# verified NAME: what verify says of it last
+verified() {
+    "$program" verify balls:size=2 tetra:size=3 random:n=0 random:n=1 random:n=40,shape=mixed,distribution=coincident \
+        family:kind=axis-aligned --rays 5000 --plugin "$work/$1.so" --accel "$1" --spread --out "$work/out" --force 2>&1 |
+        tail -n 1 || true
+}
+
+# right NAME
+right() {
+    local said
+    said=$(verified "$1")
+    grep -q ': nothing wrong$' <<<"$said" || complain "$1: $said"
+}
+
+for compiler in gcc clang; do
+    if builds "$compiler" c99 examples/bih/bih.c bih; then right bih; fi
+    if builds "$compiler" c17 tests/plugins/bvh_copy.c bvh_copy; then right bvh_copy; fi
+done
+for compiler in g++ clang++; do
+    if builds "$compiler" c++17 examples/bvh-cpp/hierarchy.cpp bvh_cpp; then right bvh_cpp; fi
+    if [ -n "${BVH_DIR-}" ] && builds "$compiler" c++20 examples/header-only/madmann.cpp madmann -isystem "$BVH_DIR/src"; then
+        right madmann
+    fi
+done
+
+# ---- a copy of bvh does what bvh does ----
+if [ -e "$work/bvh_copy.so" ]; then # and has the same structure: two rows of each table are alike
+    counted=$("$program" bench balls:size=3 --size 64x64 --plugin "$work/bvh_copy.so" --accel bvh --accel bvh_copy --count-only |
+        awk '$1 == "bvh" || $1 == "bvh_copy" { $1 = ""; print }' | sort | uniq -c | awk '$1 % 2 != 0')
+    [ -z "$counted" ] || complain "bvh_copy does not count what bvh counts: $counted"
+fi
+
+# ---- what the text of bih says would go wrong does ----
+sed 's/ray->org_near\[/ray->org[/; s/ray->org_far\[/ray->org[/' examples/bih/bih.c >"$work/bih.c"
+if builds "${CC:-cc}" c99 "$work/bih.c" bih; then
+    said=$(verified bih)
+    grep -q '[1-9][0-9]* wrong' <<<"$said" || complain "bih without the thickness of rays is not found out: $said"
+fi
+
+# ---- without what the user brings ----
+if command -v cmake >/dev/null; then
+    cmake -S examples/header-only -B "$work/build" >"$work/log" 2>&1 && complain "header-only is made without BVH_DIR"
+    grep -q 'git clone https://' "$work/log" || complain "header-only does not say how to get what it needs: $(cat "$work/log")"
+fi
+exit "$status"
