@@ -259,10 +259,10 @@ static RtStatus count_kind(RtWorkloadState *workload, RtRayKind kind, RtError *e
         if (!workload->accels[c] || cell->counted) continue;
         RtStatus status = rt_measure_count(workload->accels[c], &share->set, share->expected,
                                            workload->options->threads, &count, error);
-        if (status == RT_OK && rt_accel_is_away(workload->accels[c]))
-            status = count_again(workload, c, &count, error);
         if (status == RT_OK && workload->accels[c]->exact)
             status = check_answers(workload, c, kind, &count, error);
+        if (status == RT_OK && rt_accel_is_away(workload->accels[c]))
+            status = count_again(workload, c, &count, error);
         if (rt_workload_is_own_fault(workload, c, status)) {
             RT_TRY(rt_workload_break(workload, c, kind, error));
             continue;
