@@ -83,16 +83,29 @@ RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values
                    (long long)fitting);
 }
 
+/* A built-in with a value for each of its parameters. */
+static RtStatus parse(const char *spec, const RtBuiltin **builtin, RtValue *values, RtError *error) {
+    RT_TRY(rt_builtin_named(spec, builtin, error));
+    const RtBuiltin *b = *builtin;
+    const char *colon = strchr(spec, ':');
+    char what[RT_MAX_NAME + 16];
+    snprintf(what, sizeof what, "scene %s", b->name);
+    return rt_params_parse(b->params, b->param_count, colon ? colon + 1 : NULL, what, values, error);
+}
+
+RtStatus rt_builtin_objects(const char *spec, uint64_t *count, RtError *error) {
+    const RtBuiltin *builtin;
+    RtValue values[RT_MAX_PARAMS];
+    RT_TRY(parse(spec, &builtin, values, error));
+    *count = builtin->object_count(values);
+    return RT_OK;
+}
+
 RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error) {
     *scene = (RtScene){0};
     const RtBuiltin *builtin;
-    RT_TRY(rt_builtin_named(spec, &builtin, error));
     RtValue values[RT_MAX_PARAMS];
-    const char *colon = strchr(spec, ':');
-    char what[RT_MAX_NAME + 16];
-    snprintf(what, sizeof what, "scene %s", builtin->name);
-    RT_TRY(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, what, values,
-                           error));
+    RT_TRY(parse(spec, &builtin, values, error));
     /* The other half of the memory is for what is built over the scene. */
     RT_TRY(rt_builtin_check_memory(builtin, values, rt_memory_size() / 2, error));
 

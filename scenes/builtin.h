@@ -44,6 +44,9 @@ RtStatus rt_builtin_named(const char *spec, const RtBuiltin **builtin, RtError *
  * is empty. A scene for which this machine has not the memory is refused, with the size that would fit. */
 RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error);
 
+/* How many objects the scene of such a spec has, or nearly so, without making it. */
+RtStatus rt_builtin_objects(const char *spec, uint64_t *count, RtError *error);
+
 /* What the scene may take while it is made. */
 uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values);
 

@@ -4,17 +4,11 @@
 #include "scenes/family.h"
 
 #include "scenes/builtin.h"
+#include "scenes/family_places.h"
 #include "scenes/random_tree.h"
 
 #include <inttypes.h>
 #include <stdio.h>
-
-/* Centre and size of object `i` of `count`, in a world of about [-1, 1]^3. */
-typedef struct Place {
-    RtVec3d center;
-    double size;
-} Place;
-typedef Place Placement(RtRandom *random, uint32_t i, uint32_t count);
 
 typedef enum Make {
     SPHERES,
@@ -25,6 +19,7 @@ typedef enum Make {
     AXIS_ALIGNED,
     TREES,
     MESH,
+    NEEDLES,
     MAKE_COUNT
 } Make;
 
@@ -32,84 +27,18 @@ typedef enum Make {
  * 2^k for a k of -40..40; and then moved by 2^0..2^16 times its scale. */
 typedef enum Scaling { GIVEN, DRAWN_SCALE, DRAWN_SCALE_AND_OFFSET } Scaling;
 
+/* What stands around the objects; otherwise a camera that sees them all, with a light beside it. */
+typedef enum Around { CAMERA, LIGHTS, EYE } Around;
+
 typedef struct Recipe {
     const char *name;
     uint32_t count;
     Make make;
-    Placement *place;
+    RtPlacement *place;
     double scale, offset;
     Scaling scaling;
+    Around around;
 } Recipe;
-
-static RtVec3d in_cube(RtRandom *random) {
-    double x = rt_random_betweend(random, -1, 1), y = rt_random_betweend(random, -1, 1),
-           z = rt_random_betweend(random, -1, 1);
-    return rt_vec3d(x, y, z);
-}
-
-/* ---- placements ---- */
-
-static Place uniform(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)i, (void)count;
-    RtVec3d p = in_cube(random);
-    return (Place){p, rt_random_betweend(random, 0.02, 0.2)};
-}
-
-static Place coincident(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)random, (void)i, (void)count;
-    return (Place){{0.25, 0.5, -0.125}, 0.5};
-}
-
-static Place on_a_line(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)random;
-    return (Place){{-1 + 2.0 * i / count, 0, 0}, 1.0 / count};
-}
-
-static Place in_a_plane(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)i, (void)count;
-    RtVec3d p = in_cube(random);
-    return (Place){{p.x, p.y, 0.5}, rt_random_betweend(random, 0.02, 0.2)};
-}
-
-static Place huge_beside_tiny(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)count;
-    RtVec3d p = in_cube(random);
-    return i % 8 == 0 ? (Place){rt_scaled(p, 3), 2} : (Place){rt_scaled(p, 1e-3), 1e-4};
-}
-
-/* Eight clusters, each a hundredth of the world. */
-static Place clustered(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)count;
-    RtVec3d corner = {i & 1 ? 0.75 : -0.75, i & 2 ? 0.75 : -0.75, i & 4 ? 0.75 : -0.75};
-    RtVec3d p = rt_add_scaledd(corner, in_cube(random), 0.01);
-    return (Place){p, rt_random_betweend(random, 0.001, 0.005)};
-}
-
-/* Every four in a row are alike. */
-static Place duplicated(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)random, (void)count;
-    RtRandom shared = rt_random(11, i / 4);
-    return uniform(&shared, i, count);
-}
-
-/* Corners and edges on multiples of 1/4, where a grid's own planes are. */
-static Place on_a_lattice(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)count, (void)i;
-    RtVec3d p;
-    for (int a = 0; a < 3; a++) p.at[a] = floor(rt_random_betweend(random, -4, 4)) / 4 + 0.125;
-    return (Place){p, 0.125};
-}
-
-/* Spheres of a quarter's width on multiples of 1/4: neighbours touch. Some are half as large, and touch one
- * from within. */
-static Place touching(RtRandom *random, uint32_t i, uint32_t count) {
-    (void)count;
-    RtVec3d p;
-    for (int a = 0; a < 3; a++) p.at[a] = floor(rt_random_betweend(random, -3, 3)) / 4;
-    if (i % 4 > 0) return (Place){p, 0.125};
-    p.at[i / 4 % 3] += 0.0625;
-    return (Place){p, 0.0625};
-}
 
 /* ---- objects ---- */
 
@@ -126,23 +55,23 @@ static RtVec3 placed(const Builder *b, RtVec3d p) {
     return rt_narrow(rt_add_scaledd(rt_vec3d(o, o, o), p, b->scale));
 }
 
-static RtStatus add_sphere(Builder *b, Place at, RtError *error) {
+static RtStatus add_sphere(Builder *b, RtPlace at, RtError *error) {
     float radius = (float)(at.size * b->scale);
     return rt_scene_add_sphere(b->scene, b->material, placed(b, at.center), radius, error);
 }
 
-static RtStatus add_triangle(Builder *b, Place at, RtError *error) {
+static RtStatus add_triangle(Builder *b, RtPlace at, RtError *error) {
     RtVec3 v[3];
-    for (int i = 0; i < 3; i++) v[i] = placed(b, rt_add_scaledd(at.center, in_cube(&b->random), at.size));
+    for (int i = 0; i < 3; i++) v[i] = placed(b, rt_add_scaledd(at.center, rt_in_cube(&b->random), at.size));
     return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
 }
 
 /* Slivers, needles and triangles without area, among whole ones. */
-static RtStatus add_sliver(Builder *b, Place at, uint32_t i, RtError *error) {
+static RtStatus add_sliver(Builder *b, RtPlace at, uint32_t i, RtError *error) {
     static const double thin[] = {1e-3, 1e-5, 1e-7, 1e-9};
     RtVec3d p[3];
-    for (int k = 0; k < 3; k++) p[k] = rt_add_scaledd(at.center, in_cube(&b->random), at.size);
-    RtVec3d along = rt_subd(p[1], p[0]), aside = rt_scaled(in_cube(&b->random), at.size * thin[i / 6 % 4]);
+    for (int k = 0; k < 3; k++) p[k] = rt_add_scaledd(at.center, rt_in_cube(&b->random), at.size);
+    RtVec3d along = rt_subd(p[1], p[0]), aside = rt_scaled(rt_in_cube(&b->random), at.size * thin[i / 6 % 4]);
     switch (i % 6) {
     case 0: p[2] = rt_addd(rt_add_scaledd(p[0], along, rt_random_betweend(&b->random, 0, 1)), aside); break;
     case 1: p[2] = rt_addd(p[1], aside); break;
@@ -157,14 +86,14 @@ static RtStatus add_sliver(Builder *b, Place at, uint32_t i, RtError *error) {
 
 /* Triangles around one edge, like the leaves of a book, and around one vertex. */
 static RtStatus add_shared(Builder *b, uint32_t i, RtError *error) {
-    RtVec3d p[3] = {{0.1, -0.7, 0.3}, {-0.2, 0.6, 0.4}, in_cube(&b->random)};
-    if (i % 2) p[1] = in_cube(&b->random);
+    RtVec3d p[3] = {{0.1, -0.7, 0.3}, {-0.2, 0.6, 0.4}, rt_in_cube(&b->random)};
+    if (i % 2) p[1] = rt_in_cube(&b->random);
     const RtVec3 v[3] = {placed(b, p[i % 3]), placed(b, p[(i + 1) % 3]), placed(b, p[(i + 2) % 3])};
     return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
 }
 
 /* An L in the plane of u and v: concave, six vertices. */
-static RtStatus add_ell(Builder *b, Place at, RtVec3d u, RtVec3d v, RtError *error) {
+static RtStatus add_ell(Builder *b, RtPlace at, RtVec3d u, RtVec3d v, RtError *error) {
     static const double outline[6][2] = {{-1, -1}, {1, -1}, {1, 0}, {0, 0}, {0, 1}, {-1, 1}};
     RtVec3 vertices[6];
     for (int i = 0; i < 6; i++) {
@@ -174,7 +103,7 @@ static RtStatus add_ell(Builder *b, Place at, RtVec3d u, RtVec3d v, RtError *err
     return rt_scene_add_polygon(b->scene, b->material, vertices, 6, error);
 }
 
-static RtStatus add_polygon(Builder *b, Place at, RtError *error) {
+static RtStatus add_polygon(Builder *b, RtPlace at, RtError *error) {
     /* In a plane that is exactly representable, so that offsets and scales do not warp it. */
     static const RtVec3d u[3] = {{1, 0, 0}, {0, 1, 0}, {1, 0, 0}};
     static const RtVec3d v[3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
@@ -182,7 +111,7 @@ static RtStatus add_polygon(Builder *b, Place at, RtError *error) {
     return add_ell(b, at, u[plane], v[plane], error);
 }
 
-static RtStatus add_cone(Builder *b, Place at, RtError *error) {
+static RtStatus add_cone(Builder *b, RtPlace at, RtError *error) {
     RtVec3d axis = rt_random_direction(&b->random);
     double size = at.size * b->scale;
     float base = (float)(size * rt_random_betweend(&b->random, 0.2, 0.8));
@@ -192,7 +121,7 @@ static RtStatus add_cone(Builder *b, Place at, RtError *error) {
 }
 
 /* A rectangle in a coordinate plane: as two triangles or as a polygon. */
-static RtStatus add_axis_aligned(Builder *b, Place at, uint32_t i, RtError *error) {
+static RtStatus add_axis_aligned(Builder *b, RtPlace at, uint32_t i, RtError *error) {
     int w = (int)(rt_random_below(&b->random, 3)), u = (w + 1) % 3, v = (w + 2) % 3;
     RtVec3 corner[4];
     for (int k = 0; k < 4; k++) {
@@ -207,7 +136,22 @@ static RtStatus add_axis_aligned(Builder *b, Place at, uint32_t i, RtError *erro
     return rt_scene_add_triangle(b->scene, b->material, halves[1], NULL, error);
 }
 
-static RtStatus add_round_or_flat(Builder *b, Place at, uint32_t i, RtError *error) {
+/* Across the whole world, in turn near each axis: a triangle, or a cylinder. */
+static RtStatus add_needle(Builder *b, RtPlace at, uint32_t i, RtError *error) {
+    RtVec3d from = at.center, to = rt_add_scaledd(at.center, rt_in_cube(&b->random), at.size);
+    from.at[i % 3] = -1;
+    to.at[i % 3] = 1;
+    float radius = (float)(at.size * b->scale / 64);
+    if (i / 3 % 2) {
+        return rt_scene_add_cone(b->scene, b->material, placed(b, from), radius, placed(b, to), radius,
+                                 error);
+    }
+    RtVec3d aside = rt_add_scaledd(to, rt_in_cube(&b->random), at.size / 32);
+    const RtVec3 v[3] = {placed(b, from), placed(b, to), placed(b, aside)};
+    return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
+}
+
+static RtStatus add_round_or_flat(Builder *b, RtPlace at, uint32_t i, RtError *error) {
     switch (i % 4) {
     case 0: return add_sphere(b, at, error);
     case 1: return add_triangle(b, at, error);
@@ -218,7 +162,7 @@ static RtStatus add_round_or_flat(Builder *b, Place at, uint32_t i, RtError *err
 
 /* A random CSG tree of up to 24 solids; the first of every eight is a lone one. With and without tests of
  * inner nodes by turns. RT_BAD_INPUT if one of its solids is flat where rounding puts it. */
-static RtStatus try_tree(Builder *b, Place at, uint32_t i, RtError *error) {
+static RtStatus try_tree(Builder *b, RtPlace at, uint32_t i, RtError *error) {
     RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_below(&b->random, 23), i % 2};
     double o = b->offset, scale = b->scale, size = scale * at.size / 4;
     RtTransform move = {{{size, 0, 0, o + scale * at.center.x},
@@ -234,7 +178,7 @@ static RtStatus try_tree(Builder *b, Place at, uint32_t i, RtError *error) {
 }
 
 /* The next tree that is not flat. */
-static RtStatus add_tree(Builder *b, Place at, uint32_t i, RtError *error) {
+static RtStatus add_tree(Builder *b, RtPlace at, uint32_t i, RtError *error) {
     RtStatus status = RT_BAD_INPUT;
     for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++) status = try_tree(b, at, i, error);
     return status;
@@ -264,7 +208,7 @@ static RtStatus add_mesh(Builder *b, uint32_t n, RtError *error) {
 }
 
 static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
-    Place at = b->recipe->place(&b->random, i, b->recipe->count);
+    RtPlace at = b->recipe->place(&b->random, i, b->recipe->count);
     switch (b->recipe->make) {
     case SPHERES: return add_sphere(b, at, error);
     case TRIANGLES: return add_triangle(b, at, error);
@@ -273,46 +217,81 @@ static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
     case ROUND_AND_FLAT: return add_round_or_flat(b, at, i, error);
     case AXIS_ALIGNED: return add_axis_aligned(b, at, i, error);
     case TREES: return add_tree(b, at, i, error);
+    case NEEDLES: return add_needle(b, at, i, error);
     case MESH:
     case MAKE_COUNT: break;
     }
     return RT_OK;
 }
 
+/* ---- what stands around them ---- */
+
+/* Lights within objects and on them, at vertices, among them, in a corner of the world and far from it. */
+static RtStatus add_lights(Builder *b, RtError *error) {
+    const RtGeometry *g = &b->scene->geometry;
+    const RtSphere *sphere = &g->spheres[1];
+    const RtVec3 at[] = {
+        g->spheres[0].center, {{sphere->center.x + sphere->radius, sphere->center.y, sphere->center.z}},
+        g->triangles[0].v[0], g->polygon_vertices[1],
+        g->cones[0].base,     {{0, 0, 0}},
+        {{1, -1, 1}},         {{-700, 300, 500}}};
+    for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
+        RT_TRY(rt_scene_add_light(b->scene, at[i], (RtVec3){{0.2f, 0.2f, 0.2f}}, error));
+    }
+    return RT_OK;
+}
+
+/* The eye at the origin, with objects on all its sides. Of an odd number of columns or rows of samples the
+ * middle one looks along a plane of coordinates. */
+static RtStatus add_eye(Builder *b, RtError *error) {
+    b->scene->camera.from = (RtVec3){{0, 0, 0}};
+    b->scene->camera.at = (RtVec3){{0, 1, 0}};
+    b->scene->camera.up = (RtVec3){{0, 0, 1}};
+    return rt_scene_add_light(b->scene, (RtVec3){{0, 0, 0}}, (RtVec3){{1, 1, 1}}, error);
+}
+
 /* ---- the families ---- */
 
-/* X(name, count, make, place, scale, offset, scaling): in the order of the streams of their random numbers.
+/* X(name, count, make, place, scale, offset, scaling, around): in the order of the streams of their random
+ * numbers.
  */
 #define RECIPES(X)                                                                                           \
-    X("empty", 0, SPHERES, uniform, 1, 0, GIVEN)                                                             \
-    X("one-sphere", 1, SPHERES, uniform, 1, 0, GIVEN)                                                        \
-    X("one-triangle", 1, TRIANGLES, uniform, 1, 0, GIVEN)                                                    \
-    X("two", 2, ROUND_AND_FLAT, uniform, 1, 0, GIVEN)                                                        \
-    X("coincident", 33, SPHERES, coincident, 1, 0, GIVEN)                                                    \
-    X("line", 64, ROUND_AND_FLAT, on_a_line, 1, 0, GIVEN)                                                    \
-    X("plane", 96, AXIS_ALIGNED, in_a_plane, 1, 0, GIVEN)                                                    \
-    X("huge-beside-tiny", 96, ROUND_AND_FLAT, huge_beside_tiny, 1, 0, GIVEN)                                 \
-    X("uniform", 150, SPHERES, uniform, 1, 0, GIVEN)                                                         \
-    X("clustered", 160, ROUND_AND_FLAT, clustered, 1, 0, GIVEN)                                              \
-    X("mixed", 160, ROUND_AND_FLAT, uniform, 1, 0, GIVEN)                                                    \
-    X("soup", 200, TRIANGLES, uniform, 1, 0, GIVEN)                                                          \
-    X("duplicates", 120, SPHERES, duplicated, 1, 0, GIVEN)                                                   \
-    X("axis-aligned", 100, AXIS_ALIGNED, on_a_lattice, 1, 0, GIVEN)                                          \
-    X("csg", 48, TREES, uniform, 1, 0, GIVEN)                                                                \
-    X("csg-coincident", 12, TREES, coincident, 1, 0, GIVEN)                                                  \
-    X("csg-tiny", 24, TREES, uniform, 0x1p-30, 0, GIVEN)                                                     \
-    X("csg-far", 24, TREES, uniform, 1, 1e5, GIVEN)                                                          \
-    X("mesh", 5, MESH, NULL, 1, 0, GIVEN)                                                                    \
-    X("mesh-far", 5, MESH, NULL, 1, 1e5, GIVEN)                                                              \
-    X("mixed-tiny", 100, ROUND_AND_FLAT, uniform, 0x1p-30, 0, GIVEN)                                         \
-    X("mixed-huge", 100, ROUND_AND_FLAT, uniform, 0x1p30, 0, GIVEN)                                          \
-    X("mixed-far", 100, ROUND_AND_FLAT, uniform, 1, 1e5, GIVEN)                                              \
-    X("slivers", 150, SLIVERS, uniform, 1, 0, GIVEN)                                                         \
-    X("shared", 100, SHARED, uniform, 1, 0, GIVEN)                                                           \
-    X("touching", 150, SPHERES, touching, 1, 0, GIVEN)                                                       \
-    X("scaled", 100, ROUND_AND_FLAT, uniform, 1, 0, DRAWN_SCALE)                                             \
-    X("scaled-far", 100, ROUND_AND_FLAT, uniform, 1, 0, DRAWN_SCALE_AND_OFFSET)                              \
-    X("slivers-scaled", 100, SLIVERS, uniform, 1, 0, DRAWN_SCALE)
+    X("empty", 0, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                            \
+    X("one-sphere", 1, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                       \
+    X("one-triangle", 1, TRIANGLES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                   \
+    X("two", 2, ROUND_AND_FLAT, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                       \
+    X("coincident", 33, SPHERES, rt_place_coincident, 1, 0, GIVEN, CAMERA)                                   \
+    X("line", 64, ROUND_AND_FLAT, rt_place_on_a_line, 1, 0, GIVEN, CAMERA)                                   \
+    X("plane", 96, AXIS_ALIGNED, rt_place_in_a_plane, 1, 0, GIVEN, CAMERA)                                   \
+    X("huge-beside-tiny", 96, ROUND_AND_FLAT, rt_place_huge_beside_tiny, 1, 0, GIVEN, CAMERA)                \
+    X("uniform", 150, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                        \
+    X("clustered", 160, ROUND_AND_FLAT, rt_place_clustered, 1, 0, GIVEN, CAMERA)                             \
+    X("mixed", 160, ROUND_AND_FLAT, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                   \
+    X("soup", 200, TRIANGLES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                         \
+    X("duplicates", 120, SPHERES, rt_place_duplicated, 1, 0, GIVEN, CAMERA)                                  \
+    X("axis-aligned", 100, AXIS_ALIGNED, rt_place_on_a_lattice, 1, 0, GIVEN, CAMERA)                         \
+    X("csg", 48, TREES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                               \
+    X("csg-coincident", 12, TREES, rt_place_coincident, 1, 0, GIVEN, CAMERA)                                 \
+    X("csg-tiny", 24, TREES, rt_place_uniform, 0x1p-30, 0, GIVEN, CAMERA)                                    \
+    X("csg-far", 24, TREES, rt_place_uniform, 1, 1e5, GIVEN, CAMERA)                                         \
+    X("mesh", 5, MESH, NULL, 1, 0, GIVEN, CAMERA)                                                            \
+    X("mesh-far", 5, MESH, NULL, 1, 1e5, GIVEN, CAMERA)                                                      \
+    X("mixed-tiny", 100, ROUND_AND_FLAT, rt_place_uniform, 0x1p-30, 0, GIVEN, CAMERA)                        \
+    X("mixed-huge", 100, ROUND_AND_FLAT, rt_place_uniform, 0x1p30, 0, GIVEN, CAMERA)                         \
+    X("mixed-far", 100, ROUND_AND_FLAT, rt_place_uniform, 1, 1e5, GIVEN, CAMERA)                             \
+    X("slivers", 150, SLIVERS, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                        \
+    X("shared", 100, SHARED, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                          \
+    X("touching", 150, SPHERES, rt_place_touching, 1, 0, GIVEN, CAMERA)                                      \
+    X("scaled", 100, ROUND_AND_FLAT, rt_place_uniform, 1, 0, DRAWN_SCALE, CAMERA)                            \
+    X("scaled-far", 100, ROUND_AND_FLAT, rt_place_uniform, 1, 0, DRAWN_SCALE_AND_OFFSET, CAMERA)             \
+    X("slivers-scaled", 100, SLIVERS, rt_place_uniform, 1, 0, DRAWN_SCALE, CAMERA)                           \
+    X("needles", 60, NEEDLES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                         \
+    X("progression", 60, ROUND_AND_FLAT, rt_place_in_progression, 1, 0, GIVEN, CAMERA)                       \
+    X("concentric", 300, SPHERES, rt_place_concentric, 1, 0, GIVEN, CAMERA)                                  \
+    X("stacked", 40, AXIS_ALIGNED, rt_place_stacked, 1, 0, GIVEN, CAMERA)                                    \
+    X("lit-within", 60, ROUND_AND_FLAT, rt_place_uniform, 1, 0, GIVEN, LIGHTS)                               \
+    X("eye-within", 80, AXIS_ALIGNED, rt_place_around_the_origin, 1, 0, GIVEN, EYE)                          \
+    X("eye-among", 80, ROUND_AND_FLAT, rt_place_around_the_origin, 1, 0, GIVEN, EYE)
 
 #define AS_RECIPE(...)       {__VA_ARGS__},
 #define AS_CHOICE(name, ...) "|" name
@@ -335,6 +314,8 @@ static RtStatus fill(Builder *b, RtError *error) {
     } else {
         for (uint32_t i = 0; i < b->recipe->count; i++) RT_TRY(add_object(b, i, error));
     }
+    if (b->recipe->around == LIGHTS) return add_lights(b, error);
+    if (b->recipe->around == EYE) return add_eye(b, error);
     return RT_OK;
 }
 

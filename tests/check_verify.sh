@@ -9,7 +9,7 @@ program=${RT_PROGRAM:-build/release/raytally}
 rays=${1:-200000}
 table=$(mktemp) && trap 'rm -f "$table"' EXIT
 
-"$program" verify families --families --rays "$rays" --json >"$table" || {
+"$program" verify families --rays "$rays" --json >"$table" || {
     grep '"says"\|"replay"\|"problem": "' "$table"
     exit 1
 }

@@ -20,6 +20,7 @@ const RtAccelOps rt_light_ops = {
     .paper = "Haines & Greenberg 1986, The Light Buffer: A Shadow-Testing Accelerator, CG&A 6(9)",
     RT_PARAMS_OF(rt_light_params),
     .kinds = 1u << RT_RAY_SHADOW,
+    .trial = "light:cells=100", /* a scene of few objects has no cells but those asked for */
     .build = rt_light_build,
     .destroy = rt_light_destroy,
     RT_ISA_OPS,

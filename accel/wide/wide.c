@@ -155,6 +155,7 @@ const RtAccelOps rt_wide_ops = {
     .paper = "Wald, Benthin & Boulos 2008, Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using "
              "Multi-branching BVHs, RT'08",
     RT_PARAMS_OF(params),
+    .trial = "wide:sharing=0", /* scattered rays make no packets where they need not */
     .build = build,
     .destroy = destroy,
     RT_ISA_OPS,

@@ -11,13 +11,21 @@
 #define CHUNK 1024
 
 static const size_t stream_lengths[] = {1, 7, 64, CHUNK};
-enum { STREAM_LENGTHS = sizeof stream_lengths / sizeof stream_lengths[0], KERNELS = 2 };
+enum { STREAM_LENGTHS = sizeof stream_lengths / sizeof stream_lengths[0], KERNELS = 2, PASSES = 2 };
+
+/* One of the ways in which a chunk is asked. */
+typedef struct Way {
+    bool counted;
+    size_t stream; /* rays at once */
+} Way;
 
 /* What one thread writes to. */
 typedef struct Desk {
     RtQuery query;
-    RtHit hits[KERNELS][CHUNK]; /* timed, counted */
-    bool blocked[KERNELS][CHUNK];
+    Way ways[PASSES * KERNELS];
+    int way_count;
+    RtHit hits[PASSES * KERNELS][CHUNK];
+    bool blocked[PASSES * KERNELS][CHUNK];
     RtTally tallies[RT_RAY_KIND_COUNT];
 } Desk;
 
@@ -31,8 +39,16 @@ typedef struct Job {
     RtEquivalence *parts; /* [chunks] what a check is summed from, or NULL */
 } Job;
 
-static size_t stream_of(size_t chunk, bool counted) {
-    return stream_lengths[(chunk + (counted ? 1 : 0)) % STREAM_LENGTHS];
+/* Both kernels in streams of one length; an exact accelerator, whose answers must not depend on that, in
+ * short streams and in long ones. */
+static void choose_ways(Desk *desk, size_t chunk) {
+    int passes = desk->query.accel->exact ? PASSES : 1;
+    desk->way_count = 0;
+    for (size_t i = 0; i < (size_t)passes * KERNELS; i++) {
+        size_t pass = i / KERNELS, counted = i % KERNELS;
+        size_t length = (chunk + counted + pass * STREAM_LENGTHS / PASSES) % STREAM_LENGTHS;
+        desk->ways[desk->way_count++] = (Way){counted, stream_lengths[length]};
+    }
 }
 
 /* ---- work in chunks, a desk a thread ---- */
@@ -86,15 +102,15 @@ void rt_reference_clear(RtReference *reference) {
 
 /* ---- checking ---- */
 
-/* Answers a chunk by both kernels. */
-static void ask(Desk *desk, const RtRay *rays, size_t count, size_t chunk) {
-    for (int counted = 0; counted < KERNELS; counted++) {
-        size_t stream = stream_of(chunk, counted);
-        RtTally *tallies = counted ? desk->tallies : NULL;
+/* Answers a chunk in all ways. */
+static void ask(Desk *desk, const RtRay *rays, size_t count) {
+    for (int w = 0; w < desk->way_count; w++) {
+        size_t stream = desk->ways[w].stream;
+        RtTally *tallies = desk->ways[w].counted ? desk->tallies : NULL;
         for (size_t first = 0; first < count; first += stream) {
             size_t n = count - first < stream ? count - first : stream;
-            rt_nearest(&desk->query, rays + first, n, desk->hits[counted] + first, tallies);
-            rt_occluded(&desk->query, rays + first, n, desk->blocked[counted] + first, tallies);
+            rt_nearest(&desk->query, rays + first, n, desk->hits[w] + first, tallies);
+            rt_occluded(&desk->query, rays + first, n, desk->blocked[w] + first, tallies);
         }
     }
 }
@@ -141,12 +157,12 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
     RtVerdict worst = RT_EQUAL;
     bool occluded_wrong = false;
     const RtHit *doubtful = NULL;
-    for (int counted = 0; counted < KERNELS; counted++) {
-        RtHit got = desk->hits[counted][i];
-        bool blocked = desk->blocked[counted][i];
+    for (int w = 0; w < desk->way_count; w++) {
+        RtHit got = desk->hits[w][i];
+        bool blocked = desk->blocked[w][i];
         RtWrongAnswer asked = {.index = index,
-                               .counted = counted,
-                               .stream = stream_of(chunk, counted),
+                               .counted = desk->ways[w].counted,
+                               .stream = desk->ways[w].stream,
                                .ray = *ray,
                                .expected = expected,
                                .got = got,
@@ -154,7 +170,7 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
         RtVerdict verdict;
         RT_TRY(rt_answer_verdict(&desk->query, ray, expected, got, &verdict, error));
         if (verdict == RT_WRONG) keep_wrong_answer(part, asked);
-        if (verdict >= RT_MARGINAL) doubtful = &desk->hits[counted][i];
+        if (verdict >= RT_MARGINAL) doubtful = &desk->hits[w][i];
         if (verdict > worst) worst = verdict;
         RT_TRY(rt_blocked_verdict(&desk->query, ray, expected, blocked, &verdict, error));
         if (verdict == RT_WRONG) {
@@ -179,7 +195,8 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
     Job *job = context;
     Desk *desk = &job->desks[thread];
     size_t count = chunk_count(job, chunk);
-    ask(desk, job->reference->rays + chunk * CHUNK, count, chunk);
+    choose_ways(desk, chunk);
+    ask(desk, job->reference->rays + chunk * CHUNK, count);
     for (size_t i = 0; i < count; i++) RT_TRY(judge(job, desk, chunk, i, error));
     return RT_OK;
 }

@@ -3,9 +3,10 @@
  *
  * The reference answers are computed once for a scene and its rays, and then compared with any number of
  * accelerators. Each ray is asked four times, `nearest` and `occluded` by the timed and by the counted
- * kernel, in streams of 1, 7, 64 or a whole chunk of rays in turn. An exact accelerator must give the bits of
- * t and the id of the reference in all of them; one that is not exact gets a verdict (verify/verdict.h),
- * the most severe of the four. Results are the same on any number of threads. */
+ * kernel, in streams of 1, 7, 64 or a whole chunk of rays in turn. An exact accelerator is asked all that in
+ * short streams and in long ones, and must give the bits of t and the id of the reference in each; one that
+ * is not exact gets a verdict (verify/verdict.h), the most severe of the four. Results are the same on any
+ * number of threads. */
 #ifndef RT_VERIFY_EQUIVALENCE_H
 #define RT_VERIFY_EQUIVALENCE_H
 

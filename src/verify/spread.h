@@ -7,8 +7,13 @@
 #include "accel/accel.h"
 
 /* Writes the `n`th spec of the spread, "name" or "name:key=value", to out[0..RT_MAX_SPEC_CHARS); false when
- * there are no more. Values that are the default are left out. An
- * overlay lies over the default accelerator. */
+ * there are no more. Values that are the default are left out. An overlay lies over the default accelerator.
+ * Behind the defaults stands the trial (RtAccelOps.trial), if there is one, whose values the others have
+ * too. */
 bool rt_spread_spec(const RtAccelOps *ops, size_t n, char *out);
+
+/* The trial of a valid spec of which no parameter is given, "light+wide", each layer that has one by its own,
+ * to out[0..RT_MAX_SPEC_CHARS); false where there is none. */
+bool rt_trial_spec(const char *spec, char *out);
 
 #endif

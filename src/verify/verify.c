@@ -13,11 +13,14 @@
 #include <ctype.h>
 #include <string.h>
 
-/* More marginal answers than this part of all rays are too many to be called margins; rays of the families
+/* More marginal answers than this part of rays that were given are too many to be called margins; our own
  * are aimed at the margins, and may have any number. */
 #define MARGINAL_PART 0.01
 
 #define FAILURES "verify-failures" /* where no folder is given */
+
+/* Where all is wrong no time is lost on the same fault again and again. */
+enum { MOST_SHRUNK = 8 };
 
 typedef struct Run {
     const RtVerify *verify;
@@ -76,9 +79,9 @@ static json_t *header_json(const Run *run) {
         json_array_append_new(specs, json_string(v->specs[i].spec));
     }
     json_t *given = v->rays.given ? rt_json_hex(v->rays.given->fingerprint) : json_null();
-    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:I, s:b}", "build", rt_build_identity(), "scenes",
-                     scenes, "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count,
-                     "rays_hash", given, "seed", (json_int_t)v->rays.seed, "families", v->rays.families);
+    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:I}", "build", rt_build_identity(), "scenes", scenes,
+                     "fingerprints", fingerprints, "accels", specs, "rays", (json_int_t)v->rays.count,
+                     "rays_hash", given, "seed", (json_int_t)v->rays.seed);
 }
 
 /* What was verified, and with what, in the folder's manifest.json. */
@@ -178,27 +181,42 @@ static RtStatus replay_path(const Run *run, const char *scene, const char *spec,
     return rt_path_join(folder, name, path, error);
 }
 
-/* Shrinks the failure, writes it to a replay file, and names that in the row. */
+/* The budget for shrinking a failure, half that of the one before: they take some seconds in all. 0: the
+ * first of this accelerator has been shrunk, or enough of all. It follows from the rows, as all that is
+ * written. */
+static uint64_t shrink_budget(const Run *run, const char *spec) {
+    size_t i, shrunk = 0;
+    json_t *row;
+    json_array_foreach(run->rows, i, row) {
+        if (!json_is_true(json_object_get(json_object_get(row, "first_wrong"), "shrunk"))) continue;
+        if (is_text(row, "accel", spec)) return 0;
+        shrunk++;
+    }
+    return shrunk < MOST_SHRUNK ? RT_SHRINK_BUDGET >> shrunk : 0;
+}
+
+/* Shrinks the failure within its budget, writes it to a replay file, and names that in the row. */
 static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *spec,
                              const RtWrongAnswer *wrong, json_t *row, RtError *error) {
     RtMaker maker = maker_of(run, spec);
     RtShrinkObserver observer = {on_tried, run};
     RtFailure failure;
     RtAnswer answer;
-    RtShrunk shrunk = {0};
+    RtShrunk shrunk = {.count = stage->scene->geometry.object_count};
+    uint64_t budget = shrink_budget(run, spec->spec);
     char path[RT_MAX_PATH];
     RT_TRY(replay_path(run, stage->name, spec->spec, path, error));
     RT_TRY(rt_failure_of(&stage->reference, wrong, maker, &failure, &answer, error));
     RtReplayRecord record = {stage->name, spec->spec, stage->scene, &failure, &answer, NULL};
-    if (answer.wrong) {
-        RT_TRY(
-            rt_shrink(stage->scene, &failure, &answer, maker, RT_SHRINK_BUDGET, &observer, &shrunk, error));
+    if (answer.wrong && budget > 0) {
+        RT_TRY(rt_shrink(stage->scene, &failure, &answer, maker, budget, &observer, &shrunk, error));
         record.shrunk = &shrunk;
     }
     RtStatus status = rt_replay_save(path, &record, error);
     json_t *first = json_object_get(row, "first_wrong");
     json_object_set_new(first, "replay", json_string(path));
     json_object_set_new(first, "objects_left", answer.wrong ? json_integer(shrunk.count) : json_null());
+    json_object_set_new(first, "shrunk", json_boolean(record.shrunk != NULL));
     rt_free(shrunk.ids);
     return status;
 }
@@ -206,7 +224,7 @@ static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *s
 /* ---- a row ---- */
 
 static json_t *problem_json(const Run *run, const RtEquivalence *result, const char *broken) {
-    bool too_marginal = !run->verify->rays.families &&
+    bool too_marginal = run->verify->rays.given &&
                         (double)result->verdicts[RT_MARGINAL] > MARGINAL_PART * (double)result->rays;
     if (broken[0]) return json_string(broken);
     if (!too_marginal) return json_null();

@@ -2,7 +2,8 @@
 /* Verification: does every accelerator answer every ray of every scene like brute?
  *
  * A row is a scene and a spec. It says how many answers are equal, ties, marginal and wrong; its first wrong
- * answer is kept in a replay file (verify/replay.h), shrunk to the few objects that it takes. Rows go to
+ * answer is kept in a replay file (verify/replay.h). The first of a spec is shrunk to the few objects that it
+ * takes, up to eight in all, each within half the time that the one before may take. Rows go to
  * a journal as they are found, from which an interrupted run goes on, and in the end to the tables of
  * verify_table.h: the same bytes for the same seed, at any number of threads and however often the run was
  * interrupted. */

@@ -5,17 +5,13 @@
 
 #include <string.h>
 
-#define FRAME_DEPTH 4
-
-/* The part of the rays that is the camera's: one in so many. */
-static uint64_t camera_part(const RtVerifyRays *wanted) {
-    return wanted->families ? 10 : 2;
-}
+/* The levels of the camera's frame, and the part of the rays that is its: one in so many. */
+enum { FRAME_DEPTH = 4, CAMERA_PART = 10 };
 
 /* Half of the camera's rays are primary ones at most, in the shape of its image. */
 RtStatus rt_verify_sample(const RtVerifyRays *wanted, RtScene *scene, RtError *error) {
     if (wanted->given) return RT_OK;
-    uint64_t primary = wanted->count / (2 * camera_part(wanted));
+    uint64_t primary = wanted->count / (2 * CAMERA_PART);
     double samples = (double)primary;
     double aspect = (double)scene->camera.width / (double)scene->camera.height;
     double width = fmin(fmax(sqrt(samples * aspect), 1), RT_MAX_IMAGE_SIDE);
@@ -45,16 +41,16 @@ static RtStatus append_camera_rays(const RtVerifyRays *wanted, const RtAccel *or
     RtStatus status = RT_OK;
     for (int kind = 0; kind < RT_RAY_RANDOM && status == RT_OK; kind++) {
         if (sets[kind].count > 0)
-            status = append(rays, count, &sets[kind], wanted->count / camera_part(wanted) / kinds, error);
+            status = append(rays, count, &sets[kind], wanted->count / CAMERA_PART / kinds, error);
     }
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
     return status;
 }
 
-/* What the camera's kinds leave goes to the families, the first of which is the chords. */
+/* What the camera's kinds leave goes to the families. */
 RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay *rays, RtError *error) {
     RtQuery query;
-    uint64_t count = 0, families = wanted->families ? rt_ray_family_count() : 1;
+    uint64_t count = 0, families = rt_ray_family_count();
     if (wanted->given) {
         memcpy(rays, wanted->given->rays, wanted->count * sizeof(RtRay));
         return RT_OK;

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The rays by which a scene is verified.
  *
- * Half of them come from a small frame of the scene's camera, in equal shares of primary, shadow, reflection,
- * transmission and diffuse rays as far as the scene produces them, and the others are random chords. With
- * `families` a tenth come from the camera, and the others are rays of every family that is hard on
- * accelerators, in equal shares. */
+ * A tenth of them come from a small frame of the scene's camera, in equal shares of primary, shadow,
+ * reflection, transmission and diffuse rays as far as the scene produces them. The others are random chords
+ * and rays of every family that is hard on accelerators, in equal shares. */
 #ifndef RT_VERIFY_VERIFY_RAYS_H
 #define RT_VERIFY_VERIFY_RAYS_H
 
@@ -12,7 +11,6 @@
 
 typedef struct RtVerifyRays {
     uint64_t count, seed;
-    bool families;
     int threads;
     const RtRaySet *given; /* NULL; or the rays, `count` of them, that take the place of all others */
 } RtVerifyRays;

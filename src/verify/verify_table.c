@@ -124,6 +124,7 @@ static const RtTableColumn sides[] = {RT_SIDES(SIDE)};
 static const RtTableColumn first_wrong[] = {
     MEMBER("replay", text, "file by which to ask for the first wrong answer again"),
     MEMBER("objects_left", integer, "objects that it takes; empty: asked again, the answer is right"),
+    MEMBER("shrunk", flag, "whether others were left out, as is tried for an accelerator's first failure"),
     MEMBER("index", integer, "number of the ray"),
     MEMBER("says", text, "what was asked, expected and got, in one line"),
     MEMBER("query", text, "nearest or occluded"),

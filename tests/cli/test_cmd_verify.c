@@ -83,27 +83,57 @@ RT_TEST(all_is_the_default_and_threads_change_nothing) {
     strcpy(one, text_of(OUT ".out"));
     assert_non_null(strstr(one, " brute "));
     assert_non_null(strstr(one, " grid "));
-    assert_non_null(strstr(one, " pairs of a ray and an accelerator: 0 wrong\n"));
+    assert_non_null(strstr(one, " pairs of a ray and an accelerator: nothing wrong\n"));
     assert_int_equal(verify("random:n=30,shape=mixed --rays 5000 --threads 3 --accel all"), 0);
     assert_string_equal(text_of(OUT ".out"), one);
 }
 
 /* The hard rays graze and touch, where Embree's arithmetic differs by margins: they are not held against
  * it. */
-RT_TEST(the_families_are_rays_of_their_own_and_hard_ones) {
-    static char chords[65536];
-    const char *arguments = "random:n=40,distribution=coincident random:n=0 --rays 3001 --json";
-    char with_families[256];
-    snprintf(with_families, sizeof with_families, "%s --families", arguments);
-    assert_int_equal(verify(arguments), 0);
-    strcpy(chords, text_of(OUT ".out"));
-    json_t *json = document(with_families);
-    assert_string_not_equal(text_of(OUT ".out"), chords);
+RT_TEST(hard_rays_are_asked_unasked_and_their_margins_are_not_held_against_anyone) {
+    json_t *json = document("random:n=40,distribution=coincident random:n=0 --rays 3001 --json");
     const json_t *rows = json_object_get(json, "rows");
     for (size_t i = 0; i < json_array_size(rows); i++) {
         assert_int_equal(number(json_array_get(rows, i), "rays"), 3001);
     }
     json_decref(json);
+}
+
+static const char *accel_of(const json_t *rows, size_t i) {
+    return json_string_value(json_object_get(json_array_get(rows, i), "accel"));
+}
+
+/* Left to itself light hands all on to what lies below it here. */
+RT_TEST(what_would_be_left_unused_is_tried_beside_the_default) {
+    json_t *json =
+        document("balls:size=1 --accel light+wide --accel bvh --accel wide:max_leaf_size=2 --rays 10 --json");
+    const json_t *rows = json_object_get(json, "rows");
+    assert_int_equal(json_array_size(rows), 4);
+    assert_string_equal(accel_of(rows, 0), "light+wide");
+    assert_string_equal(accel_of(rows, 1), "light:cells=100+wide:sharing=0");
+    assert_string_equal(accel_of(rows, 2), "bvh");
+    json_decref(json);
+}
+
+/* Those of the fewest objects first. */
+RT_TEST(hard_scenes_are_verified_unasked_and_the_small_ones_with_quick) {
+    json_t *json = document("--accel bvh --rays 20 --json"), *quick = document("--accel bvh --quick --json");
+    const json_t *rows = json_object_get(json, "rows"), *few = json_object_get(quick, "rows");
+    assert_true(json_array_size(few) > 20 && json_array_size(few) < json_array_size(rows));
+    for (size_t i = 0; i < json_array_size(few); i++) {
+        assert_string_equal(json_string_value(json_object_get(json_array_get(few, i), "scene")),
+                            json_string_value(json_object_get(json_array_get(rows, i), "scene")));
+        assert_int_equal(number(json_array_get(few, i), "rays"), 2000);
+    }
+    json_decref(json);
+    json_decref(quick);
+    assert_int_equal(verify("--accel bvh --quick"), 0);
+    const char *last = strstr(text_of(OUT ".out"), "This was the short one, of 2000 rays");
+    assert_non_null(last);
+    assert_non_null(strstr(last, "larger scenes: leave --quick out"));
+    assert_int_equal(verify("balls:size=1 --accel bvh"), 0);
+    assert_non_null(strstr(text_of(OUT ".out"), "\n1 scene, 1 accelerator, 20000 rays, 20000 pairs"));
+    assert_null(strstr(text_of(OUT ".out"), "This was the short one"));
 }
 
 RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
@@ -120,6 +150,7 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
         {"--rays 1e6", "whole number"},
         {"--threads -1", "whole number"},
         {"--wrong", "unrecognized option"},
+        {"--families", "unrecognized option"},
         {"--resume", "--out DIR"},
         {"--force", "--out DIR"},
         {"family:kind=silvers", "did you mean 'slivers'"},
@@ -141,8 +172,7 @@ RT_TEST(what_cannot_be_verified_is_refused_before_anything_is_printed) {
 }
 
 RT_TEST(scenes_of_families_have_the_seed_of_the_rays) {
-    json_t *json =
-        document("families family:kind=soup,seed=9 --accel grid --rays 40 --seed 3 --families --json");
+    json_t *json = document("families family:kind=soup,seed=9 --accel grid --rays 40 --seed 3 --json");
     const json_t *rows = json_object_get(json, "rows");
     size_t count = json_array_size(rows);
     assert_true(count > 20);
@@ -231,9 +261,10 @@ RT_TEST(the_last_line_tells_of_wrong_answers_to_occluded_too) {
                             "-e '2s/\"problem\": *null/\"problem\": \"a lie\"/' '" OUT ".lies/rows.jsonl'"),
                      0);
     assert_int_equal(verify(again), 1);
-    assert_non_null(strstr(text_of(OUT ".out"),
-                           "2 rows, 100 pairs of a ray and an accelerator: 0 wrong, 3 occluded wrong; "
-                           "rows that fail: 1\n"));
+    assert_non_null(
+        strstr(text_of(OUT ".out"),
+               "1 scene, 2 accelerators, 50 rays, 100 pairs of a ray and an accelerator: 0 wrong, "
+               "3 occluded wrong; rows that fail: 1 of bvh\n"));
     assert_non_null(strstr(text_of(OUT ".err"), "a lie"));
 }
 

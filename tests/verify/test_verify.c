@@ -55,7 +55,7 @@ static json_t *verify(const char *folder, int threads, RtStart start) {
                      .scene_count = 2,
                      .specs = specs,
                      .spec_count = 2,
-                     .rays = {6000, 1, true, threads, NULL},
+                     .rays = {6000, 1, threads, NULL},
                      .folder = folder,
                      .start = start};
     json_t *rows;
@@ -167,7 +167,7 @@ RT_TEST(accelerators_are_built_on_the_threads_of_the_run) {
                          .scene_count = 1,
                          .specs = &spec,
                          .spec_count = 1,
-                         .rays = {100, 1, false, threads, NULL}};
+                         .rays = {100, 1, threads, NULL}};
         json_t *rows;
         assert_ok(rt_verify_run(&work, &observer, &rows, error));
         assert_int_equal(threads_of_build, threads);
@@ -209,7 +209,7 @@ RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
                      .scene_count = 1,
                      .specs = &spec,
                      .spec_count = 1,
-                     .rays = {4000, 1, false, 0, NULL},
+                     .rays = {4000, 1, 0, NULL},
                      .folder = OUT "/d",
                      .start = RT_START_ANEW};
     json_t *rows;
