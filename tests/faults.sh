@@ -16,7 +16,7 @@ Exit code: 1 if a fault is missed without an explanation, is found though it is 
 2 if the copy without a fault does not pass, or the usage is wrong."
 
 here=$(cd "$(dirname "$0")/.." && pwd)
-limit=300 # seconds that a verification may take, which takes a twentieth of it: beyond, it hangs
+limit=600 # seconds that a verification may take, which takes some ten: beyond, it hangs
 jobs=1
 names=()
 while [ $# -gt 0 ]; do
@@ -76,11 +76,15 @@ build() { # COPY
     CCACHE_BASEDIR=$1 CCACHE_NOHASHDIR=1 ninja -C "$1/build" -j "$share" raytally
 }
 
-# Verifies the accelerators SPEC, SPEC...: verify's exit code, or 124 after the time limit.
+# Verifies the accelerators SPEC, SPEC..., up to the first wrong answer: verify's exit code, or 124 after the time limit.
 verify() { # COPY SPECS
-    local specs
+    local specs codes
     mapfile -t specs <<<"${2//, /$'\n'}"
-    (cd "$1" && rm -rf verify-failures && timeout "$limit" build/raytally verify --families --rays 20000 "${specs[@]/#/--accel=}")
+    (cd "$1" && rm -rf verify-failures && timeout "$limit" build/raytally verify "${specs[@]/#/--accel=}") |
+        awk '{ print } / WRONG: / { exit 1 }'
+    codes=("${PIPESTATUS[@]}")
+    [ "${codes[1]}" = 0 ] || return 1
+    return "${codes[0]}"
 }
 
 # found, missed, "does not apply", ... to stdout; what was said to the log.
