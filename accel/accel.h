@@ -162,8 +162,8 @@ struct RtAccelOps {
     const RtParam *params;
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
-    /* Optional: a spec of it alone, "light:cells=100", that is verified beside the default where that, over few
-     * objects or rays, chooses to leave its own ways unused. */
+    /* Optional: a spec of it alone, "light:cells=100", that is verified beside the default where that, over
+     * few objects or rays, chooses to leave its own ways unused. */
     const char *trial;
     const RtBestOf *bests; /* [best_count], or NULL */
     size_t best_count;

@@ -287,7 +287,7 @@ static RtStatus add_eye(Builder *b, RtError *error) {
     X("slivers-scaled", 100, SLIVERS, rt_place_uniform, 1, 0, DRAWN_SCALE, CAMERA)                           \
     X("needles", 60, NEEDLES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                         \
     X("progression", 60, ROUND_AND_FLAT, rt_place_in_progression, 1, 0, GIVEN, CAMERA)                       \
-    X("concentric", 300, SPHERES, rt_place_concentric, 1, 0, GIVEN, CAMERA)                                  \
+    X("concentric", 200, AXIS_ALIGNED, rt_place_concentric, 1, 0, GIVEN, CAMERA)                             \
     X("stacked", 40, AXIS_ALIGNED, rt_place_stacked, 1, 0, GIVEN, CAMERA)                                    \
     X("lit-within", 60, ROUND_AND_FLAT, rt_place_uniform, 1, 0, GIVEN, LIGHTS)                               \
     X("eye-within", 80, AXIS_ALIGNED, rt_place_around_the_origin, 1, 0, GIVEN, EYE)                          \

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "scenes/open.h"
 #include "verify/replay.h"
+#include "verify/spread.h"
 #include "verify/verify.h"
 #include "verify/verify_table.h"
 
@@ -185,11 +186,42 @@ RT_TEST(another_run_is_not_gone_on_with) {
     json_decref(rows);
 }
 
-/* Loses the last ray of every stream but the shortest. */
+/* Only its first failure; the scene of the next is left whole, and kept all the same. */
+RT_TEST(an_accelerator_has_one_failure_shrunk) {
+    const char *const both[] = {scenes[0], "family:kind=axis-aligned,seed=1"};
+    const RtVerifySpec spec = {"unpadded", true, {build_mutant, &unpadded, 0}};
+    RtVerify work = {.scenes = both,
+                     .scene_count = 2,
+                     .specs = &spec,
+                     .spec_count = 1,
+                     .rays = {6000, 1, 0, NULL},
+                     .folder = OUT "/g",
+                     .start = RT_START_ANEW};
+    json_t *rows;
+    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    for (size_t i = 0; i < 2; i++) {
+        RtReplay replay;
+        RtAnswer answer;
+        const json_t *wrong = json_object_get(json_array_get(rows, i), "first_wrong");
+        assert_true(json_is_true(json_object_get(wrong, "shrunk")) == (i == 0));
+        json_int_t left = json_integer_value(json_object_get(wrong, "objects_left"));
+        assert_true(i == 0 ? left <= 3 : left == 150);
+        assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, i)), error));
+        assert_true((replay.shrunk_yaml != NULL) == (i == 0));
+        assert_ok(rt_replay_ask(&replay, spec.maker, false, &answer, error));
+        assert_true(answer.wrong);
+        rt_replay_clear(&replay);
+    }
+    json_decref(rows);
+}
+
+/* Loses the last ray of every stream that is not too short. */
+static size_t shortest_losing;
+
 static void lose_last(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                       RtHit *hits) {
     nearest_timed(accel, scratch, rays, count, hits);
-    if (count > 1) hits[count - 1] = RT_MISS;
+    if (count >= shortest_losing) hits[count - 1] = RT_MISS;
 }
 
 static RtAccelOps losing_ops;
@@ -215,6 +247,7 @@ RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
     json_t *rows;
     RtReplay replay;
     RtAnswer answer;
+    shortest_losing = 2;
     assert_ok(rt_verify_run(&work, &observer, &rows, error));
     assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, 0)), error));
     assert_true(replay.failure.count > 1 && replay.failure.stream > 1);
@@ -225,6 +258,44 @@ RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
     }
     rt_replay_clear(&replay);
     json_decref(rows);
+}
+
+/* Those of the camera, which come first, too: packets are made of them. */
+RT_TEST(the_first_rays_are_asked_in_long_streams_as_well_as_alone) {
+    const RtVerifySpec spec = {"losing", true, {build_losing, &padded, 1}};
+    RtVerify work = {.scenes = scenes + 1,
+                     .scene_count = 1,
+                     .specs = &spec,
+                     .spec_count = 1,
+                     .rays = {1000, 1, 0, NULL},
+                     .folder = OUT "/h",
+                     .start = RT_START_ANEW};
+    json_t *rows;
+    shortest_losing = 64;
+    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    assert_true(rt_verify_row_fails(json_array_get(rows, 0)));
+    json_decref(rows);
+}
+
+RT_TEST(the_spread_has_the_trial_and_that_beside_each_value) {
+    const RtAccelOps *light;
+    char spec[RT_MAX_SPEC_CHARS];
+    bool combined = false;
+    assert_ok(rt_accel_find("light", &light, error));
+    assert_true(rt_spread_spec(light, 0, spec));
+    assert_string_equal(spec, "light+bvh");
+    assert_true(rt_spread_spec(light, 1, spec));
+    assert_string_equal(spec, "light:cells=100+bvh");
+    for (size_t n = 2; rt_spread_spec(light, n, spec); n++) {
+        assert_non_null(strstr(spec, "light:cells="));
+        assert_null(strstr(strstr(spec, "cells=") + 1, "cells="));
+        combined |= strcmp(spec, "light:cells=100,longest=2+bvh") == 0;
+    }
+    assert_true(combined);
+    assert_true(rt_trial_spec("cache+light+wide", spec));
+    assert_string_equal(spec, "cache+light:cells=100+wide:sharing=0");
+    assert_false(rt_trial_spec("light:longest=2+bvh", spec));
+    assert_false(rt_trial_spec("item+bvh", spec));
 }
 
 /* A scene from a file is written into the replay file whole, and read from there to the last bit. */
