@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_verified.sh: results/verify is of a thousand million pairs of a ray and an accelerator without a wrong answer, and
 # one of its scenes, verified again by the accelerators that its manifest names, gives the same rows (but for Embree's,
-# whose own arithmetic differs between processors). Some ten seconds. Uses $RT_PROGRAM.
+# whose own arithmetic differs between processors). Half a minute. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
