@@ -268,9 +268,10 @@ static RtRay to_light(Maker *m) {
     case 0: from = point_of_object(m, RT_ON_SURFACE, &id); break;
     case 1: from = point_of_object(m, RT_ON_EDGE, &id); break;
     case 2: from = rt_point_in_scene(m->geometry, &m->random); break;
-    case 3: /* from afar, or from behind the light */
-        from = rt_add_scaledd(to, rt_subd(to, point_of_object(m, RT_ON_SURFACE, &id)),
-                              below(m, 2) ? 1 : -rt_random_betweend(&m->random, 1, 1e4));
+    case 3: /* from afar, past an edge, or from behind the light */
+        from = point_of_object(m, RT_ON_EDGE, &id);
+        from =
+            rt_add_scaledd(to, rt_subd(to, from), below(m, 2) ? 1 : -rt_random_betweend(&m->random, 1, 1e4));
         break;
     default: from = rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
     }
