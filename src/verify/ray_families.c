@@ -90,10 +90,13 @@ static RtRay from_box_face(Maker *m) {
     return ray_along(p, dir);
 }
 
+/* Some end where they begin. */
 static RtRay from_inside(Maker *m) {
     const RtBox *box = rt_some_box(m->geometry, &m->random);
     RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : rt_point_in_box(box, &m->random);
-    return ray_along(p, rt_random_direction(&m->random));
+    RtRay ray = ray_along(p, rt_random_direction(&m->random));
+    if (below(m, 16) == 0) ray.tmax = 0;
+    return ray;
 }
 
 static RtRay at_vertex(Maker *m) {
