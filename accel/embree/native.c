@@ -67,7 +67,7 @@ static __attribute__((noinline)) void put_any(RtEmbreeBatch *batch, unsigned lan
     for (size_t i = first; i < end; i++) {
         double stretch = rt_embree_stretch(rays[i].dir), shrink = 1 / stretch;
         rt_embree_put_ray(batch, lanes, i, &rays[i], stretch, (float)((double)rays[i].tmin * shrink),
-                          (float)((double)rays[i].tmax * shrink));
+                          (float)((double)rt_minf(rays[i].tmax, FLT_MAX) * shrink));
     }
 }
 

@@ -264,16 +264,16 @@ static void add_counters(const raytally_counters *counters, RtTally *tally) {
 
 /* The two kernels of a question, whose answers are of type Answer, or Theirs as the plugin calls it. */
 #define DEFINE_KERNELS(question, Answer, Theirs, look_at, is_hit)                                            \
-    static void question##_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, Answer *answers) {                                            \
+    static void ask_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
+                               size_t count, Answer *answers) {                                              \
         PluginQuery *query = enter(scratch, rays);                                                           \
         query->accel->table->question(of(accel)->self, query->memory, &query->face,                          \
                                       (const raytally_ray *)rays, count, (Theirs *)answers, NULL);           \
         leave(query);                                                                                        \
         look_at(query->accel, rays, count, answers);                                                         \
     }                                                                                                        \
-    static void question##_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,        \
-                                   size_t count, Answer *answers, RtTally *tallies) {                        \
+    static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
+                                 size_t count, Answer *answers, RtTally *tallies) {                          \
         PluginQuery *query = enter(scratch, rays);                                                           \
         raytally_counters counters[RAYTALLY_RAY_KINDS] = {0};                                                \
         query->accel->table->question(of(accel)->self, query->memory, &query->face,                          \
@@ -418,10 +418,10 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .away = true,
                             .build = build,
                             .destroy = destroy,
-                            .nearest = nearest_timed,
-                            .occluded = occluded_timed,
-                            .nearest_counted = nearest_counted,
-                            .occluded_counted = occluded_counted,
+                            .nearest = ask_nearest,
+                            .occluded = ask_occluded,
+                            .nearest_counted = count_nearest,
+                            .occluded_counted = count_occluded,
                             .scratch_bytes = scratch_bytes,
                             .open = open_query,
                             .close = close_query,

@@ -14,7 +14,10 @@ typedef struct Maker {
     RtVec3d center;             /* of the scene's box */
     double size;                /* half its diagonal */
     RtRandom random;
+    RtRandom shared; /* the same for BUNDLE rays in a row */
 } Maker;
+
+enum { BUNDLE = 256 };
 
 static uint32_t below(Maker *m, uint32_t n) {
     return rt_random_below(&m->random, n);
@@ -87,10 +90,13 @@ static RtRay from_box_face(Maker *m) {
     return ray_along(p, dir);
 }
 
+/* Some end where they begin. */
 static RtRay from_inside(Maker *m) {
     const RtBox *box = rt_some_box(m->geometry, &m->random);
     RtVec3d p = below(m, 2) ? rt_widen(rt_box_center(*box)) : rt_point_in_box(box, &m->random);
-    return ray_along(p, rt_random_direction(&m->random));
+    RtRay ray = ray_along(p, rt_random_direction(&m->random));
+    if (below(m, 16) == 0) ray.tmax = 0;
+    return ray;
 }
 
 static RtRay at_vertex(Maker *m) {
@@ -127,9 +133,22 @@ static RtRay from_afar(Maker *m) {
     return ray_along(from, rt_normalized(rt_subd(to, from)));
 }
 
+/* A length of direction anywhere from 1e-37 to 3e38, or so great that float32 has few numbers for the t at
+ * which the scene is crossed: boxes are entered and left at the same t, or at 0. */
+static RtRay of_any_length(Maker *m) {
+    static const double lengths[] = {1e-37, 1e-30, 1e-15, 1e-10, 1e-5, 1e-2, 1e2,
+                                     1e5,   1e10,  1e15,  1e30,  1e37, 1e38, 3e38};
+    RtRay ray = below(m, 2) ? chord(m) : at_vertex(m);
+    double length = lengths[below(m, sizeof lengths / sizeof lengths[0])];
+    if (below(m, 4) == 0) length = fmin(m->size * 0x1p149 / (1 << below(m, 12)), 3e38);
+    ray.dir = rt_narrow(rt_scaled(rt_normalized(rt_widen(ray.dir)), length));
+    return ray;
+}
+
 /* Begins or ends exactly at a hit, or one float beside it. */
 static RtRay ends_at_hit(Maker *m) {
-    RtRay ray = below(m, 2) ? chord(m) : at_vertex(m);
+    uint32_t kind = below(m, 5);
+    RtRay ray = kind < 2 ? chord(m) : kind < 4 ? at_vertex(m) : of_any_length(m);
     RtHit hit = RT_MISS;
     if (rt_ray_is_valid(&ray)) rt_nearest(m->query, &ray, 1, &hit, NULL);
     if (hit.object == RT_NO_OBJECT) return ray;
@@ -140,15 +159,6 @@ static RtRay ends_at_hit(Maker *m) {
     uint32_t which = below(m, 3);
     if (which != 0) ray.tmin = t;
     if (which != 1) ray.tmax = t;
-    return ray;
-}
-
-/* A length of direction anywhere from 1e-15 to 1e15. */
-static RtRay of_any_length(Maker *m) {
-    static const double lengths[] = {1e-15, 1e-10, 1e-5, 1e-2, 1e2, 1e5, 1e10, 1e15};
-    RtRay ray = chord(m);
-    RtVec3d dir = rt_normalized(rt_widen(ray.dir));
-    ray.dir = rt_narrow(rt_scaled(dir, lengths[below(m, 8)]));
     return ray;
 }
 
@@ -257,10 +267,15 @@ static RtRay to_light(Maker *m) {
     if (m->scene->light_count == 0) return chord(m);
     uint32_t id, light = below(m, m->scene->light_count);
     RtVec3d to = rt_widen(m->scene->lights[light].position), from;
-    switch (below(m, 4)) {
+    switch (below(m, 5)) {
     case 0: from = point_of_object(m, RT_ON_SURFACE, &id); break;
     case 1: from = point_of_object(m, RT_ON_EDGE, &id); break;
     case 2: from = rt_point_in_scene(m->geometry, &m->random); break;
+    case 3: /* from afar, past an edge, or from behind the light */
+        from = point_of_object(m, RT_ON_EDGE, &id);
+        from =
+            rt_add_scaledd(to, rt_subd(to, from), below(m, 2) ? 1 : -rt_random_betweend(&m->random, 1, 1e4));
+        break;
     default: from = rt_add_scaledd(m->center, rt_random_direction(&m->random), 2 * m->size);
     }
     if (below(m, 2)) from = rt_add_scaledd(from, rt_subd(to, from), rt_random_betweend(&m->random, 0, 1e-4));
@@ -270,6 +285,7 @@ static RtRay to_light(Maker *m) {
     case 0: ray.source = below(m, m->scene->light_count + 2); break;
     case 1: ray.tmax = (float)rt_random_betweend(&m->random, 0, 2); break;
     case 2: ray.dir.at[below(m, 3)] *= 1 + 0x1p-20f; break;
+    case 3: ray.tmax = INFINITY; break;
     default: break;
     }
     return ray;
@@ -290,6 +306,25 @@ static RtRay through_sample(Maker *m) {
     default: break;
     }
     return ray;
+}
+
+/* One of many in a row that go nearly the same way: from one place, side by side, or both. Of some bundles
+ * the two largest components of dir are equal, or nearly so. */
+static RtRay in_bundle(Maker *m) {
+    static const double spreads[] = {1e-7, 1e-4, 1e-2, 0.05};
+    RtRandom own = m->random;
+    m->random = m->shared;
+    RtRay lead = below(m, 2) ? chord(m) : at_vertex(m);
+    RtVec3d from = rt_widen(lead.org), dir = rt_normalized(rt_widen(lead.dir));
+    double spread = spreads[below(m, 4)];
+    uint32_t how = below(m, 3);
+    int major = rt_major_axis(lead.dir), other = (major + 1) % 3;
+    bool diagonal = below(m, 4) == 0;
+    m->random = own;
+    if (how != 0) from = rt_add_scaledd(from, rt_random_direction(&m->random), spread * m->size);
+    if (how != 1) dir = rt_add_scaledd(dir, rt_random_direction(&m->random), spread / 2);
+    if (diagonal) dir.at[other] = copysign(dir.at[major] * (below(m, 2) ? 1 : 1 + 1e-6), dir.at[other]);
+    return ray_along(from, dir);
 }
 
 static const struct {
@@ -315,6 +350,7 @@ static const struct {
     {"along-edge", along_edge},
     {"grazing", grazing},
     {"denormal", denormal},
+    {"in-bundle", in_bundle},
 };
 
 size_t rt_ray_family_count(void) {
@@ -337,6 +373,7 @@ void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t f
     }
     for (size_t i = 0; i < count; i++) {
         maker.random = rt_random(seed, (uint64_t)family << 56 | (first + i));
+        maker.shared = rt_random(seed, (uint64_t)family << 56 | UINT64_C(1) << 55 | (first + i) / BUNDLE);
         rays[i] = families[family].make(&maker);
         /* A target that is its own origin, or a direction that rounds to zero. */
         if (!rt_ray_is_valid(&rays[i])) rays[i] = chord(&maker);

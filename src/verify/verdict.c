@@ -45,7 +45,8 @@ static double largest_coordinate(const RtGeometry *g, const RtRay *ray) {
 }
 
 static double tolerance_of(const RtGeometry *g, const RtRay *ray) {
-    return TOLERANCE * largest_coordinate(g, ray) / rt_lengthd(rt_widen(ray->dir));
+    /* Of the longest directions t is so small that float32 has nothing closer to it than its least number. */
+    return fmax(TOLERANCE * largest_coordinate(g, ray) / rt_lengthd(rt_widen(ray->dir)), 0x1p-149);
 }
 
 static bool within(double a, double b, double tolerance) {

@@ -110,7 +110,7 @@ static RtAnswer ask_native(const char *scene_spec, const char *spec, RtRay ray) 
     RtScene scene;
     RtAnswer answer;
     RtError error;
-    RtFailure failure = {.rays = &ray, .count = 1, .stream = 1};
+    RtFailure failure = {.rays = &ray, .count = 1, .stream = 1, .occluded = ray.kind == RT_RAY_OCCLUSION};
     assert_int_equal(rt_scene_open(scene_spec, &scene, &error), RT_OK);
     RtStatus status = rt_failure_ask(&failure, &scene, rt_maker_of_spec(spec), &answer, &error);
     rt_scene_clear(&scene);
@@ -151,6 +151,28 @@ RT_TEST(where_products_overflow_is_a_margin_and_no_hit_at_infinity) {
                                          .kind = RT_RAY_RANDOM});
     assert_int_equal(answer.expected.object, 95);
     assert_int_equal(answer.got.object, RT_NO_OBJECT);
+    assert_false(answer.wrong);
+}
+
+/* A dir so short that t is beyond float32 where something is hit. */
+RT_TEST(what_is_hit_at_infinity_blocks_nothing) {
+    RtAnswer answer = ask_native("balls:size=2", "embree",
+                                 (RtRay){.org = {{-17.0314159f, -28.8662663f, 5.64897966f}},
+                                         .dir = {{5.03687372e-38f, 8.50490862e-38f, -1.51539765e-38f}},
+                                         .tmax = INFINITY,
+                                         .kind = RT_RAY_OCCLUSION});
+    assert_int_equal(answer.expected.object, RT_NO_OBJECT);
+    assert_false(answer.blocked);
+}
+
+/* A dir so long that every t is 0: which object is nearest float32 cannot tell. */
+RT_TEST(where_no_t_can_be_told_from_another_any_hit_is_a_margin) {
+    RtAnswer answer = ask_native("family:kind=mixed-tiny,seed=1", "embree",
+                                 (RtRay){.org = {{-5.36500289e-10f, 8.30262317e-11f, -2.80551304e-10f}},
+                                         .dir = {{7.46290349e+37f, -2.50058786e+37f, 6.16864084e+37f}},
+                                         .tmax = INFINITY,
+                                         .kind = RT_RAY_RANDOM});
+    assert_true(answer.expected.object != answer.got.object);
     assert_false(answer.wrong);
 }
 
