@@ -20,10 +20,16 @@ static const struct argp_option options[] = {
      100},
     {0}};
 
+/* What was asked for by the option, of the command's arguments. */
+enum { MOST_GIVEN = 32 };
+static const char *given[MOST_GIVEN];
+static size_t given_count;
+
 /* What the option says has been done. */
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     RtError error;
     if (key != OPT_PLUGIN) return ARGP_ERR_UNKNOWN;
+    if (given_count < MOST_GIVEN) given[given_count++] = argument;
     if (rt_plugin_load(argument, &error) != RT_OK) argp_error(state, "--plugin: %s", error.message);
     return 0;
 }
@@ -59,6 +65,6 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
 
 void rt_cli_plugin_arguments(char *out, size_t room) {
     out[0] = '\0';
-    for (size_t i = 0, used = 0; i < rt_plugin_count() && used < room; i++)
-        used += (size_t)snprintf(out + used, room - used, " --plugin '%s'", rt_plugin_at(i)->path);
+    for (size_t i = 0, used = 0; i < given_count && used < room; i++)
+        used += (size_t)snprintf(out + used, room - used, " --plugin '%s'", given[i]);
 }

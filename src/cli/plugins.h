@@ -14,7 +14,7 @@ extern const struct argp rt_plugin_argp;
  * accelerators in it. The environment then names all of it, for programs that are started. */
 RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error);
 
-/* " --plugin 'FILE'" for each that is loaded, to out[0..room): for commands that a user is told to type. */
+/* " --plugin 'FILE'" for each that was given, to out[0..room): for commands that a user is told to type. */
 void rt_cli_plugin_arguments(char *out, size_t room);
 
 #endif
