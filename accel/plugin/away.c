@@ -303,30 +303,38 @@ static uint32_t take_lane(Away *away) {
     return lane;
 }
 
-static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
-    Away *away = of(accel);
-    AwayQuery *query = scratch;
-    WireChecked message = {.lane = take_lane(away)};
-    if (away->broken) return why(away, error);
-    if (message.lane == LANES) {
-        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on %d threads at most: give --threads",
-                       away->name, LANES - 1);
-    }
+static void give_lane_back(Away *away, uint32_t lane) {
+    pthread_mutex_lock(&away->lock);
+    away->taken[lane] = false;
+    pthread_mutex_unlock(&away->lock);
+}
+
+static RtStatus open_lane(Away *away, uint32_t lane, RtError *error) {
+    WireChecked message = {.lane = lane};
     if (!ask_master(away, rt_wire_open, &message, sizeof message, "a query was opened"))
         return why(away, error);
-    query->lane = message.lane;
     if (message.status == RT_OK) return RT_OK;
     message.error.message[sizeof message.error.message - 1] = '\0';
     return rt_fail(error, RT_BROKEN, "%s: %s", away->name, message.error.message);
 }
 
-static void close_query(const RtAccel *accel, void *scratch) {
+static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
     Away *away = of(accel);
     AwayQuery *query = scratch;
-    ask(away, query->lane, false, NULL, NULL, 0, "a query was closed");
-    pthread_mutex_lock(&away->lock);
-    away->taken[query->lane] = false;
-    pthread_mutex_unlock(&away->lock);
+    query->lane = take_lane(away);
+    if (query->lane == LANES) {
+        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on %d threads at most: give --threads",
+                       away->name, LANES - 1);
+    }
+    RtStatus status = open_lane(away, query->lane, error);
+    if (status != RT_OK) give_lane_back(away, query->lane);
+    return status;
+}
+
+static void close_query(const RtAccel *accel, void *scratch) {
+    const AwayQuery *query = scratch;
+    ask(of(accel), query->lane, false, NULL, NULL, 0, "a query was closed");
+    give_lane_back(of(accel), query->lane);
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
