@@ -54,18 +54,23 @@ static RtHardwareCounts median_of(const RtHardwareCounts counts[ROUNDS]) {
     return median;
 }
 
+/* What an accelerator of a plugin does is done in another process, which these counters do not see. */
+static bool is_seen(const RtWorkloadState *workload, uint32_t c) {
+    return workload->accels[c] && !rt_accel_is_away(workload->accels[c]);
+}
+
 static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, Contest *contest, RtError *error) {
     const uint32_t candidates = workload->experiment->candidate_count;
     RtStatus status = RT_OK;
     for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
         RtTimed timed = {.accel = workload->accels[c], .set = &workload->shares[c].set};
-        if (!timed.accel) continue;
+        if (!is_seen(workload, c)) continue;
         status =
             rt_runner_open(&contest->runners[contest->count++], &timed, workload->options->timing, error);
     }
     if (status == RT_OK) status = run_rounds(contest, 1e-3 * workload->experiment->milliseconds, error);
     for (uint32_t c = 0, i = 0; c < candidates && status == RT_OK; c++) {
-        if (!workload->accels[c]) continue;
+        if (!is_seen(workload, c)) continue;
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         cell->hardware.counts = median_of(&contest->counts[(size_t)ROUNDS * i++]);
     }
@@ -94,8 +99,10 @@ static RtStatus count_or_say_why(RtWorkloadState *workload, RtRayKind kind, RtEr
     rt_free(contest.counts);
     for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        if (available) continue;
-        snprintf(cell->hardware.why, sizeof cell->hardware.why, "%s", why.message);
+        bool away = workload->accels[c] && !is_seen(workload, c);
+        if (available && !away) continue;
+        snprintf(cell->hardware.why, sizeof cell->hardware.why, "%.*s", RT_MAX_WHY - 1,
+                 away ? "a plugin lives in a process of its own, which is not counted" : why.message);
         for (int e = 0; e < RT_HARDWARE_COUNT; e++) cell->hardware.counts.of[e] = (double)NAN;
     }
     return status;
