@@ -186,8 +186,8 @@ static bool has_few_digits(const RtGeometry *g, const RtWideRay *line) {
 }
 
 /* Asks about the object that is exactly the nearest, and about all that our hit function finds. Where
- * [tmin, tmax] is one number the exact t, which has more digits, is not in it; nor may it be where float32 has
- * few. */
+ * [tmin, tmax] is one number the exact t, which has more digits, is not in it; nor may it be where float32
+ * has few. */
 static void judge(const RtGeometry *g, const RtRay *ray, int *hits) {
     RtRuling ruling = rt_referee_nearest(g, ray);
     assert_int_not_equal(ruling.finding, RT_UNDECIDED);
