@@ -31,9 +31,9 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
             return status;
         }
         stack(accel, top);
+        accel->build_seconds = rt_wall_seconds() - start;
         top = accel;
     }
-    top->build_seconds = rt_wall_seconds() - start;
     *out = top;
     return RT_OK;
 }

@@ -7,9 +7,7 @@
 #include "base/parallel.h"
 
 #include <pthread.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -68,23 +66,20 @@ const RtPluginNow *rt_plugin_busy(void) {
 }
 
 /* The first thing counts. */
-static void say(PluginAccel *accel, const char *format, ...) {
-    va_list arguments;
+static void say(PluginAccel *accel, const RtError *what) {
     pthread_mutex_lock(&accel->lock);
-    if (!accel->nonsense) {
-        va_start(arguments, format);
-        vsnprintf(accel->said.message, sizeof accel->said.message, format, arguments);
-        va_end(arguments);
-        accel->nonsense = true;
-    }
+    if (!accel->nonsense) accel->said = *what;
+    accel->nonsense = true;
     pthread_mutex_unlock(&accel->lock);
 }
 
 static void say_of_ray(PluginAccel *accel, const RtRay *ray, const char *what, uint32_t object) {
+    RtError said;
     char text[RT_RAY_TEXT];
     rt_ray_format(ray, text, sizeof text);
-    say(accel, "%s, %u (the scene has %u objects), for the ray %s", what, object,
-        accel->base.scene->geometry.object_count, text);
+    rt_fail(&said, RT_BROKEN, "%s, %u (the scene has %u objects), for the ray %s", what, object,
+            accel->base.scene->geometry.object_count, text);
+    say(accel, &said);
 }
 
 /* ---- what the plugin calls ---- */
@@ -218,7 +213,10 @@ static void leave(PluginQuery *query) {
     const unsigned char *canary = (const unsigned char *)canary_of(query);
     for (size_t i = 0, n = canary_bytes(query); i < n; i++) {
         if (canary[i] == CANARY) continue;
-        say(query->accel, "it wrote past the %zu bytes of its query's memory", query->accel->query_bytes);
+        RtError said;
+        rt_fail(&said, RT_BROKEN, "it wrote past the %zu bytes of its query's memory",
+                query->accel->query_bytes);
+        say(query->accel, &said);
         return;
     }
 }
@@ -231,10 +229,12 @@ static void look_at_hits(PluginAccel *accel, const RtRay *rays, size_t count, Rt
         if (miss || (hit.object < objects && hit.t >= rays[i].tmin && hit.t <= rays[i].tmax)) continue;
         hits[i] = RT_MISS;
         if (hit.object < objects || hit.object == RT_NO_OBJECT) {
+            RtError said;
             char text[RT_RAY_TEXT];
             rt_ray_format(&rays[i], text, sizeof text);
-            say(accel, "it answered %s at t = %.9g, which is not on the ray %s",
-                hit.object == RT_NO_OBJECT ? "no object" : "an object", (double)hit.t, text);
+            rt_fail(&said, RT_BROKEN, "it answered %s at t = %.9g, which is not on the ray %s",
+                    hit.object == RT_NO_OBJECT ? "no object" : "an object", (double)hit.t, text);
+            say(accel, &said);
         } else {
             say_of_ray(accel, &rays[i], "it answered with an object that there is not", hit.object);
         }

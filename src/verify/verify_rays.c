@@ -11,7 +11,7 @@ enum { FRAME_DEPTH = 4, CAMERA_PART = 10 };
 /* Half of the camera's rays are primary ones at most, in the shape of its image. */
 RtStatus rt_verify_sample(const RtVerifyRays *wanted, RtScene *scene, RtError *error) {
     if (wanted->given) return RT_OK;
-    uint64_t primary = wanted->count / (2 * CAMERA_PART);
+    uint64_t primary = wanted->count / (UINT64_C(2) * CAMERA_PART);
     double samples = (double)primary;
     double aspect = (double)scene->camera.width / (double)scene->camera.height;
     double width = fmin(fmax(sqrt(samples * aspect), 1), RT_MAX_IMAGE_SIDE);
