@@ -54,7 +54,9 @@ static void on_exit_called(int code, void *unused) {
 /* Every thread has a stack for that: the crash may be that its own is full. Whoever hangs is told by SIGXCPU
  * to say at which ray. */
 static void watch_thread(void) {
-    stack_t stack = {.ss_size = (size_t)64 * 1024};
+    stack_t stack;
+    if (sigaltstack(NULL, &stack) == 0 && !(stack.ss_flags & SS_DISABLE)) return; /* sanitizers have one */
+    stack = (stack_t){.ss_size = (size_t)64 * 1024};
     stack.ss_sp = malloc(stack.ss_size); /* until the process ends */
     if (stack.ss_sp) sigaltstack(&stack, NULL);
 }
