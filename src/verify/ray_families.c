@@ -133,11 +133,11 @@ static RtRay from_afar(Maker *m) {
     return ray_along(from, rt_normalized(rt_subd(to, from)));
 }
 
-/* A length of direction anywhere from 1e-30 to 3e38, or so great that float32 has few numbers for the t at
+/* A length of direction anywhere from 1e-15 to 3e38, or so great that float32 has few numbers for the t at
  * which the scene is crossed: boxes are entered and left at the same t, or at 0. */
 static RtRay of_any_length(Maker *m) {
-    static const double lengths[] = {1e-30, 1e-20, 1e-15, 1e-10, 1e-5, 1e-2, 1e2,
-                                     1e5,   1e10,  1e15,  1e30,  1e37, 1e38, 3e38};
+    static const double lengths[] = {1e-15, 1e-12, 1e-10, 1e-7, 1e-5, 1e-2, 1e2,
+                                     1e5,   1e10,  1e15,  1e30, 1e37, 1e38, 3e38};
     RtRay ray = below(m, 2) ? chord(m) : at_vertex(m);
     double length = lengths[below(m, sizeof lengths / sizeof lengths[0])];
     if (below(m, 4) == 0) length = fmin(m->size * 0x1p149 / (1 << below(m, 12)), 3e38);
