@@ -366,13 +366,13 @@ RT_TEST(estimates_are_medians_with_the_order_statistics_around_them) {
 /* ---- pictures ---- */
 
 RT_TEST(a_picture_is_the_frame_of_the_program) {
-    float rgb[16][16][3];
+    float rgb[16 * 16][3];
     RtFrame frame;
     RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = 1};
     raytally_error why;
-    assert_fine(raytally_render(balls.accels[1], 0, 2, NULL, rgb[0][0], error));
+    assert_fine(raytally_render(balls.accels[1], 0, 2, NULL, rgb[0], error));
     assert_ok(rt_frame_trace(&frame, balls.accels[0]->accel, &options, error));
-    for (uint32_t i = 0; i < 16 * 16; i++) assert_memory_equal(rgb[0][i], &frame.color[i], sizeof rgb[0][0]);
+    for (uint32_t i = 0; i < 16 * 16; i++) assert_memory_equal(rgb[i], &frame.color[i], sizeof rgb[i]);
     rt_frame_clear(&frame);
     assert_int_equal(raytally_render(balls.accels[1], 0, 1, "no/such/folder.png", NULL, &why), RAYTALLY_IO);
     assert_int_equal(raytally_render(balls.accels[1], 65, 1, NULL, NULL, &why), RAYTALLY_BAD_INPUT);
