@@ -23,10 +23,9 @@ enum { RT_AWAY_BYTES = 256 * 1024 };
 typedef void RtAwayWork(RtQuery *query, void *message);
 void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes);
 
-/* To be called now and then by work that takes long: it goes on. What does not for rt_away_patience seconds
- * is taken to hang: 60, or what RAYTALLY_PLUGIN_SECONDS says; ten times that for building. */
+/* To be called now and then by work that takes long: it goes on. What does not for 60 seconds, or what
+ * RAYTALLY_PLUGIN_SECONDS says, is taken to hang; ten times that for building. */
 void rt_away_beat(void);
-double rt_away_patience(void);
 
 /* Why the last accelerator that was destroyed did not survive it, or NULL. */
 const char *rt_away_farewell(void);

@@ -51,7 +51,8 @@ bool rt_accel_is_away(const RtAccel *accel) {
     return accel->ops->destroy == destroy;
 }
 
-double rt_away_patience(void) {
+/* Seconds without progress after which it hangs. */
+static double patience(void) {
     const char *text = getenv("RAYTALLY_PLUGIN_SECONDS");
     char *end;
     double seconds = text ? strtod(text, &end) : 0;
@@ -106,7 +107,7 @@ static void end_hanging(Away *away, const char *doing) {
         }
     }
     away->gone = true;
-    snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", rt_away_patience());
+    snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", patience());
     break_away(away, what, doing, true);
 }
 
@@ -128,7 +129,7 @@ static bool look_after(Away *away, const char *doing, bool hangs) {
 }
 
 /* Waits for the answer on a lane; false if there will be none. */
-static bool wait_for(Away *away, Lane *lane, const char *doing, double patience) {
+static bool wait_for(Away *away, Lane *lane, const char *doing, double limit) {
     unsigned long beat = away->wire->beat;
     double since = rt_wall_seconds();
     for (;;) {
@@ -142,7 +143,7 @@ static bool wait_for(Away *away, Lane *lane, const char *doing, double patience)
         unsigned long seen = away->wire->beat;
         if (seen != beat) since = rt_wall_seconds();
         beat = seen;
-        if (look_after(away, doing, rt_wall_seconds() - since > patience)) return false;
+        if (look_after(away, doing, rt_wall_seconds() - since > limit)) return false;
     }
 }
 
@@ -157,7 +158,7 @@ static bool ask_in_place(Away *away, uint32_t number, bool begin, WireWork *work
     lane->bytes = bytes;
     lane->begin = begin;
     sem_post(&lane->asked);
-    return wait_for(away, lane, doing, rt_away_patience());
+    return wait_for(away, lane, doing, patience());
 }
 
 /* The same for one that comes from elsewhere, and goes back there only if it was answered. */
@@ -175,6 +176,12 @@ static bool ask_master(Away *away, WireWork *work, void *message, size_t bytes, 
     bool answered = ask(away, 0, false, work, message, bytes, doing);
     pthread_mutex_unlock(&away->master);
     return answered;
+}
+
+/* What was said over there, which may lack its end. */
+static RtStatus hand_on(RtStatus status, const char *name, RtError *said, RtError *error) {
+    said->message[sizeof said->message - 1] = '\0';
+    return rt_fail(error, status, "%s%s%s", name, *name ? ": " : "", said->message);
 }
 
 static RtStatus why(const Away *away, RtError *error) {
@@ -227,12 +234,9 @@ static RtStatus take_built(Away *away, RtError *error) {
     char doing[96];
     WireBuilt built;
     snprintf(doing, sizeof doing, "it was built over %u objects", away->base.scene->geometry.object_count);
-    if (!wait_for(away, &away->wire->lanes[0], doing, 10 * rt_away_patience())) return why(away, error);
+    if (!wait_for(away, &away->wire->lanes[0], doing, 10 * patience())) return why(away, error);
     memcpy(&built, away->wire->lanes[0].message, sizeof built);
-    if (built.status != RT_OK) {
-        built.error.message[sizeof built.error.message - 1] = '\0';
-        return rt_fail(error, built.status, "%s", built.error.message);
-    }
+    if (built.status != RT_OK) return hand_on(built.status, "", &built.error, error);
     away->base.exact = built.exact;
     away->base.counts = built.counts;
     away->base.build_seconds = built.seconds;
@@ -314,8 +318,7 @@ static RtStatus open_lane(Away *away, uint32_t lane, RtError *error) {
     if (!ask_master(away, rt_wire_open, &message, sizeof message, "a query was opened"))
         return why(away, error);
     if (message.status == RT_OK) return RT_OK;
-    message.error.message[sizeof message.error.message - 1] = '\0';
-    return rt_fail(error, RT_BROKEN, "%s: %s", away->name, message.error.message);
+    return hand_on(RT_BROKEN, away->name, &message.error, error);
 }
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
@@ -410,9 +413,7 @@ static RtStatus ask_checked(const RtAccel *accel, WireWork *work, const char *do
     WireChecked message = {.status = RT_OK};
     if (!ask_master(away, work, &message, sizeof message, doing)) return why(away, error);
     if (message.status == RT_OK) return RT_OK;
-    message.error.message[sizeof message.error.message - 1] = '\0';
-    return rt_fail(error, message.status, "%s%s%s", message.status == RT_BROKEN ? away->name : "",
-                   message.status == RT_BROKEN ? ": " : "", message.error.message);
+    return hand_on(message.status, message.status == RT_BROKEN ? away->name : "", &message.error, error);
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
