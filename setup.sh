@@ -38,6 +38,15 @@ apt() {
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
+# add_packages NAME...: at once, or, where one of them does not go with what is here, one by one: the others are not its hostages
+add_packages() {
+    local name
+    logged build/apt.log apt install -y --no-install-recommends "$@" >/dev/null 2>&1 && return
+    for name; do
+        logged build/apt.log apt install -y --no-install-recommends "$name" || say "$name cannot be installed here"
+    done
+}
+
 # install_missing SECTION...: what cannot be installed is named, and is fatal unless it is optional, or of the cluster or the pages
 install_missing() {
     local section wanted=() needed=()
@@ -58,7 +67,7 @@ install_missing() {
         say "installing $names"
         # shellcheck disable=SC2086 # the names are words of their own
         if logged build/apt.log apt update; then
-            logged build/apt.log apt install -y --no-install-recommends $names || true
+            add_packages $names || true
         fi
     fi
     names=$(missing "${wanted[@]}" | xargs)
