@@ -239,7 +239,10 @@ RtStatus rt_accel_built(RtAccel *accel, RtStatus status, RtAccel **out);
 size_t rt_accel_count(void);
 const RtAccelOps *rt_accel_at(size_t i);
 
-/* Adds one of a plugin behind them; it stays where it is. RT_BAD_INPUT where the name is taken. */
+/* RT_BAD_INPUT where `name` is that of an accelerator, or means all of them. */
+RtStatus rt_accel_name_is_free(const char *name, RtError *error);
+
+/* Adds one of a plugin behind them; it stays where it is. RT_BAD_INPUT where its name is not free. */
 RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error);
 
 /* By name, to *out; where there is none, RT_BAD_INPUT and a message that suggests the nearest name. */
@@ -275,6 +278,9 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
 
 /* Whether one of its layers is a plugin's, so that all of it is built away. */
 bool rt_spec_is_away(const RtSpec *spec);
+
+/* The same of a text, which may be no spec. */
+bool rt_spec_text_is_away(const char *text);
 
 /* The spec with every effective parameter, "grid:rule=woo,density=10,...", to out[0..RT_MAX_SPEC_CHARS). */
 void rt_spec_format(const RtSpec *spec, char *out);

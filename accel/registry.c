@@ -45,14 +45,21 @@ size_t rt_accel_count(void) {
     return count;
 }
 
+RtStatus rt_accel_name_is_free(const char *name, RtError *error) {
+    if (strcmp(name, "all") == 0)
+        return rt_fail(error, RT_BAD_INPUT, "'all' means every accelerator: choose another name");
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(registry[i]->name, name) == 0)
+            return rt_fail(error, RT_BAD_INPUT, "there is an accelerator '%s' already: choose another name",
+                           name);
+    }
+    return RT_OK;
+}
+
 RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error) {
     if (count == BUILT_IN + MOST_PLUGINS)
         return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators of plugins", MOST_PLUGINS);
-    for (size_t i = 0; i < count; i++) {
-        if (strcmp(registry[i]->name, ops->name) == 0)
-            return rt_fail(error, RT_BAD_INPUT, "there is an accelerator '%s' already: give it another name",
-                           ops->name);
-    }
+    RT_TRY(rt_accel_name_is_free(ops->name, error));
     registry[count++] = ops;
     return RT_OK;
 }

@@ -73,6 +73,11 @@ bool rt_spec_is_away(const RtSpec *spec) {
     return false;
 }
 
+bool rt_spec_text_is_away(const char *text) {
+    RtSpec spec;
+    return rt_spec_parse(text, &spec, NULL) == RT_OK && rt_spec_is_away(&spec);
+}
+
 void rt_spec_format(const RtSpec *spec, char *out) {
     size_t used = 0;
     for (uint32_t i = 0; i < spec->layer_count && used < RT_MAX_SPEC_CHARS; i++) {

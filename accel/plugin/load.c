@@ -167,11 +167,9 @@ static RtStatus fingerprint_file(const char *path, uint64_t *fingerprint, RtErro
 
 static RtStatus register_tables(RtPlugin *plugin, const raytally_accel_ops *const *tables, RtError *error) {
     for (uint32_t i = 0; i < plugin->count; i++) {
-        const RtAccelOps *taken;
-        if (rt_accel_find(tables[i]->name, &taken, NULL) != RT_OK) continue;
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: there is an accelerator '%s' already: give this one another name", plugin->path,
-                       tables[i]->name);
+        RtError why;
+        if (rt_accel_name_is_free(tables[i]->name, &why) == RT_OK) continue;
+        return rt_fail(error, RT_BAD_INPUT, "%s: %s", plugin->path, why.message);
     }
     for (uint32_t i = 0; i < plugin->count; i++) {
         RtPluginOps *ops = rt_alloc(1, sizeof(RtPluginOps)); /* for as long as the program runs */

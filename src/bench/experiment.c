@@ -84,9 +84,7 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
 /* The first that is not of a plugin: with one that breaks nothing could be compared. */
 static uint32_t default_baseline(const RtExperiment *experiment) {
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        RtSpec spec;
-        if (rt_spec_parse(experiment->candidates[c].spec, &spec, NULL) != RT_OK || !rt_spec_is_away(&spec))
-            return c;
+        if (!rt_spec_text_is_away(experiment->candidates[c].spec)) return c;
     }
     return 0;
 }

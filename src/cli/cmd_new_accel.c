@@ -58,14 +58,7 @@ static RtStatus check_name(const char *name, RtError *error) {
     if (strlen(name) >= RT_MAX_NAME)
         return rt_fail(error, RT_BAD_INPUT, "'%.80s' is too long for a name: at most %d letters", name,
                        RT_MAX_NAME - 1);
-    if (strcmp(name, "all") == 0)
-        return rt_fail(error, RT_BAD_INPUT, "'all' means every accelerator: choose another name");
-    for (size_t i = 0; i < rt_accel_count(); i++) {
-        if (strcmp(name, rt_accel_at(i)->name) != 0) continue;
-        return rt_fail(error, RT_BAD_INPUT, "there is an accelerator '%s' already: choose another name",
-                       name);
-    }
-    return RT_OK;
+    return rt_accel_name_is_free(name, error);
 }
 
 /* ---- files ---- */

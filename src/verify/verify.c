@@ -262,11 +262,6 @@ static RtStatus add_broken(Run *run, const Stage *stage, const RtVerifySpec *spe
     return add_row(run, row, error);
 }
 
-static bool is_of_plugin(const RtVerifySpec *spec) {
-    RtSpec parsed;
-    return rt_spec_parse(spec->spec, &parsed, NULL) == RT_OK && rt_spec_is_away(&parsed);
-}
-
 static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *spec, RtError *error) {
     RtAccel *accel = NULL;
     RtMaker maker = maker_of(run, spec);
@@ -278,7 +273,7 @@ static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *sp
         run->observer->notice(run->observer->context, notice);
         return RT_OK;
     }
-    const bool refused = status != RT_OK && is_of_plugin(spec); /* for itself alone */
+    const bool refused = status != RT_OK && rt_spec_text_is_away(spec->spec); /* for itself alone */
     if (status == RT_OK) status = check(run, stage, accel, spec, error);
     rt_accel_destroy(accel);
     if (status != RT_BROKEN && !refused) return status;

@@ -262,32 +262,35 @@ static int build(const raytally_build *what, void **self) {
 /* ---- queries ---- */
 
 typedef struct Waiting {
-    uint32_t node;
+    const Node *node;
     float enter;
 } Waiting;
 
 RAYTALLY_INLINE void search(const Bvh *bvh, void *memory, const raytally_prepared *ray, int any,
                             raytally_hit *best, raytally_counters *counters) {
-    const Node *nodes = bvh->nodes;
-    Waiting stack[MAX_DEPTH];
-    uint32_t stacked = 0, index = 0;
+    const Node *nodes = bvh->nodes, *node = nodes;
+    Waiting stack[MAX_DEPTH], *top = stack;
     float enter[2];
     (void)memory;
     if (bvh->node_count == 0) return;
     RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 1);
     if (!raytally_box_hit(&nodes[0].box, ray, ray->tmax, &enter[0])) return;
     for (;;) {
-        const Node *node = &nodes[index];
         RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
         if (!(node->count & LEAF)) {
+            const Node *children = nodes + node->first;
             const float limit = raytally_limit(ray, best);
-            const int left = raytally_box_hit(&nodes[node->first].box, ray, limit, &enter[0]);
-            const int right = raytally_box_hit(&nodes[node->first + 1].box, ray, limit, &enter[1]);
+            const int left = raytally_box_hit(&children[0].box, ray, limit, &enter[0]);
+            const int right = raytally_box_hit(&children[1].box, ray, limit, &enter[1]);
             RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, 2);
-            if (left || right) {
-                const uint32_t nearer = (uint32_t)(left && right ? enter[1] < enter[0] : right);
-                if (left && right) stack[stacked++] = (Waiting){node->first + 1 - nearer, enter[1 - nearer]};
-                index = node->first + nearer;
+            if (left && (!right || enter[0] <= enter[1])) {
+                if (right) *top++ = (Waiting){&children[1], enter[1]};
+                node = &children[0];
+                continue;
+            }
+            if (right) {
+                if (left) *top++ = (Waiting){&children[0], enter[0]};
+                node = &children[1];
                 continue;
             }
         } else {
@@ -296,10 +299,10 @@ RAYTALLY_INLINE void search(const Bvh *bvh, void *memory, const raytally_prepare
                 return;
         }
         do {
-            if (stacked == 0) return;
-            stacked--;
-        } while (stack[stacked].enter > raytally_limit(ray, best));
-        index = stack[stacked].node;
+            if (top == stack) return;
+            top--;
+        } while (top->enter > raytally_limit(ray, best));
+        node = top->node;
     }
 }
 
