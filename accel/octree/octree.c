@@ -341,6 +341,16 @@ RT_KERNEL bool walk(const RtOctree *self, RtMailbox *mailbox, float enter, const
     }
 }
 
+/* Of a ray from very far away the thickness that its boxes need is a good part of the scene: is it likely to
+ * be in more leaves than there are objects? */
+RT_KERNEL bool is_in_too_many_leaves(const RtOctree *self, const RtPreparedRay *ray) {
+    float side = (float)rt_box_longest_side(self->boxes[0]), thick = 0;
+    for (int a = 0; a < 3; a++) thick = rt_maxf(thick, fabsf(ray->org_near[a] - ray->org_far[a]));
+    float part = rt_minf(thick, side);
+    return part * part * (float)self->node_count >
+           side * side * (float)self->base.scene->geometry.object_count;
+}
+
 RT_KERNEL void search(const RtOctree *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     float enter;
@@ -349,6 +359,10 @@ RT_KERNEL void search(const RtOctree *self, void *scratch, const RtPreparedRay *
     bool met = rt_box_hit(&self->boxes[0], ray, ray->tmax, &enter);
     RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "node", .box = &self->boxes[0], .met = met);
     if (!met) return;
+    if (is_in_too_many_leaves(self, ray)) {
+        rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
+        return;
+    }
     RtMailbox *mailbox = self->mailbox ? scratch : NULL;
     rt_mailbox_next_ray(mailbox, &self->base.scene->geometry);
     if (self->traversal != RT_OCTREE_PARAMETRIC && walk(self, mailbox, enter, ray, any, best, tally)) return;

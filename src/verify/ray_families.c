@@ -14,10 +14,8 @@ typedef struct Maker {
     RtVec3d center;             /* of the scene's box */
     double size;                /* half its diagonal */
     RtRandom random;
-    RtRandom shared; /* the same for BUNDLE rays in a row */
+    RtRandom shared; /* the same for RT_RAY_BUNDLE rays in a row */
 } Maker;
-
-enum { BUNDLE = 256 };
 
 static uint32_t below(Maker *m, uint32_t n) {
     return rt_random_below(&m->random, n);
@@ -373,7 +371,8 @@ void rt_ray_family_fill(size_t family, RtQuery *query, uint64_t seed, uint64_t f
     }
     for (size_t i = 0; i < count; i++) {
         maker.random = rt_random(seed, (uint64_t)family << 56 | (first + i));
-        maker.shared = rt_random(seed, (uint64_t)family << 56 | UINT64_C(1) << 55 | (first + i) / BUNDLE);
+        maker.shared =
+            rt_random(seed, (uint64_t)family << 56 | UINT64_C(1) << 55 | (first + i) / RT_RAY_BUNDLE);
         rays[i] = families[family].make(&maker);
         /* A target that is its own origin, or a direction that rounds to zero. */
         if (!rt_ray_is_valid(&rays[i])) rays[i] = chord(&maker);

@@ -11,6 +11,9 @@
 #include "accel/accel.h"
 #include "base/random.h"
 
+/* So many in a row, from a multiple of it on, go nearly the same way where the family is of bundles. */
+enum { RT_RAY_BUNDLE = 256 };
+
 /* The first family is `chord`: random chords of the scene's bounding sphere. */
 size_t rt_ray_family_count(void);
 const char *rt_ray_family_name(size_t family);

@@ -47,21 +47,33 @@ static RtStatus append_camera_rays(const RtVerifyRays *wanted, const RtAccel *or
     return status;
 }
 
+/* Appends `count` rays of all families, the same number of each to within one. They take turns: the slowest
+ * family for a structure is not all of one thread's work, and neighbours of a ray are of more than one
+ * family. */
+static void append_family_rays(RtQuery *query, uint64_t seed, RtRay *rays, uint64_t count) {
+    uint64_t families = rt_ray_family_count(), done = 0;
+    for (uint64_t turn = 0; done < count; turn += RT_RAY_BUNDLE) {
+        for (uint64_t f = 0; f < families; f++) {
+            uint64_t share = count * (f + 1) / families - count * f / families;
+            if (share <= turn) continue;
+            uint64_t some = share - turn < RT_RAY_BUNDLE ? share - turn : RT_RAY_BUNDLE;
+            rt_ray_family_fill((size_t)f, query, seed, turn, (size_t)some, rays + done);
+            done += some;
+        }
+    }
+}
+
 /* What the camera's kinds leave goes to the families. */
 RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay *rays, RtError *error) {
     RtQuery query;
-    uint64_t count = 0, families = rt_ray_family_count();
+    uint64_t count = 0;
     if (wanted->given) {
         memcpy(rays, wanted->given->rays, wanted->count * sizeof(RtRay));
         return RT_OK;
     }
     RT_TRY(append_camera_rays(wanted, oracle, rays, &count, error));
     RT_TRY(rt_query_init(&query, oracle, error));
-    uint64_t left = wanted->count - count;
-    for (uint64_t f = 0; f < families; f++) {
-        uint64_t first = left * f / families, end = left * (f + 1) / families;
-        rt_ray_family_fill((size_t)f, &query, wanted->seed, 0, (size_t)(end - first), rays + count + first);
-    }
+    append_family_rays(&query, wanted->seed, rays + count, wanted->count - count);
     rt_query_clear(&query);
     return rt_accel_check(oracle, error);
 }
