@@ -59,12 +59,15 @@ RT_KERNEL const RtKdNode *descend(const RtKd *self, const RtPreparedRay *ray, Sp
         uint32_t axis = rt_kd_axis(node), child = rt_kd_child(node);
         float enter = (node->split - ray->org_near[axis]) * ray->inv[axis]; /* the second child */
         float leave = (node->split - ray->org_far[axis]) * ray->inv[axis];  /* the first */
-        bool skip_first = leave < span->enter;
-        bool skip_second = enter > span->leave;
-        span->node = child + (ray->negative[axis] ^ skip_first);
-        if (skip_first || skip_second) continue;
+        uint32_t first = child + ray->negative[axis], second = child + 1 - ray->negative[axis];
+        if (leave < span->enter) {
+            span->node = second;
+            continue;
+        }
+        span->node = first;
+        if (enter > span->leave) continue;
         stack[(*stacked)++] =
-            (Span){child + (1 - ray->negative[axis]), rt_maxf(enter, span->enter), span->leave};
+            (Span){second, rt_maxf(enter, span->enter), span->leave};
         span->leave = rt_minf(leave, span->leave);
     }
 }
