@@ -60,14 +60,14 @@ RT_KERNEL const RtKdNode *descend(const RtKd *self, const RtPreparedRay *ray, Sp
         float enter = (node->split - ray->org_near[axis]) * ray->inv[axis]; /* the second child */
         float leave = (node->split - ray->org_far[axis]) * ray->inv[axis];  /* the first */
         uint32_t first = child + ray->negative[axis], second = child + 1 - ray->negative[axis];
+        /* Branches, as in accel/bvh: predicted, so that the next node is there before the crossings are. */
         if (leave < span->enter) {
             span->node = second;
             continue;
         }
         span->node = first;
         if (enter > span->leave) continue;
-        stack[(*stacked)++] =
-            (Span){second, rt_maxf(enter, span->enter), span->leave};
+        stack[(*stacked)++] = (Span){second, rt_maxf(enter, span->enter), span->leave};
         span->leave = rt_minf(leave, span->leave);
     }
 }
