@@ -27,7 +27,12 @@ void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes);
  * RAYTALLY_PLUGIN_SECONDS says, is taken to hang; ten times that for building. */
 void rt_away_beat(void);
 
-/* Why the last accelerator that was destroyed did not survive it, or NULL. */
+/* A status that came from there, as far as it is one. */
+static inline RtStatus rt_away_status(RtStatus status) {
+    return status >= RT_OK && status <= RT_IO ? status : RT_BROKEN;
+}
+
+/* Why the last accelerator that the calling thread destroyed did not survive it, or NULL. */
 const char *rt_away_farewell(void);
 
 #endif

@@ -2,6 +2,7 @@
 /* Raytally's side of an accelerator that lives away: what stands in for it, and what is said of one that
  * broke. See wire.h. */
 #include "accel/away.h"
+#include "accel/plugin/now.h"
 #include "accel/plugin/wire.h"
 
 #include "base/clock.h"
@@ -24,12 +25,14 @@ typedef struct Away {
     char name[RT_MAX_SPEC_CHARS];
     Wire *wire;
     pid_t pid;
-    int alive; /* the end of a pipe: closed, it ends the process */
+    int alive;       /* the end of a pipe: closed, it ends the process */
+    double patience; /* seconds without progress after which it hangs */
     RtDescription description;
     pthread_mutex_t lock;   /* of what follows */
     atomic_bool broken;     /* error says why */
     bool gone;              /* the process has ended, and was waited for */
     bool taken[LANES];      /* by queries; lane 0 is nobody's */
+    uint32_t lanes_made;    /* lanes 0..lanes_made-1 have semaphores */
     pthread_mutex_t master; /* of lane 0 */
     RtError error;
 } Away;
@@ -51,8 +54,7 @@ bool rt_accel_is_away(const RtAccel *accel) {
     return accel->ops->destroy == destroy;
 }
 
-/* Seconds without progress after which it hangs. */
-static double patience(void) {
+static double patience_of_user(void) {
     const char *text = getenv("RAYTALLY_PLUGIN_SECONDS");
     char *end;
     double seconds = text ? strtod(text, &end) : 0;
@@ -63,9 +65,12 @@ static double patience(void) {
 
 static void say_signal(const Away *away, int number, char *out, size_t room) {
     const Crash *crash = &away->wire->crash;
+    static const char *const past[] = {"", ": it wrote or read past the memory of its query",
+                                       ": it wrote or read past its answers"};
     const char *name = sigdescr_np(number);
+    uint32_t out_of = crash->out_of;
     snprintf(out, room, "it crashed (%s%s)", name ? name : "an unknown signal",
-             crash->out_of_query ? ": it wrote or read past the memory of its query" : "");
+             out_of <= RT_GUARD_COUNT ? past[out_of] : "");
 }
 
 /* What became of the process, whose status is of waitpid. */
@@ -107,7 +112,7 @@ static void end_hanging(Away *away, const char *doing) {
         }
     }
     away->gone = true;
-    snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", patience());
+    snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", away->patience);
     break_away(away, what, doing, true);
 }
 
@@ -158,7 +163,7 @@ static bool ask_in_place(Away *away, uint32_t number, bool begin, WireWork *work
     lane->bytes = bytes;
     lane->begin = begin;
     sem_post(&lane->asked);
-    return wait_for(away, lane, doing, patience());
+    return wait_for(away, lane, doing, away->patience);
 }
 
 /* The same for one that comes from elsewhere, and goes back there only if it was answered. */
@@ -178,10 +183,10 @@ static bool ask_master(Away *away, WireWork *work, void *message, size_t bytes, 
     return answered;
 }
 
-/* What was said over there, which may lack its end. */
+/* What was said over there, which may lack its end, and be no status of ours. */
 static RtStatus hand_on(RtStatus status, const char *name, RtError *said, RtError *error) {
     said->message[sizeof said->message - 1] = '\0';
-    return rt_fail(error, status, "%s%s%s", name, *name ? ": " : "", said->message);
+    return rt_fail(error, rt_away_status(status), "%s%s%s", name, *name ? ": " : "", said->message);
 }
 
 static RtStatus why(const Away *away, RtError *error) {
@@ -197,6 +202,12 @@ void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes) {
 
 /* ---- building ---- */
 
+static void make_lane(Away *away) {
+    Lane *lane = &away->wire->lanes[away->lanes_made++];
+    sem_init(&lane->asked, 1, 0);
+    sem_init(&lane->answered, 1, 0);
+}
+
 /* The memory that both have, and the pipe whose end says that raytally is no more. */
 static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
     away->wire =
@@ -205,10 +216,7 @@ static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
         away->wire = NULL;
         return rt_fail_memory(error, "what is shared with a plugin", sizeof(Wire));
     }
-    for (int i = 0; i < LANES; i++) {
-        sem_init(&away->wire->lanes[i].asked, 1, 0);
-        sem_init(&away->wire->lanes[i].answered, 1, 0);
-    }
+    make_lane(away);
     if (pipe2(alive, O_CLOEXEC) == 0) return RT_OK;
     return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
 }
@@ -234,7 +242,7 @@ static RtStatus take_built(Away *away, RtError *error) {
     char doing[96];
     WireBuilt built;
     snprintf(doing, sizeof doing, "it was built over %u objects", away->base.scene->geometry.object_count);
-    if (!wait_for(away, &away->wire->lanes[0], doing, 10 * patience())) return why(away, error);
+    if (!wait_for(away, &away->wire->lanes[0], doing, 10 * away->patience)) return why(away, error);
     memcpy(&built, away->wire->lanes[0].message, sizeof built);
     if (built.status != RT_OK) return hand_on(built.status, "", &built.error, error);
     away->base.exact = built.exact;
@@ -251,7 +259,8 @@ RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, Rt
     if (!away) return rt_fail_memory(error, "an accelerator", sizeof(Away));
     *away = (Away){.base = {.ops = &away->ops, .scene = scene, .scratch_room = RT_CACHE_LINE},
                    .ops = away_ops,
-                   .alive = -1};
+                   .alive = -1,
+                   .patience = patience_of_user()};
     away->ops.name = spec->layers[spec->layer_count - 1].ops->name;
     pthread_mutex_init(&away->lock, NULL);
     pthread_mutex_init(&away->master, NULL);
@@ -267,7 +276,7 @@ RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, Rt
     return status;
 }
 
-static char farewell[sizeof(((RtError *)0)->message)];
+static _Thread_local char farewell[sizeof(((RtError *)0)->message)];
 
 const char *rt_away_farewell(void) {
     return *farewell ? farewell : NULL;
@@ -303,6 +312,7 @@ static uint32_t take_lane(Away *away) {
     pthread_mutex_lock(&away->lock);
     while (lane < LANES && away->taken[lane]) lane++;
     if (lane < LANES) away->taken[lane] = true;
+    if (lane == away->lanes_made && lane < LANES) make_lane(away);
     pthread_mutex_unlock(&away->lock);
     return lane;
 }
@@ -326,8 +336,8 @@ static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) 
     AwayQuery *query = scratch;
     query->lane = take_lane(away);
     if (query->lane == LANES) {
-        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on %d threads at most: give --threads",
-                       away->name, LANES - 1);
+        return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on %d threads at most", away->name,
+                       LANES - 1);
     }
     RtStatus status = open_lane(away, query->lane, error);
     if (status != RT_OK) give_lane_back(away, query->lane);
@@ -368,8 +378,8 @@ static const WireRays *trace_some(const RtAccel *accel, const RtScratch *scratch
 }
 
 /* What is written to shared memory is believed as far as it is possible. */
-static RtHit take_hit(const Away *away, RtHit hit) {
-    return hit.object < away->base.scene->geometry.object_count ? hit : RT_MISS;
+static RtHit take_hit(const RtAccel *accel, RtHit hit) {
+    return hit.object < accel->scene->geometry.object_count ? hit : RT_MISS;
 }
 
 static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
@@ -378,7 +388,7 @@ static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const 
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
         const WireRays *answer = trace_some(accel, scratch, rays + first, n, false, tallies);
         for (uint32_t i = 0; i < n; i++)
-            hits[first + i] = answer ? take_hit(of(accel), answer->hits[i]) : RT_MISS;
+            hits[first + i] = answer ? take_hit(accel, answer->hits[i]) : RT_MISS;
     }
 }
 
@@ -387,7 +397,8 @@ static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const
     for (size_t first = 0; first < count; first += WIRE_RAYS) {
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
         const WireRays *answer = trace_some(accel, scratch, rays + first, n, true, tallies);
-        for (uint32_t i = 0; i < n; i++) blockers[first + i] = answer ? answer->hits[i].object : RT_NO_OBJECT;
+        for (uint32_t i = 0; i < n; i++)
+            blockers[first + i] = (answer ? take_hit(accel, answer->hits[i]) : RT_MISS).object;
     }
 }
 
@@ -417,7 +428,8 @@ static RtStatus ask_checked(const RtAccel *accel, WireWork *work, const char *do
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
-    return ask_checked(accel, rt_wire_validate, "it was validated", error);
+    RT_TRY(ask_checked(accel, rt_wire_validate, "it was validated", error));
+    return ask_checked(accel, rt_wire_show, "it showed its boxes", error);
 }
 
 static RtStatus check(const RtAccel *accel, RtError *error) {

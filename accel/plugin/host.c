@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
+#include <inttypes.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -31,6 +32,13 @@ typedef struct PluginAccel {
     RtError said;
 } PluginAccel;
 
+/* Memory that ends at the end of a page, and pages around it that nobody may touch. */
+typedef struct Guarded {
+    char *mapping; /* [mapped] or NULL */
+    size_t mapped;
+    char *end; /* of the pages that may be touched */
+} Guarded;
+
 /* What a query has. The plugin sees the first member alone. */
 typedef struct PluginQuery {
     raytally_query face;
@@ -38,9 +46,11 @@ typedef struct PluginQuery {
     PluginAccel *accel;
     const RtGeometry *geometry;
     RtCrossing *room;
-    char *mapping; /* [mapped] the plugin's memory, and pages around it that nobody may touch */
-    size_t mapped;
-    void *memory; /* [accel->query_bytes] or NULL */
+    Guarded own;     /* of `memory` */
+    Guarded answers; /* of a stream of at most MOST_ANSWERS */
+    void *memory;    /* [accel->query_bytes] or NULL */
+    bool counting;
+    RtTally tallies[RT_RAY_KIND_COUNT]; /* of object tests, in a stream that is counted */
 } PluginQuery;
 
 static const PluginAccel *of(const RtAccel *accel) {
@@ -49,7 +59,7 @@ static const PluginAccel *of(const RtAccel *accel) {
 
 /* ---- what is said of one that went wrong ---- */
 
-enum { MOST_QUERIES = 256 };
+enum { MOST_QUERIES = 2048 }; /* of which the ray of a crash is known */
 static _Atomic(PluginQuery *) open_queries[MOST_QUERIES];
 static _Thread_local const RtPluginNow *now;
 
@@ -125,9 +135,12 @@ RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_
 
 static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, int any,
                        raytally_hit *best, raytally_counters *counters) {
-    if (!counters) return hits_of(ray, ids, count, any, best, NULL);
+    PluginQuery *query = (PluginQuery *)ray->query;
+    if (!query->counting) return hits_of(ray, ids, count, any, best, NULL);
     RtTally tally = {0};
     int over = hits_of(ray, ids, count, any, best, &tally);
+    rt_tally_add(&query->tallies[ray->ray->kind], &tally);
+    if (!counters) return over;
     counters->at[RAYTALLY_OBJECT_TESTS] += tally.object_tests;
     counters->at[RAYTALLY_OBJECT_HITS] += tally.object_hits;
     counters->at[RAYTALLY_CSG_TESTS] += tally.csg_tests;
@@ -138,33 +151,51 @@ static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), pr
 
 /* ---- queries ---- */
 
-enum { GUARD = 64 * 1024, CANARY = 0xA5 };
+enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
-/* Behind the memory, to the end of its page. */
+static RtStatus map_guarded(Guarded *guarded, size_t bytes, RtPluginGuard *guard, RtError *error) {
+    size_t page = (size_t)sysconf(_SC_PAGESIZE), room = (bytes + page - 1) / page * page;
+    size_t mapped = room + 2 * (size_t)GUARD;
+    char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, room, PROT_READ | PROT_WRITE) == 0) {
+        *guarded = (Guarded){mapping, mapped, mapping + GUARD + room};
+        *guard = (RtPluginGuard){mapping, mapping + mapped};
+        return RT_OK;
+    }
+    if (mapping != MAP_FAILED) munmap(mapping, mapped);
+    return rt_fail_memory(error, "what a plugin's query writes to", bytes);
+}
+
+static void unmap_guarded(Guarded *guarded) {
+    if (guarded->mapping) munmap(guarded->mapping, guarded->mapped);
+    *guarded = (Guarded){0};
+}
+
+static bool canaries_live(const char *from, const char *end) {
+    for (; from < end; from++) {
+        if ((unsigned char)*from != CANARY) return false;
+    }
+    return true;
+}
+
+/* Behind the memory of a query, to the end of its page. */
 static char *canary_of(const PluginQuery *query) {
     return (char *)query->memory + query->accel->query_bytes;
 }
 
-static size_t canary_bytes(const PluginQuery *query) {
-    return (size_t)(query->mapping + query->mapped - GUARD - canary_of(query));
-}
-
 static RtStatus map_memory(PluginQuery *query, RtError *error) {
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), wanted = query->accel->query_bytes;
+    size_t wanted = query->accel->query_bytes;
     size_t used = (wanted + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
-    size_t room = (used + page - 1) / page * page;
+    RT_TRY(map_guarded(&query->answers, CANARIES + MOST_ANSWERS * sizeof(RtHit),
+                       &query->now.guards[RT_GUARD_ANSWERS], error));
     if (wanted == 0) return RT_OK;
-    query->mapped = room + 2 * (size_t)GUARD;
-    query->mapping = mmap(NULL, query->mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (query->mapping == MAP_FAILED || mprotect(query->mapping + GUARD, room, PROT_READ | PROT_WRITE) != 0) {
-        if (query->mapping != MAP_FAILED) munmap(query->mapping, query->mapped);
-        query->mapping = NULL;
-        return rt_fail_memory(error, "the memory of a plugin's query", wanted);
+    RtStatus status = map_guarded(&query->own, used, &query->now.guards[RT_GUARD_QUERY], error);
+    if (status != RT_OK) {
+        unmap_guarded(&query->answers);
+        return status;
     }
-    query->memory = query->mapping + GUARD + room - used;
-    query->now.guard = query->mapping + GUARD + room;
-    query->now.behind = query->now.guard + GUARD;
-    memset(canary_of(query), CANARY, canary_bytes(query));
+    query->memory = query->own.end - used;
+    memset(canary_of(query), CANARY, used - wanted);
     return RT_OK;
 }
 
@@ -187,7 +218,8 @@ static void close_query(const RtAccel *accel, void *scratch) {
         PluginQuery *own = query;
         atomic_compare_exchange_strong(&open_queries[i], &own, NULL);
     }
-    if (query->mapping) munmap(query->mapping, query->mapped);
+    unmap_guarded(&query->own);
+    unmap_guarded(&query->answers);
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
@@ -197,28 +229,41 @@ static void begin(const RtAccel *accel, void *scratch) {
 
 /* ---- kernels ---- */
 
-/* Before a stream, and behind it. */
-static PluginQuery *enter(const RtScratch *scratch, const RtRay *rays) {
-    PluginQuery *query = scratch->own;
+/* Before a stream: where its answers go, [count] of `size` bytes, none of which is one yet. */
+static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *rays, size_t count,
+                   size_t size) {
+    char *answers = query->answers.end - count * size;
+    memset(answers - CANARIES, CANARY, CANARIES);
+    memset(answers, UNSET, count * size);
     query->room = scratch->room;
     query->now.ray = rays;
     now = &query->now;
-    return query;
+    return answers;
 }
 
-static void leave(PluginQuery *query) {
+/* Behind it. */
+static void leave(PluginQuery *query, const char *answers) {
+    RtError said;
     query->now.ray = NULL;
     now = NULL;
-    if (!query->memory) return;
-    const unsigned char *canary = (const unsigned char *)canary_of(query);
-    for (size_t i = 0, n = canary_bytes(query); i < n; i++) {
-        if (canary[i] == CANARY) continue;
-        RtError said;
+    if (!canaries_live(answers - CANARIES, answers)) {
+        rt_fail(&said, RT_BROKEN, "it wrote in front of its answers");
+        say(query->accel, &said);
+    }
+    if (query->memory && !canaries_live(canary_of(query), query->own.end)) {
         rt_fail(&said, RT_BROKEN, "it wrote past the %zu bytes of its query's memory",
                 query->accel->query_bytes);
         say(query->accel, &said);
-        return;
     }
+}
+
+/* An object that there is not. */
+static void say_of_object(PluginAccel *accel, const RtRay *ray, uint32_t object) {
+    uint32_t unset;
+    memset(&unset, UNSET, sizeof unset);
+    say_of_ray(accel, ray,
+               object == unset ? "it wrote no answer" : "it answered with an object that there is not",
+               object);
 }
 
 static void look_at_hits(PluginAccel *accel, const RtRay *rays, size_t count, RtHit *hits) {
@@ -236,7 +281,7 @@ static void look_at_hits(PluginAccel *accel, const RtRay *rays, size_t count, Rt
                     hit.object == RT_NO_OBJECT ? "no object" : "an object", (double)hit.t, text);
             say(accel, &said);
         } else {
-            say_of_ray(accel, &rays[i], "it answered with an object that there is not", hit.object);
+            say_of_object(accel, &rays[i], hit.object);
         }
     }
 }
@@ -245,42 +290,94 @@ static void look_at_blockers(PluginAccel *accel, const RtRay *rays, size_t count
     const uint32_t objects = accel->base.scene->geometry.object_count;
     for (size_t i = 0; i < count; i++) {
         if (blockers[i] < objects || blockers[i] == RT_NO_OBJECT) continue;
-        say_of_ray(accel, &rays[i], "it answered with an object that there is not", blockers[i]);
+        say_of_object(accel, &rays[i], blockers[i]);
         blockers[i] = RT_NO_OBJECT;
     }
 }
 
-/* Which counter is which; rays and hits are counted here, and what object tests count by object_hits. */
-static void add_counters(const raytally_counters *counters, RtTally *tally) {
-    tally->object_tests += counters->at[RAYTALLY_OBJECT_TESTS];
-    tally->object_hits += counters->at[RAYTALLY_OBJECT_HITS];
-    tally->extent_tests += counters->at[RAYTALLY_EXTENT_TESTS];
-    tally->steps += counters->at[RAYTALLY_STEPS];
-    tally->leaf_steps += counters->at[RAYTALLY_LEAF_STEPS];
-    tally->empty_steps += counters->at[RAYTALLY_EMPTY_STEPS];
-    tally->csg_tests += counters->at[RAYTALLY_CSG_TESTS];
-    tally->repeats_avoided += counters->at[RAYTALLY_REPEATS_AVOIDED];
+/* The counters of a plugin's own, and those that object_hits counts. Rays and hits are counted here, and an
+ * overlay, which passes rays on, no plugin is. X(CONSTANT, name) */
+#define OWN_COUNTERS(X)                                                                                      \
+    X(EXTENT_TESTS, extent_tests)                                                                            \
+    X(STEPS, steps)                                                                                          \
+    X(LEAF_STEPS, leaf_steps)                                                                                \
+    X(EMPTY_STEPS, empty_steps)                                                                              \
+    X(REPEATS_AVOIDED, repeats_avoided)
+#define OBJECT_COUNTERS(X)                                                                                   \
+    X(OBJECT_TESTS, object_tests)                                                                            \
+    X(OBJECT_HITS, object_hits)                                                                              \
+    X(CSG_TESTS, csg_tests)
+
+#define SAME_COUNTER(CONSTANT, name)                                                                         \
+    _Static_assert((size_t)RAYTALLY_##CONSTANT == offsetof(RtTally, name) / sizeof(uint64_t), #name);
+OWN_COUNTERS(SAME_COUNTER)
+OBJECT_COUNTERS(SAME_COUNTER)
+#define ONE(CONSTANT, name) +1
+_Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) + 1 == RT_TALLY_COUNTER_COUNT,
+               "a counter is a plugin's, or counted here");
+
+static void say_of_counts(PluginAccel *accel, RtRayKind kind, const char *what, uint64_t counted,
+                          uint64_t right) {
+    RtError said;
+    rt_fail(&said, RT_BROKEN,
+            "its %s for %s rays add up to %" PRIu64 ", and were %" PRIu64
+            ": raytally_object_hits counts them, in the counters that it is given",
+            what, rt_ray_kind_name(kind), counted, right);
+    say(accel, &said);
+}
+
+/* Of a stream. */
+static void add_counters(PluginQuery *query, const raytally_counters *counted, RtTally *tallies) {
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        const uint64_t *at = counted[kind].at;
+        const RtTally *right = &query->tallies[kind];
+#define ADD_OWN(CONSTANT, name) tallies[kind].name += at[RAYTALLY_##CONSTANT];
+#define ADD_RIGHT(CONSTANT, name)                                                                            \
+    tallies[kind].name += right->name;                                                                       \
+    if (at[RAYTALLY_##CONSTANT] != right->name)                                                              \
+        say_of_counts(query->accel, (RtRayKind)kind, #name, at[RAYTALLY_##CONSTANT], right->name);
+        OWN_COUNTERS(ADD_OWN)
+        OBJECT_COUNTERS(ADD_RIGHT)
+    }
+}
+
+static void count_from_here(PluginQuery *query) {
+    query->counting = true;
+    memset(query->tallies, 0, sizeof query->tallies);
 }
 
 /* The two kernels of a question, whose answers are of type Answer, or Theirs as the plugin calls it. */
 #define DEFINE_KERNELS(question, Answer, Theirs, look_at, is_hit)                                            \
+    static void question##_some(PluginQuery *query, const RtScratch *scratch, const RtRay *rays,             \
+                                size_t count, Answer *answers, raytally_counters *counters) {                \
+        PluginAccel *accel = query->accel;                                                                   \
+        Answer *theirs = enter(query, scratch, rays, count, sizeof(Answer));                                 \
+        accel->table->question(accel->self, query->memory, &query->face, (const raytally_ray *)rays, count,  \
+                               (Theirs *)theirs, counters);                                                  \
+        leave(query, (const char *)theirs);                                                                  \
+        look_at(accel, rays, count, theirs);                                                                 \
+        memcpy(answers, theirs, count * sizeof(Answer));                                                     \
+    }                                                                                                        \
     static void ask_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
                                size_t count, Answer *answers) {                                              \
-        PluginQuery *query = enter(scratch, rays);                                                           \
-        query->accel->table->question(of(accel)->self, query->memory, &query->face,                          \
-                                      (const raytally_ray *)rays, count, (Theirs *)answers, NULL);           \
-        leave(query);                                                                                        \
-        look_at(query->accel, rays, count, answers);                                                         \
+        (void)accel;                                                                                         \
+        for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
+            size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                          \
+            question##_some(scratch->own, scratch, rays + first, n, answers + first, NULL);                  \
+        }                                                                                                    \
     }                                                                                                        \
     static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
                                  size_t count, Answer *answers, RtTally *tallies) {                          \
-        PluginQuery *query = enter(scratch, rays);                                                           \
-        raytally_counters counters[RAYTALLY_RAY_KINDS] = {0};                                                \
-        query->accel->table->question(of(accel)->self, query->memory, &query->face,                          \
-                                      (const raytally_ray *)rays, count, (Theirs *)answers, counters);       \
-        leave(query);                                                                                        \
-        look_at(query->accel, rays, count, answers);                                                         \
-        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) add_counters(&counters[kind], &tallies[kind]);  \
+        (void)accel;                                                                                         \
+        PluginQuery *query = scratch->own;                                                                   \
+        for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
+            size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                          \
+            raytally_counters counters[RAYTALLY_RAY_KINDS] = {0};                                            \
+            count_from_here(query);                                                                          \
+            question##_some(query, scratch, rays + first, n, answers + first, counters);                     \
+            query->counting = false;                                                                         \
+            add_counters(query, counters, tallies);                                                          \
+        }                                                                                                    \
         for (size_t i = 0; i < count; i++) {                                                                 \
             tallies[rays[i].kind].rays++;                                                                    \
             tallies[rays[i].kind].hits += (is_hit);                                                          \
@@ -386,15 +483,35 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
                    *message ? message : "it is not valid and does not say why");
 }
 
+enum { MOST_DEPTH = 10000 };
+
+typedef struct Showing {
+    PluginAccel *accel;
+    RtBoxViewer viewer;
+} Showing;
+
 static void show_box(void *context, const raytally_box *theirs, uint32_t depth, int leaf) {
-    const RtBoxViewer *viewer = context;
+    const Showing *showing = context;
     RtBox box;
-    memcpy(&box, theirs, sizeof box);
-    viewer->show(viewer->context, &(RtBoxView){.box = &box, .depth = depth, .leaf = leaf != 0});
+    RtError said;
+    if (theirs) memcpy(&box, theirs, sizeof box);
+    if (!theirs || !rt_finite(box.lo) || !rt_finite(box.hi) || depth > MOST_DEPTH) {
+        if (theirs)
+            rt_fail(&said, RT_BROKEN, "it showed a box at depth %u from (%g, %g, %g) to (%g, %g, %g)", depth,
+                    (double)box.lo.x, (double)box.lo.y, (double)box.lo.z, (double)box.hi.x, (double)box.hi.y,
+                    (double)box.hi.z);
+        else
+            rt_fail(&said, RT_BROKEN, "it showed a box that is NULL");
+        say(showing->accel, &said);
+        return;
+    }
+    showing->viewer.show(showing->viewer.context,
+                         &(RtBoxView){.box = &box, .depth = depth, .leaf = leaf != 0});
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    of(accel)->table->each_box(of(accel)->self, show_box, &viewer);
+    Showing showing = {(PluginAccel *)accel, viewer};
+    showing.accel->table->each_box(showing.accel->self, show_box, &showing);
 }
 
 /* ---- the table ---- */

@@ -3,8 +3,9 @@
  * include/raytally/accel.h is.
  *
  * Whatever the plugin answers is looked at before anybody else sees it: an object that there is, a t within
- * the ray. The memory of a query ends where a page ends that nobody may write to, and has known bytes behind
- * it. */
+ * the ray. It goes to memory that ends where a page ends that nobody may write to, as does the memory of a
+ * query; next to both are known bytes. Object tests are counted here, whatever the plugin does with its
+ * counters. */
 #ifndef RT_ACCEL_PLUGIN_HOST_H
 #define RT_ACCEL_PLUGIN_HOST_H
 

@@ -6,9 +6,16 @@
 
 #include "base/ray.h"
 
+/* What lies behind memory that a plugin writes to, and may not be touched: [begin, end). */
+typedef struct RtPluginGuard {
+    const char *begin, *end;
+} RtPluginGuard;
+
+enum { RT_GUARD_QUERY, RT_GUARD_ANSWERS, RT_GUARD_COUNT };
+
 typedef struct RtPluginNow {
-    const RtRay *volatile ray;  /* the last that was prepared; NULL: the query is idle */
-    const char *guard, *behind; /* [guard, behind) is the memory that follows the query's own */
+    const RtRay *volatile ray; /* the last that was prepared; NULL: the query is idle */
+    RtPluginGuard guards[RT_GUARD_COUNT];
 } RtPluginNow;
 
 /* Of the calling thread; NULL where it traces nothing. Safe in signal handlers. */

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 
 #include <errno.h>
+#include <fenv.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -38,7 +39,9 @@ static void on_signal(int number, siginfo_t *info, void *unused) {
         crash->ray = *ray;
         crash->has_ray = true;
         const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
-        crash->out_of_query = at && at >= now->guard && at < now->behind;
+        for (uint32_t i = 0; at && i < RT_GUARD_COUNT; i++) {
+            if (at >= now->guards[i].begin && at < now->guards[i].end) crash->out_of = i + 1;
+        }
     }
     crash->signal = number;
     _exit(EXIT_FAILURE);
@@ -51,14 +54,20 @@ static void on_exit_called(int code, void *unused) {
     _exit(code);
 }
 
-/* Every thread has a stack for that: the crash may be that its own is full. Whoever hangs is told by SIGXCPU
- * to say at which ray. */
-static void watch_thread(void) {
+/* Every thread has a stack for that, which it gives back: the crash may be that its own is full. Whoever
+ * hangs is told by SIGXCPU to say at which ray. */
+static void *watch_thread(void) {
     stack_t stack;
-    if (sigaltstack(NULL, &stack) == 0 && !(stack.ss_flags & SS_DISABLE)) return; /* sanitizers have one */
+    if (sigaltstack(NULL, &stack) == 0 && !(stack.ss_flags & SS_DISABLE)) return NULL; /* sanitizers' own */
     stack = (stack_t){.ss_size = (size_t)64 * 1024};
-    stack.ss_sp = malloc(stack.ss_size); /* until the process ends */
+    stack.ss_sp = malloc(stack.ss_size);
     if (stack.ss_sp) sigaltstack(&stack, NULL);
+    return stack.ss_sp;
+}
+
+static void watch_thread_no_more(void *stack) {
+    if (stack) sigaltstack(&(stack_t){.ss_flags = SS_DISABLE}, NULL);
+    free(stack);
 }
 
 static void watch_signals(void) {
@@ -119,6 +128,17 @@ void rt_wire_destroy(RtQuery *query, void *message) {
     served.accel = NULL;
 }
 
+static void ignore(void *context, const RtBoxView *view) {
+    (void)context, (void)view;
+}
+
+/* All boxes to nobody: host.c looks at them. */
+void rt_wire_show(RtQuery *query, void *message) {
+    const RtAccel *base = rt_accel_base(served.accel);
+    if (base->ops->each_box) base->ops->each_box(base, (RtBoxViewer){ignore, NULL});
+    rt_wire_check(query, message);
+}
+
 /* Shows boxes to a message that has room for some of them. */
 typedef struct Showing {
     WireBoxes *to;
@@ -176,7 +196,8 @@ void rt_wire_trace(RtQuery *query, void *message) {
 /* ---- lanes ---- */
 
 /* Answers one request after the other, of which each is done on memory of this process alone, until there is
- * none to do: the query is then cleared; lane 0 ends with the accelerator. */
+ * none to do: the query is then cleared; lane 0 ends with the accelerator. A plugin may have told its thread
+ * to round otherwise, or to drop what is denormal; hit functions do neither. */
 static void serve_lane(Lane *lane, RtQuery *query) {
     char *message = rt_alloc_unset(MESSAGE_BYTES, 1);
     if (!message) _exit(EXIT_FAILURE);
@@ -187,6 +208,7 @@ static void serve_lane(Lane *lane, RtQuery *query) {
         size_t bytes = lane->bytes;
         if (work) {
             memcpy(message, lane->message, bytes);
+            fesetenv(FE_DFL_ENV);
             if (query && lane->begin) rt_query_begin(query);
             work(query, message);
             memcpy(lane->message, message, bytes);
@@ -208,8 +230,9 @@ typedef struct Opening {
 static void *serve_query(void *context) {
     Opening opening = *(Opening *)context;
     free(context);
-    watch_thread();
+    void *stack = watch_thread();
     serve_lane(opening.lane, &opening.query);
+    watch_thread_no_more(stack);
     return NULL;
 }
 
@@ -257,7 +280,9 @@ void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int thr
     let_go();
     limit_memory();
     watch_signals();
-    pthread_create(&thread, NULL, watch_raytally, NULL);
+    fesetenv(FE_DFL_ENV);
+    if (pthread_create(&thread, NULL, watch_raytally, NULL) != 0)
+        _exit(EXIT_FAILURE); /* it would outlive it */
     build(spec, scene, threads);
     if (served.accel) serve_lane(&wire->lanes[0], NULL);
     _exit(EXIT_SUCCESS);

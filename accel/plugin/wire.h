@@ -18,7 +18,8 @@
 #include <semaphore.h>
 #include <stdatomic.h>
 
-enum { LANES = 65, MESSAGE_BYTES = RT_AWAY_BYTES };
+/* One more than there can be threads. The memory of those that nobody takes is never touched. */
+enum { LANES = 1 + 1024, MESSAGE_BYTES = RT_AWAY_BYTES };
 
 /* What is asked: of the accelerator, by the lane's query, which lane 0 has not. */
 typedef RtAwayWork WireWork;
@@ -34,8 +35,9 @@ typedef struct Lane {
 /* How the process ended, as far as it could still say so. */
 typedef struct Crash {
     atomic_int signal; /* 0: it said nothing */
-    bool has_ray, out_of_query;
-    RtRay ray; /* that was being traced */
+    bool has_ray;
+    uint32_t out_of; /* 1 + the RtPluginGuard that was run into; 0: none */
+    RtRay ray;       /* that was being traced */
 } Crash;
 
 typedef struct Wire {
@@ -63,7 +65,7 @@ typedef struct WireChecked {
     RtError error;
 } WireChecked;
 
-WireWork rt_wire_validate, rt_wire_check, rt_wire_open; /* of a WireChecked */
+WireWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* of a WireChecked */
 WireWork rt_wire_destroy;                               /* of nothing; the process ends */
 
 /* Boxes number first.. of the structure, as many as there is room for. */

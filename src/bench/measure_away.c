@@ -81,7 +81,7 @@ static RtStatus remote_do(Remote *remote, RtAwayWork *work, RemoteMessage *messa
     message->status = RT_OK;
     rt_away_do(&remote->query, work, message, bytes);
     remote->there = message->there;
-    RtStatus status = message->status;
+    RtStatus status = rt_away_status(message->status);
     if (status == RT_OK) return rt_accel_check(remote->query.accel, error);
     message->error.message[sizeof message->error.message - 1] = '\0';
     return rt_fail(error, status, "%s", message->error.message);
@@ -105,11 +105,12 @@ static RtStatus send_rays(Remote *remote, const RtRaySet *set, RemoteMessage *me
     message->kind = set->kind;
     message->count = set->count;
     RT_TRY(remote_do(remote, make_set_there, message, HEAD, error));
-    for (message->first = 0; message->first < set->count; message->first += message->some) {
-        uint64_t left = set->count - message->first;
-        message->some = (uint32_t)(left < RAYS_A_MESSAGE ? left : RAYS_A_MESSAGE);
-        memcpy(message->rays, set->rays + message->first, message->some * sizeof(RtRay));
-        RT_TRY(remote_do(remote, take_rays_there, message, HEAD + message->some * sizeof(RtRay), error));
+    for (uint64_t first = 0; first < set->count; first += RAYS_A_MESSAGE) {
+        uint64_t left = set->count - first, some = left < RAYS_A_MESSAGE ? left : RAYS_A_MESSAGE;
+        message->first = first;
+        message->some = (uint32_t)some;
+        memcpy(message->rays, set->rays + first, some * sizeof(RtRay));
+        RT_TRY(remote_do(remote, take_rays_there, message, HEAD + some * sizeof(RtRay), error));
     }
     return RT_OK;
 }

@@ -208,6 +208,7 @@ RtStatus rt_structure_image(RtImage *image, const RtAccel *layer, const RtFrame 
                             .height = frame->sampling.height};
     const RtCamera *camera = &layer->scene->camera;
     layer->ops->each_box(layer, (RtBoxViewer){rt_structure_count, &d});
+    RT_TRY(rt_accel_check(layer, error));
     /* The floor, which is larger than all that is seen, does not set the scale. */
     d.most =
         fmax(d.least, fmin(d.most, 2 * rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)))));
@@ -221,6 +222,7 @@ RtStatus rt_structure_image(RtImage *image, const RtAccel *layer, const RtFrame 
         rt_structure_draw_section(&d);
     else
         status = draw_perspective(&d, error);
+    if (status == RT_OK) status = rt_accel_check(layer, error);
     if (status == RT_OK) draw_legend(&d);
     if (status != RT_OK) rt_image_clear(image);
     return status;

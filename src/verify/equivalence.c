@@ -20,12 +20,19 @@ typedef struct Way {
     size_t stream; /* rays at once */
 } Way;
 
-/* The answers to a chunk in all ways; in one piece with its rays, for an accelerator that is away. */
-typedef struct Asked {
-    size_t count;
+/* How a chunk is asked. */
+typedef struct Plan {
+    size_t count; /* of rays */
     Way ways[PASSES * KERNELS];
     int way_count;
+    bool recount; /* count twice, to see whether that is the same */
+} Plan;
+
+/* The answers to a chunk in all ways; in one piece with its rays, for an accelerator that is away. */
+typedef struct Asked {
+    Plan plan;
     RtTally tallies[RT_RAY_KIND_COUNT];
+    RtTally recounts[2][RT_RAY_KIND_COUNT];
     RtHit hits[PASSES * KERNELS][CHUNK];
     bool blocked[PASSES * KERNELS][CHUNK];
     RtRay rays[CHUNK]; /* unset for others: they are asked about the reference's, by which some know them */
@@ -33,9 +40,11 @@ typedef struct Asked {
 
 _Static_assert(sizeof(Asked) <= RT_AWAY_BYTES, "it fits");
 
-/* What one thread writes to. */
+/* What one thread writes to. The plan is the desk's own: what comes back from a plugin's process may have
+ * been written over, and is answers and nothing else. */
 typedef struct Desk {
     RtQuery query;
+    Plan plan;
     Asked asked;
 } Desk;
 
@@ -47,17 +56,18 @@ typedef struct Job {
     Desk *desks;          /* [threads] */
     RtHit *hits;          /* what a reference is filled with, or NULL */
     RtEquivalence *parts; /* [chunks] what a check is summed from, or NULL */
+    RtError recounted;    /* RT_BROKEN where chunk 0, of a plugin, was not counted the same twice */
 } Job;
 
 /* Both kernels in streams of one length; an exact accelerator, whose answers must not depend on that, in
  * short streams and in long ones. */
 static void choose_ways(Desk *desk, size_t chunk) {
     int passes = desk->query.accel->exact ? PASSES : 1;
-    desk->asked.way_count = 0;
+    desk->plan.way_count = 0;
     for (size_t i = 0; i < (size_t)passes * KERNELS; i++) {
         size_t pass = i / KERNELS, counted = i % KERNELS;
         size_t length = (chunk + counted + pass * STREAM_LENGTHS / PASSES) % STREAM_LENGTHS;
-        desk->asked.ways[desk->asked.way_count++] = (Way){counted, stream_lengths[length]};
+        desk->plan.ways[desk->plan.way_count++] = (Way){counted, stream_lengths[length]};
     }
 }
 
@@ -113,21 +123,35 @@ void rt_reference_clear(RtReference *reference) {
 /* ---- checking ---- */
 
 /* Answers a chunk in all ways. */
-static void ask(RtQuery *query, Asked *asked, const RtRay *rays) {
-    for (int w = 0; w < asked->way_count; w++) {
-        size_t stream = asked->ways[w].stream;
-        RtTally *tallies = asked->ways[w].counted ? asked->tallies : NULL;
-        for (size_t first = 0; first < asked->count; first += stream) {
-            size_t n = asked->count - first < stream ? asked->count - first : stream;
+static void ask(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *asked) {
+    for (int w = 0; w < plan->way_count; w++) {
+        size_t stream = plan->ways[w].stream;
+        RtTally *tallies = plan->ways[w].counted ? asked->tallies : NULL;
+        for (size_t first = 0; first < plan->count; first += stream) {
+            size_t n = plan->count - first < stream ? plan->count - first : stream;
             rt_nearest(query, rays + first, n, asked->hits[w] + first, tallies);
+            rt_away_beat();
             rt_occluded(query, rays + first, n, asked->blocked[w] + first, tallies);
+            rt_away_beat();
         }
+    }
+}
+
+/* Twice the same, from the same beginning, over what hits there were. */
+static void recount(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *asked) {
+    for (int i = 0; i < 2; i++) {
+        rt_query_begin(query);
+        rt_away_beat();
+        memset(asked->recounts[i], 0, sizeof asked->recounts[i]);
+        rt_nearest(query, rays, plan->count, asked->hits[plan->way_count - 1], asked->recounts[i]);
     }
 }
 
 static void ask_away(RtQuery *query, void *message) {
     Asked *asked = message;
-    ask(query, asked, asked->rays);
+    const Plan plan = asked->plan;
+    if (plan.recount) recount(query, &plan, asked->rays, asked);
+    ask(query, &plan, asked->rays, asked);
 }
 
 RtStatus rt_answer_verdict(const RtQuery *query, const RtRay *ray, RtHit expected, RtHit got,
@@ -172,12 +196,12 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
     RtVerdict worst = RT_EQUAL;
     bool occluded_wrong = false;
     const RtHit *doubtful = NULL;
-    for (int w = 0; w < desk->asked.way_count; w++) {
+    for (int w = 0; w < desk->plan.way_count; w++) {
         RtHit got = desk->asked.hits[w][i];
         bool blocked = desk->asked.blocked[w][i];
         RtWrongAnswer asked = {.index = index,
-                               .counted = desk->asked.ways[w].counted,
-                               .stream = desk->asked.ways[w].stream,
+                               .counted = desk->plan.ways[w].counted,
+                               .stream = desk->plan.ways[w].stream,
                                .ray = *ray,
                                .expected = expected,
                                .got = got,
@@ -206,20 +230,38 @@ static RtStatus judge(const Job *job, const Desk *desk, size_t chunk, size_t i, 
     return RT_OK;
 }
 
+static void compare_recounts(Job *job, const Asked *asked) {
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
+        for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+            uint64_t was = rt_tally_get(&asked->recounts[0][kind], i);
+            uint64_t is = rt_tally_get(&asked->recounts[1][kind], i);
+            if (was == is) continue;
+            rt_fail(&job->recounted, RT_BROKEN,
+                    "it counts %llu %s on some %s rays, and %llu when it is asked again",
+                    (unsigned long long)was, rt_tally_name(i), rt_ray_kind_name((RtRayKind)kind),
+                    (unsigned long long)is);
+            return;
+        }
+    }
+}
+
 static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *error) {
     Job *job = context;
     Desk *desk = &job->desks[thread];
     Asked *asked = &desk->asked;
     choose_ways(desk, chunk);
-    asked->count = chunk_count(job, chunk);
+    desk->plan.count = chunk_count(job, chunk);
     const RtRay *rays = job->reference->rays + chunk * CHUNK;
     if (rt_accel_is_away(job->accel)) {
-        memcpy(asked->rays, rays, asked->count * sizeof(RtRay));
+        desk->plan.recount = chunk == 0;
+        asked->plan = desk->plan;
+        memcpy(asked->rays, rays, desk->plan.count * sizeof(RtRay));
         rt_away_do(&desk->query, ask_away, asked, sizeof *asked);
+        if (desk->plan.recount) compare_recounts(job, asked);
     } else {
-        ask(&desk->query, asked, rays);
+        ask(&desk->query, &desk->plan, rays, asked);
     }
-    for (size_t i = 0; i < asked->count; i++) RT_TRY(judge(job, desk, chunk, i, error));
+    for (size_t i = 0; i < desk->plan.count; i++) RT_TRY(judge(job, desk, chunk, i, error));
     return RT_OK;
 }
 
@@ -240,6 +282,8 @@ RtStatus rt_equivalence_check(const RtReference *reference, RtAccel *accel, int 
         if (job.parts[i].any_wrong) keep_wrong_answer(out, job.parts[i].first_wrong);
     }
     rt_free(job.parts);
+    if (status == RT_OK && !out->any_wrong && job.recounted.status != RT_OK)
+        return rt_fail(error, RT_BROKEN, "%s: %s", accel->ops->name, job.recounted.message);
     return status;
 }
 
