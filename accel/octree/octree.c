@@ -23,7 +23,8 @@
  * current, and was to be left through p at t. The least ancestor of L that goes on beyond p holds Q, for it
  * holds the points on both sides of p: that is where `neighbours` begins. A current cell is found again while
  * it is still current, so that none is visited twice. Rays for which MAX_CELLS are not enough (so far away
- * that float32 can hardly tell cells apart) are handed to `parametric`.
+ * that float32 can hardly tell cells apart) are handed to `parametric`; those from where not even the scene
+ * is told from its cells, whatever the traversal, to all objects.
  *
  * Counting: an extent test for the box of the root; a step per node visited, on the way down or up; an empty
  * step per empty leaf. */
@@ -344,11 +345,12 @@ RT_KERNEL bool walk(const RtOctree *self, RtMailbox *mailbox, float enter, const
 /* Of a ray from very far away the thickness that its boxes need is a good part of the scene: is it likely to
  * be in more leaves than there are objects? */
 RT_KERNEL bool is_in_too_many_leaves(const RtOctree *self, const RtPreparedRay *ray) {
-    float side = (float)rt_box_longest_side(self->boxes[0]), thick = 0;
+    const RtGeometry *g = &self->base.scene->geometry;
+    double side = rt_box_longest_side(self->boxes[0]);
+    float thick = 0;
     for (int a = 0; a < 3; a++) thick = rt_maxf(thick, fabsf(ray->org_near[a] - ray->org_far[a]));
-    float part = rt_minf(thick, side);
-    return part * part * (float)self->node_count >
-           side * side * (float)self->base.scene->geometry.object_count;
+    double part = (double)thick < side ? (double)thick / side : 1;
+    return part * part * self->node_count > g->object_count;
 }
 
 RT_KERNEL void search(const RtOctree *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,

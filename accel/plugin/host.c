@@ -1,400 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "accel/plugin/host.h"
 
-#include "accel/kernel.h"
-#include "accel/plugin/now.h"
+#include "accel/plugin/query.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
-#include <inttypes.h>
-#include <pthread.h>
-#include <stdatomic.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
-/* The layouts that both sides have in common. */
-_Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, dir) == offsetof(RtRay, dir) &&
-                   offsetof(raytally_ray, source) == offsetof(RtRay, source) &&
-                   (int)RAYTALLY_RAY_KINDS == (int)RT_RAY_KIND_COUNT,
-               "rays");
-_Static_assert(sizeof(raytally_hit) == sizeof(RtHit) && RAYTALLY_NO_OBJECT == RT_NO_OBJECT, "hits");
-_Static_assert(sizeof(raytally_box) == sizeof(RtBox), "boxes");
-_Static_assert(sizeof(RtPreparedRay) <= sizeof(((raytally_prepared *)0)->own), "a prepared ray fits");
-
-typedef struct PluginAccel {
-    RtAccel base;
-    const raytally_accel_ops *table;
-    void *self;
-    size_t query_bytes;
-    atomic_bool nonsense; /* what it was is in `said` */
-    pthread_mutex_t lock;
-    RtError said;
-} PluginAccel;
-
-/* Memory that ends at the end of a page, and pages around it that nobody may touch. */
-typedef struct Guarded {
-    char *mapping; /* [mapped] or NULL */
-    size_t mapped;
-    char *end; /* of the pages that may be touched */
-} Guarded;
-
-/* What a query has. The plugin sees the first member alone. */
-typedef struct PluginQuery {
-    raytally_query face;
-    RtPluginNow now;
-    PluginAccel *accel;
-    const RtGeometry *geometry;
-    RtCrossing *room;
-    Guarded own;     /* of `memory` */
-    Guarded answers; /* of a stream of at most MOST_ANSWERS */
-    void *memory;    /* [accel->query_bytes] or NULL */
-    bool counting;
-    RtTally tallies[RT_RAY_KIND_COUNT]; /* of object tests, in a stream that is counted */
-} PluginQuery;
-
-static const PluginAccel *of(const RtAccel *accel) {
-    return (const PluginAccel *)accel;
-}
-
-/* ---- what is said of one that went wrong ---- */
-
-enum { MOST_QUERIES = 2048 }; /* of which the ray of a crash is known */
-static _Atomic(PluginQuery *) open_queries[MOST_QUERIES];
-static _Thread_local const RtPluginNow *now;
-
-const RtPluginNow *rt_plugin_now(void) {
-    return now;
-}
-
-const RtPluginNow *rt_plugin_busy(void) {
-    for (int i = 0; i < MOST_QUERIES; i++) {
-        const PluginQuery *query = atomic_load(&open_queries[i]);
-        if (query && query->now.ray) return &query->now;
-    }
-    return NULL;
-}
-
-/* The first thing counts. */
-static void say(PluginAccel *accel, const RtError *what) {
-    pthread_mutex_lock(&accel->lock);
-    if (!accel->nonsense) accel->said = *what;
-    accel->nonsense = true;
-    pthread_mutex_unlock(&accel->lock);
-}
-
-static void say_of_ray(PluginAccel *accel, const RtRay *ray, const char *what, uint32_t object) {
-    RtError said;
-    char text[RT_RAY_TEXT];
-    rt_ray_format(ray, text, sizeof text);
-    rt_fail(&said, RT_BROKEN, "%s, %u (the scene has %u objects), for the ray %s", what, object,
-            accel->base.scene->geometry.object_count, text);
-    say(accel, &said);
-}
-
-/* ---- what the plugin calls ---- */
-
-static void prepare(raytally_query *face, const raytally_ray *ray, raytally_prepared *out) {
-    PluginQuery *query = (PluginQuery *)face;
-    RtPreparedRay *own = (RtPreparedRay *)out->own;
-    query->now.ray = (const RtRay *)ray;
-    rt_hit_ray(own, query->geometry, (const RtRay *)ray, query->room);
-    out->tmin = own->tmin;
-    out->tmax = own->tmax;
-    memcpy(out->org, &own->org, 3 * sizeof(float));
-    memcpy(out->dir, &own->dir, 3 * sizeof(float));
-    out->org[3] = out->dir[3] = 0;
-    memcpy(out->inv, own->inv, sizeof out->inv);
-    memcpy(out->org_near, own->org_near, sizeof out->org_near);
-    memcpy(out->org_far, own->org_far, sizeof out->org_far);
-    memcpy(out->negative, own->negative, sizeof out->negative);
-    memcpy(out->first, own->first, sizeof out->first);
-    memcpy(out->last, own->last, sizeof out->last);
-    out->ray = ray;
-    out->query = face;
-}
-
-RT_KERNEL int hits_of(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, bool any,
-                      raytally_hit *best, RtTally *tally) {
-    PluginQuery *query = (PluginQuery *)ray->query;
-    const RtGeometry *geometry = query->geometry;
-    const RtPreparedRay *own = (const RtPreparedRay *)ray->own;
-    RtHit hit = {best->t, best->object};
-    bool over = false;
-    for (uint32_t i = 0; i < count && !over; i++) {
-        if (ids[i] >= geometry->object_count) {
-            say_of_ray(query->accel, own->original, "it asked for a test of an object that there is not",
-                       ids[i]);
-            break;
-        }
-        over = rt_test_object(geometry, ids[i], own, any, &hit, tally);
-    }
-    *best = (raytally_hit){hit.t, hit.object};
-    return over;
-}
-
-static int object_hits(const raytally_prepared *ray, const uint32_t *ids, uint32_t count, int any,
-                       raytally_hit *best, raytally_counters *counters) {
-    PluginQuery *query = (PluginQuery *)ray->query;
-    if (!query->counting) return hits_of(ray, ids, count, any, best, NULL);
-    RtTally tally = {0};
-    int over = hits_of(ray, ids, count, any, best, &tally);
-    rt_tally_add(&query->tallies[ray->ray->kind], &tally);
-    if (!counters) return over;
-    counters->at[RAYTALLY_OBJECT_TESTS] += tally.object_tests;
-    counters->at[RAYTALLY_OBJECT_HITS] += tally.object_hits;
-    counters->at[RAYTALLY_CSG_TESTS] += tally.csg_tests;
-    return over;
-}
-
-static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), prepare, object_hits};
-
-/* ---- queries ---- */
-
-enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
-
-static RtStatus map_guarded(Guarded *guarded, size_t bytes, RtPluginGuard *guard, RtError *error) {
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), room = (bytes + page - 1) / page * page;
-    size_t mapped = room + 2 * (size_t)GUARD;
-    char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, room, PROT_READ | PROT_WRITE) == 0) {
-        *guarded = (Guarded){mapping, mapped, mapping + GUARD + room};
-        *guard = (RtPluginGuard){mapping, mapping + mapped};
-        return RT_OK;
-    }
-    if (mapping != MAP_FAILED) munmap(mapping, mapped);
-    return rt_fail_memory(error, "what a plugin's query writes to", bytes);
-}
-
-static void unmap_guarded(Guarded *guarded) {
-    if (guarded->mapping) munmap(guarded->mapping, guarded->mapped);
-    *guarded = (Guarded){0};
-}
-
-static bool canaries_live(const char *from, const char *end) {
-    for (; from < end; from++) {
-        if ((unsigned char)*from != CANARY) return false;
-    }
-    return true;
-}
-
-/* Behind the memory of a query, to the end of its page. */
-static char *canary_of(const PluginQuery *query) {
-    return (char *)query->memory + query->accel->query_bytes;
-}
-
-static RtStatus map_memory(PluginQuery *query, RtError *error) {
-    size_t wanted = query->accel->query_bytes;
-    size_t used = (wanted + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
-    RT_TRY(map_guarded(&query->answers, CANARIES + MOST_ANSWERS * sizeof(RtHit),
-                       &query->now.guards[RT_GUARD_ANSWERS], error));
-    if (wanted == 0) return RT_OK;
-    RtStatus status = map_guarded(&query->own, used, &query->now.guards[RT_GUARD_QUERY], error);
-    if (status != RT_OK) {
-        unmap_guarded(&query->answers);
-        return status;
-    }
-    query->memory = query->own.end - used;
-    memset(canary_of(query), CANARY, used - wanted);
-    return RT_OK;
-}
-
-static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
-    PluginQuery *query = scratch;
-    *query =
-        (PluginQuery){.face.host = &host, .accel = (PluginAccel *)accel, .geometry = &accel->scene->geometry};
-    RT_TRY(map_memory(query, error));
-    for (int i = 0; i < MOST_QUERIES; i++) {
-        PluginQuery *none = NULL;
-        if (atomic_compare_exchange_strong(&open_queries[i], &none, query)) break;
-    }
-    return RT_OK;
-}
-
-static void close_query(const RtAccel *accel, void *scratch) {
-    (void)accel;
-    PluginQuery *query = scratch;
-    for (int i = 0; i < MOST_QUERIES; i++) {
-        PluginQuery *own = query;
-        atomic_compare_exchange_strong(&open_queries[i], &own, NULL);
-    }
-    unmap_guarded(&query->own);
-    unmap_guarded(&query->answers);
-}
-
-static void begin(const RtAccel *accel, void *scratch) {
-    const PluginAccel *self = of(accel);
-    if (self->table->begin) self->table->begin(self->self, ((PluginQuery *)scratch)->memory);
-}
-
-/* ---- kernels ---- */
-
-/* Before a stream: where its answers go, [count] of `size` bytes, none of which is one yet. */
-static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *rays, size_t count,
-                   size_t size) {
-    char *answers = query->answers.end - count * size;
-    memset(answers - CANARIES, CANARY, CANARIES);
-    memset(answers, UNSET, count * size);
-    query->room = scratch->room;
-    query->now.ray = rays;
-    now = &query->now;
-    return answers;
-}
-
-/* Behind it. */
-static void leave(PluginQuery *query, const char *answers) {
-    RtError said;
-    query->now.ray = NULL;
-    now = NULL;
-    if (!canaries_live(answers - CANARIES, answers)) {
-        rt_fail(&said, RT_BROKEN, "it wrote in front of its answers");
-        say(query->accel, &said);
-    }
-    if (query->memory && !canaries_live(canary_of(query), query->own.end)) {
-        rt_fail(&said, RT_BROKEN, "it wrote past the %zu bytes of its query's memory",
-                query->accel->query_bytes);
-        say(query->accel, &said);
-    }
-}
-
-/* An object that there is not. */
-static void say_of_object(PluginAccel *accel, const RtRay *ray, uint32_t object) {
-    uint32_t unset;
-    memset(&unset, UNSET, sizeof unset);
-    say_of_ray(accel, ray,
-               object == unset ? "it wrote no answer" : "it answered with an object that there is not",
-               object);
-}
-
-static void look_at_hits(PluginAccel *accel, const RtRay *rays, size_t count, RtHit *hits) {
-    const uint32_t objects = accel->base.scene->geometry.object_count;
-    for (size_t i = 0; i < count; i++) {
-        RtHit hit = hits[i];
-        bool miss = hit.object == RT_NO_OBJECT && hit.t == INFINITY;
-        if (miss || (hit.object < objects && hit.t >= rays[i].tmin && hit.t <= rays[i].tmax)) continue;
-        hits[i] = RT_MISS;
-        if (hit.object < objects || hit.object == RT_NO_OBJECT) {
-            RtError said;
-            char text[RT_RAY_TEXT];
-            rt_ray_format(&rays[i], text, sizeof text);
-            rt_fail(&said, RT_BROKEN, "it answered %s at t = %.9g, which is not on the ray %s",
-                    hit.object == RT_NO_OBJECT ? "no object" : "an object", (double)hit.t, text);
-            say(accel, &said);
-        } else {
-            say_of_object(accel, &rays[i], hit.object);
-        }
-    }
-}
-
-static void look_at_blockers(PluginAccel *accel, const RtRay *rays, size_t count, uint32_t *blockers) {
-    const uint32_t objects = accel->base.scene->geometry.object_count;
-    for (size_t i = 0; i < count; i++) {
-        if (blockers[i] < objects || blockers[i] == RT_NO_OBJECT) continue;
-        say_of_object(accel, &rays[i], blockers[i]);
-        blockers[i] = RT_NO_OBJECT;
-    }
-}
-
-/* The counters of a plugin's own, and those that object_hits counts. Rays and hits are counted here, and an
- * overlay, which passes rays on, no plugin is. X(CONSTANT, name) */
-#define OWN_COUNTERS(X)                                                                                      \
-    X(EXTENT_TESTS, extent_tests)                                                                            \
-    X(STEPS, steps)                                                                                          \
-    X(LEAF_STEPS, leaf_steps)                                                                                \
-    X(EMPTY_STEPS, empty_steps)                                                                              \
-    X(REPEATS_AVOIDED, repeats_avoided)
-#define OBJECT_COUNTERS(X)                                                                                   \
-    X(OBJECT_TESTS, object_tests)                                                                            \
-    X(OBJECT_HITS, object_hits)                                                                              \
-    X(CSG_TESTS, csg_tests)
-
-#define SAME_COUNTER(CONSTANT, name)                                                                         \
-    _Static_assert((size_t)RAYTALLY_##CONSTANT == offsetof(RtTally, name) / sizeof(uint64_t), #name);
-OWN_COUNTERS(SAME_COUNTER)
-OBJECT_COUNTERS(SAME_COUNTER)
-#define ONE(CONSTANT, name) +1
-_Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) + 1 == RT_TALLY_COUNTER_COUNT,
-               "a counter is a plugin's, or counted here");
-
-static void say_of_counts(PluginAccel *accel, RtRayKind kind, const char *what, uint64_t counted,
-                          uint64_t right) {
-    RtError said;
-    rt_fail(&said, RT_BROKEN,
-            "its %s for %s rays add up to %" PRIu64 ", and were %" PRIu64
-            ": raytally_object_hits counts them, in the counters that it is given",
-            what, rt_ray_kind_name(kind), counted, right);
-    say(accel, &said);
-}
-
-/* Of a stream. */
-static void add_counters(PluginQuery *query, const raytally_counters *counted, RtTally *tallies) {
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        const uint64_t *at = counted[kind].at;
-        const RtTally *right = &query->tallies[kind];
-#define ADD_OWN(CONSTANT, name) tallies[kind].name += at[RAYTALLY_##CONSTANT];
-#define ADD_RIGHT(CONSTANT, name)                                                                            \
-    tallies[kind].name += right->name;                                                                       \
-    if (at[RAYTALLY_##CONSTANT] != right->name)                                                              \
-        say_of_counts(query->accel, (RtRayKind)kind, #name, at[RAYTALLY_##CONSTANT], right->name);
-        OWN_COUNTERS(ADD_OWN)
-        OBJECT_COUNTERS(ADD_RIGHT)
-    }
-}
-
-static void count_from_here(PluginQuery *query) {
-    query->counting = true;
-    memset(query->tallies, 0, sizeof query->tallies);
-}
-
-/* The two kernels of a question, whose answers are of type Answer, or Theirs as the plugin calls it. */
-#define DEFINE_KERNELS(question, Answer, Theirs, look_at, is_hit)                                            \
-    static void question##_some(PluginQuery *query, const RtScratch *scratch, const RtRay *rays,             \
-                                size_t count, Answer *answers, raytally_counters *counters) {                \
-        PluginAccel *accel = query->accel;                                                                   \
-        Answer *theirs = enter(query, scratch, rays, count, sizeof(Answer));                                 \
-        accel->table->question(accel->self, query->memory, &query->face, (const raytally_ray *)rays, count,  \
-                               (Theirs *)theirs, counters);                                                  \
-        leave(query, (const char *)theirs);                                                                  \
-        look_at(accel, rays, count, theirs);                                                                 \
-        memcpy(answers, theirs, count * sizeof(Answer));                                                     \
-    }                                                                                                        \
-    static void ask_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
-                               size_t count, Answer *answers) {                                              \
-        (void)accel;                                                                                         \
-        for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
-            size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                          \
-            question##_some(scratch->own, scratch, rays + first, n, answers + first, NULL);                  \
-        }                                                                                                    \
-    }                                                                                                        \
-    static void count_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, Answer *answers, RtTally *tallies) {                          \
-        (void)accel;                                                                                         \
-        PluginQuery *query = scratch->own;                                                                   \
-        for (size_t first = 0; first < count; first += MOST_ANSWERS) {                                       \
-            size_t n = count - first < MOST_ANSWERS ? count - first : MOST_ANSWERS;                          \
-            raytally_counters counters[RAYTALLY_RAY_KINDS] = {0};                                            \
-            count_from_here(query);                                                                          \
-            question##_some(query, scratch, rays + first, n, answers + first, counters);                     \
-            query->counting = false;                                                                         \
-            add_counters(query, counters, tallies);                                                          \
-        }                                                                                                    \
-        for (size_t i = 0; i < count; i++) {                                                                 \
-            tallies[rays[i].kind].rays++;                                                                    \
-            tallies[rays[i].kind].hits += (is_hit);                                                          \
-        }                                                                                                    \
-    }
-DEFINE_KERNELS(nearest, RtHit, raytally_hit, look_at_hits, answers[i].object != RT_NO_OBJECT)
-DEFINE_KERNELS(occluded, uint32_t, uint32_t, look_at_blockers, answers[i] != RT_NO_OBJECT)
-
-static RtStatus check(const RtAccel *accel, RtError *error) {
-    const PluginAccel *self = of(accel);
-    return self->nonsense ? rt_fail(error, RT_BROKEN, "%s", self->said.message) : RT_OK;
-}
 
 /* ---- the structure ---- */
 
 static void destroy(RtAccel *accel) {
-    PluginAccel *self = (PluginAccel *)accel;
+    RtPluginAccel *self = (RtPluginAccel *)accel;
     self->table->destroy(self->self);
     pthread_mutex_destroy(&self->lock);
     rt_free(self);
@@ -440,8 +56,8 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
                             .message = message,
                             .message_room = sizeof message - 1};
     memcpy(&asked.box, &geometry->box, sizeof asked.box);
-    RT_TRY(rt_accel_new(what, sizeof(PluginAccel), out, error));
-    PluginAccel *self = (PluginAccel *)*out;
+    RT_TRY(rt_accel_new(what, sizeof(RtPluginAccel), out, error));
+    RtPluginAccel *self = (RtPluginAccel *)*out;
     int result = table->build(&asked, &self->self);
     if (result != RAYTALLY_BUILT) {
         rt_free(self);
@@ -453,13 +69,8 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     return RT_OK;
 }
 
-static size_t scratch_bytes(const RtAccel *accel) {
-    (void)accel;
-    return sizeof(PluginQuery);
-}
-
 static void describe(const RtAccel *accel, RtDescription *out) {
-    const PluginAccel *self = of(accel);
+    const RtPluginAccel *self = rt_plugin_of(accel);
     raytally_description said = {.predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN};
     if (self->table->describe) self->table->describe(self->self, &said);
     *out = (RtDescription){.interior = said.interior,
@@ -475,7 +86,7 @@ static void describe(const RtAccel *accel, RtDescription *out) {
 }
 
 static RtStatus validate(const RtAccel *accel, RtError *error) {
-    const PluginAccel *self = of(accel);
+    const RtPluginAccel *self = rt_plugin_of(accel);
     char message[900] = "";
     if (!self->table->validate || self->table->validate(self->self, message, sizeof message - 1) == 0)
         return RT_OK;
@@ -486,7 +97,7 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
 enum { MOST_DEPTH = 10000 };
 
 typedef struct Showing {
-    PluginAccel *accel;
+    RtPluginAccel *accel;
     RtBoxViewer viewer;
 } Showing;
 
@@ -502,7 +113,7 @@ static void show_box(void *context, const raytally_box *theirs, uint32_t depth, 
                     (double)box.hi.z);
         else
             rt_fail(&said, RT_BROKEN, "it showed a box that is NULL");
-        say(showing->accel, &said);
+        rt_plugin_say(showing->accel, &said);
         return;
     }
     showing->viewer.show(showing->viewer.context,
@@ -510,7 +121,7 @@ static void show_box(void *context, const raytally_box *theirs, uint32_t depth, 
 }
 
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    Showing showing = {(PluginAccel *)accel, viewer};
+    Showing showing = {(RtPluginAccel *)accel, viewer};
     showing.accel->table->each_box(showing.accel->self, show_box, &showing);
 }
 
@@ -535,16 +146,8 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                             .away = true,
                             .build = build,
                             .destroy = destroy,
-                            .nearest = ask_nearest,
-                            .occluded = ask_occluded,
-                            .nearest_counted = count_nearest,
-                            .occluded_counted = count_occluded,
-                            .scratch_bytes = scratch_bytes,
-                            .open = open_query,
-                            .close = close_query,
-                            .begin = begin,
                             .describe = describe,
                             .validate = validate,
-                            .each_box = table->each_box ? each_box : NULL,
-                            .check = check};
+                            .each_box = table->each_box ? each_box : NULL};
+    rt_plugin_query_ops(&ops->ops);
 }

@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* An accelerator of a plugin as an RtAccel, in the process where it lives: what raytally's side of
- * include/raytally/accel.h is.
- *
- * Whatever the plugin answers is looked at before anybody else sees it: an object that there is, a t within
- * the ray. It goes to memory that ends where a page ends that nobody may write to, as does the memory of a
- * query; next to both are known bytes. Object tests are counted here, whatever the plugin does with its
- * counters. */
+ * include/raytally/accel.h is. */
 #ifndef RT_ACCEL_PLUGIN_HOST_H
 #define RT_ACCEL_PLUGIN_HOST_H
 

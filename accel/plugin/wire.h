@@ -66,7 +66,7 @@ typedef struct WireChecked {
 } WireChecked;
 
 WireWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* of a WireChecked */
-WireWork rt_wire_destroy;                               /* of nothing; the process ends */
+WireWork rt_wire_destroy;                                             /* of nothing; the process ends */
 
 /* Boxes number first.. of the structure, as many as there is room for. */
 enum { WIRE_BOXES = 4096 };
