@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -99,7 +100,7 @@ static void break_away(Away *away, const char *what, const char *doing, bool ray
 }
 
 /* Of one that hangs: it is asked at which ray, and ended. */
-static void end_hanging(Away *away, const char *doing) {
+static void end_hanging(Away *away, const char *doing, double limit) {
     char what[96];
     int status = 0;
     away->wire->crash.has_ray = false;
@@ -112,12 +113,12 @@ static void end_hanging(Away *away, const char *doing) {
         }
     }
     away->gone = true;
-    snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", away->patience);
+    snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", limit);
     break_away(away, what, doing, true);
 }
 
 /* Has it ended, or hung for longer than it may? */
-static bool look_after(Away *away, const char *doing, bool hangs) {
+static bool look_after(Away *away, const char *doing, double waited, double limit) {
     pthread_mutex_lock(&away->lock);
     int status;
     if (!away->gone && waitpid(away->pid, &status, WNOHANG) == away->pid) {
@@ -125,18 +126,19 @@ static bool look_after(Away *away, const char *doing, bool hangs) {
         away->gone = true;
         say_end(away, status, what, sizeof what);
         break_away(away, what, doing, true);
-    } else if (!away->gone && hangs) {
-        end_hanging(away, doing);
+    } else if (!away->gone && waited > limit) {
+        end_hanging(away, doing, limit);
     }
     bool broken = away->broken;
     pthread_mutex_unlock(&away->lock);
     return broken;
 }
 
-/* Waits for the answer on a lane; false if there will be none. */
+/* Waits for the answer on a lane; false if there will be none. What is waited for is time in which this
+ * process looked: if both were stopped for a while, that was no time. */
 static bool wait_for(Away *away, Lane *lane, const char *doing, double limit) {
     unsigned long beat = away->wire->beat;
-    double since = rt_wall_seconds();
+    double last = rt_wall_seconds(), waited = 0;
     for (;;) {
         struct timespec until;
         clock_gettime(CLOCK_MONOTONIC, &until);
@@ -146,9 +148,11 @@ static bool wait_for(Away *away, Lane *lane, const char *doing, double limit) {
         if (sem_clockwait(&lane->answered, CLOCK_MONOTONIC, &until) == 0) return true;
         if (errno == EINTR) continue;
         unsigned long seen = away->wire->beat;
-        if (seen != beat) since = rt_wall_seconds();
+        double now = rt_wall_seconds();
+        waited = seen == beat ? waited + fmin(now - last, 1) : 0;
         beat = seen;
-        if (look_after(away, doing, rt_wall_seconds() - since > limit)) return false;
+        last = now;
+        if (look_after(away, doing, waited, limit)) return false;
     }
 }
 
@@ -436,18 +440,31 @@ static RtStatus check(const RtAccel *accel, RtError *error) {
     return ask_checked(accel, rt_wire_check, "it was asked how it went", error);
 }
 
+/* Broken if not all are shown: rt_accel_check tells. */
 static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
-    WireBoxes *boxes = rt_alloc(1, sizeof(WireBoxes));
-    while (boxes && ask_master(of(accel), rt_wire_boxes, boxes, sizeof *boxes, "it showed its boxes")) {
-        if (boxes->count == 0 || boxes->count > WIRE_BOXES) break;
-        for (uint32_t i = 0; i < boxes->count; i++) {
-            viewer.show(
-                viewer.context,
-                &(RtBoxView){.box = &boxes->boxes[i], .depth = boxes->depths[i], .leaf = boxes->leaves[i]});
+    Away *away = of(accel);
+    WireBoxes *some = rt_alloc(1, sizeof(WireBoxes));
+    uint64_t first = 0;
+    bool more = some != NULL, all = more;
+    while (more) {
+        some->first = first;
+        if (!ask_master(away, rt_wire_boxes, some, sizeof *some, "it showed its boxes")) break;
+        uint32_t count = some->count < WIRE_BOXES ? some->count : WIRE_BOXES;
+        for (uint32_t i = 0; i < count; i++) {
+            const WireBox *shown = &some->boxes[i];
+            viewer.show(viewer.context,
+                        &(RtBoxView){.box = &shown->box, .depth = shown->depth, .leaf = shown->leaf});
         }
-        boxes->first += boxes->count;
+        first += count;
+        more = count == WIRE_BOXES;
+        all = some->complete;
     }
-    rt_free(boxes);
+    if (!all) {
+        pthread_mutex_lock(&away->lock);
+        break_away(away, "there is no memory for all its boxes", "it showed them", false);
+        pthread_mutex_unlock(&away->lock);
+    }
+    rt_free(some);
 }
 
 static const RtAccelOps away_ops = {

@@ -2,13 +2,12 @@
 #include "accel/plugin/query.h"
 
 #include "accel/kernel.h"
+#include "accel/plugin/guard.h"
 #include "accel/plugin/now.h"
 #include "base/memory.h"
 
 #include <inttypes.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 /* The layouts that both sides have in common. */
 _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && offsetof(raytally_ray, dir) == offsetof(RtRay, dir) &&
@@ -19,13 +18,6 @@ _Static_assert(sizeof(raytally_hit) == sizeof(RtHit) && RAYTALLY_NO_OBJECT == RT
 _Static_assert(sizeof(raytally_box) == sizeof(RtBox), "boxes");
 _Static_assert(sizeof(RtPreparedRay) <= sizeof(((raytally_prepared *)0)->own), "a prepared ray fits");
 
-/* Memory that ends at the end of a page, and pages around it that nobody may touch. */
-typedef struct Guarded {
-    char *mapping; /* [mapped] or NULL */
-    size_t mapped;
-    char *end; /* of the pages that may be touched */
-} Guarded;
-
 /* What a query has. The plugin sees the first member alone. */
 typedef struct PluginQuery {
     raytally_query face;
@@ -33,9 +25,9 @@ typedef struct PluginQuery {
     RtPluginAccel *accel;
     const RtGeometry *geometry;
     RtCrossing *room;
-    Guarded own;     /* of `memory` */
-    Guarded answers; /* of a stream of at most MOST_ANSWERS */
-    void *memory;    /* [accel->query_bytes] or NULL */
+    RtGuarded own;     /* of `memory` */
+    RtGuarded answers; /* of a stream of at most MOST_ANSWERS */
+    void *memory;      /* [accel->query_bytes] or NULL */
     bool counting;
     RtTally tallies[RT_RAY_KIND_COUNT]; /* of object tests, in a stream that is counted */
 } PluginQuery;
@@ -133,51 +125,37 @@ static const raytally_host host = {RAYTALLY_ACCEL_ABI, sizeof(raytally_host), pr
 
 /* ---- queries ---- */
 
-enum { GUARD = 64 * 1024, CANARY = 0xA5, CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
+enum { CANARIES = 1024, MOST_ANSWERS = 4096, UNSET = 0xFE };
 
-static RtStatus map_guarded(Guarded *guarded, size_t bytes, RtPluginGuard *guard, RtError *error) {
-    size_t page = (size_t)sysconf(_SC_PAGESIZE), room = (bytes + page - 1) / page * page;
-    size_t mapped = room + 2 * (size_t)GUARD;
-    char *mapping = mmap(NULL, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (mapping != MAP_FAILED && mprotect(mapping + GUARD, room, PROT_READ | PROT_WRITE) == 0) {
-        *guarded = (Guarded){mapping, mapped, mapping + GUARD + room};
-        *guard = (RtPluginGuard){mapping, mapping + mapped};
-        return RT_OK;
-    }
-    if (mapping != MAP_FAILED) munmap(mapping, mapped);
-    return rt_fail_memory(error, "what a plugin's query writes to", bytes);
+/* Around the memory of a query, to the ends of its pages. */
+static void lay_canaries(const PluginQuery *query) {
+    char *memory = query->memory, *begin = query->own.begin, *end = memory + query->accel->query_bytes;
+    rt_canaries_lay(begin, memory);
+    rt_canaries_lay(end, query->own.end);
 }
 
-static void unmap_guarded(Guarded *guarded) {
-    if (guarded->mapping) munmap(guarded->mapping, guarded->mapped);
-    *guarded = (Guarded){0};
-}
-
-static bool canaries_live(const char *from, const char *end) {
-    for (; from < end; from++) {
-        if ((unsigned char)*from != CANARY) return false;
-    }
-    return true;
-}
-
-/* Behind the memory of a query, to the end of its page. */
-static char *canary_of(const PluginQuery *query) {
-    return (char *)query->memory + query->accel->query_bytes;
+static bool wrote_beside_memory(const PluginQuery *query) {
+    const char *memory = query->memory;
+    if (!memory) return false;
+    return !rt_canaries_live(query->own.begin, memory) ||
+           !rt_canaries_live(memory + query->accel->query_bytes, query->own.end);
 }
 
 static RtStatus map_memory(PluginQuery *query, RtError *error) {
     size_t wanted = query->accel->query_bytes;
+    if (wanted > RT_ACCEL_MAX_BYTES)
+        return rt_fail(error, RT_BROKEN, "its query_bytes asks for %zu bytes for each query", wanted);
     size_t used = (wanted + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
-    RT_TRY(map_guarded(&query->answers, CANARIES + MOST_ANSWERS * sizeof(RtHit),
-                       &query->now.guards[RT_GUARD_ANSWERS], error));
+    RT_TRY(rt_guarded_map(&query->answers, CANARIES + MOST_ANSWERS * sizeof(RtHit),
+                          &query->now.guards[RT_GUARD_ANSWERS], error));
     if (wanted == 0) return RT_OK;
-    RtStatus status = map_guarded(&query->own, used, &query->now.guards[RT_GUARD_QUERY], error);
+    RtStatus status = rt_guarded_map(&query->own, used, &query->now.guards[RT_GUARD_QUERY], error);
     if (status != RT_OK) {
-        unmap_guarded(&query->answers);
+        rt_guarded_unmap(&query->answers);
         return status;
     }
     query->memory = query->own.end - used;
-    memset(canary_of(query), CANARY, used - wanted);
+    lay_canaries(query);
     return RT_OK;
 }
 
@@ -200,8 +178,8 @@ static void close_query(const RtAccel *accel, void *scratch) {
         PluginQuery *own = query;
         atomic_compare_exchange_strong(&open_queries[i], &own, NULL);
     }
-    unmap_guarded(&query->own);
-    unmap_guarded(&query->answers);
+    rt_guarded_unmap(&query->own);
+    rt_guarded_unmap(&query->answers);
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
@@ -215,7 +193,7 @@ static void begin(const RtAccel *accel, void *scratch) {
 static void *enter(PluginQuery *query, const RtScratch *scratch, const RtRay *rays, size_t count,
                    size_t size) {
     char *answers = query->answers.end - count * size;
-    memset(answers - CANARIES, CANARY, CANARIES);
+    rt_canaries_lay(answers - CANARIES, answers);
     memset(answers, UNSET, count * size);
     query->room = scratch->room;
     query->now.ray = rays;
@@ -228,12 +206,12 @@ static void leave(PluginQuery *query, const char *answers) {
     RtError said;
     query->now.ray = NULL;
     now = NULL;
-    if (!canaries_live(answers - CANARIES, answers)) {
+    if (!rt_canaries_live(answers - CANARIES, answers)) {
         rt_fail(&said, RT_BROKEN, "it wrote in front of its answers");
         rt_plugin_say(query->accel, &said);
     }
-    if (query->memory && !canaries_live(canary_of(query), query->own.end)) {
-        rt_fail(&said, RT_BROKEN, "it wrote past the %zu bytes of its query's memory",
+    if (wrote_beside_memory(query)) {
+        rt_fail(&said, RT_BROKEN, "it wrote past the %zu bytes of its query's memory, or in front of them",
                 query->accel->query_bytes);
         rt_plugin_say(query->accel, &said);
     }
@@ -277,6 +255,25 @@ static void look_at_blockers(RtPluginAccel *accel, const RtRay *rays, size_t cou
     }
 }
 
+/* Whether each blocker is on its ray, by its exact hit: where there is time for it, in streams that are
+ * counted. */
+static void test_blockers(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *blockers) {
+    for (size_t i = 0; i < count; i++) {
+        RtPreparedRay ray;
+        float t;
+        if (blockers[i] == RT_NO_OBJECT) continue;
+        rt_hit_ray(&ray, query->geometry, &rays[i], query->room);
+        if (rt_object_hit(query->geometry, blockers[i], &ray, &t, NULL)) continue;
+        say_of_ray(query->accel, &rays[i],
+                   "it answered that an object is in the way that the ray does not hit", blockers[i]);
+    }
+}
+
+/* A nearest hit is compared with the right one by whoever asked for it. */
+static void test_hits(PluginQuery *query, const RtRay *rays, size_t count, const RtHit *hits) {
+    (void)query, (void)rays, (void)count, (void)hits;
+}
+
 /* The counters of a plugin's own, and those that object_hits counts. Rays and hits are counted here, and an
  * overlay, which passes rays on, no plugin is. X(CONSTANT, name) */
 #define OWN_COUNTERS(X)                                                                                      \
@@ -298,6 +295,16 @@ OBJECT_COUNTERS(SAME_COUNTER)
 _Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) + 1 == RT_TALLY_COUNTER_COUNT,
                "a counter is a plugin's, or counted here");
 
+/* No ray costs so much: what is beyond has been counted backwards, or is of memory that was never set. */
+#define MOST_A_RAY (UINT64_C(1) << 32)
+
+static void say_of_excess(RtPluginAccel *accel, RtRayKind kind, const char *what, uint64_t counted) {
+    RtError said;
+    rt_fail(&said, RT_BROKEN, "it counted %" PRIu64 " %s for %s rays, more than there can be", counted, what,
+            rt_ray_kind_name(kind));
+    rt_plugin_say(accel, &said);
+}
+
 static void say_of_counts(RtPluginAccel *accel, RtRayKind kind, const char *what, uint64_t counted,
                           uint64_t right) {
     RtError said;
@@ -308,12 +315,17 @@ static void say_of_counts(RtPluginAccel *accel, RtRayKind kind, const char *what
     rt_plugin_say(accel, &said);
 }
 
-/* Of a stream. */
-static void add_counters(PluginQuery *query, const raytally_counters *counted, RtTally *tallies) {
+/* Of a stream of so many rays. */
+static void add_counters(PluginQuery *query, const raytally_counters *counted, size_t rays,
+                         RtTally *tallies) {
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         const uint64_t *at = counted[kind].at;
         const RtTally *right = &query->tallies[kind];
-#define ADD_OWN(CONSTANT, name) tallies[kind].name += at[RAYTALLY_##CONSTANT];
+#define ADD_OWN(CONSTANT, name)                                                                              \
+    if (at[RAYTALLY_##CONSTANT] <= rays * MOST_A_RAY)                                                        \
+        tallies[kind].name += at[RAYTALLY_##CONSTANT];                                                       \
+    else                                                                                                     \
+        say_of_excess(query->accel, (RtRayKind)kind, #name, at[RAYTALLY_##CONSTANT]);
 #define ADD_RIGHT(CONSTANT, name)                                                                            \
     tallies[kind].name += right->name;                                                                       \
     if (at[RAYTALLY_##CONSTANT] != right->name)                                                              \
@@ -329,7 +341,7 @@ static void count_from_here(PluginQuery *query) {
 }
 
 /* The two kernels of a question, whose answers are of type Answer, or Theirs as the plugin calls it. */
-#define DEFINE_KERNELS(question, Answer, Theirs, look_at, is_hit)                                            \
+#define DEFINE_KERNELS(question, Answer, Theirs, look_at, test, is_hit)                                      \
     static void question##_some(PluginQuery *query, const RtScratch *scratch, const RtRay *rays,             \
                                 size_t count, Answer *answers, raytally_counters *counters) {                \
         RtPluginAccel *accel = query->accel;                                                                 \
@@ -358,15 +370,16 @@ static void count_from_here(PluginQuery *query) {
             count_from_here(query);                                                                          \
             question##_some(query, scratch, rays + first, n, answers + first, counters);                     \
             query->counting = false;                                                                         \
-            add_counters(query, counters, tallies);                                                          \
+            test(query, rays + first, n, answers + first);                                                   \
+            add_counters(query, counters, n, tallies);                                                       \
         }                                                                                                    \
         for (size_t i = 0; i < count; i++) {                                                                 \
             tallies[rays[i].kind].rays++;                                                                    \
             tallies[rays[i].kind].hits += (is_hit);                                                          \
         }                                                                                                    \
     }
-DEFINE_KERNELS(nearest, RtHit, raytally_hit, look_at_hits, answers[i].object != RT_NO_OBJECT)
-DEFINE_KERNELS(occluded, uint32_t, uint32_t, look_at_blockers, answers[i] != RT_NO_OBJECT)
+DEFINE_KERNELS(nearest, RtHit, raytally_hit, look_at_hits, test_hits, answers[i].object != RT_NO_OBJECT)
+DEFINE_KERNELS(occluded, uint32_t, uint32_t, look_at_blockers, test_blockers, answers[i] != RT_NO_OBJECT)
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
     const RtPluginAccel *self = rt_plugin_of(accel);

@@ -7,12 +7,14 @@
 #include "base/memory.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <fenv.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -100,8 +102,12 @@ static void limit_memory(void) {
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
 }
 
-/* Keeps nothing of raytally's open but its messages to the user, and the end of `alive`. */
+/* Keeps nothing of raytally's open but its messages to the user, and the end of `alive`; and what the plugin
+ * forks does not answer in its place. */
 static void let_go(void) {
+    int nothing = open("/dev/null", O_RDONLY);
+    if (nothing >= 0) dup2(nothing, STDIN_FILENO);
+    madvise(served.wire, sizeof(Wire), MADV_DONTFORK);
     dup2(STDERR_FILENO, STDOUT_FILENO);
     int high = dup2(served.alive, STDERR_FILENO + 1);
     if (high >= 0) served.alive = high;
@@ -139,28 +145,41 @@ void rt_wire_show(RtQuery *query, void *message) {
     rt_wire_check(query, message);
 }
 
-/* Shows boxes to a message that has room for some of them. */
-typedef struct Showing {
-    WireBoxes *to;
-    uint64_t seen;
-} Showing;
+/* All that the structure shows, from when the first are asked for until the last have been given. */
+static struct Shown {
+    WireBox *boxes; /* [room] */
+    uint32_t count, room;
+    bool complete;
+} shown;
 
-static void show(void *context, const RtBoxView *view) {
-    Showing *showing = context;
-    WireBoxes *to = showing->to;
-    uint64_t place = showing->seen++;
-    if (place < to->first || to->count == WIRE_BOXES) return;
-    to->boxes[to->count] = *view->box;
-    to->depths[to->count] = view->depth;
-    to->leaves[to->count++] = view->leaf;
+static void forget_shown(void) {
+    rt_free(shown.boxes);
+    shown = (struct Shown){0};
+}
+
+static void record(void *context, const RtBoxView *view) {
+    (void)context;
+    if (shown.complete)
+        shown.complete =
+            rt_reserve(&shown.boxes, &shown.room, (uint64_t)shown.count + 1, sizeof(WireBox), NULL) == RT_OK;
+    if (!shown.complete) return;
+    shown.boxes[shown.count++] = (WireBox){*view->box, view->depth, view->leaf};
 }
 
 void rt_wire_boxes(RtQuery *query, void *message) {
     (void)query;
-    Showing showing = {message, 0};
-    showing.to->count = 0;
+    WireBoxes *to = message;
     const RtAccel *base = rt_accel_base(served.accel);
-    if (base->ops->each_box) base->ops->each_box(base, (RtBoxViewer){show, &showing});
+    if (to->first == 0) {
+        forget_shown();
+        shown.complete = true;
+        if (base->ops->each_box) base->ops->each_box(base, (RtBoxViewer){record, NULL});
+    }
+    uint64_t left = to->first < shown.count ? shown.count - to->first : 0;
+    to->complete = shown.complete;
+    to->count = (uint32_t)(left < WIRE_BOXES ? left : WIRE_BOXES);
+    if (to->count > 0) memcpy(to->boxes, shown.boxes + to->first, to->count * sizeof(WireBox));
+    if (left <= WIRE_BOXES) forget_shown();
 }
 
 /* Blockers go where the first of the hits lie, and then each to its own. */

@@ -68,14 +68,18 @@ typedef struct WireChecked {
 WireWork rt_wire_validate, rt_wire_show, rt_wire_check, rt_wire_open; /* of a WireChecked */
 WireWork rt_wire_destroy;                                             /* of nothing; the process ends */
 
-/* Boxes number first.. of the structure, as many as there is room for. */
+/* Boxes number first.. of the structure, as many as there is room for; from 0 on in a row. */
 enum { WIRE_BOXES = 4096 };
+typedef struct WireBox {
+    RtBox box;
+    uint32_t depth;
+    bool leaf;
+} WireBox;
 typedef struct WireBoxes {
     uint64_t first;
-    uint32_t count; /* out */
-    RtBox boxes[WIRE_BOXES];
-    uint32_t depths[WIRE_BOXES];
-    bool leaves[WIRE_BOXES];
+    uint32_t count; /* out; fewer than WIRE_BOXES: the last */
+    bool complete;  /* out: there was memory for all of them */
+    WireBox boxes[WIRE_BOXES];
 } WireBoxes;
 WireWork rt_wire_boxes;
 

@@ -2,7 +2,32 @@
 #include "base/status.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
+
+/* Bytes of the UTF-8 character that begins at `s`, or 0 where none does. Overlong ones, surrogates and what
+ * is above U+10FFFF are none. */
+static size_t character(const unsigned char *s) {
+    if (s[0] < 0x80) return 1;
+    size_t bytes = s[0] >= 0xF5 ? 0 : s[0] >= 0xF0 ? 4 : s[0] >= 0xE0 ? 3 : s[0] >= 0xC2 ? 2 : 0;
+    for (size_t i = 1; i < bytes; i++) {
+        if ((s[i] & 0xC0) != 0x80) return 0;
+    }
+    bool overlong = (s[0] == 0xE0 && s[1] < 0xA0) || (s[0] == 0xF0 && s[1] < 0x90);
+    bool none = (s[0] == 0xED && s[1] > 0x9F) || (s[0] == 0xF4 && s[1] > 0x8F);
+    return overlong || none ? 0 : bytes;
+}
+
+/* Messages quote files and plugins, and go to terminals and to JSON: what is no UTF-8 (of a name, or where
+ * the end was cut off) and what commands a terminal becomes a question mark. */
+static void clean(char *message) {
+    for (unsigned char *s = (unsigned char *)message; *s;) {
+        size_t bytes = character(s);
+        bool command = (*s < ' ' && *s != '\n' && *s != '\t') || *s == 0x7F;
+        if (bytes == 0 || command) *s = '?';
+        s += bytes == 0 ? 1 : bytes;
+    }
+}
 
 RtStatus rt_fail(RtError *error, RtStatus status, const char *format, ...) {
     if (error) {
@@ -11,6 +36,7 @@ RtStatus rt_fail(RtError *error, RtStatus status, const char *format, ...) {
         va_start(args, format);
         vsnprintf(error->message, sizeof error->message, format, args);
         va_end(args);
+        clean(error->message);
     }
     return status;
 }
@@ -28,6 +54,7 @@ RtStatus rt_fail_at(RtError *error, const char *file, size_t line, size_t column
     va_start(args, format);
     vsnprintf(out + n, room - (size_t)n, format, args);
     va_end(args);
+    clean(out);
     return RT_BAD_INPUT;
 }
 

@@ -7,6 +7,7 @@
 #include "bench/measure_here.h"
 
 #include <string.h>
+#include <xxhash.h>
 
 /* A runner here, and its like over there. */
 typedef struct Remote {
@@ -17,6 +18,7 @@ typedef struct Remote {
 typedef struct RemoteRunner {
     RtRunner runner;
     RtRaySet set;
+    XXH64_hash_t rays; /* the hash of what the set had */
 } RemoteRunner;
 
 /* What crosses over. */
@@ -62,16 +64,24 @@ static void take_rays_there(RtQuery *query, void *message) {
     memcpy(m->there->set.rays + m->first, m->rays, m->some * sizeof(RtRay));
 }
 
+static XXH64_hash_t hash_rays(const RtRaySet *set) {
+    return XXH3_64bits(set->rays, set->count * sizeof(RtRay));
+}
+
 static void open_there(RtQuery *query, void *message) {
     RemoteMessage *m = message;
     RtTimed timed = {.accel = query->accel, .set = &m->there->set};
+    m->there->rays = hash_rays(&m->there->set);
     m->status = rt_runner_open_here(&m->there->runner, &timed, m->threads, &m->error);
 }
 
+/* On the rays that it was to be timed on, and no others: they lie within its reach. */
 static void time_there(RtQuery *query, void *message) {
     (void)query;
     RemoteMessage *m = message;
     m->status = rt_runner_time(&m->there->runner, m->repeats, &m->seconds, &m->wall, &m->error);
+    if (m->status == RT_OK && hash_rays(&m->there->set) != m->there->rays)
+        m->status = rt_fail(&m->error, RT_BROKEN, "it wrote to the rays that it was given");
 }
 
 /* Has it done there; what that came to, or why the accelerator is broken. */
