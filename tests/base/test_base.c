@@ -37,6 +37,19 @@ RT_TEST(narrowing_rounds_also_where_widening_follows) {
     assert_true(to[0] == (double)rounded && to[1] == 2 * (double)rounded);
 }
 
+RT_TEST(messages_are_text_whatever_they_quote) {
+    RtError error;
+    rt_fail(&error, RT_IO, "%s", "\xff caf\xc3\xa9 \xe2\x82\xac \x1b[31m \xed\xa0\x80 \xc0\xaf \xc3");
+    assert_string_equal(error.message, "? caf\xc3\xa9 \xe2\x82\xac ?[31m ??? ?? ?");
+    char letters[2 * sizeof error.message] = "";
+    for (size_t i = 0; i + 2 < sizeof letters; i += 2) memcpy(letters + i, "\xc3\xa9", 2);
+    rt_fail(&error, RT_IO, "%s", letters); /* the end is cut within a letter */
+    assert_int_equal(strlen(error.message), sizeof error.message - 1);
+    assert_string_equal(error.message + sizeof error.message - 4, "\xc3\xa9?");
+    rt_fail_at(&error, "\xfe.yaml", 0, 0, "wrong");
+    assert_string_equal(error.message, "?.yaml: wrong");
+}
+
 RT_TEST(tallies_add_counter_by_counter) {
     RtTally sum = {.rays = 1, .passed_on = 2}, part = {.rays = 10, .steps = 5};
     rt_tally_add(&sum, &part);
