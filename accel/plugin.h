@@ -26,6 +26,9 @@ RtStatus rt_plugin_load(const char *path, RtError *error);
  * by name. */
 RtStatus rt_plugin_load_all(const char *list, RtError *error);
 
+/* RT_BAD_INPUT where the registry has no room for so many more accelerators of plugins. */
+RtStatus rt_accel_has_room(size_t more, RtError *error);
+
 /* Those that were loaded, in order. */
 size_t rt_plugin_count(void);
 const RtPlugin *rt_plugin_at(size_t i);

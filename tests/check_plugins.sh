@@ -157,14 +157,15 @@ refuses 'no function .raytally_plugin.*new-accel' "$plugins/unloadable-SYMBOL.so
 refuses 'there is no accelerator in it' "$plugins/unloadable-EMPTY.so"
 refuses 'version 2 .*compile it against the headers' "$plugins/unloadable-ABI.so"
 refuses 'set .size. to sizeof' "$plugins/unloadable-SIZE.so"
-refuses "name of an accelerator is up to .* letters" "$plugins/unloadable-NAME.so"
+refuses "'un loadable' cannot be the name of an accelerator" "$plugins/unloadable-NAME.so"
 refuses "accelerator 'grid' already: choose another name" "$plugins/unloadable-TAKEN.so"
-refuses "accelerator 'unloadable' already: choose another name" "$plugins/unloadable-TWICE.so"
+refuses "it has two accelerators 'unloadable': choose another name" "$plugins/unloadable-TWICE.so"
 refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
 refuses "'unloadable' has 1 parameters" "$plugins/unloadable-PARAMETERS.so"
 refuses "does not fit itself.*depth" "$plugins/unloadable-STANDARD.so"
-refuses 'does not survive being loaded \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
-refuses 'does not survive being loaded \(Aborted\)' "$plugins/unloadable-ENTRY.so"
+refuses 'does not survive being loaded: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
+refuses 'does not survive being loaded: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
+refuses 'does not survive being loaded: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
 mkdir folder && cp "$plugins/faulty.so" folder/
 for list in folder "$plugins/faulty.so:$plugins/new-accel.so"; do
     RAYTALLY_PLUGINS=$list "$program" accels >printed
