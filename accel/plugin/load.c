@@ -281,20 +281,29 @@ static void load_from(void *context, const char *path) {
     if (folder->status == RT_OK) folder->status = rt_plugin_load(path, folder->error);
 }
 
+/* The first name of a list to path[0..room); gives what is left of the list, or NULL where it is too long. */
+static const char *take_path(const char *list, char *path, size_t room) {
+    size_t length = 0;
+    for (; *list && *list != ':' && length < room; list++) {
+        if (*list == '\\' && (list[1] == ':' || list[1] == '\\')) list++;
+        path[length++] = *list;
+    }
+    if (length == room) return NULL;
+    path[length] = '\0';
+    return *list == ':' ? list + 1 : list;
+}
+
 RtStatus rt_plugin_load_all(const char *list, RtError *error) {
     char path[RT_MAX_PATH];
     struct stat about;
-    for (size_t length; *list; list += length + (list[length] == ':')) {
-        length = strcspn(list, ":");
-        if (length == 0) continue;
-        if (length >= sizeof path) return rt_fail(error, RT_BAD_INPUT, "a path of a plugin is too long");
-        memcpy(path, list, length);
-        path[length] = '\0';
+    while (*list) {
+        list = take_path(list, path, sizeof path);
+        if (!list) return rt_fail(error, RT_BAD_INPUT, "a path of a plugin is too long");
         Folder folder = {RT_OK, error};
-        if (stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
+        if (*path && stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
             rt_directory_each(path, ".so", load_from, &folder);
             RT_TRY(folder.status);
-        } else {
+        } else if (*path) {
             RT_TRY(rt_plugin_load(path, error));
         }
     }
