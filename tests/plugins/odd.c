@@ -23,7 +23,7 @@ __attribute__((constructor)) static void when_loaded(void) {
 static int build(const raytally_build *from, void **self) {
     (void)from;
     *self = NULL;
-    return RAYTALLY_BUILT;
+    return RAYTALLY_BUILD_OK;
 }
 
 static void destroy(void *self) {

@@ -27,7 +27,7 @@ enum {
 static int build(const raytally_build *from, void **self) {
     (void)from;
     *self = NULL;
-    return RAYTALLY_BUILT;
+    return RAYTALLY_BUILD_OK;
 }
 
 static void destroy(void *self) {
