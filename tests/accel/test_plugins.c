@@ -248,4 +248,25 @@ RT_TEST(a_crash_is_told_where_somebody_else_waits_for_children) {
     crash_where_children_are(wait_for_all);
 }
 
+RT_TEST(a_name_is_a_letter_and_then_letters_digits_and_two_more) {
+    static const char *const good[] = {"x", "my-grid", "Grid_2",
+                                       "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxxx"};
+    static const char *const bad[] = {"",
+                                      "9lives",
+                                      "-x",
+                                      "_x",
+                                      "a b",
+                                      "a:b",
+                                      "a+b",
+                                      "gr\xfc"
+                                      "n",
+                                      "all",
+                                      "grid",
+                                      "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxxxx"};
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++)
+        assert_ok(rt_accel_name_is_free(good[i], error));
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_int_equal(rt_accel_name_is_free(bad[i], NULL), RT_BAD_INPUT);
+}
+
 RT_TESTS(plugins, NULL, NULL)
