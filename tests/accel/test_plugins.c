@@ -250,7 +250,7 @@ RT_TEST(a_crash_is_told_where_somebody_else_waits_for_children) {
 
 RT_TEST(a_name_is_a_letter_and_then_letters_digits_and_two_more) {
     static const char *const good[] = {"x", "my-grid", "Grid_2",
-                                       "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxxx"};
+                                       "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxx"};
     static const char *const bad[] = {"",
                                       "9lives",
                                       "-x",
@@ -262,7 +262,7 @@ RT_TEST(a_name_is_a_letter_and_then_letters_digits_and_two_more) {
                                       "n",
                                       "all",
                                       "grid",
-                                      "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxxxx"};
+                                      "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxxx"};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++)
         assert_ok(rt_accel_name_is_free(good[i], error));
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
