@@ -22,9 +22,12 @@ typedef struct RtPlugin {
  * or a name that is taken, or does not survive being loaded. */
 RtStatus rt_plugin_load(const char *path, RtError *error);
 
-/* Every library in `list`, of files and folders joined by ':'; of a folder, each file in it that ends in .so,
- * by name. */
+/* Every library in `list`, of files and folders joined by ':', which is written '\:' where it belongs to a
+ * name, as '\\' may be for a '\'; of a folder, each file in it that ends in .so, by name. */
 RtStatus rt_plugin_load_all(const char *list, RtError *error);
+
+/* RT_BAD_INPUT where the registry has no room for so many more accelerators of plugins. */
+RtStatus rt_accel_has_room(size_t more, RtError *error);
 
 /* Those that were loaded, in order. */
 size_t rt_plugin_count(void);

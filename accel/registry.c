@@ -2,6 +2,7 @@
 /* The one list of accelerators. To add one: write its file, add a line here, add the file to CMakeLists.txt.
  * Those of plugins join it at run time. */
 #include "accel/accel.h"
+#include "accel/plugin.h"
 
 #include "base/words.h"
 
@@ -45,7 +46,18 @@ size_t rt_accel_count(void) {
     return count;
 }
 
+/* A letter is what C calls one, whatever the locale does. */
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+
 RtStatus rt_accel_name_is_free(const char *name, RtError *error) {
+    if (strspn(name, LETTERS) == 0 || name[strspn(name, LETTERS "0123456789_-")])
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%.80s' cannot be the name of an accelerator: a letter, and then letters, digits, "
+                       "'_' and '-'",
+                       name);
+    if (strlen(name) >= RT_MAX_NAME)
+        return rt_fail(error, RT_BAD_INPUT, "'%.80s' is too long for a name: at most %d letters", name,
+                       RT_MAX_NAME - 1);
     if (strcmp(name, "all") == 0)
         return rt_fail(error, RT_BAD_INPUT, "'all' means every accelerator: choose another name");
     for (size_t i = 0; i < count; i++) {
@@ -56,9 +68,13 @@ RtStatus rt_accel_name_is_free(const char *name, RtError *error) {
     return RT_OK;
 }
 
+RtStatus rt_accel_has_room(size_t more, RtError *error) {
+    if (more <= BUILT_IN + MOST_PLUGINS - count) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators of plugins", MOST_PLUGINS);
+}
+
 RtStatus rt_accel_register(const RtAccelOps *ops, RtError *error) {
-    if (count == BUILT_IN + MOST_PLUGINS)
-        return rt_fail(error, RT_BAD_INPUT, "more than %d accelerators of plugins", MOST_PLUGINS);
+    RT_TRY(rt_accel_has_room(1, error));
     RT_TRY(rt_accel_name_is_free(ops->name, error));
     registry[count++] = ops;
     return RT_OK;

@@ -31,20 +31,32 @@ verified() {
         tail -n 1 || true
 }
 
-# right NAME
+# right NAME: all rays of all scenes were asked, and nothing is wrong
 right() {
-    local said
+    local said form='^6 scenes, ([1-9][0-9]*) accelerators?, 5000 rays, ([0-9]+) pairs of a ray and an accelerator: nothing wrong$'
     said=$(verified "$1")
-    grep -q ': nothing wrong$' <<<"$said" || complain "$1: $said"
+    [[ $said =~ $form && ${BASH_REMATCH[2]} = $((6 * 5000 * BASH_REMATCH[1])) ]] || complain "$1: $said"
+}
+
+# refused COMPILER STANDARD OPTION: box.h is not compiled without NaN and infinities
+refused() {
+    command -v "$1" >/dev/null || return 0
+    "$1" -std="$2" "$3" -fsyntax-only -I include -include raytally/box.h -x c /dev/null 2>"$work/log" &&
+        complain "$1 $3: box.h is compiled"
+    grep -q 'needs NaN and infinities' "$work/log" || complain "$1 $3: box.h does not say why not: $(cat "$work/log")"
 }
 
 for compiler in gcc clang; do
     if builds "$compiler" c99 examples/bih/bih.c bih; then right bih; fi
     if builds "$compiler" c17 tests/plugins/bvh_copy.c bvh_copy; then right bvh_copy; fi
+    refused "$compiler" c99 -ffast-math
+    refused "$compiler" c99 -ffinite-math-only
 done
 for compiler in g++ clang++; do
     if builds "$compiler" c++17 examples/bvh-cpp/hierarchy.cpp bvh_cpp; then right bvh_cpp; fi
-    if [ -n "${BVH_DIR-}" ] && builds "$compiler" c++20 examples/header-only/madmann.cpp madmann -isystem "$BVH_DIR/src"; then
+    if [ -z "${BVH_DIR-}" ]; then
+        echo "check_examples: no \$BVH_DIR: examples/header-only is not built" >&2
+    elif builds "$compiler" c++20 examples/header-only/madmann.cpp madmann -isystem "$BVH_DIR/src"; then
         right madmann
     fi
 done
@@ -52,8 +64,8 @@ done
 # ---- a copy of bvh does what bvh does ----
 if [ -e "$work/bvh_copy.so" ]; then # and has the same structure: two rows of each table are alike
     counted=$("$program" bench balls:size=3 --size 64x64 --plugin "$work/bvh_copy.so" --accel bvh --accel bvh_copy --count-only |
-        awk '$1 == "bvh" || $1 == "bvh_copy" { $1 = ""; print }' | sort | uniq -c | awk '$1 % 2 != 0')
-    [ -z "$counted" ] || complain "bvh_copy does not count what bvh counts: $counted"
+        awk '$1 == "bvh" || $1 == "bvh_copy" { $1 = ""; print }' | sort | uniq -c)
+    [ -n "$counted" ] && [ -z "$(awk '$1 % 2 != 0' <<<"$counted")" ] || complain "bvh_copy does not count what bvh counts: $counted"
 fi
 
 # ---- what the text of bih says would go wrong does ----

@@ -3,6 +3,7 @@
  * broke. See wire.h. */
 #include "accel/away.h"
 #include "accel/plugin/now.h"
+#include "accel/plugin/process.h"
 #include "accel/plugin/wire.h"
 
 #include "base/clock.h"
@@ -17,7 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 typedef struct Away {
@@ -25,7 +25,7 @@ typedef struct Away {
     RtAccelOps ops; /* away_ops, by the name of the base */
     char name[RT_MAX_SPEC_CHARS];
     Wire *wire;
-    pid_t pid;
+    RtProcess process;
     int alive;       /* the end of a pipe: closed, it ends the process */
     double patience; /* seconds without progress after which it hangs */
     RtDescription description;
@@ -64,26 +64,12 @@ static double patience_of_user(void) {
 
 /* ---- how it ended ---- */
 
-static void say_signal(const Away *away, int number, char *out, size_t room) {
+static void say_end(const Away *away, RtProcessEnd end, char *out, size_t room) {
     const Crash *crash = &away->wire->crash;
     static const char *const past[] = {"", ": it wrote or read past the memory of its query",
                                        ": it wrote or read past its answers"};
-    const char *name = sigdescr_np(number);
     uint32_t out_of = crash->out_of;
-    snprintf(out, room, "it crashed (%s%s)", name ? name : "an unknown signal",
-             out_of <= RT_GUARD_COUNT ? past[out_of] : "");
-}
-
-/* What became of the process, whose status is of waitpid. */
-static void say_end(const Away *away, int status, char *out, size_t room) {
-    int said = away->wire->crash.signal;
-    if (said) {
-        say_signal(away, said, out, room);
-    } else if (WIFSIGNALED(status)) {
-        say_signal(away, WTERMSIG(status), out, room);
-    } else {
-        snprintf(out, room, "it ended its process (exit code %d)", WEXITSTATUS(status));
-    }
+    rt_process_end_format(end, crash->signal, out_of <= RT_GUARD_COUNT ? past[out_of] : "", out, room);
 }
 
 /* "NAME: WHAT while DOING, at the ray ...". The first thing that is said of it stays. */
@@ -102,16 +88,9 @@ static void break_away(Away *away, const char *what, const char *doing, bool ray
 /* Of one that hangs: it is asked at which ray, and ended. */
 static void end_hanging(Away *away, const char *doing, double limit) {
     char what[96];
-    int status = 0;
     away->wire->crash.has_ray = false;
-    kill(away->pid, SIGXCPU);
-    for (int i = 0; i < 50 && waitpid(away->pid, &status, WNOHANG) == 0; i++) {
-        nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
-        if (i == 49) {
-            kill(away->pid, SIGKILL);
-            waitpid(away->pid, &status, 0);
-        }
-    }
+    rt_process_signal(&away->process, SIGXCPU);
+    rt_process_end(&away->process, 1000);
     away->gone = true;
     snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", limit);
     break_away(away, what, doing, true);
@@ -120,11 +99,11 @@ static void end_hanging(Away *away, const char *doing, double limit) {
 /* Has it ended, or hung for longer than it may? */
 static bool look_after(Away *away, const char *doing, double waited, double limit) {
     pthread_mutex_lock(&away->lock);
-    int status;
-    if (!away->gone && waitpid(away->pid, &status, WNOHANG) == away->pid) {
+    RtProcessEnd end;
+    if (!away->gone && rt_process_wait(&away->process, 0, &end)) {
         char what[160];
         away->gone = true;
-        say_end(away, status, what, sizeof what);
+        say_end(away, end, what, sizeof what);
         break_away(away, what, doing, true);
     } else if (!away->gone && waited > limit) {
         end_hanging(away, doing, limit);
@@ -228,17 +207,14 @@ static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
 static RtStatus start(Away *away, const RtSpec *spec, int threads, RtError *error) {
     int alive[2] = {-1, -1};
     RT_TRY(connect_away(away, alive, error));
-    fflush(NULL); /* or what waits to be written is written twice */
-    away->pid = fork();
-    if (away->pid == 0) {
+    RtStatus status = rt_process_start(&away->process, error);
+    if (status == RT_OK && away->process.pid == 0) {
         close(alive[1]);
         rt_wire_serve(away->wire, spec, away->base.scene, threads, alive[0]);
     }
     close(alive[0]);
     away->alive = alive[1];
-    if (away->pid > 0) return RT_OK;
-    away->pid = 0;
-    return rt_fail(error, RT_IO, "a process for the plugin: %s", strerror(errno));
+    return status;
 }
 
 /* What was built, or why not. */
@@ -289,15 +265,12 @@ const char *rt_away_farewell(void) {
 /* In peace, if it still can: a plugin may crash as it frees what it has. */
 static void destroy(RtAccel *accel) {
     Away *away = of(accel);
-    if (away->pid > 0 && !away->broken) {
+    if (away->process.pid > 0 && !away->broken) {
         ask_master(away, rt_wire_destroy, NULL, 0, "it was destroyed");
         if (away->broken) snprintf(farewell, sizeof farewell, "%s", away->error.message);
     }
     if (away->alive >= 0) close(away->alive); /* ends it */
-    if (away->pid > 0 && !away->gone) {
-        kill(away->pid, SIGKILL);
-        waitpid(away->pid, NULL, 0);
-    }
+    rt_process_end(&away->process, 0);
     if (away->wire) munmap(away->wire, sizeof(Wire));
     pthread_mutex_destroy(&away->lock);
     pthread_mutex_destroy(&away->master);

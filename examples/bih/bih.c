@@ -187,7 +187,7 @@ static int fill(Bih *bih, const raytally_build *what) {
     const size_t most = 2 * (size_t)count - 1; /* a node for each object, and one for each that parts them */
     bih->nodes = (Node *)malloc(most * sizeof(Node));
     bih->ids = (uint32_t *)malloc(count * sizeof(uint32_t));
-    if (!bih->nodes || !bih->ids) return RAYTALLY_MEMORY;
+    if (!bih->nodes || !bih->ids) return RAYTALLY_BUILD_NO_MEMORY;
     for (uint32_t i = 0; i < count; i++) bih->ids[i] = i;
     bih->id_count = count;
     bih->node_count = 1;
@@ -196,22 +196,23 @@ static int fill(Bih *bih, const raytally_build *what) {
     divide(&builder, 0, (Group){0, count, 0, what->box});
     Node *fitting = (Node *)realloc(bih->nodes, bih->node_count * sizeof(Node));
     if (fitting) bih->nodes = fitting;
-    return RAYTALLY_BUILT;
+    return RAYTALLY_BUILD_OK;
 }
 
 static int build(const raytally_build *what, void **self) {
     const uint64_t count = what->object_count;
     if (count > MAX_OBJECTS) {
         snprintf(what->message, what->message_room, "a bih holds %u objects at most", (unsigned)MAX_OBJECTS);
-        return RAYTALLY_REFUSED;
+        return RAYTALLY_BUILD_REFUSED;
     }
-    if (2 * count * sizeof(Node) + count * sizeof(uint32_t) > what->byte_limit) return RAYTALLY_MEMORY;
+    if (2 * count * sizeof(Node) + count * sizeof(uint32_t) > what->byte_limit)
+        return RAYTALLY_BUILD_NO_MEMORY;
     Bih *bih = (Bih *)calloc(1, sizeof(Bih));
-    if (!bih) return RAYTALLY_MEMORY;
+    if (!bih) return RAYTALLY_BUILD_NO_MEMORY;
     bih->box = what->box;
     bih->boxes = what->boxes;
-    const int built = count == 0 ? RAYTALLY_BUILT : fill(bih, what);
-    if (built == RAYTALLY_BUILT)
+    const int built = count == 0 ? RAYTALLY_BUILD_OK : fill(bih, what);
+    if (built == RAYTALLY_BUILD_OK)
         *self = bih;
     else
         destroy(bih);

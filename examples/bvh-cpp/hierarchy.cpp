@@ -278,12 +278,12 @@ const Hierarchy &of(const void *self) {
 int build(const raytally_build *what, void **self) noexcept {
     try {
         *self = new Hierarchy(*what);
-        return RAYTALLY_BUILT;
+        return RAYTALLY_BUILD_OK;
     } catch (const std::bad_alloc &) {
-        return RAYTALLY_MEMORY;
+        return RAYTALLY_BUILD_NO_MEMORY;
     } catch (const std::exception &error) {
         std::snprintf(what->message, what->message_room, "%s", error.what());
-        return RAYTALLY_REFUSED;
+        return RAYTALLY_BUILD_REFUSED;
     }
 }
 

@@ -113,9 +113,9 @@ RAYTALLY_DEFINE_KERNELS(Madmann, search)
 int build(const raytally_build *what, void **self) noexcept {
     try {
         *self = new Madmann(*what);
-        return RAYTALLY_BUILT;
+        return RAYTALLY_BUILD_OK;
     } catch (...) { // it allocates, and else does nothing that may fail
-        return RAYTALLY_MEMORY;
+        return RAYTALLY_BUILD_NO_MEMORY;
     }
 }
 

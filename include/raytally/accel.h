@@ -46,7 +46,7 @@ enum raytally_param_type {
 /** One parameter, as in NAME:KEY=VALUE. From this table come parsing, range checks, help, and the values that
  * `verify --spread` tries. */
 typedef struct raytally_param {
-    const char *name;        /**< The key: letters, digits and '_'. */
+    const char *name;        /**< The key: up to 63 letters, digits and '_'. */
     uint32_t type;           /**< One of ::raytally_param_type. */
     const char *standard;    /**< The default, as text. */
     double lo;               /**< The least number, inclusive; 0 for choices and flags. */
@@ -118,9 +118,9 @@ RAYTALLY_INLINE int raytally_object_hits(const raytally_prepared *ray, const uin
 
 /** What `build` returns. */
 enum raytally_built {
-    RAYTALLY_BUILT = 0,   /**< *self is the structure. */
-    RAYTALLY_REFUSED = 1, /**< Not from this scene with these values: `message` says why. */
-    RAYTALLY_MEMORY = 2   /**< Memory is short, or the structure would go beyond the limit. */
+    RAYTALLY_BUILD_OK = 0,       /**< *self is the structure. */
+    RAYTALLY_BUILD_REFUSED = 1,  /**< Not from this scene with these values: `message` says why. */
+    RAYTALLY_BUILD_NO_MEMORY = 2 /**< Memory is short, or the structure would go beyond the limit. */
 };
 
 /** What a structure is built from, valid during the call of `build`. */
@@ -132,9 +132,9 @@ typedef struct raytally_build {
     raytally_box box; /**< Around all of them. */
     const raytally_value *values; /**< [param_count] in the order of the table, each within its range. */
     int32_t threads;              /**< To build on, at least 1; must not change the structure. */
-    uint64_t byte_limit;          /**< A structure that takes more is to be refused: RAYTALLY_MEMORY. */
-    char *message;                /**< [message_room] why it failed: a sentence for the user. */
-    size_t message_room;          /**< In bytes. */
+    uint64_t byte_limit; /**< A structure that takes more is to be refused: RAYTALLY_BUILD_NO_MEMORY. */
+    char *message;       /**< [message_room] why it failed: a sentence for the user. */
+    size_t message_room; /**< In bytes. */
 } raytally_build;
 
 /** What a structure looks like. All is 0, and what is expected NaN, unless `describe` sets it. */
@@ -159,7 +159,7 @@ typedef void raytally_show_box(void *viewer, const raytally_box *box, uint32_t d
 
 /** Nearest hits of a stream of rays.
  * @param self      the structure
- * @param memory    of the query: what query_bytes asked for
+ * @param memory    of the query: what query_bytes asked for; NULL where that was nothing
  * @param query     for raytally_prepare
  * @param rays      [count] valid, of any kinds
  * @param count     at least 1
@@ -176,11 +176,17 @@ typedef void raytally_occluded_kernel(const void *self, void *memory, raytally_q
                                       const raytally_ray *rays, size_t count, uint32_t *blockers,
                                       raytally_counters *counters);
 
-/** One accelerator. Members that are optional may be NULL. */
+/** One accelerator. Members that are optional may be NULL.
+ *
+ * Who calls: `build`, `query_bytes`, `describe`, `validate`, `each_box` and `destroy` are called by the main
+ * thread of the plugin's process, one after the other, `destroy` when no query is left; but `validate` and
+ * `each_box` perhaps while others trace. `nearest`, `occluded` and `begin` are called by a thread for each
+ * query, all at the same time. */
 typedef struct raytally_accel_ops {
     uint32_t abi;                 /**< RAYTALLY_ACCEL_ABI. */
-    uint32_t size;                /**< sizeof(raytally_accel_ops). */
-    const char *name;             /**< As in a spec: letters, digits, '_' and '-'; of no other accelerator. */
+    uint32_t size;                /**< sizeof(raytally_accel_ops): later ones may have more at the end. */
+    const char *name;             /**< As in a spec: a letter, and then letters, digits, '_' and '-', 63 at
+                                     most; of no other accelerator, and not "all". */
     const char *summary;          /**< One line. */
     const char *paper;            /**< Author, year, title, venue. */
     const raytally_param *params; /**< [param_count], or NULL. */
@@ -194,7 +200,8 @@ typedef struct raytally_accel_ops {
     raytally_nearest_kernel *nearest;   /**< RAYTALLY_DEFINE_KERNELS makes one of a search for a ray. */
     raytally_occluded_kernel *occluded; /**< The same. */
 
-    /** Optional: bytes of memory for each query; zeroed, and 64-byte aligned. */
+    /** Optional: bytes of memory for each query; zeroed, and 64-byte aligned. Asked once, behind `build`.
+     * Where it is NULL, or says 0, `memory` is NULL wherever it is handed over. */
     size_t (*query_bytes)(const void *self);
     /** Optional: brings the memory of a query back to what a fresh one has, as far as later counts could
      * tell. */
@@ -203,7 +210,8 @@ typedef struct raytally_accel_ops {
     void (*describe)(const void *self, raytally_description *out);
     /** Optional: 0, or 1 with a sentence in message[0..room) that names the first broken invariant. */
     int (*validate)(const void *self, char *message, size_t room);
-    /** Optional: shows every box of the structure. */
+    /** Optional: shows every box of the structure; where there are many it is called again, and is to show
+     * them in the same order. */
     void (*each_box)(const void *self, raytally_show_box *show, void *viewer);
 } raytally_accel_ops;
 

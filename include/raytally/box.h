@@ -15,7 +15,7 @@
  * far: enter > t. Where enter == t there may lie another object at the same t with a lower number, which is
  * then the answer; so `>=` is wrong. No other tolerance is needed anywhere.
  *
- * Compile without -ffast-math: NaN and infinities are part of the test. */
+ * Compile without -ffast-math and -ffinite-math-only: NaN and infinities are part of the test. */
 #ifndef RAYTALLY_BOX_H
 #define RAYTALLY_BOX_H
 
@@ -24,8 +24,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#ifdef __FAST_MATH__
-#error "raytally's box test needs NaN and infinities: compile without -ffast-math"
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "raytally's box test needs NaN and infinities: compile without -ffast-math and -ffinite-math-only"
 #endif
 
 #ifdef __cplusplus

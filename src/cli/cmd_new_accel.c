@@ -45,22 +45,6 @@ const struct argp rt_new_accel_argp = {
            "its code, how it is built and verified, and how to go on.\vFor example:\n"
            "  raytally new-accel my-grid\n  raytally new-accel my-grid --out ~/plugins"};
 
-/* ---- names ---- */
-
-#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-
-static RtStatus check_name(const char *name, RtError *error) {
-    if (strspn(name, LETTERS) == 0 || name[strspn(name, LETTERS "0123456789_-")])
-        return rt_fail(error, RT_BAD_INPUT,
-                       "'%.80s' cannot be the name of an accelerator: a letter, and then letters, digits, "
-                       "'_' and '-'",
-                       name);
-    if (strlen(name) >= RT_MAX_NAME)
-        return rt_fail(error, RT_BAD_INPUT, "'%.80s' is too long for a name: at most %d letters", name,
-                       RT_MAX_NAME - 1);
-    return rt_accel_name_is_free(name, error);
-}
-
 /* ---- files ---- */
 
 /* A file of the new folder: NAME and `extension`, or a `title` of its own. */
@@ -132,7 +116,7 @@ int rt_command_new_accel(int argc, char **argv) {
     argp_parse(&rt_new_accel_argp, argc, argv, 0, 0, &o);
     RtError error;
     char folder[RT_MAX_PATH];
-    RtStatus status = check_name(o.name, &error);
+    RtStatus status = rt_accel_name_is_free(o.name, &error);
     if (status == RT_OK) status = rt_path_join(o.out, o.name, folder, &error);
     if (status == RT_OK && *o.out) status = rt_directory_create(o.out, &error);
     if (status == RT_OK) status = write_folder(folder, o.name, &error);

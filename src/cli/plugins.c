@@ -15,8 +15,8 @@ enum { OPT_PLUGIN = 0x10000 };
 static const struct argp_option options[] = {
     {"plugin", OPT_PLUGIN, "FILE.so", 0,
      "Load accelerators of your own; may be repeated. $" VARIABLE " names files and folders of them, joined "
-     "by ':'. Each runs in a process of its own, and is given up after $RAYTALLY_PLUGIN_SECONDS (60) without "
-     "progress",
+     "by ':' (in a name, '\\:'). Each runs in a process of its own, and is given up after "
+     "$RAYTALLY_PLUGIN_SECONDS (60) without progress",
      100},
     {0}};
 
@@ -36,14 +36,25 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 const struct argp rt_plugin_argp = {.options = options, .parser = parse_option};
 
+/* As rt_plugin_load_all reads it; gives the end of what is written. */
+static char *write_name(const char *path, char *out) {
+    for (; *path; path++) {
+        if (*path == ':' || *path == '\\') *out++ = '\\';
+        *out++ = *path;
+    }
+    return out;
+}
+
 /* Also from the environment of who starts nothing: the names there may be relative, these are not. */
 static RtStatus tell_children(RtError *error) {
-    size_t count = rt_plugin_count(), room = 1;
-    for (size_t i = 0; i < count; i++) room += strlen(rt_plugin_at(i)->path) + 1;
-    char *list = rt_alloc(room, 1);
+    size_t count = rt_plugin_count(), room = 0;
+    for (size_t i = 0; i < count; i++) room += 2 * strlen(rt_plugin_at(i)->path) + 1;
+    char *list = rt_alloc(room, 1), *end = list;
     if (!list) return rt_fail_memory(error, "names of plugins", room);
-    for (size_t i = 0, used = 0; i < count; i++)
-        used += (size_t)snprintf(list + used, room - used, "%s%s", i ? ":" : "", rt_plugin_at(i)->path);
+    for (size_t i = 0; i < count; i++) {
+        end = write_name(rt_plugin_at(i)->path, end);
+        *end++ = i + 1 < count ? ':' : '\0';
+    }
     setenv(VARIABLE, list, 1);
     rt_free(list);
     return RT_OK;

@@ -7,9 +7,14 @@
 
 #include "accel/away.h"
 #include "accel/plugin.h"
+#include "base/clock.h"
 #include "bench/measure.h"
 
+#include <errno.h>
+#include <float.h>
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/wait.h>
 
 #define PLUGINS RT_BINARY_DIR "/plugins/"
 
@@ -166,6 +171,102 @@ RT_TEST(one_that_does_not_survive_its_build_leaves_nothing_behind) {
     assert_int_equal(rt_accel_open("cache+faulty-refused", &scene, &accel, &why), RT_BAD_INPUT);
     assert_int_equal(rt_alloc_live(), live);
     rt_scene_clear(&scene);
+}
+
+RT_TEST(one_that_is_loaded_leaves_the_processor_and_the_error_as_they_were) {
+    volatile float least = FLT_MIN;
+    RtError why = {RT_OK, "untouched"};
+    assert_int_equal(rt_plugin_load(PLUGINS "odd-FLUSHING.so", &why), RT_OK);
+    assert_string_equal(why.message, "untouched");
+    assert_true(least / 2 > 0);
+}
+
+RT_TEST(loading_needs_no_error) {
+    assert_int_equal(rt_plugin_load(PLUGINS "unloadable-ENTRY.so", NULL), RT_BAD_INPUT);
+    assert_int_equal(rt_plugin_load(PLUGINS "odd-LONGER.so", NULL), RT_OK);
+    assert_int_equal(rt_plugin_load(PLUGINS "odd-LONGER.so", NULL), RT_OK);
+}
+
+RT_TEST(of_a_library_that_is_refused_nothing_is_registered) {
+    static const char *const kinds[] = {"EMPTY",    "ABI",        "SIZE",     "NAME",        "TAKEN", "TWICE",
+                                        "FUNCTION", "PARAMETERS", "STANDARD", "CONSTRUCTOR", "ENTRY", "MANY"};
+    const RtAccelOps *found;
+    load_all();
+    size_t plugins = rt_plugin_count(), accelerators = rt_accel_count();
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        char path[sizeof PLUGINS + 64];
+        snprintf(path, sizeof path, PLUGINS "unloadable-%s.so", kinds[i]);
+        assert_int_equal(rt_plugin_load(path, NULL), RT_BAD_INPUT);
+        assert_int_equal(rt_plugin_count(), plugins);
+        assert_int_equal(rt_accel_count(), accelerators);
+        assert_int_equal(rt_accel_find("unloadable-first", &found, NULL), RT_BAD_INPUT);
+    }
+}
+
+static void wait_for_all(int number) {
+    int before = errno;
+    (void)number;
+    while (waitpid(-1, NULL, WNOHANG) > 0) {
+    }
+    errno = before;
+}
+
+/* What is said of a plugin that crashes must not depend on who waits for children. */
+static void crash_where_children_are(void (*handled)(int)) {
+    RtScene scene;
+    RtRaySet set;
+    RtAccel *bvh, *faulty;
+    RtQuery query;
+    RtError why;
+    RtHit hit;
+    open_random(&scene);
+    open_chords(&scene, 1, &set, &bvh);
+    void (*before)(int) = signal(SIGCHLD, handled);
+    double began = rt_wall_seconds();
+    assert_ok(rt_accel_open("faulty-abort", &scene, &faulty, error));
+    assert_ok(rt_query_init(&query, faulty, error));
+    rt_nearest(&query, set.rays, 1, &hit, NULL);
+    assert_int_equal(rt_accel_check(faulty, &why), RT_BROKEN);
+    assert_non_null(
+        strstr(why.message, "it crashed (Aborted) while it answered a stream of 1 ray, at the ray"));
+    assert_int_equal(rt_plugin_load(PLUGINS "unloadable-CONSTRUCTOR.so", &why), RT_BAD_INPUT);
+    assert_non_null(strstr(why.message, "it does not survive being loaded: it "));
+    assert_true(rt_wall_seconds() - began < 1.5); /* less than it may hang */
+    rt_query_clear(&query);
+    rt_accel_destroy(faulty);
+    signal(SIGCHLD, before);
+    rt_accel_destroy(bvh);
+    rt_rayset_clear(&set);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(a_crash_is_told_where_children_are_ignored) {
+    crash_where_children_are(SIG_IGN);
+}
+
+RT_TEST(a_crash_is_told_where_somebody_else_waits_for_children) {
+    crash_where_children_are(wait_for_all);
+}
+
+RT_TEST(a_name_is_a_letter_and_then_letters_digits_and_two_more) {
+    static const char *const good[] = {"x", "my-grid", "Grid_2",
+                                       "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxx"};
+    static const char *const bad[] = {"",
+                                      "9lives",
+                                      "-x",
+                                      "_x",
+                                      "a b",
+                                      "a:b",
+                                      "a+b",
+                                      "gr\xfc"
+                                      "n",
+                                      "all",
+                                      "grid",
+                                      "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxxx"};
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++)
+        assert_ok(rt_accel_name_is_free(good[i], error));
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_int_equal(rt_accel_name_is_free(bad[i], NULL), RT_BAD_INPUT);
 }
 
 RT_TESTS(plugins, NULL, NULL)

@@ -229,30 +229,30 @@ static void destroy(void *self) {
 
 static int fill(Bvh *bvh, const raytally_build *what, Ref *refs, TreeNode *tree) {
     const uint32_t count = what->object_count;
-    if (!refs || !tree) return RAYTALLY_MEMORY;
+    if (!refs || !tree) return RAYTALLY_BUILD_NO_MEMORY;
     for (uint32_t i = 0; i < count; i++) refs[i] = (Ref){what->boxes[i], i};
     const Weight whole = divide(tree, refs, count, 0);
     bvh->nodes = (Node *)aligned_alloc(64, (whole.nodes * sizeof(Node) + 63) / 64 * 64);
     bvh->ids = (uint32_t *)malloc(count * sizeof(uint32_t));
-    if (!bvh->nodes || !bvh->ids) return RAYTALLY_MEMORY;
+    if (!bvh->nodes || !bvh->ids) return RAYTALLY_BUILD_NO_MEMORY;
     Taken taken = {1, 0};
     place(bvh, 0, tree, &taken);
     bvh->node_count = taken.nodes;
     bvh->id_count = taken.ids;
-    return RAYTALLY_BUILT;
+    return RAYTALLY_BUILD_OK;
 }
 
 static int build(const raytally_build *what, void **self) {
     const size_t count = what->object_count, nodes = 2 * count;
-    if (nodes * sizeof(Node) + count * sizeof(uint32_t) > what->byte_limit) return RAYTALLY_MEMORY;
+    if (nodes * sizeof(Node) + count * sizeof(uint32_t) > what->byte_limit) return RAYTALLY_BUILD_NO_MEMORY;
     Bvh *bvh = (Bvh *)calloc(1, sizeof(Bvh));
-    if (!bvh) return RAYTALLY_MEMORY;
+    if (!bvh) return RAYTALLY_BUILD_NO_MEMORY;
     Ref *refs = (Ref *)malloc(count * sizeof(Ref));
     TreeNode *tree = (TreeNode *)malloc(nodes * sizeof(TreeNode));
-    const int built = count == 0 ? RAYTALLY_BUILT : fill(bvh, what, refs, tree);
+    const int built = count == 0 ? RAYTALLY_BUILD_OK : fill(bvh, what, refs, tree);
     free(refs);
     free(tree);
-    if (built == RAYTALLY_BUILT)
+    if (built == RAYTALLY_BUILD_OK)
         *self = bvh;
     else
         destroy(bvh);

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 /* ---- in order ---- */
@@ -30,12 +31,12 @@ static int build(const raytally_build *from, void **self) {
     if (!list || !ids) {
         free(list);
         free(ids);
-        return RAYTALLY_MEMORY;
+        return RAYTALLY_BUILD_NO_MEMORY;
     }
     for (uint32_t i = 0; i < from->object_count; i++) ids[i] = i;
     *list = (List){from->boxes, ids, from->object_count};
     *self = list;
-    return RAYTALLY_BUILT;
+    return RAYTALLY_BUILD_OK;
 }
 
 RAYTALLY_INLINE void search(const List *list, void *memory, const raytally_prepared *ray, int any,
@@ -87,7 +88,7 @@ static int build_loop(const raytally_build *from, void **self) {
 static int build_refused(const raytally_build *from, void **self) {
     (void)self;
     snprintf(from->message, from->message_room, "scenes of %u objects are beneath it", from->object_count);
-    return RAYTALLY_REFUSED;
+    return RAYTALLY_BUILD_REFUSED;
 }
 
 static int build_nonsense(const raytally_build *from, void **self) {
@@ -96,13 +97,15 @@ static int build_nonsense(const raytally_build *from, void **self) {
     return 42;
 }
 
-/* Takes all the memory that it is given. */
+/* Takes all the memory that it is given, and much more than that if nobody stops it. */
 static int build_memory(const raytally_build *from, void **self) {
-    enum { BLOCK = 1 << 20 };
-    (void)from;
-    (void)self;
-    for (char *block; (block = malloc(BLOCK));) memset(block, 1, BLOCK);
-    return RAYTALLY_MEMORY;
+    enum { BLOCKS = 64, BLOCK = 1 << 30 };
+    for (int i = 0; i < BLOCKS; i++) {
+        if (mmap(NULL, BLOCK, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0) ==
+            MAP_FAILED)
+            return RAYTALLY_BUILD_NO_MEMORY;
+    }
+    return build(from, self);
 }
 
 static int build_print(const raytally_build *from, void **self) {
@@ -115,7 +118,7 @@ static int build_print(const raytally_build *from, void **self) {
 static int build_null(const raytally_build *from, void **self) {
     (void)from;
     *self = NULL;
-    return RAYTALLY_BUILT;
+    return RAYTALLY_BUILD_OK;
 }
 
 RAYTALLY_INLINE void none(const List *list, void *memory, const raytally_prepared *ray, int any,

@@ -2,7 +2,10 @@
 /* Plugins that cannot be loaded, one for each KIND that this is compiled with. */
 #include <raytally/accel.h>
 
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum {
     SYMBOL,      /* exports something else: raytally_plugin is defined to be another name */
@@ -16,13 +19,15 @@ enum {
     PARAMETERS,  /* says that there is a parameter, and has no table of them */
     STANDARD,    /* has a default out of its range */
     CONSTRUCTOR, /* crashes before it is asked anything */
-    ENTRY        /* crashes when it is asked for its tables */
+    ENTRY,       /* crashes when it is asked for its tables */
+    FOREVER,     /* is never loaded, and takes no alarm */
+    MANY         /* has more tables than there is room for beside others */
 };
 
 static int build(const raytally_build *from, void **self) {
     (void)from;
     *self = NULL;
-    return RAYTALLY_BUILT;
+    return RAYTALLY_BUILD_OK;
 }
 
 static void destroy(void *self) {
@@ -44,6 +49,19 @@ static const raytally_param params[] = {{.name = "depth",
                                          .meaning = "levels",
                                          .source = "nowhere"}};
 
+/* In order, and first in every library: it is not to stay either. */
+static const raytally_accel_ops first = {
+    .abi = RAYTALLY_ACCEL_ABI,
+    .size = sizeof first,
+    .name = "unloadable-first",
+    .summary = "is in order",
+    .paper = "none",
+    .build = build,
+    .destroy = destroy,
+    .nearest = search_nearest,
+    .occluded = search_occluded,
+};
+
 static const raytally_accel_ops ops = {
     .abi = RAYTALLY_ACCEL_ABI + (KIND == ABI),
     .size = KIND == SIZE ? 8 : sizeof ops,
@@ -60,12 +78,28 @@ static const raytally_accel_ops ops = {
     .occluded = search_occluded,
 };
 
+static const raytally_accel_ops *one_of_many(uint32_t index) {
+    enum { TABLES = 60 };
+    static raytally_accel_ops tables[TABLES];
+    static char names[TABLES][16];
+    if (index >= TABLES) return NULL;
+    snprintf(names[index], sizeof names[index], "many-%u", index);
+    tables[index] = first;
+    tables[index].name = names[index];
+    return &tables[index];
+}
+
 RAYTALLY_PLUGIN {
     if (KIND == ENTRY) abort();
-    const uint32_t tables = KIND == EMPTY ? 0 : KIND == TWICE ? 2 : 1;
-    return index < tables ? &ops : NULL;
+    if (KIND == EMPTY) return NULL;
+    if (KIND == MANY) return one_of_many(index);
+    const uint32_t tables = KIND == TWICE ? 3 : 2;
+    return index == 0 ? &first : index < tables ? &ops : NULL;
 }
 
 __attribute__((constructor)) static void before_anything(void) {
     if (KIND == CONSTRUCTOR) abort();
+    if (KIND != FOREVER) return;
+    signal(SIGALRM, SIG_IGN);
+    for (;;) pause();
 }

@@ -41,18 +41,18 @@ static void destroy(void *self) {
  * number of threads. */
 static int build(const raytally_build *from, void **self) {
     Structure *s = calloc(1, sizeof *s);
-    if (!s) return RAYTALLY_MEMORY;
+    if (!s) return RAYTALLY_BUILD_NO_MEMORY;
     s->boxes = from->boxes;
     s->count = from->object_count;
     s->test_boxes = from->values[BOXES].flag != 0;
     s->ids = malloc((s->count + 1) * sizeof *s->ids);
     if (!s->ids) {
         destroy(s);
-        return RAYTALLY_MEMORY;
+        return RAYTALLY_BUILD_NO_MEMORY;
     }
     for (uint32_t i = 0; i < s->count; i++) s->ids[i] = i;
     *self = s;
-    return RAYTALLY_BUILT;
+    return RAYTALLY_BUILD_OK;
 }
 
 /* ---- trace ---- */

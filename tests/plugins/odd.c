@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Plugins that are to be loaded, odd as they are: one for each KIND that this is compiled with. They find
+ * nothing. */
+#include <raytally/accel.h>
+
+enum {
+    FLUSHING, /* has the processor take small numbers for 0, as what is linked with -ffast-math does */
+    LONGER    /* has a table of a later version of the interface, with more at its end */
+};
+
+static void flush_to_zero(void) {
+#if defined(__x86_64__)
+    __builtin_ia32_ldmxcsr(__builtin_ia32_stmxcsr() | 0x8040);
+#elif defined(__aarch64__) && !defined(__clang__)
+    __builtin_aarch64_set_fpcr(__builtin_aarch64_get_fpcr() | 1U << 24);
+#endif
+}
+
+__attribute__((constructor)) static void when_loaded(void) {
+    if (KIND == FLUSHING) flush_to_zero();
+}
+
+static int build(const raytally_build *from, void **self) {
+    (void)from;
+    *self = NULL;
+    return RAYTALLY_BUILD_OK;
+}
+
+static void destroy(void *self) {
+    (void)self;
+}
+
+RAYTALLY_INLINE void search(const int *self, void *memory, const raytally_prepared *ray, int any,
+                            raytally_hit *best, raytally_counters *counters) {
+    (void)self, (void)memory, (void)ray, (void)any, (void)best, (void)counters;
+}
+RAYTALLY_DEFINE_KERNELS(int, search)
+
+typedef struct LongerOps {
+    raytally_accel_ops ops;
+    const char *more[8];
+} LongerOps;
+
+static const LongerOps longer = {
+    .ops = {.abi = RAYTALLY_ACCEL_ABI,
+            .size = KIND == LONGER ? sizeof longer : sizeof longer.ops,
+            .name = KIND == LONGER ? "longer" : "flushing",
+            .summary = "finds nothing",
+            .paper = "none",
+            .build = build,
+            .destroy = destroy,
+            .nearest = search_nearest,
+            .occluded = search_occluded},
+    .more = {"what", "nobody", "knows"},
+};
+
+RAYTALLY_PLUGIN {
+    if (KIND == FLUSHING) flush_to_zero();
+    return index == 0 ? &longer.ops : NULL;
+}
