@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Plugins: accelerators in shared libraries (include/raytally/accel.h).
  *
- * A library is first tried in a process of its own (rt_plugin_load), and only one that stands that is loaded
- * here. Its tables join the registry. What is built of them lives in a process of its own again
- * (accel/away.h), in which accel/plugin/host.c makes an RtAccel of each. */
+ * A library is tried in a process of its own (rt_plugin_load). What its tables say joins the registry; the
+ * library itself is never loaded here. What is built of it lives in a process of its own again
+ * (accel/away.h), in which accel/plugin/host.c makes an RtAccel of each table. */
 #ifndef RT_ACCEL_PLUGIN_H
 #define RT_ACCEL_PLUGIN_H
 

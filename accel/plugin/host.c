@@ -42,7 +42,7 @@ static void take_values(const RtBuild *what, raytally_value *values) {
 }
 
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    const raytally_accel_ops *table = ((const RtPluginOps *)what->ops)->table;
+    const raytally_accel_ops *table = &((const RtPluginOps *)what->ops)->table;
     const RtGeometry *geometry = &what->scene->geometry;
     raytally_value values[RAYTALLY_MAX_PARAMS] = {0};
     char message[900] = "";
@@ -137,7 +137,6 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
         ops->params[i] = (RtParam){p->name,    types[p->type], p->standard, p->lo,    p->hi,
                                    p->choices, p->test_values, p->meaning,  p->source};
     }
-    ops->table = table;
     ops->ops = (RtAccelOps){.name = table->name,
                             .summary = table->summary,
                             .paper = table->paper,

@@ -11,11 +11,14 @@
 /* The operations of a plugin's table, which the registry knows by the first member. */
 typedef struct RtPluginOps {
     RtAccelOps ops;
-    const raytally_accel_ops *table;
     RtParam params[RAYTALLY_MAX_PARAMS];
+    const char *path;         /* of the library */
+    uint64_t fingerprint;     /* of its bytes, when it was loaded */
+    uint32_t place;           /* of the table in the library */
+    raytally_accel_ops table; /* where it is entered (rt_library_enter); else nothing */
 } RtPluginOps;
 
-/* Fills them from a table that was looked at. */
+/* Fills the operations and parameters from a table that was looked at, which has to stay. */
 void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The process in which an accelerator lives that raytally does not trust: see wire.h. */
 #include "accel/away.h"
+#include "accel/plugin/library.h"
 #include "accel/plugin/now.h"
 #include "accel/plugin/wire.h"
 
@@ -282,7 +283,12 @@ void rt_wire_open(RtQuery *query, void *message) {
 
 static void build(const RtSpec *spec, const RtScene *scene, int threads) {
     WireBuilt built = {.status = RT_OK};
-    built.status = rt_accel_build_here(spec, scene, threads, &served.accel, &built.error);
+    for (uint32_t i = 0; i < spec->layer_count && built.status == RT_OK; i++) {
+        const RtAccelOps *ops = spec->layers[i].ops;
+        if (ops->away) built.status = rt_library_enter((RtPluginOps *)(uintptr_t)ops, &built.error);
+    }
+    if (built.status == RT_OK)
+        built.status = rt_accel_build_here(spec, scene, threads, &served.accel, &built.error);
     if (built.status == RT_OK) {
         built.exact = served.accel->exact;
         built.counts = served.accel->counts;

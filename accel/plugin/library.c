@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "accel/plugin/library.h"
+
+#include "base/file.h"
+#include "base/memory.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <string.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+/* What the table of the first version has; later ones have more, which is optional. */
+enum { LEAST_BYTES = offsetof(raytally_accel_ops, each_box) + sizeof(((raytally_accel_ops *)0)->each_box) };
+_Static_assert(sizeof(raytally_accel_ops) == LEAST_BYTES, "nothing behind the last member");
+
+RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error) {
+    char *data;
+    size_t size;
+    RT_TRY(rt_file_read(path, (size_t)1 << 30, &data, &size, error));
+    *fingerprint = XXH3_64bits(data, size);
+    rt_free(data);
+    return RT_OK;
+}
+
+/* ---- reading its tables ---- */
+
+/* Nothing of the table is read but what every version has before its size is known. */
+static RtStatus take_table(const char *path, const raytally_accel_ops *theirs, RtTables *tables,
+                           RtError *error) {
+    if (theirs->abi == 0)
+        return rt_fail(error, RT_BAD_INPUT, "%s: `abi` is not set: it is RAYTALLY_ACCEL_ABI", path);
+    if (theirs->abi != RAYTALLY_ACCEL_ABI)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: it is made for version %u of the interface of plugins, and this raytally has "
+                       "version %d: compile it against the headers of this one",
+                       path, theirs->abi, RAYTALLY_ACCEL_ABI);
+    if (theirs->size < LEAST_BYTES)
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: its table has %u bytes where %d are the least: set `size` to "
+                       "sizeof(raytally_accel_ops)",
+                       path, theirs->size, LEAST_BYTES);
+    raytally_accel_ops *table = &tables->at[tables->count];
+    *table = (raytally_accel_ops){0};
+    memcpy(table, theirs, theirs->size < sizeof *table ? theirs->size : sizeof *table);
+#define WANT(member)                                                                                         \
+    if (!table->member)                                                                                      \
+        return rt_fail(error, RT_BAD_INPUT, "%s: '%s' lacks its `" #member "`", path,                        \
+                       table->name ? table->name : "a table");
+    WANT(name)
+    WANT(summary)
+    WANT(paper)
+    WANT(build)
+    WANT(destroy)
+    WANT(nearest)
+    WANT(occluded)
+#undef WANT
+    if (table->param_count > RAYTALLY_MAX_PARAMS)
+        return rt_fail(error, RT_BAD_INPUT, "%s: '%s' has %u parameters; %d is the most", path, table->name,
+                       table->param_count, RAYTALLY_MAX_PARAMS);
+    if (table->param_count > 0 && !table->params)
+        return rt_fail(error, RT_BAD_INPUT, "%s: '%s' lacks its `params`", path, table->name);
+    tables->count++;
+    return RT_OK;
+}
+
+RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
+    tables->count = 0;
+    void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (!library) return rt_fail(error, RT_BAD_INPUT, "it cannot be loaded: %s", dlerror());
+    raytally_plugin_function *give;
+    void *symbol = dlsym(library, "raytally_plugin");
+    memcpy(&give, &symbol, sizeof give);
+    if (!give) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: it is no plugin, for it has no function `raytally_plugin`; `raytally new-accel` "
+                       "writes one that has",
+                       path);
+    }
+    const raytally_accel_ops *last = NULL;
+    for (const raytally_accel_ops *table; (table = give(tables->count)); last = table) {
+        if (table == last)
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%s: it gives the same table for index %u and %u: NULL ends them", path,
+                           tables->count - 1, tables->count);
+        if (tables->count == RT_MOST_TABLES)
+            return rt_fail(error, RT_BAD_INPUT, "%s: more than %d accelerators in one library", path,
+                           RT_MOST_TABLES);
+        RT_TRY(take_table(path, table, tables, error));
+    }
+    if (tables->count == 0) return rt_fail(error, RT_BAD_INPUT, "%s: there is no accelerator in it", path);
+    return RT_OK;
+}
+
+RtStatus rt_library_enter(RtPluginOps *ops, RtError *error) {
+    RtTables tables;
+    uint64_t fingerprint;
+    RT_TRY(rt_library_fingerprint(ops->path, &fingerprint, error));
+    if (fingerprint != ops->fingerprint)
+        return rt_fail(error, RT_BROKEN, "%s has changed since it was loaded", ops->path);
+    RT_TRY(rt_library_open(ops->path, &tables, error));
+    const raytally_accel_ops *table = &tables.at[ops->place];
+    if (ops->place >= tables.count || strcmp(table->name, ops->ops.name) != 0 ||
+        table->param_count != ops->ops.param_count)
+        return rt_fail(error, RT_BROKEN, "%s: it has other tables each time it is loaded", ops->path);
+    ops->table = *table;
+    return RT_OK;
+}
+
+/* ---- are they right? ---- */
+
+/* As the headers say, whatever the locale takes for a letter. */
+static bool is_key(const char *name) {
+    static const char characters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    size_t length = name ? strspn(name, characters) : 0;
+    return length > 0 && length < RT_MAX_NAME && name[length] == '\0';
+}
+
+static RtStatus check_value(const char *path, const char *name, const RtParam *param, const char *member,
+                            const char *text, RtError *error) {
+    char setting[RT_MAX_SPEC_CHARS + RT_MAX_NAME], what[RT_MAX_NAME + 16];
+    RtError why;
+    RtValue value;
+    snprintf(what, sizeof what, "accelerator %s", name);
+    snprintf(setting, sizeof setting, "%s=%s", param->name, text);
+    if (rt_params_parse(param, 1, setting, what, &value, &why) == RT_OK) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%s: the table of '%s' does not fit itself: %s of '%s': %s", path,
+                   name, member, param->name, why.message);
+}
+
+/* Its default and what it names for testing are within its range. */
+static RtStatus check_values(const char *path, const char *name, const RtParam *param, RtError *error) {
+    char text[RT_MAX_SPEC_CHARS];
+    RT_TRY(check_value(path, name, param, "`standard`", param->standard, error));
+    for (size_t n = 0; rt_param_try(param, n, text, sizeof text); n++)
+        RT_TRY(check_value(path, name, param, "`test_values`", text, error));
+    return RT_OK;
+}
+
+/* The member that is missing or wrong, or NULL. */
+static const char *wrong_member(const raytally_param *p) {
+    bool number = p->type == RAYTALLY_INT || p->type == RAYTALLY_FLOAT;
+    return !is_key(p->name)                            ? "a `name` of letters, digits and '_'"
+           : p->type > RAYTALLY_FLAG                   ? "a `type`"
+           : !p->standard                              ? "`standard`, its default"
+           : !p->meaning                               ? "its `meaning`"
+           : !p->source                                ? "its `source`"
+           : p->type == RAYTALLY_CHOICE && !p->choices ? "its `choices`"
+           : number && !p->test_values                 ? "its `test_values`"
+           : number && !(p->lo <= p->hi)               ? "a range: `lo` is above `hi`"
+                                                       : NULL;
+}
+
+static RtStatus check_params(const char *path, const raytally_accel_ops *table, RtError *error) {
+    RtPluginOps ops;
+    for (uint32_t i = 0; i < table->param_count; i++) {
+        const char *wrong = wrong_member(&table->params[i]);
+        if (wrong)
+            return rt_fail(error, RT_BAD_INPUT, "%s: parameter number %u of '%s' lacks %s", path, i,
+                           table->name, wrong);
+        for (uint32_t k = 0; k < i; k++) {
+            if (strcmp(table->params[k].name, table->params[i].name) == 0)
+                return rt_fail(error, RT_BAD_INPUT, "%s: '%s' has two parameters '%s'", path, table->name,
+                               table->params[i].name);
+        }
+    }
+    rt_plugin_ops_init(&ops, table);
+    for (uint32_t i = 0; i < table->param_count; i++)
+        RT_TRY(check_values(path, table->name, &ops.params[i], error));
+    return RT_OK;
+}
+
+static RtStatus check_name(const char *path, const RtTables *tables, uint32_t place, RtError *error) {
+    RtError why;
+    const char *name = tables->at[place].name;
+    if (!name || !tables->at[place].summary || !tables->at[place].paper)
+        return rt_fail(error, RT_BAD_INPUT, "%s: a table in it has no name, summary or paper", path);
+    if (rt_accel_name_is_free(name, &why) != RT_OK)
+        return rt_fail(error, RT_BAD_INPUT, "%s: %s", path, why.message);
+    for (uint32_t i = 0; i < place; i++) {
+        if (strcmp(tables->at[i].name, name) == 0)
+            return rt_fail(error, RT_BAD_INPUT, "%s: it has two accelerators '%s': choose another name", path,
+                           name);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *error) {
+    for (uint32_t i = 0; i < tables->count; i++) {
+        RT_TRY(check_name(path, tables, i, error));
+        RT_TRY(check_params(path, &tables->at[i], error));
+    }
+    return rt_accel_has_room(tables->count, error);
+}
