@@ -91,11 +91,12 @@ typedef struct raytally_objects {
     uint32_t triangle_count; /**< Number of triangles; they may be degenerate. */
     const float *spheres;    /**< [sphere_count][4]: centre x, y, z, and a radius above 0; NULL for none. */
     uint32_t sphere_count;   /**< Number of spheres. */
+    uint32_t reserved;       /**< 0. */
 } raytally_objects;
 
 /** No objects. */
 #define RAYTALLY_OBJECTS                                                                                     \
-    { sizeof(raytally_objects), NULL, 0, NULL, 0, NULL, 0 }
+    { sizeof(raytally_objects), NULL, 0, NULL, 0, NULL, 0, 0 }
 
 /** Makes a scene of `objects`, grey and matte, with a camera that sees all of it and a light above that.
  * Triangle i is object i, sphere k object triangle_count + k. */
@@ -230,8 +231,8 @@ RAYTALLY_API void raytally_tracer_free(raytally_tracer *tracer);
 RAYTALLY_API void raytally_tracer_begin(raytally_tracer *tracer);
 
 /** Finds the nearest hits of rays[0..count), which are valid, to hits[0..count). Where `counters` is not NULL
- * it is an array of RAYTALLY_RAY_KINDS, and what each ray costs is added to those of its kind; counting is
- * slower. */
+ * it is an array of RAYTALLY_MAX_RAY_KINDS, and what each ray costs is added to those of its kind; counting
+ * is slower. */
 RAYTALLY_API void raytally_nearest(raytally_tracer *tracer, const raytally_ray *rays, size_t count,
                                    raytally_hit *hits, raytally_counters *counters);
 
@@ -311,12 +312,13 @@ typedef struct raytally_verifying {
 
 /** What came of it, in rays. The verdicts sum up to `rays`. */
 typedef struct raytally_verified {
-    uint64_t rays;           /**< Each asked four times: nearest and any hit, timed and counted. */
+    uint64_t rays;           /**< Each asked for the nearest and for any hit, when timed and when counted. */
     uint64_t equal;          /**< Answered as by `brute`: of an exact accelerator, bit for bit. */
     uint64_t tie;            /**< Another object at the same place; 0 of an exact accelerator. */
     uint64_t marginal;       /**< Explained by rounding; 0 of an exact accelerator. */
     uint64_t wrong;          /**< Anything else. */
     uint64_t occluded_wrong; /**< Whose answer to whether anything is hit is wrong; among all verdicts. */
+    uint64_t reserved[10];   /**< 0. */
 } raytally_verified;
 
 /** Builds the accelerator that `spec` describes over `scene`, validates its structure, and compares its
@@ -340,11 +342,12 @@ RAYTALLY_API raytally_status raytally_count(raytally_accelerator *accelerator, c
 
 /** A median of repeated measurements, and an interval that holds the true one, by order statistics. */
 typedef struct raytally_estimate {
-    double median;   /**< The middle of the measurements. */
-    double low;      /**< Lower end of the interval. */
-    double high;     /**< Upper end of the interval. */
-    double least;    /**< The smallest measurement. */
-    double coverage; /**< Probability that the interval holds the median: at least 0.95 from 6 on. */
+    double median;      /**< The middle of the measurements. */
+    double low;         /**< Lower end of the interval. */
+    double high;        /**< Upper end of the interval. */
+    double least;       /**< The smallest measurement. */
+    double coverage;    /**< Probability that the interval holds the median: at least 0.95 from 6 on. */
+    double reserved[3]; /**< 0. */
 } raytally_estimate;
 
 /** The most measurements of one thing. */
@@ -376,6 +379,7 @@ typedef struct raytally_timing {
 typedef struct raytally_time {
     raytally_estimate seconds; /**< Of a ray. */
     raytally_estimate ratio;   /**< Its throughput over that of the first accelerator, round by round. */
+    double reserved[8];        /**< 0. */
 } raytally_time;
 
 /** Times accelerators[0..count) on the same rays, of which there is one at least, in interleaved rounds: each

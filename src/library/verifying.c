@@ -57,17 +57,17 @@ raytally_status raytally_verify(const raytally_scene *scene, const char *spec, c
                                 raytally_verified *out, raytally_error *error) {
     RtVerifyStage stage = {0};
     raytally_verifying own = RAYTALLY_VERIFYING;
-    rt_options_take(&own, sizeof own, how);
     *out = (raytally_verified){0};
+    locale_t before = rt_locale_enter();
+    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_verifying", rt_error_of(error));
     RtVerifyRays wanted = {.count = own.given ? own.given->set.count : own.rays,
                            .seed = own.seed,
                            .threads = own.threads,
                            .given = own.given ? &own.given->set : NULL};
-    locale_t before = rt_locale_enter();
-    RtStatus status = check(&own, rt_error_of(error));
+    if (status == RT_OK) status = check(&own, rt_error_of(error));
     if (status == RT_OK)
         status = build_and_verify(&stage, &scene->scene, &wanted, spec, out, rt_error_of(error));
-    rt_locale_leave(before);
     rt_verify_stage_clear(&stage);
+    rt_locale_leave(before);
     return (raytally_status)status;
 }

@@ -22,9 +22,9 @@ RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay
 /* A scene as it is verified: its rays, and the right answers. It stays where it is, for its members know one
  * another's places. */
 typedef struct RtVerifyStage {
-    /* The scene, its image sampled as sparsely as its share of rays asks for, and not at all otherwise where
-     * rays are given. Accelerators know the samples (item): those to be verified are built over this one. The
-     * arrays are those of the scene that it is made from, which is left as it is and outlives the stage. */
+    /* The scene, its image sampled as sparsely as its share of the rays asks for; as it was where rays are
+     * given. Accelerators know the samples (item): those to be verified are built over this one. Its arrays
+     * are those of the scene that it is made from, which is left as it is and outlives the stage. */
     RtScene scene;
     RtAccel *truth;
     RtRay *rays;
