@@ -15,13 +15,19 @@
  * **Threads.** Different objects may be used by different threads at once. One object may be read by many
  * threads; functions that take it without `const` need it for themselves. A tracer belongs to one thread at a
  * time. A parameter `threads` is the number of threads to work on, 1..1024, or 0 for all processors; it
- * changes no answer, no count and no picture. The library keeps no threads running between calls.
+ * changes no answer, no count and no picture. The library keeps no threads running between calls. An
+ * accelerator of a plugin may refuse, with RAYTALLY_BAD_INPUT, more threads and tracers at once than there
+ * are processors and than it was built on.
  *
  * **Numbers** in specs, files and messages are read and written by the rules of the locale "C", whatever the
  * program has chosen by setlocale. Lengths are in the units of the scene, times in seconds. Answers are the
  * same bits everywhere in the floating-point environment that a C program starts in: rounding to nearest,
  * denormals kept. A thread that has set FTZ or DAZ, and a program that was linked with -ffast-math, which
- * sets them, resets them before it calls. */
+ * sets them, resets them before it calls.
+ *
+ * **Versions.** Structs of options begin with their size, of an older header or a newer one: what is left out
+ * has its default, and what is set that this library does not know is RAYTALLY_NOT_AVAILABLE. Structs of
+ * results have room for more, which is 0: hand over all of it, RAYTALLY_MAX_RAY_KINDS counters, too. */
 #ifndef RAYTALLY_RAYTALLY_H
 #define RAYTALLY_RAYTALLY_H
 
@@ -322,9 +328,10 @@ typedef struct raytally_verified {
 } raytally_verified;
 
 /** Builds the accelerator that `spec` describes over `scene`, validates its structure, and compares its
- * answers with those of `brute`, which tests every object. Where one is wrong or the structure is broken:
- * RAYTALLY_MISMATCH, *error says which ray is the first, what was expected and what was answered, and *out is
- * filled all the same. `how` may be NULL: RAYTALLY_VERIFYING. */
+ * answers with those of `brute`, which tests every object: by the rays of `raytally verify` for that number
+ * and seed, however the image is sampled. Where one is wrong or the structure is broken: RAYTALLY_MISMATCH,
+ * *error says which ray is the first, what was expected and what was answered, and *out is filled all the
+ * same. `how` may be NULL: RAYTALLY_VERIFYING. */
 RAYTALLY_API raytally_status raytally_verify(const raytally_scene *scene, const char *spec,
                                              const raytally_verifying *how, raytally_verified *out,
                                              raytally_error *error);

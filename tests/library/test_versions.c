@@ -3,6 +3,11 @@
  * what is told has room for more. */
 #include "library_testing.h"
 
+#include <raytally/accel.h>
+
+/* A plugin writes all of its own header's, into what our header has. */
+_Static_assert(sizeof(raytally_description) == 128, "the room for descriptions does not change");
+
 /* What a later header may make of each struct of options. */
 #define LATER(Options)                                                                                       \
     struct {                                                                                                 \
