@@ -60,6 +60,7 @@ _Static_assert((int)RAYTALLY_RAY_KINDS <= (int)RAYTALLY_MAX_RAY_KINDS &&
                    #Options " has no padding at its end")
 ENDS_WITH(raytally_objects, reserved);
 ENDS_WITH(raytally_recording, limit);
+/* NOLINTNEXTLINE(bugprone-sizeof-expression): the size of a pointer is meant */
 ENDS_WITH(raytally_verifying, given);
 ENDS_WITH(raytally_timing, seed);
 
