@@ -110,10 +110,14 @@ cat >"$work/comma.c" <<'END'
 #include <stdio.h>
 int main(void) {
     char spec[RAYTALLY_SPEC_CHARS];
+    raytally_scene *scene;
+    raytally_camera camera = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 199.5f};
     raytally_error error = {RAYTALLY_OK, ""};
     if (!setlocale(LC_ALL, "") || *localeconv()->decimal_point != ',') return 77;
     if (raytally_spec_format("grid:density=4.5", spec, &error) != RAYTALLY_OK) puts(error.message);
     puts(spec);
+    if (raytally_scene_open("balls:size=1", &scene, &error) != RAYTALLY_OK) puts(error.message);
+    if (raytally_scene_look(scene, &camera, &error) != RAYTALLY_OK) puts(error.message);
     return printf("%.1f\n", 4.5) == 4 ? 0 : 2;
 }
 END
@@ -123,7 +127,7 @@ if localedef -i de_DE -f UTF-8 "$work/de_DE.UTF-8" 2>/dev/null; then
     # shellcheck disable=SC2086 # they are several
     quietly "a program does not build" "${CC:-cc}" -std=c99 "$work/comma.c" $flags -o "$work/comma" &&
         quietly "a program with another locale fails" env LD_LIBRARY_PATH="$libraries" LOCPATH="$work" LC_ALL=de_DE.UTF-8 "$work/comma" &&
-        { grep -q ',density=4\.5,.*' "$work/log" && grep -qx '4,5' "$work/log" || complain "in another locale: $(cat "$work/log")"; }
+        { grep -q ',density=4\.5,.*' "$work/log" && grep -q '199\.5' "$work/log" && grep -qx '4,5' "$work/log" || complain "in another locale: $(cat "$work/log")"; }
 else
     echo "check_library: localedef makes no de_DE: a locale with a decimal comma is not tried" >&2
 fi

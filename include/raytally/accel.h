@@ -148,6 +148,7 @@ typedef struct raytally_description {
     double predicted_cost;  /**< Expected cost of a random line through the box, in object tests (SAH). */
     double predicted_tests; /**< Its expected object tests. */
     double predicted_steps; /**< Its expected steps. */
+    double reserved[7];     /**< Room for what later ones say. Not to be set. */
 } raytally_description;
 
 /** Who looks at the boxes of a structure, for pictures: to be called once for each.

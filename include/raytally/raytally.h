@@ -15,13 +15,19 @@
  * **Threads.** Different objects may be used by different threads at once. One object may be read by many
  * threads; functions that take it without `const` need it for themselves. A tracer belongs to one thread at a
  * time. A parameter `threads` is the number of threads to work on, 1..1024, or 0 for all processors; it
- * changes no answer, no count and no picture. The library keeps no threads running between calls.
+ * changes no answer, no count and no picture. The library keeps no threads running between calls. An
+ * accelerator of a plugin may refuse, with RAYTALLY_BAD_INPUT, more threads and tracers at once than there
+ * are processors and than it was built on.
  *
  * **Numbers** in specs, files and messages are read and written by the rules of the locale "C", whatever the
  * program has chosen by setlocale. Lengths are in the units of the scene, times in seconds. Answers are the
  * same bits everywhere in the floating-point environment that a C program starts in: rounding to nearest,
  * denormals kept. A thread that has set FTZ or DAZ, and a program that was linked with -ffast-math, which
- * sets them, resets them before it calls. */
+ * sets them, resets them before it calls.
+ *
+ * **Versions.** Structs of options begin with their size, of an older header or a newer one: what is left out
+ * has its default, and what is set that this library does not know is RAYTALLY_NOT_AVAILABLE. Structs of
+ * results have room for more, which is 0: hand over all of it, RAYTALLY_MAX_RAY_KINDS counters, too. */
 #ifndef RAYTALLY_RAYTALLY_H
 #define RAYTALLY_RAYTALLY_H
 
@@ -91,11 +97,12 @@ typedef struct raytally_objects {
     uint32_t triangle_count; /**< Number of triangles; they may be degenerate. */
     const float *spheres;    /**< [sphere_count][4]: centre x, y, z, and a radius above 0; NULL for none. */
     uint32_t sphere_count;   /**< Number of spheres. */
+    uint32_t reserved;       /**< 0. */
 } raytally_objects;
 
 /** No objects. */
 #define RAYTALLY_OBJECTS                                                                                     \
-    { sizeof(raytally_objects), NULL, 0, NULL, 0, NULL, 0 }
+    { sizeof(raytally_objects), NULL, 0, NULL, 0, NULL, 0, 0 }
 
 /** Makes a scene of `objects`, grey and matte, with a camera that sees all of it and a light above that.
  * Triangle i is object i, sphere k object triangle_count + k. */
@@ -230,8 +237,8 @@ RAYTALLY_API void raytally_tracer_free(raytally_tracer *tracer);
 RAYTALLY_API void raytally_tracer_begin(raytally_tracer *tracer);
 
 /** Finds the nearest hits of rays[0..count), which are valid, to hits[0..count). Where `counters` is not NULL
- * it is an array of RAYTALLY_RAY_KINDS, and what each ray costs is added to those of its kind; counting is
- * slower. */
+ * it is an array of RAYTALLY_MAX_RAY_KINDS, and what each ray costs is added to those of its kind; counting
+ * is slower. */
 RAYTALLY_API void raytally_nearest(raytally_tracer *tracer, const raytally_ray *rays, size_t count,
                                    raytally_hit *hits, raytally_counters *counters);
 
@@ -311,18 +318,20 @@ typedef struct raytally_verifying {
 
 /** What came of it, in rays. The verdicts sum up to `rays`. */
 typedef struct raytally_verified {
-    uint64_t rays;           /**< Each asked four times: nearest and any hit, timed and counted. */
+    uint64_t rays;           /**< Each asked for the nearest and for any hit, when timed and when counted. */
     uint64_t equal;          /**< Answered as by `brute`: of an exact accelerator, bit for bit. */
     uint64_t tie;            /**< Another object at the same place; 0 of an exact accelerator. */
     uint64_t marginal;       /**< Explained by rounding; 0 of an exact accelerator. */
     uint64_t wrong;          /**< Anything else. */
     uint64_t occluded_wrong; /**< Whose answer to whether anything is hit is wrong; among all verdicts. */
+    uint64_t reserved[10];   /**< 0. */
 } raytally_verified;
 
 /** Builds the accelerator that `spec` describes over `scene`, validates its structure, and compares its
- * answers with those of `brute`, which tests every object. Where one is wrong or the structure is broken:
- * RAYTALLY_MISMATCH, *error says which ray is the first, what was expected and what was answered, and *out is
- * filled all the same. `how` may be NULL: RAYTALLY_VERIFYING. */
+ * answers with those of `brute`, which tests every object: by the rays of `raytally verify` for that number
+ * and seed, however the image is sampled. Where one is wrong or the structure is broken: RAYTALLY_MISMATCH,
+ * *error says which ray is the first, what was expected and what was answered, and *out is filled all the
+ * same. `how` may be NULL: RAYTALLY_VERIFYING. */
 RAYTALLY_API raytally_status raytally_verify(const raytally_scene *scene, const char *spec,
                                              const raytally_verifying *how, raytally_verified *out,
                                              raytally_error *error);
@@ -340,11 +349,12 @@ RAYTALLY_API raytally_status raytally_count(raytally_accelerator *accelerator, c
 
 /** A median of repeated measurements, and an interval that holds the true one, by order statistics. */
 typedef struct raytally_estimate {
-    double median;   /**< The middle of the measurements. */
-    double low;      /**< Lower end of the interval. */
-    double high;     /**< Upper end of the interval. */
-    double least;    /**< The smallest measurement. */
-    double coverage; /**< Probability that the interval holds the median: at least 0.95 from 6 on. */
+    double median;      /**< The middle of the measurements. */
+    double low;         /**< Lower end of the interval. */
+    double high;        /**< Upper end of the interval. */
+    double least;       /**< The smallest measurement. */
+    double coverage;    /**< Probability that the interval holds the median: at least 0.95 from 6 on. */
+    double reserved[3]; /**< 0. */
 } raytally_estimate;
 
 /** The most measurements of one thing. */
@@ -376,6 +386,7 @@ typedef struct raytally_timing {
 typedef struct raytally_time {
     raytally_estimate seconds; /**< Of a ray. */
     raytally_estimate ratio;   /**< Its throughput over that of the first accelerator, round by round. */
+    double reserved[8];        /**< 0. */
 } raytally_time;
 
 /** Times accelerators[0..count) on the same rays, of which there is one at least, in interleaved rounds: each

@@ -14,14 +14,15 @@ extern "C" {
 /** What a ray is traced for. Shadow and occlusion rays ask whether anything lies on them, all others what is
  * nearest. */
 enum raytally_ray_kind {
-    RAYTALLY_PRIMARY,      /**< From the eye through a sample of the image. */
-    RAYTALLY_SHADOW,       /**< From a surface to a light; asks for any hit. */
-    RAYTALLY_REFLECTION,   /**< Mirrored at a reflective surface. */
-    RAYTALLY_TRANSMISSION, /**< Refracted through a transparent surface. */
-    RAYTALLY_DIFFUSE,      /**< From a surface, cosine-distributed about the normal. */
-    RAYTALLY_RANDOM,       /**< A random chord of the scene's bounding sphere. */
-    RAYTALLY_OCCLUSION,    /**< A diffuse ray that asks for any hit. */
-    RAYTALLY_RAY_KINDS     /**< The number of kinds. */
+    RAYTALLY_PRIMARY,           /**< From the eye through a sample of the image. */
+    RAYTALLY_SHADOW,            /**< From a surface to a light; asks for any hit. */
+    RAYTALLY_REFLECTION,        /**< Mirrored at a reflective surface. */
+    RAYTALLY_TRANSMISSION,      /**< Refracted through a transparent surface. */
+    RAYTALLY_DIFFUSE,           /**< From a surface, cosine-distributed about the normal. */
+    RAYTALLY_RANDOM,            /**< A random chord of the scene's bounding sphere. */
+    RAYTALLY_OCCLUSION,         /**< A diffuse ray that asks for any hit. */
+    RAYTALLY_RAY_KINDS,         /**< The number of kinds there are. */
+    RAYTALLY_MAX_RAY_KINDS = 16 /**< The number there is room for, so that new ones change no layout. */
 };
 
 /** The points org + t * dir for tmin <= t <= tmax. A valid ray has finite org and dir, no coordinate of org

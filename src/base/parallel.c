@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 
+#include <locale.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
@@ -60,19 +61,36 @@ static void *run_worker(void *argument) {
     return NULL;
 }
 
+/* What a thread of its own begins with. */
+typedef struct Start {
+    pthread_t handle;
+    void *(*run)(void *);
+    void *of;
+    locale_t locale; /* that of the thread which starts it: numbers are written alike on all */
+} Start;
+
+static void *start(void *argument) {
+    const Start *own = argument;
+    uselocale(own->locale);
+    return own->run(own->of);
+}
+
 /* Calls run(of[i]) for the first of `count` values of `size` bytes on this thread, and for the others on
  * threads of their own. Threads that cannot be had are done without: the others take their work. */
 static RtStatus run_all(void *(*run)(void *), void *of, size_t size, int count, RtError *error) {
-    pthread_t *handles = rt_alloc((size_t)count, sizeof(pthread_t));
-    if (!handles) return rt_fail_memory(error, "worker threads", (size_t)count * sizeof(pthread_t));
+    Start *starts = rt_alloc((size_t)count, sizeof(Start));
+    if (!starts) return rt_fail_memory(error, "worker threads", (size_t)count * sizeof(Start));
+    const locale_t locale = uselocale((locale_t)0);
     int started = 1;
-    while (started < count &&
-           pthread_create(&handles[started], NULL, run, (char *)of + (size_t)started * size) == 0) {
+    while (started < count) {
+        Start *next = &starts[started];
+        *next = (Start){.run = run, .of = (char *)of + (size_t)started * size, .locale = locale};
+        if (pthread_create(&next->handle, NULL, start, next) != 0) break;
         started++;
     }
     run(of);
-    for (int i = 1; i < started; i++) pthread_join(handles[i], NULL);
-    rt_free(handles);
+    for (int i = 1; i < started; i++) pthread_join(starts[i].handle, NULL);
+    rt_free(starts);
     return RT_OK;
 }
 

@@ -34,7 +34,8 @@ static inline RtError *rt_error_of(raytally_error *error) {
 }
 
 /* From here to rt_locale_leave this thread reads and writes numbers by the rules of "C", whatever locale the
- * program that embeds us has chosen. (That locale is one that the system has: it is not to be freed.) */
+ * program that embeds us has chosen. (That locale is one that the system has: it is not to be freed.) All
+ * that may write a message or read a number does so, and tracing too, for a plugin may break at it: 7 ns. */
 static inline locale_t rt_locale_enter(void) {
     return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
 }
@@ -43,9 +44,11 @@ static inline void rt_locale_leave(locale_t before) {
     uselocale(before);
 }
 
-/* Takes what a caller says of options: `own` holds the defaults, `given` begins with its size, which an older
- * or a newer header may have made another one, or is NULL. */
-void rt_options_take(void *own, size_t size, const void *given);
+/* Takes what a caller says of options: `own` holds the defaults of the `size` bytes that are known here;
+ * `given`, a struct of the name `what`, begins with its size, which an older or a newer header may have made
+ * another one, or is NULL. RT_NOT_AVAILABLE where anything is set behind what is known, RT_BAD_INPUT where
+ * the size is none. */
+RtStatus rt_options_take(void *own, size_t size, const void *given, const char *what, RtError *error);
 
 /* Refuses a number of threads outside 0..1024. */
 RtStatus rt_threads_check(int threads, RtError *error);

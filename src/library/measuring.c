@@ -55,11 +55,14 @@ static RtStatus count_rays(RtAccel *accel, const RtRaySet *set, RtHit *hits, int
 
 raytally_status raytally_count(raytally_accelerator *accelerator, const raytally_rays *rays, int threads,
                                raytally_counters *out, raytally_error *error) {
-    RtHit *hits = rt_alloc((size_t)rays->set.count, sizeof *hits);
     *out = (raytally_counters){{0}};
-    if (!hits) return (raytally_status)rt_fail_memory(rt_error_of(error), "answers", sizeof *hits);
-    RtStatus status = count_rays(accelerator->accel, &rays->set, hits, threads, out, rt_error_of(error));
+    locale_t before = rt_locale_enter();
+    RtHit *hits = rt_alloc((size_t)rays->set.count, sizeof *hits);
+    RtStatus status =
+        hits ? count_rays(accelerator->accel, &rays->set, hits, threads, out, rt_error_of(error))
+             : rt_fail_memory(rt_error_of(error), "answers", (size_t)rays->set.count * sizeof *hits);
     rt_free(hits);
+    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
@@ -71,21 +74,28 @@ static RtStatus check_rounds(uint32_t count, const char *what, RtError *error) {
 }
 
 static raytally_estimate public_estimate(RtEstimate estimate, uint32_t count) {
-    return (raytally_estimate){estimate.median, estimate.low, estimate.high, estimate.least,
-                               rt_interval_coverage(count)};
+    return (raytally_estimate){.median = estimate.median,
+                               .low = estimate.low,
+                               .high = estimate.high,
+                               .least = estimate.least,
+                               .coverage = rt_interval_coverage(count)};
 }
 
 raytally_status raytally_estimate_median(const double *values, uint32_t count, raytally_estimate *out,
                                          raytally_error *error) {
+    locale_t before = rt_locale_enter();
     RtStatus status = check_rounds(count, "measurements", rt_error_of(error));
     if (status == RT_OK) *out = public_estimate(rt_estimate(values, count), count);
+    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
 raytally_status raytally_estimate_ratio(const double *over, const double *under, uint32_t count,
                                         raytally_estimate *out, raytally_error *error) {
+    locale_t before = rt_locale_enter();
     RtStatus status = check_rounds(count, "pairs of measurements", rt_error_of(error));
     if (status == RT_OK) *out = public_estimate(rt_estimate_ratio(over, under, count), count);
+    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
@@ -147,8 +157,8 @@ static RtStatus run(Contest *contest, const raytally_timing *how, raytally_time 
     const double *first = contest->timed[0].seconds;
     for (size_t i = 0; i < contest->count; i++) {
         const double *own = contest->timed[i].seconds;
-        times[i].seconds = public_estimate(rt_estimate(own, done), done);
-        times[i].ratio = public_estimate(rt_estimate_ratio(first, own, done), done);
+        times[i] = (raytally_time){.seconds = public_estimate(rt_estimate(own, done), done),
+                                   .ratio = public_estimate(rt_estimate_ratio(first, own, done), done)};
     }
     return RT_OK;
 }
@@ -158,8 +168,9 @@ raytally_status raytally_time_all(raytally_accelerator *const *accelerators, siz
                                   raytally_error *error) {
     Contest contest = {.accelerators = accelerators, .count = count, .set = &rays->set};
     raytally_timing own = RAYTALLY_TIMING;
-    rt_options_take(&own, sizeof own, how);
-    RtStatus status = check_timing(&own, &contest, rt_error_of(error));
+    locale_t before = rt_locale_enter();
+    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_timing", rt_error_of(error));
+    if (status == RT_OK) status = check_timing(&own, &contest, rt_error_of(error));
     if (status == RT_OK) status = contest_init(&contest, &own, rt_error_of(error));
     if (status == RT_OK) {
         status = run(&contest, &own, times, rt_error_of(error));
@@ -169,5 +180,6 @@ raytally_status raytally_time_all(raytally_accelerator *const *accelerators, siz
     rt_free(contest.hits);
     rt_free(contest.timed);
     rt_free(contest.seconds);
+    rt_locale_leave(before);
     return (raytally_status)status;
 }

@@ -59,14 +59,14 @@ static RtStatus copy(enum raytally_ray_kind kind, const raytally_ray *rays, size
 }
 
 /* To *out, what lies at `made`, where `status` says that it could be made; else nothing is left of it. */
-static raytally_status hand_out(RtRaySet *made, RtStatus status, raytally_rays **out, RtError *error) {
+static RtStatus hand_out(RtRaySet *made, RtStatus status, raytally_rays **out, RtError *error) {
     *out = status == RT_OK ? rt_alloc(1, sizeof **out) : NULL;
     if (*out) {
         (*out)->set = *made;
-        return RAYTALLY_OK;
+        return RT_OK;
     }
     rt_rayset_clear(made);
-    return (raytally_status)(status != RT_OK ? status : rt_fail_memory(error, "rays", sizeof **out));
+    return status != RT_OK ? status : rt_fail_memory(error, "rays", sizeof **out);
 }
 
 raytally_status raytally_rays_record(const raytally_accelerator *accelerator, enum raytally_ray_kind kind,
@@ -74,16 +74,22 @@ raytally_status raytally_rays_record(const raytally_accelerator *accelerator, en
                                      raytally_error *error) {
     RtRaySet made = {0};
     raytally_recording own = RAYTALLY_RECORDING;
-    rt_options_take(&own, sizeof own, how);
-    RtStatus status = record(accelerator->accel, kind, &own, &made, rt_error_of(error));
-    return hand_out(&made, status, out, rt_error_of(error));
+    locale_t before = rt_locale_enter();
+    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_recording", rt_error_of(error));
+    if (status == RT_OK) status = record(accelerator->accel, kind, &own, &made, rt_error_of(error));
+    status = hand_out(&made, status, out, rt_error_of(error));
+    rt_locale_leave(before);
+    return (raytally_status)status;
 }
 
 raytally_status raytally_rays_copy(enum raytally_ray_kind kind, const raytally_ray *rays, size_t count,
                                    raytally_rays **out, raytally_error *error) {
     RtRaySet made = {0};
+    locale_t before = rt_locale_enter();
     RtStatus status = copy(kind, rays, count, &made, rt_error_of(error));
-    return hand_out(&made, status, out, rt_error_of(error));
+    status = hand_out(&made, status, out, rt_error_of(error));
+    rt_locale_leave(before);
+    return (raytally_status)status;
 }
 
 void raytally_rays_free(raytally_rays *rays) {

@@ -26,8 +26,44 @@ _Static_assert(sizeof(raytally_ray) == sizeof(RtRay) && sizeof(raytally_hit) == 
     _Static_assert((int)RAYTALLY_##CONSTANT == (int)RT_RAY_##CONSTANT, #name);
 RT_RAY_KINDS(SAME_KIND)
 _Static_assert((int)RAYTALLY_RAY_KINDS == (int)RT_RAY_KIND_COUNT, "kinds of rays are the same");
-_Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT, "counters are the same");
-_Static_assert((int)RAYTALLY_COUNTERS_KNOWN <= (int)RAYTALLY_COUNTERS, "there is room for them");
+
+/* Each counter has the place of the tally's member of its name, so that rt_counters_add copies them. */
+#define SAME_COUNTER(CONSTANT, name)                                                                         \
+    _Static_assert(RAYTALLY_##CONSTANT * sizeof(uint64_t) == offsetof(RtTally, name), #name);
+SAME_COUNTER(RAYS, rays)
+SAME_COUNTER(HITS, hits)
+SAME_COUNTER(OBJECT_TESTS, object_tests)
+SAME_COUNTER(OBJECT_HITS, object_hits)
+SAME_COUNTER(EXTENT_TESTS, extent_tests)
+SAME_COUNTER(STEPS, steps)
+SAME_COUNTER(LEAF_STEPS, leaf_steps)
+SAME_COUNTER(EMPTY_STEPS, empty_steps)
+SAME_COUNTER(CSG_TESTS, csg_tests)
+SAME_COUNTER(REPEATS_AVOIDED, repeats_avoided)
+SAME_COUNTER(PASSED_ON, passed_on)
+_Static_assert((int)RAYTALLY_COUNTERS_KNOWN == (int)RT_TALLY_COUNTER_COUNT, "none is left out");
+
+/* What programs have room for is part of the binary interface. */
+_Static_assert(RAYTALLY_MAX_RAY_KINDS == 16 && RAYTALLY_COUNTERS == 32 && RAYTALLY_FIGURES == 32 &&
+                   sizeof(raytally_verified) == 128 && sizeof(raytally_estimate) == 64 &&
+                   sizeof(raytally_time) == 192,
+               "the room for what is told does not change");
+_Static_assert((int)RAYTALLY_RAY_KINDS <= (int)RAYTALLY_MAX_RAY_KINDS &&
+                   (int)RAYTALLY_COUNTERS_KNOWN <= (int)RAYTALLY_COUNTERS &&
+                   (int)RAYTALLY_FIGURES_KNOWN <= (int)RAYTALLY_FIGURES,
+               "and is enough");
+
+/* A member that a later header adds to options lies behind the size of them here, not in padding, where an
+ * older program would have left anything. */
+#define ENDS_WITH(Options, member)                                                                           \
+    _Static_assert(sizeof(Options) == offsetof(Options, member) + sizeof((Options){0}.member),               \
+                   #Options " has no padding at its end")
+ENDS_WITH(raytally_objects, reserved);
+ENDS_WITH(raytally_recording, limit);
+/* NOLINTNEXTLINE(bugprone-sizeof-expression): the size of a pointer is meant */
+ENDS_WITH(raytally_verifying, given);
+ENDS_WITH(raytally_timing, seed);
+
 _Static_assert(RAYTALLY_NO_OBJECT == RT_NO_OBJECT, "a miss is the same");
 _Static_assert(RAYTALLY_SPEC_CHARS == RT_MAX_SPEC_CHARS, "specs are as long");
 
@@ -52,11 +88,26 @@ const char *raytally_ray_kind_name(enum raytally_ray_kind kind) {
     return (unsigned)kind < RT_RAY_KIND_COUNT ? rt_ray_kind_name((RtRayKind)kind) : NULL;
 }
 
-void rt_options_take(void *own, size_t size, const void *given) {
+/* More than options of any version take: a larger size is one that nobody has set. */
+enum { MOST_OPTION_BYTES = 4096 };
+
+RtStatus rt_options_take(void *own, size_t size, const void *given, const char *what, RtError *error) {
     size_t given_size;
-    if (!given) return;
+    if (!given) return RT_OK;
     memcpy(&given_size, given, sizeof given_size);
+    if (given_size < sizeof given_size || given_size > MOST_OPTION_BYTES) {
+        return rt_fail(error, RT_BAD_INPUT, "%s: its size cannot be %zu bytes: initialise it first", what,
+                       given_size);
+    }
+    for (size_t i = size; i < given_size; i++) {
+        if (((const unsigned char *)given)[i] == 0) continue;
+        return rt_fail(error, RT_NOT_AVAILABLE,
+                       "%s: what is set at byte %zu of it means nothing to raytally " RT_VERSION
+                       ", which knows %zu bytes",
+                       what, i, size);
+    }
     memcpy(own, given, given_size < size ? given_size : size);
+    return RT_OK;
 }
 
 RtStatus rt_threads_check(int threads, RtError *error) {

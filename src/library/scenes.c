@@ -10,21 +10,18 @@
 /* ---- making ---- */
 
 /* To *out, what `fill` makes of a zeroed scene; nothing where that fails. */
-static raytally_status make(RtStatus (*fill)(RtScene *scene, const void *what, RtError *error),
-                            const void *what, raytally_scene **out, RtError *error) {
+static RtStatus make(RtStatus (*fill)(RtScene *scene, const void *what, RtError *error), const void *what,
+                     raytally_scene **out, RtError *error) {
     raytally_scene *made = rt_alloc(1, sizeof *made);
-    *out = NULL;
-    if (!made) return (raytally_status)rt_fail_memory(error, "a scene", sizeof *made);
-    locale_t before = rt_locale_enter();
+    if (!made) return rt_fail_memory(error, "a scene", sizeof *made);
     RtStatus status = fill(&made->scene, what, error);
-    rt_locale_leave(before);
     if (status == RT_OK) {
         *out = made;
     } else {
         rt_scene_clear(&made->scene);
         rt_free(made);
     }
-    return (raytally_status)status;
+    return status;
 }
 
 static RtStatus fill_by_spec(RtScene *scene, const void *spec, RtError *error) {
@@ -32,7 +29,11 @@ static RtStatus fill_by_spec(RtScene *scene, const void *spec, RtError *error) {
 }
 
 raytally_status raytally_scene_open(const char *spec, raytally_scene **out, raytally_error *error) {
-    return make(fill_by_spec, spec, out, rt_error_of(error));
+    *out = NULL;
+    locale_t before = rt_locale_enter();
+    RtStatus status = make(fill_by_spec, spec, out, rt_error_of(error));
+    rt_locale_leave(before);
+    return (raytally_status)status;
 }
 
 /* The failure `why`, with what was being added before its message. */
@@ -81,8 +82,13 @@ static RtStatus fill_by_objects(RtScene *scene, const void *what, RtError *error
 raytally_status raytally_scene_make(const raytally_objects *objects, raytally_scene **out,
                                     raytally_error *error) {
     raytally_objects own = RAYTALLY_OBJECTS;
-    rt_options_take(&own, sizeof own, objects);
-    return make(fill_by_objects, &own, out, rt_error_of(error));
+    *out = NULL;
+    locale_t before = rt_locale_enter();
+    RtStatus status = rt_options_take(&own, offsetof(raytally_objects, reserved), objects, "raytally_objects",
+                                      rt_error_of(error));
+    if (status == RT_OK) status = make(fill_by_objects, &own, out, rt_error_of(error));
+    rt_locale_leave(before);
+    return (raytally_status)status;
 }
 
 void raytally_scene_free(raytally_scene *scene) {
@@ -123,8 +129,7 @@ static bool is_place(RtVec3 p) {
            fabsf(p.z) <= RT_MAX_COORDINATE;
 }
 
-raytally_status raytally_scene_look(raytally_scene *scene, const raytally_camera *camera,
-                                    raytally_error *error) {
+static RtStatus look(raytally_scene *scene, const raytally_camera *camera, RtError *error) {
     RtCamera looking = scene->scene.camera;
     RtView view;
     memcpy(&looking.from, camera->from, sizeof looking.from);
@@ -132,19 +137,28 @@ raytally_status raytally_scene_look(raytally_scene *scene, const raytally_camera
     memcpy(&looking.up, camera->up, sizeof looking.up);
     looking.fov = camera->fov;
     looking.near = 0;
-    RtStatus status = check_free(scene, rt_error_of(error));
-    if (status == RT_OK && !(is_place(looking.from) && is_place(looking.at) && is_place(looking.up)))
-        status = rt_fail(rt_error_of(error), RT_BAD_INPUT,
-                         "a camera has a coordinate that is not finite, or beyond 5e17");
-    if (status == RT_OK) status = rt_view_init(&view, &looking, scene->scene.sampling, rt_error_of(error));
-    if (status == RT_OK) scene->scene.camera = looking;
+    RT_TRY(check_free(scene, error));
+    if (!(is_place(looking.from) && is_place(looking.at) && is_place(looking.up)))
+        return rt_fail(error, RT_BAD_INPUT, "a camera has a coordinate that is not finite, or beyond 5e17");
+    RT_TRY(rt_view_init(&view, &looking, scene->scene.sampling, error));
+    scene->scene.camera = looking;
+    return RT_OK;
+}
+
+raytally_status raytally_scene_look(raytally_scene *scene, const raytally_camera *camera,
+                                    raytally_error *error) {
+    locale_t before = rt_locale_enter();
+    RtStatus status = look(scene, camera, rt_error_of(error));
+    rt_locale_leave(before);
     return (raytally_status)status;
 }
 
 raytally_status raytally_scene_sample(raytally_scene *scene, uint32_t width, uint32_t height,
                                       uint32_t samples, raytally_error *error) {
+    locale_t before = rt_locale_enter();
     RtStatus status = check_free(scene, rt_error_of(error));
     if (status == RT_OK)
         status = rt_scene_sample(&scene->scene, width, height, samples, false, rt_error_of(error));
+    rt_locale_leave(before);
     return (raytally_status)status;
 }

@@ -1,21 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Verification for those who embed us: one accelerator against brute on one scene. */
-#include "base/memory.h"
 #include "library/library.h"
-#include "verify/equivalence.h"
 #include "verify/verify_rays.h"
 
 #include <inttypes.h>
 
 /* As many as `raytally verify` takes. */
 #define MOST_RAYS UINT64_C(20000000)
-
-/* What a verification holds while it runs. */
-typedef struct Stage {
-    RtAccel *truth, *accel;
-    RtRay *rays;
-    RtReference reference;
-} Stage;
 
 static void fill(const RtEquivalence *result, raytally_verified *out) {
     *out = (raytally_verified){.rays = result->rays,
@@ -27,26 +18,32 @@ static void fill(const RtEquivalence *result, raytally_verified *out) {
 }
 
 /* A broken structure is told of only where all its answers are right all the same. */
-static RtStatus judge(const Stage *stage, const RtEquivalence *result, const char *spec, RtError *error) {
+static RtStatus judge(const RtAccel *accel, const RtEquivalence *result, const char *spec, RtError *error) {
     char says[512];
-    if (!result->any_wrong) return rt_accel_validate(stage->accel, error);
+    if (!result->any_wrong) return rt_accel_validate(accel, error);
     rt_wrong_answer_format(&result->first_wrong, says, sizeof says);
     return rt_fail(error, RT_MISMATCH, "%.200s differs from %s, first on %s", spec, rt_accel_truth(), says);
 }
 
-static RtStatus verify(Stage *stage, const RtScene *scene, const char *spec, const RtVerifyRays *wanted,
+static RtStatus verify(RtVerifyStage *stage, const RtVerifyRays *wanted, RtAccel *accel, const char *spec,
                        raytally_verified *out, RtError *error) {
     RtEquivalence result;
-    RT_TRY(rt_accel_open_on(rt_accel_truth(), scene, wanted->threads, &stage->truth, error));
-    RT_TRY(rt_accel_open_on(spec, scene, wanted->threads, &stage->accel, error));
-    stage->rays = rt_alloc(wanted->count, sizeof(RtRay));
-    if (!stage->rays) return rt_fail_memory(error, "rays", wanted->count * sizeof(RtRay));
-    RT_TRY(rt_verify_rays(wanted, stage->truth, stage->rays, error));
-    RT_TRY(rt_reference_init(&stage->reference, stage->truth, stage->rays, wanted->count, wanted->threads,
-                             error));
-    RT_TRY(rt_equivalence_check(&stage->reference, stage->accel, wanted->threads, &result, error));
+    RT_TRY(rt_verify_stage_answer(stage, wanted, error));
+    RT_TRY(rt_equivalence_check(&stage->reference, accel, wanted->threads, &result, error));
     fill(&result, out);
-    return judge(stage, &result, spec, error);
+    return judge(accel, &result, spec, error);
+}
+
+/* The accelerator is built before the rays are answered, which takes longest: a spec that is refused is so at
+ * once. */
+static RtStatus build_and_verify(RtVerifyStage *stage, const RtScene *scene, const RtVerifyRays *wanted,
+                                 const char *spec, raytally_verified *out, RtError *error) {
+    RtAccel *accel;
+    RT_TRY(rt_verify_stage_init(stage, scene, wanted, error));
+    RT_TRY(rt_accel_open_on(spec, &stage->scene, wanted->threads, &accel, error));
+    RtStatus status = verify(stage, wanted, accel, spec, out, error);
+    rt_accel_destroy(accel);
+    return status;
 }
 
 static RtStatus check(const raytally_verifying *how, RtError *error) {
@@ -58,21 +55,19 @@ static RtStatus check(const raytally_verifying *how, RtError *error) {
 
 raytally_status raytally_verify(const raytally_scene *scene, const char *spec, const raytally_verifying *how,
                                 raytally_verified *out, raytally_error *error) {
-    Stage stage = {0};
+    RtVerifyStage stage = {0};
     raytally_verifying own = RAYTALLY_VERIFYING;
-    rt_options_take(&own, sizeof own, how);
     *out = (raytally_verified){0};
+    locale_t before = rt_locale_enter();
+    RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_verifying", rt_error_of(error));
     RtVerifyRays wanted = {.count = own.given ? own.given->set.count : own.rays,
                            .seed = own.seed,
                            .threads = own.threads,
                            .given = own.given ? &own.given->set : NULL};
-    locale_t before = rt_locale_enter();
-    RtStatus status = check(&own, rt_error_of(error));
-    if (status == RT_OK) status = verify(&stage, &scene->scene, spec, &wanted, out, rt_error_of(error));
+    if (status == RT_OK) status = check(&own, rt_error_of(error));
+    if (status == RT_OK)
+        status = build_and_verify(&stage, &scene->scene, &wanted, spec, out, rt_error_of(error));
+    rt_verify_stage_clear(&stage);
     rt_locale_leave(before);
-    rt_reference_clear(&stage.reference);
-    rt_free(stage.rays);
-    rt_accel_destroy(stage.accel);
-    rt_accel_destroy(stage.truth);
     return (raytally_status)status;
 }

@@ -37,11 +37,8 @@ typedef struct Run {
 
 /* One scene with its rays and the right answers. */
 typedef struct Stage {
+    RtVerifyStage base;
     const char *name;
-    RtScene *scene;
-    RtAccel *brute;
-    RtRay *rays;
-    RtReference reference;
 } Stage;
 
 static RtMaker maker_of(const Run *run, const RtVerifySpec *spec) {
@@ -202,14 +199,14 @@ static RtStatus keep_failure(Run *run, const Stage *stage, const RtVerifySpec *s
     RtShrinkObserver observer = {on_tried, run};
     RtFailure failure;
     RtAnswer answer;
-    RtShrunk shrunk = {.count = stage->scene->geometry.object_count};
+    RtShrunk shrunk = {.count = stage->base.scene.geometry.object_count};
     uint64_t budget = shrink_budget(run, spec->spec);
     char path[RT_MAX_PATH];
     RT_TRY(replay_path(run, stage->name, spec->spec, path, error));
-    RT_TRY(rt_failure_of(&stage->reference, wrong, maker, &failure, &answer, error));
-    RtReplayRecord record = {stage->name, spec->spec, stage->scene, &failure, &answer, NULL};
+    RT_TRY(rt_failure_of(&stage->base.reference, wrong, maker, &failure, &answer, error));
+    RtReplayRecord record = {stage->name, spec->spec, &stage->base.scene, &failure, &answer, NULL};
     if (answer.wrong && budget > 0) {
-        RT_TRY(rt_shrink(stage->scene, &failure, &answer, maker, budget, &observer, &shrunk, error));
+        RT_TRY(rt_shrink(&stage->base.scene, &failure, &answer, maker, budget, &observer, &shrunk, error));
         record.shrunk = &shrunk;
     }
     RtStatus status = rt_replay_save(path, &record, error);
@@ -242,7 +239,7 @@ static RtStatus check(Run *run, const Stage *stage, RtAccel *accel, const RtVeri
     } else {
         RT_TRY(status);
     }
-    RT_TRY(rt_equivalence_check(&stage->reference, accel, run->verify->rays.threads, &result, error));
+    RT_TRY(rt_equivalence_check(&stage->base.reference, accel, run->verify->rays.threads, &result, error));
     json_t *row = rt_equivalence_json(&result, stage->name, spec->spec, rt_accel_truth());
     json_object_set_new(row, "exact", json_boolean(accel->exact));
     json_object_set_new(row, "problem", problem_json(run, &result, broken));
@@ -266,7 +263,7 @@ static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *sp
     RtAccel *accel = NULL;
     RtMaker maker = maker_of(run, spec);
     doing(run, spec->spec);
-    RtStatus status = rt_maker_build(&maker, stage->scene, &accel, error);
+    RtStatus status = rt_maker_build(&maker, &stage->base.scene, &accel, error);
     if ((status == RT_NOT_AVAILABLE || status == RT_BAD_INPUT) && !spec->named) {
         char notice[sizeof error->message + RT_MAX_SPEC_CHARS + RT_MAX_SCENE_NAME];
         snprintf(notice, sizeof notice, "%s on %s is skipped: %s", spec->spec, stage->name, error->message);
@@ -283,23 +280,18 @@ static RtStatus verify_spec(Run *run, const Stage *stage, const RtVerifySpec *sp
 
 /* ---- a scene ---- */
 
-static RtStatus set_stage(Run *run, Stage *stage, RtError *error) {
+static RtStatus set_stage(Run *run, const RtScene *scene, Stage *stage, RtError *error) {
     const RtVerify *v = run->verify;
     doing(run, "recording rays");
-    RT_TRY(rt_verify_sample(&v->rays, stage->scene, error));
-    RT_TRY(rt_accel_open(rt_accel_truth(), stage->scene, &stage->brute, error));
-    stage->rays = rt_alloc(v->rays.count, sizeof(RtRay));
-    if (!stage->rays) return rt_fail_memory(error, "rays", v->rays.count * sizeof(RtRay));
-    RT_TRY(rt_verify_rays(&v->rays, stage->brute, stage->rays, error));
+    RT_TRY(rt_verify_stage_init(&stage->base, scene, &v->rays, error));
     doing(run, "answering them by brute force");
-    return rt_reference_init(&stage->reference, stage->brute, stage->rays, v->rays.count, v->rays.threads,
-                             error);
+    return rt_verify_stage_answer(&stage->base, &v->rays, error);
 }
 
 static RtStatus verify_scene(Run *run, uint32_t scene, RtError *error) {
     const RtVerify *v = run->verify;
     const char *name = v->scenes[scene];
-    Stage stage = {.name = name, .scene = &run->scenes[scene]};
+    Stage stage = {.name = name};
     RtStatus status = RT_OK;
     for (uint32_t i = 0; i < v->spec_count && status == RT_OK; i++) {
         json_t *known = known_row(run, name, v->specs[i].spec);
@@ -309,14 +301,12 @@ static RtStatus verify_scene(Run *run, uint32_t scene, RtError *error) {
             run->progress.all -= v->rays.count;
             continue;
         }
-        if (!stage.reference.hits) status = set_stage(run, &stage, error);
+        if (!stage.base.reference.hits) status = set_stage(run, &run->scenes[scene], &stage, error);
         if (status == RT_OK) status = verify_spec(run, &stage, &v->specs[i], error);
         run->progress.done += v->rays.count;
     }
-    rt_reference_clear(&stage.reference);
-    rt_free(stage.rays);
-    rt_accel_destroy(stage.brute);
-    rt_scene_clear(stage.scene);
+    rt_verify_stage_clear(&stage.base);
+    rt_scene_clear(&run->scenes[scene]);
     return status;
 }
 

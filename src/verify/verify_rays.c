@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/verify_rays.h"
 
+#include "base/memory.h"
 #include "verify/ray_families.h"
 
 #include <string.h>
@@ -9,7 +10,7 @@
 enum { FRAME_DEPTH = 4, CAMERA_PART = 10 };
 
 /* Half of the camera's rays are primary ones at most, in the shape of its image. */
-RtStatus rt_verify_sample(const RtVerifyRays *wanted, RtScene *scene, RtError *error) {
+static RtStatus sample(const RtVerifyRays *wanted, RtScene *scene, RtError *error) {
     if (wanted->given) return RT_OK;
     uint64_t primary = wanted->count / (UINT64_C(2) * CAMERA_PART);
     double samples = (double)primary;
@@ -76,4 +77,26 @@ RtStatus rt_verify_rays(const RtVerifyRays *wanted, const RtAccel *oracle, RtRay
     append_family_rays(&query, wanted->seed, rays + count, wanted->count - count);
     rt_query_clear(&query);
     return rt_accel_check(oracle, error);
+}
+
+RtStatus rt_verify_stage_init(RtVerifyStage *stage, const RtScene *scene, const RtVerifyRays *wanted,
+                              RtError *error) {
+    *stage = (RtVerifyStage){.scene = *scene};
+    RT_TRY(sample(wanted, &stage->scene, error));
+    RT_TRY(rt_accel_open_on(rt_accel_truth(), &stage->scene, wanted->threads, &stage->truth, error));
+    stage->rays = rt_alloc(wanted->count, sizeof(RtRay));
+    if (!stage->rays) return rt_fail_memory(error, "rays", wanted->count * sizeof(RtRay));
+    return rt_verify_rays(wanted, stage->truth, stage->rays, error);
+}
+
+RtStatus rt_verify_stage_answer(RtVerifyStage *stage, const RtVerifyRays *wanted, RtError *error) {
+    return rt_reference_init(&stage->reference, stage->truth, stage->rays, wanted->count, wanted->threads,
+                             error);
+}
+
+void rt_verify_stage_clear(RtVerifyStage *stage) {
+    rt_reference_clear(&stage->reference);
+    rt_free(stage->rays);
+    rt_accel_destroy(stage->truth);
+    *stage = (RtVerifyStage){0};
 }

@@ -1,28 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally.h: what those who embed us call does what the program does, refuses what it refuses, and leaves
  * nothing behind. */
-#include "testing.h"
+#include "library_testing.h"
 
 #include "base/memory.h"
-#include "library/library.h"
 #include "scenes/open.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-/* As assert_ok, for the library. */
-#define assert_fine(expr)                                                                                    \
-    do {                                                                                                     \
-        raytally_error fine_error = {RAYTALLY_OK, ""};                                                       \
-        raytally_error *error = &fine_error;                                                                 \
-        if ((expr) != RAYTALLY_OK) fail_msg("%s: %s", #expr, fine_error.message);                            \
-    } while (0)
-
-#define assert_says(why, text)                                                                               \
-    do {                                                                                                     \
-        if (!strstr((why).message, text)) fail_msg("'%s' does not say '%s'", (why).message, text);           \
-    } while (0)
 
 RT_TEST(counters_and_kinds_of_rays_have_their_names) {
     static const struct {
@@ -50,22 +34,6 @@ RT_TEST(counters_and_kinds_of_rays_have_their_names) {
 }
 
 /* ---- scenes of arrays ---- */
-
-/* A triangle at z = 0 and a sphere of radius 1 around (0, 0, -3). */
-static const float vertices[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
-static const uint32_t corners[] = {0, 1, 2};
-static const float spheres[] = {0, 0, -3, 1};
-
-static raytally_objects two_objects(void) {
-    raytally_objects objects = RAYTALLY_OBJECTS;
-    objects.vertices = vertices;
-    objects.vertex_count = 3;
-    objects.corners = corners;
-    objects.triangle_count = 1;
-    objects.spheres = spheres;
-    objects.sphere_count = 1;
-    return objects;
-}
 
 static raytally_scene *two_object_scene(void) {
     raytally_objects objects = two_objects();

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Plugins as those who embed us load them. */
+#include "library_testing.h"
+
+#define PLUGIN(name) RT_BINARY_DIR "/plugins/" name ".so"
+
+RT_TEST(a_plugin_is_loaded_with_and_without_room_for_a_message) {
+    raytally_error said = {RAYTALLY_IO, "as it was"};
+    size_t before = raytally_accelerator_count();
+    assert_int_equal(raytally_plugin_load(PLUGIN("new-accel"), &said), RAYTALLY_OK);
+    assert_int_equal(raytally_plugin_load(PLUGIN("bvh_copy"), NULL), RAYTALLY_OK);
+    assert_int_equal(raytally_accelerator_count(), before + 2);
+    assert_string_equal(raytally_accelerator_name(before), "my-accel");
+    assert_string_equal(raytally_accelerator_name(before + 1), "bvh_copy");
+    assert_int_equal(raytally_plugin_load(PLUGIN("new-accel"), &said), RAYTALLY_OK); /* it is there already */
+    assert_int_equal(raytally_plugin_load(PLUGIN("bvh_copy"), NULL), RAYTALLY_OK);
+    assert_int_equal(raytally_accelerator_count(), before + 2);
+    assert_int_equal(said.status, RAYTALLY_IO); /* on success nothing is said */
+    assert_string_equal(said.message, "as it was");
+}
+
+RT_TEST(what_is_no_plugin_is_refused_with_and_without_room_for_a_message) {
+    static const struct {
+        const char *path, *says;
+    } none[] = {{"no/such/plugin.so", "no/such/plugin.so"},
+                {PLUGIN("unloadable-ABI"), "version"},
+                {PLUGIN("unloadable-CONSTRUCTOR"), "does not survive"}};
+    size_t before = raytally_accelerator_count();
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
+        raytally_error why;
+        assert_int_equal(raytally_plugin_load(none[i].path, &why), RAYTALLY_BAD_INPUT);
+        assert_int_equal(why.status, RAYTALLY_BAD_INPUT);
+        assert_says(why, none[i].says);
+        assert_int_equal(raytally_plugin_load(none[i].path, NULL), RAYTALLY_BAD_INPUT);
+    }
+    assert_int_equal(raytally_accelerator_count(), before);
+}
+
+RT_TEST(accelerators_of_a_plugin_are_verified_like_others) {
+    raytally_objects objects = two_objects();
+    raytally_scene *scene;
+    raytally_verifying how = RAYTALLY_VERIFYING;
+    raytally_verified found;
+    how.rays = 500;
+    assert_fine(raytally_plugin_load(PLUGIN("new-accel"), error));
+    assert_fine(raytally_scene_make(&objects, &scene, error));
+    assert_fine(raytally_verify(scene, "my-accel", &how, &found, error));
+    assert_int_equal(found.equal, 500);
+    raytally_scene_free(scene);
+}
+
+RT_TESTS(loading, NULL, NULL)

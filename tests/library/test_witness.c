@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What an accelerator sees of its callers: the rays that it is verified by, and the locale of the thread. It
+ * is brute, and keeps that in mind. */
+#include "library_testing.h"
+
+#include "verify/verify.h"
+
+#include <langinfo.h>
+#include <locale.h>
+#include <stdio.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+static atomic_uint_fast64_t calls, rays_asked, rays_sum; /* the sum of the hashes of all rays asked */
+static atomic_bool met_comma;
+static RtAccelOps witness;
+static const RtAccelOps *brute;
+
+static void look(void) {
+    calls++;
+    if (*nl_langinfo(RADIXCHAR) != '.') met_comma = true; /* of this thread; localeconv is not for several */
+}
+
+static void look_at(const RtRay *rays, size_t count) {
+    look();
+    rays_asked += count;
+    for (size_t i = 0; i < count; i++) rays_sum += XXH3_64bits(&rays[i], sizeof rays[i]);
+}
+
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    look();
+    return brute->build(what, out, error);
+}
+
+static void destroy(RtAccel *accel) {
+    look();
+    brute->destroy(accel);
+}
+
+static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                    RtHit *hits) {
+    look_at(rays, count);
+    brute->nearest(accel, scratch, rays, count, hits);
+}
+
+static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                     uint32_t *blockers) {
+    look_at(rays, count);
+    brute->occluded(accel, scratch, rays, count, blockers);
+}
+
+static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                            RtHit *hits, RtTally *tallies) {
+    look_at(rays, count);
+    brute->nearest_counted(accel, scratch, rays, count, hits, tallies);
+}
+
+static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
+                             uint32_t *blockers, RtTally *tallies) {
+    look_at(rays, count);
+    brute->occluded_counted(accel, scratch, rays, count, blockers, tallies);
+}
+
+static size_t scratch_bytes(const RtAccel *accel) {
+    look();
+    return brute->scratch_bytes(accel);
+}
+
+static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
+    (void)accel, (void)scratch, (void)error;
+    look();
+    return RT_OK;
+}
+
+static void close_query(const RtAccel *accel, void *scratch) {
+    (void)accel, (void)scratch;
+    look();
+}
+
+static void begin(const RtAccel *accel, void *scratch) {
+    (void)accel, (void)scratch;
+    look();
+}
+
+static void describe(const RtAccel *accel, RtDescription *out) {
+    look();
+    brute->describe(accel, out);
+}
+
+static RtStatus check(const RtAccel *accel, RtError *error) {
+    (void)accel, (void)error;
+    look();
+    return RT_OK;
+}
+
+static int call_witness(void **state) {
+    (void)state;
+    assert_ok(rt_accel_find(rt_accel_truth(), &brute, error));
+    witness = *brute;
+    witness.name = "witness";
+    witness.build = build;
+    witness.destroy = destroy;
+    witness.nearest = nearest;
+    witness.occluded = occluded;
+    witness.nearest_counted = nearest_counted;
+    witness.occluded_counted = occluded_counted;
+    witness.scratch_bytes = scratch_bytes;
+    witness.open = open_query;
+    witness.close = close_query;
+    witness.begin = begin;
+    witness.describe = describe;
+    witness.check = check;
+    assert_ok(rt_accel_register(&witness, error));
+    return 0;
+}
+
+/* ---- the rays ---- */
+
+static void forget_rays(void) {
+    rays_asked = rays_sum = 0;
+}
+
+static void on_doing(void *context, const RtVerifyProgress *progress) {
+    (void)context, (void)progress;
+}
+
+static void on_row(void *context, const json_t *row) {
+    (void)context, (void)row;
+}
+
+static void on_notice(void *context, const char *message) {
+    (void)context;
+    fail_msg("%s", message);
+}
+
+static void verify_by_program(const char *scene, uint64_t rays, uint64_t seed) {
+    static const RtVerifySpec spec = {"witness", true, {NULL, NULL, 0}};
+    const RtVerifyObserver observer = {on_doing, on_row, on_notice, NULL};
+    const RtVerify work = {
+        .scenes = &scene, .scene_count = 1, .specs = &spec, .spec_count = 1, .rays = {rays, seed, 1, NULL}};
+    json_t *rows;
+    assert_ok(rt_verify_run(&work, &observer, &rows, error));
+    json_decref(rows);
+}
+
+RT_TEST(the_library_verifies_by_the_rays_of_the_program) {
+    static const char name[] = "balls:size=1";
+    raytally_scene *scene;
+    raytally_accelerator *item;
+    raytally_verifying how = RAYTALLY_VERIFYING;
+    raytally_verified found;
+    uint32_t width, height;
+    forget_rays();
+    verify_by_program(name, 3000, 7);
+    const uint64_t asked = rays_asked, sum = rays_sum;
+    assert_true(asked >= 4 * UINT64_C(3000));
+
+    /* However the scene is sampled, and whatever stands over it. */
+    assert_fine(raytally_scene_open(name, &scene, error));
+    assert_fine(raytally_scene_sample(scene, 30, 20, 2, error));
+    assert_fine(raytally_accelerator_build(scene, "item+bvh", 1, &item, error));
+    how.rays = 3000;
+    how.seed = 7;
+    forget_rays();
+    assert_fine(raytally_verify(scene, "witness", &how, &found, error));
+    assert_int_equal(rays_asked, asked);
+    assert_int_equal(rays_sum, sum);
+    raytally_scene_size(scene, &width, &height);
+    assert_true(width == 30 && height == 20);
+
+    /* And by those alone that are given. */
+    raytally_rays *rays;
+    assert_fine(raytally_rays_record(item, RAYTALLY_PRIMARY, NULL, &rays, error));
+    how.given = rays;
+    assert_fine(raytally_verify(scene, "item+bvh", &how, &found, error));
+    assert_int_equal(found.equal, raytally_rays_count(rays));
+    how.seed = 8;
+    how.given = NULL;
+    forget_rays();
+    assert_fine(raytally_verify(scene, "witness", &how, &found, error));
+    assert_int_equal(rays_asked, asked);
+    assert_int_not_equal(rays_sum, sum);
+    raytally_rays_free(rays);
+    raytally_accelerator_free(item);
+    raytally_scene_free(scene);
+}
+
+/* ---- the locale ---- */
+
+static bool take_locale(const char *name) {
+    return setlocale(LC_ALL, name) && *localeconv()->decimal_point == ',';
+}
+
+/* A locale with a decimal comma: one that the machine has, or that localedef makes here. */
+static int choose_comma(void **state) {
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "fr_FR.utf8"};
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (take_locale(names[i])) return 0;
+    }
+    static const char make[] = "mkdir -p '" RT_TEST_FOLDER "' && localedef -i de_DE -f UTF-8 '" RT_TEST_FOLDER
+                               "/de_DE.UTF-8' >/dev/null 2>&1";
+    /* NOLINTNEXTLINE(cert-env33-c): nothing in it comes from elsewhere */
+    int made = system(make); /* it warns, and says so, where it makes one */
+    setenv("LOCPATH", RT_TEST_FOLDER, 1);
+    if (!take_locale("de_DE.UTF-8")) print_message("no locale with a decimal comma (localedef: %d)\n", made);
+    return 0;
+}
+
+static int choose_standard(void **state) {
+    (void)state;
+    setlocale(LC_ALL, "C");
+    unsetenv("LOCPATH");
+    return 0;
+}
+
+/* After each call: the caller has its comma again, and whoever worked had a point. */
+#define assert_point(expr)                                                                                   \
+    do {                                                                                                     \
+        met_comma = false;                                                                                   \
+        expr;                                                                                                \
+        if (met_comma) fail_msg("%s works with a decimal comma", #expr);                                     \
+        assert_string_equal(localeconv()->decimal_point, ",");                                               \
+    } while (0)
+
+RT_TEST_WITH(whoever_is_called_works_in_the_locale_of_c, choose_comma, choose_standard) {
+    if (*localeconv()->decimal_point != ',') skip();
+    raytally_scene *scene;
+    raytally_accelerator *accel;
+    raytally_rays *rays;
+    raytally_tracer *tracer;
+    raytally_structure structure;
+    raytally_counters counters;
+    raytally_verified found;
+    raytally_time time;
+    raytally_hit hits[64];
+    bool blocked[64];
+    raytally_recording recording = RAYTALLY_RECORDING;
+    raytally_verifying verifying = RAYTALLY_VERIFYING;
+    raytally_timing timing = RAYTALLY_TIMING;
+    recording.limit = 64;
+    recording.threads = verifying.threads = timing.threads = 3; /* those of ours, too */
+    verifying.rays = 2000;
+    timing.rounds = 2;
+    timing.least = 0;
+    assert_fine(raytally_scene_open("random:n=9,shape=mixed", &scene, error));
+    assert_fine(raytally_scene_sample(scene, 16, 16, 1, error));
+    calls = 0;
+    assert_point(assert_fine(raytally_accelerator_build(scene, "witness", 3, &accel, error)));
+    assert_point(raytally_accelerator_describe(accel, &structure));
+    assert_point(assert_fine(raytally_rays_record(accel, RAYTALLY_PRIMARY, &recording, &rays, error)));
+    assert_point(assert_fine(raytally_verify(scene, "witness", &verifying, &found, error)));
+    assert_point(assert_fine(raytally_count(accel, rays, 3, &counters, error)));
+    assert_point(assert_fine(raytally_time_all(&accel, 1, rays, &timing, &time, error)));
+    assert_point(assert_fine(raytally_render(accel, 0, 3, NULL, NULL, error)));
+    const size_t count = raytally_rays_count(rays);
+    assert_true(count > 0 && count <= 64);
+    assert_point(assert_fine(raytally_tracer_new(accel, &tracer, error)));
+    assert_point(raytally_tracer_begin(tracer));
+    assert_point(raytally_nearest(tracer, raytally_rays_data(rays), count, hits, NULL));
+    assert_point(raytally_occluded(tracer, raytally_rays_data(rays), count, blocked, NULL));
+    assert_point(assert_fine(raytally_accelerator_check(accel, error)));
+    assert_point(raytally_tracer_free(tracer));
+    assert_point(raytally_accelerator_free(accel));
+    assert_true(calls > 100);
+    raytally_rays_free(rays);
+    raytally_scene_free(scene);
+}
+
+RT_TEST_WITH(numbers_are_written_and_read_with_a_point, choose_comma, choose_standard) {
+    if (*localeconv()->decimal_point != ',') skip();
+    char text[16], spec[RAYTALLY_SPEC_CHARS];
+    raytally_scene *scene;
+    raytally_accelerator *accel;
+    raytally_rays *rays;
+    raytally_time time;
+    raytally_error why;
+    raytally_timing timing = RAYTALLY_TIMING;
+    const raytally_camera camera = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 199.5f};
+    assert_fine(raytally_spec_format("grid:density=4.5", spec, error));
+    assert_non_null(strstr(spec, "density=4.5,"));
+    assert_int_equal(raytally_spec_format("grid:density=4,5", spec, &why), RAYTALLY_BAD_INPUT);
+    assert_fine(raytally_scene_open("balls:size=1", &scene, error));
+    assert_int_equal(raytally_scene_look(scene, &camera, &why), RAYTALLY_BAD_INPUT);
+    assert_says(why, "199.5");
+    assert_fine(raytally_scene_sample(scene, 4, 4, 1, error));
+    assert_fine(raytally_accelerator_build(scene, "bvh", 1, &accel, error));
+    assert_fine(raytally_rays_record(accel, RAYTALLY_PRIMARY, NULL, &rays, error));
+    timing.least = 99.5;
+    assert_int_equal(raytally_time_all(&accel, 1, rays, &timing, &time, &why), RAYTALLY_BAD_INPUT);
+    assert_says(why, "99.5 s");
+    raytally_rays_free(rays);
+    raytally_accelerator_free(accel);
+    raytally_scene_free(scene);
+    snprintf(text, sizeof text, "%.1f", 4.5);
+    assert_string_equal(text, "4,5"); /* as the program wants it */
+}
+
+RT_TESTS(witness, call_witness, NULL)
