@@ -25,6 +25,7 @@
 typedef struct RtRunOptions {
     const char *directory;      /* created where missing */
     RtStart start;              /* what becomes of what an earlier run in it has found */
+    bool renew; /* of one that is resumed, what plugins did that have changed since is measured again */
     RtWorkloadOptions workload; /* its observer is told after the journal */
 } RtRunOptions;
 

@@ -14,7 +14,7 @@ static const char *expand(const char *text, bool scene) {
     static RtSweep sweep;
     RtError error = {RT_OK, ""};
     all[0] = '\0';
-    if (rt_sweep_parse(text, scene, &sweep, &error) != RT_OK) return strcpy(all, error.message);
+    if (rt_sweep_parse(text, scene, NULL, &sweep, &error) != RT_OK) return strcpy(all, error.message);
     for (uint32_t i = 0; i < sweep.count; i++) {
         char spec[RT_MAX_SPEC_CHARS];
         RtSwept swept;
