@@ -117,7 +117,7 @@ typedef struct RtExperiment {
     /* While it is loaded: the manifest of the results that it is loaded to read, or NULL. Nobody then asks
      * which accelerators are there (bench/kept.h). */
     const json_t *kept;
-    uint64_t fingerprint;     /* of the YAML's bytes, without finding and expect, which change no result */
+    uint64_t fingerprint; /* of the YAML's bytes, without finding and expect, which change no result */
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds but occlusion, which is diffuse once more, and the defaults: limit

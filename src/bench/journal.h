@@ -3,8 +3,8 @@
  * It is what an interrupted run resumes from, and what the tables and the report are made of.
  *
  * The first line names the experiment (the fingerprint of its YAML), whether it is the quick variant, the
- * build, and the plugins that the experiment uses; a journal of another experiment or build is refused. A last
- * line that was cut off is passed over. */
+ * build, and the plugins that the experiment uses; a journal of another experiment or build is refused. A
+ * last line that was cut off is passed over. */
 #ifndef RT_BENCH_JOURNAL_H
 #define RT_BENCH_JOURNAL_H
 

@@ -35,7 +35,8 @@ static void note_empty_folders(const char *list) {
         char path[RT_MAX_PATH];
         struct stat is;
         snprintf(path, sizeof path, "%.*s", (int)strcspn(part, ":"), part);
-        if (stat(path, &is) != 0 || !S_ISDIR(is.st_mode) || rt_directory_each(path, ".so", pass_over, NULL) > 0)
+        if (stat(path, &is) != 0 || !S_ISDIR(is.st_mode) ||
+            rt_directory_each(path, ".so", pass_over, NULL) > 0)
             continue;
         fprintf(stderr,
                 "raytally: $" VARIABLE ": there is no *.so in %s: name the folder that the plugin was built "
