@@ -143,6 +143,15 @@ RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperim
     return status;
 }
 
+bool rt_journal_line_concerns(const json_t *line, const RtExperiment *experiment, const json_t *plugins) {
+    const char *scene = json_string_value(json_object_get(line, "scene"));
+    const char *accel = json_string_value(json_object_get(line, "accel"));
+    uint32_t workload = scene ? rt_workload_find(experiment, scene) : experiment->workload_count;
+    if (!accel || workload == experiment->workload_count) return false;
+    uint32_t candidate = rt_candidate_find(experiment, accel, workload);
+    return candidate <= experiment->candidate_count && rt_plugins_concern(plugins, experiment, candidate);
+}
+
 /* Behind a new header, all lines but those of accelerators whose plugin has changed. */
 static json_t *lines_without(const json_t *lines, const RtExperiment *experiment, const RtOnly *only) {
     json_t *kept = json_array(), *line, *header = header_json(experiment, only);

@@ -189,15 +189,6 @@ static RtStatus take_line(RtResults *results, const json_t *line, RtError *error
     return object ? take_time(results, workload, cell, object, error) : RT_OK;
 }
 
-bool rt_journal_line_concerns(const json_t *line, const RtExperiment *experiment, const json_t *plugins) {
-    const char *scene = json_string_value(json_object_get(line, "scene"));
-    const char *accel = json_string_value(json_object_get(line, "accel"));
-    uint32_t workload = scene ? rt_workload_find(experiment, scene) : experiment->workload_count;
-    if (!accel || workload == experiment->workload_count) return false;
-    uint32_t candidate = rt_candidate_find(experiment, accel, workload);
-    return candidate <= experiment->candidate_count && rt_plugins_concern(plugins, experiment, candidate);
-}
-
 /* ---- what the journal is of ---- */
 
 static RtStatus check_experiment(const char *path, const json_t *header, const RtExperiment *experiment,
