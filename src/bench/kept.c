@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const char *rt_kept_baseline(const json_t *manifest) {
@@ -33,10 +34,11 @@ static bool is_whole_in(const char *layer, const char *owner, const char *key) {
     if (name != strlen(owner) || strncmp(layer, owner, name) != 0) return true;
     for (const char *c = layer + name; *c == ':' || *c == ','; c += 1 + strcspn(c + 1, ",")) {
         char value[RT_MAX_SWEPT_CHARS];
-        double number;
+        char *end;
         if (strncmp(c + 1, key, length) != 0 || c[1 + length] != '=') continue;
         snprintf(value, sizeof value, "%.*s", (int)strcspn(c + 2 + length, ",+"), c + 2 + length);
-        if (!rt_swept_number(value, &number) || number != round(number)) return false;
+        double number = strtod(value, &end);
+        if (end == value || *end || number != round(number)) return false;
     }
     return true;
 }
