@@ -3,6 +3,7 @@
 
 #include "base/json.h"
 #include "base/memory.h"
+#include "bench/plugins_used.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -17,6 +18,7 @@ static const char *const change_names[] = {
 void rt_comparison_clear(RtComparison *comparison) {
     for (uint32_t i = 0; i < comparison->count; i++) rt_free(comparison->cells[i].ratios);
     rt_free(comparison->cells);
+    json_decref(comparison->plugins);
     *comparison = (RtComparison){0};
 }
 
@@ -239,6 +241,16 @@ static void print_changed_counts(const RtComparison *comparison, FILE *out) {
     }
 }
 
+static void print_plugins(const RtComparison *comparison, FILE *out) {
+    const char *name;
+    json_t *change;
+    json_object_foreach(comparison->plugins, name, change) {
+        char sentence[RT_MAX_PLUGIN_CHANGE];
+        rt_plugins_change_format(name, change, "before", "after", sentence);
+        fprintf(out, "Note: %s.\n", sentence);
+    }
+}
+
 static double widest_of(const RtComparison *comparison) {
     double widest = 0;
     for (uint32_t i = 0; i < comparison->count; i++) {
@@ -262,6 +274,7 @@ void rt_comparison_print(const RtComparison *comparison, FILE *out) {
             rt_comparison_count(comparison, RT_CHANGE_FASTER),
             rt_comparison_count(comparison, RT_CHANGE_SLOWER),
             rt_comparison_count(comparison, RT_CHANGE_NONE), changed);
+    print_plugins(comparison, out);
     if (comparison->timed == 0) return;
     fprintf(out,
             "Ratios are of throughput. All %" PRIu32
@@ -277,9 +290,10 @@ void rt_comparison_print(const RtComparison *comparison, FILE *out) {
 json_t *rt_comparison_json(const RtComparison *comparison) {
     RtComparedRow row = {.comparison = comparison};
     RtTable table = rt_comparison_table(&row, true);
-    return json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o}", "before", comparison->before, "after",
+    return json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "before", comparison->before, "after",
                      comparison->after, "rounds", (json_int_t)comparison->rounds, "intervals",
                      (json_int_t)comparison->timed, "together", rt_json_number(0.95), "margin",
                      rt_json_number(comparison->margin), "seconds", rt_json_number(comparison->seconds),
+                     "plugins", comparison->plugins ? json_incref(comparison->plugins) : json_object(),
                      "cells", rt_table_json(&table));
 }

@@ -64,6 +64,7 @@ typedef struct RtComparison {
     double margin;                /* a difference is one beyond this part */
     double seconds;               /* that it took */
     char before[256], after[256]; /* who was compared */
+    json_t *plugins; /* owned: of two directories, whose plugins are not the same (bench/plugins_used.h) */
 } RtComparison;
 
 /* Zero it before. Clear also after a failure. */

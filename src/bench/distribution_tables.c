@@ -104,6 +104,21 @@ RtTable rt_distribution_table(RtDistributionTable which, RtDistributionRow *row)
 
 /* ---- for the eye ---- */
 
+/* Plugins describe their structures, and show no leaves (include/raytally/accel.h). */
+static void print_unknown_leaves(const RtResults *results, uint32_t t, FILE *out) {
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtCandidate *candidate = &results->experiment->candidates[c];
+        const RtBuildResult *build = rt_build_at(results, t, c);
+        char text[RT_MAX_LABEL + 128];
+        if (!build->known || build->leaves || !rt_spec_text_is_away(candidate->spec)) continue;
+        snprintf(text, sizeof text,
+                 "Leaf size and depth of %s are not known: plugins say how many leaves there are, not what "
+                 "is in each.",
+                 candidate->label);
+        rt_print_wrapped(text, out);
+    }
+}
+
 void rt_print_distributions(const RtResults *results, FILE *out) {
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         if (!results->workloads[t].known) continue;
@@ -112,5 +127,6 @@ void rt_print_distributions(const RtResults *results, FILE *out) {
                          out);
         rt_print_rows(results, RT_SPREADS, t, out);
         rt_print_rows(results, RT_LEAF_SPREADS, t, out);
+        print_unknown_leaves(results, t, out);
     }
 }

@@ -2,6 +2,7 @@
 #include "bench/experiment.h"
 
 #include "bench/earlier.h"
+#include "bench/kept.h"
 
 #include <string.h>
 
@@ -60,6 +61,20 @@ static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
     label[used] = '\0';
 }
 
+/* As it was when the results were made: the accelerators that the manifest has behind those of the YAML. */
+static void append_kept(RtExperiment *experiment, const char *label) {
+    RtCandidate candidate = {.ray_stride = 1};
+    uint32_t first = experiment->candidate_count;
+    while (experiment->candidate_count < RT_MAX_CANDIDATES &&
+           rt_kept_candidate(experiment->kept, experiment->candidate_count, &candidate)) {
+        memcpy(candidate.base, candidate.label, sizeof candidate.base);
+        experiment->candidates[experiment->candidate_count++] = candidate;
+    }
+    snprintf(experiment->best, sizeof experiment->best, "%s", label);
+    experiment->baseline = first;
+    experiment->baseline_count = experiment->candidate_count - first;
+}
+
 static RtStatus append_best(RtExperiment *experiment, const char *label, RtError *error) {
     char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
     size_t count = 0;
@@ -91,6 +106,7 @@ static uint32_t default_baseline(const RtExperiment *experiment) {
 
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
     uint32_t c = 0;
+    if (!label && experiment->kept) label = rt_kept_baseline(experiment->kept);
     if (!label) {
         experiment->baseline = default_baseline(experiment);
         return RT_OK;
@@ -98,6 +114,10 @@ RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label,
     while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
     experiment->baseline = c;
     if (c < experiment->candidate_count || !rt_best_is(label)) return RT_OK;
+    if (experiment->kept) {
+        append_kept(experiment, label);
+        return RT_OK;
+    }
     return append_best(experiment, label, error);
 }
 
@@ -154,15 +174,19 @@ static RtStatus fail_twice(const char *label, RtError *error) {
                    label);
 }
 
-static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *error) {
-    RtCandidate *candidate = &experiment->candidates[i];
+/* Where results are only read, it is what it was. */
+static RtStatus check_spec(const RtExperiment *experiment, uint32_t i, bool *missing, RtError *error) {
     RtSpec spec;
     RtError why = {RT_OK, ""};
-    candidate->missing = false;
-    if (rt_spec_parse(candidate->spec, &spec, &why) != RT_OK) {
-        candidate->missing = why.status == RT_NOT_AVAILABLE;
-        if (!candidate->missing) return rt_fail(error, why.status, "%s", why.message);
-    }
+    *missing = experiment->kept && rt_kept_is_missing(experiment->kept, i);
+    if (experiment->kept || rt_spec_parse(experiment->candidates[i].spec, &spec, &why) == RT_OK) return RT_OK;
+    *missing = why.status == RT_NOT_AVAILABLE;
+    return *missing ? RT_OK : rt_fail(error, why.status, "%s", why.message);
+}
+
+static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *error) {
+    RtCandidate *candidate = &experiment->candidates[i];
+    RT_TRY(check_spec(experiment, i, &candidate->missing, error));
     const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->workload_count) - 1);
     for (uint32_t k = 0; k < i; k++) {
         const RtCandidate *other = &experiment->candidates[k];

@@ -9,6 +9,8 @@
 #include "bench/statistics.h"
 #include "bench/sweep.h"
 
+#include <jansson.h>
+
 #define RT_MAX_LABEL       48
 #define RT_MAX_TEXT        4096
 #define RT_MAX_WORKLOADS   32
@@ -112,7 +114,10 @@ typedef struct RtExperiment {
     bool quick;               /* the smaller variant, for a first look */
     char path[RT_MAX_PATH];   /* of the YAML; "" where there is none */
     char folder[RT_MAX_PATH]; /* of the YAML */
-    uint64_t fingerprint;     /* of the YAML's bytes, without finding and expect, which change no result */
+    /* While it is loaded: the manifest of the results that it is loaded to read, or NULL. Nobody then asks
+     * which accelerators are there (bench/kept.h). */
+    const json_t *kept;
+    uint64_t fingerprint; /* of the YAML's bytes, without finding and expect, which change no result */
 } RtExperiment;
 
 /* No scenes, no candidates, all ray kinds but occlusion, which is diffuse once more, and the defaults: limit
@@ -122,6 +127,11 @@ void rt_experiment_init(RtExperiment *experiment);
 /* Reads the YAML at `path`. Whatever is wrong (unknown keys, specs that do not parse, labels used twice, a
  * baseline that is no candidate) is told with its line. `quick` applies the overrides under `quick:`. */
 RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error);
+
+/* The same of the YAML that results were made from, for those who only read them: accelerators, baseline and
+ * what was missing are as their manifest has them, and need not be there. It cannot be run. */
+RtStatus rt_experiment_load_kept(RtExperiment *experiment, const char *path, const json_t *manifest,
+                                 RtError *error);
 
 /* What rays of a file may be: asked for the nearest hit, or for any. They stand under these names in tables,
  * where recorded ones have theirs. */

@@ -290,11 +290,10 @@ static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length)
     return fingerprint;
 }
 
-RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
+static RtStatus load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
     char *text;
     size_t length;
     RtYaml yaml;
-    rt_experiment_init(experiment);
     if (strlen(path) >= RT_MAX_PATH)
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
     strcpy(experiment->path, path);
@@ -307,5 +306,19 @@ RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool qui
     RT_TRY(status);
     status = read_experiment(&yaml, quick, experiment, error);
     rt_yaml_close(&yaml);
+    return status;
+}
+
+RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
+    rt_experiment_init(experiment);
+    return load(experiment, path, quick, error);
+}
+
+RtStatus rt_experiment_load_kept(RtExperiment *experiment, const char *path, const json_t *manifest,
+                                 RtError *error) {
+    rt_experiment_init(experiment);
+    experiment->kept = manifest;
+    RtStatus status = load(experiment, path, json_is_true(json_object_get(manifest, "quick")), error);
+    experiment->kept = NULL;
     return status;
 }

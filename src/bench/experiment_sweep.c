@@ -66,7 +66,7 @@ static RtStatus add_scene(RtExperiment *experiment, const RtWorkload *like, cons
 RtStatus rt_experiment_add_scenes(RtExperiment *experiment, const RtWorkload *like, const char *spec,
                                   const char *folder, RtError *error) {
     RtSweep sweep;
-    RT_TRY(rt_sweep_parse(spec, true, &sweep, error));
+    RT_TRY(rt_sweep_parse(spec, true, NULL, &sweep, error));
     for (uint32_t i = 0; i < sweep.count; i++) RT_TRY(add_scene(experiment, like, &sweep, i, folder, error));
     return RT_OK;
 }
@@ -105,7 +105,7 @@ static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, con
 
 RtStatus rt_experiment_add_accels(RtExperiment *experiment, const RtCandidate *like, RtError *error) {
     RtSweep sweep;
-    RT_TRY(rt_sweep_parse(like->spec, false, &sweep, error));
+    RT_TRY(rt_sweep_parse(like->spec, false, experiment->kept, &sweep, error));
     for (uint32_t i = 0; i < sweep.count; i++) RT_TRY(add_accel(experiment, like, &sweep, i, error));
     return RT_OK;
 }

@@ -2,8 +2,9 @@
 /* The journal of a run: one JSON object a line for everything found, on the disk before the next is measured.
  * It is what an interrupted run resumes from, and what the tables and the report are made of.
  *
- * The first line names the experiment (the fingerprint of its YAML), whether it is the quick variant, and the
- * build; a journal of another experiment or build is refused. A last line that was cut off is passed over. */
+ * The first line names the experiment (the fingerprint of its YAML), whether it is the quick variant, the
+ * build, and the plugins that the experiment uses; a journal of another experiment or build is refused. A
+ * last line that was cut off is passed over. */
 #ifndef RT_BENCH_JOURNAL_H
 #define RT_BENCH_JOURNAL_H
 
@@ -21,7 +22,15 @@ RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const
                            RtError *error);
 
 /* Fills `results` with all that the journal at `path` knows. Refuses one of another experiment; with `only`,
- * that is to be gone on with, one of another build or another shard. */
-RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, RtError *error);
+ * that is to be gone on with, one of another build, another shard, or another build of a plugin that the
+ * experiment uses. Of the last, `renew` takes all lines but those about what the plugin does, unless ratios
+ * refer to that. */
+RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
+                         RtError *error);
+
+/* Writes the journal at `path`, which was loaded with `renew`, anew: of what is loaded now, and without the
+ * lines that were passed over. Whatever happens, the one before it or this one is whole. */
+RtStatus rt_journal_renew(const char *path, const RtExperiment *experiment, const RtOnly *only,
+                          RtError *error);
 
 #endif

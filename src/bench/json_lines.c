@@ -24,12 +24,23 @@ static bool put_line(const json_t *line, FILE *file) {
     return json_dumpf(line, file, JSON_COMPACT | JSON_REAL_PRECISION(17)) == 0 && fputc('\n', file) != EOF;
 }
 
-static RtStatus begin(const char *path, const json_t *first, RtError *error) {
+RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *error) {
     RtOutput output;
+    bool put = true;
     RT_TRY(rt_output_open(&output, path, error));
-    if (put_line(first, output.file)) return rt_output_commit(&output, error);
+    for (size_t i = 0; put && i < json_array_size(lines); i++)
+        put = put_line(json_array_get(lines, i), output.file);
+    if (put) return rt_output_commit(&output, error);
     rt_output_discard(&output);
-    return rt_fail(error, RT_IO, "%s: writing the first line failed", path);
+    return rt_fail(error, RT_IO, "%s: writing failed", path);
+}
+
+static RtStatus begin(const char *path, const json_t *first, RtError *error) {
+    json_t *lines = json_pack("[O]", first);
+    if (!lines) return rt_fail_memory(error, path, 0);
+    RtStatus status = rt_json_lines_save(path, lines, error);
+    json_decref(lines);
+    return status;
 }
 
 RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, const json_t *first, RtError *error) {

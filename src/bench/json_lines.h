@@ -19,6 +19,9 @@ typedef struct RtJsonLines {
 RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, const json_t *first, RtError *error);
 void rt_json_lines_close(RtJsonLines *lines);
 
+/* The same of all lines of an array, borrowed, without opening the file. */
+RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *error);
+
 /* Writes one line; it is on the disk when this returns. Takes the reference; NULL is memory that is short. */
 RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error);
 

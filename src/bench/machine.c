@@ -67,8 +67,7 @@ static json_t *text_or_null(const char *text) {
     return *text ? json_string(text) : json_null();
 }
 
-/* Which plugins were loaded, and the hash of each file. */
-static json_t *plugins_json(void) {
+json_t *rt_plugins_json(void) {
     json_t *list = json_array();
     for (size_t i = 0; i < rt_plugin_count(); i++) {
         const RtPlugin *plugin = rt_plugin_at(i);
@@ -101,17 +100,24 @@ json_t *rt_machine_json(void) {
         ops->library(library, sizeof library);
         json_object_set_new(machine, ops->name, text_or_null(library));
     }
-    if (rt_plugin_count() > 0) json_object_set_new(machine, "plugins", plugins_json());
+    if (rt_plugin_count() > 0) json_object_set_new(machine, "plugins", rt_plugins_json());
     return machine;
 }
 
+const char *rt_build_alone(void) {
+    static char identity[256];
+    snprintf(identity, sizeof identity, "%s %s%s, %s", RT_VERSION, RT_COMMIT, RT_DIRTY ? " with changes" : "",
+             RT_COMPILER);
+    return identity;
+}
+
 const char *rt_build_identity(void) {
-    static char identity[1024];
-    int used = snprintf(identity, sizeof identity, "%s %s%s, %s", RT_VERSION, RT_COMMIT,
-                        RT_DIRTY ? " with changes" : "", RT_COMPILER);
+    static char identity[4096];
+    int used = snprintf(identity, sizeof identity, "%s", rt_build_alone());
     for (size_t i = 0; i < rt_plugin_count() && used < (int)sizeof identity; i++) {
-        used += snprintf(identity + used, sizeof identity - (size_t)used, ", plugin %016" PRIx64,
-                         rt_plugin_at(i)->fingerprint);
+        const RtPlugin *plugin = rt_plugin_at(i);
+        used += snprintf(identity + used, sizeof identity - (size_t)used, ", plugin of %s %016" PRIx64,
+                         plugin->names[0], plugin->fingerprint);
     }
     return identity;
 }

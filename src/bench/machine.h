@@ -8,13 +8,18 @@
 #include <jansson.h>
 
 /* {"cpu", "clock_mhz" (the highest of the first processor, or what it has just now), "governor", "simd",
- * "processors", "os", "compiler", "flags", "version", "commit", "dirty"}, and by the name of each accelerator
- * that a library does the work of, its version; what cannot be found out is null. NULL where memory is short;
- * the caller owns the reference. */
+ * "processors", "os", "compiler", "flags", "version", "commit", "dirty"}, "plugins" where any are loaded, and
+ * by the name of each accelerator that a library does the work of, its version; what cannot be found out is
+ * null. NULL where memory is short; the caller owns the reference. */
 json_t *rt_machine_json(void);
 
-/* Version, commit and dirty flag in one line: only what was measured by one and the same build may be
- * mixed. */
+/* [{"file", "hash", "accelerators": [NAME, ...]}, ...]: the plugins that are loaded; the caller's, as well.
+ */
+json_t *rt_plugins_json(void);
+
+/* Version, commit, dirty flag and compiler in one line: only what was measured by one and the same build may
+ * be mixed. rt_build_identity has every plugin that is loaded, too. */
+const char *rt_build_alone(void);
 const char *rt_build_identity(void);
 
 /* This machine. */

@@ -39,7 +39,7 @@ static RtStatus take_directory(RtRun *run, RtError *error) {
     RT_TRY(rt_run_path(run, RT_RUN_JOURNAL, path, error));
     /* A journal tells more of itself than that it is there. */
     if (options->start != RT_START_ANEW && rt_file_exists(path)) {
-        RT_TRY(rt_journal_load(path, run->results, &options->workload.only, error));
+        RT_TRY(rt_journal_load(path, run->results, &options->workload.only, options->renew, error));
     }
     return rt_earlier_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
@@ -99,6 +99,8 @@ static RtStatus open_journal(RtRun *run, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_run_path(run, RT_RUN_JOURNAL, path, error));
     if (!run->resumed) rt_earlier_remove(run->options->directory, RT_RUN_JOURNAL);
+    if (run->resumed && run->options->renew)
+        RT_TRY(rt_journal_renew(path, run->experiment, &run->options->workload.only, error));
     return rt_journal_open(&run->journal, path, run->experiment, &run->options->workload.only, run->resumed,
                            error);
 }

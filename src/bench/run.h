@@ -23,8 +23,9 @@
 #include "bench/workload.h"
 
 typedef struct RtRunOptions {
-    const char *directory;      /* created where missing */
-    RtStart start;              /* what becomes of what an earlier run in it has found */
+    const char *directory; /* created where missing */
+    RtStart start;         /* what becomes of what an earlier run in it has found */
+    bool renew; /* of one that is resumed, what plugins did that have changed since is measured again */
     RtWorkloadOptions workload; /* its observer is told after the journal */
 } RtRunOptions;
 

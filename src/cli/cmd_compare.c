@@ -3,6 +3,8 @@
  * directories, or by two programs that run in turns. */
 #include "base/memory.h"
 #include "bench/compare.h"
+#include "bench/manifest.h"
+#include "bench/plugins_used.h"
 #include "bench/worker.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
@@ -174,9 +176,25 @@ static RtStatus compare_programs(Options *o, int argc, char **argv, RtComparison
 
 /* ---- two directories ---- */
 
+static RtStatus compare_plugins(const Options *o, const RtExperiment *experiments, RtComparison *comparison,
+                                RtError *error) {
+    json_t *used[2] = {NULL, NULL};
+    RtStatus status = RT_OK;
+    for (int i = 0; i < 2 && status == RT_OK; i++) {
+        json_t *manifest;
+        status = rt_manifest_read(o->subjects[i], &manifest, error);
+        used[i] = rt_plugins_used_then(&experiments[i], manifest);
+        json_decref(manifest);
+    }
+    comparison->plugins = rt_plugins_changed(used[0], used[1]);
+    for (int i = 0; i < 2; i++) json_decref(used[i]);
+    return status;
+}
+
 static RtStatus load_both(const Options *o, RtExperiment *experiments, RtResults *results,
                           RtComparison *comparison, RtError *error) {
     for (int i = 0; i < 2; i++) RT_TRY(rt_run_load(o->subjects[i], &experiments[i], &results[i], error));
+    RT_TRY(compare_plugins(o, experiments, comparison, error));
     snprintf(comparison->before, sizeof comparison->before, "%s", o->subjects[0]);
     snprintf(comparison->after, sizeof comparison->after, "%s", o->subjects[1]);
     return rt_compare_results(&results[0], &results[1], comparison, error);

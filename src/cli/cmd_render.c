@@ -278,7 +278,6 @@ static void print_rays(const Run *run) {
     }
     printf("%llu rays in %.3g s on %d threads: %.3g Mrays/s.", (unsigned long long)rays, run->timed.seconds,
            rt_thread_count(run->options->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
-    if (run->by_default) printf(" (By %s, for the picture alone.)", rt_accel_default());
 }
 
 static void print_summary(const Run *run) {
@@ -290,7 +289,9 @@ static void print_summary(const Run *run) {
            run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
            run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,
            s->corners ? " at their corners" : "");
-    if (total_rays(run) > 0)
+    if (run->by_default) /* how fast that was says nothing of this one */
+        printf(", drawn over what %s sees.", rt_accel_default());
+    else if (total_rays(run) > 0)
         print_rays(run);
     else
         printf(", not traced: the picture shows cells alone.");

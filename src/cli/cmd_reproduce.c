@@ -5,6 +5,7 @@
 #include "bench/manifest.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
+#include "cli/plugins.h"
 #include "cli/progress.h"
 #include "report/result_directory.h"
 
@@ -83,7 +84,8 @@ static RtStatus compare_all(const char *directory, const RtResults *results, RtE
 
 static RtStatus reproduce(const char *directory, const RtExperiment *experiment, RtResults *results,
                           RtError *error) {
-    (void)experiment; /* the copy in the directory: its scenes are not found from there */
+    rt_cli_tell_plugins(directory, experiment);
+    /* That is the copy in the directory: its scenes are not found from there. */
     RtExperiment *original = rt_alloc(1, sizeof *original);
     if (!original) return rt_fail_memory(error, "an experiment", sizeof *original);
     RtStatus status = rt_manifest_experiment(directory, original, error);

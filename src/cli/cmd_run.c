@@ -17,6 +17,7 @@
 
 enum {
     OPT_RESUME = 256,
+    OPT_RENEW,
     OPT_FORCE,
     OPT_QUICK,
     OPT_STRICT,
@@ -30,7 +31,7 @@ enum {
 typedef struct Options {
     const char *path, *out;
     RtStart start;
-    bool quick, strict, dry;
+    bool renew, quick, strict, dry;
     char only_text[3 * RT_MAX_LABEL];
     RtOnly only;
     int threads, timing;
@@ -43,6 +44,8 @@ static const struct argp_option options[] = {
      "Go on where an interrupted run stopped; what it measured is kept. Of a finished one, write tables and "
      "plots again",
      0},
+    {"renew", OPT_RENEW, 0, 0,
+     "As --resume, where a plugin has changed since: what it does is measured again, all else is kept", 0},
     {"force", OPT_FORCE, 0, 0,
      "Start over: the results in DIR are lost. Of --resume and --force the last one counts", 0},
     {"threads", 't', "N", 0,
@@ -92,6 +95,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     switch (key) {
     case 'o': o->out = argument; return 0;
     case OPT_RESUME: o->start = RT_START_RESUME; return 0;
+    case OPT_RENEW: o->start = RT_START_RESUME, o->renew = true; return 0;
     case OPT_FORCE: o->start = RT_START_ANEW; return 0;
     case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
     case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
@@ -159,7 +163,7 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
     char path[RT_MAX_PATH], duration[RT_MAX_DURATION];
     RT_TRY(rt_path_join(how->directory, RT_RUN_JOURNAL, path, error));
     if (rt_file_exists(path) && how->start != RT_START_ANEW)
-        RT_TRY(rt_journal_load(path, results, only, error));
+        RT_TRY(rt_journal_load(path, results, only, how->renew, error));
     for (uint32_t t = 0; t < e->workload_count; t++) {
         for (uint32_t c = 0; c < e->candidate_count; c++) {
             bool there = rt_only_scene(only, e, t) && rt_only_accel(only, e, c) && rt_candidate_runs(e, c, t);
@@ -227,7 +231,9 @@ static RtStatus load(const Options *o, RtExperiment *experiment, RtError *error)
     if (o->quick)
         return rt_fail(error, RT_BAD_INPUT, "--quick: %s says whether it was; leave it out", o->path);
     rt_path_folder(o->path, folder);
-    return rt_manifest_experiment(folder, experiment, error);
+    RtStatus status = rt_manifest_experiment(folder, experiment, error);
+    rt_cli_tell_plugins(folder, experiment); /* also of one that lacks its plugin, and fails for that */
+    return status;
 }
 
 static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) {
@@ -244,6 +250,7 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
     RtRunOptions how = {
         .directory = o->out ? o->out : directory,
         .start = o->start,
+        .renew = o->renew,
         .workload = {.threads = o->threads,
                      .timing = o->timing,
                      .only = o->only,

@@ -2,11 +2,15 @@
 #include "cli/plugins.h"
 
 #include "accel/plugin.h"
+#include "base/file.h"
 #include "base/memory.h"
+#include "bench/manifest.h"
+#include "bench/plugins_used.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define VARIABLE "RAYTALLY_PLUGINS"
 
@@ -19,6 +23,27 @@ static const struct argp_option options[] = {
      "$RAYTALLY_PLUGIN_SECONDS (60) without progress",
      100},
     {0}};
+
+static void pass_over(void *context, const char *path) {
+    (void)context;
+    (void)path;
+}
+
+/* A folder of sources, in place of the one that it is built in, would go unnoticed. */
+static void note_empty_folders(const char *list) {
+    for (const char *part = list; *part; part += strcspn(part, ":"), part += *part == ':') {
+        char path[RT_MAX_PATH];
+        struct stat is;
+        snprintf(path, sizeof path, "%.*s", (int)strcspn(part, ":"), part);
+        if (stat(path, &is) != 0 || !S_ISDIR(is.st_mode) ||
+            rt_directory_each(path, ".so", pass_over, NULL) > 0)
+            continue;
+        fprintf(stderr,
+                "raytally: $" VARIABLE ": there is no *.so in %s: name the folder that the plugin was built "
+                "in, as in %s/build\n",
+                path, path);
+    }
+}
 
 /* What was asked for by the option, of the command's arguments. */
 enum { MOST_GIVEN = 32 };
@@ -65,6 +90,7 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error) {
     const size_t length = sizeof option - 1;
     const char *list = getenv(VARIABLE);
     if (list) RT_TRY(rt_plugin_load_all(list, error));
+    if (list) note_empty_folders(list);
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--") == 0) break;
         if (strncmp(argv[i], option, length) != 0) continue;
@@ -78,4 +104,18 @@ void rt_cli_plugin_arguments(char *out, size_t room) {
     out[0] = '\0';
     for (size_t i = 0, used = 0; i < given_count && used < room; i++)
         used += (size_t)snprintf(out + used, room - used, " --plugin '%s'", given[i]);
+}
+
+static void tell(void *context, const char *sentence) {
+    const char *directory = context;
+    fprintf(stderr, "raytally: %s%smanifest.json: %s\n", directory, *directory ? "/" : "", sentence);
+}
+
+void rt_cli_tell_plugins(const char *directory, const RtExperiment *experiment) {
+    json_t *manifest;
+    char copy[RT_MAX_PATH];
+    if (rt_manifest_read(directory, &manifest, NULL) != RT_OK) return;
+    snprintf(copy, sizeof copy, "%s", directory);
+    rt_plugins_tell_changes(experiment, manifest, tell, copy);
+    json_decref(manifest);
 }

@@ -3,7 +3,7 @@
 #ifndef RT_CLI_PLUGINS_H
 #define RT_CLI_PLUGINS_H
 
-#include "base/status.h"
+#include "bench/experiment.h"
 
 #include <argp.h>
 
@@ -16,5 +16,9 @@ RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error);
 
 /* " --plugin 'FILE'" for each that was given, to out[0..room): for commands that a user is told to type. */
 void rt_cli_plugin_arguments(char *out, size_t room);
+
+/* Says on stderr which accelerators of the experiment are of other plugins than the manifest of `directory`
+ * names, or of none. */
+void rt_cli_tell_plugins(const char *directory, const RtExperiment *experiment);
 
 #endif

@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
+#include "bench/plugins_used.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -62,6 +63,25 @@ static RtStatus check_alike(const Merge *merge, RtError *error) {
         }
     }
     return RT_OK;
+}
+
+/* Of the shards among each other, and with what is loaded here, which the merged result will be said to be
+ * made with. */
+static RtStatus check_plugins(const Merge *merge, const RtExperiment *experiment, RtError *error) {
+    json_t *used = rt_plugins_used(experiment);
+    RtStatus status = RT_OK;
+    for (uint32_t i = 0; i < merge->count && status == RT_OK; i++) {
+        json_t *changed = rt_plugins_changed(json_object_get(header_of(merge, i), "plugins"), used);
+        const char *name = json_object_iter_key(json_object_iter(changed));
+        char sentence[RT_MAX_PLUGIN_CHANGE];
+        if (name) {
+            rt_plugins_change_format(name, json_object_get(changed, name), "there", "here", sentence);
+            status = rt_fail(error, RT_BAD_INPUT, "%s: %s: load that one", merge->directories[i], sentence);
+        }
+        json_decref(changed);
+    }
+    json_decref(used);
+    return status;
 }
 
 static RtStatus check_whole(const Merge *merge, RtError *error) {
@@ -160,6 +180,7 @@ static RtStatus merge_all(Merge *merge, RtStart start, RtExperiment *experiment,
     RT_TRY(check_alike(merge, error));
     RT_TRY(check_whole(merge, error));
     RT_TRY(load_experiment(merge, experiment, error));
+    RT_TRY(check_plugins(merge, experiment, error));
     RT_TRY(rt_results_init(results, experiment, error));
     RT_TRY(take_directory(merge, start, error));
     RT_TRY(write_journal(merge, experiment, error));

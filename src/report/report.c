@@ -307,6 +307,26 @@ static void put_members(FILE *out, const json_t *object) {
     }
 }
 
+/* The libraries that hold accelerators: what they did is theirs, build by build. */
+static void put_plugins(FILE *out, const json_t *plugins) {
+    json_t *plugin, *name;
+    size_t i, n;
+    json_array_foreach((json_t *)plugins, i, plugin) {
+        const char *file = json_string_value(json_object_get(plugin, "file"));
+        const char *hash = json_string_value(json_object_get(plugin, "hash"));
+        fputs("<dt>plugin of", out);
+        json_array_foreach(json_object_get(plugin, "accelerators"), n, name) {
+            fputs(n ? ", " : " ", out);
+            rt_html_put(out, json_is_string(name) ? json_string_value(name) : "");
+        }
+        fputs("</dt><dd>", out);
+        rt_html_put(out, file ? file : "");
+        fputs(", hash ", out);
+        rt_html_put(out, hash ? hash : "unknown");
+        fputs("</dd>\n", out);
+    }
+}
+
 static void put_timing(FILE *out, const RtResults *results) {
     char sentence[RT_MAX_SENTENCE], interval[RT_MAX_INTERVAL_TITLE];
     rt_interval_title(results->experiment, interval);
@@ -347,6 +367,7 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
     fputs("</pre>\n<details open><summary>Manifest</summary><dl>", out);
     put_members(out, manifest);
     put_members(out, json_object_get(manifest, "machine"));
+    put_plugins(out, json_object_get(json_object_get(manifest, "machine"), "plugins"));
     fputs("</dl></details>\n", out);
 }
 

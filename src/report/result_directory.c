@@ -191,14 +191,15 @@ RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults 
     RT_TRY(rt_path_join(directory, "experiment.yaml", path, error));
     RT_TRY(rt_path_join(directory, RT_RUN_JOURNAL, journal, error));
     RT_TRY(rt_manifest_read(directory, &manifest, error));
-    bool quick = json_is_true(json_object_get(manifest, "quick"));
-    json_decref(manifest);
     if (!rt_file_exists(path)) {
+        json_decref(manifest);
         return rt_fail(error, RT_BAD_INPUT,
                        "%s is not the result directory of an experiment: it has no experiment.yaml",
                        directory);
     }
-    RT_TRY(rt_experiment_load(experiment, path, quick, error));
+    RtStatus status = rt_experiment_load_kept(experiment, path, manifest, error);
+    json_decref(manifest);
+    RT_TRY(status);
     RT_TRY(rt_results_init(results, experiment, error));
-    return rt_journal_load(journal, results, NULL, error);
+    return rt_journal_load(journal, results, NULL, false, error);
 }

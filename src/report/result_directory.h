@@ -25,7 +25,8 @@
  * gnuplot fails, or published figures are missed (rt_published_check). */
 RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error);
 
-/* Loads experiment and results of a result directory. `results` is initialised here: rt_results_clear. */
+/* Loads experiment and results of a result directory, whose accelerators need not be here. `results` is
+ * initialised here: rt_results_clear. */
 RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults *results, RtError *error);
 
 /* The files that are byte-identical wherever they are made, from what was found. */

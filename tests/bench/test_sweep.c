@@ -9,12 +9,12 @@
 #include <string.h>
 
 /* All that `text` stands for, with blanks between; or what is wrong with it. */
-static const char *expand(const char *text, bool scene) {
+static const char *expand_kept(const char *text, bool scene, const json_t *kept) {
     static char all[8192];
     static RtSweep sweep;
     RtError error = {RT_OK, ""};
     all[0] = '\0';
-    if (rt_sweep_parse(text, scene, &sweep, &error) != RT_OK) return strcpy(all, error.message);
+    if (rt_sweep_parse(text, scene, kept, &sweep, &error) != RT_OK) return strcpy(all, error.message);
     for (uint32_t i = 0; i < sweep.count; i++) {
         char spec[RT_MAX_SPEC_CHARS];
         RtSwept swept;
@@ -23,6 +23,10 @@ static const char *expand(const char *text, bool scene) {
         snprintf(all + used, sizeof all - used, "%s%s", i ? " " : "", spec);
     }
     return all;
+}
+
+static const char *expand(const char *text, bool scene) {
+    return expand_kept(text, scene, NULL);
 }
 
 RT_TEST(a_range_is_linear_or_logarithmic_and_a_list_holds_words_and_ranges) {
@@ -54,6 +58,19 @@ RT_TEST(whole_numbers_are_rounded_and_none_comes_twice) {
                         "balls:size=1 balls:size=2 balls:size=3 balls:size=5");
     assert_string_equal(expand("grid:density=1..2.3*1.5", false),
                         "grid:density=1 grid:density=1.5 grid:density=2.25");
+}
+
+/* Of accelerators that need not be here. */
+RT_TEST(whole_numbers_of_results_are_told_by_their_manifest) {
+    json_t *kept =
+        json_pack("{s:[{s:s}, {s:s}, {s:s}, {s:s}]}", "accelerators", "accel", "mine:leaf=1,part=.5", "accel",
+                  "mine:part=1,leaf=2", "accel", "light+mine:leaf=3", "accel", "other:leaf=0.5");
+    assert_string_equal(expand_kept("mine:leaf=1..2.3*1.5", false, kept), "mine:leaf=1 mine:leaf=2");
+    assert_string_equal(expand_kept("light+mine:leaf=1..2.3*1.5", false, kept),
+                        "light+mine:leaf=1 light+mine:leaf=2");
+    assert_string_equal(expand_kept("mine:part=1..1.6*1.5", false, kept), "mine:part=1 mine:part=1.5");
+    assert_string_equal(expand_kept("other:leaf=1..1.6*1.5", false, kept), "other:leaf=1 other:leaf=1.5");
+    json_decref(kept);
 }
 
 RT_TEST(what_is_no_range_is_refused_with_what_would_be) {

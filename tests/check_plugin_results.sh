@@ -1,0 +1,166 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# check_plugin_results.sh: results of plugins outlive them. Without the plugin they are plotted, reported and compared as with
+# it; a run goes on whatever other plugins are loaded, and where its own has changed (here by a byte behind the library) both
+# builds are named, and --renew measures its cells alone. Uses $RT_PROGRAM, in its build folder, and python3.
+set -uo pipefail
+program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
+plugins=$(dirname "$program")/plugins
+command -v python3 >/dev/null || { echo 'check_plugin_results: skipped: python3 is not installed' && exit 77; }
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+unset RAYTALLY_PLUGINS
+failures=0
+
+complain() {
+    printf '%s\n' "$*" >&2
+    failures=$((failures + 1))
+}
+
+# ends WITH ARGUMENT...: raytally's exit code; what it prints and says is in `said`, on one line
+ends() {
+    local wanted=$1 code=0
+    shift
+    timeout 120 "$program" "$@" >said 2>&1 </dev/null || code=$?
+    [ "$code" = "$wanted" ] || complain "raytally $*: exit code $code, not $wanted: $(cat said)"
+    tr '\n' ' ' <said >line
+    last=$*
+}
+
+# says PATTERN, says_not PATTERN: an extended regular expression
+says() {
+    [[ $(cat line) =~ $1 ]] || complain "raytally $last: does not say '$1': $(cat said)"
+}
+says_not() {
+    [[ ! $(cat line) =~ $1 ]] || complain "raytally $last: says '$1': $(cat said)"
+}
+
+# Where no baseline is named it is the first that is not of a plugin, which has to stand in the results.
+cat >mine.yaml <<'END_OF_YAML'
+name: mine
+question: Do boxes help?
+prediction: They do.
+scenes:
+  - {scene: "balls:size=1|2", size: 16x16, depth: 2}
+accelerators:
+  - {accel: "my-accel:boxes=on|off"}
+  - {accel: bvh}
+  - {accel: kd}
+rays: [primary, shadow]
+rounds: 2
+milliseconds: 1
+expect:
+  - ratio of object_tests of my-accel:boxes=on to my-accel:boxes=off < 1.01
+END_OF_YAML
+sed -e 's/^name: mine/name: based/' -e 's/^rays:/baseline: "my-accel:boxes=on"\nrays:/' mine.yaml >based.yaml
+mkdir old new && cp "$plugins/new-accel.so" old/mine.so
+{ cat old/mine.so && echo; } >new/mine.so
+hash='[0-9a-f]{16}'
+ends 0 run mine.yaml --plugin old/mine.so
+
+# ---- without the plugin ----
+
+cp results/mine/report.html with.html
+ends 0 plot results/mine
+ends 0 report results/mine
+cmp -s with.html results/mine/report.html || complain "without the plugin the report is another: $(diff with.html results/mine/report.html | cut -c 1-300)"
+grep -qE "plugin of my-accel</dt><dd>$work/old/mine.so, hash $hash" with.html || complain 'the report does not name the plugin'
+ends 0 report --index results
+says_not 'cannot be read'
+! grep -q 'cannot be read' results/index.html || complain 'the index cannot read the results of a plugin'
+cp -r results/mine results/again
+ends 0 compare results/mine results/again
+says 'my-accel:boxes=on +primary +1\.00 .*no difference +same'
+says_not 'plugin'
+ends 2 reproduce results/mine
+says "results/mine/manifest.json: 'my-accel' was of the plugin $work/old/mine.so \($hash\) then, and is not now"
+says 'one of a plugin needs --plugin FILE.so'
+ends 2 run results/mine/manifest.json --out results/other
+says "'my-accel' was of the plugin .*mine.so.*no accelerator 'my-accel'"
+
+# ---- other plugins ----
+
+cp results/mine/cells.jsonl before.jsonl
+ends 0 run mine.yaml --plugin old/mine.so --plugin "$plugins/bvh_copy.so" --resume
+says 'nothing was left to measure'
+cmp -s before.jsonl results/mine/cells.jsonl || complain 'with another plugin loaded the journal is another'
+ends 0 reproduce results/mine --plugin old/mine.so
+says_not 'another one'
+
+# ---- a plugin that has changed ----
+
+ends 0 reproduce results/mine --plugin new/mine.so
+both="the plugin of 'my-accel' is another one: $work/old/mine.so \($hash\) then, $work/new/mine.so \($hash\) now"
+says "results/mine/manifest.json: $both"
+ends 0 run results/mine/manifest.json --out results/newer --plugin new/mine.so
+says "$both"
+ends 0 compare results/mine results/newer
+says "Note: the plugin of 'my-accel' is another one: .*old/mine.so \($hash\) before, .*new/mine.so \($hash\) after"
+"$program" compare results/mine results/newer --json | python3 -c '
+import json, sys
+change = json.load(sys.stdin)["plugins"]["my-accel"]
+sys.exit(change["before"]["hash"] == change["after"]["hash"] or len(change["after"]["hash"]) != 16)' ||
+    complain 'compare --json does not name the plugin that has changed'
+ends 2 run mine.yaml --plugin new/mine.so --resume
+says "'my-accel' is another one: .*old/mine.so.* when this run was begun, .*new/mine.so.* now: .*--renew.*--force"
+cmp -s before.jsonl results/mine/cells.jsonl || complain 'a run that is refused changed the journal'
+ends 0 run mine.yaml --plugin new/mine.so --renew --dry-run
+says '16 cells, 8 of them finished'
+cmp -s before.jsonl results/mine/cells.jsonl || complain '--dry-run changed the journal'
+ends 0 run mine.yaml --plugin new/mine.so --renew
+python3 - <<'END_OF_PYTHON' || failures=$((failures + 1))
+import json, sys
+
+def load(name):
+    header, *lines = [json.loads(line) for line in open(name)]
+    mine = [line for line in lines if line.get("accel", "").startswith("my-accel")]
+    return header, mine, [line for line in lines if line not in mine]
+
+then, now = load("before.jsonl"), load("results/mine/cells.jsonl")
+if then[2] != now[2]:
+    print("--renew: what others did is not what it was")
+if len(then[1]) != len(now[1]) or any(line in then[1] for line in now[1] if "timed" in line):
+    print("--renew: the cells of the plugin are not measured again")
+if then[0]["plugins"]["my-accel"]["hash"] == now[0]["plugins"]["my-accel"]["hash"]:
+    print("--renew: the journal is of the plugin that was")
+manifest = json.load(open("results/mine/manifest.json"))
+if manifest["machine"]["plugins"][0]["hash"] != now[0]["plugins"]["my-accel"]["hash"]:
+    print("--renew: the manifest is of the plugin that was")
+sys.exit(then[2] != now[2] or len(then[1]) != len(now[1]) or then[0] == now[0])
+END_OF_PYTHON
+ends 0 run mine.yaml --plugin new/mine.so --resume
+says 'nothing was left'
+ends 2 run mine.yaml --plugin old/mine.so --resume
+ends 0 reproduce results/mine --plugin new/mine.so
+says_not 'another one'
+
+# Where ratios refer to it nothing would stay.
+ends 0 run based.yaml --plugin old/mine.so
+cp results/based/cells.jsonl before.jsonl
+ends 2 run based.yaml --plugin new/mine.so --renew
+says 'so is the baseline: start over .*--force'
+cmp -s before.jsonl results/based/cells.jsonl || complain 'a run that is refused changed the journal'
+
+# ---- shards ----
+
+ends 0 run mine.yaml --plugin old/mine.so --shard 1/2
+ends 0 run mine.yaml --plugin old/mine.so --plugin "$plugins/bvh_copy.so" --shard 2/2
+ends 2 merge results/mine-*-of-2 -o results/merged --plugin new/mine.so
+says "mine-1-of-2: .*'my-accel' is another one: .*old/mine.so \($hash\) there, .*new/mine.so \($hash\) here: load that one"
+ends 0 merge results/mine-*-of-2 -o results/merged --plugin old/mine.so
+cmp -s results/mine/counts.csv results/merged/counts.csv || complain 'shards of a plugin count otherwise'
+
+# ---- what is said of plugins ----
+
+bench=(bench balls:size=1 --rays primary --size 16x16 --rounds 1 --accel bvh --accel my-accel)
+ends 2 "${bench[@]}"
+says "no accelerator 'my-accel'.* one of a plugin needs --plugin FILE.so"
+mkdir source
+RAYTALLY_PLUGINS=source ends 2 "${bench[@]}"
+says "RAYTALLY_PLUGINS: there is no \*\.so in source: .*source/build"
+RAYTALLY_PLUGINS=old ends 0 "${bench[@]}" --distribution
+says_not 'there is no \*\.so'
+says 'Leaf size and depth of my-accel are not known'
+says_not 'Leaf size and depth of bvh'
+
+[ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }
