@@ -7,7 +7,6 @@ enum {
     FLUSHING, /* has the processor take small numbers for 0, as what is linked with -ffast-math does */
     LONGER    /* has a table of a later version of the interface, with more at its end */
 };
-static const int kind = KIND;
 
 static void flush_to_zero(void) {
 #if defined(__x86_64__)
@@ -18,7 +17,7 @@ static void flush_to_zero(void) {
 }
 
 __attribute__((constructor)) static void when_loaded(void) {
-    if (kind == FLUSHING) flush_to_zero();
+    if (KIND == FLUSHING) flush_to_zero();
 }
 
 static int build(const raytally_build *from, void **self) {
@@ -56,6 +55,6 @@ static const LongerOps longer = {
 };
 
 RAYTALLY_PLUGIN {
-    if (kind == FLUSHING) flush_to_zero();
+    if (KIND == FLUSHING) flush_to_zero();
     return index == 0 ? &longer.ops : NULL;
 }
