@@ -258,8 +258,7 @@ RT_TEST(a_name_is_a_letter_and_then_letters_digits_and_two_more) {
                                       "a b",
                                       "a:b",
                                       "a+b",
-                                      "gr\xfc"
-                                      "n",
+                                      "gr\374n",
                                       "all",
                                       "grid",
                                       "free-for-63-letters-and-not-one-more-than-that-xxxxxxxxxxxxxxxxx"};
