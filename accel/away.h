@@ -23,6 +23,9 @@ enum { RT_AWAY_BYTES = 256 * 1024 };
 typedef void RtAwayWork(RtQuery *query, void *message);
 void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes);
 
+/* Breaks an accelerator that is away, for what was found wrong with it while it did `doing`. */
+void rt_away_break(const RtAccel *accel, const char *what, const char *doing);
+
 /* To be called now and then by work that takes long: it goes on. What does not for 60 seconds, or what
  * RAYTALLY_PLUGIN_SECONDS says, is taken to hang; ten times that for building. */
 void rt_away_beat(void);

@@ -85,6 +85,13 @@ static void break_away(Away *away, const char *what, const char *doing, bool ray
     away->broken = true;
 }
 
+void rt_away_break(const RtAccel *accel, const char *what, const char *doing) {
+    Away *away = of(accel);
+    pthread_mutex_lock(&away->lock);
+    break_away(away, what, doing, false);
+    pthread_mutex_unlock(&away->lock);
+}
+
 /* Of one that hangs: it is asked at which ray, and ended. */
 static void end_hanging(Away *away, const char *doing, double limit) {
     char what[96];
@@ -432,11 +439,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
         more = count == WIRE_BOXES;
         all = some->complete;
     }
-    if (!all) {
-        pthread_mutex_lock(&away->lock);
-        break_away(away, "there is no memory for all its boxes", "it showed them", false);
-        pthread_mutex_unlock(&away->lock);
-    }
+    if (!all) rt_away_break(accel, "there is no memory for all its boxes", "it showed them");
     rt_free(some);
 }
 

@@ -18,10 +18,10 @@ static void destroy(RtAccel *accel) {
 
 /* What the plugin says of a failure, or that it says nothing. */
 static RtStatus refuse(const raytally_accel_ops *table, int result, const char *message, RtError *error) {
-    if (result == RAYTALLY_MEMORY)
+    if (result == RAYTALLY_BUILD_NO_MEMORY)
         return rt_fail(error, RT_NO_MEMORY, "%s: memory is short%s%s", table->name, *message ? ": " : "",
                        message);
-    if (result != RAYTALLY_REFUSED)
+    if (result != RAYTALLY_BUILD_REFUSED)
         return rt_fail(error, RT_BROKEN, "%s: its `build` returned %d, which means nothing", table->name,
                        result);
     return rt_fail(error, RT_BAD_INPUT, "%s: %s", table->name,
@@ -59,7 +59,7 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     RT_TRY(rt_accel_new(what, sizeof(RtPluginAccel), out, error));
     RtPluginAccel *self = (RtPluginAccel *)*out;
     int result = table->build(&asked, &self->self);
-    if (result != RAYTALLY_BUILT) {
+    if (result != RAYTALLY_BUILD_OK) {
         rt_free(self);
         return refuse(table, result, message, error);
     }

@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <fenv.h>
+#include <locale.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -305,6 +306,7 @@ void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int thr
     let_go();
     limit_memory();
     watch_signals();
+    setlocale(LC_ALL, "C"); /* raytally may be a library in a program that has another */
     fesetenv(FE_DFL_ENV);
     if (pthread_create(&thread, NULL, watch_raytally, NULL) != 0)
         _exit(EXIT_FAILURE); /* it would outlive it */

@@ -105,14 +105,16 @@ static bool answers_agree(const Pass *pass, size_t i, RtHit expected) {
     return memcmp(&pass->hits[i], &expected, sizeof expected) == 0;
 }
 
-RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
-                          RtCount *count, RtError *error) {
+/* By the counted kernel or the timed one. */
+static RtStatus compare_pass(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
+                             bool counted, RtCount *count, RtError *error) {
     *count = (RtCount){0};
     Pass pass;
-    RtStatus status = pass_init(&pass, accel, set, threads, true, error);
+    RtStatus status = pass_init(&pass, accel, set, threads, counted, error);
     if (status == RT_OK) status = run_pass(&pass, error);
     if (status == RT_OK) {
-        for (int i = 0; i < pass.threads; i++) rt_tally_add(&count->tally, &pass.tallies[i][set->kind]);
+        for (int i = 0; counted && i < pass.threads; i++)
+            rt_tally_add(&count->tally, &pass.tallies[i][set->kind]);
         for (size_t i = 0; i < set->count; i++) {
             if (answers_agree(&pass, i, expected[i])) continue;
             if (count->differ++ == 0) count->first = i;
@@ -120,6 +122,16 @@ RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit
     }
     pass_clear(&pass);
     return status;
+}
+
+RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
+                          RtCount *count, RtError *error) {
+    return compare_pass(accel, set, expected, threads, true, count, error);
+}
+
+RtStatus rt_measure_differ(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
+                           RtCount *count, RtError *error) {
+    return compare_pass(accel, set, expected, threads, false, count, error);
 }
 
 /* ---- ray by ray ---- */

@@ -24,6 +24,10 @@ typedef struct RtCount {
 RtStatus rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
                           RtCount *count, RtError *error);
 
+/* Compares the answers of the timed kernel in the same way. Nothing is counted. */
+RtStatus rt_measure_differ(const RtAccel *accel, const RtRaySet *set, const RtHit *expected, int threads,
+                           RtCount *count, RtError *error);
+
 /* What each ray of a set met and cost, row by row. */
 typedef struct RtRows {
     uint64_t count;

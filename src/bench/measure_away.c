@@ -94,7 +94,9 @@ static RtStatus remote_do(Remote *remote, RtAwayWork *work, RemoteMessage *messa
     RtStatus status = rt_away_status(message->status);
     if (status == RT_OK) return rt_accel_check(remote->query.accel, error);
     message->error.message[sizeof message->error.message - 1] = '\0';
-    return rt_fail(error, status, "%s", message->error.message);
+    if (status != RT_BROKEN) return rt_fail(error, status, "%s", message->error.message);
+    rt_away_break(remote->query.accel, message->error.message, "it was timed");
+    return rt_accel_check(remote->query.accel, error);
 }
 
 static RtStatus time_remote(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error) {

@@ -33,6 +33,8 @@ static RtStatus distribute_cell(const RtWorkloadState *workload, uint32_t c, RtC
     RtStatus status = rt_measure_rows(workload->accels[c], &workload->shares[c].set,
                                       workload->options->threads, &rows, error);
     if (status == RT_OK) status = distribute_rows(&rows, made, error);
+    if (status == RT_NO_MEMORY && rt_accel_is_away(workload->accels[c]))
+        status = RT_BROKEN; /* it counts beyond all reason: its own fault */
     rt_rows_clear(&rows);
     if (status == RT_OK) {
         cell->distributions = made;

@@ -192,7 +192,77 @@ RAYTALLY_DEFINE_KERNELS(List, forgetful)
 static atomic_uint calls;
 SEARCH(moody, RAYTALLY_COUNT(counters, RAYTALLY_EXTENT_TESTS, atomic_fetch_add(&calls, 1));)
 
+/* The right answers only where they are counted. */
+RAYTALLY_INLINE void lazy(const List *list, void *memory, const raytally_prepared *ray, int any,
+                          raytally_hit *best, raytally_counters *counters) {
+    if (counters) search(list, memory, ray, any, best, counters);
+}
+RAYTALLY_DEFINE_KERNELS(List, lazy)
+
+/* Counts that are not right. */
+RAYTALLY_INLINE void uncounted(const List *list, void *memory, const raytally_prepared *ray, int any,
+                               raytally_hit *best, raytally_counters *counters) {
+    (void)memory;
+    RAYTALLY_COUNT(counters, RAYTALLY_STEPS, 1);
+    raytally_object_hits(ray, list->ids, list->count, any, best, NULL);
+}
+RAYTALLY_DEFINE_KERNELS(List, uncounted)
+SEARCH(counted_twice, RAYTALLY_COUNT(counters, RAYTALLY_OBJECT_TESTS, list->count);)
+SEARCH(backwards, RAYTALLY_COUNT(counters, RAYTALLY_STEPS, -1000000);)
+
+/* What is no answer, or beside them. */
+static void occluded_by_first(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
+                              size_t count, uint32_t *blockers, raytally_counters *counters) {
+    search_occluded(self, memory, query, rays, count, blockers, counters);
+    for (size_t i = 0; i < count; i++) blockers[i] = blockers[i] == RAYTALLY_NO_OBJECT ? blockers[i] : 0;
+}
+
+static void all_but_one(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
+                        size_t count, raytally_hit *hits, raytally_counters *counters) {
+    search_nearest(self, memory, query, rays, count - 1, hits, counters);
+}
+
+static void one_too_many(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
+                         size_t count, raytally_hit *hits, raytally_counters *counters) {
+    search_nearest(self, memory, query, rays, count, hits, counters);
+    hits[count] = hits[count - 1];
+}
+
+static void one_too_early(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
+                          size_t count, raytally_hit *hits, raytally_counters *counters) {
+    search_nearest(self, memory, query, rays, count, hits, counters);
+    *(hits - 1) = hits[0];
+}
+
+static void shorten_rays(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
+                         size_t count, raytally_hit *hits, raytally_counters *counters) {
+    search_nearest(self, memory, query, rays, count, hits, counters);
+    raytally_ray *own = (raytally_ray *)(uintptr_t)rays;
+    for (size_t i = 0; i < count; i++) own[i].tmax = hits[i].t < own[i].tmax ? hits[i].t : own[i].tmax;
+}
+
 /* ---- beside that ---- */
+
+static void show_none(const void *self, raytally_show_box *show, void *viewer) {
+    (void)self;
+    show(viewer, NULL, 0, 1);
+}
+
+static void show_deep(const void *self, raytally_show_box *show, void *viewer) {
+    const List *list = self;
+    if (list->count > 0) show(viewer, list->boxes, UINT32_MAX, 1);
+}
+
+static void show_crash(const void *self, raytally_show_box *show, void *viewer) {
+    (void)self, (void)show, (void)viewer;
+    crash();
+}
+
+static int build_mumble(const raytally_build *from, void **self) {
+    (void)self;
+    for (size_t i = 0; i + 1 < from->message_room; i++) from->message[i] = i % 7 ? '\xe9' : '\x1b';
+    return RAYTALLY_BUILD_REFUSED;
+}
 
 static void destroy_crash(void *self) {
     destroy(self);
@@ -255,6 +325,19 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-nonsense", .summary = "builds, and says nonsense", .build = build_nonsense},
     {.name = "faulty-validate", .summary = "is invalid", .validate = validate_broken},
     {.name = "faulty-moody", .summary = "counts otherwise each time", KERNELS(moody)},
+    {.name = "faulty-lazy", .summary = "finds nothing where nothing is counted", KERNELS(lazy)},
+    {.name = "faulty-uncounted", .summary = "keeps its counters to itself", KERNELS(uncounted)},
+    {.name = "faulty-twice", .summary = "counts object tests that are counted", KERNELS(counted_twice)},
+    {.name = "faulty-backwards", .summary = "counts below zero", KERNELS(backwards)},
+    {.name = "faulty-blocker", .summary = "names any blocker", .occluded = occluded_by_first},
+    {.name = "faulty-silent", .summary = "leaves the last ray unanswered", .nearest = all_but_one},
+    {.name = "faulty-beyond", .summary = "writes an answer too many", .nearest = one_too_many},
+    {.name = "faulty-before", .summary = "writes in front of its answers", .nearest = one_too_early},
+    {.name = "faulty-rays", .summary = "shortens the rays that it is lent", .nearest = shorten_rays},
+    {.name = "faulty-box", .summary = "shows a box that is none", .each_box = show_none},
+    {.name = "faulty-deep", .summary = "shows a box at a depth that is none", .each_box = show_deep},
+    {.name = "faulty-show", .summary = "crashes when it shows its boxes", .each_box = show_crash},
+    {.name = "faulty-mumble", .summary = "refuses every scene in no language", .build = build_mumble},
     {.name = "faulty-print", .summary = "prints, but is right", .build = build_print, KERNELS(print)},
 };
 

@@ -93,8 +93,9 @@ RAYTALLY_PLUGIN {
     if (KIND == ENTRY) abort();
     if (KIND == EMPTY) return NULL;
     if (KIND == MANY) return one_of_many(index);
-    const uint32_t tables = KIND == TWICE ? 3 : 2;
-    return index == 0 ? &first : index < tables ? &ops : NULL;
+    static raytally_accel_ops again;
+    again = ops;
+    return index == 0 ? &first : index == 1 ? &ops : index == 2 && KIND == TWICE ? &again : NULL;
 }
 
 __attribute__((constructor)) static void before_anything(void) {
