@@ -101,6 +101,7 @@ patience=0.2 # it has ten times as long to build
 fault loop-build 'no progress for 2 s .* while it was built'
 unset patience
 fault greedy 'memory is short'
+ends 0 bench-unruly.json "${bench[@]}" --plugin "$plugins/odd-UNRULY.so" --accel kd
 
 python3 - <<'END' || failures=$((failures + 1))
 import glob, json, sys

@@ -37,6 +37,7 @@ RtStatus rt_process_start(RtProcess *process, RtError *error) {
         close(go[1]);
         await_go(go[0]);
         close(go[0]);
+        setpgid(0, 0); /* what it starts goes with it */
         return RT_OK;
     }
     if (process->pid > 0) {
@@ -94,6 +95,7 @@ bool rt_process_wait(RtProcess *process, int milliseconds, RtProcessEnd *end) {
         if (left <= 0) return false;
         nap(process, (int)(left * 1000) + 1);
     }
+    kill(-process->pid, SIGKILL); /* what it started, if that is still there */
     if (process->descriptor >= 0) close(process->descriptor);
     *process = (RtProcess){0};
     return true;

@@ -25,7 +25,8 @@ typedef struct RtProcessEnd {
     int code;   /* that it exited with; -1: somebody else waited for it */
 } RtProcessEnd;
 
-/* Forks: *process is the child, or, in the child, has pid 0. RT_IO where there can be no process. */
+/* Forks: *process is the child, or, in the child, has pid 0. What the child starts in its turn does not
+ * outlive it. RT_IO where there can be no process. */
 RtStatus rt_process_start(RtProcess *process, RtError *error);
 
 /* Sends it a signal, if it still is. */

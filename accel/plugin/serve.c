@@ -79,7 +79,8 @@ static void watch_signals(void) {
     struct sigaction action = {.sa_flags = SA_SIGINFO | SA_ONSTACK};
     action.sa_sigaction = on_signal;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) sigaction(numbers[i], &action, NULL);
-    signal(SIGINT, SIG_IGN); /* is raytally's to take */
+    signal(SIGINT, SIG_IGN);  /* is raytally's to take */
+    signal(SIGTTOU, SIG_IGN); /* what it says it says from behind */
     on_exit(on_exit_called, NULL);
     watch_thread();
 }
@@ -90,6 +91,7 @@ static void *watch_raytally(void *unused) {
     while (read(served.alive, &byte, 1) < 0 && errno == EINTR) {
     }
     (void)unused;
+    if (getpgrp() == getpid()) kill(0, SIGKILL); /* with all that it started */
     _exit(EXIT_FAILURE);
 }
 

@@ -3,9 +3,17 @@
  * nothing. */
 #include <raytally/accel.h>
 
+#include <fenv.h>
+#include <locale.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
 enum {
     FLUSHING, /* has the processor take small numbers for 0, as what is linked with -ffast-math does */
-    LONGER    /* has a table of a later version of the interface, with more at its end */
+    LONGER,   /* has a table of a later version of the interface, with more at its end */
+    UNRULY    /* makes a mess of the process that loads it, and crashes when that ends */
 };
 
 static void flush_to_zero(void) {
@@ -18,6 +26,15 @@ static void flush_to_zero(void) {
 
 __attribute__((constructor)) static void when_loaded(void) {
     if (KIND == FLUSHING) flush_to_zero();
+    if (KIND != UNRULY) return;
+    fesetround(FE_UPWARD);
+    setlocale(LC_ALL, "");
+    signal(SIGCHLD, SIG_IGN);
+    if (chdir("/") == 0) puts("{ odd-UNRULY is here");
+}
+
+__attribute__((destructor)) static void when_unloaded(void) {
+    if (KIND == UNRULY) abort();
 }
 
 static int build(const raytally_build *from, void **self) {
@@ -44,7 +61,9 @@ typedef struct LongerOps {
 static const LongerOps longer = {
     .ops = {.abi = RAYTALLY_ACCEL_ABI,
             .size = KIND == LONGER ? sizeof longer : sizeof longer.ops,
-            .name = KIND == LONGER ? "longer" : "flushing",
+            .name = KIND == LONGER   ? "longer"
+                    : KIND == UNRULY ? "unruly"
+                                     : "flushing",
             .summary = "finds nothing",
             .paper = "none",
             .build = build,
