@@ -127,6 +127,6 @@ bool rt_tables_unpack(const char *packed, size_t room, RtTables *tables) {
 }
 
 void rt_tables_clear(RtTables *tables) {
-    for (uint32_t i = 0; i < tables->count; i++) rt_free((void *)(uintptr_t)tables->at[i].params);
+    for (uint32_t i = 0; i < tables->count; i++) rt_free((void *)tables->at[i].params);
     *tables = (RtTables){0};
 }

@@ -288,7 +288,7 @@ static void build(const RtSpec *spec, const RtScene *scene, int threads) {
     WireBuilt built = {.status = RT_OK};
     for (uint32_t i = 0; i < spec->layer_count && built.status == RT_OK; i++) {
         const RtAccelOps *ops = spec->layers[i].ops;
-        if (ops->away) built.status = rt_library_enter((RtPluginOps *)(uintptr_t)ops, &built.error);
+        if (ops->away) built.status = rt_library_enter((RtPluginOps *)ops, &built.error);
     }
     if (built.status == RT_OK)
         built.status = rt_accel_build_here(spec, scene, threads, &served.accel, &built.error);
