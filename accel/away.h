@@ -27,7 +27,8 @@ void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes);
 void rt_away_break(const RtAccel *accel, const char *what, const char *doing);
 
 /* To be called now and then by work that takes long: it goes on. What does not for 60 seconds, or what
- * RAYTALLY_PLUGIN_SECONDS says, is taken to hang; ten times that for building. */
+ * RAYTALLY_PLUGIN_SECONDS says, is taken to hang; ten times that for building. Where RAYTALLY_PLUGIN_WAIT is
+ * set nothing is, and the process waits for a debugger before it loads the plugin. */
 void rt_away_beat(void);
 
 /* A status that came from there, as far as it is one. */

@@ -94,6 +94,7 @@ fault rays 'counts [0-9]+ object_hits on some [a-z]+ rays, and [0-9]+ when' 'wro
 fault box 'showed a box that is NULL' ''
 fault deep 'showed a box at depth 4294967295' ''
 fault show "$crash\) while it showed its boxes" ''
+fault debts 'describes itself by a number of 18446744073709551615'
 fault mumble '[?]{40}'
 fault loop-nearest "no progress for 1 s .*$at_ray"
 fault loop-timed "no progress for 1 s .*$at_ray"

@@ -56,6 +56,7 @@ bool rt_accel_is_away(const RtAccel *accel) {
 }
 
 static double patience_of_user(void) {
+    if (getenv("RAYTALLY_PLUGIN_WAIT")) return INFINITY; /* for a debugger */
     const char *text = getenv("RAYTALLY_PLUGIN_SECONDS");
     char *end;
     double seconds = text ? strtod(text, &end) : 0;

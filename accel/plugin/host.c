@@ -69,10 +69,23 @@ static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     return RT_OK;
 }
 
+/* Those that no structure has: below zero, as a rule. */
+static void refuse_numbers(RtPluginAccel *accel, const raytally_description *said) {
+    const uint64_t numbers[] = {said->interior,   said->leaves, said->empty_leaves,
+                                said->references, said->depth,  said->bytes};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        if (numbers[i] <= UINT64_C(1) << 53) continue;
+        RtError error;
+        rt_fail(&error, RT_BROKEN, "it describes itself by a number of %llu", (unsigned long long)numbers[i]);
+        rt_plugin_say(accel, &error);
+    }
+}
+
 static void describe(const RtAccel *accel, RtDescription *out) {
     const RtPluginAccel *self = rt_plugin_of(accel);
     raytally_description said = {.predicted_cost = NAN, .predicted_tests = NAN, .predicted_steps = NAN};
     if (self->table->describe) self->table->describe(self->self, &said);
+    refuse_numbers((RtPluginAccel *)accel, &said);
     *out = (RtDescription){.interior = said.interior,
                            .leaves = said.leaves,
                            .empty_leaves = said.empty_leaves,

@@ -138,18 +138,31 @@ static RtStatus check_values(const char *path, const char *name, const RtParam *
     return RT_OK;
 }
 
+/* Words joined by '|', as they can stand in a spec. */
+static bool are_choices(const char *choices) {
+    static const char others[] = "+:,=| \t\n";
+    for (const char *word = choices;; word++) {
+        size_t length = strcspn(word, others);
+        if (length == 0 || length >= RT_MAX_NAME) return false;
+        word += length;
+        if (*word == '\0') return true;
+        if (*word != '|') return false;
+    }
+}
+
 /* The member that is missing or wrong, or NULL. */
 static const char *wrong_member(const raytally_param *p) {
     bool number = p->type == RAYTALLY_INT || p->type == RAYTALLY_FLOAT;
-    return !is_key(p->name)                            ? "a `name` of letters, digits and '_'"
-           : p->type > RAYTALLY_FLAG                   ? "a `type`"
-           : !p->standard                              ? "`standard`, its default"
-           : !p->meaning                               ? "its `meaning`"
-           : !p->source                                ? "its `source`"
-           : p->type == RAYTALLY_CHOICE && !p->choices ? "its `choices`"
-           : number && !p->test_values                 ? "its `test_values`"
-           : number && !(p->lo <= p->hi)               ? "a range: `lo` is above `hi`"
-                                                       : NULL;
+    return !is_key(p->name)          ? "a `name` of letters, digits and '_'"
+           : p->type > RAYTALLY_FLAG ? "a `type`"
+           : !p->standard            ? "`standard`, its default"
+           : !p->meaning             ? "its `meaning`"
+           : !p->source              ? "its `source`"
+           : p->type == RAYTALLY_CHOICE && (!p->choices || !are_choices(p->choices))
+               ? "`choices`, words joined by '|'"
+           : number && !p->test_values   ? "its `test_values`"
+           : number && !(p->lo <= p->hi) ? "a range: `lo` is above `hi`"
+                                         : NULL;
 }
 
 static RtStatus check_params(const char *path, const raytally_accel_ops *table, RtError *error) {
@@ -171,13 +184,27 @@ static RtStatus check_params(const char *path, const raytally_accel_ops *table, 
     return RT_OK;
 }
 
+/* The plugin that has the accelerator `name`, or "". */
+static const char *file_of(const char *name) {
+    for (size_t i = 0; i < rt_plugin_count(); i++) {
+        const RtPlugin *plugin = rt_plugin_at(i);
+        for (uint32_t k = 0; k < plugin->count; k++) {
+            if (strcmp(plugin->names[k], name) == 0) return plugin->path;
+        }
+    }
+    return "";
+}
+
 static RtStatus check_name(const char *path, const RtTables *tables, uint32_t place, RtError *error) {
     RtError why;
     const char *name = tables->at[place].name;
     if (!name || !tables->at[place].summary || !tables->at[place].paper)
         return rt_fail(error, RT_BAD_INPUT, "%s: a table in it has no name, summary or paper", path);
-    if (rt_accel_name_is_free(name, &why) != RT_OK)
-        return rt_fail(error, RT_BAD_INPUT, "%s: %s", path, why.message);
+    if (rt_accel_name_is_free(name, &why) != RT_OK) {
+        const char *file = file_of(name);
+        return rt_fail(error, RT_BAD_INPUT, "%s: %s%s%s", path, why.message, *file ? "; it is that of " : "",
+                       file);
+    }
     for (uint32_t i = 0; i < place; i++) {
         if (strcmp(tables->at[i].name, name) == 0)
             return rt_fail(error, RT_BAD_INPUT, "%s: it has two accelerators '%s': choose another name", path,

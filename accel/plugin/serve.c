@@ -18,6 +18,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 /* All of it, in this process. */
@@ -116,6 +117,22 @@ static void let_go(void) {
     int high = dup2(served.alive, STDERR_FILENO + 1);
     if (high >= 0) served.alive = high;
     close_range((unsigned)STDERR_FILENO + 2, ~0U, 0);
+}
+
+static bool is_debugged(void) {
+    int tracer = 0;
+    char line[128];
+    FILE *file = fopen("/proc/self/status", "r");
+    while (file && tracer == 0 && fgets(line, sizeof line, file)) sscanf(line, "TracerPid: %d", &tracer);
+    if (file) fclose(file);
+    return tracer != 0;
+}
+
+/* Where RAYTALLY_PLUGIN_WAIT is set a debugger is waited for: before any of the library is loaded. */
+static void wait_for_debugger(void) {
+    if (!getenv("RAYTALLY_PLUGIN_WAIT")) return;
+    fprintf(stderr, "raytally: the process of the plugin waits for a debugger: gdb -p %d\n", (int)getpid());
+    while (!is_debugged()) nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
 }
 
 /* ---- what it is asked ---- */
@@ -312,6 +329,7 @@ void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int thr
     fesetenv(FE_DFL_ENV);
     if (pthread_create(&thread, NULL, watch_raytally, NULL) != 0)
         _exit(EXIT_FAILURE); /* it would outlive it */
+    wait_for_debugger();
     build(spec, scene, threads);
     if (served.accel) serve_lane(&wire->lanes[0], NULL);
     _exit(EXIT_SUCCESS);

@@ -275,6 +275,11 @@ static void describe_crash(const void *self, raytally_description *out) {
     crash();
 }
 
+static void describe_debts(const void *self, raytally_description *out) {
+    (void)self;
+    out->bytes = (uint64_t)-1;
+}
+
 static int validate_broken(const void *self, char *message, size_t room) {
     (void)self;
     snprintf(message, room, "node 3 is its own parent");
@@ -334,6 +339,7 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-beyond", .summary = "writes an answer too many", .nearest = one_too_many},
     {.name = "faulty-before", .summary = "writes in front of its answers", .nearest = one_too_early},
     {.name = "faulty-rays", .summary = "shortens the rays that it is lent", .nearest = shorten_rays},
+    {.name = "faulty-debts", .summary = "takes less than no memory", .describe = describe_debts},
     {.name = "faulty-box", .summary = "shows a box that is none", .each_box = show_none},
     {.name = "faulty-deep", .summary = "shows a box at a depth that is none", .each_box = show_deep},
     {.name = "faulty-show", .summary = "crashes when it shows its boxes", .each_box = show_crash},
