@@ -26,6 +26,11 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error);
 /* Whether the tables are complete, fit themselves, and have names that are free. */
 RtStatus rt_tables_check(const char *path, const RtTables *tables, RtError *error);
 
+/* Where the next plugin is to be put down, empty; NULL, and RT_BAD_INPUT in *error, where there are too many.
+ * It is one of those that were loaded once it joins them. */
+RtPlugin *rt_plugin_next(RtError *error);
+void rt_plugin_join(void);
+
 /* Bytes of the file (XXH3). */
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error);
 

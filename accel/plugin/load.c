@@ -15,19 +15,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST_LIBRARIES = 32 };
-
-static RtPlugin plugins[MOST_LIBRARIES];
-static size_t plugin_count;
-
-size_t rt_plugin_count(void) {
-    return plugin_count;
-}
-
-const RtPlugin *rt_plugin_at(size_t i) {
-    return &plugins[i];
-}
-
 /* ---- trying one ---- */
 
 enum { MOST_SECONDS = 10 }; /* that a library may take to be loaded and asked for its tables */
@@ -131,19 +118,17 @@ static RtStatus real_path(const char *path, char *out, RtError *error) {
 RtStatus rt_plugin_load(const char *path, RtError *error) {
     RtTables tables;
     char real[RT_MAX_PATH];
-    RtPlugin *plugin = &plugins[plugin_count];
     RT_TRY(real_path(path, real, error));
-    for (size_t i = 0; i < plugin_count; i++) {
-        if (strcmp(plugins[i].path, real) == 0) return RT_OK;
+    for (size_t i = 0; i < rt_plugin_count(); i++) {
+        if (strcmp(rt_plugin_at(i)->path, real) == 0) return RT_OK;
     }
-    if (plugin_count == MOST_LIBRARIES)
-        return rt_fail(error, RT_BAD_INPUT, "more than %d plugins", MOST_LIBRARIES);
-    *plugin = (RtPlugin){0};
+    RtPlugin *plugin = rt_plugin_next(error);
+    if (!plugin) return RT_BAD_INPUT;
     snprintf(plugin->path, sizeof plugin->path, "%s", real);
     RT_TRY(rt_library_fingerprint(real, &plugin->fingerprint, error));
     RT_TRY(try_tables(real, &tables, error));
     RT_TRY(register_tables(plugin, &tables, error));
-    plugin_count++;
+    rt_plugin_join();
     return RT_OK;
 }
 
