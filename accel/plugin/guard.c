@@ -25,11 +25,10 @@ void rt_guarded_unmap(RtGuarded *guarded) {
     *guarded = (RtGuarded){0};
 }
 
+/* All bytes are that of the first where each is that of the one before. */
 bool rt_canaries_live(const char *from, const char *end) {
-    for (; from < end; from++) {
-        if ((unsigned char)*from != CANARY) return false;
-    }
-    return true;
+    size_t bytes = (size_t)(end - from);
+    return bytes == 0 || ((unsigned char)*from == CANARY && memcmp(from, from + 1, bytes - 1) == 0);
 }
 
 void rt_canaries_lay(char *from, const char *end) {
