@@ -18,7 +18,7 @@ typedef struct RtPluginOps {
     raytally_accel_ops table; /* where it is entered (rt_library_enter); else nothing */
 } RtPluginOps;
 
-/* Fills the operations and parameters from a table that was looked at, which has to stay. */
+/* Fills the operations and parameters from a table that was looked at, the text of which has to stay. */
 void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table);
 
 #endif

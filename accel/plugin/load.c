@@ -127,9 +127,10 @@ RtStatus rt_plugin_load(const char *path, RtError *error) {
     snprintf(plugin->path, sizeof plugin->path, "%s", real);
     RT_TRY(rt_library_fingerprint(real, &plugin->fingerprint, error));
     RT_TRY(try_tables(real, &tables, error));
-    RT_TRY(register_tables(plugin, &tables, error));
-    rt_plugin_join();
-    return RT_OK;
+    RtStatus status = register_tables(plugin, &tables, error);
+    rt_tables_clear(&tables);
+    if (status == RT_OK) rt_plugin_join();
+    return status;
 }
 
 /* ---- many ---- */

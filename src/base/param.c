@@ -192,9 +192,9 @@ RtStatus rt_params_parse(const RtParam *table, size_t count, const char *text, c
     assert(count <= RT_MAX_PARAMS);
     bool given[RT_MAX_PARAMS] = {false};
     for (size_t i = 0; i < count; i++) {
-        bool valid = parse_value(&table[i], table[i].standard, &values[i]);
-        assert(valid && "a default lies in its own range");
-        (void)valid;
+        if (!parse_value(&table[i], table[i].standard, &values[i]))
+            return rt_fail(error, RT_BAD_INPUT, "%s: the default '%s=%s' does not lie in its own range", what,
+                           table[i].name, table[i].standard);
     }
     if (!text || !*text) return RT_OK;
     char copy[RT_MAX_SPEC_CHARS];
