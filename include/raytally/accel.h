@@ -13,8 +13,8 @@
  *  - a structure is read only once it is built. What a traversal writes to lies in the memory of its query,
  *    of which each thread has one;
  *  - tracing allocates nothing and cannot fail;
- *  - the same rays give the same counts, and the same build the same structure, wherever its memory lies and on
- *    any number of threads. (That of a build `raytally reproduce` checks, which builds anew.)
+ *  - the same rays give the same counts, and the same build the same structure, wherever its memory lies and
+ * on any number of threads. (That of a build `raytally reproduce` checks, which builds anew.)
  *
  * What may go wrong stays where it is: a plugin runs in a process of its own, and one that crashes, hangs,
  * answers nonsense or writes beside the memory of its query loses its own results and no others. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/referee.h"
 
+#include <pthread.h>
+
 const char *rt_side_name(RtSide side) {
     static const char *const names[RT_SIDE_COUNT] = {
 #define RT_SIDE_NAME(CONSTANT, name, meaning) #name,
@@ -16,10 +18,40 @@ long double rt_float_ulp(long double x) {
     return ldexpl(1, x == 0 || exponent < FLT_MIN_EXP ? FLT_MIN_EXP - FLT_MANT_DIG : exponent - FLT_MANT_DIG);
 }
 
+/* ---- numbers of a thread ---- */
+
+/* Each thread has an arena for as long as it runs: making its numbers anew takes as long as computing with
+ * them. What a search has grown beyond MOST_BLOCKS is not kept. */
+enum { MOST_BLOCKS = 256 };
+static _Thread_local RtExactArena kept;
+static pthread_key_t threads_end;
+static pthread_once_t begun = PTHREAD_ONCE_INIT;
+
+static void forget(void *arena) {
+    rt_exact_arena_clear(arena);
+}
+
+static void begin(void) {
+    pthread_key_create(&threads_end, forget);
+}
+
+/* Where numbers may be written; who borrows it within a search goes on behind them. */
+static RtExactArena *borrow(void) {
+    pthread_once(&begun, begin);
+    if (kept.block_count == 0) pthread_setspecific(threads_end, &kept);
+    return &kept;
+}
+
+static void give_back(RtExactArena *arena, size_t mark) {
+    rt_exact_arena_rewind(arena, mark);
+    if (mark == 0 && arena->block_count > MOST_BLOCKS) rt_exact_arena_clear(arena);
+}
+
 /* ---- the nearest ---- */
 
 typedef struct Search {
-    RtExactArena arena;
+    RtExactArena *arena; /* the thread's, from `mark` on */
+    size_t mark;
     const RtGeometry *geometry;
     RtWideRay line;
     RtExactLine exact;
@@ -29,29 +61,31 @@ typedef struct Search {
 } Search;
 
 static void search_init(Search *s, const RtGeometry *geometry, const RtRay *ray) {
-    *s = (Search){.geometry = geometry,
+    *s = (Search){.arena = borrow(),
+                  .geometry = geometry,
                   .line = rt_wide_ray(ray),
                   .ruling = {.finding = RT_MISSED, .object = RT_NO_OBJECT, .t = HUGE_VALL},
                   .open = HUGE_VAL};
-    s->exact = rt_exact_line(&s->arena, &s->line);
+    s->mark = rt_exact_arena_mark(s->arena);
+    s->exact = rt_exact_line(s->arena, &s->line);
 }
 
 /* Numbers of what is not the nearest are forgotten at once. */
 static void consider(Search *s, uint32_t id, double soonest) {
-    size_t mark = rt_exact_arena_mark(&s->arena);
+    size_t mark = rt_exact_arena_mark(s->arena);
     RtPlace t;
-    RtFinding finding = rt_exact_hit(&s->arena, s->geometry, id, &s->exact, &t);
+    RtFinding finding = rt_exact_hit(s->arena, s->geometry, id, &s->exact, &t);
     if (finding == RT_UNDECIDED) s->open = fmin(s->open, soonest);
     int order = -1;
-    if (finding == RT_HIT && s->ruling.together > 0) order = rt_place_compare(&s->arena, &t, &s->best);
+    if (finding == RT_HIT && s->ruling.together > 0) order = rt_place_compare(s->arena, &t, &s->best);
     if (finding != RT_HIT || order >= 0) {
         if (finding == RT_HIT && order == 0) s->ruling.together++;
-        rt_exact_arena_rewind(&s->arena, mark);
+        rt_exact_arena_rewind(s->arena, mark);
         return;
     }
     s->best = t;
     s->ruling = (RtRuling){
-        .finding = RT_HIT, .object = id, .together = 1, .t = rt_place_value(&s->arena, &t, s->exact.zero)};
+        .finding = RT_HIT, .object = id, .together = 1, .t = rt_place_value(s->arena, &t, s->exact.zero)};
 }
 
 static void search(Search *s) {
@@ -68,7 +102,7 @@ RtRuling rt_referee_nearest(const RtGeometry *geometry, const RtRay *ray) {
     Search s;
     search_init(&s, geometry, ray);
     search(&s);
-    rt_exact_arena_clear(&s.arena);
+    give_back(s.arena, s.mark);
     return s.ruling;
 }
 
@@ -79,7 +113,7 @@ RtFinding rt_referee_occluded(const RtGeometry *geometry, const RtRay *ray) {
         double soonest;
         if (rt_line_may_meet(&s.line, &geometry->boxes[id], &soonest)) consider(&s, id, soonest);
     }
-    rt_exact_arena_clear(&s.arena);
+    give_back(s.arena, s.mark);
     return s.ruling.finding == RT_MISSED && s.open < HUGE_VAL ? RT_UNDECIDED : s.ruling.finding;
 }
 
@@ -115,43 +149,46 @@ RtRuling rt_referee_judge(const RtGeometry *geometry, const RtRay *ray, RtHit ex
 /* ---- one or two objects ---- */
 
 RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRay *line, long double *t) {
-    RtExactArena arena = {0};
-    RtExactLine exact = rt_exact_line(&arena, line);
+    RtExactArena *arena = borrow();
+    size_t mark = rt_exact_arena_mark(arena);
+    RtExactLine exact = rt_exact_line(arena, line);
     RtPlace at;
-    RtFinding finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
-    if (finding == RT_HIT) *t = rt_place_value(&arena, &at, exact.zero);
-    rt_exact_arena_clear(&arena);
+    RtFinding finding = rt_exact_hit(arena, geometry, id, &exact, &at);
+    if (finding == RT_HIT) *t = rt_place_value(arena, &at, exact.zero);
+    give_back(arena, mark);
     return finding;
 }
 
 RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray, int *order,
                            long double *apart) {
-    RtExactArena arena = {0};
+    RtExactArena *arena = borrow();
+    size_t mark = rt_exact_arena_mark(arena);
     RtWideRay line = rt_wide_ray(ray);
-    RtExactLine exact = rt_exact_line(&arena, &line);
+    RtExactLine exact = rt_exact_line(arena, &line);
     RtPlace at[2];
-    RtFinding finding = rt_exact_hit(&arena, geometry, a, &exact, &at[0]);
-    if (finding == RT_HIT) finding = rt_exact_hit(&arena, geometry, b, &exact, &at[1]);
+    RtFinding finding = rt_exact_hit(arena, geometry, a, &exact, &at[0]);
+    if (finding == RT_HIT) finding = rt_exact_hit(arena, geometry, b, &exact, &at[1]);
     if (finding == RT_HIT) {
-        *order = rt_place_compare(&arena, &at[0], &at[1]);
-        long double first = rt_place_value(&arena, &at[0], exact.zero);
-        *apart = *order == 0 ? 0 : fabsl(first - rt_place_value(&arena, &at[1], exact.zero));
+        *order = rt_place_compare(arena, &at[0], &at[1]);
+        long double first = rt_place_value(arena, &at[0], exact.zero);
+        *apart = *order == 0 ? 0 : fabsl(first - rt_place_value(arena, &at[1], exact.zero));
     }
-    rt_exact_arena_clear(&arena);
+    give_back(arena, mark);
     return finding;
 }
 
 RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
                            long double *ulps) {
-    RtExactArena arena = {0};
+    RtExactArena *arena = borrow();
+    size_t mark = rt_exact_arena_mark(arena);
     RtWideRay line = rt_wide_ray(ray);
-    RtExactLine exact = rt_exact_line(&arena, &line);
+    RtExactLine exact = rt_exact_line(arena, &line);
     RtPlace at;
-    RtFinding finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
+    RtFinding finding = rt_exact_hit(arena, geometry, id, &exact, &at);
     if (finding == RT_HIT) {
-        long double ulp = rt_float_ulp(rt_place_value(&arena, &at, exact.zero));
-        *ulps = -rt_place_value(&arena, &at, rt_exact_of(&arena, (double)t)) / ulp;
+        long double ulp = rt_float_ulp(rt_place_value(arena, &at, exact.zero));
+        *ulps = -rt_place_value(arena, &at, rt_exact_of(arena, (double)t)) / ulp;
     }
-    rt_exact_arena_clear(&arena);
+    give_back(arena, mark);
     return finding;
 }
