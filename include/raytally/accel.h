@@ -14,7 +14,7 @@
  *    of which each thread has one;
  *  - tracing allocates nothing and cannot fail;
  *  - the same rays give the same counts, and the same build the same structure, wherever its memory lies and
- * on any number of threads. (That of a build `raytally reproduce` checks, which builds anew.)
+ *    on any number of threads. (That of a build `raytally reproduce` checks, which builds anew.)
  *
  * What may go wrong stays where it is: a plugin runs in a process of its own, and one that crashes, hangs,
  * answers nonsense or writes beside the memory of its query loses its own results and no others. */
