@@ -226,7 +226,8 @@ static void say_of_object(RtPluginAccel *accel, const RtRay *ray, uint32_t objec
                object);
 }
 
-static void look_at_hits(RtPluginAccel *accel, const RtRay *rays, size_t count, RtHit *hits) {
+static void look_at_hits(PluginQuery *query, const RtRay *rays, size_t count, RtHit *hits) {
+    RtPluginAccel *accel = query->accel;
     const uint32_t objects = accel->base.scene->geometry.object_count;
     for (size_t i = 0; i < count; i++) {
         RtHit hit = hits[i];
@@ -246,15 +247,6 @@ static void look_at_hits(RtPluginAccel *accel, const RtRay *rays, size_t count, 
     }
 }
 
-static void look_at_blockers(RtPluginAccel *accel, const RtRay *rays, size_t count, uint32_t *blockers) {
-    const uint32_t objects = accel->base.scene->geometry.object_count;
-    for (size_t i = 0; i < count; i++) {
-        if (blockers[i] < objects || blockers[i] == RT_NO_OBJECT) continue;
-        say_of_object(accel, &rays[i], blockers[i]);
-        blockers[i] = RT_NO_OBJECT;
-    }
-}
-
 /* Whether each blocker is on its ray, by its exact hit: where there is time for it, in streams that are
  * counted. */
 static void test_blockers(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *blockers) {
@@ -269,9 +261,15 @@ static void test_blockers(PluginQuery *query, const RtRay *rays, size_t count, c
     }
 }
 
-/* A nearest hit is compared with the right one by whoever asked for it. */
-static void test_hits(PluginQuery *query, const RtRay *rays, size_t count, const RtHit *hits) {
-    (void)query, (void)rays, (void)count, (void)hits;
+static void look_at_blockers(PluginQuery *query, const RtRay *rays, size_t count, uint32_t *blockers) {
+    RtPluginAccel *accel = query->accel;
+    const uint32_t objects = accel->base.scene->geometry.object_count;
+    for (size_t i = 0; i < count; i++) {
+        if (blockers[i] < objects || blockers[i] == RT_NO_OBJECT) continue;
+        say_of_object(accel, &rays[i], blockers[i]);
+        blockers[i] = RT_NO_OBJECT;
+    }
+    if (query->counting) test_blockers(query, rays, count, blockers);
 }
 
 /* The counters of a plugin's own, and those that object_hits counts. Rays and hits are counted here, and an
@@ -341,7 +339,7 @@ static void count_from_here(PluginQuery *query) {
 }
 
 /* The two kernels of a question, whose answers are of type Answer, or Theirs as the plugin calls it. */
-#define DEFINE_KERNELS(question, Answer, Theirs, look_at, test, is_hit)                                      \
+#define DEFINE_KERNELS(question, Answer, Theirs, look_at, is_hit)                                            \
     static void question##_some(PluginQuery *query, const RtScratch *scratch, const RtRay *rays,             \
                                 size_t count, Answer *answers, raytally_counters *counters) {                \
         RtPluginAccel *accel = query->accel;                                                                 \
@@ -349,7 +347,7 @@ static void count_from_here(PluginQuery *query) {
         accel->table->question(accel->self, query->memory, &query->face, (const raytally_ray *)rays, count,  \
                                (Theirs *)theirs, counters);                                                  \
         leave(query, (const char *)theirs);                                                                  \
-        look_at(accel, rays, count, theirs);                                                                 \
+        look_at(query, rays, count, theirs);                                                                 \
         memcpy(answers, theirs, count * sizeof(Answer));                                                     \
     }                                                                                                        \
     static void ask_##question(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
@@ -370,7 +368,6 @@ static void count_from_here(PluginQuery *query) {
             count_from_here(query);                                                                          \
             question##_some(query, scratch, rays + first, n, answers + first, counters);                     \
             query->counting = false;                                                                         \
-            test(query, rays + first, n, answers + first);                                                   \
             add_counters(query, counters, n, tallies);                                                       \
         }                                                                                                    \
         for (size_t i = 0; i < count; i++) {                                                                 \
@@ -378,8 +375,8 @@ static void count_from_here(PluginQuery *query) {
             tallies[rays[i].kind].hits += (is_hit);                                                          \
         }                                                                                                    \
     }
-DEFINE_KERNELS(nearest, RtHit, raytally_hit, look_at_hits, test_hits, answers[i].object != RT_NO_OBJECT)
-DEFINE_KERNELS(occluded, uint32_t, uint32_t, look_at_blockers, test_blockers, answers[i] != RT_NO_OBJECT)
+DEFINE_KERNELS(nearest, RtHit, raytally_hit, look_at_hits, answers[i].object != RT_NO_OBJECT)
+DEFINE_KERNELS(occluded, uint32_t, uint32_t, look_at_blockers, answers[i] != RT_NO_OBJECT)
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
     const RtPluginAccel *self = rt_plugin_of(accel);
