@@ -285,10 +285,6 @@ static void look_at_blockers(PluginQuery *query, const RtRay *rays, size_t count
     X(OBJECT_HITS, object_hits)                                                                              \
     X(CSG_TESTS, csg_tests)
 
-#define SAME_COUNTER(CONSTANT, name)                                                                         \
-    _Static_assert((size_t)RAYTALLY_##CONSTANT == offsetof(RtTally, name) / sizeof(uint64_t), #name);
-OWN_COUNTERS(SAME_COUNTER)
-OBJECT_COUNTERS(SAME_COUNTER)
 #define ONE(CONSTANT, name) +1
 _Static_assert(2 OWN_COUNTERS(ONE) OBJECT_COUNTERS(ONE) + 1 == RT_TALLY_COUNTER_COUNT,
                "a counter is a plugin's, or counted here");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Plugins that are to be loaded, odd as they are: one for each KIND that this is compiled with. They find
  * nothing. */
-#include <raytally/accel.h>
+#include "nothing.h"
 
 #include <fenv.h>
 #include <locale.h>
@@ -36,22 +36,6 @@ __attribute__((constructor)) static void when_loaded(void) {
 __attribute__((destructor)) static void when_unloaded(void) {
     if (KIND == UNRULY) abort();
 }
-
-static int build(const raytally_build *from, void **self) {
-    (void)from;
-    *self = NULL;
-    return RAYTALLY_BUILD_OK;
-}
-
-static void destroy(void *self) {
-    (void)self;
-}
-
-RAYTALLY_INLINE void search(const int *self, void *memory, const raytally_prepared *ray, int any,
-                            raytally_hit *best, raytally_counters *counters) {
-    (void)self, (void)memory, (void)ray, (void)any, (void)best, (void)counters;
-}
-RAYTALLY_DEFINE_KERNELS(int, search)
 
 typedef struct LongerOps {
     raytally_accel_ops ops;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Plugins that cannot be loaded, one for each KIND that this is compiled with. */
-#include <raytally/accel.h>
+#include "nothing.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -23,22 +23,6 @@ enum {
     FOREVER,     /* is never loaded, and takes no alarm */
     MANY         /* has more tables than there is room for beside others */
 };
-
-static int build(const raytally_build *from, void **self) {
-    (void)from;
-    *self = NULL;
-    return RAYTALLY_BUILD_OK;
-}
-
-static void destroy(void *self) {
-    (void)self;
-}
-
-RAYTALLY_INLINE void search(const int *self, void *memory, const raytally_prepared *ray, int any,
-                            raytally_hit *best, raytally_counters *counters) {
-    (void)self, (void)memory, (void)ray, (void)any, (void)best, (void)counters;
-}
-RAYTALLY_DEFINE_KERNELS(int, search)
 
 static const raytally_param params[] = {{.name = "depth",
                                          .type = RAYTALLY_INT,
