@@ -218,7 +218,7 @@ struct RtAccelOps {
     RtStatus (*learn)(RtAccel *accel, const RtRay *rays, const RtHit *hits, size_t count, RtError *error);
 
     /* Optional: RT_OK, or RT_NOT_AVAILABLE and why this machine, or the library at hand, cannot do what
-     * values[param_count] ask for. */
+     * values[param_count] ask for. `build` is called only where it is RT_OK. */
     RtStatus (*available)(const RtValue *values, RtError *error);
 
     /* Optional: the version of the library that does the work, and what it runs on here, "3.13.5 avx512", to

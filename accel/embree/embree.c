@@ -140,7 +140,6 @@ static RtStatus build_into(RtEmbree *self, const RtBuild *what, RtError *error) 
     static const enum RTCBuildQuality qualities[] = {RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM,
                                                      RTC_BUILD_QUALITY_HIGH};
     enum RTCBuildQuality quality = qualities[values[QUALITY].choice];
-    RT_TRY(available(values, error));
     RT_TRY(rt_embree_device_open(&self->device, values[ISA].choice, what->threads, error));
     set_reach(self);
     self->scene = rtcNewScene(self->device.device);

@@ -102,7 +102,6 @@ static RtStatus available(const RtValue *values, RtError *error) {
 
 static RtStatus fill_trees(RtWide *self, const RtBuild *what, RtError *error) {
     RtTreeMethod method = (RtTreeMethod)what->values[PARAM_BUILD].choice;
-    RT_TRY(available(what->values, error));
     RT_TRY(fill(&self->trees[0], what, method, error));
     if (self->occluded == &self->trees[0]) return RT_OK;
     return fill(&self->trees[1], what, RT_TREE_BINNED, error);

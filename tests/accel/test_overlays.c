@@ -67,6 +67,31 @@ RT_TEST(a_wrong_plus_is_refused_with_a_remedy) {
 
 /* ---- layers ---- */
 
+static RtStatus refuse(const RtValue *values, RtError *problem) {
+    (void)values;
+    return rt_fail(problem, RT_NOT_AVAILABLE, "not here");
+}
+
+static RtStatus build_all_the_same(const RtBuild *what, RtAccel **out, RtError *problem) {
+    (void)what, (void)out, (void)problem;
+    fail_msg("a layer was built that is not available");
+    return RT_OK;
+}
+
+RT_TEST(a_stack_is_refused_before_it_is_built_where_a_layer_is_not_available) {
+    RtSpec spec;
+    RtAccel *accel;
+    RtError problem = {RT_OK, ""};
+    assert_ok(rt_spec_parse("cache+grid", &spec, error));
+    RtAccelOps absent = *spec.layers[0].ops;
+    absent.available = refuse;
+    absent.build = build_all_the_same;
+    spec.layers[0].ops = &absent;
+    assert_int_equal(rt_accel_build(&spec, *state, 1, &accel, &problem), RT_NOT_AVAILABLE);
+    assert_null(accel);
+    assert_string_equal(problem.message, "not here");
+}
+
 RT_TEST(layers_are_described_together) {
     RtAccel *base, *top;
     RtDescription of_base, of_top;
