@@ -31,7 +31,8 @@ RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t fi
     RtVec3d normal = rt_normalized(sum);
     double warp = 0;
     for (uint32_t i = 0; i < count; i++) {
-        warp = fmax(warp, fabs(rt_dotd(normal, rt_subd(rt_widen(vertices[i]), center))));
+        double off = fabs(rt_dotd(normal, rt_subd(rt_widen(vertices[i]), center)));
+        if (off > warp) warp = off; /* gcc 12 for ARM breaks off on fmax here, and below */
     }
     if (warp > RT_POLYGON_MAX_WARP * size) {
         return rt_fail(
@@ -72,7 +73,9 @@ RtBall rt_polygon_ball(const RtPolygon *polygon, const RtVec3 *vertices) {
 
 double rt_polygon_support(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d direction) {
     double most = rt_dotd(rt_widen(vertices[0]), direction);
-    for (uint32_t i = 1; i < polygon->count; i++)
-        most = fmax(most, rt_dotd(rt_widen(vertices[i]), direction));
+    for (uint32_t i = 1; i < polygon->count; i++) {
+        double along = rt_dotd(rt_widen(vertices[i]), direction);
+        if (along > most) most = along;
+    }
     return most + (double)polygon->warp * fabs(direction.at[third_axis(polygon)]);
 }

@@ -159,16 +159,10 @@ static const char *any_best(char name[RT_MAX_LABEL]) {
     return NULL;
 }
 
-/* One of the baseline's candidates has a ratio of exactly 1, most others less, and the ratios of all refer to
- * it. */
-static void assert_best_is_baseline(const RtResults *results, RtRayKind kind) {
+/* One of the baseline's candidates has a ratio of exactly 1, and the ratios of all refer to it. */
+static void assert_one_is_baseline(const RtResults *results, RtRayKind kind) {
     const RtExperiment *e = results->experiment;
     uint32_t best = rt_cell_at(results, 0, e->baseline, kind)->baseline;
-    uint32_t slower = 0;
-    for (uint32_t c = e->baseline; c < e->baseline + e->baseline_count; c++) {
-        slower += rt_cell_at(results, 0, c, kind)->ratio.median < 1;
-    }
-    assert_true(slower > e->baseline_count / 2);
     for (uint32_t c = 0; c < e->candidate_count; c++) {
         const RtCell *cell = rt_cell_at(results, 0, c, kind);
         bool thinned = e->candidates[c].ray_stride > 1;
@@ -177,6 +171,16 @@ static void assert_best_is_baseline(const RtResults *results, RtRayKind kind) {
         assert_true((cell->ratio.low == 1 && cell->ratio.high == 1) == (c == best));
     }
     assert_int_equal(rt_cell_at(results, 0, e->candidate_count, kind)->baseline, e->baseline);
+}
+
+/* Of the baseline's candidates most are slower than the one that ratios refer to. */
+static bool most_are_slower(const RtResults *results, RtRayKind kind) {
+    const RtExperiment *e = results->experiment;
+    uint32_t slower = 0;
+    for (uint32_t c = e->baseline; c < e->baseline + e->baseline_count; c++) {
+        slower += rt_cell_at(results, 0, c, kind)->ratio.median < 1;
+    }
+    return slower > e->baseline_count / 2;
 }
 
 RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
@@ -202,11 +206,17 @@ RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
     assert_string_equal(rt_baseline_label(e), name);
     assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
     assert_ok(rt_experiment_check(e, where, error));
-    assert_ok(rt_results_init(&results, e, error));
-    assert_ok(rt_workload_run(&results, 0, &options, error));
-    assert_best_is_baseline(&results, RT_RAY_PRIMARY);
-    assert_best_is_baseline(&results, RT_RAY_SHADOW);
-    rt_results_clear(&results);
+    /* Who else is on the machine may slow the fastest down for a while: one of some attempts will do. */
+    bool most = false;
+    for (int attempt = 0; attempt < 5 && !most; attempt++) {
+        assert_ok(rt_results_init(&results, e, error));
+        assert_ok(rt_workload_run(&results, 0, &options, error));
+        assert_one_is_baseline(&results, RT_RAY_PRIMARY);
+        assert_one_is_baseline(&results, RT_RAY_SHADOW);
+        most = most_are_slower(&results, RT_RAY_PRIMARY) && most_are_slower(&results, RT_RAY_SHADOW);
+        rt_results_clear(&results);
+    }
+    assert_true(most);
     rt_free(e);
 }
 
