@@ -4,6 +4,8 @@
  * is inlined. Native mode, which has nothing to count but rays and hits, is in native.c. */
 #include "accel/embree/batch.h"
 
+#include <assert.h>
+
 size_t rt_embree_scratch_bytes(const RtAccel *accel) {
     (void)accel;
     return sizeof(RtEmbreeBatch);
@@ -105,6 +107,7 @@ RT_KERNEL void count_answers(const RtRay *rays, size_t count, const RtHit *hits,
 RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                           RtHit *hits, uint32_t *blockers, RtTally *tallies) {
     const RtEmbree *self = (const RtEmbree *)accel;
+    assert(!hits != !blockers);
     if (self->user) {
         answer_query(self, scratch, rays, count, hits, blockers, tallies);
     } else if (hits) {
