@@ -282,6 +282,9 @@ bool rt_spec_is_away(const RtSpec *spec);
 /* The same of a text, which may be no spec. */
 bool rt_spec_text_is_away(const char *text);
 
+/* RT_OK, or RT_NOT_AVAILABLE and why this machine, or a library, cannot do what a layer asks for. */
+RtStatus rt_spec_available(const RtSpec *spec, RtError *error);
+
 /* The spec with every effective parameter, "grid:rule=woo,density=10,...", to out[0..RT_MAX_SPEC_CHARS). */
 void rt_spec_format(const RtSpec *spec, char *out);
 

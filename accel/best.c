@@ -61,7 +61,7 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
     for (size_t n = 0; *count < RT_MAX_BEST && combine(ops, best, n, specs[*count]); n++) {
         RtSpec spec;
         RT_TRY(rt_spec_parse(specs[*count], &spec, error));
-        RtStatus status = ops->available ? ops->available(spec.layers[0].values, error) : RT_OK;
+        RtStatus status = rt_spec_available(&spec, error);
         if (status == RT_OK) ++*count;
         if (status != RT_OK && status != RT_NOT_AVAILABLE) return status;
     }

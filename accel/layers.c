@@ -21,10 +21,7 @@ RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threa
     RtAccel *top = NULL;
     double start = rt_wall_seconds();
     *out = NULL;
-    for (uint32_t i = 0; i < spec->layer_count; i++) {
-        const RtSpecLayer *layer = &spec->layers[i];
-        if (layer->ops->available) RT_TRY(layer->ops->available(layer->values, error));
-    }
+    RT_TRY(rt_spec_available(spec, error));
     for (uint32_t i = spec->layer_count; i-- > 0;) {
         RtAccel *accel = NULL;
         const RtBuild what = {spec->layers[i].ops, scene, spec->layers[i].values, threads,

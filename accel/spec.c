@@ -78,6 +78,14 @@ bool rt_spec_text_is_away(const char *text) {
     return rt_spec_parse(text, &spec, NULL) == RT_OK && rt_spec_is_away(&spec);
 }
 
+RtStatus rt_spec_available(const RtSpec *spec, RtError *error) {
+    for (uint32_t i = 0; i < spec->layer_count; i++) {
+        const RtSpecLayer *layer = &spec->layers[i];
+        if (layer->ops->available) RT_TRY(layer->ops->available(layer->values, error));
+    }
+    return RT_OK;
+}
+
 void rt_spec_format(const RtSpec *spec, char *out) {
     size_t used = 0;
     for (uint32_t i = 0; i < spec->layer_count && used < RT_MAX_SPEC_CHARS; i++) {

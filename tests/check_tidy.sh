@@ -3,7 +3,7 @@
 # check_tidy.sh [--deep]: clang-tidy has nothing to say, by the checks of .clang-tidy, about all but the tests (it is blind
 # to their assertions) and status.c (which status.h tells it about). Reads the compile_commands.json beside
 # $RT_PROGRAM, with assertions on, from which it learns. Of each function a third of the states are looked at that the
-# tool would by itself, which takes two fifths of the time; --deep: all of them. Without clang-tidy 14 the check is skipped (77).
+# tool would by itself, which takes half the time; --deep: all of them. Without clang-tidy 14 it is skipped (77).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(dirname "${RT_PROGRAM:-build/release/raytally}")

@@ -59,7 +59,6 @@ RtStatus rt_embree_isa_check(uint32_t isa, RtError *error) {
 }
 
 RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error) {
-    RT_TRY(rt_embree_isa_check(isa, error));
     char config[64];
     int length = snprintf(config, sizeof config, "ignore_config_files=1,threads=%d", threads);
     if (isa != ISA_DEFAULT) {

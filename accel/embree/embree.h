@@ -40,9 +40,8 @@ typedef struct RtEmbreeDevice {
 /* RT_OK, or RT_NOT_AVAILABLE where the processor lacks instruction set number `isa` of RT_EMBREE_ISAS. */
 RtStatus rt_embree_isa_check(uint32_t isa, RtError *error);
 
-/* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS and builds on `threads` threads (0
- * = all processors); RT_NOT_AVAILABLE where the processor lacks it. `device` must stay where it is until it
- * is closed. */
+/* Opens a device that uses instruction set number `isa` of RT_EMBREE_ISAS, which the processor has, and
+ * builds on `threads` threads (0 = all processors). `device` must stay where it is until it is closed. */
 RtStatus rt_embree_device_open(RtEmbreeDevice *device, uint32_t isa, int threads, RtError *error);
 
 /* RT_OK, or the first error that the device reported, while building or tracing. */
