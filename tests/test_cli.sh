@@ -26,7 +26,6 @@ refuses() {
     [ "$code" = 2 ] || complain "raytally $*: exit code $code, not 2: $message"
     [[ $message =~ $pattern ]] || complain "raytally $*: the message does not say '$pattern': $message"
     [ "$before" = "$after" ] || complain "raytally $*: leaves files: $(comm -13 <(echo "$before") <(echo "$after") | xargs)"
-    rm -f ./*.tmp
 }
 
 # does ARGUMENT...: exit code 0
@@ -83,6 +82,36 @@ refuses "rays: invalid value '1000000000000'.*1\.\." verify --rays 1000000000000
 refuses "rays: invalid value '0'.*1\.\." verify --rays 0
 refuses "no accelerator 'nope'" verify --accel nope
 refuses 'nope\.nff: there is no such file' verify nope.nff
+
+# ---- a full disk: exit code 2, a message that names the file, and no part of it ----
+
+# full FILE ARGUMENT...: where not a byte can be written
+full() {
+    local file=$1 message
+    shift
+    message=$( (trap '' XFSZ && ulimit -f 0 && timeout 60 "$program" "$@" </dev/null 2>&1 >/dev/null) || echo "exit code $?")
+    [[ $message =~ $file.*": writing failed: ".*'exit code 2'$ ]] || complain "raytally $*: a full disk: $message"
+    [ -z "$(find . -name "$file*")" ] || complain "raytally $*: a full disk: leaves $(find . -name "$file*" | xargs)"
+}
+
+small='balls:size=1 --size 8x8'
+for arguments in '-o full.png' '-o full.exr' '--heatmap steps full.png' '--structure full.png' '--stats full.json'; do
+    # shellcheck disable=SC2086
+    full full. render $small $arguments
+done
+for arguments in '--csv full.csv' '--hits full.npy' '--counts full.npy'; do
+    # shellcheck disable=SC2086
+    full full. bench $small --accel bvh --rays primary --count-only $arguments
+done
+# shellcheck disable=SC2086
+full full.npy rays $small --rays primary -o full.npy
+# shellcheck disable=SC2086
+full full.svg trace $small --pixel 4,4 --svg full.svg
+for format in yaml nff obj ply; do full full.$format convert tetra:size=1 full.$format; done
+yaml full 'name: full' 'question: q' 'prediction: p' 'scenes: [{scene: "balls:size=1", size: 8x8}]' \
+    'accelerators: [{accel: bvh}]' 'rays: [primary]' 'count_only: yes'
+full experiment.yaml run full.yaml --out out
+rm -r full.yaml out
 
 # ---- new-accel: a whole folder, or nothing ----
 

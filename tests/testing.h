@@ -10,8 +10,10 @@
 
 #include <cmocka.h>
 
+#include <glob.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 /* ---- tests ----
  *
@@ -70,6 +72,14 @@ static inline void rt_test_add(int line, struct CMUnitTest test) {
         RtError rt_ok_error = {RT_OK, ""};                                                                   \
         RtError *error = &rt_ok_error;                                                                       \
         if ((expr) != RT_OK) fail_msg("%s: %s", #expr, rt_ok_error.message);                                 \
+    } while (0)
+
+/* Neither the file `path` is there nor a temporary file that was to become it (rt_output_open). */
+#define assert_not_written(path)                                                                             \
+    do {                                                                                                     \
+        glob_t rt_left;                                                                                      \
+        assert_int_equal(access(path, F_OK), -1);                                                            \
+        assert_int_equal(glob(path ".*.tmp", 0, NULL, &rt_left), GLOB_NOMATCH);                              \
     } while (0)
 
 #endif

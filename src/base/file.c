@@ -5,17 +5,46 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#define TEMPORARY_END ".tmp"
 
 static RtStatus fail_io(RtError *error, const char *doing, const char *path) {
     return rt_fail(error, RT_IO, "%s: %s failed: %s", path, doing, strerror(errno));
 }
 
+/* ---- writing ---- */
+
+/* Nobody can put a link, or another file, where the temporary file is going to be: its name holds 64 random
+ * bits, and what has that name already is not opened. */
+static RtStatus create_temporary(RtOutput *output, RtError *error) {
+    uint64_t number = 0;
+    int descriptor = -1;
+    if (getrandom(&number, sizeof number, 0) == sizeof number) {
+        snprintf(output->temporary, sizeof output->temporary, "%s.%016" PRIx64 TEMPORARY_END, output->path,
+                 number);
+        descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    }
+    if (descriptor >= 0) output->file = fdopen(descriptor, "wb");
+    if (output->file) return RT_OK;
+    RtStatus status = fail_io(error, "creating the file", output->path);
+    if (descriptor >= 0) {
+        close(descriptor);
+        remove(output->temporary);
+    }
+    output->temporary[0] = '\0';
+    return status;
+}
+
 RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
     output->file = NULL;
+    output->temporary[0] = '\0';
     if (strlen(path) >= RT_MAX_PATH)
         return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
     struct stat info;
@@ -24,26 +53,33 @@ RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
                        S_ISDIR(info.st_mode) ? "folder" : "device or pipe, which a file would replace");
     }
     strcpy(output->path, path);
-    snprintf(output->temporary, sizeof output->temporary, "%s.tmp", path);
-    output->file = fopen(output->temporary, "wb");
-    return output->file ? RT_OK : fail_io(error, "creating the file", output->temporary);
+    return create_temporary(output, error);
+}
+
+RtStatus rt_output_finish(RtOutput *output, RtError *error) {
+    bool written = fflush(output->file) == 0 && !ferror(output->file) && fsync(fileno(output->file)) == 0;
+    RtStatus status = written ? RT_OK : fail_io(error, "writing", output->path);
+    bool closed = fclose(output->file) == 0;
+    output->file = NULL;
+    if (written && !closed) status = fail_io(error, "writing", output->path);
+    if (status != RT_OK) rt_output_discard(output);
+    return status;
 }
 
 RtStatus rt_output_commit(RtOutput *output, RtError *error) {
-    bool written = fflush(output->file) == 0 && !ferror(output->file) && fsync(fileno(output->file)) == 0;
-    bool closed = fclose(output->file) == 0;
-    output->file = NULL;
-    if (written && closed && rename(output->temporary, output->path) == 0) return RT_OK;
-    RtStatus status = fail_io(error, "writing", output->path);
-    remove(output->temporary);
+    if (output->file) RT_TRY(rt_output_finish(output, error));
+    RtStatus status = RT_OK;
+    if (rename(output->temporary, output->path) != 0) status = fail_io(error, "writing", output->path);
+    if (status != RT_OK) remove(output->temporary);
+    output->temporary[0] = '\0';
     return status;
 }
 
 void rt_output_discard(RtOutput *output) {
-    if (!output->file) return;
-    fclose(output->file);
+    if (output->file) fclose(output->file);
     output->file = NULL;
-    remove(output->temporary);
+    if (*output->temporary) remove(output->temporary);
+    output->temporary[0] = '\0';
 }
 
 RtStatus rt_file_write(const char *path, const void *data, size_t size, RtError *error) {
@@ -53,15 +89,56 @@ RtStatus rt_file_write(const char *path, const void *data, size_t size, RtError 
     return rt_output_commit(&output, error);
 }
 
-RtStatus rt_file_copy(const char *from, const char *to, RtError *error) {
+/* ---- several at once ---- */
+
+RtStatus rt_outputs_add(RtOutputs *outputs, const char *path, RtOutput **output, RtError *error) {
+    RT_TRY(rt_reserve(&outputs->list, &outputs->capacity, outputs->count + UINT64_C(1), sizeof *outputs->list,
+                      error));
+    *output = &outputs->list[outputs->count];
+    RT_TRY(rt_output_open(*output, path, error));
+    outputs->count++;
+    return RT_OK;
+}
+
+RtStatus rt_outputs_copy(RtOutputs *outputs, const char *from, const char *to, RtError *error) {
     enum { MOST_BYTES = 1 << 24 };
+    RtOutput *output;
     char *data;
     size_t size;
     RT_TRY(rt_file_read(from, MOST_BYTES, &data, &size, error));
-    RtStatus status = rt_file_write(to, data, size, error);
+    RtStatus status = rt_outputs_add(outputs, to, &output, error);
+    if (status == RT_OK) {
+        fwrite(data, 1, size, output->file);
+        status = rt_output_finish(output, error);
+    }
     rt_free(data);
     return status;
 }
+
+RtStatus rt_outputs_commit(RtOutputs *outputs, RtError *error) {
+    for (uint32_t i = 0; i < outputs->count; i++) RT_TRY(rt_output_commit(&outputs->list[i], error));
+    return RT_OK;
+}
+
+void rt_outputs_clear(RtOutputs *outputs) {
+    for (uint32_t i = 0; i < outputs->count; i++) rt_output_discard(&outputs->list[i]);
+    rt_free(outputs->list);
+    *outputs = (RtOutputs){0};
+}
+
+/* "NAME.", 16 digits, ".tmp". */
+static void remove_temporary(void *context, const char *path) {
+    size_t length = strlen(path), tail = strlen(".0123456789abcdef" TEMPORARY_END);
+    (void)context;
+    if (length <= tail || path[length - tail] != '.') return;
+    if (strspn(path + length - tail + 1, "0123456789abcdef") == 16) remove(path);
+}
+
+void rt_outputs_remove_left(const char *folder) {
+    rt_directory_each(folder, TEMPORARY_END, remove_temporary, NULL);
+}
+
+/* ---- reading ---- */
 
 static RtStatus read_all(FILE *file, const char *path, size_t limit, char **data, size_t *size,
                          RtError *error) {
@@ -106,6 +183,8 @@ RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size,
 bool rt_file_exists(const char *path) {
     return access(path, R_OK) == 0;
 }
+
+/* ---- folders and names ---- */
 
 RtStatus rt_directory_create(const char *path, RtError *error) {
     char part[RT_MAX_PATH];

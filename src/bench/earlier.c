@@ -2,6 +2,7 @@
 #include "bench/earlier.h"
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "bench/distribution_tables.h"
 #include "bench/hardware_table.h"
 
@@ -27,6 +28,19 @@ static bool has(const char *directory, const char *name) {
     return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);
 }
 
+/* The journal that stands for results that are being removed. */
+static const char given_up[] = "{\"given_up\": true}\n";
+
+static bool is_given_up(const char *directory, const char *journal) {
+    char path[RT_MAX_PATH], *text;
+    size_t size;
+    if (rt_path_join(directory, journal, path, NULL) != RT_OK) return false;
+    if (rt_file_read(path, sizeof given_up - 1, &text, &size, NULL) != RT_OK) return false;
+    bool same = strcmp(text, given_up) == 0;
+    rt_free(text);
+    return same;
+}
+
 static const char *find_result(const char *directory) {
     for (int i = 0; i < RESULT_FILES; i++) {
         if (has(directory, result_files[i])) return result_files[i];
@@ -37,9 +51,11 @@ static const char *find_result(const char *directory) {
 RtStatus rt_earlier_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
                          RtError *error) {
     const char *result = find_result(directory);
-    bool whole = has(directory, journal), finished = has(directory, RT_MANIFEST);
-    *goes_on = whole && start == RT_START_RESUME;
+    bool whole = has(directory, journal), removed = is_given_up(directory, journal);
+    bool finished = has(directory, RT_MANIFEST) && !removed;
+    *goes_on = whole && !removed && start == RT_START_RESUME;
     if (!result || *goes_on || start == RT_START_ANEW) return RT_OK;
+    if (removed && start == RT_START_RESUME) return RT_OK;
     if (whole) {
         return rt_fail(
             error, RT_BAD_INPUT,
@@ -65,14 +81,17 @@ static void remove_each(const char *directory, const char *folder, const char *s
         rt_directory_each(path, suffix, remove_file, NULL);
 }
 
-void rt_earlier_remove(const char *directory, const char *journal) {
-    if (!find_result(directory)) return;
+RtStatus rt_earlier_remove(const char *directory, const char *journal, RtError *error) {
+    char path[RT_MAX_PATH];
+    if (!find_result(directory)) return RT_OK;
+    RT_TRY(rt_path_join(directory, journal, path, error));
+    RT_TRY(rt_file_write(path, given_up, sizeof given_up - 1, error));
     for (int i = 0; i < RESULT_FILES; i++) {
-        char path[RT_MAX_PATH];
         if (strcmp(result_files[i], journal) == 0) continue;
         if (rt_path_join(directory, result_files[i], path, NULL) == RT_OK) remove(path);
     }
     remove_each(directory, "plots", ".svg");
     remove_each(directory, "plots", ".pdf");
     remove_each(directory, "images", ".png");
+    return RT_OK;
 }

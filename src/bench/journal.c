@@ -178,6 +178,19 @@ RtStatus rt_journal_renew(const char *path, const RtExperiment *experiment, cons
     return status;
 }
 
+RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment *experiment,
+                        const RtOnly *only, const json_t *lines, RtError *error) {
+    RtOutput *output;
+    json_t *all = json_pack("[o]", header_json(experiment, only));
+    RtStatus status =
+        all && json_array_extend(all, (json_t *)lines) == 0 ? RT_OK : rt_fail_memory(error, path, 0);
+    if (status == RT_OK) status = rt_outputs_add(outputs, path, &output, error);
+    if (status == RT_OK) status = rt_json_lines_put(output, all, error);
+    if (status == RT_OK) status = rt_output_finish(output, error);
+    json_decref(all);
+    return status;
+}
+
 RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
                            RtError *error) {
     return rt_json_lines_write(journal, event_json(results, event), error);

@@ -17,6 +17,10 @@
 RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperiment *experiment,
                          const RtOnly *only, bool resume, RtError *error);
 
+/* Adds a whole journal to files that change together: a header as above, and then these lines, borrowed. */
+RtStatus rt_journal_add(RtOutputs *outputs, const char *path, const RtExperiment *experiment,
+                        const RtOnly *only, const json_t *lines, RtError *error);
+
 /* Writes down what the event says is known now. */
 RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const RtEvent *event,
                            RtError *error);
@@ -24,7 +28,7 @@ RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const
 /* Fills `results` with all that the journal at `path` knows. Refuses one of another experiment; with `only`,
  * that is to be gone on with, one of another build, another shard, or another build of a plugin that the
  * experiment uses. Of the last, `renew` takes all lines but those about what the plugin does, unless ratios
- * refer to that. */
+ * refer to that. One that says that its results are given up (earlier.h) knows nothing. */
 RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
                          RtError *error);
 

@@ -24,15 +24,20 @@ static bool put_line(const json_t *line, FILE *file) {
     return json_dumpf(line, file, JSON_COMPACT | JSON_REAL_PRECISION(17)) == 0 && fputc('\n', file) != EOF;
 }
 
+RtStatus rt_json_lines_put(RtOutput *output, const json_t *lines, RtError *error) {
+    bool put = true;
+    for (size_t i = 0; put && i < json_array_size(lines); i++)
+        put = put_line(json_array_get(lines, i), output->file);
+    if (put) return RT_OK;
+    rt_output_discard(output);
+    return rt_fail(error, RT_IO, "%s: writing failed", output->path);
+}
+
 RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *error) {
     RtOutput output;
-    bool put = true;
     RT_TRY(rt_output_open(&output, path, error));
-    for (size_t i = 0; put && i < json_array_size(lines); i++)
-        put = put_line(json_array_get(lines, i), output.file);
-    if (put) return rt_output_commit(&output, error);
-    rt_output_discard(&output);
-    return rt_fail(error, RT_IO, "%s: writing failed", path);
+    RT_TRY(rt_json_lines_put(&output, lines, error));
+    return rt_output_commit(&output, error);
 }
 
 static RtStatus begin(const char *path, const json_t *first, RtError *error) {

@@ -19,7 +19,10 @@ typedef struct RtJsonLines {
 RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, const json_t *first, RtError *error);
 void rt_json_lines_close(RtJsonLines *lines);
 
-/* The same of all lines of an array, borrowed, without opening the file. */
+/* Writes all lines of an array, borrowed, to a file that is open; a failure discards it. */
+RtStatus rt_json_lines_put(RtOutput *output, const json_t *lines, RtError *error);
+
+/* The lines of an array, borrowed, take the place of all that was there, as above. */
 RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *error);
 
 /* Writes one line; it is on the disk when this returns. Takes the reference; NULL is memory that is short. */

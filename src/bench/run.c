@@ -79,26 +79,32 @@ RtStatus rt_run_open(RtRun *run, RtResults *results, const RtRunOptions *options
     return open_scenes(run, error);
 }
 
-static RtStatus make_directories(const RtRun *run, RtError *error) {
-    char path[RT_MAX_PATH];
-    RT_TRY(rt_run_path(run, "plots", path, error));
-    RT_TRY(rt_directory_create(path, error));
-    RT_TRY(rt_run_path(run, "images", path, error));
-    return rt_directory_create(path, error);
-}
+static const char *const folders[] = {"", "plots", "images"};
 
 RtStatus rt_run_begin(RtRun *run, RtError *error) {
-    RT_TRY(make_directories(run, error));
-    return take_directory(run, error);
+    char path[RT_MAX_PATH];
+    for (int i = 0; i < 3; i++) {
+        RT_TRY(rt_run_path(run, folders[i], path, error));
+        RT_TRY(rt_directory_create(path, error));
+    }
+    RT_TRY(take_directory(run, error));
+    for (int i = 0; i < 3; i++) {
+        RT_TRY(rt_run_path(run, folders[i], path, error));
+        rt_outputs_remove_left(path);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_run_replace(RtRun *run, RtError *error) {
+    if (run->resumed) return RT_OK;
+    return rt_earlier_remove(run->options->directory, RT_RUN_JOURNAL, error);
 }
 
 /* ---- measuring ---- */
 
-/* Up to here nothing of an earlier run was lost. */
 static RtStatus open_journal(RtRun *run, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_run_path(run, RT_RUN_JOURNAL, path, error));
-    if (!run->resumed) rt_earlier_remove(run->options->directory, RT_RUN_JOURNAL);
     if (run->resumed && run->options->renew)
         RT_TRY(rt_journal_renew(path, run->experiment, &run->options->workload.only, error));
     return rt_journal_open(&run->journal, path, run->experiment, &run->options->workload.only, run->resumed,

@@ -10,9 +10,10 @@
  *                    how counts are distributed, where the experiment asks for that; exact, too
  *   images/          a picture of each scene
  *
- * rt_run_open looks, rt_run_begin makes the directory and keeps others away, rt_run_measure begins the
- * journal and does the work. What an earlier run has left is lost only by the last, so all that may fail is
- * to be tried before. Whenever the process ends, however, its journal or the one before it is whole. */
+ * rt_run_open looks, rt_run_begin makes the directory and keeps others away, rt_run_replace removes what an
+ * earlier run has left, rt_run_measure begins the journal and does the work. All that may fail is to be tried
+ * before anything is removed. Whenever the process ends, either the earlier run is whole or this one can be
+ * resumed. */
 #ifndef RT_BENCH_RUN_H
 #define RT_BENCH_RUN_H
 
@@ -45,8 +46,11 @@ typedef struct RtRun {
  * `results` is initialised for the experiment. To be closed by rt_run_close, also after a failure. */
 RtStatus rt_run_open(RtRun *run, RtResults *results, const RtRunOptions *options, RtError *error);
 
-/* Makes the directory with plots/ and images/ in it. */
+/* Makes the directory with plots/ and images/ in it, and removes temporary files of a run that was killed. */
 RtStatus rt_run_begin(RtRun *run, RtError *error);
+
+/* Removes the results of an earlier run, unless they are gone on with. */
+RtStatus rt_run_replace(RtRun *run, RtError *error);
 
 /* Begins the journal, or goes on with it, and fills the results. */
 RtStatus rt_run_measure(RtRun *run, RtError *error);

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 
+#include <errno.h>
 #include <openexr.h>
 #include <stddef.h>
 #include <string.h>
@@ -48,17 +49,19 @@ static int channel_count(const RtFrame *frame) {
 /* What the library's callbacks reach through its user data. */
 typedef struct Stream {
     RtOutput output;
-    RtError *error;
+    int reason; /* why a write failed, as errno has it; 0: none did */
 } Stream;
 
+/* The library holds a lock on the context, which `report` would wait for: the caller tells of a failure. */
 static int64_t write_at(exr_const_context_t context, void *user, const void *bytes, uint64_t size,
                         uint64_t offset, exr_stream_error_func_ptr_t report) {
     Stream *stream = user;
     const char *from = bytes;
+    (void)context, (void)report;
     for (uint64_t done = 0; done < size;) {
         ssize_t n = pwrite(fileno(stream->output.file), from + done, size - done, (off_t)(offset + done));
         if (n <= 0) {
-            report(context, EXR_ERR_WRITE_IO, "the file could not be written");
+            stream->reason = n < 0 ? errno : ENOSPC;
             return -1;
         }
         done += (uint64_t)n;
@@ -66,12 +69,10 @@ static int64_t write_at(exr_const_context_t context, void *user, const void *byt
     return (int64_t)size;
 }
 
-static void keep_message(exr_const_context_t context, exr_result_t code, const char *message) {
-    void *user = NULL;
-    (void)code;
-    if (exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
-    Stream *stream = user;
-    rt_fail(stream->error, RT_IO, "%s: writing the OpenEXR file failed: %s", stream->output.path, message);
+/* Without a handler the library would print; that of one may not ask the context for anything, which is
+ * locked. What went wrong is in the result. */
+static void print_nothing(exr_const_context_t context, exr_result_t code, const char *message) {
+    (void)context, (void)code, (void)message;
 }
 
 static Pixel make_pixel(const RtFrame *frame, uint32_t x, uint32_t y) {
@@ -142,7 +143,7 @@ static exr_result_t write_blocks(exr_context_t context, const RtFrame *frame, Pi
 
 static exr_result_t write_file(Stream *stream, const RtFrame *frame) {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = keep_message;
+    init.error_handler_fn = print_nothing;
     init.user_data = stream;
     init.write_fn = write_at;
     exr_context_t context;
@@ -161,14 +162,12 @@ static exr_result_t write_file(Stream *stream, const RtFrame *frame) {
 }
 
 RtStatus rt_exr_write(const RtFrame *frame, const char *path, RtError *error) {
-    RtError local = {RT_OK, ""};
-    Stream stream = {.error = &local};
+    Stream stream = {.reason = 0};
     RT_TRY(rt_output_open(&stream.output, path, error));
     exr_result_t result = write_file(&stream, frame);
     if (result == EXR_ERR_SUCCESS) return rt_output_commit(&stream.output, error);
     rt_output_discard(&stream.output);
     if (result == EXR_ERR_OUT_OF_MEMORY) return rt_fail(error, RT_NO_MEMORY, "%s: out of memory", path);
-    if (local.status != RT_OK) return rt_fail(error, RT_IO, "%s", local.message);
-    return rt_fail(error, RT_IO, "%s: writing the OpenEXR file failed: %s", path,
-                   exr_get_default_error_message(result));
+    return rt_fail(error, RT_IO, "%s: writing failed: %s", path,
+                   stream.reason ? strerror(stream.reason) : exr_get_default_error_message(result));
 }

@@ -5,6 +5,7 @@
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/plugins_used.h"
+#include "report/plot.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -121,25 +122,29 @@ static RtStatus load_experiment(const Merge *merge, RtExperiment *experiment, Rt
     return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it", path);
 }
 
+/* ---- the directory that is made ---- */
+
 /* All lines, shard by shard, behind a header of none. */
-static RtStatus write_journal(const Merge *merge, const RtExperiment *experiment, RtError *error) {
+static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, RtOutputs *files,
+                            RtError *error) {
     static const RtOnly all = {0};
     char path[RT_MAX_PATH];
-    RtJsonLines journal = {0};
     RT_TRY(rt_path_join(merge->out, RT_RUN_JOURNAL, path, error));
-    RtStatus status = rt_journal_open(&journal, path, experiment, &all, false, error);
+    json_t *lines = json_array();
     for (uint32_t i = 0; i < merge->count; i++) {
-        for (size_t line = 1; status == RT_OK && line < json_array_size(merge->journals[i]); line++) {
+        for (size_t line = 1; line < json_array_size(merge->journals[i]); line++) {
             json_t *object = json_array_get(merge->journals[i], line);
-            if (json_is_object(object)) status = rt_json_lines_write(&journal, json_incref(object), error);
+            if (json_is_object(object)) json_array_append(lines, object);
         }
     }
-    rt_json_lines_close(&journal);
+    RtStatus status = rt_journal_add(files, path, experiment, &all, lines, error);
+    json_decref(lines);
     return status;
 }
 
 typedef struct Copies {
     const char *out;
+    RtOutputs *files;
     RtStatus status;
     RtError *error;
 } Copies;
@@ -149,11 +154,11 @@ static void copy_image(void *context, const char *path) {
     char to[RT_MAX_PATH], name[RT_MAX_PATH];
     snprintf(name, sizeof name, "images/%s", strrchr(path, '/') + 1);
     if (copies->status == RT_OK) copies->status = rt_path_join(copies->out, name, to, copies->error);
-    if (copies->status == RT_OK) copies->status = rt_file_copy(path, to, copies->error);
+    if (copies->status == RT_OK) copies->status = rt_outputs_copy(copies->files, path, to, copies->error);
 }
 
-static RtStatus copy_images(const Merge *merge, RtError *error) {
-    Copies copies = {merge->out, RT_OK, error};
+static RtStatus copy_images(const Merge *merge, RtOutputs *files, RtError *error) {
+    Copies copies = {merge->out, files, RT_OK, error};
     for (uint32_t i = 0; i < merge->count && copies.status == RT_OK; i++) {
         char images[RT_MAX_PATH];
         RT_TRY(rt_path_join(merge->directories[i], "images", images, error));
@@ -162,14 +167,31 @@ static RtStatus copy_images(const Merge *merge, RtError *error) {
     return copies.status;
 }
 
-static RtStatus take_directory(const Merge *merge, RtStart start, RtError *error) {
-    char images[RT_MAX_PATH];
+/* Everything but what is made of the journal; the journal last. */
+static RtStatus add_files(const Merge *merge, const RtExperiment *experiment, RtOutputs *files,
+                          RtError *error) {
+    static const char *const folders[] = {"plots", "images"};
+    for (int i = 0; i < 2; i++) {
+        char path[RT_MAX_PATH];
+        RT_TRY(rt_path_join(merge->out, folders[i], path, error));
+        RT_TRY(rt_directory_create(path, error));
+    }
+    RT_TRY(copy_images(merge, files, error));
+    RT_TRY(rt_plots_copy(experiment, merge->out, false, files, error));
+    return add_journal(merge, experiment, files, error);
+}
+
+/* All of it is on the disk before anything of earlier results is removed. */
+static RtStatus take_directory(const Merge *merge, const RtExperiment *experiment, RtStart start,
+                               RtError *error) {
+    RtOutputs files = {0};
     bool goes_on;
     RT_TRY(rt_earlier_look(merge->out, RT_RUN_JOURNAL, start, &goes_on, error));
-    RT_TRY(rt_path_join(merge->out, "images", images, error));
-    RT_TRY(rt_directory_create(images, error));
-    rt_earlier_remove(merge->out, RT_RUN_JOURNAL);
-    return RT_OK;
+    RtStatus status = add_files(merge, experiment, &files, error);
+    if (status == RT_OK) status = rt_earlier_remove(merge->out, RT_RUN_JOURNAL, error);
+    if (status == RT_OK) status = rt_outputs_commit(&files, error);
+    rt_outputs_clear(&files);
+    return status;
 }
 
 static RtStatus merge_all(Merge *merge, RtStart start, RtExperiment *experiment, RtResults *results,
@@ -182,9 +204,7 @@ static RtStatus merge_all(Merge *merge, RtStart start, RtExperiment *experiment,
     RT_TRY(load_experiment(merge, experiment, error));
     RT_TRY(check_plugins(merge, experiment, error));
     RT_TRY(rt_results_init(results, experiment, error));
-    RT_TRY(take_directory(merge, start, error));
-    RT_TRY(write_journal(merge, experiment, error));
-    RT_TRY(copy_images(merge, error));
+    RT_TRY(take_directory(merge, experiment, start, error));
     return rt_run_experiment(results, &options, error);
 }
 

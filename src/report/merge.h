@@ -13,7 +13,8 @@
  * `out` may be lost (RT_START_ANEW).
  *
  * Refuses what is no finished shard, shards of different experiments, variants or builds, and one that is
- * missing or there twice. Nothing is measured. As rt_run_experiment otherwise. */
+ * missing or there twice. Nothing is measured. What lies in `out` is removed only once the joined journal,
+ * the pictures and the scripts are whole on its disk. As rt_run_experiment otherwise. */
 RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start,
                   RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error);
 

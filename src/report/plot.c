@@ -34,17 +34,18 @@ RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error) {
 }
 
 static RtStatus copy_script(const RtExperiment *experiment, uint32_t i, const char *directory, bool keep,
-                            RtError *error) {
+                            RtOutputs *copies, RtError *error) {
     char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
     RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], from, error));
     RT_TRY(rt_path_join(directory, "plots", plots, error));
     RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), to, error));
-    return keep && rt_file_exists(to) ? RT_OK : rt_file_copy(from, to, error);
+    return keep && rt_file_exists(to) ? RT_OK : rt_outputs_copy(copies, from, to, error);
 }
 
-RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, bool keep, RtError *error) {
+RtStatus rt_plots_copy(const RtExperiment *experiment, const char *directory, bool keep, RtOutputs *copies,
+                       RtError *error) {
     for (uint32_t i = 0; i < experiment->plot_count; i++) {
-        RT_TRY(copy_script(experiment, i, directory, keep, error));
+        RT_TRY(copy_script(experiment, i, directory, keep, copies, error));
     }
     return RT_OK;
 }

@@ -9,14 +9,17 @@
 #ifndef RT_REPORT_PLOT_H
 #define RT_REPORT_PLOT_H
 
+#include "base/file.h"
 #include "bench/results.h"
 
 /* Refuses a script that cannot be read. */
 RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error);
 
-/* Copies the scripts from where they lie, seen from the experiment's folder, to `directory`/plots, which
- * exists, each under its rt_plot_name; `keep`: but for those that are there, which may have been edited. */
-RtStatus rt_plots_prepare(const RtExperiment *experiment, const char *directory, bool keep, RtError *error);
+/* Adds copies of the scripts from where they lie, seen from the experiment's folder, to `directory`/plots,
+ * which exists, each under its rt_plot_name; `keep`: but for those that are there, which may have been
+ * edited. */
+RtStatus rt_plots_copy(const RtExperiment *experiment, const char *directory, bool keep, RtOutputs *copies,
+                       RtError *error);
 
 /* Draws, by the experiment's scripts; where it names none and sweeps parameters, by one that is written
  * (sweep_plot.h); and where it asks for distributions, by experiments/histograms.gp, too. RT_NOT_AVAILABLE

@@ -84,23 +84,34 @@ const RtExactFile rt_exact_files[RT_EXACT_FILES] = {
 
 /* A table that lies in a folder beside the YAML gets to one of the same name, where the copy of the YAML
  * finds it. */
-static RtStatus copy_table(const RtRun *run, const char *name, RtError *error) {
+static RtStatus copy_table(const RtRun *run, const char *name, RtOutputs *copies, RtError *error) {
     char from[RT_MAX_PATH], to[RT_MAX_PATH], folder[RT_MAX_PATH];
     RT_TRY(rt_path_join(run->experiment->folder, name, from, error));
     RT_TRY(rt_run_path(run, name, to, error));
     rt_path_folder(to, folder);
     RT_TRY(rt_directory_create(folder, error));
-    return rt_file_copy(from, to, error);
+    return rt_outputs_copy(copies, from, to, error);
 }
 
-static RtStatus copy_experiment(const RtRun *run, RtError *error) {
+static RtStatus copy_experiment(const RtRun *run, RtOutputs *copies, RtError *error) {
     const RtPublishedSetup *published = &run->experiment->published;
     char path[RT_MAX_PATH];
     RT_TRY(rt_run_path(run, "experiment.yaml", path, error));
-    RT_TRY(rt_file_copy(run->experiment->path, path, error));
+    RT_TRY(rt_outputs_copy(copies, run->experiment->path, path, error));
     for (uint32_t i = 0; i < published->table_count; i++)
-        RT_TRY(copy_table(run, published->tables[i], error));
-    return *published->reasons ? copy_table(run, published->reasons, error) : RT_OK;
+        RT_TRY(copy_table(run, published->tables[i], copies, error));
+    if (*published->reasons) RT_TRY(copy_table(run, published->reasons, copies, error));
+    return rt_plots_copy(run->experiment, run->options->directory, run->resumed, copies, error);
+}
+
+/* The copies are on the disk before the earlier results are removed, and get their names after that. */
+static RtStatus replace_earlier(RtRun *run, RtError *error) {
+    RtOutputs copies = {0};
+    RtStatus status = copy_experiment(run, &copies, error);
+    if (status == RT_OK) status = rt_run_replace(run, error);
+    if (status == RT_OK) status = rt_outputs_commit(&copies, error);
+    rt_outputs_clear(&copies);
+    return status;
 }
 
 static RtStatus begin(Work *work, RtError *error) {
@@ -108,8 +119,7 @@ static RtStatus begin(Work *work, RtError *error) {
     RT_TRY(rt_published_load(&work->published, run->experiment, error));
     RT_TRY(rt_plots_find(run->experiment, error));
     RT_TRY(rt_run_begin(run, error));
-    RT_TRY(copy_experiment(run, error));
-    return rt_plots_prepare(run->experiment, run->options->directory, run->resumed, error);
+    return replace_earlier(run, error);
 }
 
 static RtStatus write_exact(const Work *work, const RtExactFile *file, RtError *error) {

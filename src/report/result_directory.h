@@ -19,7 +19,7 @@
  *
  * No other process writes into the directory meanwhile. What an earlier run has left there is touched only
  * once all that may be refused has been looked at, every scene been opened: each once, to be kept until its
- * workload is over. Whenever the process ends, however, its journal or the one before it is whole.
+ * workload is over. Whenever the process ends, either the earlier run is whole or this one can be resumed.
  *
  * Without gnuplot there is a notice, and a report without plots. RT_MISMATCH, with everything written, where
  * gnuplot fails, or published figures are missed (rt_published_check). */

@@ -118,7 +118,7 @@ static RtStatus open_journal(Run *run, bool resumed, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(rt_path_join(run->verify->folder, RT_VERIFY_JOURNAL, path, error));
     if (resumed) RT_TRY(load_known(run, path, error));
-    if (!resumed) rt_earlier_remove(run->verify->folder, RT_VERIFY_JOURNAL);
+    if (!resumed) RT_TRY(rt_earlier_remove(run->verify->folder, RT_VERIFY_JOURNAL, error));
     return rt_json_lines_open(&run->journal, path, resumed ? NULL : run->header, error);
 }
 
@@ -132,6 +132,7 @@ static RtStatus begin(Run *run, RtError *error) {
     if (!run->verify->folder) return RT_OK;
     RT_TRY(rt_directory_create(run->verify->folder, error));
     RT_TRY(take_folder(run, &resumed, error));
+    rt_outputs_remove_left(run->verify->folder);
     return open_journal(run, resumed, error);
 }
 

@@ -93,17 +93,132 @@ RT_TEST(what_is_not_a_file_is_neither_read_nor_replaced) {
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
         RtError problem;
         RtOutput output;
-        char *data, temporary[RT_MAX_PATH + 8];
+        char *data;
         size_t size;
         assert_int_equal(rt_file_read(paths[i], 1 << 20, &data, &size, &problem), RT_BAD_INPUT);
         assert_non_null(strstr(problem.message, "not a file"));
         assert_int_equal(rt_output_open(&output, paths[i], &problem), RT_IO);
         assert_non_null(strstr(problem.message, paths[i]));
-        snprintf(temporary, sizeof temporary, "%s.tmp", paths[i]);
-        assert_false(rt_file_exists(temporary));
     }
     remove(pipe);
 }
+
+/* ---- what is written ---- */
+
+static char folder[32];
+
+static int make_folder(void **state) {
+    (void)state;
+    strcpy(folder, "/tmp/raytally_base_XXXXXX");
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static void remove_path(void *context, const char *path) {
+    (void)context;
+    remove(path);
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    rt_directory_each(folder, "", remove_path, NULL);
+    return rmdir(folder);
+}
+
+static void join_name(void *context, const char *path) {
+    strcat(strcat(context, strrchr(path, '/')), " ");
+}
+
+/* "/a /b ", the names of all that is there, without . and .. */
+static void assert_folder_has(const char *names) {
+    char found[512] = "";
+    rt_directory_each(folder, "", join_name, found);
+    assert_memory_equal(found, "/. /.. ", 7);
+    assert_string_equal(found + 7, names);
+}
+
+static const char *in_folder(const char *name) {
+    static char paths[4][96];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static void assert_has(const char *name, const char *expected) {
+    char *text;
+    size_t size;
+    assert_ok(rt_file_read(in_folder(name), 1 << 20, &text, &size, error));
+    assert_string_equal(text, expected);
+    rt_free(text);
+}
+
+#define RT_TEST_IN_FOLDER(name) RT_TEST_WITH(name, make_folder, remove_folder)
+
+RT_TEST_IN_FOLDER(nothing_is_written_through_a_link_that_lies_where_a_file_is_written) {
+    assert_ok(rt_file_write(in_folder("victim"), "safe", 4, error));
+    assert_int_equal(symlink(in_folder("victim"), in_folder("out.tmp")), 0);
+    assert_int_equal(symlink(in_folder("victim"), in_folder("out")), 0);
+    assert_ok(rt_file_write(in_folder("out"), "new", 3, error));
+    assert_has("victim", "safe");
+    assert_has("out", "new");
+    assert_folder_has("/out /out.tmp /victim ");
+}
+
+RT_TEST_IN_FOLDER(a_file_has_the_mode_that_the_umask_says) {
+    struct stat info;
+    mode_t before = umask(027);
+    RtError error = {RT_OK, ""};
+    RtStatus status = rt_file_write(in_folder("out"), "x", 1, &error);
+    umask(before);
+    assert_int_equal(status, RT_OK);
+    assert_int_equal(stat(in_folder("out"), &info), 0);
+    assert_int_equal(info.st_mode & 0777, 0640);
+}
+
+RT_TEST_IN_FOLDER(a_file_that_is_given_up_or_cannot_get_its_name_leaves_nothing) {
+    RtOutput output;
+    RtError problem;
+    assert_ok(rt_output_open(&output, in_folder("out"), error));
+    rt_output_discard(&output);
+    assert_folder_has("");
+    assert_ok(rt_output_open(&output, in_folder("out"), error));
+    assert_int_equal(mkdir(in_folder("out"), 0777), 0);
+    assert_int_equal(rt_output_commit(&output, &problem), RT_IO);
+    assert_folder_has("/out ");
+}
+
+RT_TEST_IN_FOLDER(files_that_change_together_are_whole_before_the_first_of_them_changes) {
+    RtOutputs outputs = {0};
+    RtOutput *output;
+    RtError problem;
+    assert_ok(rt_file_write(in_folder("a"), "old", 3, error));
+    for (int turn = 0; turn < 2; turn++) {
+        assert_ok(rt_outputs_add(&outputs, in_folder("b"), &output, error));
+        fputs("new", output->file);
+        assert_ok(rt_output_finish(output, error));
+        assert_ok(rt_outputs_copy(&outputs, in_folder("a"), in_folder("c"), error));
+        assert_int_equal(rt_outputs_copy(&outputs, in_folder("nowhere"), in_folder("a"), &problem),
+                         RT_BAD_INPUT);
+        assert_int_equal(access(in_folder("b"), F_OK), -1);
+        if (turn == 1) assert_ok(rt_outputs_commit(&outputs, error));
+        rt_outputs_clear(&outputs);
+        assert_folder_has(turn == 0 ? "/a " : "/a /b /c ");
+    }
+    assert_has("b", "new");
+    assert_has("c", "old");
+}
+
+RT_TEST_IN_FOLDER(what_a_killed_process_was_writing_is_removed_and_nothing_else) {
+    RtOutput output;
+    assert_ok(rt_output_open(&output, in_folder("out"), error));
+    fclose(output.file);
+    assert_ok(rt_file_write(in_folder("mine.tmp"), "x", 1, error));
+    assert_ok(rt_file_write(in_folder("mine-0123456789abcdef.tmp"), "x", 1, error));
+    rt_outputs_remove_left(folder);
+    assert_folder_has("/mine-0123456789abcdef.tmp /mine.tmp ");
+}
+
+/* ---- parameters ---- */
 
 RT_TEST(parameters_left_out_have_their_defaults) {
     RtValue v[4];
@@ -155,30 +270,25 @@ RT_TEST(random_numbers_depend_on_seed_stream_and_place_alone) {
     assert_true(differ);
 }
 
-static void note_path(void *context, const char *path) {
-    char *list = context;
-    strcat(strcat(list, strrchr(path, '/')), " ");
-}
-
 RT_TEST(files_are_listed_by_name_whatever_their_folder_is_called) {
     static const char *const names[] = {"b.svg", "a.svg", "c.svg.tmp"};
-    char root[] = "/tmp/raytally_base_XXXXXX", folder[64], path[96], found[64] = "";
+    char root[] = "/tmp/raytally_base_XXXXXX", odd[64], path[96], found[64] = "";
     assert_non_null(mkdtemp(root));
-    snprintf(folder, sizeof folder, "%s/a[1]*?", root);
-    assert_ok(rt_directory_create(folder, error));
+    snprintf(odd, sizeof odd, "%s/a[1]*?", root);
+    assert_ok(rt_directory_create(odd, error));
     for (int i = 0; i < 3; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        snprintf(path, sizeof path, "%s/%s", odd, names[i]);
         assert_ok(rt_file_write(path, "x", 1, error));
     }
-    assert_int_equal(rt_directory_each(folder, ".svg", note_path, found), 2);
+    assert_int_equal(rt_directory_each(odd, ".svg", join_name, found), 2);
     assert_string_equal(found, "/a.svg /b.svg ");
     for (int i = 0; i < 3; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        snprintf(path, sizeof path, "%s/%s", odd, names[i]);
         remove(path);
     }
-    rmdir(folder);
+    rmdir(odd);
     rmdir(root);
-    assert_int_equal(rt_directory_each(folder, "", note_path, found), 0);
+    assert_int_equal(rt_directory_each(odd, "", join_name, found), 0);
 }
 
 RT_TEST(logarithms_are_within_a_unit_in_the_last_place) {

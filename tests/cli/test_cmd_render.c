@@ -246,8 +246,7 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         if (render(cases[i].arguments) != 2) fail_msg("'%s' did not exit with 2", cases[i].arguments);
         assert_says(cases[i].says);
-        assert_false(rt_file_exists(OUT ".png"));
-        assert_false(rt_file_exists(OUT ".png.tmp"));
+        assert_not_written(OUT ".png");
     }
     unlink(OUT ".txt");
 }

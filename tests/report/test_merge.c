@@ -4,6 +4,8 @@
 
 #include "base/csv.h"
 
+#include <sys/stat.h>
+
 static const char sharded[] = "name: small\n"
                               "question: On how many machines?\n"
                               "prediction: It does not matter.\n"
@@ -78,6 +80,25 @@ RT_TEST_IN_PLACE(what_does_not_make_a_whole_is_refused_and_nothing_is_written) {
     refused(place, "merge s1 s2 s3 s4 -o all", "small.yaml has changed since the shards were made");
     assert_int_equal(remove(path_in(place, "s3/manifest.json").text), 0);
     refused(place, "merge s1 s2 s3 s4 -o all", "s3 is not finished: go on");
+}
+
+/* A disk that is full fails alike: at a file that is to be written. */
+RT_TEST_IN_PLACE(a_merge_that_fails_loses_nothing_of_earlier_results) {
+    const Place *place = *state;
+    const char *const kept[] = {"all/cells.jsonl", "all/counts.csv", "all/report.html", "all/manifest.json"};
+    char *before[4];
+    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all"), 0);
+    for (int i = 0; i < 4; i++) before[i] = read_in(place, kept[i]);
+    assert_int_equal(mkdir(path_in(place, "s4/images/zoo.png").text, 0777), 0);
+    assert_int_equal(raytally(place, "merge s1 s2 s3 s4 -o all --force"), 2);
+    assert_in_file(place, "message", "s4/images/zoo.png: this is not a file");
+    for (int i = 0; i < 4; i++) {
+        char *now = read_in(place, kept[i]);
+        assert_string_equal(now, before[i]);
+        rt_free(now);
+        rt_free(before[i]);
+    }
+    assert_true(rt_file_exists(path_in(place, "all/images/cloud:n=200.png").text));
 }
 
 RT_TEST_IN_PLACE(a_shard_is_gone_on_with_as_the_shard_that_it_is) {

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A result directory: what is in it is not lost, whoever runs into it, whatever fails, whenever a run is
- * killed.
+/* A result directory: what is in it is not lost, whoever runs into it, whatever fails.
  *
- * Linked so that calls of the functions wrapped below come here: openings of scenes are counted, and a run
- * can be killed at any of its calls that change a file. */
+ * Linked so that openings of scenes come here, to be counted. */
 #include "experiment_testing.h"
 
 #include "base/lock.h"
@@ -69,70 +67,12 @@ static void assert_ends(const Place *place, const char *arguments, int code, con
 
 RtStatus __real_rt_scene_open(const char *spec, RtScene *scene, RtError *error);
 RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error);
-int __real_rename(const char *from, const char *to);
-int __wrap_rename(const char *from, const char *to);
-int __real_remove(const char *path);
-int __wrap_remove(const char *path);
-int __real_mkdir(const char *path, mode_t mode);
-int __wrap_mkdir(const char *path, mode_t mode);
-int __wrap_fsync(int file);
-int __wrap_fdatasync(int file);
-FILE *__real_fopen(const char *path, const char *mode);
-FILE *__wrap_fopen(const char *path, const char *mode);
 
 static int scenes_opened;
-static int changes, last_change; /* of files, and the one at which to be killed; 0: never */
-
-/* Whether this is the moment to be killed. */
-static bool is_last_change(void) {
-    return ++changes == last_change;
-}
-
-static void killed_here(void) {
-    if (is_last_change()) kill(getpid(), SIGKILL);
-}
 
 RtStatus __wrap_rt_scene_open(const char *spec, RtScene *scene, RtError *error) {
     scenes_opened++;
     return __real_rt_scene_open(spec, scene, error);
-}
-
-int __wrap_rename(const char *from, const char *to) {
-    killed_here();
-    return __real_rename(from, to);
-}
-
-int __wrap_remove(const char *path) {
-    killed_here();
-    return __real_remove(path);
-}
-
-int __wrap_mkdir(const char *path, mode_t mode) {
-    killed_here();
-    return __real_mkdir(path, mode);
-}
-
-FILE *__wrap_fopen(const char *path, const char *mode) {
-    killed_here();
-    return __real_fopen(path, mode);
-}
-
-/* What is written outlives the process without it: the disk is spared. */
-int __wrap_fsync(int file) {
-    (void)file;
-    killed_here();
-    return 0;
-}
-
-/* Behind a line of the journal, of which only a part may have got there. */
-int __wrap_fdatasync(int file) {
-    struct stat info;
-    if (is_last_change()) {
-        if (fstat(file, &info) == 0 && info.st_size > 9)
-            assert_int_equal(ftruncate(file, info.st_size - 9), 0);
-        kill(getpid(), SIGKILL);
-    }
-    return 0;
 }
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_small, remove_place)
@@ -229,9 +169,10 @@ RT_TEST_IN_PLACE(nothing_is_touched_before_all_that_may_fail_was_tried) {
         assert_same_file(place, "out/experiment.yaml", yaml);
         assert_same_file(place, "out/manifest.json", manifest);
     }
-    /* A directory that cannot be written, even by root. */
-    assert_int_equal(mkdir(path_in(place, "out/experiment.yaml.tmp").text, 0777), 0);
-    assert_ends(place, "run small.yaml --out out --force", 2, "experiment.yaml.tmp");
+    /* A file that cannot be replaced, even by root. */
+    assert_int_equal(remove(path_in(place, "out/experiment.yaml").text), 0);
+    assert_int_equal(mkdir(path_in(place, "out/experiment.yaml").text, 0777), 0);
+    assert_ends(place, "run small.yaml --out out --force", 2, "out/experiment.yaml is a folder");
     assert_same_file(place, "out/cells.jsonl", journal);
     assert_same_file(place, "out/manifest.json", manifest);
     rt_free(journal);
@@ -371,83 +312,6 @@ RT_TEST_IN_PLACE(a_scene_is_opened_once_in_a_run_and_not_at_all_when_nothing_is_
     assert_ok(run(place, "out", RT_START_RESUME, error));
     assert_int_equal(scenes_opened, 1);
     assert_true(rt_file_exists(path_in(place, "out/images/again.png").text));
-}
-
-/* ---- the end at any moment ---- */
-
-/* Runs in a process of its own that is killed at this change of a file; whether it was. */
-static bool killed_at(const Place *place, int change, const char *directory, RtStart start) {
-    int status;
-    pid_t child = fork();
-    assert_true(child >= 0);
-    if (child == 0) {
-        changes = 0;
-        last_change = change;
-        _exit(run(place, directory, start, NULL) == RT_OK ? 0 : 1);
-    }
-    assert_int_equal(waitpid(child, &status, 0), child);
-    if (WIFEXITED(status)) assert_int_equal(WEXITSTATUS(status), 0);
-    return WIFSIGNALED(status);
-}
-
-enum { MOMENTS = 24 };
-
-RT_TEST_IN_PLACE(a_run_that_is_killed_at_any_moment_resumes_to_the_same_counts) {
-    const Place *place = *state;
-    changes = 0;
-    assert_ok(run(place, "whole", RT_START_FRESH, error));
-    int all = changes;
-    assert_true(all > MOMENTS);
-    char *whole = read_in(place, "whole/counts.csv");
-    for (int i = 0; i <= MOMENTS; i++) {
-        char directory[32], counts[64], cells[64];
-        snprintf(directory, sizeof directory, "part-%d", i);
-        snprintf(counts, sizeof counts, "%s/counts.csv", directory);
-        snprintf(cells, sizeof cells, "%s/cells.jsonl", directory);
-        assert_true(killed_at(place, 1 + i * (all - 1) / MOMENTS, directory, RT_START_FRESH));
-        /* And once more while it goes on. */
-        killed_at(place, 1 + 2 * i, directory, RT_START_RESUME);
-        assert_ok(run(place, directory, RT_START_RESUME, error));
-        assert_same_file(place, counts, whole);
-        /* The journal has all of it: nothing is measured once more. */
-        char *journal = read_in(place, cells);
-        assert_ok(run(place, directory, RT_START_RESUME, error));
-        assert_same_file(place, cells, journal);
-        rt_free(journal);
-    }
-    rt_free(whole);
-}
-
-/* Either the old run is whole, but for what follows from its journal, or the new one is begun. */
-RT_TEST_IN_PLACE(a_run_that_begins_anew_and_is_killed_loses_the_old_one_only_for_the_new) {
-    const Place *place = *state;
-    assert_ok(run(place, "old", RT_START_FRESH, error));
-    write_changed(place, "small.yaml", small_experiment, "limit: 100", "limit: 40");
-    assert_ok(run(place, "new", RT_START_FRESH, error));
-    char *other = read_in(place, "small.yaml"), *old = read_in(place, "old/counts.csv"),
-         *new = read_in(place, "new/counts.csv");
-    int gone_on = 0, begun = 0;
-    for (int moment = 1; moment < 60; moment += 2) {
-        RtError refused;
-        write_in(place, "small.yaml", small_experiment);
-        assert_ok(run(place, "out", RT_START_ANEW, error));
-        write_in(place, "small.yaml", other);
-        assert_true(killed_at(place, moment, "out", RT_START_ANEW));
-        if (run(place, "out", RT_START_RESUME, &refused) == RT_OK) {
-            assert_same_file(place, "out/counts.csv", new);
-            begun++;
-            continue;
-        }
-        assert_refused(refused.status, RT_BAD_INPUT, &refused, "another experiment");
-        write_in(place, "small.yaml", small_experiment);
-        assert_ok(run(place, "out", RT_START_RESUME, error));
-        assert_same_file(place, "out/counts.csv", old);
-        gone_on++;
-    }
-    assert_true(gone_on > 3 && begun > 3);
-    rt_free(other);
-    rt_free(old);
-    rt_free(new);
 }
 
 RT_TESTS(result_directory, NULL, NULL)
