@@ -72,13 +72,12 @@ static void divide(const Outlook *o, double cells, double margin, RtLightGrid *g
     double longer = fmax(width, height), tiles;
     if (cells > 0) {
         tiles = ceil(cells / CELLS_OF_TILE);
-        grid->least = grid->finest = (uint32_t)ceil(cells / tiles);
+        grid->finest = (uint32_t)ceil(cells / tiles);
     } else {
         tiles = floor(longer * sqrt(o->objects / OBJECTS_OF_TILE / (width * height)));
         tiles = fmin(fmax(tiles, 1), MOST_TILES);
         /* Cells 16 times as wide as what they grow by. */
         double narrowest = 16 * (0x1p-18 + 8 * margin / (o->view.near + o->view.far));
-        grid->least = 1;
         grid->finest = (uint32_t)fmin(fmax(longer / tiles / narrowest, 1), RT_LIGHT_FINEST);
     }
     grid->scale = (float)(tiles / longer);
@@ -94,6 +93,8 @@ static void make_grid(const Outlook *o, double cells, double margin, RtLightGrid
     double scale = (double)grid->scale;
     grid->columns = (uint32_t)fmax(ceil((o->view.hi[0] - (double)grid->u) * scale - 0x1p-20), 1);
     grid->rows = (uint32_t)fmax(ceil((o->view.hi[1] - (double)grid->w) * scale - 0x1p-20), 1);
+    double most = floor(sqrt((double)RT_LIGHT_FACE_CELLS / ((double)grid->columns * grid->rows)));
+    if (grid->finest > most) grid->finest = (uint32_t)most; /* where there are more than a million objects */
     /* Two steps before the nearest object, so that what is before it has a lesser key. */
     grid->depth = rt_float_below(o->view.near - 2 * (o->view.far - o->view.near) / RT_LIGHT_DEPTHS);
     grid->depth_scale = (float)((RT_LIGHT_DEPTHS - 1) / (o->view.far - (double)grid->depth));

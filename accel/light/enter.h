@@ -111,7 +111,8 @@ RT_KERNEL uint32_t enter_cells(const RtLightCube *cube, int face, const Sixteen 
     column = rt_v16_min(whole(u), last);
     row = rt_v16_min(whole(w), last);
     RtW16 cell = rt_w16_truncate(rt_v16_add(rt_v16_mul(row, n), column));
-    cell = rt_w16_pick(lanes, none, rt_w16_add(cell, rt_w16_right(tile, 6)));
+    cell = rt_w16_add(rt_w16_add(cell, rt_w16_all(grid->first_cell)), rt_w16_right(tile, 6));
+    cell = rt_w16_pick(lanes, none, cell);
     RtW16 at = rt_w16_lookup(cube->first, cell), end = rt_w16_lookup(cube->first + 1, cell);
     lanes &= rt_w16_below(at, end);
 

@@ -8,8 +8,9 @@
  * outside is lit. Tile (column, row) has u in grid.u + [column, column + 1] / grid.scale, w alike, and n x n
  * cells of equal width, n being as large as the objects seen there are small.
  *
- * Layout: tiles are face after face, row after row; tiles[k] is the number of the first cell of tile k, times
- * 64, plus its n; in a tile cells are row after row. The list of cell k of a light is
+ * Layout: tiles are face after face, row after row; tiles[k] is the number of the first cell of tile k,
+ * counted from the first of its face, times 64, plus its n; a face has no more than RT_LIGHT_FACE_CELLS
+ * cells, so that this fits into 32 bits. In a tile cells are row after row. The list of cell k of a light is
  * entries[first[k]..first[k + 1]), ascending by key, then by object. A key holds, from the highest bit: a 0;
  * 15 bits of depth, rounded down; and 16 bits for the 4 x 4 parts of the cell, row by row, that the object
  * may be seen in. A list that was cut ends in an entry RT_LIGHT_BEYOND: what is as deep or deeper may be
@@ -24,6 +25,8 @@
 
 #include "accel/accel.h"
 #include "accel/isa.h"
+
+#include <assert.h>
 
 #define RT_LIGHT_PARAMS(X)                                                                                   \
     X(RT_LIGHT_CELLS, "cells", RT_INT("0", 0, 4096, "1|7|256"),                                              \
@@ -52,15 +55,20 @@ typedef struct RtLightEntry {
 #define RT_LIGHT_PARTS  0xffffu
 enum { RT_LIGHT_PART = 4 }; /* parts along the edge of a cell */
 
-/* The most cells along the edge of a tile, and in a tile. */
-enum { RT_LIGHT_FINEST = 63, RT_LIGHT_TILE_CELLS = RT_LIGHT_FINEST * RT_LIGHT_FINEST };
+/* The most cells along the edge of a tile, in a tile, and of a face. */
+enum {
+    RT_LIGHT_FINEST = 63,
+    RT_LIGHT_TILE_CELLS = RT_LIGHT_FINEST * RT_LIGHT_FINEST,
+    RT_LIGHT_FACE_CELLS = 1 << 26
+};
 
 typedef struct RtLightGrid {
     float u, w, scale;        /* the corner of tile (0, 0); tiles per 1 of u and w */
     float depth, depth_scale; /* the least depth there is, and steps of a key's depth per 1 */
     uint32_t columns, rows;   /* tiles; 0: nothing is seen on this face */
     uint32_t first_tile;      /* of the light's */
-    uint32_t least, finest;   /* cells along the edge of a tile: no fewer, no more */
+    uint32_t first_cell;      /* the same of cells */
+    uint32_t finest; /* most cells along the edge of a tile; if `cells` are asked for, all have as many */
 } RtLightGrid;
 
 /* What one light sees. */
@@ -98,12 +106,17 @@ static inline uint32_t rt_light_depth_key(const RtLightGrid *grid, float depth) 
     return step > 0 ? (step < RT_LIGHT_DEPTHS - 1 ? (uint32_t)step : RT_LIGHT_DEPTHS - 1) : 0;
 }
 
-/* Cells along the edge of a tile, and its first cell. */
+/* Cells along the edge of a tile, and its first cell, counted from that of its face; and from these a tile.
+ */
 static inline uint32_t rt_light_fineness(uint32_t tile) {
     return tile & 63;
 }
 static inline uint32_t rt_light_first_cell(uint32_t tile) {
     return tile >> 6;
+}
+static inline uint32_t rt_light_tile(uint32_t first_cell, uint32_t n) {
+    assert(first_cell < RT_LIGHT_FACE_CELLS && n <= RT_LIGHT_FINEST);
+    return first_cell << 6 | n;
 }
 
 /* A tile of a light. */

@@ -17,7 +17,8 @@ bool rt_light_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell) 
     uint32_t column = (uint32_t)u, row = (uint32_t)w;
     uint32_t tile = cube->tiles[grid->first_tile + row * grid->columns + column], n = rt_light_fineness(tile);
     uint32_t x = (uint32_t)((u - (float)column) * (float)n), y = (uint32_t)((w - (float)row) * (float)n);
-    cell->number = rt_light_first_cell(tile) + (y < n ? y : n - 1) * n + (x < n ? x : n - 1);
+    cell->number =
+        grid->first_cell + rt_light_first_cell(tile) + (y < n ? y : n - 1) * n + (x < n ? x : n - 1);
     uint32_t first = cube->first[cell->number], end = cube->first[cell->number + 1];
     cell->cut = end > first && cube->entries[end - 1].object == RT_LIGHT_BEYOND;
     cell->length = end - first - cell->cut;
@@ -129,8 +130,8 @@ static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFo
     RtLightOutline outline;
     bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
     if (flat) rt_light_outline(tile, id, from, &outline);
-    uint32_t first =
-        rt_light_first_cell(cube->tiles[grid->first_tile + tile->row * grid->columns + tile->column]);
+    uint32_t number = grid->first_tile + tile->row * grid->columns + tile->column;
+    uint32_t first = grid->first_cell + rt_light_first_cell(cube->tiles[number]);
     for (uint32_t row = (uint32_t)at.lo[1]; (int32_t)row <= at.hi[1]; row++) {
         for (uint32_t column = (uint32_t)at.lo[0]; (int32_t)column <= at.hi[0]; column++) {
             float near = flat ? least_depth(from, &outline, column, row) : from->near;

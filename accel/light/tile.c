@@ -61,7 +61,7 @@ static uint32_t choose_fineness(const RtLightTile *tile, const uint32_t *objects
     enum { SAMPLE = 6 };
     const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
     double sides = 0, areas = 0, seen = 0, part = (double)count / (count < SAMPLE ? count : SAMPLE);
-    if (grid->least == grid->finest) return grid->finest;
+    if (tile->buffer->cells > 0) return grid->finest;
     for (uint32_t i = 0; i < count && i < SAMPLE; i++) {
         uint32_t object = objects[count < SAMPLE ? i : (uint32_t)((uint64_t)i * count / SAMPLE)];
         uint32_t id = rt_light_id_of(&tile->buffer->isa.base.scene->geometry, object & ~RT_LIGHT_ALONE);
@@ -80,7 +80,7 @@ static uint32_t choose_fineness(const RtLightTile *tile, const uint32_t *objects
     double others = 2.0 * sqrt(fmax(areas, 0x1p-10));
     double n = (sides + sqrt(sides * sides + 4 * others * seen)) / (2 * others);
     n = fmin(n, 1 + 3 * sqrt((double)count)); /* about nine cells an object at most */
-    return (uint32_t)fmin(fmax(n, grid->least), grid->finest);
+    return (uint32_t)fmin(fmax(n, 1), grid->finest);
 }
 
 /* ---- drawing ---- */
@@ -349,7 +349,8 @@ static RtStatus move_tile(void *context, size_t item, int thread, RtError *error
     const Made *made = &d->made[item];
     const Worker *worker = &d->workers[made->thread];
     uint32_t sum = made->place;
-    cube->tiles[item] = made->cell_place << 6 | made->n;
+    const int face = tile_at(d->buffer, d->light, (uint32_t)item).face;
+    cube->tiles[item] = rt_light_tile(made->cell_place - cube->grids[face].first_cell, made->n);
     for (uint32_t i = 0; i < made->n * made->n; i++) {
         cube->first[made->cell_place + i] = sum;
         sum += worker->lengths[made->first_cell + i];
@@ -359,16 +360,20 @@ static RtStatus move_tile(void *context, size_t item, int thread, RtError *error
     return RT_OK;
 }
 
-/* Gives tiles their places; how many entries there are. */
+/* Gives faces and tiles their places; how many entries there are. */
 static uint32_t place_tiles(Drawing *d) {
     RtLightCube *cube = &d->buffer->cubes[d->light];
     uint32_t sum = 0;
-    for (uint32_t tile = 0; tile < cube->tile_count; tile++) {
-        Made *made = &d->made[tile];
-        made->place = sum;
-        made->cell_place = cube->cell_count;
-        sum += made->count;
-        cube->cell_count += made->n * made->n;
+    for (uint32_t face = 0, tile = 0; face < 6; face++) {
+        RtLightGrid *grid = &cube->grids[face];
+        grid->first_cell = cube->cell_count;
+        for (uint32_t end = tile + grid->columns * grid->rows; tile < end; tile++) {
+            Made *made = &d->made[tile];
+            made->place = sum;
+            made->cell_place = cube->cell_count;
+            sum += made->count;
+            cube->cell_count += made->n * made->n;
+        }
     }
     return sum;
 }

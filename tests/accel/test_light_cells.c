@@ -24,7 +24,7 @@ static List list_at(const RtLightBuffer *buffer, uint32_t column, uint32_t row) 
     const RtLightGrid *grid = &cube->grids[4];
     assert_int_equal(grid->columns * grid->rows, 1);
     uint32_t tile = cube->tiles[grid->first_tile];
-    uint32_t cell = rt_light_first_cell(tile) + row * rt_light_fineness(tile) + column;
+    uint32_t cell = grid->first_cell + rt_light_first_cell(tile) + row * rt_light_fineness(tile) + column;
     List list = {cube->entries + cube->first[cell], cube->first[cell + 1] - cube->first[cell], false};
     list.cut = list.count > 0 && list.at[list.count - 1].object == RT_LIGHT_BEYOND;
     return list;
@@ -113,6 +113,52 @@ RT_TEST(a_key_says_which_parts_of_the_cell_an_object_is_seen_in) {
 }
 
 /* ---- limits and invariants ---- */
+
+/* As if there were `more` cells before the first one, of which nothing is ever asked. */
+static void number_cells_from(RtLightCube *cube, uint32_t more) {
+    uint32_t *first = rt_alloc_unset((size_t)more + cube->cell_count + 1, sizeof *first);
+    assert_non_null(first);
+    memcpy(first + more, cube->first, ((size_t)cube->cell_count + 1) * sizeof *first);
+    rt_free(cube->first);
+    cube->first = first;
+    cube->cell_count += more;
+    for (int face = 0; face < 6; face++) cube->grids[face].first_cell += more;
+}
+
+RT_TEST(cells_behind_the_first_67_million_are_found) {
+    enum { RAYS = 500 };
+    RtScene scene;
+    RtAccel *accel;
+    RtQuery query;
+    RtCellView cells[RAYS], cell;
+    RtRay rays[RAYS];
+    bool blocked[RAYS], again[RAYS];
+    uint32_t more = UINT32_C(1) << 26, found = 0;
+    RtRandom random = rt_random(3, 0);
+    make_awkward(&scene, 0);
+    RtLightBuffer *buffer = (RtLightBuffer *)open_buffer("light:cells=64+brute", &scene, &accel);
+    for (uint32_t i = 0; i < RAYS; i++) {
+        rays[i] = shadow_ray(&scene, random_point(&random, 5), 0);
+        cells[i].number = 0;
+        found += rt_light_look_up(accel, &rays[i], &cells[i]) && cells[i].length > 0;
+    }
+    assert_true(found > RAYS / 2);
+    assert_ok(rt_query_init(&query, accel, error));
+    RtTally before[RT_RAY_KIND_COUNT] = {{0}}, after[RT_RAY_KIND_COUNT] = {{0}};
+    rt_occluded(&query, rays, RAYS, blocked, before);
+    number_cells_from(&buffer->cubes[0], more);
+    rt_occluded(&query, rays, RAYS, again, after);
+    assert_memory_equal(blocked, again, sizeof blocked);
+    assert_memory_equal(before, after, sizeof before);
+    for (uint32_t i = 0; i < RAYS; i++) {
+        if (!rt_light_look_up(accel, &rays[i], &cell)) continue;
+        assert_int_equal(cell.number, cells[i].number + more);
+        assert_int_equal(cell.object, cells[i].object);
+    }
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
 
 static unsigned number_that_fits(const RtError *error) {
     const char *cells = strstr(error->message, ": cells=");
