@@ -41,7 +41,7 @@ typedef struct Top {
     const RtBox *boxes;
     RtTreeRef *rows[2]; /* [count] the references, in turns; the second are the nodes, before there are any */
     uint32_t count, row, chunk_size;
-    uint32_t top_limit;               /* groups of no more are not of the top */
+    uint32_t top_limit;               /* groups of no more are not of the top; at least share_limit */
     uint32_t share_limit;             /* nor shared */
     RtRefGroup *groups, *next, *done; /* of this level, of the next, and what is left to one thread each */
     RtSplit *splits;                  /* [open] of the groups of this level */
@@ -265,11 +265,15 @@ static RtStatus build_on_several(Top *top, int threads, RtError *error) {
     return RT_OK;
 }
 
+/* Groups of one depth have no reference in common. So fewer than count / top_limit are open at a time, beside
+ * the root, and fewer than count / share_limit of a depth are split, in the top or below it. Each split makes
+ * one node and at most one group more that is done. */
 static bool allocate(Top *top) {
-    size_t open = top->count / top->share_limit + 1, nodes = open * RT_TREE_MEDIAN_DEPTH;
+    size_t open = top->count / top->top_limit + 1;
+    size_t nodes = (size_t)(top->count / top->share_limit + 1) * RT_TREE_MEDIAN_DEPTH;
     top->rows[0] = rt_alloc_unset(top->count, sizeof(RtTreeRef));
-    top->groups = rt_alloc(2 * open, sizeof(RtRefGroup));
-    top->next = rt_alloc(2 * open, sizeof(RtRefGroup));
+    top->groups = rt_alloc(open, sizeof(RtRefGroup));
+    top->next = rt_alloc(open, sizeof(RtRefGroup));
     top->done = rt_alloc(nodes + 1, sizeof(RtRefGroup));
     top->splits = rt_alloc(open, sizeof(RtSplit));
     top->chunks = rt_alloc_unset(open + top->count / top->chunk_size + 1, sizeof(Chunk));
@@ -296,6 +300,7 @@ RtStatus rt_tree_topdown(RtTree *tree, const RtBox *boxes, uint32_t count, int b
     Top top = {.b = &builder, .boxes = boxes, .count = count};
     top.share_limit = one ? count : share > SMALL ? share : SMALL;
     top.top_limit = count / workers + count / workers / 2;
+    if (top.top_limit < top.share_limit) top.top_limit = top.share_limit;
     top.chunk_size = one ? count : CHUNK;
     top.row = one ? 0 : 1; /* so that they are in the first row as a rule when the top is done */
     bool enough = allocate(&top);

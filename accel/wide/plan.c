@@ -66,15 +66,22 @@ static float leaf_cost(const RtWidePlan *self, float area, RtWideLeafSize size) 
 }
 
 static float area_of(const RtWidePlan *self, uint32_t index) {
-    return (float)rt_box_half_area(self->tree->nodes[index].box);
+    return (float)(rt_box_half_area(self->tree->nodes[index].box) * self->scale);
+}
+
+/* A power of two that makes the area of the root 1 to 2: a sum of areas overflows float32 in no scene, and
+ * what is chosen does not depend on the unit of length. */
+static double scale_for(const RtTree *tree) {
+    double area = rt_box_half_area(tree->nodes[tree->root].box);
+    return area > 0 ? ldexp(1, -ilogb(area)) : 1;
 }
 
 /* The area of a triangle that has a box, if it is as large as it may be; half the surface of what fills a box
  * is not far from that. */
-static float surface_of(const RtBox *box) {
+static float surface_of(const RtWidePlan *self, const RtBox *box) {
     RtVec3 d = rt_sub(box->hi, box->lo);
     double xy = (double)d.x * (double)d.y, yz = (double)d.y * (double)d.z, zx = (double)d.z * (double)d.x;
-    return (float)(0.5 * sqrt(xy * xy + yz * yz + zx * zx));
+    return (float)(0.5 * sqrt(xy * xy + yz * yz + zx * zx) * self->scale);
 }
 
 /* A line through a box of half area `area` hits surface / area objects on average, so at least one with a
@@ -85,7 +92,7 @@ static float promise_of(float surface, float area, float cost) {
 
 static void weigh_reference(const RtWidePlan *self, uint32_t index, Weight *own) {
     own->references = 1;
-    own->surface = surface_of(&self->tree->nodes[index].box);
+    own->surface = surface_of(self, &self->tree->nodes[index].box);
     own->shapes = 1u << rt_wide_shape_of(self, self->tree->nodes[index].child[1]);
     RtWideLeafSize size = rt_wide_leaf_size(1, own->shapes);
     float cost = leaf_cost(self, area_of(self, index), size);
@@ -212,6 +219,7 @@ RtStatus rt_wide_plan_init(RtWidePlan *self, RtTree *tree, const RtGeometry *geo
     *self = (RtWidePlan){.tree = tree,
                          .geometry = geometry,
                          .how = how,
+                         .scale = scale_for(tree),
                          .all_triangles = geometry->triangle_count == geometry->object_count,
                          .choices = rt_alloc_unset(tree->used, sizeof(RtWideChoice))};
     if (!self->choices)

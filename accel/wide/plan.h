@@ -26,6 +26,7 @@ typedef struct RtWidePlan {
     const RtTree *tree;
     const RtGeometry *geometry;
     const RtWideLayout *how;
+    double scale;          /* of areas in costs */
     bool all_triangles;    /* object i is triangle i */
     RtWideChoice *choices; /* [tree->used] of inner nodes, owned */
     uint32_t units;        /* of the whole arena */

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Every accelerator, on any number of threads and at any scale: no array overflows, and the structure is that
+ * of one thread. */
+#include "equivalence_testing.h"
+
+#include "accel_testing.h"
+
+#include "base/random.h"
+#include "verify/spread.h"
+
+/* ---- threads ---- */
+
+/* Triangles in a cube, and a light inside it. */
+static void make_triangles(RtScene *scene, uint32_t count, float from, float size) {
+    RtRandom random = rt_random(1, count);
+    begin_scene(scene);
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3 v[3];
+        for (int a = 0; a < 3; a++) {
+            float at = from * (2 * rt_random_unit(&random) - 1);
+            for (int k = 0; k < 3; k++) v[k].at[a] = at + size * (2 * rt_random_unit(&random) - 1);
+        }
+        assert_ok(rt_scene_add_triangle(scene, 0, v, NULL, error));
+    }
+    assert_ok(rt_scene_add_light(scene, rt_vec3(0, 0, 0), rt_vec3(1, 1, 1), error));
+    assert_ok(rt_scene_finish(scene, error));
+}
+
+/* False where this machine cannot build it. */
+static bool describe(const char *spec, const RtScene *scene, int threads, RtDescription *out) {
+    RtAccel *accel;
+    RtError problem;
+    RtStatus status = rt_accel_open_on(spec, scene, threads, &accel, &problem);
+    if (status == RT_NOT_AVAILABLE) return false;
+    if (status != RT_OK) fail_msg("%s on %d threads: %s", spec, threads, problem.message);
+    rt_accel_describe(accel, out);
+    rt_accel_destroy(accel);
+    return true;
+}
+
+/* The structure is the same on each number of threads, up to a 0. */
+static void assert_same_on(const char *spec, const RtScene *scene, const int *threads) {
+    RtDescription one, many;
+    if (!describe(spec, scene, 1, &one)) return;
+    for (; *threads > 0 && describe(spec, scene, *threads, &many); threads++) {
+        if (memcmp(&one, &many, sizeof one) != 0)
+            fail_msg("%s of %u objects is another on %d threads", spec, scene->geometry.object_count,
+                     *threads);
+    }
+}
+
+RT_TEST(few_objects_on_many_threads_make_the_structure_of_one_at_every_setting) {
+    static const uint32_t counts[] = {1, 33, 200};
+    static const int threads[][2] = {{16, 0}, {64, 0}, {255, 0}};
+    for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
+        RtScene scene;
+        char spec[RT_MAX_SPEC_CHARS];
+        make_triangles(&scene, counts[c], 1, 0.05f);
+        for (size_t i = 0; i < rt_accel_count(); i++) {
+            for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++)
+                assert_same_on(spec, &scene, threads[c]);
+        }
+        rt_scene_clear(&scene);
+    }
+}
+
+RT_TEST(many_objects_on_many_threads_make_the_structure_of_one) {
+    static const char *const specs[] = {
+        "bvh",         "wide",           "bvh:build=spatial", "kd",
+        "bvh:bins=64", "bvh:build=lbvh", "bvh:build=ploc",    "clusters:method=sah",
+        "light+bvh",   "item+bvh"};
+    static const struct {
+        uint32_t objects;
+        size_t specs;
+        int threads[3];
+    } cases[] = {{4097, 10, {63}}, {33000, 10, {64, 255}}, {100000, 2, {128}}};
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        RtScene scene;
+        make_triangles(&scene, cases[c].objects, 1, 0.005f);
+        for (size_t i = 0; i < cases[c].specs; i++) assert_same_on(specs[i], &scene, cases[c].threads);
+        rt_scene_clear(&scene);
+    }
+}
+
+/* ---- scales ---- */
+
+/* Whether it answers like brute at every scale, and can be built here. */
+static bool is_exact(const char *spec, const RtScene *scene) {
+    RtAccel *accel;
+    RtError problem;
+    RtStatus status = rt_accel_open(spec, scene, &accel, &problem);
+    if (status == RT_NOT_AVAILABLE) return false;
+    if (status != RT_OK)
+        fail_msg("%s on coordinates of %g: %s", spec, (double)scene->geometry.box.hi.x, problem.message);
+    bool exact = accel->exact;
+    rt_accel_destroy(accel);
+    return exact;
+}
+
+/* Triangles as large as the scene: sums of their areas are the largest there are. */
+RT_TEST(scenes_as_large_and_as_small_as_may_be_are_answered_like_brute) {
+    static const float scales[] = {4.9e17f, 1e17f, 1e9f, 1e-9f, 1e-18f};
+    for (size_t s = 0; s < sizeof scales / sizeof scales[0]; s++) {
+        FamilyBench bench;
+        char spec[RT_MAX_SPEC_CHARS];
+        make_triangles(&bench.scene, 2000, 0, scales[s]);
+        set_up_rays(&bench, 1, 4);
+        for (size_t i = 0; i < rt_accel_count(); i++) {
+            for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
+                if (n > 0 && !strstr(spec, ":build=") && !strstr(spec, ":method=")) continue;
+                if (is_exact(spec, &bench.scene)) assert_gives(&bench.reference, spec);
+            }
+        }
+        tear_down_family(&bench);
+    }
+}
+
+RT_TESTS(builds, NULL, NULL)
