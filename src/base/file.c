@@ -242,3 +242,12 @@ void rt_path_folder(const char *path, char *out) {
     memcpy(out, path, length);
     out[length] = '\0';
 }
+
+bool rt_path_is_within(const char *path, const char *folder) {
+    char *file = realpath(path, NULL), *above = realpath(folder, NULL);
+    size_t length = above ? strlen(above) : 0;
+    bool within = file && above && strncmp(file, above, length) == 0 && file[length] == '/';
+    free(file);
+    free(above);
+    return within;
+}

@@ -260,12 +260,14 @@ static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *
         name);
 }
 
-/* There is a column in tables for each. */
+/* There is a column in tables for each, and both words of it stand in plots/sweep.gp. */
 static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept, RtError *error) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     uint32_t count = rt_experiment_swept(experiment, keys);
     for (uint32_t i = 0; i < swept->count; i++) {
         uint32_t k = 0;
+        RT_TRY(check_label(swept->keys[i], error));
+        RT_TRY(check_label(swept->values[i], error));
         while (k < count && strcmp(keys[k].key, swept->keys[i]) != 0) k++;
         if (k < count) continue;
         return rt_fail(error, RT_BAD_INPUT, "'%s' is one too many: at most %d parameters are swept",

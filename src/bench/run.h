@@ -23,10 +23,18 @@
 #include "bench/json_lines.h"
 #include "bench/workload.h"
 
+/* Which gnuplot scripts are run (report/scripts.h). */
+typedef enum RtScripts {
+    RT_SCRIPTS_SHIPPED, /* those that raytally ships */
+    RT_SCRIPTS_OWN,     /* also those beside the experiment */
+    RT_SCRIPTS_ALL
+} RtScripts;
+
 typedef struct RtRunOptions {
     const char *directory; /* created where missing */
     RtStart start;         /* what becomes of what an earlier run in it has found */
     bool renew; /* of one that is resumed, what plugins did that have changed since is measured again */
+    RtScripts scripts;
     RtWorkloadOptions workload; /* its observer is told after the journal */
 } RtRunOptions;
 

@@ -48,6 +48,7 @@ extern const struct argp rt_verify_argp;
 extern const struct argp rt_bench_argp;
 extern const struct argp rt_rays_argp;
 extern const struct argp rt_compare_argp;
+extern const struct argp rt_plot_argp;
 extern const struct argp rt_report_argp;
 extern const struct argp rt_run_argp;
 extern const struct argp rt_merge_argp;
@@ -98,6 +99,16 @@ double rt_cli_percent(struct argp_state *state, const char *option, const char *
     {                                                                                                        \
         "patience", patience, "SECONDS", 0,                                                                  \
             "With --until: at most so long for a kind of rays on a scene (60)", 0                            \
+    }
+
+/* Of the commands that run gnuplot. */
+#define RT_TRUST_OPTION(key)                                                                                 \
+    {                                                                                                        \
+        "trust", key, 0, 0,                                                                                  \
+            "Also run gnuplot scripts from a result directory that raytally does not ship: they may run "    \
+            "any "                                                                                           \
+            "command, so read them first",                                                                   \
+            0                                                                                                \
     }
 
 /* Of the commands that list what there is: all of it, or one by name. The parser's input is an RtListOptions.

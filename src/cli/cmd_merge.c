@@ -10,17 +10,19 @@
 #include <argp.h>
 #include <stdio.h>
 
-enum { OPT_FORCE = 256 };
+enum { OPT_FORCE = 256, OPT_TRUST };
 
 typedef struct Options {
     char *directories[RT_MAX_SHARDS];
     uint32_t count;
     const char *out;
     RtStart start;
+    bool trust;
 } Options;
 
 static const struct argp_option options[] = {{"out", 'o', "DIR", 0, "The result directory that is made", 0},
                                              {"force", OPT_FORCE, 0, 0, "Results that are in it are lost", 0},
+                                             RT_TRUST_OPTION(OPT_TRUST),
                                              {0}};
 
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
@@ -28,6 +30,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     switch (key) {
     case 'o': o->out = argument; return 0;
     case OPT_FORCE: o->start = RT_START_ANEW; return 0;
+    case OPT_TRUST: o->trust = true; return 0;
     case ARGP_KEY_ARG:
         if (o->count == RT_MAX_SHARDS) argp_error(state, "at most %d shards can be joined", RT_MAX_SHARDS);
         o->directories[o->count++] = argument;
@@ -68,9 +71,9 @@ int rt_command_merge(int argc, char **argv) {
     RtResults results = {0};
     const RtObserver observer = {.notice = on_notice};
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
-    RtStatus status =
-        experiment ? rt_merge(o.directories, o.count, o.out, o.start, experiment, &results, &observer, &error)
-                   : rt_fail_memory(&error, "an experiment", sizeof *experiment);
+    RtStatus status = experiment ? rt_merge(o.directories, o.count, o.out, o.start, o.trust, experiment,
+                                            &results, &observer, &error)
+                                 : rt_fail_memory(&error, "an experiment", sizeof *experiment);
     if (status == RT_OK) {
         rt_print_results(&results, RT_TOTALS, stdout);
         rt_print_limits(&results, stdout);

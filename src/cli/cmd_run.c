@@ -19,6 +19,7 @@ enum {
     OPT_RESUME = 256,
     OPT_RENEW,
     OPT_FORCE,
+    OPT_TRUST,
     OPT_QUICK,
     OPT_STRICT,
     OPT_DRY_RUN,
@@ -31,7 +32,8 @@ enum {
 typedef struct Options {
     const char *path, *out;
     RtStart start;
-    bool renew, quick, strict, dry;
+    bool renew, quick, strict, dry, trust;
+    bool found; /* the experiment is one that a manifest leads to */
     char only_text[3 * RT_MAX_LABEL];
     RtOnly only;
     int threads, timing;
@@ -48,6 +50,7 @@ static const struct argp_option options[] = {
      "As --resume, where a plugin has changed since: what it does is measured again, all else is kept", 0},
     {"force", OPT_FORCE, 0, 0,
      "Start over: the results in DIR are lost. Of --resume and --force the last one counts", 0},
+    RT_TRUST_OPTION(OPT_TRUST),
     {"threads", 't', "N", 0,
      "Threads, 0 for all processors. Left out: timing on one, by its processor time, and building and "
      "counting on all; on several, wall time is compared",
@@ -97,6 +100,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case OPT_RESUME: o->start = RT_START_RESUME; return 0;
     case OPT_RENEW: o->start = RT_START_RESUME, o->renew = true; return 0;
     case OPT_FORCE: o->start = RT_START_ANEW; return 0;
+    case OPT_TRUST: o->trust = true; return 0;
     case 't': o->threads = o->timing = (int)rt_cli_integer(state, "--threads", argument, 0, 1024); return 0;
     case OPT_UNTIL: o->until = rt_cli_percent(state, "--until", argument); return 0;
     case OPT_PATIENCE:
@@ -192,8 +196,8 @@ static void go_on(const Options *o, const RtExperiment *e, const char *directory
     if (o->until > 0)
         snprintf(until, sizeof until, " --until %g%% --patience %g", 100 * o->until, o->patience);
     rt_cli_plugin_arguments(plugins, sizeof plugins);
-    snprintf(out, room, "raytally run %s --out %s%s%s%s%s%s --resume", e->path, directory,
-             e->quick ? " --quick" : "", threads, shard, until, plugins);
+    snprintf(out, room, "raytally run %s --out %s%s%s%s%s%s%s --resume", e->path, directory,
+             e->quick ? " --quick" : "", threads, shard, until, plugins, o->trust ? " --trust" : "");
 }
 
 static void print_all(const RtResults *results, const char *directory, bool report) {
@@ -222,7 +226,7 @@ static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how,
 }
 
 /* A YAML, or the manifest.json of what is to be run again. */
-static RtStatus load(const Options *o, RtExperiment *experiment, RtError *error) {
+static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     static const char manifest[] = "manifest.json";
     char folder[RT_MAX_PATH];
     size_t length = strlen(o->path), last = sizeof manifest - 1;
@@ -230,13 +234,14 @@ static RtStatus load(const Options *o, RtExperiment *experiment, RtError *error)
         return rt_experiment_load(experiment, o->path, o->quick, error);
     if (o->quick)
         return rt_fail(error, RT_BAD_INPUT, "--quick: %s says whether it was; leave it out", o->path);
+    o->found = true;
     rt_path_folder(o->path, folder);
     RtStatus status = rt_manifest_experiment(folder, experiment, error);
     rt_cli_tell_plugins(folder, experiment); /* also of one that lacks its plugin, and fails for that */
     return status;
 }
 
-static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) {
+static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
     char directory[RT_MAX_PATH];
     RtResults results;
     RT_TRY(load(o, experiment, error));
@@ -251,6 +256,9 @@ static RtStatus run(const Options *o, RtExperiment *experiment, RtError *error) 
         .directory = o->out ? o->out : directory,
         .start = o->start,
         .renew = o->renew,
+        .scripts = o->trust   ? RT_SCRIPTS_ALL
+                   : o->found ? RT_SCRIPTS_SHIPPED
+                              : RT_SCRIPTS_OWN,
         .workload = {.threads = o->threads,
                      .timing = o->timing,
                      .only = o->only,

@@ -30,6 +30,10 @@ int rt_cli_directory(int argc, char **argv, const char *help, bool writes, RtDir
     struct argp argp = rt_directory_argp;
     argp.doc = help;
     argp_parse(&argp, argc, argv, 0, 0, &directory);
+    return rt_cli_directory_work(directory, writes, work);
+}
+
+int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work) {
     RtError error;
     RtLock lock = RT_NO_LOCK;
     RtResults results = {0};

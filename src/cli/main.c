@@ -32,7 +32,7 @@ static const RtCommand commands[] = {
      &rt_rays_argp},
     {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run, &rt_run_argp},
     {"merge", "DIR...", "join the shards of an experiment (run --shard)", rt_command_merge, &rt_merge_argp},
-    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, &rt_directory_argp},
+    {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, &rt_plot_argp},
     {"report", "DIR", "write the report of a result directory again; an index of all", rt_command_report,
      &rt_report_argp},
     {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce,
@@ -79,9 +79,9 @@ static int run_unknown(const char *name) {
 }
 
 /* Whether its arguments may be about accelerators. */
-static bool takes_plugins(const RtCommand *command) {
-    const struct argp_child *child = command->argp ? command->argp->children : NULL;
-    while (child && child->argp && child->argp != &rt_plugin_argp) child++;
+static bool takes_plugins(const struct argp *argp) {
+    const struct argp_child *child = argp ? argp->children : NULL;
+    while (child && child->argp && child->argp != &rt_plugin_argp && !takes_plugins(child->argp)) child++;
     return child && child->argp;
 }
 
@@ -100,7 +100,7 @@ static int run_command(int argc, char **argv) {
     snprintf(title, sizeof title, "raytally %s", command->name);
     argv[0] = title;
     RtError error;
-    if (takes_plugins(command) && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
+    if (takes_plugins(command->argp) && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
         return rt_cli_fail(&error);
     int code = command->run(argc, argv);
     if (rt_away_farewell()) {

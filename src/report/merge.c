@@ -5,7 +5,7 @@
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/plugins_used.h"
-#include "report/plot.h"
+#include "report/scripts.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -177,7 +177,7 @@ static RtStatus add_files(const Merge *merge, const RtExperiment *experiment, Rt
         RT_TRY(rt_directory_create(path, error));
     }
     RT_TRY(copy_images(merge, files, error));
-    RT_TRY(rt_plots_copy(experiment, merge->out, false, files, error));
+    RT_TRY(rt_scripts_copy(experiment, merge->out, false, files, error));
     return add_journal(merge, experiment, files, error);
 }
 
@@ -194,25 +194,38 @@ static RtStatus take_directory(const Merge *merge, const RtExperiment *experimen
     return status;
 }
 
-static RtStatus merge_all(Merge *merge, RtStart start, RtExperiment *experiment, RtResults *results,
-                          const RtObserver *observer, RtError *error) {
-    RtRunOptions options = {
-        .directory = merge->out, .start = RT_START_RESUME, .workload = {.timing = 1, .observer = *observer}};
+/* Then it came with the results, and so did the scripts beside it. */
+static bool is_in_shard(const Merge *merge, const RtExperiment *experiment) {
+    for (uint32_t i = 0; i < merge->count; i++) {
+        if (rt_path_is_within(experiment->path, merge->directories[i])) return true;
+    }
+    return false;
+}
+
+static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment *experiment,
+                          RtResults *results, const RtObserver *observer, RtError *error) {
+    RtRunOptions options = {.directory = merge->out,
+                            .start = RT_START_RESUME,
+                            .scripts = trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_OWN,
+                            .workload = {.timing = 1, .observer = *observer}};
     RT_TRY(load_journals(merge, error));
     RT_TRY(check_alike(merge, error));
     RT_TRY(check_whole(merge, error));
     RT_TRY(load_experiment(merge, experiment, error));
     RT_TRY(check_plugins(merge, experiment, error));
     RT_TRY(rt_results_init(results, experiment, error));
+    if (options.scripts == RT_SCRIPTS_OWN && is_in_shard(merge, experiment))
+        options.scripts = RT_SCRIPTS_SHIPPED;
+    RT_TRY(rt_scripts_check(experiment, merge->out, false, options.scripts, error));
     RT_TRY(take_directory(merge, experiment, start, error));
     return rt_run_experiment(results, &options, error);
 }
 
-RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start,
+RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
                   RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error) {
     Merge merge = {.directories = directories, .count = count, .out = out};
     *results = (RtResults){0};
-    RtStatus status = merge_all(&merge, start, experiment, results, observer, error);
+    RtStatus status = merge_all(&merge, start, trust, experiment, results, observer, error);
     for (uint32_t i = 0; i < count; i++) json_decref(merge.journals[i]);
     return status;
 }

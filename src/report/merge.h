@@ -10,12 +10,13 @@
 /* Writes the result directory `out` from the finished shards in directories[0..count), as one run that
  * measured all of it would have left it. Loads the experiment from where the shards say it lies, and
  * initialises and fills the results: rt_results_clear, also after a failure. `start`: whether results in
- * `out` may be lost (RT_START_ANEW).
+ * `out` may be lost (RT_START_ANEW). `trust`: whether scripts are run, too, that raytally does not ship where
+ * the experiment lies in the directory of a shard, and came with it.
  *
  * Refuses what is no finished shard, shards of different experiments, variants or builds, and one that is
  * missing or there twice. Nothing is measured. What lies in `out` is removed only once the joined journal,
  * the pictures and the scripts are whole on its disk. As rt_run_experiment otherwise. */
-RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start,
+RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
                   RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error);
 
 #endif

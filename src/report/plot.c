@@ -20,35 +20,7 @@ enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 4 };
 
 #define HISTOGRAM_SCRIPT "histograms.gp"
 
-/* ---- scripts ---- */
-
-RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error) {
-    for (uint32_t i = 0; i < experiment->plot_count; i++) {
-        char path[RT_MAX_PATH];
-        FILE *script;
-        RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], path, error));
-        RT_TRY(rt_file_open(path, &script, error));
-        fclose(script);
-    }
-    return RT_OK;
-}
-
-static RtStatus copy_script(const RtExperiment *experiment, uint32_t i, const char *directory, bool keep,
-                            RtOutputs *copies, RtError *error) {
-    char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
-    RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], from, error));
-    RT_TRY(rt_path_join(directory, "plots", plots, error));
-    RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), to, error));
-    return keep && rt_file_exists(to) ? RT_OK : rt_outputs_copy(copies, from, to, error);
-}
-
-RtStatus rt_plots_copy(const RtExperiment *experiment, const char *directory, bool keep, RtOutputs *copies,
-                       RtError *error) {
-    for (uint32_t i = 0; i < experiment->plot_count; i++) {
-        RT_TRY(copy_script(experiment, i, directory, keep, copies, error));
-    }
-    return RT_OK;
-}
+/* ---- scripts that are written ---- */
 
 /* Whether the CSV files have rows of the candidate, and it is the first of its label. */
 static bool has_rows(const RtResults *results, uint32_t candidate) {

@@ -5,21 +5,11 @@
  * after DIR/plots/names.gp, which defines `experiment`, and the lists of words `scenes`, `accels`, `colors`
  * (one for each accelerator, the same in every figure) and `kinds`: what the CSV files have rows of. Scripts
  * run in DIR and write plots/NAME.svg.tmp; what they wrote is renamed when all is done. So a person redraws
- * with raytally plot DIR after changing the copies. */
+ * with raytally plot DIR after changing the copies. Which of them may be run: report/scripts.h. */
 #ifndef RT_REPORT_PLOT_H
 #define RT_REPORT_PLOT_H
 
-#include "base/file.h"
 #include "bench/results.h"
-
-/* Refuses a script that cannot be read. */
-RtStatus rt_plots_find(const RtExperiment *experiment, RtError *error);
-
-/* Adds copies of the scripts from where they lie, seen from the experiment's folder, to `directory`/plots,
- * which exists, each under its rt_plot_name; `keep`: but for those that are there, which may have been
- * edited. */
-RtStatus rt_plots_copy(const RtExperiment *experiment, const char *directory, bool keep, RtOutputs *copies,
-                       RtError *error);
 
 /* Draws, by the experiment's scripts; where it names none and sweeps parameters, by one that is written
  * (sweep_plot.h); and where it asks for distributions, by experiments/histograms.gp, too. RT_NOT_AVAILABLE

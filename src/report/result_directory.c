@@ -8,6 +8,7 @@
 #include "literature/published_tables.h"
 #include "report/plot.h"
 #include "report/report.h"
+#include "report/scripts.h"
 
 /* A run, and what the literature says of it. */
 typedef struct Work {
@@ -101,7 +102,7 @@ static RtStatus copy_experiment(const RtRun *run, RtOutputs *copies, RtError *er
     for (uint32_t i = 0; i < published->table_count; i++)
         RT_TRY(copy_table(run, published->tables[i], copies, error));
     if (*published->reasons) RT_TRY(copy_table(run, published->reasons, copies, error));
-    return rt_plots_copy(run->experiment, run->options->directory, run->resumed, copies, error);
+    return rt_scripts_copy(run->experiment, run->options->directory, run->resumed, copies, error);
 }
 
 /* The copies are on the disk before the earlier results are removed, and get their names after that. */
@@ -117,7 +118,9 @@ static RtStatus replace_earlier(RtRun *run, RtError *error) {
 static RtStatus begin(Work *work, RtError *error) {
     RtRun *run = &work->run;
     RT_TRY(rt_published_load(&work->published, run->experiment, error));
-    RT_TRY(rt_plots_find(run->experiment, error));
+    RT_TRY(rt_scripts_find(run->experiment, error));
+    RT_TRY(rt_scripts_check(run->experiment, run->options->directory, run->resumed, run->options->scripts,
+                            error));
     RT_TRY(rt_run_begin(run, error));
     return replace_earlier(run, error);
 }

@@ -230,7 +230,7 @@ RT_TEST_IN_PLACE(a_script_that_lies_elsewhere_is_copied_into_the_directory) {
     assert_in_file(place, "out/deep/plots/x.gp", "print 1");
     assert_in_file(place, "out/deep/plots/y.gp", "print 2");
     assert_false(rt_file_exists(path_in(place, "out/deep/x.gp").text));
-    assert_ends(place, "plot out/deep", 0, "");
+    assert_ends(place, "plot out/deep --trust", 0, "");
 }
 
 RT_TEST_IN_PLACE(two_scripts_of_one_name_are_refused_with_their_line) {
@@ -281,10 +281,10 @@ RT_TEST_IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words)
     assert_ends_with_path(place, bin.text, "run small.yaml --out out", 1, says);
     assert_in_file(place, "out/counts.csv", "cloud");
     assert_in_file(place, "out/report.html", "</html>");
-    assert_ends_with_path(place, bin.text, "plot out", 1, says);
+    assert_ends_with_path(place, bin.text, "plot out --trust", 1, says);
     assert_ends_with_path(place, bin.text, "run small.yaml --out out --resume", 1, says);
     make_gnuplot(place, "#!/bin/sh\nexit 3\n");
-    assert_ends_with_path(place, bin.text, "plot out", 1, "it was given plots/names.gp plots/x.gp");
+    assert_ends_with_path(place, bin.text, "plot out --trust", 1, "it was given plots/names.gp plots/x.gp");
 }
 
 RT_TEST_IN_PLACE(where_there_is_no_gnuplot_a_note_says_so) {
@@ -292,9 +292,108 @@ RT_TEST_IN_PLACE(where_there_is_no_gnuplot_a_note_says_so) {
     write_in(place, "x.gp", "print 1\n");
     write_changed(place, "small.yaml", small_experiment, "limit: 100\n", "limit: 100\nplots: [x.gp]\n");
     assert_ends_with_path(place, "/nowhere", "run small.yaml --out out", 0, "gnuplot is not installed");
-    assert_ends_with_path(place, "/nowhere", "plot out", 0, "gnuplot is not installed");
+    assert_ends_with_path(place, "/nowhere", "plot out --trust", 0, "gnuplot is not installed");
     assert_ends_with_path(place, "/nowhere", "run small.yaml --out out --resume", 0,
                           "gnuplot is not installed");
+}
+
+/* ---- whose scripts are run ---- */
+
+/* raytally, with a gnuplot that leaves a file: whether it was run is the last argument. */
+static void assert_draws(const Place *place, const char *arguments, int code, const char *says, bool runs) {
+    Path ran = path_in(place, "ran");
+    char script[320];
+    snprintf(script, sizeof script, "#!/bin/sh\n: >'%s'\n", ran.text);
+    make_gnuplot(place, script);
+    remove(ran.text);
+    assert_ends_with_path(place, path_in(place, "bin").text, arguments, code, says);
+    if (rt_file_exists(ran.text) != runs) fail_msg("raytally %s: gnuplot ran, or did not", arguments);
+}
+
+/* style.gp as it is shipped, to a file of the place. */
+static void copy_style(const Place *place, const char *name) {
+    char *text;
+    size_t size;
+    assert_ok(rt_file_read(RT_SOURCE_DIR "/experiments/style.gp", 1 << 20, &text, &size, error));
+    write_in(place, name, text);
+    rt_free(text);
+}
+
+static void name_plots(const Place *place, const char *plots) {
+    write_changed(place, "small.yaml", small_experiment, "limit: 100\n", plots);
+}
+
+RT_TEST_IN_PLACE(a_script_in_a_result_directory_is_run_if_raytally_ships_it_or_it_is_trusted) {
+    const Place *place = *state;
+    const char *says = "out/plots/x.gp: raytally does not ship this gnuplot script";
+    copy_style(place, "style.gp");
+    write_in(place, "x.gp", "system('harm')\n");
+    name_plots(place, "limit: 100\nplots: [style.gp, x.gp]\n");
+    assert_draws(place, "run small.yaml --out out", 0, "", true);
+    assert_draws(place, "plot out", 2, says, false);
+    assert_draws(place, "plot out", 2, "--trust", false);
+    assert_draws(place, "plot out --trust", 0, "", true);
+    assert_draws(place, "report out", 0, "", false);
+    assert_draws(place, "reproduce out", 0, "", false);
+    copy_style(place, "out/plots/x.gp");
+    assert_draws(place, "plot out", 0, "", true);
+    write_in(place, "out/plots/style.gp", "system('harm')\n");
+    assert_draws(place, "plot out", 2, "out/plots/style.gp: raytally does not ship", false);
+}
+
+/* What shipped scripts load, and what gnuplot writes to. */
+RT_TEST_IN_PLACE(no_script_leads_to_another_that_is_not_shipped_nor_a_link_out_of_the_directory) {
+    const Place *place = *state;
+    copy_style(place, "x.gp");
+    name_plots(place, "limit: 100\nplots: [x.gp]\n");
+    assert_draws(place, "run small.yaml --out out", 0, "", true);
+    write_in(place, "out/plots/style.gp", "system('harm')\n");
+    assert_draws(place, "plot out", 2, "out/plots/style.gp: raytally does not ship", false);
+    assert_int_equal(remove(path_in(place, "out/plots/style.gp").text), 0);
+    remove(path_in(place, "out/plots/gnuplot.log").text);
+    write_in(place, "mine", "mine");
+    assert_int_equal(symlink("../../mine", path_in(place, "out/plots/gnuplot.log").text), 0);
+    assert_draws(place, "plot out", 2, "out/plots/gnuplot.log is a symbolic link", false);
+    assert_draws(place, "run small.yaml --out out --resume", 2, "is a symbolic link", false);
+    assert_in_file(place, "mine", "mine");
+}
+
+RT_TEST_IN_PLACE(a_run_draws_by_the_scripts_beside_its_experiment_and_by_changed_copies_if_they_are_trusted) {
+    const Place *place = *state;
+    write_in(place, "x.gp", "print 1\n");
+    name_plots(place, "limit: 100\nplots: [x.gp]\n");
+    assert_draws(place, "run small.yaml --out out", 0, "", true);
+    assert_draws(place, "run small.yaml --out out --resume", 0, "", true);
+    assert_draws(place, "run out/manifest.json --out other", 2, "x.gp: raytally does not ship", false);
+    assert_false(rt_file_exists(path_in(place, "other").text));
+    assert_draws(place, "run out/manifest.json --out other --trust", 0, "", true);
+    write_in(place, "out/plots/x.gp", "print 2\n");
+    assert_draws(place, "run small.yaml --out out --resume", 2, "nor is it the one beside", false);
+    assert_draws(place, "run small.yaml --out out --resume --trust", 0, "", true);
+    assert_in_file(place, "out/plots/x.gp", "print 2");
+    assert_draws(place, "run small.yaml --out out --force", 0, "", true);
+    assert_in_file(place, "out/plots/x.gp", "print 1");
+}
+
+RT_TEST_IN_PLACE(a_merge_draws_by_the_scripts_beside_the_experiment_unless_that_came_with_a_shard) {
+    const Place *place = *state;
+    const char *const runs[] = {"run small.yaml --shard 1/2 --out s1", "run small.yaml --shard 2/2 --out s2",
+                                "run t1/small.yaml --shard 1/2 --out t1",
+                                "run t1/small.yaml --shard 2/2 --out t2"};
+    write_in(place, "x.gp", "print 1\n");
+    name_plots(place, "limit: 100\nplots: [x.gp]\n");
+    assert_int_equal(mkdir(path_in(place, "t1").text, 0777), 0);
+    write_in(place, "t1/x.gp", "print 1\n");
+    char *yaml = read_in(place, "small.yaml");
+    write_in(place, "t1/small.yaml", yaml);
+    rt_free(yaml);
+    for (int i = 0; i < 4; i++) assert_draws(place, runs[i], 0, "", false);
+    assert_draws(place, "merge s1 s2 -o all", 0, "", true);
+    write_in(place, "all/plots/x.gp", "print 2\n");
+    assert_draws(place, "merge s1 s2 -o all --force", 0, "", true);
+    assert_in_file(place, "all/plots/x.gp", "print 1");
+    assert_draws(place, "merge t1 t2 -o both", 2, "t1/x.gp: raytally does not ship", false);
+    assert_draws(place, "merge t1 t2 -o both --trust", 0, "", true);
 }
 
 /* ---- scenes ---- */

@@ -107,6 +107,20 @@ RT_TEST_IN_PLACE(a_bad_sweep_is_refused_with_its_line) {
     }
 }
 
+/* Specs of kept results are not parsed, for the accelerators may be missing; gnuplot runs what stands in
+ * backquotes in the script that is written of them. */
+RT_TEST_IN_PLACE(a_swept_value_that_gnuplot_would_run_is_refused_also_in_results_that_are_read) {
+    const Place *place = *state;
+    RtError error = {RT_OK, ""};
+    json_t *manifest = json_object();
+    write_changed(place, "small.yaml", swept, "grid:density=1..16*2",
+                  "grid:mailbox=on,resolution=auto,empty_steps_stay=on,rule=woo|`harm`");
+    RtStatus status =
+        rt_experiment_load_kept(place->experiment, path_in(place, "small.yaml").text, manifest, &error);
+    json_decref(manifest);
+    assert_refused(status, RT_BAD_INPUT, &error, "'`harm`' cannot name");
+}
+
 RT_TEST_IN_PLACE(bench_takes_sweeps_of_scenes_and_accelerators) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "bench 'random:n=10|20' --accel bvh --accel 'grid:density=1..4*2' "

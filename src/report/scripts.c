@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "report/scripts.h"
+
+#include "base/memory.h"
+#include "shipped_scripts.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+RtStatus rt_scripts_find(const RtExperiment *experiment, RtError *error) {
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        char path[RT_MAX_PATH];
+        FILE *script;
+        RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], path, error));
+        RT_TRY(rt_file_open(path, &script, error));
+        fclose(script);
+    }
+    return RT_OK;
+}
+
+static RtStatus copy_script(const RtExperiment *experiment, uint32_t i, const char *directory, bool keep,
+                            RtOutputs *copies, RtError *error) {
+    char from[RT_MAX_PATH], plots[RT_MAX_PATH], to[RT_MAX_PATH];
+    RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], from, error));
+    RT_TRY(rt_path_join(directory, "plots", plots, error));
+    RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), to, error));
+    return keep && rt_file_exists(to) ? RT_OK : rt_outputs_copy(copies, from, to, error);
+}
+
+RtStatus rt_scripts_copy(const RtExperiment *experiment, const char *directory, bool keep, RtOutputs *copies,
+                         RtError *error) {
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        RT_TRY(copy_script(experiment, i, directory, keep, copies, error));
+    }
+    return RT_OK;
+}
+
+/* ---- which may be run ---- */
+
+enum { MOST_BYTES = 1 << 24 };
+
+static bool is_text(const char *const *lines, const char *text) {
+    for (; *lines; lines++) {
+        size_t length = strlen(*lines);
+        if (strncmp(text, *lines, length) != 0) return false;
+        text += length;
+    }
+    return *text == '\0';
+}
+
+/* Text of `size` bytes, with a 0 behind them. */
+static bool is_shipped(const char *text, size_t size) {
+    if (strlen(text) != size) return false;
+    for (int i = 0; shipped_scripts[i]; i++) {
+        if (is_text(shipped_scripts[i], text)) return true;
+    }
+    return false;
+}
+
+static bool is_file(const char *path, const char *text, size_t size) {
+    char *other;
+    size_t other_size;
+    if (rt_file_read(path, MOST_BYTES, &other, &other_size, NULL) != RT_OK) return false;
+    bool same = other_size == size && memcmp(other, text, size) == 0;
+    rt_free(other);
+    return same;
+}
+
+/* `own` is the path of the user's own script of that name, or NULL. */
+static RtStatus check_script(const char *path, const char *own, RtError *error) {
+    char *text;
+    size_t size;
+    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
+    bool known = is_shipped(text, size) || (own && is_file(own, text, size));
+    rt_free(text);
+    if (known) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s: raytally does not ship this gnuplot script%s, and a script may run any command: read "
+                   "it, then allow it with --trust",
+                   path, own ? ", nor is it the one beside the experiment" : "");
+}
+
+typedef struct Links {
+    RtStatus status;
+    RtError *error;
+} Links;
+
+/* gnuplot writes through links. */
+static void refuse_link(void *context, const char *path) {
+    Links *links = context;
+    struct stat info;
+    if (links->status != RT_OK || lstat(path, &info) != 0 || !S_ISLNK(info.st_mode)) return;
+    links->status = rt_fail(links->error, RT_BAD_INPUT,
+                            "%s is a symbolic link, and gnuplot would write to what it leads to: remove it, "
+                            "or allow it with --trust",
+                            path);
+}
+
+static RtStatus refuse_links(const char *plots, RtError *error) {
+    Links links = {RT_OK, error};
+    refuse_link(&links, plots);
+    if (links.status == RT_OK) rt_directory_each(plots, "", refuse_link, &links);
+    return links.status;
+}
+
+/* Of a script that the experiment names. */
+static RtStatus check_named(const RtExperiment *experiment, uint32_t i, const char *plots, bool keep,
+                            RtScripts allowed, RtError *error) {
+    char beside[RT_MAX_PATH], copy[RT_MAX_PATH];
+    RT_TRY(rt_path_join(experiment->folder, experiment->plots[i], beside, error));
+    RT_TRY(rt_path_join(plots, rt_plot_name(experiment, i), copy, error));
+    return check_script(keep && rt_file_exists(copy) ? copy : beside,
+                        allowed == RT_SCRIPTS_OWN ? beside : NULL, error);
+}
+
+RtStatus rt_scripts_check(const RtExperiment *experiment, const char *directory, bool keep, RtScripts allowed,
+                          RtError *error) {
+    char plots[RT_MAX_PATH], style[RT_MAX_PATH];
+    bool style_named = false;
+    if (allowed == RT_SCRIPTS_ALL) return RT_OK;
+    RT_TRY(rt_path_join(directory, "plots", plots, error));
+    RT_TRY(rt_path_join(plots, "style.gp", style, error));
+    RT_TRY(refuse_links(plots, error));
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        RT_TRY(check_named(experiment, i, plots, keep, allowed, error));
+        style_named |= strcmp(rt_plot_name(experiment, i), "style.gp") == 0;
+    }
+    return style_named || !rt_file_exists(style) ? RT_OK : check_script(style, NULL, error);
+}
