@@ -167,7 +167,9 @@ RtStatus rt_file_open(const char *path, FILE **file, RtError *error) {
         return rt_fail(error, RT_BAD_INPUT, "%s: this is not a file", path);
     *file = fopen(path, "rb");
     if (*file) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    int reason = errno;
+    if (rt_file_is_dead_link(path, error)) return RT_BAD_INPUT;
+    return rt_fail(error, RT_BAD_INPUT, "%s: cannot be opened: %s", path, strerror(reason));
 }
 
 RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error) {
@@ -182,6 +184,17 @@ RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size,
 
 bool rt_file_exists(const char *path) {
     return access(path, R_OK) == 0;
+}
+
+bool rt_file_is_dead_link(const char *path, RtError *error) {
+    char target[RT_MAX_PATH];
+    struct stat info;
+    ssize_t length = readlink(path, target, sizeof target - 1);
+    if (length < 0 || stat(path, &info) == 0 || errno == EACCES) return false;
+    target[length] = '\0';
+    rt_fail(error, RT_BAD_INPUT, "%s is a symbolic link that leads to no file: its target is '%s'", path,
+            target);
+    return true;
 }
 
 /* ---- folders and names ---- */

@@ -64,6 +64,9 @@ RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size,
 
 bool rt_file_exists(const char *path);
 
+/* Whether `path` is a symbolic link that leads to no file, and the message about it. */
+bool rt_file_is_dead_link(const char *path, RtError *error);
+
 /* Creates the directory and its parents where they are missing. */
 RtStatus rt_directory_create(const char *path, RtError *error);
 

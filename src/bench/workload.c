@@ -382,6 +382,7 @@ bool rt_workload_is_done(RtResults *results, uint32_t index, const RtWorkloadOpt
 RtStatus rt_workload_open_scene(const RtWorkload *workload, RtScene *scene, RtError *error) {
     *scene = (RtScene){0};
     if (!workload->file || rt_file_exists(workload->path)) return rt_scene_open(workload->path, scene, error);
+    if (rt_file_is_dead_link(workload->path, error)) return RT_BAD_INPUT;
     return rt_fail(error, RT_BAD_INPUT,
                    "%s: there is no such file; `scenes/fetch.sh` fetches the public meshes", workload->path);
 }

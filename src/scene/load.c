@@ -112,7 +112,7 @@ RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *sce
     }
     Load *load = find_loader(extension_of(path));
     if (!load) return fail_extension(path, "read", ", and the other mesh formats of Assimp", error);
-    if (!exists) return fail_missing(path, error);
+    if (!exists) return rt_file_is_dead_link(path, error) ? RT_BAD_INPUT : fail_missing(path, error);
     rt_scene_init(scene);
     snprintf(scene->name, sizeof scene->name, "%.*s", (int)sizeof scene->name - 1, path);
     RtStatus status = load(path, open_named, scene, error);
