@@ -79,6 +79,12 @@ static inline void assert_in_file(const Place *place, const char *name, const ch
     rt_free(text);
 }
 
+static inline void assert_not_in_file(const Place *place, const char *name, const char *part) {
+    char *text = read_in(place, name);
+    if (strstr(text, part)) fail_msg("%s has '%s':\n%s", name, part, text);
+    rt_free(text);
+}
+
 static inline void assert_refused(RtStatus status, RtStatus expected, const RtError *error,
                                   const char *says) {
     if (status != expected || !strstr(error->message, says)) {

@@ -19,7 +19,10 @@
  * intervals leave open, does not hold where it does for none, and is undecided otherwise. A ratio of times is
  * the paired one where it is that to the baseline on one kind of rays, else the quotients of the intervals'
  * ends. An exponent is the slope of the least squares of the logarithms; its interval is what all values
- * within the times' intervals could give. A time to build has no interval and is taken as it is. */
+ * within the times' intervals could give. A time to build has no interval and is taken as it is.
+ *
+ * A cell has no value for all kinds of rays together where one of them was not measured. A claim about cells
+ * without a value is undecided, unless the others disprove it. An exponent needs all values of its line. */
 #ifndef RT_BENCH_CLAIMS_H
 #define RT_BENCH_CLAIMS_H
 

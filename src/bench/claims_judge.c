@@ -55,6 +55,7 @@ static Bounded value_at(const RtResults *results, const RtClaim *claim, uint32_t
     if (claim->measure == RT_CLAIM_BYTES) return exactly((double)build->shape.bytes);
     if (claim->one_kind) return cell_value(results, claim, t, c);
     RtTotal total = rt_results_total(results, t, c);
+    if (!total.whole) return UNKNOWN;
     if (claim->measure == RT_CLAIM_TIME)
         return (Bounded){total.seconds, total.seconds_low, total.seconds_high};
     return exactly(claim->measure == RT_CLAIM_OBJECT_TESTS   ? total.object_tests
@@ -117,12 +118,11 @@ static bool same_line(const RtExperiment *experiment, const RtClaim *claim, cons
     return strcmp(names[0], names[1]) == 0;
 }
 
-/* The cells of a claim that have a value, to points[0..]; *unknown: how many have none. */
-static uint32_t gather(const RtResults *results, const RtClaim *claim, Point *points, uint32_t *unknown) {
+/* The cells of a claim, to points[0..]: how many. Those without a value have none that is finite. */
+static uint32_t gather(const RtResults *results, const RtClaim *claim, Point *points) {
     const RtExperiment *experiment = results->experiment;
     bool lines = claim->form >= RT_CLAIM_EXPONENT;
     uint32_t count = 0;
-    *unknown = 0;
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
             Point point = {.workload = t, .candidate = c};
@@ -131,10 +131,7 @@ static uint32_t gather(const RtResults *results, const RtClaim *claim, Point *po
             rt_swept_number(x, &point.x);
             point.y = claim->form == RT_CLAIM_RATIO ? ratio_at(results, claim, t, c)
                                                     : value_at(results, claim, t, c);
-            if (isfinite(point.y.value))
-                points[count++] = point;
-            else
-                (*unknown)++;
+            points[count++] = point;
         }
     }
     return count;
@@ -165,6 +162,10 @@ static double in_units(const RtClaim *claim, double value) {
 }
 
 static void put_bounded(RtClaimResult *result, const RtClaim *claim, const Bounded *b) {
+    if (!isfinite(b->value)) {
+        put(result, "not known");
+        return;
+    }
     put_figure(result, in_units(claim, b->value));
     if (b->low == b->high) return;
     put(result, " [");
@@ -210,12 +211,13 @@ static void take(const RtClaim *claim, const Point *point, const Bounded *figure
     *worst = (Worst){verdict, point, *figure};
 }
 
-/* Slope of the least squares of log y over log x; points[0..count) is one line. */
+/* Slope of the least squares of log y over log x; points[0..count) is one line. Unknown where any of them is:
+ * the slope of the others may be quite another. */
 static Bounded exponent_of(const Point *points, uint32_t count) {
     double mean = 0, squares = 0;
     Bounded slope = {0, 0, 0};
     for (uint32_t i = 0; i < count; i++) {
-        if (points[i].x <= 0 || points[i].y.low <= 0) return UNKNOWN;
+        if (!(points[i].x > 0 && points[i].y.low > 0)) return UNKNOWN;
         mean += rt_log(points[i].x) / count;
     }
     for (uint32_t i = 0; i < count; i++) {
@@ -307,28 +309,40 @@ static void judge_values(const RtExperiment *experiment, const RtClaim *claim, c
     put_place(result, experiment, worst.point, false);
 }
 
+/* Drops the points without a value: how many are left. */
+static uint32_t drop_unknown(Point *points, uint32_t count) {
+    uint32_t known = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (isfinite(points[i].y.value)) points[known++] = points[i];
+    }
+    return known;
+}
+
 void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result) {
     const RtExperiment *experiment = results->experiment;
-    uint32_t unknown = 0, count = 0;
-    RtClaim claim;
+    uint32_t count = 0, known = 0;
+    RtClaim claim = {0};
     RtError error;
     *result = (RtClaimResult){.verdict = RT_CLAIM_HOLDS};
     Point *points =
         rt_alloc((size_t)experiment->workload_count * experiment->candidate_count, sizeof *points);
     RtStatus status = rt_claim_parse(experiment, experiment->claims[i], &claim, &error);
-    if (points && status == RT_OK) count = gather(results, &claim, points, &unknown);
-    if (count == 0) {
+    if (points && status == RT_OK) count = gather(results, &claim, points);
+    for (uint32_t k = 0; k < count; k++) known += isfinite(points[k].y.value);
+    if (known == 0) {
         *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "nothing was measured that it is about"};
-    } else if (claim.form >= RT_CLAIM_EXPONENT) {
+    } else if (claim.form == RT_CLAIM_EXPONENT) {
         judge_lines(experiment, &claim, points, count, result);
+    } else if (claim.form == RT_CLAIM_TREND) {
+        judge_lines(experiment, &claim, points, drop_unknown(points, count), result);
     } else {
-        judge_values(experiment, &claim, points, count, result);
+        judge_values(experiment, &claim, points, drop_unknown(points, count), result);
     }
-    if (count > 0 && unknown > 0) {
+    if (known > 0 && known < count) {
         char text[64];
         if (result->verdict == RT_CLAIM_HOLDS) result->verdict = RT_CLAIM_UNDECIDED;
-        snprintf(text, sizeof text, "; %" PRIu32 " of %" PRIu32 " values are not known", unknown,
-                 count + unknown);
+        snprintf(text, sizeof text, "; %" PRIu32 " of %" PRIu32 " values are not known", count - known,
+                 count);
         put(result, text);
     }
     rt_free(points);

@@ -140,8 +140,8 @@ static RtStatus check_alike(const Match *match, const json_t *const sections[2],
         return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
-        "%s and %s do not record the same rays (%s, %s): times would not compare. Record them once with "
-        "`raytally rays`, and hand them to both with --rays-from",
+        "%s and %s do not record the same rays (%s, %s): times would not compare. Record the rays once with "
+        "`raytally rays`, and measure each program on that file: `raytally bench --rays-from FILE`",
         match->programs->before, match->programs->after, scene, kind);
 }
 

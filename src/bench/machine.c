@@ -6,13 +6,17 @@
 #include "base/parallel.h"
 #include "build_info.h"
 
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/utsname.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 /* What /proc says of the first processor under `key`, "" where it does not tell. */
 static void read_cpu(const char *key, char *out, size_t room) {
@@ -80,6 +84,22 @@ json_t *rt_plugins_json(void) {
     return list;
 }
 
+/* Of all bytes of the running program; 0 where it cannot be read. */
+static uint64_t program_hash(void) {
+    static uint64_t hash;
+    struct stat info;
+    int file = hash ? -1 : open("/proc/self/exe", O_RDONLY | O_CLOEXEC);
+    if (file < 0) return hash;
+    size_t size = fstat(file, &info) == 0 ? (size_t)info.st_size : 0;
+    void *bytes = mmap(NULL, size, PROT_READ, MAP_PRIVATE, file, 0);
+    if (bytes != MAP_FAILED) {
+        hash = XXH3_64bits(bytes, size);
+        munmap(bytes, size);
+    }
+    close(file);
+    return hash;
+}
+
 json_t *rt_machine_json(void) {
     char cpu[256], governor[64], system[256] = "";
     struct utsname name;
@@ -88,11 +108,12 @@ json_t *rt_machine_json(void) {
     if (uname(&name) == 0) {
         snprintf(system, sizeof system, "%.64s %.64s %.64s", name.sysname, name.release, name.machine);
     }
-    json_t *machine = json_pack(
-        "{s:o, s:o, s:o, s:o, s:i, s:o, s:s, s:s, s:s, s:s, s:b}", "cpu", text_or_null(cpu), "clock_mhz",
-        clock_mhz(), "governor", text_or_null(governor), "simd", text_or_null(simd_level()), "processors",
-        rt_processor_count(), "os", text_or_null(system), "compiler", RT_COMPILER, "flags", RT_FLAGS,
-        "version", RT_VERSION, "commit", RT_COMMIT, "dirty", RT_DIRTY);
+    json_t *machine =
+        json_pack("{s:o, s:o, s:o, s:o, s:i, s:o, s:s, s:s, s:s, s:s, s:b, s:o}", "cpu", text_or_null(cpu),
+                  "clock_mhz", clock_mhz(), "governor", text_or_null(governor), "simd",
+                  text_or_null(simd_level()), "processors", rt_processor_count(), "os", text_or_null(system),
+                  "compiler", RT_COMPILER, "flags", RT_FLAGS, "version", RT_VERSION, "commit", RT_COMMIT,
+                  "dirty", RT_DIRTY, "program", rt_json_hex(program_hash()));
     for (size_t i = 0; i < rt_accel_count(); i++) {
         const RtAccelOps *ops = rt_accel_at(i);
         char library[64];
@@ -104,10 +125,15 @@ json_t *rt_machine_json(void) {
     return machine;
 }
 
+/* Programs of one clean commit differ at most by paths, and by compiler and flags, which are named. */
 const char *rt_build_alone(void) {
-    static char identity[256];
-    snprintf(identity, sizeof identity, "%s %s%s, %s", RT_VERSION, RT_COMMIT, RT_DIRTY ? " with changes" : "",
-             RT_COMPILER);
+    static char identity[1024];
+    char program[64] = "";
+    if (RT_DIRTY || strcmp(RT_COMMIT, "unknown") == 0)
+        snprintf(program, sizeof program, "%s (program %016" PRIx64 ")", RT_DIRTY ? " with changes" : "",
+                 program_hash());
+    snprintf(identity, sizeof identity, "%s %s%s, %s, %s", RT_VERSION, RT_COMMIT, program, RT_COMPILER,
+             RT_FLAGS);
     return identity;
 }
 

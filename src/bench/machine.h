@@ -8,7 +8,8 @@
 #include <jansson.h>
 
 /* {"cpu", "clock_mhz" (the highest of the first processor, or what it has just now), "governor", "simd",
- * "processors", "os", "compiler", "flags", "version", "commit", "dirty"}, "plugins" where any are loaded, and
+ * "processors", "os", "compiler", "flags", "version", "commit", "dirty", "program" (the hash of the one that
+ * runs)}, "plugins" where any are loaded, and
  * by the name of each accelerator that a library does the work of, its version; what cannot be found out is
  * null. NULL where memory is short; the caller owns the reference. */
 json_t *rt_machine_json(void);
@@ -17,8 +18,9 @@ json_t *rt_machine_json(void);
  */
 json_t *rt_plugins_json(void);
 
-/* Version, commit, dirty flag and compiler in one line: only what was measured by one and the same build may
- * be mixed. rt_build_identity has every plugin that is loaded, too. */
+/* Version, commit, compiler and flags in one line, and where the sources are no commit, the hash of the
+ * program: only what was measured by one and the same build may be mixed. rt_build_identity has every plugin
+ * that is loaded, too. */
 const char *rt_build_alone(void);
 const char *rt_build_identity(void);
 

@@ -45,8 +45,8 @@ static RtStatus read_rays(RtNpy *npy, RtRaySet *set, RtError *error) {
         RT_TRY(rt_npy_read(npy, count, rows[0], error));
         for (uint64_t i = 0; i < count; i++) {
             RtRay *ray = &set->rays[first + i];
+            *ray = (RtRay){.kind = set->kind};
             memcpy(ray, rows[i], sizeof rows[i]);
-            ray->kind = set->kind;
             if (rt_ray_is_valid(ray)) continue;
             return rt_fail(error, RT_BAD_INPUT,
                            "%s: row %" PRIu64

@@ -71,6 +71,22 @@ const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidat
                                                    : experiment->again;
 }
 
+uint64_t rt_results_size(const RtResults *results, uint32_t *scenes) {
+    const RtExperiment *experiment = results->experiment;
+    uint64_t cells = 0;
+    *scenes = 0;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        *scenes += results->workloads[t].known;
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            for (uint32_t k = 0; k < experiment->kind_count; k++) {
+                const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
+                cells += cell->counted || cell->timed;
+            }
+        }
+    }
+    return cells;
+}
+
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling) {
     *runs = *straddling = 0;
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
@@ -126,45 +142,59 @@ double rt_cell_per_ray(const RtResults *results, uint32_t workload, uint32_t can
     return known ? (double)counter / (double)cell->tally.rays : (double)NAN;
 }
 
-/* A mean of what is known, weighted. */
+bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind) {
+    for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, workload, c, kind);
+        if (cell->counted || cell->timed) return true;
+    }
+    return false;
+}
+
+/* A weighted mean; NAN as soon as one of its values is. */
 typedef struct Mean {
     double sum, weight;
 } Mean;
 
 static void add(Mean *mean, double value, double weight) {
-    if (isnan(value)) return;
     mean->sum += weight * value;
     mean->weight += weight;
 }
 
+static double timed(const RtCell *cell, double figure) {
+    return cell->timed ? figure : (double)NAN;
+}
+
 RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    const RtExperiment *experiment = results->experiment;
     Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0}, baseline = {0}, low = {0},
          high = {0};
-    uint64_t rays = 0;
-    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        RtRayKind kind = (RtRayKind)k;
+    RtTotal total = {.whole = true};
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        RtRayKind kind = experiment->kinds[k];
         const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
         const RtTally *tally = &cell->tally;
-        double weight = (double)results->workloads[workload].rays[k];
-        rays += tally->rays;
+        double weight = (double)results->workloads[workload].rays[kind];
+        if (weight == 0) continue;
+        total.whole &= rt_results_has_kind(results, workload, kind);
+        if (!rt_results_has_kind(results, workload, kind)) continue;
+        total.rays += tally->rays;
         add(&object_tests, rt_cell_per_ray(results, workload, candidate, kind, tally->object_tests), weight);
         add(&extent_tests, rt_cell_per_ray(results, workload, candidate, kind, tally->extent_tests), weight);
         add(&steps, rt_cell_per_ray(results, workload, candidate, kind, tally->steps), weight);
-        if (!cell->timed) continue;
-        add(&seconds, cell->seconds.median, weight);
-        add(&low, cell->seconds.low, weight);
-        add(&high, cell->seconds.high, weight);
-        add(&baseline, cell->ratio.median * cell->seconds.median, weight);
+        add(&seconds, timed(cell, cell->seconds.median), weight);
+        add(&low, timed(cell, cell->seconds.low), weight);
+        add(&high, timed(cell, cell->seconds.high), weight);
+        add(&baseline, timed(cell, cell->ratio.median * cell->seconds.median), weight);
     }
     /* 0 / 0 is NAN: not known. */
-    return (RtTotal){.rays = rays,
-                     .object_tests = object_tests.sum / object_tests.weight,
-                     .extent_tests = extent_tests.sum / extent_tests.weight,
-                     .steps = steps.sum / steps.weight,
-                     .seconds = seconds.sum / seconds.weight,
-                     .ratio = baseline.sum / seconds.sum,
-                     .seconds_low = low.sum / low.weight,
-                     .seconds_high = high.sum / high.weight};
+    total.object_tests = object_tests.sum / object_tests.weight;
+    total.extent_tests = extent_tests.sum / extent_tests.weight;
+    total.steps = steps.sum / steps.weight;
+    total.seconds = seconds.sum / seconds.weight;
+    total.ratio = baseline.sum / seconds.sum;
+    total.seconds_low = low.sum / low.weight;
+    total.seconds_high = high.sum / high.weight;
+    return total;
 }
 
 double rt_results_pay_off(const RtResults *results, uint32_t workload, uint32_t candidate) {
@@ -173,7 +203,8 @@ double rt_results_pay_off(const RtResults *results, uint32_t workload, uint32_t 
     if (rt_candidate_is_baseline(results->experiment, candidate)) return (double)NAN;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
-        if (!cell->timed) continue;
+        if (!rt_results_has_kind(results, workload, (RtRayKind)k)) continue;
+        if (!cell->timed) return (double)NAN;
         double ray = cell->wall.median;
         add(&saved, (cell->ratio.median - 1) * ray, (double)results->workloads[workload].rays[k]);
         build = fmin(build, rt_build_at(results, workload, cell->baseline)->seconds);

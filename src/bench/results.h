@@ -102,6 +102,9 @@ double *rt_cell_rounds(const RtCell *cell, RtEach each);
 /* The candidate's label, that of the baseline and " (again)" for the null run. */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
 
+/* How many cells were measured, of how many scenes. */
+uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
+
 /* How many of the null runs there are, and how many of them have an interval with 1 inside. */
 void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddling);
 
@@ -111,9 +114,15 @@ RtStatus rt_results_check_broken(const RtResults *results, RtError *error);
 /* A line for each limit that was hit, and what was left out; nothing where there is none. */
 void rt_print_limits(const RtResults *results, FILE *out);
 
+/* Whether any candidate was measured on the workload's rays of that kind. */
+bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind);
+
 /* What a candidate's cells of one workload add up to. Per ray means per ray of all kinds together, each kind
- * with the weight of its unthinned set, so that thinned and full measurements compare. NAN where unknown. */
+ * with the weight of its unthinned set, so that thinned and full measurements compare. The totals of a
+ * workload are all over the same kinds, those that any candidate was measured on: a figure that is unknown
+ * for one of them is NAN. */
 typedef struct RtTotal {
+    bool whole;                               /* over all kinds of rays that the experiment asks for */
     uint64_t rays;                            /* measured */
     double object_tests, extent_tests, steps; /* a ray */
     double seconds;                           /* a ray */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/run.h"
 
+#include "base/parallel.h"
 #include "bench/distribution_tables.h"
 #include "bench/hardware_table.h"
 #include "bench/journal.h"
@@ -8,6 +9,7 @@
 #include "bench/result_tables.h"
 #include "render/image.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 RtStatus rt_run_path(const RtRun *run, const char *name, char *path, RtError *error) {
@@ -72,11 +74,33 @@ static RtStatus open_scenes(RtRun *run, RtError *error) {
     return RT_OK;
 }
 
+/* Cells are timed on as many threads as those that are known: else their times would not compare. */
+static RtStatus check_threads(const RtRun *run, RtError *error) {
+    const RtExperiment *experiment = run->experiment;
+    const int threads = rt_thread_count(run->options->workload.timing);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            for (uint32_t k = 0; k < experiment->kind_count; k++) {
+                const RtCell *cell = rt_cell_at(run->results, t, c, experiment->kinds[k]);
+                if (!cell->timed || cell->threads == threads) continue;
+                return rt_fail(
+                    error, RT_BAD_INPUT,
+                    "%s was timed on %d thread%s so far, and would be on %d from here on: go on with "
+                    "--threads %d, or start over with --force",
+                    run->options->directory, cell->threads, cell->threads == 1 ? "" : "s", threads,
+                    cell->threads);
+            }
+        }
+    }
+    return RT_OK;
+}
+
 RtStatus rt_run_open(RtRun *run, RtResults *results, const RtRunOptions *options, RtError *error) {
     *run = (RtRun){
         .results = results, .experiment = results->experiment, .options = options, .lock = RT_NO_LOCK};
     RT_TRY(take_directory(run, error));
-    return open_scenes(run, error);
+    RT_TRY(open_scenes(run, error));
+    return run->resumed && !rt_run_is_complete(run) ? check_threads(run, error) : RT_OK;
 }
 
 static const char *const folders[] = {"", "plots", "images"};
@@ -210,6 +234,21 @@ bool rt_run_is_complete(const RtRun *run) {
     return true;
 }
 
+/* What was done where nothing was measured. */
+static void tell_end(const RtRun *run) {
+    char message[128];
+    uint32_t scenes;
+    uint64_t cells = rt_results_size(run->results, &scenes);
+    if (run->options->joined) {
+        snprintf(message, sizeof message,
+                 "joined %" PRIu32 " shards: %" PRIu64 " cells of %" PRIu32 " scenes", run->options->joined,
+                 cells, scenes);
+        rt_run_notice(run, message);
+    } else {
+        rt_run_notice(run, "nothing was left to measure: this run is finished. --force begins it anew");
+    }
+}
+
 RtStatus rt_run_measure(RtRun *run, RtError *error) {
     RtWorkloadOptions options = run->options->workload;
     options.observer = (RtObserver){run, on_event, on_notice};
@@ -224,7 +263,7 @@ RtStatus rt_run_measure(RtRun *run, RtError *error) {
         close_scene(run, t);
     }
     if (run->measured || !run->resumed || !rt_run_is_complete(run)) return RT_OK;
-    rt_run_notice(run, "nothing was left to measure: this run is finished. --force begins it anew");
+    tell_end(run);
     return RT_OK;
 }
 

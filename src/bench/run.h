@@ -33,7 +33,8 @@ typedef enum RtScripts {
 typedef struct RtRunOptions {
     const char *directory; /* created where missing */
     RtStart start;         /* what becomes of what an earlier run in it has found */
-    bool renew; /* of one that is resumed, what plugins did that have changed since is measured again */
+    bool renew;      /* of one that is resumed, what plugins did that have changed since is measured again */
+    uint32_t joined; /* the journal that is resumed was joined from those of so many shards; else 0 */
     RtScripts scripts;
     RtWorkloadOptions workload; /* its observer is told after the journal */
 } RtRunOptions;

@@ -161,9 +161,9 @@ static uint64_t thinned_count(const RtRaySet *set, uint64_t stride) {
     return (set->count + stride - 1) / stride;
 }
 
-/* Rays of the set and of all shares that are thinned. */
+/* Rays of the set, of all shares that are thinned, and of the probe. */
 static uint64_t count_with_shares(const RtWorkloadState *workload, const RtRaySet *set) {
-    uint64_t count = set->count;
+    uint64_t count = set->count + RT_PROBE_RAYS;
     for (uint32_t c = 0; c < workload->count; c++) {
         if (workload->accels[c] && rt_workload_ray_stride(workload, c) > 1)
             count += thinned_count(set, rt_workload_ray_stride(workload, c));
@@ -183,9 +183,9 @@ static void thin_share(const RtWorkloadState *workload, const RtRaySet *set, uin
     }
 }
 
-/* Gives every candidate its share of the set, and the answers to those that learn. Thinned shares are copies
- * behind the set, in the same array: the baseline, which may be one that learns and knows rays by their
- * places, is timed on all of them. */
+/* Gives every candidate its share of the set, and the answers to those that learn. Thinned shares and the
+ * probe are copies behind the set, in the same array: the baseline, which may be one that learns and knows
+ * rays by their places, is timed on all of them. */
 static RtStatus deal_shares(RtWorkloadState *workload, RtRaySet *set, RtError *error) {
     uint64_t all = count_with_shares(workload, set), used = set->count;
     uint32_t capacity = (uint32_t)set->count;
@@ -202,9 +202,13 @@ static RtStatus deal_shares(RtWorkloadState *workload, RtRaySet *set, RtError *e
         thin_share(workload, set, stride, used, &workload->shares[c]);
         used += workload->shares[c].set.count;
     }
+    if (workload->experiment->limit_seconds > 0) {
+        RT_TRY(rt_workload_draw_probe(workload, set, used, error));
+        used += workload->probe.set.count;
+    }
     for (uint32_t c = 0; c < workload->count; c++) {
         if (workload->accels[c])
-            RT_TRY(rt_accel_learn(workload->accels[c], set->rays, workload->answers, all, error));
+            RT_TRY(rt_accel_learn(workload->accels[c], set->rays, workload->answers, used, error));
     }
     return RT_OK;
 }

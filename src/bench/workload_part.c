@@ -61,21 +61,32 @@ RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind
     return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN, kind, cell->limit, error);
 }
 
+RtStatus rt_workload_draw_probe(RtWorkloadState *workload, const RtRaySet *set, uint64_t first,
+                                RtError *error) {
+    RtRaySet drawn;
+    RT_TRY(rt_rayset_limit(set, RT_PROBE_RAYS, RT_PROBE_RAYS, &drawn, error));
+    memcpy(set->rays + first, drawn.rays, drawn.count * sizeof(RtRay));
+    workload->probe = (RtWorkloadShare){.set = *set, .expected = workload->answers + first};
+    workload->probe.set.rays = set->rays + first;
+    workload->probe.set.count = drawn.count;
+    rt_rayset_clear(&drawn);
+    return rt_measure_answers(workload->reference, &workload->probe.set, workload->options->threads,
+                              workload->answers + first, error);
+}
+
 /* Whether a cell would take longer than it may to be counted and timed, by what a part of its rays takes. */
 static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
-    enum { PROBE = 256 };
     const RtExperiment *experiment = workload->experiment;
     RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-    RtRaySet part = workload->shares[c].set;
+    const RtRaySet *part = &workload->probe.set;
     RtCount count;
-    double all = (double)part.count, passes = workload->count_only ? 1 : 2 + experiment->rounds;
-    if (part.count > PROBE) part.count = PROBE;
+    double all = (double)workload->shares[c].set.count;
+    double passes = workload->count_only ? 1 : 2 + experiment->rounds;
     double start = rt_wall_seconds();
-    RtStatus status =
-        rt_measure_count(workload->accels[c], &part, workload->shares[c].expected, 1, &count, error);
+    RtStatus status = rt_measure_count(workload->accels[c], part, workload->probe.expected, 1, &count, error);
     if (rt_workload_is_own_fault(workload, c, status)) return rt_workload_break(workload, c, kind, error);
     RT_TRY(status);
-    double seconds = (rt_wall_seconds() - start) / (double)part.count * all * passes;
+    double seconds = (rt_wall_seconds() - start) / (double)part->count * all * passes;
     if (seconds <= experiment->limit_seconds) return RT_OK;
     snprintf(cell->limit, RT_MAX_LIMIT, "it would take about %.2g s, more than %g s", seconds,
              experiment->limit_seconds);

@@ -25,9 +25,10 @@ typedef struct RtWorkloadState {
     RtAccel *reference;               /* answers */
     RtAccel **built;                  /* [count], NULL for one that does not run here */
     RtAccel **accels;                 /* [count], of them those that get the rays of the kind at hand */
-    RtRaySet sets[RT_RAY_KIND_COUNT]; /* behind the `count` rays of one at hand lie its thinned shares */
+    RtRaySet sets[RT_RAY_KIND_COUNT]; /* behind the `count` rays of the one at hand: thinned shares, probe */
     RtWorkloadShare *shares;          /* [count], of the kind at hand */
-    RtHit *answers;                   /* to the set of the kind at hand and the shares behind it */
+    RtWorkloadShare probe;            /* the part of the set by which times are foretold */
+    RtHit *answers;                   /* to the set of the kind at hand and all that lies behind it */
 } RtWorkloadState;
 
 /* The candidate that number `c` is built from: itself, or the baseline for the null run. */
@@ -61,6 +62,13 @@ static inline bool rt_workload_is_own_fault(const RtWorkloadState *workload, uin
 
 /* Leaves that candidate out on the rays of that kind; *error, whose message it is, is why. */
 RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error);
+
+#define RT_PROBE_RAYS 256 /* at most */
+
+/* Draws the probe from all of the set, in short runs, with its answers, to lie from `first` on. The first
+ * rays of a set are the uppermost of the image, and as a rule cheaper than others. */
+RtStatus rt_workload_draw_probe(RtWorkloadState *workload, const RtRaySet *set, uint64_t first,
+                                RtError *error);
 
 /* Leaves out who would take longer on the rays of that kind than the limit: whose shares are dealt. */
 RtStatus rt_workload_check_limits(RtWorkloadState *workload, RtRayKind kind, RtError *error);

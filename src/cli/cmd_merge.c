@@ -59,7 +59,7 @@ const struct argp rt_merge_argp = {
            "result directory of one run, with its tables, plots and report. counts.csv "
            "is the same, byte for byte, as that of one machine; times.csv says which "
            "machine timed each row, all accelerators on a scene by the same one."
-           "\vShards of different experiments or builds, and one that is missing, not "
+           "\vShards of different experiments, builds or numbers of --threads, and one that is missing, not "
            "finished, or there twice, are refused. Run it with the same build, from "
            "where the shards were run. Example:\n"
            "  raytally merge results/first-look-*-of-3 -o results/first-look"};

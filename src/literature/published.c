@@ -52,12 +52,14 @@ bool rt_published_columns(const RtPublished *published, uint32_t workload, bool 
 
 /* ---- what was measured ---- */
 
-/* Of all ray kinds together; no rays where nothing was counted. */
+/* Of all ray kinds together; no rays where nothing was counted, or not every kind that others were. */
 static RtTally tally_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
     RtTally sum = {0};
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
-        if (cell->counted) rt_tally_add(&sum, &cell->tally);
+        if (!rt_results_has_kind(results, workload, (RtRayKind)k)) continue;
+        if (!cell->counted) return (RtTally){0};
+        rt_tally_add(&sum, &cell->tally);
     }
     return sum;
 }

@@ -21,17 +21,8 @@ typedef struct Index {
 
 static void put_size(FILE *out, const RtResults *results) {
     const RtExperiment *experiment = results->experiment;
-    uint32_t scenes = 0;
-    uint64_t cells = 0;
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        scenes += results->workloads[t].known;
-        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            for (uint32_t k = 0; k < experiment->kind_count; k++) {
-                const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
-                cells += cell->counted || cell->timed;
-            }
-        }
-    }
+    uint32_t scenes;
+    uint64_t cells = rt_results_size(results, &scenes);
     fprintf(out,
             "<p class=\"meta\">Scenes: %" PRIu32 " &middot; accelerators: %" PRIu32
             " &middot; cells: %" PRIu64 "%s</p>\n",

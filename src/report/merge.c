@@ -3,6 +3,7 @@
 
 #include "base/json.h"
 #include "bench/journal.h"
+#include "bench/machine.h"
 #include "bench/manifest.h"
 #include "bench/plugins_used.h"
 #include "report/scripts.h"
@@ -61,6 +62,34 @@ static RtStatus check_alike(const Merge *merge, RtError *error) {
             if (json_equal(a, b)) continue;
             return rt_fail(error, RT_BAD_INPUT, "%s and %s are of different %s", merge->directories[0],
                            merge->directories[i], what[k]);
+        }
+    }
+    const char *build = json_string_value(json_object_get(header_of(merge, 0), "build"));
+    if (build && strcmp(build, rt_build_alone()) == 0) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s was measured by another build of raytally (%s; this is %s): merge with that one",
+                   merge->directories[0], build ? build : "unknown", rt_build_alone());
+}
+
+/* The threads that timed the shards, 1 where nothing was timed. Times on one thread are processor time, those
+ * on several are wall time, so they may not differ. */
+static RtStatus check_threads(const Merge *merge, int *threads, RtError *error) {
+    uint32_t first = merge->count;
+    *threads = 1;
+    for (uint32_t i = 0; i < merge->count; i++) {
+        for (size_t line = 1; line < json_array_size(merge->journals[i]); line++) {
+            const json_t *timed = json_object_get(json_array_get(merge->journals[i], line), "timed");
+            int here = (int)json_integer_value(json_object_get(timed, "threads"));
+            if (!timed || (first < merge->count && here == *threads)) continue;
+            if (first < merge->count) {
+                return rt_fail(error, RT_BAD_INPUT,
+                               "%s was timed on %d thread%s, and %s on %d: their times would not compare. "
+                               "Run one of them again with the --threads of the other, and --force",
+                               merge->directories[first], *threads, *threads == 1 ? "" : "s",
+                               merge->directories[i], here);
+            }
+            first = i;
+            *threads = here;
         }
     }
     return RT_OK;
@@ -207,10 +236,12 @@ static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment 
     RtRunOptions options = {.directory = merge->out,
                             .start = RT_START_RESUME,
                             .scripts = trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_OWN,
-                            .workload = {.timing = 1, .observer = *observer}};
+                            .joined = merge->count,
+                            .workload = {.observer = *observer}};
     RT_TRY(load_journals(merge, error));
     RT_TRY(check_alike(merge, error));
     RT_TRY(check_whole(merge, error));
+    RT_TRY(check_threads(merge, &options.workload.timing, error));
     RT_TRY(load_experiment(merge, experiment, error));
     RT_TRY(check_plugins(merge, experiment, error));
     RT_TRY(rt_results_init(results, experiment, error));

@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "bench/claims.h"
+#include "bench/standing.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -133,6 +134,57 @@ RT_TEST(what_was_not_measured_decides_nothing) {
     expect(RT_CLAIM_UNDECIDED, "object_tests of bvh on random:n=10 < 5", "nothing was measured");
     expect(RT_CLAIM_UNDECIDED, "object_tests of bvh < 5", "1 of 4 values are not known");
     expect(RT_CLAIM_FALSE, "object_tests of bvh > 5", "1 of 4 values are not known");
+}
+
+/* grid:density=1 needs 2 tests a ray of the one kind and 50 of the other, bvh 5 and 5. Without the dear kind
+ * grid would seem to be ahead. */
+RT_TEST(a_kind_of_rays_that_one_side_lacks_leaves_a_claim_about_all_kinds_undecided) {
+    static const char ahead[] = "ratio of object_tests of grid:density=1 to bvh on random:n=10 < 1",
+                      faster[] = "ratio of time of grid:density=1 to bvh on random:n=10 < 1";
+    set(0, 0, 50, 100, 100);
+    set(0, 1, 20, 50, 50);
+    RtCell *dear = rt_cell_at(&results, 0, 1, RT_RAY_SHADOW), cell = *dear;
+    cell.tally.object_tests = 500;
+    cell.seconds = (RtEstimate){1e-6, 1e-6, 1e-6, 1e-6};
+    *dear = cell;
+    expect(RT_CLAIM_FALSE, ahead, "5.20");
+    expect(RT_CLAIM_FALSE, faster, "5.25");
+    assert_int_equal(rt_standing(&results, 0, 0, RT_RAY_KIND_COUNT), RT_STANDING_BEST);
+    *dear = (RtCell){.limit = "it would take about 3 s, more than 1 s"};
+    expect(RT_CLAIM_UNDECIDED, ahead, "nothing was measured");
+    expect(RT_CLAIM_UNDECIDED, faster, "nothing was measured");
+    expect(RT_CLAIM_HOLDS,
+           "ratio of object_tests of grid:density=1 to bvh on random:n=10 for primary rays < 1", "0.40");
+    assert_true(isnan(rt_results_total(&results, 0, 1).seconds));
+    assert_true(isnan(rt_results_pay_off(&results, 0, 1)));
+    assert_int_equal(rt_standing(&results, 0, 0, RT_RAY_KIND_COUNT), RT_STANDING_BEST);
+    assert_int_equal(rt_standing(&results, 0, 1, RT_RAY_KIND_COUNT), RT_STANDING_BEHIND);
+    assert_int_equal(rt_standing(&results, 0, 1, RT_RAY_PRIMARY), RT_STANDING_BEST);
+}
+
+/* As --only leaves it. */
+RT_TEST(totals_of_a_kind_that_all_were_measured_on_compare_and_a_claim_waits_for_the_others) {
+    set_all();
+    for (uint32_t c = 0; c < 4; c++) *rt_cell_at(&results, 0, c, RT_RAY_SHADOW) = (RtCell){0};
+    RtTotal total = rt_results_total(&results, 0, 0);
+    assert_true(total.object_tests == 2);
+    assert_false(total.whole);
+    expect(RT_CLAIM_UNDECIDED, "object_tests of bvh on random:n=10 < 5", "nothing was measured");
+}
+
+/* Over 10 and 100 alone time would grow as n^0.301, over 10 and 1000 as n^1. */
+RT_TEST(an_exponent_is_undecided_until_all_values_of_its_line_are_known) {
+    set_all();
+    set(2, 0, 20, 10000, 10000);
+    expect(RT_CLAIM_FALSE, "exponent of time of bvh in n < 0.5", "0.996 [0.991, 1.00]");
+    rt_cell_at(&results, 2, 0, RT_RAY_PRIMARY)->timed = false;
+    expect(RT_CLAIM_UNDECIDED, "exponent of time of bvh in n < 0.5", "1 of 3 values are not known");
+    expect(RT_CLAIM_UNDECIDED, "exponent of time of bvh in n > 0.5", "1 of 3 values are not known");
+    rt_cell_at(&results, 1, 1, RT_RAY_PRIMARY)->counted = false;
+    expect(RT_CLAIM_UNDECIDED, "exponent of object_tests of grid in density < 0", "1 of 12 values");
+    expect(RT_CLAIM_FALSE, "exponent of object_tests of grid in density > 0", "1 of 12 values");
+    expect(RT_CLAIM_FALSE, "object_tests of grid rises with density on random:n=100",
+           "1 of 3 values are not known");
 }
 
 RT_TEST(a_claim_that_is_none_is_refused_with_what_would_be_right) {

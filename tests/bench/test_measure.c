@@ -148,6 +148,51 @@ RT_TEST(a_build_pays_off_after_as_many_rays_as_save_what_it_takes_more) {
     assert_true(isinf(pay_off(1, 200, 2, 300)));
 }
 
+/* What a pass over the rays before all others was given: rays, and of the eight parts of a frame of 64 rows
+ * those that it has rays of. */
+static uint64_t first_count;
+static unsigned first_parts;
+
+RtStatus __real_rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected,
+                                 int threads, RtCount *count, RtError *error);
+RtStatus __wrap_rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected,
+                                 int threads, RtCount *count, RtError *error);
+
+RtStatus __wrap_rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected,
+                                 int threads, RtCount *count, RtError *error) {
+    for (uint64_t i = 0; i < set->count && first_count == 0; i++)
+        first_parts |= 1u << set->rays[i].source / (8 * 64);
+    if (first_count == 0) first_count = set->count;
+    return __real_rt_measure_count(accel, set, expected, threads, count, error);
+}
+
+RT_TEST(a_time_is_foretold_from_rays_of_all_parts_of_the_image) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtWorkloadOptions options = {.threads = 1, .timing = 1, .count_only = true};
+    RtResults results;
+    char where[RT_MAX_LABEL];
+    assert_non_null(e);
+    rt_experiment_init(e);
+    strcpy(e->name, "limited");
+    e->limit_seconds = 1e9;
+    e->kind_count = 1;
+    const RtWorkload scene = {.depth = 1, .width = 64, .height = 64};
+    e->candidate_count = 1;
+    e->candidates[0] = (RtCandidate){.label = "ideal", .spec = "ideal", .ray_stride = 1};
+    assert_ok(rt_experiment_add_scenes(e, &scene, "balls:size=1", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    first_count = first_parts = 0;
+    assert_ok(rt_workload_run(&results, 0, &options, error));
+    assert_in_range(first_count, 128, 256);
+    assert_int_equal(first_parts, 0xff);
+    const RtTally *tally = &rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY)->tally;
+    assert_int_equal(tally->rays, 64 * 64);
+    assert_int_equal(tally->object_tests, tally->hits);
+    rt_results_clear(&results);
+    rt_free(e);
+}
+
 /* A name for the best of several, of any accelerator that has one; NULL where none was built in. */
 static const char *any_best(char name[RT_MAX_LABEL]) {
     for (size_t i = 0; i < rt_accel_count(); i++) {

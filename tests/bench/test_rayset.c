@@ -3,9 +3,13 @@
 #include "testing.h"
 
 #include "base/memory.h"
+#include "bench/ray_file.h"
 #include "bench/rayset.h"
 
+#include <malloc.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* A mirror floor with a glass ball and a matte ball over it, and two lights. */
 static void make_scene(RtScene *scene) {
@@ -277,6 +281,28 @@ RT_TEST(every_allocation_of_a_recording_may_fail) {
         assert_int_equal(rt_alloc_live(), live);
     }
     assert_ok(rt_scene_sample(&stage->scene, 50, 37, 1, false, error));
+}
+
+/* All bytes of rays are hashed: whatever memory held before, the file alone decides. */
+RT_TEST(rays_of_a_file_have_the_same_fingerprint_each_time_that_they_are_read) {
+    const Stage *stage = *state;
+    char path[] = "/tmp/raytally-rays-XXXXXX";
+    uint64_t fingerprints[2];
+    int file = mkstemp(path);
+    assert_true(file >= 0 && close(file) == 0);
+    RtRaySet few = stage->sets[RT_RAY_PRIMARY], read;
+    few.count = 10;
+    assert_ok(rt_rays_save(&few, path, error));
+    for (int i = 0; i < 2; i++) {
+        mallopt(M_PERTURB, i ? 0x55 : 0x2a); /* what memory is filled with */
+        assert_ok(rt_rays_load(path, RT_RAY_RANDOM, &read, error));
+        mallopt(M_PERTURB, 0);
+        assert_int_equal(read.rays[9].source, 0);
+        fingerprints[i] = read.fingerprint;
+        rt_rayset_clear(&read);
+    }
+    assert_true(fingerprints[0] == fingerprints[1]);
+    assert_int_equal(remove(path), 0);
 }
 
 /* There is no room for the usual distance behind it: the camera and the light that every scene gets are put

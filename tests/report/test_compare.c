@@ -150,24 +150,44 @@ RT_TEST_IN_PLACE(strict_makes_something_slower_an_exit_code) {
     assert_int_equal(raytally(place, "compare b a --strict"), 0);
 }
 
+/* A program that lies beside the experiment, as `other`: lines before it becomes raytally, and its arguments.
+ */
+static void write_other(const Place *place, const char *before, const char *arguments) {
+    char script[1024];
+    snprintf(script, sizeof script, "#!/bin/bash\ncd '%s' || exit\n%s\nexec '%s' %s\n", place->folder, before,
+             RT_PROGRAM, arguments);
+    write_in(place, "other", script);
+    snprintf(script, sizeof script, "chmod +x '%s/other'", place->folder);
+    assert_int_equal(system(script), 0);
+}
+
 /* The other program has another accelerator in the place of the grid in the second round, as one has none
  * whose limit of time it goes beyond. */
 RT_TEST_IN_PLACE(what_was_not_timed_in_every_round_is_not_compared) {
     const Place *place = *state;
-    char script[1024];
-    snprintf(script, sizeof script,
-             "#!/bin/bash\ncd '%s' || exit\necho >>runs\n[ \"$(wc -l <runs)\" != 2 ] || set -- "
-             "\"${@/grid/octree}\"\nexec '%s' \"$@\"\n",
-             place->folder, RT_PROGRAM);
-    write_in(place, "other", script);
-    snprintf(script, sizeof script, "chmod +x '%s/other'", place->folder);
-    assert_int_equal(system(script), 0);
+    write_other(place, "echo >>runs\n[ \"$(wc -l <runs)\" != 2 ] || set -- \"${@/grid/octree}\"", "\"$@\"");
     assert_int_equal(raytally(place,
                               "compare balls:size=1 --accel bvh --accel grid --rays random --limit 100 "
                               "--rounds 6 --with ./other"),
                      0);
     assert_in_file(place, "output", "not timed");
     assert_in_file(place, "output", "only before");
+}
+
+/* What is advised is what there is: the options that it names are those of the commands that it names. */
+RT_TEST_IN_PLACE(programs_that_record_other_rays_are_told_how_to_compare_all_the_same) {
+    const Place *place = *state;
+    write_other(place, "", "\"$@\" --seed 7");
+    assert_int_equal(
+        raytally(place, "compare balls:size=1 --accel bvh --rays random --limit 100 --with ./other"), 2);
+    assert_in_file(place, "message", "do not record the same rays");
+    assert_in_file(
+        place, "message",
+        "with `raytally rays`, and measure each program on that file: `raytally bench --rays-from");
+    assert_int_equal(raytally(place, "rays balls:size=1 --rays random --limit 100 -o rays.npy"), 0);
+    assert_int_equal(
+        raytally(place, "bench balls:size=1 --accel bvh --rays nearest --rays-from rays.npy --count-only"),
+        0);
 }
 
 RT_TESTS(compare, NULL, NULL)

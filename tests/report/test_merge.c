@@ -46,6 +46,8 @@ RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out one"), 0);
     assert_int_equal(raytally(place, "merge s3 s1 s4 s2 -o all"), 0);
     assert_in_file(place, "output", "holds          object_tests of grid falls with density on cloud");
+    assert_in_file(place, "message", "joined 4 shards: 30 cells of 5 scenes");
+    assert_not_in_file(place, "message", "nothing was left to measure");
     char *one = read_in(place, "one/counts.csv"), *all = read_in(place, "all/counts.csv");
     assert_string_equal(one, all);
     rt_free(one);
@@ -107,6 +109,48 @@ RT_TEST_IN_PLACE(a_shard_is_gone_on_with_as_the_shard_that_it_is) {
     assert_in_file(place, "message", "this is a run with another --shard (2/4)");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume"), 0);
     assert_in_file(place, "message", "nothing was left to measure");
+}
+
+/* Times on one thread are processor time, those on two are wall time. */
+RT_TEST_IN_PLACE(cells_timed_on_other_numbers_of_threads_are_not_mixed) {
+    const Place *place = *state;
+    assert_int_equal(raytally(place, "run small.yaml --threads 2 --shard 3/4 --out two"), 0);
+    refused(place, "merge s1 s2 two s4 -o all",
+            "s1 was timed on 1 thread, and two on 2: their times would not compare. Run one of them again");
+    assert_int_equal(raytally(place, "run small.yaml --threads 2 --out part --only cloud:n=50"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out part --resume"), 2);
+    assert_in_file(place, "message", "part was timed on 2 threads so far, and would be on 1 from here on");
+    assert_int_equal(raytally(place, "run small.yaml --threads 2 --out part --resume"), 0);
+    assert_int_equal(raytally(place, "run small.yaml --out part --resume"), 0); /* nothing is left to time */
+}
+
+/* A program with a byte more at its end does the same, but is another one. What a clean commit makes may
+ * differ by paths. */
+RT_TEST_IN_PLACE(another_program_of_uncommitted_sources_is_another_build) {
+    const Place *place = *state;
+    char command[512], program[512];
+    snprintf(command, sizeof command, "cd '%s' && cp '%s' other && printf x >>other && mv s2 mine",
+             place->folder, RT_PROGRAM);
+    assert_int_equal(system(command), 0);
+    snprintf(command, sizeof command,
+             "cd '%s' && ./other run small.yaml --threads 1 --shard 2/4 --out s2 2>message", place->folder);
+    assert_int_equal(system(command), 0);
+    snprintf(program, sizeof program,
+             "cd '%s' && grep -h '\"program\"' s2/manifest.json mine/manifest.json "
+             "| sort -u | wc -l | grep -qx 2",
+             place->folder);
+    assert_int_equal(system(program), 0);
+    char *manifest = read_in(place, "s2/manifest.json");
+    const bool uncommitted =
+        strstr(manifest, "\"dirty\": true") || strstr(manifest, "\"commit\": \"unknown\"");
+    rt_free(manifest);
+    int code = raytally(place, "merge s1 s2 s3 s4 -o all");
+    assert_int_equal(code, uncommitted ? 2 : 0);
+    if (!uncommitted) return;
+    assert_in_file(place, "message", "s1 and s2 are of different builds of raytally");
+    assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume"), 2);
+    assert_in_file(place, "message", "this run was begun by another build");
+    refused(place, "merge s2 s2 -o all", "s2 was measured by another build of raytally");
 }
 
 RT_TESTS(merge, NULL, NULL)
