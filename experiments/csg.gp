@@ -8,7 +8,7 @@ sizes = "small large"
 caption = "'trees of 8 to 64 solids' 'trees of 512 solids'"
 array title[3] = ["solids tested / ray", "extents tested / ray", "ns / ray"]
 
-# Means over all kinds of rays, each weighed by what its whole set has.
+# Means over all kinds of rays, each weighed by what its whole set has; unknown where a kind was left out.
 chosen(size, inner, a) = strcol("scene") eq size."-".inner && strcol("accel") eq word(accels, a)
 per_ray(m) = m == 1 ? column("csg_tests") / column("rays") : m == 2 ? column("extent_tests") / column("rays") : column("ns")
 array value[12 * n_accels]
@@ -18,11 +18,16 @@ do for [s = 1:2] {
     file = m == 1 ? "counts.csv" : "times.csv" # which has no csg_tests, but Embree
     do for [i = 1:2] {
       inner = word("on off", i)
+      whole = 0
+      do for [kind in kinds] {
+        stats file using (strcol("scene") eq word(sizes, s)."-".inner && strcol("kind") eq kind ? column("set_rays") : 0) nooutput
+        whole = whole + STATS_max
+      }
       do for [a = 1:n_accels] {
         stats file using (chosen(word(sizes, s), inner, a) ? column("set_rays") : 0) nooutput
         weight = STATS_sum
         stats file using (chosen(word(sizes, s), inner, a) ? per_ray(m) * column("set_rays") : 0) nooutput
-        value[place(s, m, i, a)] = weight > 0 ? STATS_sum / weight : NaN
+        value[place(s, m, i, a)] = weight > 0 && weight == whole ? STATS_sum / weight : NaN
       }
     }
   }
