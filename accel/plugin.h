@@ -26,6 +26,10 @@ RtStatus rt_plugin_load(const char *path, RtError *error);
  * name, as '\\' may be for a '\'; of a folder, each file in it that ends in .so, by name. */
 RtStatus rt_plugin_load_all(const char *list, RtError *error);
 
+/* Opens in this very process the libraries of which `spec` has accelerators, so that they can be built here
+ * (rt_accel_build_here), for a process that may end with what they do. RT_BROKEN where one has changed. */
+RtStatus rt_plugin_enter(const RtSpec *spec, RtError *error);
+
 /* RT_BAD_INPUT where the registry has no room for so many more accelerators of plugins. */
 RtStatus rt_accel_has_room(size_t more, RtError *error);
 

@@ -36,6 +36,18 @@ says() {
 $(grep -E 'problem|"says"' "$2")"
 }
 
+# refuses PATTERN FILE: nothing on stdout, exit code 2, and a message that says what to do
+refuses() {
+    ends 2 printed accels --plugin "$2"
+    [ ! -s printed ] || complain "raytally accels --plugin $2: writes to stdout"
+    says "$1" printed
+}
+
+# It takes ten seconds, and all else goes on.
+(mkdir forever && cd forever && refuses 'does not survive being loaded: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
+    exit "$failures") &
+forever=$!
+
 # ---- faults ----
 
 verify=(verify balls:size=1 --rays 600 --threads 2 --json)
@@ -66,11 +78,16 @@ fault crash-describe "$crash\) while"
 fault abort "crashed \(Aborted\) .*$at_ray"
 fault exit 'ended its process \(exit code 0\)'
 fault killed 'crashed \(Killed\)'
+fault scribble 'overwrote memory that it shares with raytally while it was built'
+fault kill ''
+fault close ''
+fault daemon ''
 fault divide "crashed \(Floating point exception\) .*$at_ray"
 fault recursion "$crash\) .*$at_ray"
 fault free "crashed \(Aborted\) .*$at_ray"
 fault object 'an object that there is not, 1[0-9] \(the scene has 11 objects\)'
 fault nan 't = nan'
+fault farther 'expected .* got ' "$differs"
 fault wrong 'expected .* got ' "$differs"
 fault null 'expected .* got ' "$differs"
 fault memory "wrote past the 48 bytes of its query's memory"
@@ -158,13 +175,6 @@ ends 0 printed report results/faulty --plugin "$plugins/faulty.so"
 
 # ---- what cannot be loaded ----
 
-# refuses PATTERN FILE: nothing on stdout, exit code 2, and a message that says what to do
-refuses() {
-    ends 2 printed accels --plugin "$2"
-    [ ! -s printed ] || complain "raytally accels --plugin $2: writes to stdout"
-    says "$1" printed
-}
-
 refuses 'nowhere.so: no plugin there' nowhere.so
 echo text >text.so
 refuses 'cannot be loaded: .*text.so' ./text.so
@@ -178,9 +188,10 @@ refuses "it has two accelerators 'unloadable': choose another name" "$plugins/un
 refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
 refuses "'unloadable' lacks its .params" "$plugins/unloadable-PARAMETERS.so"
 refuses "does not fit itself.*depth" "$plugins/unloadable-STANDARD.so"
+refuses "parameter 'mode' of 'unloadable' has 71 choices; 64 is the most" "$plugins/unloadable-CHOICES.so"
 refuses 'does not survive being loaded: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
 refuses 'does not survive being loaded: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
-refuses 'does not survive being loaded: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
+wait $forever || failures=$((failures + 1))
 mkdir folder && cp "$plugins/faulty.so" folder/
 mkdir a:b 'c\d' && cp folder/faulty.so a:b/ && cp folder/faulty.so 'c\d/' && cp "$plugins/odd-LONGER.so" 'c\d/x:y.so'
 for list in folder "$plugins/faulty.so:$plugins/new-accel.so" 'a\:b' 'c\d/faulty.so' 'c\\d/x\:y.so:a\:b'; do

@@ -2,6 +2,7 @@
 /* Raytally's side of an accelerator that lives away: what stands in for it, and what is said of one that
  * broke. See wire.h. */
 #include "accel/away.h"
+#include "accel/plugin/futex.h"
 #include "accel/plugin/now.h"
 #include "accel/plugin/process.h"
 #include "accel/plugin/wire.h"
@@ -33,7 +34,7 @@ typedef struct Away {
     atomic_bool broken;     /* error says why */
     bool gone;              /* the process has ended, and was waited for */
     bool taken[LANES];      /* by queries; lane 0 is nobody's */
-    uint32_t lanes_made;    /* lanes 0..lanes_made-1 have semaphores */
+    unsigned asked[LANES];  /* the number of the last request on each lane, of who has it */
     pthread_mutex_t master; /* of lane 0 */
     RtError error;
 } Away;
@@ -104,11 +105,21 @@ static void end_hanging(Away *away, const char *doing, double limit) {
     break_away(away, what, doing, true);
 }
 
-/* Has it ended, or hung for longer than it may? */
-static bool look_after(Away *away, const char *doing, double waited, double limit) {
+/* Whether its plugin wrote to the words of a lane, which are known at any time. */
+static bool is_overwritten(const Away *away, uint32_t number, unsigned answered) {
+    const unsigned asked = away->asked[number];
+    return away->wire->lanes[number].asked != asked || (answered != asked && answered != asked - 1);
+}
+
+/* Is it broken, has it ended, or hung for longer than it may? */
+static bool look_after(Away *away, const char *doing, bool overwritten, double waited, double limit) {
     pthread_mutex_lock(&away->lock);
     RtProcessEnd end;
-    if (!away->gone && rt_process_wait(&away->process, 0, &end)) {
+    if (!away->gone && overwritten) {
+        away->gone = true;
+        rt_process_end(&away->process, 0);
+        break_away(away, "it overwrote memory that it shares with raytally", doing, false);
+    } else if (!away->gone && rt_process_wait(&away->process, 0, &end)) {
         char what[160];
         away->gone = true;
         say_end(away, end, what, sizeof what);
@@ -123,23 +134,22 @@ static bool look_after(Away *away, const char *doing, double waited, double limi
 
 /* Waits for the answer on a lane; false if there will be none. What is waited for is time in which this
  * process looked: if both were stopped for a while, that was no time. */
-static bool wait_for(Away *away, Lane *lane, const char *doing, double limit) {
+static bool wait_for(Away *away, uint32_t number, const char *doing, double limit) {
+    const struct timespec some = {.tv_nsec = 50000000};
+    atomic_uint *answered = &away->wire->lanes[number].answered;
     unsigned long beat = away->wire->beat;
     double last = rt_wall_seconds(), waited = 0;
     for (;;) {
-        struct timespec until;
-        clock_gettime(CLOCK_MONOTONIC, &until);
-        until.tv_nsec += 50000000;
-        until.tv_sec += until.tv_nsec / 1000000000;
-        until.tv_nsec %= 1000000000;
-        if (sem_clockwait(&lane->answered, CLOCK_MONOTONIC, &until) == 0) return true;
-        if (errno == EINTR) continue;
+        unsigned value = atomic_load_explicit(answered, memory_order_acquire);
+        bool overwritten = is_overwritten(away, number, value);
+        if (!overwritten && value == away->asked[number]) return true;
+        if (!overwritten && rt_futex_wait(answered, value, &some)) continue;
         unsigned long seen = away->wire->beat;
         double now = rt_wall_seconds();
         waited = seen == beat ? waited + fmin(now - last, 1) : 0;
         beat = seen;
         last = now;
-        if (look_after(away, doing, waited, limit)) return false;
+        if (look_after(away, doing, overwritten, waited, limit)) return false;
     }
 }
 
@@ -153,8 +163,8 @@ static bool ask_in_place(Away *away, uint32_t number, bool begin, WireWork *work
     lane->work = work;
     lane->bytes = bytes;
     lane->begin = begin;
-    sem_post(&lane->asked);
-    return wait_for(away, lane, doing, away->patience);
+    rt_futex_set(&lane->asked, ++away->asked[number]);
+    return wait_for(away, number, doing, away->patience);
 }
 
 /* The same for one that comes from elsewhere, and goes back there only if it was answered. */
@@ -193,12 +203,6 @@ void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes) {
 
 /* ---- building ---- */
 
-static void make_lane(Away *away) {
-    Lane *lane = &away->wire->lanes[away->lanes_made++];
-    sem_init(&lane->asked, 1, 0);
-    sem_init(&lane->answered, 1, 0);
-}
-
 /* The memory that both have, and the pipe whose end says that raytally is no more. */
 static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
     away->wire =
@@ -207,7 +211,7 @@ static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
         away->wire = NULL;
         return rt_fail_memory(error, "what is shared with a plugin", sizeof(Wire));
     }
-    make_lane(away);
+    away->asked[0] = away->wire->lanes[0].asked = WIRE_BUILD;
     if (pipe2(alive, O_CLOEXEC) == 0) return RT_OK;
     return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
 }
@@ -215,11 +219,9 @@ static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
 static RtStatus start(Away *away, const RtSpec *spec, int threads, RtError *error) {
     int alive[2] = {-1, -1};
     RT_TRY(connect_away(away, alive, error));
-    RtStatus status = rt_process_start(&away->process, error);
-    if (status == RT_OK && away->process.pid == 0) {
-        close(alive[1]);
-        rt_wire_serve(away->wire, spec, away->base.scene, threads, alive[0]);
-    }
+    RtStatus status = rt_process_start(&away->process, alive[0], error);
+    if (status == RT_OK && away->process.pid == 0) rt_wire_serve(away->wire, spec, away->base.scene, threads);
+    madvise(away->wire, sizeof(Wire), MADV_DONTFORK); /* other plugins do not get it */
     close(alive[0]);
     away->alive = alive[1];
     return status;
@@ -230,11 +232,11 @@ static RtStatus take_built(Away *away, RtError *error) {
     char doing[96];
     WireBuilt built;
     snprintf(doing, sizeof doing, "it was built over %u objects", away->base.scene->geometry.object_count);
-    if (!wait_for(away, &away->wire->lanes[0], doing, 10 * away->patience)) return why(away, error);
+    if (!wait_for(away, 0, doing, 10 * away->patience)) return why(away, error);
     memcpy(&built, away->wire->lanes[0].message, sizeof built);
     if (built.status != RT_OK) return hand_on(built.status, "", &built.error, error);
-    away->base.exact = built.exact;
-    away->base.counts = built.counts;
+    away->base.exact = built.exact != 0;
+    away->base.counts = built.counts != 0;
     away->base.build_seconds = built.seconds;
     away->base.build_tally = built.description.build;
     away->description = built.description;
@@ -297,7 +299,6 @@ static uint32_t take_lane(Away *away) {
     pthread_mutex_lock(&away->lock);
     while (lane < LANES && away->taken[lane]) lane++;
     if (lane < LANES) away->taken[lane] = true;
-    if (lane == away->lanes_made && lane < LANES) make_lane(away);
     pthread_mutex_unlock(&away->lock);
     return lane;
 }
@@ -309,7 +310,7 @@ static void give_lane_back(Away *away, uint32_t lane) {
 }
 
 static RtStatus open_lane(Away *away, uint32_t lane, RtError *error) {
-    WireChecked message = {.lane = lane};
+    WireChecked message = {.lane = lane, .done = away->asked[lane]};
     if (!ask_master(away, rt_wire_open, &message, sizeof message, "a query was opened"))
         return why(away, error);
     if (message.status == RT_OK) return RT_OK;
@@ -342,38 +343,40 @@ static void begin(const RtAccel *accel, void *scratch) {
 
 /* ---- kernels ---- */
 
-/* A stream of at most WIRE_RAYS; the answers lie in the lane's message, which is given back: NULL where it
- * broke. */
-static const WireRays *trace_some(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                                  uint32_t count, bool any, RtTally *tallies) {
+/* A stream of at most WIRE_RAYS; returns the answers, which lie in shared memory, or NULL where it broke. */
+static const RtHit *trace_some(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
+                               uint32_t count, bool any, RtTally *tallies) {
     Away *away = of(accel);
     AwayQuery *query = scratch->own;
     WireRays *asked = (WireRays *)away->wire->lanes[query->lane].message;
     char doing[64];
     snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, count == 1 ? "" : "s");
     *asked = (WireRays){.count = count, .any = any, .counted = tallies != NULL};
-    memcpy(rt_wire_rays(asked), rays, count * sizeof *rays);
+    memcpy(rt_wire_rays(asked, count), rays, count * sizeof *rays);
     bool begin_anew = query->begin;
     query->begin = false;
     if (!ask_in_place(away, query->lane, begin_anew, rt_wire_trace, rt_wire_rays_bytes(count), doing))
         return NULL;
     for (int kind = 0; kind < RT_RAY_KIND_COUNT && tallies; kind++)
         rt_tally_add(&tallies[kind], &asked->tallies[kind]);
-    return asked;
+    return asked->hits;
 }
 
-/* What is written to shared memory is believed as far as it is possible. */
-static RtHit take_hit(const RtAccel *accel, RtHit hit) {
-    return hit.object < accel->scene->geometry.object_count ? hit : RT_MISS;
+static bool is_object(const RtAccel *accel, uint32_t object) {
+    return object < accel->scene->geometry.object_count;
 }
 
 static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                           RtHit *hits, RtTally *tallies) {
     for (size_t first = 0; first < count; first += WIRE_RAYS) {
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
-        const WireRays *answer = trace_some(accel, scratch, rays + first, n, false, tallies);
-        for (uint32_t i = 0; i < n; i++)
-            hits[first + i] = answer ? take_hit(accel, answer->hits[i]) : RT_MISS;
+        const RtHit *answers = trace_some(accel, scratch, rays + first, n, false, tallies);
+        if (answers) memcpy(hits + first, answers, n * sizeof(RtHit));
+        for (size_t i = first; i < first + n; i++) {
+            bool sound = answers && is_object(accel, hits[i].object) && hits[i].t >= rays[i].tmin &&
+                         hits[i].t <= rays[i].tmax;
+            if (!sound) hits[i] = RT_MISS;
+        }
     }
 }
 
@@ -381,9 +384,12 @@ static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const
                            uint32_t *blockers, RtTally *tallies) {
     for (size_t first = 0; first < count; first += WIRE_RAYS) {
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
-        const WireRays *answer = trace_some(accel, scratch, rays + first, n, true, tallies);
-        for (uint32_t i = 0; i < n; i++)
-            blockers[first + i] = (answer ? take_hit(accel, answer->hits[i]) : RT_MISS).object;
+        const RtHit *answers = trace_some(accel, scratch, rays + first, n, true, tallies);
+        for (uint32_t i = 0; i < n; i++) {
+            uint32_t *blocker = &blockers[first + i];
+            memcpy(blocker, answers ? &answers[i].object : &RT_MISS.object, sizeof *blocker);
+            if (!is_object(accel, *blocker)) *blocker = RT_NO_OBJECT;
+        }
     }
 }
 
@@ -433,12 +439,16 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
         uint32_t count = some->count < WIRE_BOXES ? some->count : WIRE_BOXES;
         for (uint32_t i = 0; i < count; i++) {
             const WireBox *shown = &some->boxes[i];
+            if (!rt_wire_is_box(&shown->box, shown->depth)) {
+                rt_away_break(accel, "it overwrote boxes", "it showed them");
+                break;
+            }
             viewer.show(viewer.context,
-                        &(RtBoxView){.box = &shown->box, .depth = shown->depth, .leaf = shown->leaf});
+                        &(RtBoxView){.box = &shown->box, .depth = shown->depth, .leaf = shown->leaf != 0});
         }
         first += count;
-        more = count == WIRE_BOXES;
-        all = some->complete;
+        more = count == WIRE_BOXES && !away->broken && first < UINT32_MAX;
+        all = some->complete != 0;
     }
     if (!all) rt_away_break(accel, "there is no memory for all its boxes", "it showed them");
     rt_free(some);

@@ -2,6 +2,7 @@
 #include "accel/plugin/host.h"
 
 #include "accel/plugin/query.h"
+#include "accel/plugin/wire.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
@@ -107,8 +108,6 @@ static RtStatus validate(const RtAccel *accel, RtError *error) {
                    *message ? message : "it is not valid and does not say why");
 }
 
-enum { MOST_DEPTH = 10000 };
-
 typedef struct Showing {
     RtPluginAccel *accel;
     RtBoxViewer viewer;
@@ -119,7 +118,7 @@ static void show_box(void *context, const raytally_box *theirs, uint32_t depth, 
     RtBox box;
     RtError said;
     if (theirs) memcpy(&box, theirs, sizeof box);
-    if (!theirs || !rt_finite(box.lo) || !rt_finite(box.hi) || depth > MOST_DEPTH) {
+    if (!theirs || !rt_wire_is_box(&box, depth)) {
         if (theirs)
             rt_fail(&said, RT_BROKEN, "it showed a box at depth %u from (%g, %g, %g) to (%g, %g, %g)", depth,
                     (double)box.lo.x, (double)box.lo.y, (double)box.lo.z, (double)box.hi.x, (double)box.hi.y,

@@ -15,7 +15,7 @@ typedef struct RtPluginOps {
     const char *path;         /* of the library */
     uint64_t fingerprint;     /* of its bytes, when it was loaded */
     uint32_t place;           /* of the table in the library */
-    raytally_accel_ops table; /* where it is entered (rt_library_enter); else nothing */
+    raytally_accel_ops table; /* where it is entered (rt_plugin_enter); else nothing */
 } RtPluginOps;
 
 /* Fills the operations and parameters from a table that was looked at, the text of which has to stay. */

@@ -93,7 +93,9 @@ RtStatus rt_library_open(const char *path, RtTables *tables, RtError *error) {
     return RT_OK;
 }
 
-RtStatus rt_library_enter(RtPluginOps *ops, RtError *error) {
+/* Opens the library of a plugin's accelerator, if that file is still what it was, for *ops to have its table.
+ */
+static RtStatus enter(RtPluginOps *ops, RtError *error) {
     RtTables tables;
     uint64_t fingerprint;
     RT_TRY(rt_library_fingerprint(ops->path, &fingerprint, error));
@@ -105,6 +107,14 @@ RtStatus rt_library_enter(RtPluginOps *ops, RtError *error) {
         table->param_count != ops->ops.param_count)
         return rt_fail(error, RT_BROKEN, "%s: it has other tables each time it is loaded", ops->path);
     ops->table = *table;
+    return RT_OK;
+}
+
+RtStatus rt_plugin_enter(const RtSpec *spec, RtError *error) {
+    for (uint32_t i = 0; i < spec->layer_count; i++) {
+        const RtAccelOps *ops = spec->layers[i].ops;
+        if (ops->away) RT_TRY(enter((RtPluginOps *)ops, error));
+    }
     return RT_OK;
 }
 
@@ -138,15 +148,16 @@ static RtStatus check_values(const char *path, const char *name, const RtParam *
     return RT_OK;
 }
 
-/* Words joined by '|', as they can stand in a spec. */
-static bool are_choices(const char *choices) {
+/* The number of words joined by '|', each as a spec can have it; 0 if one cannot be in a spec. */
+static size_t count_choices(const char *choices) {
     static const char others[] = "+:,=| \t\n";
-    for (const char *word = choices;; word++) {
+    size_t count = 1;
+    for (const char *word = choices;; word++, count++) {
         size_t length = strcspn(word, others);
-        if (length == 0 || length >= RT_MAX_NAME) return false;
+        if (length == 0 || length >= RT_MAX_NAME) return 0;
         word += length;
-        if (*word == '\0') return true;
-        if (*word != '|') return false;
+        if (*word == '\0') return count;
+        if (*word != '|') return 0;
     }
 }
 
@@ -158,7 +169,7 @@ static const char *wrong_member(const raytally_param *p) {
            : !p->standard            ? "`standard`, its default"
            : !p->meaning             ? "its `meaning`"
            : !p->source              ? "its `source`"
-           : p->type == RAYTALLY_CHOICE && (!p->choices || !are_choices(p->choices))
+           : p->type == RAYTALLY_CHOICE && (!p->choices || count_choices(p->choices) == 0)
                ? "`choices`, words joined by '|'"
            : number && !p->test_values   ? "its `test_values`"
            : number && !(p->lo <= p->hi) ? "a range: `lo` is above `hi`"
@@ -172,6 +183,11 @@ static RtStatus check_params(const char *path, const raytally_accel_ops *table, 
         if (wrong)
             return rt_fail(error, RT_BAD_INPUT, "%s: parameter number %u of '%s' lacks %s", path, i,
                            table->name, wrong);
+        if (table->params[i].type == RAYTALLY_CHOICE &&
+            count_choices(table->params[i].choices) > RT_MAX_CHOICES)
+            return rt_fail(error, RT_BAD_INPUT, "%s: parameter '%s' of '%s' has %zu choices; %d is the most",
+                           path, table->params[i].name, table->name, count_choices(table->params[i].choices),
+                           RT_MAX_CHOICES);
         for (uint32_t k = 0; k < i; k++) {
             if (strcmp(table->params[k].name, table->params[i].name) == 0)
                 return rt_fail(error, RT_BAD_INPUT, "%s: '%s' has two parameters '%s'", path, table->name,

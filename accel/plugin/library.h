@@ -34,10 +34,6 @@ void rt_plugin_join(void);
 /* Bytes of the file (XXH3). */
 RtStatus rt_library_fingerprint(const char *path, uint64_t *fingerprint, RtError *error);
 
-/* Opens the library of a plugin's accelerator, if that file is still what it was, and gives *ops its table.
- */
-RtStatus rt_library_enter(RtPluginOps *ops, RtError *error);
-
 /* To out[0..room): so many bytes of it, or 0 where there are not enough. */
 size_t rt_tables_pack(const RtTables *tables, char *out, size_t room);
 

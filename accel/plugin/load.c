@@ -21,7 +21,7 @@ enum { MOST_SECONDS = 10 }; /* that a library may take to be loaded and asked fo
 
 /* What the trial writes. */
 typedef struct Answer {
-    bool given;
+    uint32_t given; /* 0: nothing was; the plugin may write to all of this */
     RtError said;
     size_t bytes;
     char packed[4 << 20]; /* [bytes] the tables, where said.status is RT_OK */
@@ -31,7 +31,6 @@ static _Noreturn void answer_trial(const char *path, Answer *answer) {
     RtTables tables;
     RtError said = {RT_OK, ""};
     alarm(MOST_SECONDS + 1); /* where nobody waits any more */
-    dup2(STDERR_FILENO, STDOUT_FILENO);
     RtStatus status = rt_library_open(path, &tables, &said);
     if (status == RT_OK) status = rt_tables_check(path, &tables, &said);
     if (status == RT_OK) answer->bytes = rt_tables_pack(&tables, answer->packed, sizeof answer->packed);
@@ -40,7 +39,7 @@ static _Noreturn void answer_trial(const char *path, Answer *answer) {
                          sizeof answer->packed);
     said.status = status;
     answer->said = said;
-    answer->given = true;
+    answer->given = 1;
     _exit(EXIT_SUCCESS);
 }
 
@@ -49,7 +48,7 @@ static RtStatus run_trial(const char *path, Answer *answer, RtError *error) {
     char what[160];
     RtProcess trial;
     RtProcessEnd end;
-    RT_TRY(rt_process_start(&trial, error));
+    RT_TRY(rt_process_start(&trial, -1, error));
     if (trial.pid == 0) answer_trial(path, answer);
     bool ended = rt_process_wait(&trial, 1000 * MOST_SECONDS, &end);
     rt_process_end(&trial, 0);

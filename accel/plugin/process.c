@@ -5,11 +5,15 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -26,7 +30,55 @@ static void await_go(int go) {
     if (got != 1) _exit(EXIT_FAILURE);
 }
 
-RtStatus rt_process_start(RtProcess *process, RtError *error) {
+/* Closes all that raytally has open but its messages to the user, and `keep`. */
+static void close_inherited(int keep) {
+    int nothing = open("/dev/null", O_RDONLY);
+    if (nothing >= 0) dup2(nothing, STDIN_FILENO);
+    dup2(STDERR_FILENO, STDOUT_FILENO);
+    if (keep >= 0) dup2(keep, RT_PROCESS_KEPT);
+    close_range((unsigned)RT_PROCESS_KEPT + (keep >= 0), ~0U, 0);
+}
+
+/* Has the kernel refuse (EPERM) what would end raytally or stop it: signals to it, to its process group and
+ * to all processes. Where the kernel cannot do that, nothing is refused. */
+static void protect(pid_t raytally, pid_t group) {
+    const struct {
+        long call;
+        int argument;
+        pid_t value;
+    } refused[] = {{SYS_kill, 0, raytally},
+                   {SYS_kill, 0, -group},
+                   {SYS_kill, 0, -1},
+                   {SYS_tkill, 0, raytally},
+                   {SYS_tgkill, 0, raytally},
+                   {SYS_rt_sigqueueinfo, 0, raytally},
+                   {SYS_rt_tgsigqueueinfo, 0, raytally},
+                   {SYS_pidfd_open, 0, raytally},
+                   {SYS_prlimit64, 0, raytally},
+                   {SYS_ptrace, 1, raytally},
+                   {SYS_process_vm_writev, 0, raytally},
+                   {SYS_setpgid, 1, group}};
+    enum { RULES = sizeof refused / sizeof refused[0], A_RULE = 5 };
+    struct sock_filter filter[RULES * A_RULE + 1];
+    const size_t low = __BYTE_ORDER == __BIG_ENDIAN ? 4 : 0; /* half of an argument */
+    for (size_t i = 0; i < RULES; i++) {
+        const size_t argument = offsetof(struct seccomp_data, args) + 8 * (size_t)refused[i].argument + low;
+        const struct sock_filter rule[A_RULE] = {
+            BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
+            BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)refused[i].call, 0, 3),
+            BPF_STMT(BPF_LD | BPF_W | BPF_ABS, (uint32_t)argument),
+            BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (uint32_t)refused[i].value, 0, 1),
+            BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM)};
+        memcpy(filter + i * A_RULE, rule, sizeof rule);
+    }
+    filter[RULES * A_RULE] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
+    const struct sock_fprog program = {sizeof filter / sizeof filter[0], filter};
+    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) /* the flag: it costs what is timed nothing */
+        syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &program);
+}
+
+RtStatus rt_process_start(RtProcess *process, int keep, RtError *error) {
+    const pid_t raytally = getpid(), group = getpgrp();
     int go[2];
     *process = (RtProcess){.descriptor = -1};
     if (pipe2(go, O_CLOEXEC) != 0) return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
@@ -36,8 +88,9 @@ RtStatus rt_process_start(RtProcess *process, RtError *error) {
     if (process->pid == 0) {
         close(go[1]);
         await_go(go[0]);
-        close(go[0]);
         setpgid(0, 0); /* what it starts goes with it */
+        close_inherited(keep);
+        protect(raytally, group);
         return RT_OK;
     }
     if (process->pid > 0) {

@@ -26,8 +26,11 @@ typedef struct RtProcessEnd {
 } RtProcessEnd;
 
 /* Forks: *process is the child, or, in the child, has pid 0. What the child starts in its turn does not
- * outlive it. RT_IO where there can be no process. */
-RtStatus rt_process_start(RtProcess *process, RtError *error);
+ * outlive it. The child has no file of raytally's open but stderr, which is its stdout, too, and the
+ * descriptor `keep` (-1: none), which becomes RT_PROCESS_KEPT; it cannot send raytally signals. RT_IO where
+ * there can be no process. */
+enum { RT_PROCESS_KEPT = 3 };
+RtStatus rt_process_start(RtProcess *process, int keep, RtError *error);
 
 /* Sends it a signal, if it still is. */
 void rt_process_signal(const RtProcess *process, int number);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The process in which an accelerator lives that raytally does not trust: see wire.h. */
 #include "accel/away.h"
-#include "accel/plugin/library.h"
+#include "accel/plugin.h"
+#include "accel/plugin/futex.h"
 #include "accel/plugin/now.h"
+#include "accel/plugin/process.h"
 #include "accel/plugin/wire.h"
 
 #include "base/memory.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <fenv.h>
 #include <locale.h>
 #include <pthread.h>
@@ -25,7 +25,6 @@
 static struct Served {
     Wire *wire;
     RtAccel *accel;
-    int alive;
 } served;
 
 void rt_away_beat(void) {
@@ -42,7 +41,7 @@ static void on_signal(int number, siginfo_t *info, void *unused) {
     const RtRay *ray = now ? now->ray : NULL;
     if (ray) {
         crash->ray = *ray;
-        crash->has_ray = true;
+        crash->has_ray = 1;
         const char *at = number == SIGSEGV || number == SIGBUS ? info->si_addr : NULL;
         for (uint32_t i = 0; at && i < RT_GUARD_COUNT; i++) {
             if (at >= now->guards[i].begin && at < now->guards[i].end) crash->out_of = i + 1;
@@ -86,11 +85,13 @@ static void watch_signals(void) {
     watch_thread();
 }
 
-/* Ends when raytally does, whatever the plugin is at. */
+/* Ends when raytally does, whatever the plugin is at. One that closes all files closes this one, too:
+ * raytally is then no more when the process has another parent. */
 static void *watch_raytally(void *unused) {
+    const pid_t raytally = getppid();
     char byte;
-    while (read(served.alive, &byte, 1) < 0 && errno == EINTR) {
-    }
+    while (read(RT_PROCESS_KEPT, &byte, 1) < 0 && getppid() == raytally)
+        nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL);
     (void)unused;
     if (getpgrp() == getpid()) kill(0, SIGKILL); /* with all that it started */
     _exit(EXIT_FAILURE);
@@ -105,18 +106,6 @@ static void limit_memory(void) {
     rlim_t bytes = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + 2 * (rlim_t)RT_ACCEL_MAX_BYTES;
     if (known) setrlimit(RLIMIT_DATA, &(struct rlimit){bytes, bytes});
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-}
-
-/* Keeps nothing of raytally's open but its messages to the user, and the end of `alive`; and what the plugin
- * forks does not answer in its place. */
-static void let_go(void) {
-    int nothing = open("/dev/null", O_RDONLY);
-    if (nothing >= 0) dup2(nothing, STDIN_FILENO);
-    madvise(served.wire, sizeof(Wire), MADV_DONTFORK);
-    dup2(STDERR_FILENO, STDOUT_FILENO);
-    int high = dup2(served.alive, STDERR_FILENO + 1);
-    if (high >= 0) served.alive = high;
-    close_range((unsigned)STDERR_FILENO + 2, ~0U, 0);
 }
 
 static bool is_debugged(void) {
@@ -208,10 +197,11 @@ static void trace_any(RtQuery *query, WireRays *asked) {
     const RtAccelOps *ops = query->accel->ops;
     uint32_t *blockers = (uint32_t *)asked->hits;
     if (asked->counted) {
-        ops->occluded_counted(query->accel, query->scratch, rt_wire_rays(asked), asked->count, blockers,
-                              asked->tallies);
+        ops->occluded_counted(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
+                              blockers, asked->tallies);
     } else {
-        ops->occluded(query->accel, query->scratch, rt_wire_rays(asked), asked->count, blockers);
+        ops->occluded(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
+                      blockers);
     }
     for (uint32_t i = asked->count; i-- > 0;) {
         uint32_t blocker;
@@ -226,24 +216,27 @@ void rt_wire_trace(RtQuery *query, void *message) {
     if (asked->any) {
         trace_any(query, asked);
     } else if (asked->counted) {
-        ops->nearest_counted(query->accel, query->scratch, rt_wire_rays(asked), asked->count, asked->hits,
-                             asked->tallies);
+        ops->nearest_counted(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
+                             asked->hits, asked->tallies);
     } else {
-        ops->nearest(query->accel, query->scratch, rt_wire_rays(asked), asked->count, asked->hits);
+        ops->nearest(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
+                     asked->hits);
     }
 }
 
 /* ---- lanes ---- */
 
 /* Answers one request after the other, of which each is done on memory of this process alone, until there is
- * none to do: the query is then cleared; lane 0 ends with the accelerator. A plugin may have told its thread
+ * none to do: the query is then cleared; lane 0 ends with the accelerator. `done` is the number of the last
+ * request that others have answered. A plugin may have told its thread
  * to round otherwise, or to drop what is denormal; hit functions do neither. */
-static void serve_lane(Lane *lane, RtQuery *query) {
+static void serve_lane(Lane *lane, unsigned done, RtQuery *query) {
     char *message = rt_alloc_unset(MESSAGE_BYTES, 1);
     if (!message) _exit(EXIT_FAILURE);
     for (bool more = true; more;) {
-        while (sem_wait(&lane->asked) != 0) {
-        }
+        unsigned asked;
+        while ((asked = atomic_load_explicit(&lane->asked, memory_order_acquire)) != done + 1)
+            rt_futex_wait(&lane->asked, asked, NULL);
         WireWork *work = lane->work;
         size_t bytes = lane->bytes;
         if (work) {
@@ -257,13 +250,14 @@ static void serve_lane(Lane *lane, RtQuery *query) {
         }
         more = work && served.accel;
         rt_away_beat();
-        sem_post(&lane->answered);
+        rt_futex_set(&lane->answered, ++done);
     }
     rt_free(message);
 }
 
 typedef struct Opening {
     Lane *lane;
+    unsigned done;
     RtQuery query;
 } Opening;
 
@@ -271,7 +265,7 @@ static void *serve_query(void *context) {
     Opening opening = *(Opening *)context;
     free(context);
     void *stack = watch_thread();
-    serve_lane(opening.lane, &opening.query);
+    serve_lane(opening.lane, opening.done, &opening.query);
     watch_thread_no_more(stack);
     return NULL;
 }
@@ -289,6 +283,7 @@ void rt_wire_open(RtQuery *query, void *message) {
         return;
     }
     opening->lane = &served.wire->lanes[checked->lane];
+    opening->done = checked->done;
     pthread_attr_init(&detached);
     pthread_attr_setdetachstate(&detached, PTHREAD_CREATE_DETACHED);
     if (pthread_create(&thread, &detached, serve_query, opening) != 0) {
@@ -302,11 +297,7 @@ void rt_wire_open(RtQuery *query, void *message) {
 /* ---- all of it ---- */
 
 static void build(const RtSpec *spec, const RtScene *scene, int threads) {
-    WireBuilt built = {.status = RT_OK};
-    for (uint32_t i = 0; i < spec->layer_count && built.status == RT_OK; i++) {
-        const RtAccelOps *ops = spec->layers[i].ops;
-        if (ops->away) built.status = rt_library_enter((RtPluginOps *)ops, &built.error);
-    }
+    WireBuilt built = {.status = rt_plugin_enter(spec, &built.error)};
     if (built.status == RT_OK)
         built.status = rt_accel_build_here(spec, scene, threads, &served.accel, &built.error);
     if (built.status == RT_OK) {
@@ -316,13 +307,13 @@ static void build(const RtSpec *spec, const RtScene *scene, int threads) {
         rt_accel_describe(served.accel, &built.description);
     }
     memcpy(served.wire->lanes[0].message, &built, sizeof built);
-    sem_post(&served.wire->lanes[0].answered);
+    rt_futex_set(&served.wire->lanes[0].answered, WIRE_BUILD);
 }
 
-void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads, int alive) {
+void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int threads) {
     pthread_t thread;
-    served = (struct Served){.wire = wire, .alive = alive};
-    let_go();
+    served = (struct Served){.wire = wire};
+    madvise(wire, sizeof(Wire), MADV_DONTFORK); /* what the plugin forks does not answer in its place */
     limit_memory();
     watch_signals();
     setlocale(LC_ALL, "C"); /* raytally may be a library in a program that has another */
@@ -331,6 +322,6 @@ void rt_wire_serve(Wire *wire, const RtSpec *spec, const RtScene *scene, int thr
         _exit(EXIT_FAILURE); /* it would outlive it */
     wait_for_debugger();
     build(spec, scene, threads);
-    if (served.accel) serve_lane(&wire->lanes[0], NULL);
+    if (served.accel) serve_lane(&wire->lanes[0], WIRE_BUILD, NULL);
     _exit(EXIT_SUCCESS);
 }

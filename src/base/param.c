@@ -155,10 +155,7 @@ static void suggest_choice(const RtParam *param, const char *text, char suggesti
     *suggestion = '\0';
     if (param->type != RT_PARAM_CHOICE) return;
     snprintf(choices, sizeof choices, "%s", param->choices);
-    for (char *name; (name = strsep(&rest, "|"));) {
-        assert(count < RT_MAX_CHOICES);
-        names[count++] = name;
-    }
+    for (char *name; count < RT_MAX_CHOICES && (name = strsep(&rest, "|"));) names[count++] = name;
     rt_suggest(text, names, count, suggestion);
 }
 

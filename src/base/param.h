@@ -29,7 +29,7 @@ typedef struct RtParam {
     RtParamType type;
     const char *standard;    /* the default, as text */
     double lo, hi;           /* range of a number, inclusive */
-    const char *choices;     /* "box|sphere|obb" for RT_PARAM_CHOICE, else NULL */
+    const char *choices;     /* "box|sphere|obb" for RT_PARAM_CHOICE, up to RT_MAX_CHOICES; else NULL */
     const char *test_values; /* values worth testing, "1|4|20"; NULL for choices and flags: all of them */
     const char *meaning;     /* one line; units where there are any */
     const char *source;      /* where the default comes from */

@@ -117,7 +117,7 @@ static void copy_text(char *out, size_t room, const json_t *line, const char *ke
     snprintf(out, room, "%s", text ? text : "");
 }
 
-/* Of two passes the second. */
+/* Of its passes the last. */
 static RtStatus take_line(RtCallgrind *callgrind, const json_t *line, uint32_t *passes, RtError *error) {
     const RtExperiment *e = callgrind->experiment;
     char scene[RT_MAX_LABEL], accel[RT_MAX_LABEL], kind[RT_MAX_LABEL];
@@ -132,8 +132,8 @@ static RtStatus take_line(RtCallgrind *callgrind, const json_t *line, uint32_t *
     if (cell->workload == e->workload_count || rt_ray_kind_parse(kind, &cell->kind, NULL) != RT_OK)
         return rt_fail(error, RT_BAD_INPUT, "raytally under valgrind says what is not understood");
     cell->candidate = rt_candidate_find(e, accel, cell->workload);
+    *passes += (uint32_t)json_integer_value(json_object_get(line, "passes"));
     if (!*cell->why) {
-        *passes += 2;
         RT_TRY(read_total(callgrind, *passes, &cell->instructions, error));
     }
     callgrind->count += cell->candidate < e->candidate_count; /* else a setting that only the child has */
@@ -148,6 +148,29 @@ static RtStatus take_lines(RtCallgrind *callgrind, const char *path, RtError *er
     RtStatus status = callgrind->cells ? RT_OK : rt_fail_memory(error, "counts of instructions", 0);
     for (size_t i = 0; i < json_array_size(lines) && status == RT_OK; i++)
         status = take_line(callgrind, json_array_get(lines, i), &passes, error);
+    json_decref(lines);
+    return status;
+}
+
+RtStatus rt_callgrind_leave_out_broken(const RtCallgrind *callgrind, const RtResults *results,
+                                       RtError *error) {
+    const RtExperiment *e = callgrind->experiment;
+    const uint32_t count = e->workload_count * e->candidate_count * e->kind_count;
+    char path[RT_MAX_PATH];
+    RT_TRY(path_of(callgrind, RT_CALLGRIND_BROKEN, path, error));
+    json_t *lines = json_array();
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t t = i / e->kind_count / e->candidate_count, c = i / e->kind_count % e->candidate_count;
+        const RtRayKind kind = e->kinds[i % e->kind_count];
+        const RtBuildResult *build = rt_build_at(results, t, c);
+        const RtCell *cell = rt_cell_at(results, t, c, kind);
+        if (!build->broken && !cell->broken) continue;
+        json_array_append_new(lines,
+                              json_pack("{s:s, s:s, s:s, s:s}", "scene", e->workloads[t].label, "accel",
+                                        e->candidates[c].label, "kind", rt_ray_kind_name(kind), "why",
+                                        build->broken ? build->limit : cell->limit));
+    }
+    RtStatus status = json_array_size(lines) ? rt_json_lines_save(path, lines, error) : RT_OK;
     json_decref(lines);
     return status;
 }

@@ -15,7 +15,8 @@
 #include "base/table.h"
 #include "bench/workload.h"
 
-#define RT_CALLGRIND_RAYS 4096 /* of a kind and scene, as a rule */
+#define RT_CALLGRIND_RAYS   4096     /* of a kind and scene, as a rule */
+#define RT_CALLGRIND_BROKEN "broken" /* file of the folder: {"scene", "accel", "kind", "why"} a line */
 
 /* RT_NOT_AVAILABLE, and how to get it, where there is no valgrind. */
 RtStatus rt_callgrind_check(RtError *error);
@@ -23,7 +24,8 @@ RtStatus rt_callgrind_check(RtError *error);
 /* ---- the child ---- */
 
 /* Asks the rays that were left in `folder`, and says on `out`, a line of JSON for each cell, what was asked
- * of whom: {"scene", "accel", "kind", "spec", "rays"}, or "why" it was not. */
+ * of whom: {"scene", "accel", "kind", "passes", "spec", "rays"}, or "why" there is no count. Accelerators of
+ * plugins are built in this very process, which ends where one crashes. */
 RtStatus rt_callgrind_serve(const RtExperiment *experiment, const char *folder, FILE *out, RtError *error);
 
 /* ---- who starts it ---- */
@@ -54,6 +56,10 @@ void rt_callgrind_clear(RtCallgrind *callgrind);
  * answers of `accel`, which is exact. */
 RtStatus rt_callgrind_leave_rays(const RtCallgrind *callgrind, uint32_t workload, const RtRaySet *set,
                                  const RtAccel *accel, RtError *error);
+
+/* Leaves word of the accelerators that broke in `results`: the child does not ask them. */
+RtStatus rt_callgrind_leave_out_broken(const RtCallgrind *callgrind, const RtResults *results,
+                                       RtError *error);
 
 /* Runs the child: this program with `arguments` (NULL behind the last), which have it serve the folder. */
 RtStatus rt_callgrind_run(RtCallgrind *callgrind, char *const *arguments, RtError *error);

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The child that valgrind looks at, and the rays that it is left. */
 #include "accel/isa.h"
+#include "accel/plugin.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "bench/callgrind.h"
+#include "bench/json_lines.h"
 #include "bench/measure.h"
 
 #include <inttypes.h>
@@ -102,62 +104,94 @@ static void settle_isa(RtSpec *spec) {
     }
 }
 
-static void say(FILE *out, json_t *line) {
-    json_dumpf(line, out, JSON_COMPACT);
-    fputc('\n', out);
-    fflush(out);
+/* What is served, and to whom. */
+typedef struct Serving {
+    const RtExperiment *experiment;
+    const char *folder;
+    json_t *broken; /* the lines of RT_CALLGRIND_BROKEN, owned */
+    FILE *out;
+} Serving;
+
+static void say(const Serving *serving, json_t *line) {
+    json_dumpf(line, serving->out, JSON_COMPACT);
+    fputc('\n', serving->out);
+    fflush(serving->out);
     json_decref(line);
 }
 
-static RtStatus ask(const RtAccel *accel, const Given *given, RtError *error) {
+/* What an accelerator did wrong on such rays before, or NULL. */
+static const char *why_left_out(const Serving *serving, const char *scene, const char *accel,
+                                const char *kind) {
+    const json_t *line;
+    size_t i;
+    json_array_foreach(serving->broken, i, line) {
+        const char *its_scene, *its_accel, *its_kind, *why;
+        if (json_unpack((json_t *)line, "{s:s, s:s, s:s, s:s}", "scene", &its_scene, "accel", &its_accel,
+                        "kind", &its_kind, "why", &why) == 0 &&
+            strcmp(its_scene, scene) == 0 && strcmp(its_accel, accel) == 0 && strcmp(its_kind, kind) == 0)
+            return why;
+    }
+    return NULL;
+}
+
+static RtStatus ask(const RtAccel *accel, const Given *given, int *passes, RtError *error) {
     RtRunner runner;
     RtTimed timed = {.accel = accel, .set = &given->set};
     RtStatus status = rt_runner_open(&runner, &timed, 1, error);
-    for (int pass = 0; pass < PASSES && status == RT_OK; pass++) status = rt_callgrind_pass(&runner, error);
+    for (; *passes < PASSES && status == RT_OK; ++*passes) status = rt_callgrind_pass(&runner, error);
     rt_runner_close(&runner);
     return status;
 }
 
-static RtStatus serve_accel(const RtExperiment *e, const RtScene *scene, uint32_t t, uint32_t c,
-                            const Given given[RT_RAY_KIND_COUNT], FILE *out, RtError *error) {
+/* The rays of one kind, asked of what *accel is; that is built of `spec` where it is NULL. */
+static RtStatus serve_kind(const RtSpec *spec, const RtScene *scene, const Given *given, RtAccel **accel,
+                           int *passes, RtError *error) {
+    if (!*accel) {
+        /* Also of a plugin: this process is one of its own, and the one that is looked at. */
+        RT_TRY(rt_plugin_enter(spec, error));
+        RT_TRY(rt_accel_build_here(spec, scene, 1, accel, error));
+    }
+    RT_TRY(rt_accel_learn(*accel, given->set.rays, given->hits, given->set.count, error));
+    return ask(*accel, given, passes, error);
+}
+
+static RtStatus serve_accel(const Serving *serving, const RtScene *scene, uint32_t t, uint32_t c,
+                            const Given given[RT_RAY_KIND_COUNT], RtError *error) {
+    const RtExperiment *e = serving->experiment;
     RtSpec spec;
-    RtError why = {RT_OK, ""};
     RtAccel *accel = NULL;
     char text[RT_MAX_SPEC_CHARS];
     const char *label = e->candidates[c].label, *at = e->workloads[t].label;
     RT_TRY(rt_spec_parse(e->candidates[c].spec, &spec, error));
     settle_isa(&spec);
     rt_spec_format(&spec, text);
-    /* Also of a plugin: this process is one of its own, and the one that is looked at. */
-    RtStatus built = rt_accel_build_here(&spec, scene, 1, &accel, &why), status = RT_OK;
-    for (uint32_t k = 0; k < e->kind_count && status == RT_OK; k++) {
+    for (uint32_t k = 0; k < e->kind_count; k++) {
         const Given *g = &given[e->kinds[k]];
-        const char *kind = rt_ray_kind_name(e->kinds[k]);
+        const char *kind = rt_ray_kind_name(e->kinds[k]), *why = why_left_out(serving, at, label, kind);
+        RtError failure = {RT_OK, ""};
+        int passes = 0;
         if (!g->set.count) continue;
-        if (built != RT_OK) {
-            say(out, json_pack("{s:s, s:s, s:s, s:s}", "scene", at, "accel", label, "kind", kind, "why",
-                               why.message));
-            continue;
-        }
-        status = rt_accel_learn(accel, g->set.rays, g->hits, g->set.count, error);
-        if (status == RT_OK) status = ask(accel, g, error);
-        if (status == RT_OK)
-            say(out, json_pack("{s:s, s:s, s:s, s:s, s:I}", "scene", at, "accel", label, "kind", kind, "spec",
-                               text, "rays", (json_int_t)g->set.count));
+        if (!why && serve_kind(&spec, scene, g, &accel, &passes, &failure) != RT_OK) why = failure.message;
+        if (why)
+            say(serving, json_pack("{s:s, s:s, s:s, s:i, s:s}", "scene", at, "accel", label, "kind", kind,
+                                   "passes", passes, "why", why));
+        else
+            say(serving, json_pack("{s:s, s:s, s:s, s:i, s:s, s:I}", "scene", at, "accel", label, "kind",
+                                   kind, "passes", passes, "spec", text, "rays", (json_int_t)g->set.count));
     }
     rt_accel_destroy(accel);
-    return status;
+    return RT_OK;
 }
 
-static RtStatus serve_scene(const RtExperiment *e, uint32_t t, const char *folder, RtScene *scene, FILE *out,
-                            RtError *error) {
+static RtStatus serve_scene(const Serving *serving, uint32_t t, RtScene *scene, RtError *error) {
+    const RtExperiment *e = serving->experiment;
     const RtWorkload *setup = &e->workloads[t];
     Given given[RT_RAY_KIND_COUNT] = {0};
     RtStatus status = rt_scene_sample(scene, setup->width, setup->height, 1, setup->corners, error);
     for (uint32_t k = 0; k < e->kind_count && status == RT_OK; k++)
-        status = read_rays(folder, t, e->kinds[k], &given[e->kinds[k]], error);
+        status = read_rays(serving->folder, t, e->kinds[k], &given[e->kinds[k]], error);
     for (uint32_t c = 0; c < e->candidate_count && status == RT_OK; c++) {
-        if (rt_candidate_runs(e, c, t)) status = serve_accel(e, scene, t, c, given, out, error);
+        if (rt_candidate_runs(e, c, t)) status = serve_accel(serving, scene, t, c, given, error);
     }
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         rt_rayset_clear(&given[k].set);
@@ -167,12 +201,18 @@ static RtStatus serve_scene(const RtExperiment *e, uint32_t t, const char *folde
 }
 
 RtStatus rt_callgrind_serve(const RtExperiment *experiment, const char *folder, FILE *out, RtError *error) {
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+    Serving serving = {.experiment = experiment, .folder = folder, .out = out};
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(folder, RT_CALLGRIND_BROKEN, path, error));
+    if (rt_file_exists(path)) RT_TRY(rt_json_lines_load(path, &serving.broken, error));
+    RtStatus status = RT_OK;
+    for (uint32_t t = 0; t < experiment->workload_count && status == RT_OK; t++) {
         RtScene scene;
-        RT_TRY(rt_workload_open_scene(&experiment->workloads[t], &scene, error));
-        RtStatus status = serve_scene(experiment, t, folder, &scene, out, error);
+        status = rt_workload_open_scene(&experiment->workloads[t], &scene, error);
+        if (status != RT_OK) break;
+        status = serve_scene(&serving, t, &scene, error);
         rt_scene_clear(&scene);
-        RT_TRY(status);
     }
-    return RT_OK;
+    json_decref(serving.broken);
+    return status;
 }

@@ -174,6 +174,7 @@ RtStatus rt_measure_rows(const RtAccel *accel, const RtRaySet *set, int threads,
         size_t chunks = (set->count + CHUNK - 1) / CHUNK;
         status = rt_parallel_for(chunks, work.pass.threads, count_rows, &work, error);
     }
+    if (status == RT_OK) status = rt_accel_check(accel, error);
     if (status == RT_OK) {
         rows->hits = work.pass.hits;
         rows->blocked = work.pass.blocked;

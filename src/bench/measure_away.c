@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "bench/measure_here.h"
 
+#include <math.h>
 #include <string.h>
 #include <xxhash.h>
 
@@ -99,10 +100,19 @@ static RtStatus remote_do(Remote *remote, RtAwayWork *work, RemoteMessage *messa
     return rt_accel_check(remote->query.accel, error);
 }
 
+static bool is_duration(double seconds) {
+    return isfinite(seconds) && seconds >= 0;
+}
+
 static RtStatus time_remote(void *context, uint32_t repeats, double *seconds, double *wall, RtError *error) {
     RemoteMessage message; /* of which the rays stay unset */
     message.repeats = repeats;
     RT_TRY(remote_do(context, time_there, &message, HEAD, error));
+    if (!is_duration(message.seconds) || !is_duration(message.wall)) {
+        const RtAccel *accel = ((const Remote *)context)->query.accel;
+        rt_away_break(accel, "it overwrote the times", "it was timed");
+        return rt_accel_check(accel, error);
+    }
     *seconds = message.seconds;
     *wall = message.wall;
     return RT_OK;

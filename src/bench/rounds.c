@@ -33,19 +33,24 @@ static RtStatus warm_one(const RtRunner *runner, double least, double *seconds, 
     return RT_OK;
 }
 
-/* Whether a runner that gave `status` is left out from now on. */
-static bool is_broken(const RtRunner *runner, RtStatus status) {
+/* Whether a runner that returned `status` is left out from now on. */
+static bool becomes_broken(const RtRunner *runner, RtStatus status) {
     if (status != RT_BROKEN || !runner->broken) return false;
     *runner->broken = true;
     return true;
+}
+
+static bool is_left_out(const RtRunner *runner) {
+    return runner->broken && *runner->broken;
 }
 
 /* Brings code and data into the caches, and finds how often each must run to last `least` seconds. */
 static RtStatus warm_up(RtRunner *runners, size_t count, double least, RtError *error) {
     for (size_t i = 0; i < count; i++) {
         double seconds;
+        if (is_left_out(&runners[i])) continue;
         RtStatus status = warm_one(&runners[i], least, &seconds, error);
-        if (is_broken(&runners[i], status)) continue;
+        if (becomes_broken(&runners[i], status)) continue;
         RT_TRY(status);
         runners[i].repeats = rt_runner_repeats(seconds, least);
     }
@@ -71,9 +76,9 @@ static RtStatus run_rounds(RtRunner *runners, size_t *order, size_t count, const
         for (size_t i = 0; i < count; i++) {
             RtRunner *runner = &runners[order[i]];
             double seconds, wall, work = runner->repeats * runner->work;
-            if (runner->broken && *runner->broken) continue;
+            if (is_left_out(runner)) continue;
             RtStatus status = rt_runner_time(runner, runner->repeats, &seconds, &wall, error);
-            if (is_broken(runner, status)) continue;
+            if (becomes_broken(runner, status)) continue;
             RT_TRY(status);
             runner->seconds[round] = seconds / work;
             if (seconds < rounds->least) /* it was told wrong from a part */

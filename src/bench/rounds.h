@@ -28,8 +28,8 @@ typedef struct RtRunner {
     double *seconds;  /* [most] out: by the clock of the comparison, else the thread's processor time */
     double *wall;     /* [most] out: by the wall clock; NULL if nobody asks */
     uint32_t repeats; /* scratch: runs in a round */
-    bool *broken; /* out, zeroed by the caller: it gave RT_BROKEN, and is left out from then on; or NULL: that
-                     ends the rounds */
+    bool *broken; /* in and out: it is never run while this is true. RT_BROKEN sets it; NULL: RT_BROKEN ends
+                     the rounds */
 } RtRunner;
 
 typedef struct RtRounds {

@@ -154,13 +154,11 @@ static void tell_width(const Contest *contest) {
 
 /* ---- all of it ---- */
 
-/* Leaves out who broke. A rival that did was the baseline, and is told as that. */
-static RtStatus leave_out_broken(RtWorkloadState *workload, RtRayKind kind, const Contest *contest,
-                                 RtError *error) {
+/* Leaves out those that broke on any of the rays: a baseline may have broken on those of another's share. */
+static RtStatus leave_out_broken(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
     for (uint32_t c = 0; c < workload->count; c++) {
-        RtAccel *accel = workload->accels[c];
-        if (!accel || (!contest->broken[contest->place[c]] && !contest->broken[contest->rival[c]])) continue;
-        if (rt_accel_check(accel, error) == RT_OK) continue;
+        const RtAccel *accel = workload->accels[c];
+        if (!accel || rt_accel_check(accel, error) == RT_OK) continue;
         RT_TRY(rt_workload_break(workload, c, kind, error));
     }
     return RT_OK;
@@ -208,7 +206,7 @@ RtStatus rt_workload_time(RtWorkloadState *workload, RtRayKind kind, RtError *er
                        .threads = workload->options->timing};
     if (status == RT_OK)
         status = rt_measure_time(contest.timed, contest.count, &timing, &contest.rounds, error);
-    if (status == RT_OK) status = leave_out_broken(workload, kind, &contest, error);
+    if (status == RT_OK) status = leave_out_broken(workload, kind, error);
     if (status == RT_OK) tell_width(&contest);
     if (status == RT_OK) status = keep_times(workload, kind, &contest, error);
     contest_clear(&contest);

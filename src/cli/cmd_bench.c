@@ -11,8 +11,10 @@
 #include "verify/spread.h"
 
 #include <argp.h>
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum {
     OPT_ROUNDS = 256,
@@ -259,6 +261,17 @@ static RtStatus count_instructions(RtCallgrind *callgrind, char *const *argv, Rt
     return status;
 }
 
+/* What a plugin prints does not go between the rows that are printed for raytally. */
+static RtStatus serve_callgrind(const Options *o, RtError *error) {
+    int rows = dup(STDOUT_FILENO);
+    FILE *out = rows >= 0 ? fdopen(rows, "w") : NULL;
+    if (!out) return rt_fail(error, RT_IO, "stdout: %s", strerror(errno));
+    dup2(STDERR_FILENO, STDOUT_FILENO);
+    RtStatus status = rt_callgrind_serve(o->recording.experiment, o->child, out, error);
+    fclose(out);
+    return status;
+}
+
 /* ---- the command ---- */
 
 /* Everything but the report. */
@@ -279,6 +292,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
         o->workload.observer.notice(&progress,
                                     "instructions are counted under valgrind, which takes a while");
     rt_progress_end(&progress);
+    if (status == RT_OK && o->callgrind) status = rt_callgrind_leave_out_broken(callgrind, results, error);
     if (status == RT_OK && o->callgrind) status = count_instructions(callgrind, o->argv, error);
     return status;
 }
@@ -292,7 +306,7 @@ static RtStatus bench(Options *o, RtError *error) {
                        experiment->workload_count);
     strcpy(experiment->name, "bench");
     RT_TRY(rt_experiment_check(experiment, where, error));
-    if (o->child) return rt_callgrind_serve(experiment, o->child, stdout, error);
+    if (o->child) return serve_callgrind(o, error);
     RtResults results;
     RtCallgrind callgrind = {0};
     RtStatus status = rt_results_init(&results, experiment, error);

@@ -137,6 +137,77 @@ RT_TEST(one_that_breaks_among_those_timed_is_left_out_and_the_others_are_timed) 
     rt_scene_clear(&scene);
 }
 
+RT_TEST(one_that_broke_before_it_is_timed_is_left_out) {
+    RtScene scene;
+    RtRaySet set;
+    RtAccel *bvh, *faulty;
+    RtQuery query;
+    RtHit hit;
+    double seconds[2][2], wall[2][2];
+    bool broken[2] = {false, false};
+    uint32_t done = 0;
+    open_random(&scene);
+    open_chords(&scene, 100, &set, &bvh);
+    assert_ok(rt_accel_open("faulty-killed", &scene, &faulty, error));
+    assert_ok(rt_query_init(&query, faulty, error));
+    rt_nearest(&query, set.rays, 1, &hit, NULL);
+    rt_query_clear(&query);
+    RtTimed timed[2] = {{faulty, &set, seconds[0], wall[0], &broken[0]},
+                        {bvh, &set, seconds[1], wall[1], &broken[1]}};
+    RtTiming timing = {.rounds = {.rounds = 2, .most = 2, .seed = 1}, .threads = 1};
+    assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
+    assert_int_equal(done, 2);
+    assert_true(broken[0] && !broken[1]);
+    rt_accel_destroy(faulty);
+    rt_accel_destroy(bvh);
+    rt_rayset_clear(&set);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(one_that_breaks_as_it_is_asked_ray_by_ray_has_no_rows) {
+    RtScene scene;
+    RtRaySet set;
+    RtAccel *bvh, *faulty;
+    RtRows rows;
+    open_random(&scene);
+    open_chords(&scene, 100, &set, &bvh);
+    assert_ok(rt_accel_open("faulty-crash-alone", &scene, &faulty, error));
+    assert_int_equal(rt_measure_rows(faulty, &set, 1, &rows, NULL), RT_BROKEN);
+    rt_rows_clear(&rows);
+    rt_accel_destroy(faulty);
+    rt_accel_destroy(bvh);
+    rt_rayset_clear(&set);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(one_that_writes_to_shared_memory_harms_nobody_else) {
+    RtScene scene;
+    RtRaySet set;
+    RtAccel *bvh, *copy, *faulty;
+    RtHit expected[100];
+    RtCount count;
+    RtError why;
+    open_random(&scene);
+    open_chords(&scene, 100, &set, &bvh);
+    assert_ok(rt_measure_answers(bvh, &set, 1, expected, error));
+    assert_ok(rt_accel_open("bvh_copy", &scene, &copy, error));
+    assert_int_equal(rt_accel_open("faulty-scribble", &scene, &faulty, &why), RT_BROKEN);
+    assert_non_null(strstr(why.message, "it overwrote memory that it shares with raytally while it was bu"));
+    assert_ok(rt_measure_count(copy, &set, expected, 1, &count, error));
+    assert_int_equal(count.differ, 0);
+    assert_ok(rt_accel_open("faulty-scribbled", &scene, &faulty, error));
+    assert_int_equal(rt_measure_count(faulty, &set, expected, 1, &count, &why), RT_BROKEN);
+    assert_non_null(
+        strstr(why.message, "it overwrote memory that it shares with raytally while it answered"));
+    assert_ok(rt_measure_count(copy, &set, expected, 1, &count, error));
+    assert_int_equal(count.differ, 0);
+    rt_accel_destroy(faulty);
+    rt_accel_destroy(copy);
+    rt_accel_destroy(bvh);
+    rt_rayset_clear(&set);
+    rt_scene_clear(&scene);
+}
+
 RT_TEST(a_broken_one_misses_everything_says_why_and_takes_no_more_queries) {
     RtScene scene;
     RtRaySet set;
@@ -188,8 +259,9 @@ RT_TEST(loading_needs_no_error) {
 }
 
 RT_TEST(of_a_library_that_is_refused_nothing_is_registered) {
-    static const char *const kinds[] = {"EMPTY",    "ABI",        "SIZE",     "NAME",        "TAKEN", "TWICE",
-                                        "FUNCTION", "PARAMETERS", "STANDARD", "CONSTRUCTOR", "ENTRY", "MANY"};
+    static const char *const kinds[] = {"EMPTY", "ABI",      "SIZE",       "NAME",     "TAKEN",
+                                        "TWICE", "FUNCTION", "PARAMETERS", "STANDARD", "CONSTRUCTOR",
+                                        "ENTRY", "MANY",     "CHOICES"};
     const RtAccelOps *found;
     load_all();
     size_t plugins = rt_plugin_count(), accelerators = rt_accel_count();

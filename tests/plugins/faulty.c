@@ -114,6 +114,44 @@ static int build_print(const raytally_build *from, void **self) {
     return build(from, self);
 }
 
+/* Writes to all memory that it shares with others, to the first of it where there is much. */
+static void scribble(void) {
+    enum { MOST = 1 << 21 };
+    char line[512], how[5];
+    unsigned long begin, end;
+    FILE *maps = fopen("/proc/self/maps", "r");
+    while (maps && fgets(line, sizeof line, maps)) {
+        if (sscanf(line, "%lx-%lx %4s", &begin, &end, how) == 3 && strcmp(how, "rw-s") == 0)
+            memset((void *)begin, 0xEE, end - begin < MOST ? end - begin : MOST);
+    }
+    if (maps) fclose(maps);
+}
+
+static int build_scribble(const raytally_build *from, void **self) {
+    scribble();
+    return build(from, self);
+}
+
+static int build_kill(const raytally_build *from, void **self) {
+    kill(getppid(), SIGKILL);
+    return build(from, self);
+}
+
+static int build_close(const raytally_build *from, void **self) {
+    for (int descriptor = 0; descriptor < 64; descriptor++) close(descriptor);
+    return build(from, self);
+}
+
+/* Leaves a process behind, for a while, that belongs to nobody. */
+static int build_daemon(const raytally_build *from, void **self) {
+    if (fork() == 0) {
+        setsid();
+        sleep(2);
+        _exit(0);
+    }
+    return build(from, self);
+}
+
 /* A structure may be NULL: this one knows no object, and answers so. It is wrong, but no crash. */
 static int build_null(const raytally_build *from, void **self) {
     (void)from;
@@ -153,6 +191,7 @@ SEARCH(loop_timed, if (!counters) loop();)
 SEARCH(call_abort, abort();)
 SEARCH(call_exit, exit(0);)
 SEARCH(killed, kill(getpid(), SIGKILL);)
+SEARCH(scribbled, scribble();)
 SEARCH(divide, zero = 7 / zero;)
 SEARCH(overflow, zero = recurse(&zero) & 0;)
 SEARCH(freed_twice, free_twice();)
@@ -179,6 +218,7 @@ static size_t query_bytes_huge(const void *self) {
 /* Answers. */
 SEARCH(no_such_object, if (best->object != RAYTALLY_NO_OBJECT) best->object = list->count + 5;)
 SEARCH(not_a_number, if (best->object != RAYTALLY_NO_OBJECT) best->t = NAN;)
+SEARCH(farther, if (isinf(ray->ray->tmax)) best->t = nextafterf(best->t, INFINITY);)
 
 /* A plain mistake: its list ends one too early. */
 RAYTALLY_INLINE void forgetful(const List *list, void *memory, const raytally_prepared *ray, int any,
@@ -220,6 +260,12 @@ static void occluded_by_first(const void *self, void *memory, raytally_query *qu
 static void all_but_one(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
                         size_t count, raytally_hit *hits, raytally_counters *counters) {
     search_nearest(self, memory, query, rays, count - 1, hits, counters);
+}
+
+static void crash_alone(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
+                        size_t count, raytally_hit *hits, raytally_counters *counters) {
+    search_nearest(self, memory, query, rays, count, hits, counters);
+    if (count == 1) crash();
 }
 
 static void one_too_many(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
@@ -305,11 +351,20 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-abort", .summary = "aborts", KERNELS(call_abort)},
     {.name = "faulty-exit", .summary = "ends its process, without an error", KERNELS(call_exit)},
     {.name = "faulty-killed", .summary = "is killed, as where memory is short", KERNELS(killed)},
+    {.name = "faulty-crash-alone",
+     .summary = "crashes when asked for a ray by itself",
+     .nearest = crash_alone},
+    {.name = "faulty-scribble", .summary = "writes to shared memory as it builds", .build = build_scribble},
+    {.name = "faulty-scribbled", .summary = "writes to shared memory at each ray", KERNELS(scribbled)},
+    {.name = "faulty-kill", .summary = "kills its parent", .build = build_kill},
+    {.name = "faulty-close", .summary = "closes every file", .build = build_close},
+    {.name = "faulty-daemon", .summary = "leaves a process behind", .build = build_daemon},
     {.name = "faulty-divide", .summary = "divides by zero", KERNELS(divide)},
     {.name = "faulty-recursion", .summary = "recurses for ever", KERNELS(overflow)},
     {.name = "faulty-free", .summary = "frees a block twice", KERNELS(freed_twice)},
     {.name = "faulty-object", .summary = "answers with an object that there is not", KERNELS(no_such_object)},
     {.name = "faulty-nan", .summary = "answers with a t that is no number", KERNELS(not_a_number)},
+    {.name = "faulty-farther", .summary = "answers with a t a little too large", KERNELS(farther)},
     {.name = "faulty-wrong", .summary = "forgets the last object", KERNELS(forgetful)},
     {.name = "faulty-null",
      .summary = "has no structure, which it may, and finds nothing, which it may not",

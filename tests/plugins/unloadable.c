@@ -21,8 +21,18 @@ enum {
     CONSTRUCTOR, /* crashes before it is asked anything */
     ENTRY,       /* crashes when it is asked for its tables */
     FOREVER,     /* is never loaded, and takes no alarm */
+    CHOICES,     /* has a parameter of more choices than there is room for */
     MANY         /* has more tables than there is room for beside others */
 };
+
+#define TEN(x) x "0|" x "1|" x "2|" x "3|" x "4|" x "5|" x "6|" x "7|" x "8|" x "9|"
+static const raytally_param choices[] = {
+    {.name = "mode",
+     .type = RAYTALLY_CHOICE,
+     .standard = "last",
+     .choices = TEN("a") TEN("b") TEN("c") TEN("d") TEN("e") TEN("f") TEN("g") "last",
+     .meaning = "what it does",
+     .source = "nowhere"}};
 
 static const raytally_param params[] = {{.name = "depth",
                                          .type = RAYTALLY_INT,
@@ -54,8 +64,10 @@ static const raytally_accel_ops ops = {
                            : "unloadable",
     .summary = "cannot be loaded",
     .paper = "none",
-    .params = KIND == STANDARD ? params : NULL,
-    .param_count = KIND == PARAMETERS || KIND == STANDARD,
+    .params = KIND == STANDARD  ? params
+              : KIND == CHOICES ? choices
+                                : NULL,
+    .param_count = KIND == PARAMETERS || KIND == STANDARD || KIND == CHOICES,
     .build = build,
     .destroy = destroy,
     .nearest = KIND == FUNCTION ? NULL : search_nearest,

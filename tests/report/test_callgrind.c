@@ -108,6 +108,27 @@ RT_TEST_IN_PLACE(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_
     json_decref(rows);
 }
 
+/* It is built in the child's own process; one that breaks is not asked there. */
+RT_TEST_IN_PLACE(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named) {
+    const Place *place = *state;
+    if (!has_valgrind()) skip();
+    assert_int_equal(raytally(place, "bench random:n=50 --count-only --threads 1 --json --callgrind=64 "
+                                     "--rays primary,shadow --size 16x16 --plugin " RT_BINARY_DIR
+                                     "/plugins/bvh_copy.so --plugin " RT_BINARY_DIR
+                                     "/plugins/faulty.so --accel bvh --accel bvh_copy --accel faulty-print "
+                                     "--accel faulty-crash-nearest"),
+                     1);
+    char *text = read_in(place, "output");
+    json_t *document = json_loads(text, 0, NULL);
+    const json_t *rows = json_object_get(document, "instructions");
+    assert_int_equal(json_array_size(rows), 4 * 2);
+    for (size_t i = 0; i < 6; i++) assert_true(integer_of(rows, i, "instructions") > 0);
+    for (size_t i = 2; i < 4; i++) assert_string_equal(text_of(rows, i, "accelerator"), "bvh_copy");
+    assert_non_null(strstr(text_of(rows, 6, "why"), "it crashed (Segmentation fault)"));
+    json_decref(document);
+    rt_free(text);
+}
+
 /* Of what is recorded at most so many, and no file stays behind. */
 RT_TEST_IN_PLACE(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
     const Place *place = *state;
