@@ -268,7 +268,8 @@ static void put_tables(FILE *out, const RtResults *results) {
         "<h2 id=\"tables\">Tables</h2>\n<p>In brackets intervals of %s. &#9733; is the best of a scene and "
         "kind "
         "of rays, by %s; &asymp; has an interval that overlaps with its interval. Times of all kinds "
-        "together have intervals that are rather too wide.</p>\n"
+        "together have intervals that are rather too wide, and are unknown where one of the kinds was left "
+        "out.</p>\n"
         "<div class=\"filter\" id=\"filter\" hidden><label for=\"words\">Rows with</label> "
         "<input type=\"search\" id=\"words\" placeholder=\"words, e.g. of a scene, an accelerator, a kind\"> "
         "<output for=\"words\" class=\"meta\"></output></div>\n",

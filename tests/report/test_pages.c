@@ -125,6 +125,7 @@ RT_TEST_IN_PLACE(a_kind_of_rays_that_an_accelerator_lacks_leaves_its_means_out_o
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
     assert_in_file(place, "message", "nothing was left to measure");
     assert_in_file(place, "output", "undecided      ratio of object_tests");
+    assert_in_file(place, "out/report.html", "are unknown where one of the kinds was left out");
     assert_int_equal(count_in(place, "out/plots/1-overview.svg", "–"), unknown + 4);
     snprintf(command, sizeof command, "grep -Eqx 'grid +[0-9]+ +- +- +- +- +- .*' '%s/output'",
              place->folder);
