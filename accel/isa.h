@@ -59,7 +59,7 @@ size_t rt_isa_scratch_bytes(const RtAccel *accel);
     .nearest = rt_isa_nearest, .occluded = rt_isa_occluded, .nearest_counted = rt_isa_nearest_counted,       \
     .occluded_counted = rt_isa_occluded_counted
 
-/* ---- as a parameter ---- */
+/* ---- as parameters ---- */
 
 #define RT_ISA_PARAM                                                                                         \
     "isa", RT_CHOICE("best", "best|portable|avx2|avx512"),                                                   \
@@ -70,5 +70,16 @@ RtIsa rt_isa_asked(RtValue value);
 
 /* RT_OK, or RT_NOT_AVAILABLE where this machine has not what a value asks for. */
 RtStatus rt_isa_available(RtValue value, RtError *error);
+
+/* For accelerators that have their kernels in lanes and, to be compared with scalar structures, one record at
+ * a time too. */
+#define RT_LANES_PARAM(records)                                                                              \
+    "lanes", RT_CHOICE("16", "1|16"), records " tested at once; changes no answer and no count",             \
+        "the faster; the same for brute and extents"
+
+/* Whether a value of it asks for the kernels in lanes. */
+static inline bool rt_has_lanes(RtValue value) {
+    return value.choice == 1;
+}
 
 #endif

@@ -1,15 +1,33 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* brute: tests every object for every ray. It has no structure and gives the answer by its definition, the
- * least (t, id): rt_test_all in accel/kernel.h. It does that many objects and many rays at a time
- * (kernels.h), because every verification waits for it; the answers and the counts are those of rt_test_all,
- * and a test holds it to them. */
+ * least (t, id): rt_test_all in accel/kernel.h. With lanes=1 it calls that loop, as a scalar baseline for the
+ * other scalar structures. With lanes=16, the default, it tests many objects and many rays at a time
+ * (kernels.h), because every verification waits for it. Both return the same answers and counts, and a test
+ * compares them. */
 #include "accel/brute/brute.h"
+#include "accel/kernel.h"
 
 #include "base/memory.h"
 
+#define PARAMS(X) X(PARAM_LANES, RT_LANES_PARAM("spheres or triangles"))
+
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
+
+RT_KERNEL void search(const RtIsaAccel *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
+                      RtTally *tally) {
+    (void)scratch;
+    rt_test_all(&self->base.scene->geometry, ray, any, best, tally);
+}
+
+RT_DEFINE_KERNELS(RtIsaAccel, search)
+
+static const RtKernels one_lane = {RT_KERNEL_OPS};
+
 static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
     RT_TRY(rt_accel_new(what, sizeof(RtIsaAccel), out, error));
-    ((RtIsaAccel *)*out)->kernels = RT_KERNELS_FOR(brute, rt_isa_best());
+    ((RtIsaAccel *)*out)->kernels =
+        rt_has_lanes(what->values[PARAM_LANES]) ? RT_KERNELS_FOR(brute, rt_isa_best()) : &one_lane;
     return RT_OK;
 }
 
@@ -32,6 +50,7 @@ const RtAccelOps rt_brute_ops = {
     .name = "brute",
     .summary = "every object for every ray: no structure, and the definition of the answer",
     .paper = "Whitted 1980, An Improved Illumination Model for Shaded Display, CACM 23(6)",
+    RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
     RT_ISA_OPS,

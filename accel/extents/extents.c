@@ -2,53 +2,19 @@
 /* extents: one extent per object and no hierarchy. Every ray is tested against every extent, and against the
  * object only where it meets the extent (Weghorst, Hooper & Greenberg 1984: the cost is b B + i I).
  *
+ * With lanes=16, the default, sixteen boxes are tested at once (kernels.h), as `brute` tests sixteen objects.
+ * With lanes=1, and for every other kind of extent, it is one after the other. A test compares the counts.
+ *
  * Exact for every kind: see accel/extent.h. */
 #include "accel/extents/extents.h"
 
 #include "base/memory.h"
 
-/* ---- building ---- */
-
-static void destroy(RtAccel *accel) {
-    RtExtents *self = (RtExtents *)accel;
-    rt_extent_set_clear(&self->set);
-    rt_free(self);
-}
-
-#define PARAMS(X)                                                                                            \
-    X(PARAM_KIND, "kind", RT_CHOICE("box", RT_EXTENT_KINDS),                                                 \
-      "the extent of an object: axis-aligned box, sphere, oriented box, or k slabs", "the cheapest test")    \
-    X(PARAM_SLABS, "slabs", RT_INT("7", 3, RT_MAX_SLABS, "3|5|7|13"),                                        \
-      "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",              \
-      "Kay & Kajiya 1986")
-
-enum { PARAMS(RT_PARAM_INDEX) };
-static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
-
-static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
-    return (RtGroup){geometry, id, 1, geometry->boxes[*id]};
-}
-
-static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
-    const RtGeometry *geometry = &what->scene->geometry;
-    const RtValue *values = what->values;
-    RtAccel *accel;
-    RT_TRY(rt_accel_new(what, sizeof(RtExtents), &accel, error));
-    RtExtents *self = (RtExtents *)accel;
-    RtStatus status = rt_extent_set_init(&self->set, (RtExtentKind)values[PARAM_KIND].choice,
-                                         (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);
-    for (uint32_t id = 0; status == RT_OK && id < geometry->object_count; id++) {
-        RtGroup group = group_of(geometry, &id);
-        rt_extent_fit(&self->set, id, &group);
-    }
-    return rt_accel_built(accel, status, out);
-}
-
 /* ---- tracing ---- */
 
 RT_KERNEL void scan(RtExtentKind kind, const RtExtents *self, const RtPreparedRay *ray, bool any, RtHit *best,
                     RtTally *tally) {
-    const RtGeometry *geometry = &self->base.scene->geometry;
+    const RtGeometry *geometry = &self->isa.base.scene->geometry;
     const RtExtentSet *set = &self->set;
     RtLine line = rt_line(set, kind, &geometry->box, ray);
     float enter;
@@ -72,6 +38,49 @@ RT_KERNEL void search(const RtExtents *self, void *scratch, const RtPreparedRay 
 }
 
 RT_DEFINE_KERNELS(RtExtents, search)
+
+static const RtKernels one_lane = {RT_KERNEL_OPS};
+
+/* ---- building ---- */
+
+static void destroy(RtAccel *accel) {
+    RtExtents *self = (RtExtents *)accel;
+    rt_extent_set_clear(&self->set);
+    rt_free(self);
+}
+
+#define PARAMS(X)                                                                                            \
+    X(PARAM_KIND, "kind", RT_CHOICE("box", RT_EXTENT_KINDS),                                                 \
+      "the extent of an object: axis-aligned box, sphere, oriented box, or k slabs", "the cheapest test")    \
+    X(PARAM_SLABS, "slabs", RT_INT("7", 3, RT_MAX_SLABS, "3|5|7|13"),                                        \
+      "plane sets of kind=slabs: 3 axes, 4 diagonals of a cube, 6 of its faces, in this order",              \
+      "Kay & Kajiya 1986")                                                                                   \
+    X(PARAM_LANES, RT_LANES_PARAM("kind=box: boxes"))
+
+enum { PARAMS(RT_PARAM_INDEX) };
+static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
+
+static RtGroup group_of(const RtGeometry *geometry, const uint32_t *id) {
+    return (RtGroup){geometry, id, 1, geometry->boxes[*id]};
+}
+
+static RtStatus build(const RtBuild *what, RtAccel **out, RtError *error) {
+    const RtGeometry *geometry = &what->scene->geometry;
+    const RtValue *values = what->values;
+    RtAccel *accel;
+    RT_TRY(rt_accel_new(what, sizeof(RtExtents), &accel, error));
+    RtExtents *self = (RtExtents *)accel;
+    RtExtentKind kind = (RtExtentKind)values[PARAM_KIND].choice;
+    bool in_lanes = kind == RT_EXTENT_BOX && rt_has_lanes(values[PARAM_LANES]);
+    self->isa.kernels = in_lanes ? RT_KERNELS_FOR(extents, rt_isa_best()) : &one_lane;
+    RtStatus status =
+        rt_extent_set_init(&self->set, kind, (uint32_t)values[PARAM_SLABS].i, geometry->object_count, error);
+    for (uint32_t id = 0; status == RT_OK && id < geometry->object_count; id++) {
+        RtGroup group = group_of(geometry, &id);
+        rt_extent_fit(&self->set, id, &group);
+    }
+    return rt_accel_built(accel, status, out);
+}
 
 /* ---- looking at it ---- */
 
@@ -116,7 +125,8 @@ const RtAccelOps rt_extents_ops = {
     RT_PARAMS_OF(params),
     .build = build,
     .destroy = destroy,
-    RT_KERNEL_OPS,
+    RT_ISA_OPS,
+    .scratch_bytes = rt_isa_scratch_bytes,
     .describe = describe,
     .validate = validate,
     .each_box = each_box,

@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The structure behind `extents`: for its own file and its test, which breaks it on purpose. */
+/* The structure behind `extents`: for its own files and its tests, one of which breaks it on purpose. */
 #ifndef RT_ACCEL_EXTENTS_EXTENTS_H
 #define RT_ACCEL_EXTENTS_EXTENTS_H
 
 #include "accel/extent.h"
+#include "accel/isa.h"
 
 /* One extent per object, by id; boxes are the scene's own. */
 typedef struct RtExtents {
-    RtAccel base;
+    RtIsaAccel isa;
     RtExtentSet set;
 } RtExtents;
+
+RT_DECLARE_KERNELS(extents); /* of boxes, sixteen at a time */
 
 #endif

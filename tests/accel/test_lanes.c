@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* accel/brute: what it does in lanes is what rt_test_all does, by every instruction set that this machine
- * has: the hits and the blockers bit for bit, and the counts, whatever the length of a stream. */
+/* accel/brute and accel/extents: what they do in lanes is what they do one record after the other, by every
+ * instruction set that this machine has: the hits and the blockers bit for bit, and the counts, whatever the
+ * length of a stream. Of `brute` that is what rt_test_all does. */
 #include "equivalence_testing.h"
 
 #include "accel/brute/brute.h"
+#include "accel/extents/extents.h"
 #include "accel/kernel.h"
 #include "accel/lanes.h"
 #include "accel_testing.h"
@@ -52,14 +54,14 @@ static void by_definition(const RtGeometry *geometry, Asked *asked) {
     rt_free(room);
 }
 
-static void assert_same(const Asked *right, const Asked *got, bool counted, RtIsa isa, size_t stream) {
+static void assert_same(const Asked *right, const Asked *got, bool counted, const char *who, size_t stream) {
     for (size_t i = 0; i < right->count; i++) {
         if (memcmp(&right->hits[i], &got->hits[i], sizeof(RtHit)) != 0 ||
             right->blockers[i] != got->blockers[i]) {
-            fail_msg("isa %d, streams of %zu, counted %d: ray %zu is answered %u at %a, blocked by %u, not "
+            fail_msg("%s, streams of %zu, counted %d: ray %zu is answered %u at %a, blocked by %u, not "
                      "%u at %a, %u",
-                     (int)isa, stream, counted, i, got->hits[i].object, (double)got->hits[i].t,
-                     got->blockers[i], right->hits[i].object, (double)right->hits[i].t, right->blockers[i]);
+                     who, stream, counted, i, got->hits[i].object, (double)got->hits[i].t, got->blockers[i],
+                     right->hits[i].object, (double)right->hits[i].t, right->blockers[i]);
         }
     }
     if (!counted) return;
@@ -84,31 +86,81 @@ static void by_kernels(const RtKernels *kernels, const RtQuery *query, Asked *as
     }
 }
 
-static void assert_is_the_definition(const RtScene *scene, const RtRay *rays, size_t count) {
-    const size_t streams[] = {1, 5, 128, count};
-    Asked right = begin_asking(rays, count);
+/* Timed and counted. */
+static void assert_kernels_are_right(const RtKernels *kernels, const RtQuery *query, const Asked *right,
+                                     const char *who, size_t stream) {
+    for (int counted = 0; counted < 2; counted++) {
+        Asked got = begin_asking(right->rays, right->count);
+        by_kernels(kernels, query, &got, stream, counted);
+        assert_same(right, &got, counted, who, stream);
+        clear(&got);
+    }
+}
+
+static const RtKernels *const brute_kernels[] = {&rt_brute_portable, &rt_brute_avx2, &rt_brute_avx512};
+static const RtKernels *const extents_kernels[] = {&rt_extents_portable, &rt_extents_avx2,
+                                                   &rt_extents_avx512};
+
+typedef struct Opened {
     RtAccel *accel;
     RtQuery query;
-    by_definition(&scene->geometry, &right);
-    assert_ok(rt_accel_open("brute", scene, &accel, error));
-    assert_ok(rt_query_init(&query, accel, error));
+    const RtKernels *kernels;
+} Opened;
+
+static Opened open_spec(const char *spec, const RtScene *scene) {
+    Opened opened;
+    assert_ok(rt_accel_open(spec, scene, &opened.accel, error));
+    assert_ok(rt_query_init(&opened.query, opened.accel, error));
+    opened.kernels = ((const RtIsaAccel *)opened.accel)->kernels;
+    return opened;
+}
+
+static void close_spec(Opened *opened) {
+    rt_query_clear(&opened->query);
+    rt_accel_destroy(opened->accel);
+}
+
+/* `spec`, which is in lanes, by the kernels of every instruction set. */
+static void assert_lanes_are_right(const char *spec, const RtKernels *const kernels[], const RtScene *scene,
+                                   const Asked *right) {
+    const size_t streams[] = {1, 5, 128, right->count};
+    Opened lanes = open_spec(spec, scene);
+    char who[RT_MAX_SPEC_CHARS];
+    assert_ptr_equal(lanes.kernels, kernels[rt_isa_best()]);
     for (int isa = RT_ISA_PORTABLE; isa <= (int)rt_isa_best(); isa++) {
-        for (size_t s = 0; s < sizeof streams / sizeof streams[0]; s++) {
-            for (int counted = 0; counted < 2; counted++) {
-                Asked got = begin_asking(rays, count);
-                by_kernels(RT_KERNELS_FOR(brute, isa), &query, &got, streams[s], counted);
-                assert_same(&right, &got, counted, (RtIsa)isa, streams[s]);
-                clear(&got);
-            }
-        }
+        snprintf(who, sizeof who, "%s by instruction set %d", spec, isa);
+        for (size_t s = 0; s < sizeof streams / sizeof streams[0]; s++)
+            assert_kernels_are_right(kernels[isa], &lanes.query, right, who, streams[s]);
     }
-    rt_query_clear(&query);
-    rt_accel_destroy(accel);
+    close_spec(&lanes);
+}
+
+static void assert_brute_is_the_definition(const RtScene *scene, const RtRay *rays, size_t count) {
+    Asked right = begin_asking(rays, count);
+    Opened one = open_spec("brute:lanes=1", scene);
+    by_definition(&scene->geometry, &right);
+    assert_kernels_are_right(one.kernels, &one.query, &right, "brute:lanes=1", count);
+    assert_lanes_are_right("brute", brute_kernels, scene, &right);
+    close_spec(&one);
     clear(&right);
 }
 
+static void assert_boxes_in_lanes_are_boxes(const RtScene *scene, const RtRay *rays, size_t count) {
+    Asked right = begin_asking(rays, count);
+    Opened one = open_spec("extents:lanes=1", scene);
+    by_kernels(one.kernels, &one.query, &right, count, true);
+    assert_lanes_are_right("extents", extents_kernels, scene, &right);
+    close_spec(&one);
+    clear(&right);
+}
+
+static void assert_lanes_change_nothing(const RtScene *scene, const RtRay *rays, size_t count) {
+    assert_brute_is_the_definition(scene, rays, count);
+    assert_boxes_in_lanes_are_boxes(scene, rays, count);
+}
+
 /* By rays of every family. */
-static void assert_scene_is_the_definition(const RtScene *scene, uint64_t seed, size_t rays) {
+static void assert_lanes_change_nothing_in(const RtScene *scene, uint64_t seed, size_t rays) {
     size_t families = rt_ray_family_count();
     RtAccel *bvh;
     RtQuery query;
@@ -119,22 +171,22 @@ static void assert_scene_is_the_definition(const RtScene *scene, uint64_t seed, 
     for (size_t f = 0; f < families; f++) rt_ray_family_fill(f, &query, seed, 0, rays, all + f * rays);
     rt_query_clear(&query);
     rt_accel_destroy(bvh);
-    assert_is_the_definition(scene, all, families * rays);
+    assert_lanes_change_nothing(scene, all, families * rays);
     rt_free(all);
 }
 
-RT_TEST(every_family_of_scenes_is_answered_and_counted_as_defined) {
+RT_TEST(every_family_of_scenes_is_answered_and_counted_in_lanes_as_without) {
     for (size_t family = 0; family < rt_family_count(); family++) {
         for (uint64_t seed = 1; seed <= 3; seed++) {
             RtScene scene;
             open_family(family, seed, &scene);
-            assert_scene_is_the_definition(&scene, seed, 40);
+            assert_lanes_change_nothing_in(&scene, seed, 40);
             rt_scene_clear(&scene);
         }
     }
 }
 
-RT_TEST(every_shape_and_every_remainder_of_lanes_is_answered_and_counted_as_defined) {
+RT_TEST(every_shape_and_every_remainder_of_lanes_is_answered_and_counted_as_without) {
     const char *specs[] = {"random:n=300,shape=mixed",
                            "random:n=1,shape=triangle",
                            "random:n=15,shape=triangle",
@@ -150,7 +202,7 @@ RT_TEST(every_shape_and_every_remainder_of_lanes_is_answered_and_counted_as_defi
     for (size_t i = 0; i < sizeof specs / sizeof specs[0]; i++) {
         RtScene scene;
         assert_ok(rt_scene_open(specs[i], &scene, error));
-        assert_scene_is_the_definition(&scene, i, 60);
+        assert_lanes_change_nothing_in(&scene, i, 60);
         rt_scene_clear(&scene);
     }
 }
@@ -207,7 +259,7 @@ static void add_touched(RtScene *scene, RtRandom *random, const RtRay *ray, floa
     (void)rt_scene_add_triangle(scene, 0, v, NULL, &refusal);
 }
 
-RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_as_defined) {
+RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_in_lanes_as_without) {
     const float sizes[] = {1, 1e-30f, 1e-22f, 1e-12f, 1e6f, 1e16f, 4e17f};
     enum { RAYS = 500 };
     RtRay *rays = rt_alloc(RAYS, sizeof(RtRay));
@@ -222,7 +274,7 @@ RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_as_defined) {
         }
         assert_ok(rt_scene_finish(&scene, error));
         assert_true(scene.geometry.triangle_count > RAYS / 4);
-        assert_is_the_definition(&scene, rays, RAYS);
+        assert_lanes_change_nothing(&scene, rays, RAYS);
         rt_scene_clear(&scene);
     }
     rt_free(rays);
@@ -270,4 +322,4 @@ RT_TEST(spheres_are_left_in_lanes_that_may_be_hit_and_hardly_any_other) {
     assert_true(hits > 10000 && misses > 10000);
 }
 
-RT_TESTS(brute, NULL, assert_nothing_is_kept)
+RT_TESTS(lanes, NULL, assert_nothing_is_kept)
