@@ -84,9 +84,24 @@ bool rt_param_try(const RtParam *param, size_t n, char *out, size_t room) {
 /* A number that is all of `text`. */
 static bool parse_number(const char *text, double *out) {
     char *end;
-    errno = 0;
     *out = strtod(text, &end);
     return end != text && *end == '\0' && isfinite(*out);
+}
+
+/* Digits are taken as they stand; other numbers, such as 1e6, as far as int64_t holds them, whatever the
+ * range of the parameter. */
+static bool parse_whole(const RtParam *param, const char *text, int64_t *out) {
+    char *end;
+    double number;
+    errno = 0;
+    *out = strtoll(text, &end, 10);
+    if (errno) return false;
+    if (end == text || *end) {
+        if (!parse_number(text, &number) || number != floor(number)) return false;
+        if (!(number >= -0x1p63 && number < 0x1p63)) return false;
+        *out = (int64_t)number;
+    }
+    return (double)*out >= param->lo && (double)*out <= param->hi;
 }
 
 static bool parse_resolution(const RtParam *param, const char *text, RtValue *out) {
@@ -97,7 +112,8 @@ static bool parse_resolution(const RtParam *param, const char *text, RtValue *ou
         errno = 0;
         unsigned long n = strtoul(text, &end, 10);
         bool digit = *text >= '0' && *text <= '9';
-        if (!digit || errno || (double)n < param->lo || (double)n > param->hi) return false;
+        if (!digit || errno || n > UINT32_MAX) return false;
+        if ((double)n < param->lo || (double)n > param->hi) return false;
         if (*end != (a < 2 ? 'x' : '\0')) return false;
         out->resolution[a] = (uint32_t)n;
         text = end + 1;
@@ -108,10 +124,7 @@ static bool parse_resolution(const RtParam *param, const char *text, RtValue *ou
 static bool parse_value(const RtParam *param, const char *text, RtValue *out) {
     double number;
     switch (param->type) {
-    case RT_PARAM_INT:
-        if (!parse_number(text, &number) || number != floor(number)) return false;
-        *out = (RtValue){.i = number >= param->lo && number <= param->hi ? (int64_t)number : 0};
-        return number >= param->lo && number <= param->hi;
+    case RT_PARAM_INT: *out = (RtValue){.i = 0}; return parse_whole(param, text, &out->i);
     case RT_PARAM_FLOAT:
         if (!parse_number(text, &number)) return false;
         *out = (RtValue){.f = number};

@@ -248,6 +248,34 @@ RT_TEST(wrong_parameters_are_refused_with_what_would_be_right) {
     }
 }
 
+/* Of any range that a table may state, 64-bit integers beyond it included. */
+RT_TEST(whole_numbers_are_exact_or_refused) {
+    static const RtParam any = {
+        .name = "n", .type = RT_PARAM_INT, .standard = "0", .lo = -1e30, .hi = 1e30, .meaning = "m"};
+    static const RtParam wide = {
+        .name = "n", .type = RT_PARAM_RESOLUTION, .standard = "auto", .lo = 1, .hi = 1e30, .meaning = "m"};
+    const struct {
+        const char *text;
+        int64_t is;
+    } good[] = {{"n=9223372036854775807", INT64_MAX},
+                {"n=-9223372036854775808", INT64_MIN},
+                {"n=9007199254740993", INT64_C(9007199254740993)},
+                {"n=9e18", INT64_C(9000000000000000000)},
+                {"n=1e3", 1000}};
+    const char *const bad[] = {"n=9223372036854775808", "n=-9223372036854775809", "n=1e19", "n=-1e19",
+                               "n=99999999999999999999"};
+    RtValue v;
+    RtError problem;
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        assert_ok(rt_params_parse(&any, 1, good[i].text, "it", &v, error));
+        assert_true(v.i == good[i].is);
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_int_equal(rt_params_parse(&any, 1, bad[i], "it", &v, &problem), RT_BAD_INPUT);
+    assert_ok(rt_params_parse(&wide, 1, "n=4294967295x1x1", "it", &v, error));
+    assert_int_equal(rt_params_parse(&wide, 1, "n=4294967297x1x1", "it", &v, &problem), RT_BAD_INPUT);
+}
+
 RT_TEST(the_nth_allocation_fails_when_told_to) {
     rt_alloc_fail_at(2);
     void *a = rt_alloc(1, 1), *b = rt_alloc(1, 1), *c = rt_alloc(1, 1);
