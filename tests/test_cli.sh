@@ -77,6 +77,24 @@ refuses 'one SCENE at a time' info balls balls
 does info balls:size=1 --extents --rays 1000
 does info balls:size=1 --extents=all --rays 1000 --json
 refuses "extents: invalid value 'some'.*--extents=all" info balls --extents=some
+
+# a scene without objects, and one of one
+none=random:n=0
+does info $none --extents --rays 10
+"$program" info $none --json | python3 -c 'import json, sys; sys.exit(json.load(sys.stdin)["bounds"] is not None)' ||
+    complain "raytally info $none --json: its bounds are not null"
+does bench $none --accel wide --accel brute --rounds 1 --size 4x4
+does render $none --accel bvh --size 4x4 -o none.png --structure boxes.png --stats none.json --check
+does verify $none --accel kd --rays 10 --json
+does rays $none --size 4x4 -o none.npy
+does trace $none --pixel 0,0 --accel octree
+does convert $none none.obj
+for file in none.ply none.stl none.glb; do
+    refuses 'the scene has none: write' convert $none $file
+done
+"$program" render random:n=1 --size 4x4 --depth 1 --threads 1 -o one.png | tr '\n' ' ' |
+    grep -q ': 1 object, 2 lights.*, 1 level: .* on 1 thread: ' || complain 'raytally render: plurals of one'
+rm ./none* boxes.png one.png
 refuses "rays: invalid value '0'.*1\.\." info balls --extents --rays 0
 refuses "rays: invalid value '1000000000000'.*1\.\." verify --rays 1000000000000
 refuses "rays: invalid value '0'.*1\.\." verify --rays 0

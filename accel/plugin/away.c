@@ -6,6 +6,7 @@
 #include "accel/plugin/now.h"
 #include "accel/plugin/process.h"
 #include "accel/plugin/wire.h"
+#include "base/words.h"
 
 #include "base/clock.h"
 #include "base/memory.h"
@@ -231,7 +232,8 @@ static RtStatus start(Away *away, const RtSpec *spec, int threads, RtError *erro
 static RtStatus take_built(Away *away, RtError *error) {
     char doing[96];
     WireBuilt built;
-    snprintf(doing, sizeof doing, "it was built over %u objects", away->base.scene->geometry.object_count);
+    snprintf(doing, sizeof doing, "it was built over %u object%s", away->base.scene->geometry.object_count,
+             rt_plural(away->base.scene->geometry.object_count));
     if (!wait_for(away, 0, doing, 10 * away->patience)) return why(away, error);
     memcpy(&built, away->wire->lanes[0].message, sizeof built);
     if (built.status != RT_OK) return hand_on(built.status, "", &built.error, error);
@@ -350,7 +352,7 @@ static const RtHit *trace_some(const RtAccel *accel, const RtScratch *scratch, c
     AwayQuery *query = scratch->own;
     WireRays *asked = (WireRays *)away->wire->lanes[query->lane].message;
     char doing[64];
-    snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, count == 1 ? "" : "s");
+    snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, rt_plural(count));
     *asked = (WireRays){.count = count, .any = any, .counted = tallies != NULL};
     memcpy(rt_wire_rays(asked, count), rays, count * sizeof *rays);
     bool begin_anew = query->begin;

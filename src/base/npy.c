@@ -2,6 +2,7 @@
 #include "base/npy.h"
 
 #include "base/file.h"
+#include "base/words.h"
 
 #include <assert.h>
 #include <ctype.h>
@@ -170,7 +171,7 @@ static RtStatus check(RtNpy *npy, const Header *h, bool parsed, uint64_t most_ro
         return rt_fail(error, RT_BAD_INPUT,
                        "%s: an array of %" PRIu32 " dimension%s, and rows of %" PRIu64
                        ": expected the shape (N, %" PRIu32 ")",
-                       npy->path, h->dimensions, h->dimensions == 1 ? "" : "s",
+                       npy->path, h->dimensions, rt_plural(h->dimensions),
                        h->dimensions >= 2 ? h->shape[1] : 0, columns);
     }
     npy->rows = h->shape[0];

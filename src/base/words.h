@@ -1,10 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Words in messages: lists of the names there are, and the one that was probably meant. */
+/* Words in messages: plurals, lists of the names there are, and the one that was probably meant. */
 #ifndef RT_BASE_WORDS_H
 #define RT_BASE_WORDS_H
 
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
+
+/* What a word that stands for `count` things ends in: "" for 1, else "s", as in "%u ray%s". */
+static inline const char *rt_plural(uint64_t count) {
+    return count == 1 ? "" : "s";
+}
 
 /* Of `names[0..count)` the one that `word` most likely meant, or NULL if none is near (edit distance). */
 const char *rt_nearest_name(const char *word, const char *const *names, size_t count);

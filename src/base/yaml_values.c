@@ -114,7 +114,8 @@ RtStatus rt_yaml_list(const RtYaml *yaml, const RtYamlNode *node, const char *ke
         return fail_unexpected(yaml, list, expected);
     }
     if (list->count < least) {
-        return rt_yaml_fail(yaml, list, "the list has %u entries: expected at least %u", list->count, least);
+        return rt_yaml_fail(yaml, list, "the length of the list is %u: expected at least %u", list->count,
+                            least);
     }
     if (list->count <= most) return RT_OK;
     const RtYamlNode *extra = list + 1;

@@ -3,6 +3,7 @@
 
 #include "base/json.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "bench/plugins_used.h"
 
 #include <inttypes.h>
@@ -281,7 +282,8 @@ void rt_comparison_print(const RtComparison *comparison, FILE *out) {
             " intervals hold together in 95 %%; the widest is\n+-%.2g %%.",
             comparison->timed, 100 * widest_of(comparison));
     if (comparison->rounds)
-        fprintf(out, " %" PRIu32 " rounds in %.0f s.", comparison->rounds, comparison->seconds);
+        fprintf(out, " %" PRIu32 " round%s in %.0f s.", comparison->rounds, rt_plural(comparison->rounds),
+                comparison->seconds);
     if (comparison->margin > 0)
         fprintf(out, " A difference is one beyond %.3g %%.", 100 * comparison->margin);
     fputc('\n', out);

@@ -17,7 +17,8 @@ void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_
 static void print_title(const RtResults *results, uint32_t t, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     const RtWorkloadResult *workload = &results->workloads[t];
-    fprintf(out, "\n%s: %" PRIu32 " objects, ", experiment->workloads[t].label, workload->objects);
+    fprintf(out, "\n%s: %" PRIu32 " object%s, ", experiment->workloads[t].label, workload->objects,
+            rt_plural(workload->objects));
     if (*experiment->rays_from) {
         fprintf(out, "rays of %s", experiment->rays_from);
     } else {
@@ -43,8 +44,9 @@ void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workl
         char label[RT_MAX_EYE_LABEL];
         if (!table.row(table.context, i)) continue;
         if (by_kind && (!any || row.kind != kind)) {
-            fprintf(out, "  %s, %" PRIu64 " rays\n", rt_experiment_kind_name(results->experiment, row.kind),
-                    row.scene->rays[row.kind]);
+            const uint64_t rays = row.scene->rays[row.kind];
+            fprintf(out, "  %s, %" PRIu64 " ray%s\n", rt_experiment_kind_name(results->experiment, row.kind),
+                    rays, rt_plural(rays));
         }
         any = true;
         kind = row.kind;
@@ -75,8 +77,8 @@ static void print_ratios(const RtResults *results, uint32_t least, uint32_t most
     rt_interval_title(experiment, title);
     snprintf(rounds, sizeof rounds, least == most ? "%" PRIu32 : "%" PRIu32 " to %" PRIu32, least, most);
     snprintf(text, sizeof text,
-             "Ratios are of throughput to that of %s, paired in each of %s rounds; intervals of %s.",
-             rt_baseline_label(experiment), rounds, title);
+             "Ratios are of throughput to that of %s, paired in each of %s round%s; intervals of %s.",
+             rt_baseline_label(experiment), rounds, rt_plural(most), title);
     rt_print_wrapped(text, out);
     if (experiment->baseline_count == 1) return;
     snprintf(text, sizeof text, "%s: of %" PRIu32 " settings the fastest for each kind, which is shown.",
@@ -136,9 +138,10 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     rt_null_verdict(results, &runs, &straddling);
     out[0] = '\0';
     if (runs == 0) return;
-    int n =
-        snprintf(out, room, "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " intervals straddle 1",
-                 results->experiment->candidates[results->experiment->baseline].label, straddling, runs);
+    int n = snprintf(out, room,
+                     "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " interval%s straddle%s 1",
+                     results->experiment->candidates[results->experiment->baseline].label, straddling, runs,
+                     rt_plural(runs), runs == 1 ? "s" : "");
     uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
     double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
     if (misses == 0) {

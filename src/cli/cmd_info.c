@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally info: what is in a scene. */
+#include "base/words.h"
 #include "bench/extents_table.h"
 #include "cli/cli.h"
 #include "scenes/open.h"
@@ -89,11 +90,16 @@ static void print_info(const RtScene *scene, const Counts *counts) {
         if (counts->of_shape[i]) printf("  %-13s %u\n", rt_shape_name((RtShape)i), counts->of_shape[i]);
     }
     if (g->csg_count) printf("  made of solids: %u\n", g->forest.set.solid_count);
-    if (g->vertex_normal_count) printf("  with vertex normals: %u triangles\n", g->vertex_normal_count);
-    if (counts->zero_area) printf("  without area, never hit: %u triangles\n", counts->zero_area);
-    printf("bounds:\n");
-    print_vector("from", g->box.lo);
-    print_vector("to", g->box.hi);
+    if (g->vertex_normal_count)
+        printf("  with vertex normals: %u triangle%s\n", g->vertex_normal_count,
+               rt_plural(g->vertex_normal_count));
+    if (counts->zero_area)
+        printf("  without area, never hit: %u triangle%s\n", counts->zero_area, rt_plural(counts->zero_area));
+    printf(g->object_count > 0 ? "bounds:\n" : "bounds: none\n");
+    if (g->object_count > 0) {
+        print_vector("from", g->box.lo);
+        print_vector("to", g->box.hi);
+    }
     printf("materials: %u\n", scene->material_count);
     for (uint32_t i = 0; i < scene->material_count && i < SHOWN; i++) print_material(&scene->materials[i]);
     if (scene->material_count > SHOWN) printf("  ... (--json lists all)\n");
@@ -131,6 +137,12 @@ static json_t *camera_json(const RtCamera *camera) {
                      (json_int_t)camera->height);
 }
 
+/* Those of no object: null. */
+static json_t *bounds_json(const RtGeometry *g) {
+    if (g->object_count == 0) return json_null();
+    return json_pack("{s:o, s:o}", "lo", vector_json(g->box.lo), "hi", vector_json(g->box.hi));
+}
+
 static json_t *info_json(const RtScene *scene, const Counts *counts) {
     const RtGeometry *g = &scene->geometry;
     json_t *shapes = json_object(), *materials = json_array(), *lights = json_array();
@@ -145,14 +157,14 @@ static json_t *info_json(const RtScene *scene, const Counts *counts) {
         json_array_append_new(lights, json_pack("{s:o, s:o}", "position", vector_json(light->position),
                                                 "intensity", vector_json(light->intensity)));
     }
-    return json_pack(
-        "{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:{s:o, s:o}, s:o, s:o, s:o, s:o, s:o, s:I}", "scene",
-        scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count, "shapes",
-        shapes, "solids", (json_int_t)g->forest.set.solid_count, "triangles_with_normals",
-        (json_int_t)g->vertex_normal_count, "triangles_without_area", (json_int_t)counts->zero_area, "bounds",
-        "lo", vector_json(g->box.lo), "hi", vector_json(g->box.hi), "materials", materials, "lights", lights,
-        "ambient", vector_json(scene->ambient), "background", vector_json(scene->background), "camera",
-        camera_json(&scene->camera), "bytes", (json_int_t)rt_scene_bytes(scene));
+    return json_pack("{s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:I}", "scene",
+                     scene->name, "fingerprint", counts->fingerprint, "objects", (json_int_t)g->object_count,
+                     "shapes", shapes, "solids", (json_int_t)g->forest.set.solid_count,
+                     "triangles_with_normals", (json_int_t)g->vertex_normal_count, "triangles_without_area",
+                     (json_int_t)counts->zero_area, "bounds", bounds_json(g), "materials", materials,
+                     "lights", lights, "ambient", vector_json(scene->ambient), "background",
+                     vector_json(scene->background), "camera", camera_json(&scene->camera), "bytes",
+                     (json_int_t)rt_scene_bytes(scene));
 }
 
 /* ---- the command ---- */

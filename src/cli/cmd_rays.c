@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally rays: the rays that `bench` records, as an array of NumPy. */
+#include "base/words.h"
 #include "bench/ray_file.h"
 #include "bench/workload.h"
 #include "cli/cli.h"
@@ -46,7 +47,7 @@ static RtStatus save(const Options *o, const RtRaySet *set, RtError *error) {
     if (set->count == 0)
         return rt_fail(error, RT_BAD_INPUT, "%s has no %s rays: choose another --rays", o->scene, kind);
     RT_TRY(rt_rays_save(set, o->out, error));
-    printf("%s: %" PRIu64 " %s rays\n", o->out, set->count, kind);
+    printf("%s: %" PRIu64 " %s ray%s\n", o->out, set->count, kind, rt_plural(set->count));
     return RT_OK;
 }
 

@@ -271,13 +271,15 @@ static RtStatus write_stats(const Run *run, RtError *error) {
 
 static void print_rays(const Run *run) {
     uint64_t rays = total_rays(run);
-    printf(", %u levels: ", run->options->depth);
+    int threads = rt_thread_count(run->options->threads);
+    printf(", %u level%s: ", run->options->depth, rt_plural(run->options->depth));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
         if (run->rays[kind])
             printf("%llu %s, ", (unsigned long long)run->rays[kind], rt_ray_kind_name((RtRayKind)kind));
     }
-    printf("%llu rays in %.3g s on %d threads: %.3g Mrays/s.", (unsigned long long)rays, run->timed.seconds,
-           rt_thread_count(run->options->threads), (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
+    printf("%llu ray%s in %.3g s on %d thread%s: %.3g Mrays/s.", (unsigned long long)rays, rt_plural(rays),
+           run->timed.seconds, threads, rt_plural((uint64_t)threads),
+           (double)rays * 1e-6 / fmax(run->timed.seconds, 1e-9));
 }
 
 static void print_summary(const Run *run) {
@@ -285,10 +287,11 @@ static void print_summary(const Run *run) {
     const RtSampling *s = &run->scene.sampling;
     RtDescription d;
     rt_accel_describe(run->accel, &d);
-    printf("%s: %u objects, %u lights. %s: built in %.3g s, %.3g MB. %u x %u pixels%s",
+    printf("%s: %u object%s, %u light%s. %s: built in %.3g s, %.3g MB. %u x %u pixels%s",
            run->scene.name[0] ? run->scene.name : o->scene, run->scene.geometry.object_count,
-           run->scene.light_count, run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width, s->height,
-           s->corners ? " at their corners" : "");
+           rt_plural(run->scene.geometry.object_count), run->scene.light_count,
+           rt_plural(run->scene.light_count), run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width,
+           s->height, s->corners ? " at their corners" : "");
     if (run->by_default) /* how fast that was says nothing of this one */
         printf(", drawn over what %s sees.", rt_accel_default());
     else if (total_rays(run) > 0)

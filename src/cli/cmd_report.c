@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally report: the report of a result directory, written again; the page over all of them. */
+#include "base/words.h"
 #include "bench/manifest.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
@@ -49,7 +50,7 @@ static int write_index(const char *folder) {
     RtError error;
     size_t count;
     if (rt_index_write(folder, &count, &error) != RT_OK) return rt_cli_fail(&error);
-    printf("Index: %s/index.html, of %zu experiment%s\n", folder, count, count == 1 ? "" : "s");
+    printf("Index: %s/index.html, of %zu experiment%s\n", folder, count, rt_plural(count));
     return RT_EXIT_OK;
 }
 

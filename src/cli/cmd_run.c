@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: an experiment, from its YAML to a result directory. */
 #include "base/memory.h"
+#include "base/words.h"
 #include "bench/claims.h"
 #include "bench/hardware_table.h"
 #include "bench/journal.h"
@@ -143,8 +144,8 @@ static RtStatus check_only(const RtExperiment *e, const RtOnly *only, RtError *e
                                 : "kinds of rays");
     }
     if (only->shards <= e->workload_count) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "--shard: there are %u scenes, too few for %u shards",
-                   e->workload_count, only->shards);
+    return rt_fail(error, RT_BAD_INPUT, "--shard: %u scene%s: too few for %u shards", e->workload_count,
+                   rt_plural(e->workload_count), only->shards);
 }
 
 /* What --dry-run prints of one cell. */
@@ -178,12 +179,12 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
     }
     RtForecast forecast = rt_forecast(results, &how->workload);
     if (forecast.finished == forecast.cells) {
-        printf("%u cells, all of them finished\n", forecast.cells);
+        printf("%u cell%s, all of them finished\n", forecast.cells, rt_plural(forecast.cells));
         return RT_OK;
     }
     rt_format_duration(forecast.left, duration);
-    printf("%u cells, %u of them finished; the others take %s %s%s\n", forecast.cells, forecast.finished,
-           forecast.guessed ? "at least" : "about", duration,
+    printf("%u cell%s, %u of them finished; the others take %s %s%s\n", forecast.cells,
+           rt_plural(forecast.cells), forecast.finished, forecast.guessed ? "at least" : "about", duration,
            forecast.guessed ? " (rounds by milliseconds: nothing is timed yet)" : "");
     return RT_OK;
 }

@@ -3,6 +3,7 @@
 #include "accel/away.h"
 #include "base/json.h"
 #include "base/table.h"
+#include "base/words.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "render/path.h"
@@ -119,7 +120,7 @@ static void print_rows(const RtPath *path, const Options *o, const RtGeometry *g
             putchar('\n');
         }
     }
-    if (left_out) printf("       and %u more rows\n", left_out);
+    if (left_out) printf("       and %u more row%s\n", left_out, rt_plural(left_out));
     if (joined + left_out > 0) puts("       --rows 0 prints each");
 }
 

@@ -4,6 +4,7 @@
  * line. */
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "bench/ray_file.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
@@ -189,7 +190,7 @@ static void print_row(Show *show, const json_t *row) {
             printf("    Asked again, the answer is right. ");
         } else if (json_is_true(json_object_get(wrong, "shrunk"))) {
             printf("    It takes %lld object%s of the scene. ", number(wrong, "objects_left"),
-                   number(wrong, "objects_left") == 1 ? "" : "s");
+                   rt_plural((uint64_t)number(wrong, "objects_left")));
         } else {
             printf("    The scene is left whole: enough failures have been shrunk. ");
         }
@@ -220,7 +221,8 @@ static void print_sides(const RtVerifySum *sum) {
     uint64_t differ = 0;
     for (int s = 0; s < RT_SIDE_COUNT; s++) differ += sum->sides[s];
     if (differ == 0) return;
-    printf("%s: %" PRIu64 " answers to nearest differ by more than a tie; exactly right:", sum->name, differ);
+    printf("%s: %" PRIu64 " answer%s to nearest differ%s by more than a tie; exactly right:", sum->name,
+           differ, rt_plural(differ), differ == 1 ? "s" : "");
     for (int s = 0; s < RT_SIDE_COUNT; s++) {
         printf("%s %s %" PRIu64, s ? "," : "", rt_side_name((RtSide)s), sum->sides[s]);
     }
@@ -228,7 +230,7 @@ static void print_sides(const RtVerifySum *sum) {
 }
 
 static void print_count(uint64_t count, const char *what) {
-    printf("%" PRIu64 " %s%s, ", count, what, count == 1 ? "" : "s");
+    printf("%" PRIu64 " %s%s, ", count, what, rt_plural(count));
 }
 
 /* How many rows of which accelerators fail, whatever their parameters. */
@@ -246,7 +248,7 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
     print_count(o->choice.scene_count, "scene");
     print_count(o->choice.spec_count, "accelerator");
     print_count(o->rays, "ray");
-    printf("%" PRIu64 " pairs of a ray and an accelerator: ", total.pairs);
+    printf("%" PRIu64 " pair%s of a ray and an accelerator: ", total.pairs, rt_plural(total.pairs));
     if (total.failed == 0) {
         fputs("nothing wrong", stdout);
     } else {
@@ -259,8 +261,11 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
 
 static void print_left_out(const Options *o) {
     if (!o->quick) return;
-    printf("This was the short one, of %" PRIu64 " rays a scene and not %d", o->rays, MANY_RAYS);
-    if (o->choice.scenes_left_out > 0) printf(", without %u larger scenes", o->choice.scenes_left_out);
+    printf("This was the short one, of %" PRIu64 " ray%s a scene and not %d", o->rays, rt_plural(o->rays),
+           MANY_RAYS);
+    if (o->choice.scenes_left_out > 0)
+        printf(", without %u larger scene%s", o->choice.scenes_left_out,
+               rt_plural(o->choice.scenes_left_out));
     puts(": leave --quick out to be sure");
 }
 

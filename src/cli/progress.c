@@ -2,6 +2,7 @@
 #include "cli/progress.h"
 
 #include "base/clock.h"
+#include "base/words.h"
 
 #include <math.h>
 #include <signal.h>
@@ -49,8 +50,11 @@ static void show(RtProgress *progress) {
     char duration[RT_MAX_DURATION], rest[RT_MAX_DURATION + 16] = "";
     rt_format_duration(left, duration);
     if (!isnan(left)) snprintf(rest, sizeof rest, ", about %s left", duration);
-    fprintf(stderr, progress->terminal ? "\r\033[K[%u/%u] %s%s" : "raytally: %u of %u cells, %s%s\n",
-            f->finished, f->cells, progress->doing, rest);
+    if (progress->terminal)
+        fprintf(stderr, "\r\033[K[%u/%u] %s%s", f->finished, f->cells, progress->doing, rest);
+    else
+        fprintf(stderr, "raytally: %u of %u cell%s, %s%s\n", f->finished, f->cells, rt_plural(f->cells),
+                progress->doing, rest);
     fflush(stderr);
     progress->shown = now;
 }
@@ -104,8 +108,9 @@ RtObserver rt_progress_observer(RtProgress *progress) {
 static void leave(const RtProgress *progress, int number) {
     fprintf(stderr, "%sraytally: interrupted; ", progress->terminal ? "\r\033[K" : "");
     if (progress->begun) {
-        fprintf(stderr, "%u of %u cells are finished, all that was measured is kept in %s. To go on:\n  %s\n",
-                progress->forecast.finished, progress->forecast.cells, progress->keeps, progress->go_on);
+        fprintf(stderr, "%u of %u cell%s %s finished, all that was measured is kept in %s. To go on:\n  %s\n",
+                progress->forecast.finished, progress->forecast.cells, rt_plural(progress->forecast.cells),
+                progress->forecast.cells == 1 ? "is" : "are", progress->keeps, progress->go_on);
     } else {
         fprintf(stderr, "nothing was measured yet, and what was in %s is as it was\n", progress->keeps);
     }

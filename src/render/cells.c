@@ -2,6 +2,7 @@
 #include "render/cells.h"
 
 #include "base/memory.h"
+#include "base/words.h"
 #include "render/draw.h"
 
 #include <stdio.h>
@@ -51,7 +52,8 @@ static RtStatus image_of_samples(RtImage *image, const RtAccel *layer, RtError *
                  {undecided, magenta, "are undecided: passed on"},
                  {samples - named - undecided, nowhere, "see nothing: black"}};
     char text[128];
-    snprintf(text, sizeof text, "%s  %llu samples, of which", layer->ops->name, (unsigned long long)samples);
+    snprintf(text, sizeof text, "%s  %llu sample%s, of which", layer->ops->name, (unsigned long long)samples,
+             rt_plural(samples));
     rt_draw_text(image, MARGIN * rt_text_dot(width), (int)s->height + MARGIN * rt_text_dot(width),
                  rt_text_dot(width), text, RT_WHITE);
     for (int i = 0; i < 3; i++) {
@@ -181,8 +183,8 @@ static void draw_cube_legend(RtImage *image, const Cube *cube, const RtScale *sc
     put_line(image, top, 4, red, "red dots: the list was cut, rays may be passed on");
     if (!marked) return;
     if (cube->layer->ops->look_up(cube->layer, marked, &cell)) {
-        snprintf(text, sizeof text, "ringed: the ray reads cell %u, with %u objects%s", cell.number,
-                 cell.length, cell.cut ? ", cut" : "");
+        snprintf(text, sizeof text, "ringed: the ray reads cell %u, with %u object%s%s", cell.number,
+                 cell.length, rt_plural(cell.length), cell.cut ? ", cut" : "");
         draw_mark(image, cube, cell.number);
     } else {
         snprintf(text, sizeof text, "the ray reads no cell: it is lit");

@@ -6,6 +6,7 @@
 #include "base/clamp.h"
 #include "base/file.h"
 #include "base/table.h"
+#include "base/words.h"
 #include "render/draw.h"
 #include "render/path.h"
 #include "render/section.h"
@@ -329,11 +330,11 @@ static void draw_legend(const Drawing *d) {
     fprintf(d->out, "<text x=\"12\" y=\"%.1f\">colours: order, dark comes first</text>\n", y + 12);
     fprintf(d->out, "<text x=\"12\" y=\"%.1f\">%c is up</text>\n", y + 28, axes[d->axis]);
     fprintf(d->out,
-            "<text x=\"12\" y=\"%.1f\">%llu steps, %llu of them leaves</text><text x=\"12\" y=\"%.1f\">%llu "
-            "extent "
-            "tests</text><text x=\"12\" y=\"%.1f\">%llu object tests, %llu of them hits</text>\n",
-            y + 56, (unsigned long long)t->steps, (unsigned long long)t->leaf_steps, y + 72,
-            (unsigned long long)t->extent_tests, y + 88, (unsigned long long)t->object_tests,
+            "<text x=\"12\" y=\"%.1f\">%llu step%s, of leaves %llu</text><text x=\"12\" y=\"%.1f\">%llu "
+            "extent test%s</text><text x=\"12\" y=\"%.1f\">%llu object test%s, hits %llu</text>\n",
+            y + 56, (unsigned long long)t->steps, rt_plural(t->steps), (unsigned long long)t->leaf_steps,
+            y + 72, (unsigned long long)t->extent_tests, rt_plural(t->extent_tests), y + 88,
+            (unsigned long long)t->object_tests, rt_plural(t->object_tests),
             (unsigned long long)t->object_hits);
 }
 
@@ -374,7 +375,9 @@ static void draw_all(const Drawing *d, const char *title, const char *spec) {
     draw_section(d);
     draw_axis(d, bars - 4, bottom);
     draw_rows(d, bars, true, &left);
-    if (left > 0) fprintf(d->out, "<text x=\"12\" y=\"%.1f\">and %u more rows</text>\n", bottom + 18, left);
+    if (left > 0)
+        fprintf(d->out, "<text x=\"12\" y=\"%.1f\">and %u more row%s</text>\n", bottom + 18, left,
+                rt_plural(left));
     fputs("</svg>\n", d->out);
 }
 

@@ -2,6 +2,7 @@
 #include "report/page.h"
 
 #include "base/table.h"
+#include "base/words.h"
 #include "bench/claims.h"
 #include "page_css.h"
 #include "page_js.h"
@@ -81,7 +82,8 @@ void rt_page_verdict(FILE *out, const RtResults *results) {
     if (!claims) {
         fputs("not judged", out);
     } else {
-        fprintf(out, "%" PRIu32 " of %" PRIu32 " claims hold", counts[RT_CLAIM_HOLDS], claims);
+        fprintf(out, "%" PRIu32 " of %" PRIu32 " claim%s hold%s", counts[RT_CLAIM_HOLDS], claims,
+                rt_plural(claims), claims == 1 ? "s" : "");
     }
     if (wrong) fprintf(out, ", %" PRIu32 " do%s not", wrong, wrong == 1 ? "es" : "");
     if (open) fprintf(out, ", %" PRIu32 " undecided", open);

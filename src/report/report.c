@@ -4,6 +4,7 @@
 #include "report/report.h"
 
 #include "base/memory.h"
+#include "base/words.h"
 #include "bench/claims.h"
 #include "bench/distribution_tables.h"
 #include "bench/hardware_table.h"
@@ -216,10 +217,10 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
         fputs("<figcaption><strong>", out);
         rt_html_put(out, setup->label);
         fprintf(out,
-                "</strong>: %" PRIu32 " objects; rays of a frame of %" PRIu32 " &times; %" PRIu32
+                "</strong>: %" PRIu32 " object%s; rays of a frame of %" PRIu32 " &times; %" PRIu32
                 " pixel %s, depth %" PRIu32 "</figcaption></figure>\n",
-                workload->objects, workload->width, workload->height, setup->corners ? "corners" : "centres",
-                setup->depth);
+                workload->objects, rt_plural(workload->objects), workload->width, workload->height,
+                setup->corners ? "corners" : "centres", setup->depth);
     }
     fputs("</div>\n", out);
 }

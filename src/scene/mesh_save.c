@@ -92,6 +92,11 @@ static RtStatus export_arrays(const Arrays *arrays, uint32_t triangles, const ch
 }
 
 static RtStatus save_assimp(const RtGeometry *g, const char *format, FILE *file, RtError *error) {
+    if (g->triangle_count == 0) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "this format holds one triangle or more, and the scene has none: "
+                       "write .yaml, .nff or .obj");
+    }
     if (g->triangle_count > UINT32_MAX / 3) {
         return rt_fail(error, RT_BAD_INPUT, "%u triangles are too many for one mesh", g->triangle_count);
     }

@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "base/lock.h"
 #include "base/memory.h"
+#include "base/words.h"
 #include "bench/json_lines.h"
 #include "bench/machine.h"
 #include "scenes/open.h"
@@ -163,7 +164,8 @@ static RtStatus add_row(Run *run, json_t *row, RtError *error) {
 
 static void on_tried(void *context, uint32_t left, uint32_t tries) {
     char what[64];
-    snprintf(what, sizeof what, "shrinking a failure: %u objects left, try %u", left, tries);
+    snprintf(what, sizeof what, "shrinking a failure: %u object%s left, try %u", left, rt_plural(left),
+             tries);
     doing(context, what);
 }
 

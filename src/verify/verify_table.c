@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/words.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -206,11 +207,14 @@ static void write_sums(const RtColumnGroup groups[2], RtVerifySum *sums, uint32_
 
 static void write_markdown(const Sums *sums, FILE *out) {
     RtVerifySum total = rt_verify_total(sums->accels, sums->accel_count);
-    fprintf(out, "# Verification\n\n%" PRIu64 " pairs of a ray and an accelerator, ", total.pairs);
+    fprintf(out, "# Verification\n\n%" PRIu64 " pair%s of a ray and an accelerator, ", total.pairs,
+            rt_plural(total.pairs));
     fputs("each asked `nearest` and `occluded`, timed and counted:\n", out);
-    fprintf(out, "%" PRIu64 " answers to `nearest` are wrong, %" PRIu64 " to `occluded`. ",
-            total.verdicts[RT_WRONG], total.occluded_wrong);
-    fprintf(out, "%u rows, %u of which fail, are in [verify.csv](verify.csv).\n", total.rows, total.failed);
+    fprintf(out, "%" PRIu64 " answer%s to `nearest` %s wrong, %" PRIu64 " to `occluded`. ",
+            total.verdicts[RT_WRONG], rt_plural(total.verdicts[RT_WRONG]),
+            total.verdicts[RT_WRONG] == 1 ? "is" : "are", total.occluded_wrong);
+    fprintf(out, "%u row%s, %u of which fail, %s in [verify.csv](verify.csv).\n", total.rows,
+            rt_plural(total.rows), total.failed, total.rows == 1 ? "is" : "are");
     fputs(
         "What was verified, with which seed and by which build, is in [manifest.json](manifest.json).\n\n"
         "An answer of an exact accelerator is equal to that of `brute`, the same object and bits of t, or\n"

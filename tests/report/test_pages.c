@@ -41,7 +41,7 @@ RT_TEST_IN_PLACE(the_report_has_verdict_finding_and_prediction_first_then_plots_
     const Place *place = *state;
     const char *const parts[] = {"Which is &lt;cheaper&gt;?",
                                  "<h2>Verdict</h2>",
-                                 "1 of 1 claims hold",
+                                 "1 of 1 claim holds",
                                  "<h2>Finding</h2>",
                                  "<h2>Prediction",
                                  "clock ",
@@ -257,7 +257,7 @@ RT_TEST_IN_PLACE(the_index_has_each_experiment_with_verdict_finding_and_link_and
     assert_in_file(place, "output", "all//index.html, of 3 experiments");
     assert_in_file(place, "all/index.html", "<a href=\"one/report.html\">small</a>");
     assert_in_file(place, "all/index.html", "<a href=\"deeper/two%20%26%20a%20half/report.html\">");
-    assert_in_file(place, "all/index.html", "1 of 1 claims hold");
+    assert_in_file(place, "all/index.html", "1 of 1 claim holds");
     assert_in_file(place, "all/index.html", "It &lt;was&gt;.");
     assert_in_file(place, "all/index.html", "It cannot be read:");
     assert_int_equal(raytally(place, "report --index nowhere"), 2);
