@@ -57,6 +57,12 @@ static inline bool rt_ray_kind_is_occlusion(RtRayKind kind) {
     return kind == RT_RAY_SHADOW || kind == RT_RAY_OCCLUSION;
 }
 
+/* Rays that a frame is rendered with. */
+static inline bool rt_ray_kind_is_of_frame(RtRayKind kind) {
+    return kind == RT_RAY_PRIMARY || kind == RT_RAY_SHADOW || kind == RT_RAY_REFLECTION ||
+           kind == RT_RAY_TRANSMISSION;
+}
+
 /* "primary", ...; and the kind of a name, or RT_BAD_INPUT and the names there are. */
 const char *rt_ray_kind_name(RtRayKind kind);
 RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error);

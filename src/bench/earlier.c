@@ -4,15 +4,17 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "bench/distribution_tables.h"
+#include "bench/frame_table.h"
 #include "bench/hardware_table.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static const char *const result_files[] = {
-    RT_RUN_JOURNAL,  RT_VERIFY_JOURNAL, RT_MANIFEST,          "counts.csv",      "times.csv",    "rounds.csv",
-    "published.csv", "best.csv",        "published.md",       "report.html",     "verify.csv",   "verify.md",
-    "tables.md",     "tables.tex",      RT_DISTRIBUTIONS_CSV, RT_HISTOGRAMS_CSV, RT_HARDWARE_CSV};
+    RT_RUN_JOURNAL,    RT_VERIFY_JOURNAL, RT_MANIFEST, "counts.csv",   "times.csv",
+    "rounds.csv",      "published.csv",   "best.csv",  "published.md", "report.html",
+    "verify.csv",      "verify.md",       "tables.md", "tables.tex",   RT_DISTRIBUTIONS_CSV,
+    RT_HISTOGRAMS_CSV, RT_HARDWARE_CSV,   RT_FRAME_CSV};
 
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 

@@ -285,6 +285,35 @@ static RtStatus check_hardware(const RtExperiment *experiment, RtError *error) {
         "out");
 }
 
+static bool has_kind(const RtExperiment *experiment, RtRayKind kind) {
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        if (experiment->kinds[k] == kind) return true;
+    }
+    return false;
+}
+
+static RtStatus check_frame(const RtExperiment *experiment, RtError *error) {
+    const RtFrameSetup *frame = &experiment->frame;
+    bool grouped = false;
+    if (!*frame->without) return RT_OK;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (rt_candidate_find(experiment, frame->without, t) < experiment->candidate_count) continue;
+        return rt_fail(error, RT_BAD_INPUT, "without: '%s' is not the label of an accelerator on %s",
+                       frame->without, experiment->workloads[t].label);
+    }
+    for (uint32_t c = 0; c < experiment->candidate_count; c++)
+        grouped |= strcmp(experiment->candidates[c].group, frame->among) == 0;
+    if (!grouped)
+        return rt_fail(error, RT_BAD_INPUT, "among: '%s' is not the group of an accelerator", frame->among);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtRayKind kind = (RtRayKind)k;
+        if (!rt_ray_kind_is_of_frame(kind) || has_kind(experiment, kind)) continue;
+        return rt_fail(error, RT_BAD_INPUT, "a frame has %s rays, too: name that kind under `rays`",
+                       rt_ray_kind_name(kind));
+    }
+    return RT_OK;
+}
+
 RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
     for (uint32_t i = 0; i < experiment->workload_count; i++) {
         snprintf(where, RT_MAX_LABEL, "scenes[%u]", experiment->workloads[i].entry);
@@ -311,6 +340,8 @@ RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *err
              experiment->candidates[experiment->baseline].label);
     strcpy(where, "published");
     RT_TRY(check_published(experiment, error));
+    strcpy(where, "frame");
+    RT_TRY(check_frame(experiment, error));
     for (uint32_t i = 0; i < experiment->plot_count; i++) {
         snprintf(where, RT_MAX_LABEL, "plots[%u]", i);
         RT_TRY(check_plot(experiment, i, error));

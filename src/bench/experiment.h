@@ -42,6 +42,7 @@ typedef struct RtCandidate {
     char base[RT_MAX_LABEL]; /* as of a workload */
     RtSwept swept;
     uint32_t entry;
+    char group[RT_MAX_LABEL];     /* the heading it stands under in the table of frames, or "" */
     char spec[RT_MAX_SPEC_CHARS]; /* as written */
     uint64_t ray_stride;          /* k: measured on each kth ray of a set, so that slow ones finish; >= 1 */
     uint32_t left_out;            /* bit t: it is not measured on workloads[t] */
@@ -77,6 +78,13 @@ typedef struct RtPublishedSetup {
     double tolerance[RT_COLUMN_COUNT];           /* in percent; 0: shown, not judged */
 } RtPublishedSetup;
 
+/* The table of what a whole frame costs (bench/frame_table.h). */
+typedef struct RtFrameSetup {
+    char without[RT_MAX_LABEL]; /* the candidate that has no structure; "": there is no such table */
+    char among[RT_MAX_LABEL];   /* the group whose best is marked */
+    char note[RT_MAX_TEXT];     /* what a reader of the table should know, or "" */
+} RtFrameSetup;
+
 typedef struct RtExperiment {
     char name[RT_MAX_LABEL];
     char question[RT_MAX_TEXT], prediction[RT_MAX_TEXT];
@@ -106,6 +114,7 @@ typedef struct RtExperiment {
               [RT_MAX_LABEL]; /* gnuplot scripts seen from the YAML, run in this order in one go */
     uint32_t plot_count;
     RtPublishedSetup published;
+    RtFrameSetup frame;
     char rays_from[RT_MAX_PATH]; /* a file of rays (bench/ray_file.h) of the one kind, in place of recorded
                                     ones; or "" */
     bool count_only;             /* nothing is timed */

@@ -96,10 +96,22 @@ static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExp
     return RT_OK;
 }
 
+/* The name of a group of accelerators, which gnuplot reads between double quotes. */
+static RtStatus read_group(const RtYaml *y, const RtYamlNode *n, const char *key, char group[RT_MAX_LABEL]) {
+    RT_TRY(rt_yaml_copy(y, n, key, RT_MAX_LABEL, group));
+    for (const char *c = group; *c; c++) {
+        if (!rt_may_label(*c) && *c != ' ' && *c != '\'')
+            return rt_yaml_fail(y, rt_yaml_get(y, n, key),
+                                "'%s' has the character '%c', which plots cannot show", group, *c);
+    }
+    return RT_OK;
+}
+
 static RtStatus read_candidates(const RtYaml *y, const RtYamlNode *n, uint32_t entry,
                                 RtExperiment *experiment, RtError *error) {
     RtCandidate like = {.entry = entry, .ray_stride = 1};
-    RT_TRY(rt_yaml_keys(y, n, "accel label? ray_stride? scenes?"));
+    RT_TRY(rt_yaml_keys(y, n, "accel label? group? ray_stride? scenes?"));
+    RT_TRY(read_group(y, n, "group", like.group));
     RT_TRY(rt_yaml_copy(y, n, "accel", RT_MAX_SPEC_CHARS, like.spec));
     RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
     RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &like.ray_stride));
@@ -141,6 +153,13 @@ static RtStatus read_published(const RtYaml *y, const RtYamlNode *n, RtExperimen
         if (!found) return rt_yaml_fail(y, e, "'%s' is not the label of one of the accelerators", label);
     }
     return RT_OK;
+}
+
+static RtStatus read_frame(const RtYaml *y, const RtYamlNode *n, RtFrameSetup *frame) {
+    RT_TRY(rt_yaml_keys(y, n, "without among note?"));
+    RT_TRY(rt_yaml_copy(y, n, "without", RT_MAX_LABEL, frame->without));
+    RT_TRY(read_group(y, n, "among", frame->among));
+    return rt_yaml_copy(y, n, "note", RT_MAX_TEXT, frame->note);
 }
 
 static RtStatus read_rays(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment, RtError *error) {
@@ -229,7 +248,8 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(rt_yaml_keys(
         y, n,
         "name question prediction scenes accelerators baseline? rays? limit? coherent_run? rounds? "
-        "milliseconds? seed? count_only? hardware? distributions? published? quick? plots? expect? finding? "
+        "milliseconds? seed? count_only? hardware? distributions? published? frame? quick? plots? expect? "
+        "finding? "
         "limits?"));
     RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
     RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
@@ -245,6 +265,8 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     RT_TRY(read_lists(y, n, experiment, error));
     RT_TRY(read_baseline(y, n, experiment, error));
     const RtYamlNode *published = rt_yaml_get(y, n, "published"), *smaller = rt_yaml_get(y, n, "quick");
+    const RtYamlNode *frame = rt_yaml_get(y, n, "frame");
+    if (frame) RT_TRY(read_frame(y, frame, &experiment->frame));
     if (published) RT_TRY(read_published(y, published, experiment));
     if (smaller) RT_TRY(read_quick(y, smaller, quick, experiment));
     experiment->quick = quick;

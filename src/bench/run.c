@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "bench/distribution_tables.h"
+#include "bench/frame_table.h"
 #include "bench/hardware_table.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
@@ -184,6 +185,11 @@ static RtStatus write_tables(const RtRun *run, RtError *error) {
     RT_TRY(rt_run_write_table(run, "times.csv", &times, error));
     RtTable rounds = rt_result_table(RT_ROUNDS, &row);
     RT_TRY(rt_run_write_table(run, "rounds.csv", &rounds, error));
+    if (*run->experiment->frame.without) {
+        RtFrameRow frame = {.results = run->results};
+        RtTable frames = rt_frame_table(&frame);
+        RT_TRY(rt_run_write_table(run, RT_FRAME_CSV, &frames, error));
+    }
     if (!run->experiment->hardware) return RT_OK;
     RtHardwareRow cell = {.results = run->results};
     RtTable hardware = rt_hardware_table(&cell);

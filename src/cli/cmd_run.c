@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/words.h"
 #include "bench/claims.h"
+#include "bench/frame_table.h"
 #include "bench/hardware_table.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
@@ -203,13 +204,22 @@ static void go_on(const Options *o, const RtExperiment *e, const char *directory
 
 static void print_all(const RtResults *results, const char *directory, bool report) {
     char sentence[RT_MAX_SENTENCE];
-    rt_print_results(results, RT_TOTALS, stdout);
+    const bool frames = *results->experiment->frame.without;
+    if (frames)
+        rt_print_frames(results, stdout);
+    else
+        rt_print_results(results, RT_TOTALS, stdout);
     if (results->experiment->hardware) rt_print_hardware(results, stdout);
     rt_print_limits(results, stdout);
     rt_claims_print(results, stdout);
     rt_null_sentence(results, sentence);
     printf("\n%s%s", sentence, *sentence ? "\n" : "");
-    if (report) printf("Report: %s/report.html\n", directory);
+    for (uint32_t t = 0; frames && t < results->experiment->workload_count; t++) {
+        char answer[RT_MAX_FRAME_SENTENCE];
+        rt_frame_sentence(results, t, answer);
+        if (*answer) fputc('\n', stdout), rt_print_wrapped(answer, stdout);
+    }
+    if (report) printf("\nReport: %s/report.html\n", directory);
 }
 
 static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how, RtError *error) {

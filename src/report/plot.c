@@ -74,7 +74,12 @@ static RtStatus write_names(const RtResults *results, const char *directory, con
             if (i > 0) fprintf(out, "%d ", i == 1 ? look.marker : look.dash);
         }
     }
-    fprintf(out, "\"\nkinds = \"");
+    fprintf(out, "\"\ngroups = \"");
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        if (has_rows(results, c)) fprintf(out, "\\\"%s\\\" ", experiment->candidates[c].group);
+    }
+    fprintf(out, "\"\nwithout = \"%s\"\namong = \"%s\"\nkinds = \"", experiment->frame.without,
+            experiment->frame.among);
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
         if (has_rays(results, experiment->kinds[k]))
             fprintf(out, "%s ", rt_ray_kind_name(experiment->kinds[k]));

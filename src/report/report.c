@@ -7,6 +7,7 @@
 #include "base/words.h"
 #include "bench/claims.h"
 #include "bench/distribution_tables.h"
+#include "bench/frame_table.h"
 #include "bench/hardware_table.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
@@ -61,9 +62,9 @@ static void put_link(FILE *out, const char *directory, const char *name) {
 
 static void put_links(FILE *out, const char *directory) {
     static const char *const files[] = {
-        "counts.csv",    "times.csv",     "rounds.csv",     RT_DISTRIBUTIONS_CSV, RT_HISTOGRAMS_CSV,
-        RT_HARDWARE_CSV, "published.csv", "best.csv",       "tables.md",          "tables.tex",
-        "published.md",  "manifest.json", "experiment.yaml"};
+        "counts.csv",    "times.csv",    "rounds.csv",    RT_DISTRIBUTIONS_CSV, RT_HISTOGRAMS_CSV,
+        RT_HARDWARE_CSV, RT_FRAME_CSV,   "published.csv", "best.csv",           "tables.md",
+        "tables.tex",    "published.md", "manifest.json", "experiment.yaml"};
     fputs("<nav class=\"here\" aria-label=\"Sections\"><a href=\"#plots\">Plots</a> <a "
           "href=\"#scenes\">Scenes</a> "
           "<a href=\"#tables\">Tables</a> <a href=\"#method\">How it was measured</a></nav>\n"
@@ -71,19 +72,6 @@ static void put_links(FILE *out, const char *directory) {
           out);
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) put_link(out, directory, files[i]);
     fputs("</nav>\n", out);
-}
-
-static void put_head(FILE *out, const RtResults *results, const json_t *manifest, const char *directory) {
-    const RtExperiment *experiment = results->experiment;
-    rt_page_begin(out, experiment->name);
-    fputs("<p class=\"lede\">", out);
-    rt_html_put(out, experiment->question);
-    fputs("</p>\n", out);
-    put_claims(out, results);
-    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "None is written yet.");
-    rt_page_card(out, "Prediction, written before the run", experiment->prediction);
-    rt_page_provenance(out, manifest);
-    put_links(out, directory);
 }
 
 /* ---- plots ---- */
@@ -123,6 +111,7 @@ static void look_for_caption(void *context, const char *path) {
 typedef struct Plots {
     FILE *out;
     const char *directory;
+    const char *shown; /* the file name of one that stands elsewhere on the page, or NULL */
 } Plots;
 
 /* Its size in pixels: gnuplot writes viewBox="0 0 WIDTH HEIGHT". */
@@ -161,6 +150,7 @@ static void put_svg(FILE *out, const char *svg, size_t size, const Caption *capt
 static void put_plot(void *context, const char *path) {
     const Plots *plots = context;
     const char *slash = strrchr(path, '/'), *file = slash ? slash + 1 : path;
+    if (plots->shown && strcmp(file, plots->shown) == 0) return;
     char name[RT_MAX_PATH], folder[RT_MAX_PATH], pdf[RT_MAX_PATH + 16], *svg;
     size_t size;
     snprintf(name, sizeof name, "%.*s", (int)(strlen(file) - strlen(".svg")), file);
@@ -181,8 +171,8 @@ static void put_plot(void *context, const char *path) {
     fputs("</figcaption></figure>\n", plots->out);
 }
 
-static void put_plots(FILE *out, const char *directory) {
-    Plots context = {out, directory};
+static void put_plots(FILE *out, const RtExperiment *experiment, const char *directory) {
+    Plots context = {out, directory, *experiment->frame.without ? strrchr(RT_FRAME_PLOT, '/') + 1 : NULL};
     char plots[RT_MAX_PATH];
     fputs("<h2 id=\"plots\">Plots</h2>\n", out);
     if (rt_path_join(directory, "plots", plots, NULL) != RT_OK) return;
@@ -225,11 +215,20 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
     fputs("</div>\n", out);
 }
 
-static const char *dot_of(const void *row) {
+static const char *dot_of_candidate(const RtExperiment *experiment, uint32_t candidate) {
     static char color[sizeof((RtLook *)0)->color]; /* until the next row */
-    const RtResultRow *r = row;
-    strcpy(color, rt_candidate_look(r->results->experiment, r->candidate).color);
+    strcpy(color, rt_candidate_look(experiment, candidate).color);
     return color;
+}
+
+static const char *dot_of(const void *row) {
+    const RtResultRow *r = row;
+    return dot_of_candidate(r->results->experiment, r->candidate);
+}
+
+static const char *frame_dot_of(const void *row) {
+    const RtFrameRow *r = row;
+    return dot_of_candidate(r->results->experiment, r->candidate);
 }
 
 static void put_table(FILE *out, const RtResults *results, uint32_t t, RtResultTable which,
@@ -289,6 +288,55 @@ static void put_tables(FILE *out, const RtResults *results) {
         fputs("</details></section>\n", out);
     }
     put_more_tables(out, results);
+}
+
+/* ---- the answer ---- */
+
+/* Where the experiment has frames: what helped most on each scene, as sentences, plot and tables. */
+static void put_answer(FILE *out, const RtResults *results, const char *directory) {
+    const RtExperiment *experiment = results->experiment;
+    char path[RT_MAX_PATH], text[RT_MAX_FRAME_SENTENCE], caption[RT_MAX_FRAME_SENTENCE + RT_MAX_LABEL];
+    if (!*experiment->frame.without) return;
+    fputs("<section class=\"card\" id=\"answer\"><h2>Answer</h2>", out);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        rt_frame_sentence(results, t, text);
+        fputs(*text ? "<p>" : "", out);
+        rt_html_put(out, text);
+        fputs(*text ? "</p>\n" : "", out);
+    }
+    fputs("</section>\n", out);
+    if (is_beside(directory, RT_FRAME_PLOT) && rt_path_join(directory, RT_FRAME_PLOT, path, NULL) == RT_OK)
+        put_plot(&(Plots){out, directory, NULL}, path);
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        RtFrameRow row = {.results = results, .one = true, .workload = t};
+        RtTable table = rt_frame_table(&row);
+        if (!results->workloads[t].known) continue;
+        rt_frame_title(results, t, text);
+        snprintf(caption, sizeof caption, "%s: %s", experiment->workloads[t].label, text);
+        table.caption = caption;
+        table.color = frame_dot_of;
+        rt_table_html(&table, out);
+    }
+    fputs("<p class=\"meta\">", out);
+    rt_frame_legend(experiment, text);
+    rt_html_put(out, text);
+    fputs(" ", out);
+    rt_html_put(out, experiment->frame.note);
+    fputs("</p>\n", out);
+}
+
+static void put_head(FILE *out, const RtResults *results, const json_t *manifest, const char *directory) {
+    const RtExperiment *experiment = results->experiment;
+    rt_page_begin(out, experiment->name);
+    fputs("<p class=\"lede\">", out);
+    rt_html_put(out, experiment->question);
+    fputs("</p>\n", out);
+    put_answer(out, results, directory);
+    put_claims(out, results);
+    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "None is written yet.");
+    rt_page_card(out, "Prediction, written before the run", experiment->prediction);
+    rt_page_provenance(out, manifest);
+    put_links(out, directory);
 }
 
 /* Every member of an object that is text, a number or a truth. */
@@ -381,7 +429,7 @@ RtStatus rt_report_write(const RtResults *results, const RtPublished *published,
     RT_TRY(rt_path_join(directory, "report.html", path, error));
     RT_TRY(rt_output_open(&output, path, error));
     put_head(output.file, results, manifest, directory);
-    put_plots(output.file, directory);
+    put_plots(output.file, results->experiment, directory);
     rt_published_page(published, true, output.file);
     put_scenes(output.file, results, directory);
     put_tables(output.file, results);

@@ -10,6 +10,7 @@
 #include "bench/compare.h"
 #include "bench/distribution_tables.h"
 #include "bench/extents_table.h"
+#include "bench/frame_table.h"
 #include "bench/hardware_table.h"
 #include "bench/result_tables.h"
 #include "literature/published_tables.h"
@@ -40,6 +41,11 @@ static RtTable of_distributions(RtDistributionTable which) {
     return rt_distribution_table(which, &rows[which]);
 }
 
+static RtTable of_frames(void) {
+    static RtFrameRow row = {.results = &results};
+    return rt_frame_table(&row);
+}
+
 static RtTable of_instructions(void) {
     static const RtCallgrind callgrind = {0};
     static RtInstructionsRow row = {.callgrind = &callgrind};
@@ -64,7 +70,7 @@ typedef struct Section {
     RtTable table;
 } Section;
 
-enum { SECTIONS = 17 };
+enum { SECTIONS = 18 };
 static void list(Section sections[SECTIONS]) {
     const RtTable verify_csv = {.groups = rt_verify_csv, .group_count = RT_VERIFY_GROUPS};
     const RtTable verify_json = {.groups = rt_verify_json, .group_count = RT_VERIFY_GROUPS};
@@ -73,6 +79,7 @@ static void list(Section sections[SECTIONS]) {
         {"counts.csv", true, "tests/golden/counts.csv", of_results(RT_COUNTS)},
         {"times.csv", true, NULL, of_results(RT_TIMES)},
         {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
+        {"frame.csv", true, NULL, of_frames()},
         {"hardware.csv", true, NULL, of_hardware()},
         {"distributions.csv", true, NULL, of_distributions(RT_DISTRIBUTIONS)},
         {"histograms.csv", true, NULL, of_distributions(RT_HISTOGRAMS)},
