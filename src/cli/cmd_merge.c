@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: one result directory from those of the shards of an experiment. */
 #include "base/memory.h"
-#include "bench/claims.h"
 #include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
@@ -75,9 +74,7 @@ int rt_command_merge(int argc, char **argv) {
                                             &results, &observer, &error)
                                  : rt_fail_memory(&error, "an experiment", sizeof *experiment);
     if (status == RT_OK) {
-        rt_print_results(&results, RT_TOTALS, stdout);
-        rt_print_limits(&results, stdout);
-        rt_claims_print(&results, stdout);
+        rt_print_summary(&results, stdout);
         printf("\nReport: %s/report.html\n", o.out);
     }
     rt_results_clear(&results);

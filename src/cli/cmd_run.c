@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: an experiment, from its YAML to a result directory. */
 #include "base/memory.h"
-#include "base/words.h"
 #include "bench/claims.h"
-#include "bench/frame_table.h"
-#include "bench/hardware_table.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/result_tables.h"
@@ -202,26 +199,6 @@ static void go_on(const Options *o, const RtExperiment *e, const char *directory
              e->quick ? " --quick" : "", threads, shard, until, plugins, o->trust ? " --trust" : "");
 }
 
-static void print_all(const RtResults *results, const char *directory, bool report) {
-    char sentence[RT_MAX_SENTENCE];
-    const bool frames = *results->experiment->frame.without;
-    if (frames)
-        rt_print_frames(results, stdout);
-    else
-        rt_print_results(results, RT_TOTALS, stdout);
-    if (results->experiment->hardware) rt_print_hardware(results, stdout);
-    rt_print_limits(results, stdout);
-    rt_claims_print(results, stdout);
-    rt_null_sentence(results, sentence);
-    printf("\n%s%s", sentence, *sentence ? "\n" : "");
-    for (uint32_t t = 0; frames && t < results->experiment->workload_count; t++) {
-        char answer[RT_MAX_FRAME_SENTENCE];
-        rt_frame_sentence(results, t, answer);
-        if (*answer) fputc('\n', stdout), rt_print_wrapped(answer, stdout);
-    }
-    if (report) printf("\nReport: %s/report.html\n", directory);
-}
-
 static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how, RtError *error) {
     char command[RT_MAX_PATH + 1280];
     RtProgress progress = rt_progress_begin(&how->workload);
@@ -231,7 +208,8 @@ static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how,
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
-    print_all(results, how->directory, !o->only.scene && !o->only.shards);
+    rt_print_summary(results, stdout);
+    if (!o->only.scene && !o->only.shards) printf("\nReport: %s/report.html\n", how->directory);
     RT_TRY(rt_results_check_broken(results, error));
     return o->strict ? rt_claims_check(results, error) : RT_OK;
 }

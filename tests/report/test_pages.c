@@ -61,6 +61,41 @@ RT_TEST_IN_PLACE(the_report_has_verdict_finding_and_prediction_first_then_plots_
     rt_free(page);
 }
 
+RT_TEST_IN_PLACE(a_report_of_frames_opens_with_what_helped_most_and_its_plot) {
+    const Place *place = *state;
+    static const char with_frame[] = "name: small\n"
+                                     "question: Which helps most?\n"
+                                     "prediction: The grid.\n"
+                                     "scenes: [{scene: \"random:n=60\", label: cloud, size: 12x12}]\n"
+                                     "accelerators: [{accel: brute, group: none}, {accel: grid, group: "
+                                     "ours}, {accel: bvh, group: other}]\n"
+                                     "rays: [primary, shadow, reflection, transmission]\n"
+                                     "frame: {without: brute, among: ours, note: A note.}\n"
+                                     "plots: [frame.gp]\n"
+                                     "rounds: 2\n"
+                                     "milliseconds: 0\n";
+    static const char *const parts[] = {"<h2>Answer</h2>", "On cloud, grid helps most of ours",
+                                        "Plot: A frame",   "of 12x12: 144 primary",
+                                        "A note.",         "<h2>Verdict</h2>",
+                                        "id=\"plots\""};
+    write_in(place, "small.yaml", with_frame);
+    write_in(place, "frame.gp",
+             "#: frame: A frame.\nset terminal svg\nset output \"plots/frame.svg.tmp\"\nplot x\n");
+    assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
+    assert_in_file(place, "output", "> grid");
+    assert_in_file(place, "output", "On cloud, grid helps most of ours: ");
+    assert_in_file(place, "out/frame.csv", "cloud,grid,ours,");
+    char *page = read_in(place, "out/report.html");
+    const char *at = page;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        const char *found = strstr(at, parts[i]);
+        if (!found) fail_msg("the report lacks '%s' after what stands before it", parts[i]);
+        if (found) at = found;
+    }
+    assert_null(strstr(at, "Plot: A frame")); /* once */
+    rt_free(page);
+}
+
 RT_TEST_IN_PLACE(a_plot_has_the_caption_that_its_script_says_and_its_first_sentence_for_who_does_not_see_it) {
     const Place *place = *state;
     if (access("/usr/bin/gnuplot", X_OK) != 0) skip();
