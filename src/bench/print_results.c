@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Results for a terminal of 80 columns. */
 #include "base/words.h"
-#include "bench/claims.h"
-#include "bench/frame_table.h"
-#include "bench/hardware_table.h"
 #include "bench/result_tables.h"
 
 #include <inttypes.h>
@@ -161,26 +158,4 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
              ", too few for 95 %%; an interval is all that was measured and holds the median in "
              "%.3g %%. Take %d or more.",
              rounds, 100 * coverage, RT_FULL_ROUNDS);
-}
-
-void rt_print_summary(const RtResults *results, FILE *out) {
-    const RtExperiment *experiment = results->experiment;
-    const bool frames = *experiment->frame.without;
-    char null_runs[RT_MAX_SENTENCE], answer[RT_MAX_FRAME_SENTENCE];
-    if (frames)
-        rt_print_frames(results, out);
-    else
-        rt_print_results(results, RT_TOTALS, out);
-    if (experiment->hardware) rt_print_hardware(results, out);
-    rt_print_limits(results, out);
-    rt_claims_print(results, out);
-    rt_null_sentence(results, null_runs);
-    fputc('\n', out);
-    if (*null_runs) rt_print_wrapped(null_runs, out);
-    for (uint32_t t = 0; frames && t < experiment->workload_count; t++) {
-        rt_frame_sentence(results, t, answer);
-        if (!*answer) continue;
-        fputc('\n', out);
-        rt_print_wrapped(answer, out);
-    }
 }

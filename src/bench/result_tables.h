@@ -73,11 +73,6 @@ void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
  * there is then; or RT_TOTALS; of each workload that is known. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
 
-/* What a run ends with: what frames cost (bench/frame_table.h), or the totals where the experiment has no
- * frames; what the machine did, if that was asked for; limits; claims; null runs; and for frames what helped
- * most. */
-void rt_print_summary(const RtResults *results, FILE *out);
-
 /* The rows of a table for the eye, behind a blank line and the names of its columns. */
 void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: one result directory from those of the shards of an experiment. */
 #include "base/memory.h"
-#include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
+#include "cli/summary.h"
 #include "report/merge.h"
 
 #include <argp.h>
@@ -74,7 +74,7 @@ int rt_command_merge(int argc, char **argv) {
                                             &results, &observer, &error)
                                  : rt_fail_memory(&error, "an experiment", sizeof *experiment);
     if (status == RT_OK) {
-        rt_print_summary(&results, stdout);
+        rt_cli_print_summary(&results, stdout);
         printf("\nReport: %s/report.html\n", o.out);
     }
     rt_results_clear(&results);

@@ -4,10 +4,10 @@
 #include "bench/claims.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
-#include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
+#include "cli/summary.h"
 #include "report/result_directory.h"
 
 #include <argp.h>
@@ -208,7 +208,7 @@ static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how,
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
-    rt_print_summary(results, stdout);
+    rt_cli_print_summary(results, stdout);
     if (!o->only.scene && !o->only.shards) printf("\nReport: %s/report.html\n", how->directory);
     RT_TRY(rt_results_check_broken(results, error));
     return o->strict ? rt_claims_check(results, error) : RT_OK;

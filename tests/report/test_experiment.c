@@ -212,7 +212,7 @@ RT_TEST_IN_PLACE(counts_are_the_same_bytes_on_one_thread_and_on_two) {
     assert_ok(run(place, "two", RT_START_FRESH, 2, nobody, error));
     char *one = read_in(place, "one/counts.csv"), *two = read_in(place, "two/counts.csv");
     assert_string_equal(one, two);
-    assert_non_null(strstr(one, ",brute,brute,7,"));
+    assert_non_null(strstr(one, ",brute,brute:lanes=16,7,"));
     assert_non_null(strstr(one, "\"grid:")); /* every effective parameter, quoted for its commas */
     rt_free(one);
     rt_free(two);
