@@ -4,7 +4,7 @@
  *
  * The first line names the experiment (the fingerprint of its YAML), whether it is the quick variant, the
  * build, and the plugins that the experiment uses; a journal of another experiment or build is refused. A
- * last line that was cut off is passed over. */
+ * last line that was cut off is passed over; any other that no journal has is refused by its number. */
 #ifndef RT_BENCH_JOURNAL_H
 #define RT_BENCH_JOURNAL_H
 

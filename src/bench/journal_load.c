@@ -7,186 +7,274 @@
 #include "bench/plugins_used.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
 /* ---- from JSON ---- */
 
-/* Members that are missing or of another type read as 0, which no journal of ours has. */
-static uint64_t get_integer(const json_t *object, const char *key) {
-    return (uint64_t)json_integer_value(json_object_get(object, key));
+/* The line that is read. The first thing that is wrong with it is kept: what is read from then on is of no
+ * use to anybody, and is within its range. */
+typedef struct Reader {
+    const char *path;
+    size_t line; /* from 1 */
+    RtStatus status;
+    RtError *error;
+} Reader;
+
+static void reject(Reader *reader, const char *key, const char *wanted) {
+    if (reader->status != RT_OK) return;
+    reader->status =
+        rt_fail_at(reader->error, reader->path, reader->line, 0,
+                   "'%s' is not %s: the journal is damaged, or of another version of raytally. Remove "
+                   "this line, and --resume measures anew what it said",
+                   key, wanted);
 }
 
-static uint64_t get_hex(const json_t *object, const char *key) {
-    const char *text = json_string_value(json_object_get(object, key));
-    uint64_t value = 0;
-    return text && sscanf(text, "%" SCNx64, &value) == 1 ? value : 0;
-}
-
-static double get_number(const json_t *object, const char *key) {
+static uint64_t get_integer(Reader *reader, const json_t *object, const char *key, uint64_t least,
+                            uint64_t most) {
     const json_t *value = json_object_get(object, key);
+    const json_int_t number = json_integer_value(value);
+    if (json_is_integer(value) && number >= 0 && (uint64_t)number >= least && (uint64_t)number <= most)
+        return (uint64_t)number;
+    char wanted[96];
+    snprintf(wanted, sizeof wanted, "a whole number from %" PRIu64 " to %" PRIu64, least, most);
+    reject(reader, key, wanted);
+    return least;
+}
+
+/* Counts of anything, which JSON has as signed numbers. */
+static uint64_t get_count(Reader *reader, const json_t *object, const char *key) {
+    return get_integer(reader, object, key, 0, INT64_MAX);
+}
+
+static uint64_t parse_hex(const json_t *value, bool *good) {
+    const char *text = json_string_value(value);
+    uint64_t number = 0;
+    *good = text && strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 &&
+            sscanf(text, "%16" SCNx64, &number) == 1;
+    return *good ? number : 0;
+}
+
+static uint64_t get_hex(Reader *reader, const json_t *object, const char *key) {
+    bool good;
+    uint64_t number = parse_hex(json_object_get(object, key), &good);
+    if (!good) reject(reader, key, "a hash of 16 hexadecimal digits");
+    return number;
+}
+
+/* NAN where it is null or missing: it was not known, or is of a later version. */
+static double get_number(Reader *reader, const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    if (value && !json_is_null(value) && !json_is_number(value)) reject(reader, key, "a number");
     return json_is_number(value) ? json_number_value(value) : (double)NAN;
 }
 
-static RtEstimate get_estimate(const json_t *object, const char *key) {
-    const json_t *list = json_object_get(object, key);
-    return (RtEstimate){
-        json_number_value(json_array_get(list, 0)), json_number_value(json_array_get(list, 1)),
-        json_number_value(json_array_get(list, 2)), json_number_value(json_array_get(list, 3))};
+/* Times and ratios. */
+static double take_positive(Reader *reader, const json_t *value, const char *key) {
+    const double number = json_number_value(value);
+    if (json_is_number(value) && number >= 0) return number;
+    reject(reader, key, "made of numbers from 0 on");
+    return 0;
 }
 
-static void take_workload(RtWorkloadResult *workload, const json_t *object) {
+static RtEstimate get_estimate(Reader *reader, const json_t *object, const char *key) {
+    const json_t *list = json_object_get(object, key);
+    double of[4];
+    for (size_t i = 0; i < 4; i++) of[i] = take_positive(reader, json_array_get(list, i), key);
+    return (RtEstimate){of[0], of[1], of[2], of[3]};
+}
+
+static bool get_flag(Reader *reader, const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    if (!json_is_boolean(value)) reject(reader, key, "true or false");
+    return json_is_true(value);
+}
+
+/* NULL where it is missing. */
+static const char *find_text(Reader *reader, const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    if (value && !json_is_string(value)) reject(reader, key, "a text");
+    return json_string_value(value);
+}
+
+static void take_text(Reader *reader, char *out, size_t room, const json_t *object, const char *key) {
+    const char *text = find_text(reader, object, key);
+    snprintf(out, room, "%s", text ? text : "");
+}
+
+static void take_workload(Reader *reader, RtWorkloadResult *workload, const json_t *object) {
     const json_t *sets = json_object_get(object, "sets");
     workload->known = true;
-    workload->objects = (uint32_t)get_integer(object, "objects");
-    workload->width = (uint32_t)get_integer(object, "width");
-    workload->height = (uint32_t)get_integer(object, "height");
-    workload->scene = get_hex(object, "hash");
+    workload->objects = (uint32_t)get_integer(reader, object, "objects", 0, UINT32_MAX);
+    workload->width = (uint32_t)get_integer(reader, object, "width", 0, UINT32_MAX);
+    workload->height = (uint32_t)get_integer(reader, object, "height", 0, UINT32_MAX);
+    workload->scene = get_hex(reader, object, "hash");
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const json_t *set = json_object_get(sets, rt_ray_kind_name((RtRayKind)k));
-        workload->rays[k] = get_integer(set, "rays");
-        workload->ray_fingerprints[k] = get_hex(set, "hash");
+        workload->rays[k] = get_count(reader, set, "rays");
+        workload->ray_fingerprints[k] = get_hex(reader, set, "hash");
     }
 }
 
-static void take_tally(RtTally *tally, const json_t *object) {
-#define TAKE(name, meaning) tally->name = get_integer(object, #name);
+static void take_tally(Reader *reader, RtTally *tally, const json_t *object) {
+#define TAKE(name, meaning) tally->name = get_count(reader, object, #name);
     RT_TALLY_COUNTERS(TAKE)
 #undef TAKE
 }
 
 /* Makes room for `count` distributions, from number `first` on, and fills it; without them *out stays as it
  * is, and they are found once more. */
-static RtStatus take_distributions(RtDistribution **out, size_t first, size_t count, const json_t *object,
-                                   RtError *error) {
-    if (!object || *out) return RT_OK;
+static void take_distributions(Reader *reader, RtDistribution **out, size_t first, size_t count,
+                               const json_t *object) {
+    if (!object || *out) return;
     *out = rt_alloc(count, sizeof(RtDistribution));
-    if (!*out) return rt_fail_memory(error, "distributions", count * sizeof(RtDistribution));
-    if (rt_distributions_take(*out, first, count, object)) return RT_OK;
+    if (!*out)
+        reader->status = rt_fail_memory(reader->error, "distributions", count * sizeof(RtDistribution));
+    if (!*out || rt_distributions_take(*out, first, count, object)) return;
     rt_free(*out);
     *out = NULL;
-    return RT_OK;
 }
 
-static RtStatus take_build(RtBuildResult *build, const json_t *object, RtError *error) {
-    const char *spec = json_string_value(json_object_get(object, "spec"));
+static void take_build(Reader *reader, RtBuildResult *build, const json_t *object) {
     build->known = true;
-    build->exact = json_is_true(json_object_get(object, "exact"));
-    build->counts = json_is_true(json_object_get(object, "counts"));
-    snprintf(build->spec, sizeof build->spec, "%s", spec ? spec : "");
-    build->seconds = get_number(object, "seconds");
-    build->shape = (RtDescription){.interior = get_integer(object, "interior"),
-                                   .leaves = get_integer(object, "leaves"),
-                                   .empty_leaves = get_integer(object, "empty_leaves"),
-                                   .references = get_integer(object, "references"),
-                                   .depth = get_integer(object, "depth"),
-                                   .bytes = get_integer(object, "bytes")};
-#define TAKE_PREDICTION(name, meaning) build->shape.name = get_number(object, #name);
+    build->exact = get_flag(reader, object, "exact");
+    build->counts = get_flag(reader, object, "counts");
+    take_text(reader, build->spec, sizeof build->spec, object, "spec");
+    build->seconds = take_positive(reader, json_object_get(object, "seconds"), "seconds");
+    build->shape = (RtDescription){.interior = get_count(reader, object, "interior"),
+                                   .leaves = get_count(reader, object, "leaves"),
+                                   .empty_leaves = get_count(reader, object, "empty_leaves"),
+                                   .references = get_count(reader, object, "references"),
+                                   .depth = get_count(reader, object, "depth"),
+                                   .bytes = get_count(reader, object, "bytes")};
+#define TAKE_PREDICTION(name, meaning) build->shape.name = get_number(reader, object, #name);
     RT_PREDICTIONS(TAKE_PREDICTION)
     RT_QUALITIES(TAKE_PREDICTION)
 #undef TAKE_PREDICTION
-    take_tally(&build->shape.build, json_object_get(object, "build"));
-    return take_distributions(&build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT,
-                              json_object_get(object, "distributions"), error);
+    take_tally(reader, &build->shape.build, json_object_get(object, "build"));
+    take_distributions(reader, &build->leaves, RT_RAY_QUANTITY_COUNT, RT_LEAF_QUANTITY_COUNT,
+                       json_object_get(object, "distributions"));
 }
 
-static void take_count(RtCell *cell, const json_t *object) {
+static void take_count(Reader *reader, RtCell *cell, const json_t *object) {
     cell->counted = true;
-    cell->differ = get_integer(object, "differ");
-    take_tally(&cell->tally, object);
+    cell->differ = get_count(reader, object, "differ");
+    take_tally(reader, &cell->tally, object);
 }
 
 /* Journals of earlier versions have no times of rounds. */
-static RtStatus take_rounds(RtCell *cell, const json_t *object, RtError *error) {
-    for (int i = 0; i < RT_EACH_COUNT; i++) {
-        size_t count = json_array_size(json_object_get(object, rt_journal_each_names[i]));
-        if (count != cell->rounds || count == 0 || count > RT_MAX_ROUNDS) return RT_OK;
+static void take_rounds(Reader *reader, RtCell *cell, const json_t *object) {
+    bool any = false;
+    rt_free(cell->each); /* of a line before, which may have had another number of them */
+    cell->each = NULL;
+    for (int i = 0; i < RT_EACH_COUNT; i++) any |= json_object_get(object, rt_journal_each_names[i]) != NULL;
+    for (int i = 0; i < RT_EACH_COUNT && any; i++) {
+        if (json_array_size(json_object_get(object, rt_journal_each_names[i])) != cell->rounds)
+            reject(reader, rt_journal_each_names[i], "a list of as many times as there were rounds");
     }
-    RT_TRY(rt_cell_make_rounds(cell, error));
-    for (int i = 0; i < RT_EACH_COUNT; i++) {
+    if (!any || reader->status != RT_OK) return;
+    reader->status = rt_cell_make_rounds(cell, reader->error);
+    for (int i = 0; i < RT_EACH_COUNT && cell->each; i++) {
         const json_t *list = json_object_get(object, rt_journal_each_names[i]);
-        for (uint32_t r = 0; r < cell->rounds; r++) {
-            rt_cell_rounds(cell, (RtEach)i)[r] = json_number_value(json_array_get(list, r));
-        }
+        for (uint32_t r = 0; r < cell->rounds; r++)
+            rt_cell_rounds(cell, (RtEach)i)[r] =
+                take_positive(reader, json_array_get(list, r), rt_journal_each_names[i]);
     }
-    return RT_OK;
 }
 
-static void take_text(char *out, size_t room, const json_t *object, const char *key) {
-    const char *text = json_string_value(json_object_get(object, key));
-    snprintf(out, room, "%s", text ? text : "");
-}
-
-static uint32_t take_machine(RtResults *results, const json_t *object) {
+static uint32_t take_machine(Reader *reader, RtResults *results, const json_t *object) {
     RtMachine machine;
-    take_text(machine.host, sizeof machine.host, object, "host");
-    take_text(machine.cpu, sizeof machine.cpu, object, "cpu");
+    take_text(reader, machine.host, sizeof machine.host, object, "host");
+    take_text(reader, machine.cpu, sizeof machine.cpu, object, "cpu");
     return rt_results_machine(results, &machine);
 }
 
-static void take_hardware(RtResults *results, RtCell *cell, const json_t *object) {
+static void take_hardware(Reader *reader, RtResults *results, RtCell *cell, const json_t *object) {
     RtCellHardware *hardware = &cell->hardware;
     hardware->known = true;
-    hardware->threads = (int)get_integer(object, "threads");
-    hardware->machine = take_machine(results, object);
-    hardware->counts.running = get_number(object, "running");
-    take_text(hardware->why, sizeof hardware->why, object, "why");
+    hardware->threads = (int)get_integer(reader, object, "threads", 0, INT_MAX);
+    hardware->machine = take_machine(reader, results, object);
+    hardware->counts.running = get_number(reader, object, "running");
+    take_text(reader, hardware->why, sizeof hardware->why, object, "why");
     for (size_t i = 0; i < RT_HARDWARE_COUNT; i++)
-        hardware->counts.of[i] = get_number(object, rt_hardware_name(i));
+        hardware->counts.of[i] = get_number(reader, object, rt_hardware_name(i));
 }
 
-static RtStatus take_time(RtResults *results, uint32_t workload, RtCell *cell, const json_t *object,
-                          RtError *error) {
+static void take_time(Reader *reader, RtResults *results, uint32_t workload, RtCell *cell,
+                      const json_t *object) {
     const RtExperiment *experiment = results->experiment;
-    cell->machine = take_machine(results, object);
-    const char *baseline = json_string_value(json_object_get(object, "baseline"));
-    uint32_t c = rt_candidate_find(experiment, baseline ? baseline : "", workload);
+    const char *baseline = find_text(reader, object, "baseline");
+    uint32_t c = baseline ? rt_candidate_find(experiment, baseline, workload) : experiment->baseline;
+    if (c >= experiment->candidate_count || !rt_candidate_is_baseline(experiment, c))
+        reject(reader, "baseline", "a baseline of the experiment");
+    cell->machine = take_machine(reader, results, object);
     cell->baseline = c < experiment->candidate_count ? c : experiment->baseline;
     cell->timed = true;
-    cell->tally.rays = get_integer(object, "rays");
-    cell->rounds = (uint32_t)get_integer(object, "rounds");
-    cell->threads = (int)get_integer(object, "threads");
-    cell->seconds = get_estimate(object, "seconds");
-    cell->wall = get_estimate(object, "wall");
-    cell->ratio = get_estimate(object, "ratio");
-    return take_rounds(cell, object, error);
+    cell->tally.rays = get_integer(reader, object, "rays", 1, INT64_MAX);
+    cell->rounds = (uint32_t)get_integer(reader, object, "rounds", 1, RT_MAX_ROUNDS);
+    cell->threads = (int)get_integer(reader, object, "threads", 1, INT_MAX);
+    cell->seconds = get_estimate(reader, object, "seconds");
+    cell->wall = get_estimate(reader, object, "wall");
+    cell->ratio = get_estimate(reader, object, "ratio");
+    take_rounds(reader, cell, object);
 }
 
-static void take_limit(const char *text, bool is_broken, char *limit, bool *broken) {
+/* Where the line says which limit was gone beyond, or what broke. */
+static void take_limit(Reader *reader, const json_t *line, const char *key, char *limit, bool *broken) {
+    const char *text = find_text(reader, line, key);
+    if (!text) return;
     snprintf(limit, RT_MAX_LIMIT, "%s", text);
-    *broken = is_broken;
+    *broken = json_object_get(line, "broken") && get_flag(reader, line, "broken");
+}
+
+/* Whether the line says something by one of such keys (NULL behind the last). */
+static bool has_any(const json_t *line, const char *const *keys) {
+    for (; *keys; keys++) {
+        if (json_object_get(line, *keys)) return true;
+    }
+    return false;
+}
+
+static void take_cell(Reader *reader, RtResults *results, const json_t *line, uint32_t workload,
+                      uint32_t candidate, RtRayKind kind) {
+    RtCell *cell = rt_cell_at(results, workload, candidate, kind);
+    const json_t *object;
+    if ((object = json_object_get(line, "counted"))) take_count(reader, cell, object);
+    take_distributions(reader, &cell->distributions, 0, RT_RAY_QUANTITY_COUNT,
+                       json_object_get(line, "distributed"));
+    take_limit(reader, line, "too_long", cell->limit, &cell->broken);
+    if ((object = json_object_get(line, "hardware"))) take_hardware(reader, results, cell, object);
+    if ((object = json_object_get(line, "timed"))) take_time(reader, results, workload, cell, object);
 }
 
 /* Places a line where its labels say; lines about what the experiment does not have are passed over. */
-static RtStatus take_line(RtResults *results, const json_t *line, RtError *error) {
+static void take_line(Reader *reader, RtResults *results, const json_t *line) {
+    static const char *const of_cells[] = {"counted", "distributed", "timed", "hardware", "too_long", NULL};
+    static const char *const of_builds[] = {"built", "too_large", NULL};
     const RtExperiment *experiment = results->experiment;
-    const char *scene = json_string_value(json_object_get(line, "scene"));
-    const char *accel = json_string_value(json_object_get(line, "accel"));
-    const char *kind_name = json_string_value(json_object_get(line, "kind"));
+    const char *scene = find_text(reader, line, "scene"), *accel = find_text(reader, line, "accel");
+    const char *kind_name = find_text(reader, line, "kind");
     const json_t *object;
     RtRayKind kind = RT_RAY_PRIMARY;
-    uint32_t workload = scene ? rt_workload_find(experiment, scene) : experiment->workload_count;
-    if (workload == experiment->workload_count) return RT_OK;
-    if ((object = json_object_get(line, "workload"))) take_workload(&results->workloads[workload], object);
-    if (!accel) return RT_OK;
+    const bool of_cell = has_any(line, of_cells), of_build = has_any(line, of_builds);
+    if (!json_is_object(line)) reject(reader, "this line", "a JSON object");
+    if (!scene) reject(reader, "scene", "there");
+    if (!accel && (of_cell || of_build)) reject(reader, "accel", "there");
+    if (of_cell && (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK))
+        reject(reader, "kind", "a kind of rays");
+    if (reader->status != RT_OK) return;
+    uint32_t workload = rt_workload_find(experiment, scene);
+    if (workload == experiment->workload_count) return;
+    if ((object = json_object_get(line, "workload")))
+        take_workload(reader, &results->workloads[workload], object);
+    if (!accel) return;
     uint32_t candidate = rt_candidate_find(experiment, accel, workload);
-    if (candidate > experiment->candidate_count) return RT_OK;
-    if ((object = json_object_get(line, "built")))
-        RT_TRY(take_build(rt_build_at(results, workload, candidate), object, error));
-    bool broken = json_is_true(json_object_get(line, "broken"));
-    const char *limit = json_string_value(json_object_get(line, "too_large"));
+    if (candidate > experiment->candidate_count) return;
     RtBuildResult *build = rt_build_at(results, workload, candidate);
-    if (limit) take_limit(limit, broken, build->limit, &build->broken);
-    if (!kind_name || rt_ray_kind_parse(kind_name, &kind, NULL) != RT_OK) return RT_OK;
-    RtCell *cell = rt_cell_at(results, workload, candidate, kind);
-    if ((object = json_object_get(line, "counted"))) take_count(cell, object);
-    RT_TRY(take_distributions(&cell->distributions, 0, RT_RAY_QUANTITY_COUNT,
-                              json_object_get(line, "distributed"), error));
-    limit = json_string_value(json_object_get(line, "too_long"));
-    if (limit) take_limit(limit, broken, cell->limit, &cell->broken);
-    if ((object = json_object_get(line, "hardware"))) take_hardware(results, cell, object);
-    object = json_object_get(line, "timed");
-    return object ? take_time(results, workload, cell, object, error) : RT_OK;
+    if ((object = json_object_get(line, "built"))) take_build(reader, build, object);
+    take_limit(reader, line, "too_large", build->limit, &build->broken);
+    if (of_cell) take_cell(reader, results, line, workload, candidate, kind);
 }
 
 /* ---- what the journal is of ---- */
@@ -195,7 +283,8 @@ static RtStatus check_experiment(const char *path, const json_t *header, const R
                                  RtError *error) {
     const char *name = json_string_value(json_object_get(header, "experiment"));
     bool quick = json_is_true(json_object_get(header, "quick"));
-    if (get_hex(header, "hash") != experiment->fingerprint) {
+    bool good;
+    if (parse_hex(json_object_get(header, "hash"), &good) != experiment->fingerprint || !good) {
         return rt_fail(
             error, RT_BAD_INPUT,
             "%s: this is a run of another experiment, or of another version of it ('%s'): start over "
@@ -210,7 +299,8 @@ static RtStatus check_experiment(const char *path, const json_t *header, const R
 
 static RtStatus check_build(const char *path, const json_t *header, const RtOnly *only, RtError *error) {
     const char *build = json_string_value(json_object_get(header, "build"));
-    uint64_t shard = get_integer(header, "shard"), shards = get_integer(header, "shards");
+    json_int_t shard = json_integer_value(json_object_get(header, "shard")),
+               shards = json_integer_value(json_object_get(header, "shards"));
     if (shard != only->shard || shards != only->shards) {
         return rt_fail(
             error, RT_BAD_INPUT,
@@ -261,8 +351,10 @@ static RtStatus take_lines(const char *path, RtResults *results, const json_t *l
     RtStatus status = only ? check_plugins(path, experiment, changed, renew, error) : RT_OK;
     for (size_t i = 1; status == RT_OK && i < json_array_size(lines); i++) {
         const json_t *line = json_array_get(lines, i);
-        if (!changed || !rt_journal_line_concerns(line, experiment, changed))
-            status = take_line(results, line, error);
+        if (changed && rt_journal_line_concerns(line, experiment, changed)) continue;
+        Reader reader = {path, i + 1, RT_OK, error};
+        take_line(&reader, results, line);
+        status = reader.status;
     }
     json_decref(changed);
     json_decref(used);

@@ -75,7 +75,8 @@ RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error) {
     size_t size;
     RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
     *lines = json_array();
-    for (char *line = text, *end; (end = strchr(line, '\n')); line = end + 1) {
+    for (const char *line = text, *end; (end = memchr(line, '\n', (size_t)(text + size - line)));
+         line = end + 1) {
         json_t *object = json_loadb(line, (size_t)(end - line), 0, NULL);
         json_array_append_new(*lines, object ? object : json_null());
     }

@@ -356,27 +356,6 @@ RT_TEST_IN_PLACE(the_times_are_made_of_those_of_the_rounds) {
     rt_csv_clear(&rounds);
 }
 
-/* Of rounds of another number than is said nothing is taken. */
-RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
-    const Place *place = *state;
-    RtResults results;
-    assert_ok(run(place, "out", RT_START_FRESH, 1, nobody, error));
-    const char *const from[2] = {"\"each_wall", "\"rounds\":3"}, *const to[2] = {"\"EACH_wall",
-                                                                                 "\"rounds\":5"};
-    for (int i = 0; i < 2; i++) {
-        char *journal = read_in(place, "out/cells.jsonl"), *whole = read_in(place, "out/cells.jsonl");
-        for (char *at = journal; (at = strstr(at, from[i])) != NULL;) memcpy(at, to[i], strlen(to[i]));
-        write_in(place, "out/cells.jsonl", journal);
-        assert_ok(rt_run_load(path_in(place, "out").text, place->experiment, &results, error));
-        const RtCell *cell = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
-        assert_true(cell->timed && cell->rounds == (i ? 5 : 3) && !cell->each);
-        rt_results_clear(&results);
-        write_in(place, "out/cells.jsonl", whole);
-        rt_free(journal);
-        rt_free(whole);
-    }
-}
-
 RT_TEST_IN_PLACE(a_run_of_another_experiment_is_not_resumed) {
     const Place *place = *state;
     assert_ok(run(place, "mixed", RT_START_FRESH, 1, nobody, error));

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reading the journal of a run, which somebody else may have written. */
+#include "experiment_testing.h"
+
+#include "report/result_directory.h"
+
+static const char small_experiment[] = "name: small\n"
+                                       "question: What does it say?\n"
+                                       "prediction: What was measured.\n"
+                                       "scenes:\n"
+                                       "  - {scene: \"random:n=50\", size: 16x16, depth: 2}\n"
+                                       "accelerators:\n"
+                                       "  - {accel: grid}\n"
+                                       "  - {accel: bvh}\n"
+                                       "baseline: bvh\n"
+                                       "rounds: 3\n"
+                                       "milliseconds: 1\n";
+
+static char written[1 << 16]; /* the journal of out/, as the run left it */
+
+static int make_run(void **state) {
+    if (make_place(state) != 0) return -1;
+    write_in(*state, "small.yaml", small_experiment);
+    assert_ok(load_small(*state, false, error));
+    if (raytally(*state, "run small.yaml --out out") != 0) return -1;
+    char *text = read_in(*state, "out/cells.jsonl");
+    assert_true(strlen(text) < sizeof written);
+    strcpy(written, text);
+    rt_free(text);
+    return 0;
+}
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_run, remove_place)
+
+/* Reads the journal of out/ as `text`. */
+static RtStatus read_journal(const Place *place, const char *text, RtResults *results, RtError *error) {
+    write_in(place, "out/cells.jsonl", text);
+    return rt_run_load(path_in(place, "out").text, place->experiment, results, error);
+}
+
+RT_TEST_IN_PLACE(a_journal_without_the_times_of_rounds_is_read) {
+    const Place *place = *state;
+    RtResults results;
+    for (char *at = written; (at = strstr(at, "\"each_")) != NULL;) memcpy(at, "\"EACH_", 6);
+    assert_ok(read_journal(place, written, &results, error));
+    const RtCell *cell = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    assert_true(cell->timed && cell->rounds == 3 && !cell->each);
+    rt_results_clear(&results);
+}
+
+/* Of two lines about a cell the second counts: the times of the first are not those of its rounds. */
+RT_TEST_IN_PLACE(a_line_of_more_rounds_without_their_times_takes_the_place_of_one_with_them) {
+    const Place *place = *state;
+    RtResults results;
+    static char both[2 * sizeof written];
+    char *again = both + strlen(written);
+    strcpy(both, written);
+    strcpy(again, strstr(written, "{\"scene\""));
+    for (char *at = again; (at = strstr(at, "\"each_")) != NULL;) memcpy(at, "\"EACH_", 6);
+    for (char *at = again; (at = strstr(at, "\"rounds\":3")) != NULL;) memcpy(at, "\"rounds\":9", 10);
+    assert_ok(read_journal(place, both, &results, error));
+    const RtCell *cell = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    assert_true(cell->timed && cell->rounds == 9 && !cell->each);
+    rt_results_clear(&results);
+}
+
+RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {
+    static const char *const cases[][3] = {
+        {"\"rounds\":3", "\"rounds\":5", "'each_seconds' is not a list of as many times"},
+        {"\"rounds\":3", "\"rounds\":1001", "'rounds' is not a whole number from 1 to 1000"},
+        {"\"rounds\":3", "\"rounds\":-1", "'rounds' is not a whole number from 1 to 1000"},
+        {"\"each_wall\"", "\"EACH_wall\"", "'each_wall' is not a list"},
+        {"\"each_wall\":[", "\"each_wall\":[null,", "'each_wall' is not a list"},
+        {"\"differ\":0", "\"differ\":-1", "'differ' is not a whole number"},
+        {"\"object_tests\":", "\"OBJECT_tests\":", "'object_tests' is not a whole number"},
+        {"\"exact\":true", "\"exact\":1", "'exact' is not true or false"},
+        {"\"baseline\":\"bvh", "\"baseline\":\"grid", "'baseline' is not a baseline"},
+        {"\"kind\":\"primary\"", "\"kind\":\"first\"", "'kind' is not a kind of rays"},
+        {"\"accel\":", "\"ACCEL\":", "'accel' is not there"},
+        {"\"hash\":\"", "\"hash\":\"x", "'hash' is not a hash"},
+        {"{\"scene\"", "{\"scene", "'this line' is not a JSON object"},
+    };
+    const Place *place = *state;
+    RtResults results;
+    RtError why;
+    static char changed[2 * sizeof written];
+    char place_of[64];
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const char *at = strstr(strstr(written, "{\"scene\""), cases[i][0]);
+        size_t number = 1;
+        assert_non_null(at);
+        for (const char *c = written; c < at; c++) number += *c == '\n';
+        snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - written), written, cases[i][1],
+                 at + strlen(cases[i][0]));
+        assert_int_equal(read_journal(place, changed, &results, &why), RT_BAD_INPUT);
+        snprintf(place_of, sizeof place_of, "out/cells.jsonl:%zu: ", number);
+        assert_non_null(strstr(why.message, place_of));
+        assert_non_null(strstr(why.message, cases[i][2]));
+    }
+}
+
+RT_TESTS(journal, NULL, NULL)
