@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: an experiment, from its YAML to a result directory. */
 #include "base/memory.h"
+#include "base/words.h"
 #include "bench/claims.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
