@@ -47,7 +47,7 @@ set label 13 'pale: without the buffer' at screen 0.995, screen 1 - 18.0 / heigh
 n_metrics = 2
 array metric[2] = ["times_faster", "times_fewer"]
 array gain[2] = ["gain", "tests_gain"]
-array spare[2] = [1.9, 1.35]
+array spare[2] = [2.3, 1.35]
 whole(s, m) = figure_of(s, metric[m])
 below(s, m) = figure_of(s, metric[m]) / column(gain[m])
 array title[2] = ["A whole frame: how many times faster than ".without, "How many times fewer object tests than ".without]
@@ -122,7 +122,7 @@ do for [s = 1:n_scenes] {
   if (s == 1) {
     eval names
     set label 1 "times as fast as ".without.", by kind of rays" at screen 6.0 / 960, screen 1 - 24.0 / height left font ",15" textcolor rgb ink
-    set key at screen 0.99, screen 1 - 18.0 / height right top horizontal maxrows 1 samplen 0.5 textcolor rgb ink
+    set key at screen 0.995, screen 1 - 6.0 / height right top horizontal maxrows 1 samplen 0.5 width -2 font ",11" textcolor rgb ink
   } else { unset key }
   set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 0.7 font ",14" textcolor rgb ink
   plot for [p = 1:n_parts] "frame.csv" using (figure_of(s, part[p])):(row_of(strcol("accel"))) with points \

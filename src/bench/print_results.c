@@ -147,7 +147,7 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     if (misses == 0) {
         n += snprintf(out + n, room - (size_t)n, ", as they should.");
     } else if (misses <= 1 + 2 * chance * runs) {
-        n += snprintf(out + n, room - (size_t)n, "; %.2g %% of all may miss by chance.", 100 * chance);
+        n += snprintf(out + n, room - (size_t)n, "; %.3g %% of all may miss by chance.", 100 * chance);
     } else {
         n += snprintf(out + n, room - (size_t)n,
                       ": this machine was not quiet; take small differences for noise.");
