@@ -38,13 +38,18 @@ apt() {
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 "$@"
 }
 
-# add_packages NAME...: at once, or, where one of them does not go with what is here, one by one: the others are not its hostages
+# add_packages NAME...: those that go together with what is here; where apt refuses, halves are tried by themselves, so that one
+# package that conflicts keeps no other away and is found in few steps. Nothing is removed for them.
 add_packages() {
-    local name
-    logged build/apt.log apt install -y --no-install-recommends "$@" >/dev/null 2>&1 && return
-    for name; do
-        logged build/apt.log apt install -y --no-install-recommends "$name" || say "$name cannot be installed here"
-    done
+    local options=(-y --no-install-recommends --no-remove)
+    if logged build/apt.log apt install --simulate "${options[@]}" "$@" 2>/dev/null; then
+        logged build/apt.log apt install "${options[@]}" "$@"
+    elif [ $# -gt 1 ]; then
+        add_packages "${@:1:$#/2}" || true
+        add_packages "${@:$#/2+1}"
+    else
+        say "$1 does not go with what is installed here: \`apt-get install $1\` says why"
+    fi
 }
 
 # install_missing SECTION...: what cannot be installed is named, and is fatal unless it is optional, or of the cluster or the pages

@@ -16,6 +16,13 @@
 #pragma GCC diagnostic ignored "-Wpedantic"
 #include <simde/x86/avx2.h>
 #pragma GCC diagnostic pop
+/* clang 19 declares the first eight predicates for SSE, which SIMDe takes for all of them. */
+#if !defined(_CMP_LE_OQ)
+#define _CMP_NEQ_OQ SIMDE_CMP_NEQ_OQ
+#define _CMP_LT_OQ  SIMDE_CMP_LT_OQ
+#define _CMP_LE_OQ  SIMDE_CMP_LE_OQ
+#define _CMP_GE_OQ  SIMDE_CMP_GE_OQ
+#endif
 #endif
 
 /* Which of eight lanes: a[i] <= b[i]. */

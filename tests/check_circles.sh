@@ -8,7 +8,7 @@ set -euo pipefail
 tests=$(cd "$(dirname "$0")" && pwd)
 build=$(dirname "${RT_PROGRAM:?the path of raytally, beside which the object files lie}")
 build=$(cd "$build" && pwd)
-command -v nm >/dev/null || { echo "skipped: there is no nm"; exit 77; }
+command -v nm >/dev/null || { echo "skipped: no two files call each other; needs binutils"; exit 77; }
 cd "${1:-$tests/..}"
 
 # The objects whose sources are still there: a build keeps those of files that are gone.

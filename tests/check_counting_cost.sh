@@ -12,8 +12,8 @@ kinds=${2:-diffuse,occlusion}
 specs=("${@:3}")
 [ ${#specs[@]} -gt 0 ] || specs=(grid octree kd clusters bvh)
 
-command -v valgrind >/dev/null && command -v addr2line >/dev/null || { echo "skipped: there is no valgrind"; exit 77; }
-grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Rel' "$(dirname "$program")/CMakeCache.txt" || { echo "skipped: not a release build"; exit 77; }
+command -v valgrind >/dev/null && command -v addr2line >/dev/null || { echo "skipped: what counting costs in instructions; needs valgrind and binutils"; exit 77; }
+grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Rel' "$(dirname "$program")/CMakeCache.txt" || { echo "skipped: what counting costs in instructions; needs a release build"; exit 77; }
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 
 # member NAME: of the one row, a number

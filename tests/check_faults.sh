@@ -5,7 +5,7 @@
 # is registered. Whether verify finds them is what tests/faults.sh tells, in an hour. Skipped (77) where there is no patch(1).
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
-command -v patch >/dev/null || { echo "skipped: there is no patch(1)" >&2 && exit 77; }
+command -v patch >/dev/null || { echo "skipped: faults on purpose apply; needs patch" && exit 77; }
 failures=0
 report() {
     echo "$*"

@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(cd "$(dirname "${RT_PROGRAM:-build/release/raytally}")" && pwd)
 for tool in cmake pkg-config nm; do
-    command -v "$tool" >/dev/null || { echo "check_library: skipped: $tool is not installed" >&2 && exit 77; }
+    command -v "$tool" >/dev/null || { echo "skipped: the installed library; needs $tool" && exit 77; }
 done
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 prefix=$work/first status=0

@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
-command -v help2man >/dev/null || { echo 'check_man: skipped: help2man is not installed' >&2 && exit 77; }
+command -v help2man >/dev/null || { echo 'skipped: manual pages; needs help2man' && exit 77; }
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 status=0
 

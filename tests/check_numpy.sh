@@ -11,7 +11,7 @@ for candidate in python3 /usr/bin/python3; do
     if [ -z "$python" ] && "$candidate" -c 'import numpy' 2>/dev/null; then python=$(command -v "$candidate"); fi
 done
 [ -n "$python" ] || {
-    echo 'check_numpy: skipped: python3-numpy is not installed'
+    echo 'skipped: files of rays by NumPy; needs python3-numpy'
     exit 77
 }
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT

@@ -8,7 +8,7 @@ program=$(realpath "${RT_PROGRAM:?the path of raytally}")
 here=$(realpath "$(dirname "$0")")
 for needed in chromium chromedriver node; do
     command -v "$needed" >/dev/null || {
-        echo "check_pages: skipped: $needed is not installed (packages.txt, [pages])"
+        echo "skipped: reports in a browser; needs $needed (./test.sh --all installs it)"
         exit 77
     }
 done

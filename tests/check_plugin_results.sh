@@ -6,7 +6,7 @@
 set -uo pipefail
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 plugins=$(dirname "$program")/plugins
-command -v python3 >/dev/null || { echo 'check_plugin_results: skipped: python3 is not installed' && exit 77; }
+command -v python3 >/dev/null || { echo 'skipped: results of plugins; needs python3' && exit 77; }
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
 unset RAYTALLY_PLUGINS

@@ -10,7 +10,7 @@ root=$PWD
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
 build=$(dirname "$program") plugins=$(dirname "$program")/plugins
 for tool in cmake python3; do
-    command -v $tool >/dev/null || { echo "check_plugins: skipped: $tool is not installed" && exit 77; }
+    command -v $tool >/dev/null || { echo "skipped: plugins, faulty and right; needs $tool" && exit 77; }
 done
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2

@@ -11,7 +11,7 @@ if [ -e results/havran-1999/manifest.json ]; then
     "$program" reproduce results/havran-1999
 fi
 [ -e scenes/fetched/bunny.obj ] || {
-    echo "skipped: scenes/fetched/bunny.obj is missing; scenes/fetch.sh bunny brings it"
+    echo "skipped: counts of results/reference; needs the bunny (scenes/fetch.sh bunny)"
     exit 77
 }
 for directory in results/reference/*/; do

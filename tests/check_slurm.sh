@@ -7,13 +7,13 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=$(realpath "${RT_PROGRAM:-build/release/raytally}")
-skip() { echo "skipped: $*" >&2 && exit 77; }
+skip() { echo "skipped: experiments/slurm.sh on a cluster of one node; needs $*" && exit 77; }
 fail() { echo "$*" >&2 && tail -n 20 "$work"/*.log "$work"/*-shards/*.log >&2 2>/dev/null || true && exit 1; }
 
-[ "$(id -u)" = 0 ] || skip "only root can begin slurmd and slurmctld for others"
+[ "$(id -u)" = 0 ] || skip "root, to start slurmctld and slurmd"
 PATH=$PATH:/usr/sbin:/sbin
 for daemon in munged slurmctld slurmd sbatch squeue; do
-    command -v "$daemon" >/dev/null || skip "there is no $daemon: apt-get install --no-install-recommends slurm-wlm"
+    command -v "$daemon" >/dev/null || skip "slurm-wlm (./test.sh --all installs it): there is no $daemon"
 done
 
 work=$(mktemp -d)

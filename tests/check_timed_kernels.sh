@@ -11,9 +11,9 @@ set -eu
 
 build=$(dirname "${RT_PROGRAM:?the path of raytally, beside which its library lies}")
 library=$build/libraytally_accel.a
-[ "$(uname -m)" = x86_64 ] || { echo "skipped: not x86-64"; exit 77; }
-command -v objdump >/dev/null || { echo "skipped: there is no objdump"; exit 77; }
-grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Rel' "$build/CMakeCache.txt" || { echo "skipped: not a release build"; exit 77; }
+[ "$(uname -m)" = x86_64 ] || { echo "skipped: timed kernels count nothing; needs x86-64"; exit 77; }
+command -v objdump >/dev/null || { echo "skipped: timed kernels count nothing; needs binutils"; exit 77; }
+grep -q '^CMAKE_BUILD_TYPE:[A-Z]*=Rel' "$build/CMakeCache.txt" || { echo "skipped: timed kernels count nothing; needs a release build"; exit 77; }
 
 objdump --disassemble --reloc --no-show-raw-insn "$library" | awk '
 /file format/ { file = $1; sub(/:$/, "", file); file = ++members " " file }  # names repeat: wide and item have a kernels_avx2.c

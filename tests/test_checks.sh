@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # The checks of the tree find what they are there for: each is shown a small tree that breaks the rule. And setup.sh builds
-# a tree that was copied with its build folder.
+# a tree that was copied with its build folder, and installs what does not conflict; skipped.awk lists what was skipped.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 tree=$(mktemp -d) && trap 'rm -rf "$tree"' EXIT
@@ -97,6 +97,45 @@ done
 cp -r "$tree/original" "$tree/copy" && rm "$tree/copy/build/release/made"
 said=$(built "$tree/copy") && [[ $said == *"made for $tree/original: configuring it afresh for $tree/copy"* ]] || {
     echo "setup.sh: where the tree is a copy: $said"
+    failures=$((failures + 1))
+}
+# add_packages where apt refuses whatever has `bad` in it
+cat >"$tree/original/adds.sh" <<'END'
+source "${BASH_SOURCE[0]%/*}/setup.sh"
+apt() {
+    [[ " $* " != *' bad '* ]] || return 1
+    [[ " $* " == *' --simulate '* ]] || printf '%s\n' "$@" | sed '/^-/d; 1d' >>added
+}
+add_packages a b c d bad f g h
+END
+said=$(bash "$tree/original/adds.sh" 2>&1)
+[ "$(sort "$tree/original/added" | xargs)" = 'a b c d f g h' ] && [[ $said == *'bad does not go'* ]] || {
+    echo "setup.sh: where a package conflicts: $said"
+    failures=$((failures + 1))
+}
+# skipped.awk, on what ctest reports of a build, and of another that has run more
+cat >"$tree/one.xml" <<'END'
+<testcase name="script" classname="script" time="0.02" status="notrun">
+<skipped message="SKIP_RETURN_CODE=77"/>
+<system-out>skipped: a &amp; b; needs &quot;c&quot;
+</system-out></testcase>
+<testcase name="group" classname="group" time="0.02" status="run">
+<system-out>[ RUN      ] one_case
+skipped: needs d
+[  SKIPPED ] one_case
+[ RUN      ] run_elsewhere
+skipped: needs e
+[  SKIPPED ] run_elsewhere
+[  SKIPPED ] 2 test(s), listed below:
+[  SKIPPED ] one_case
+[  SKIPPED ] run_elsewhere
+</system-out></testcase>
+END
+printf '%s\n' '<testcase name="other" classname="other" time="0.02" status="run">' \
+    '<system-out>[       OK ] run_elsewhere' '</system-out></testcase>' >"$tree/two.xml"
+said=$(awk -f "$here/skipped.awk" "$tree/one.xml" "$tree/two.xml")
+[ "$said" = $'skipped script: a & b; needs "c"\nskipped one_case: needs d' ] || {
+    echo "skipped.awk: $said"
     failures=$((failures + 1))
 }
 # object FILE TEXT: a source of that text, compiled to where the build keeps the objects of its library

@@ -15,6 +15,14 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define RT_SANITIZED true
+#elif defined(__has_feature)
+#define RT_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#else
+#define RT_SANITIZED false
+#endif
+
 /* ---- tests ----
  *
  * RT_TEST(its_name_is_a_sentence) { ... } in tests/ROOM/test_NAME.c is a test, and RT_TESTS(NAME, setup,
@@ -62,6 +70,13 @@ static inline void rt_test_add(int line, struct CMUnitTest test) {
     RT_TEST_GROUP(name) {                                                                                    \
         return RT_RUN_TESTS(#name, setup, teardown);                                                         \
     }
+
+/* Ends a test that cannot be done here, which ./test.sh lists with what would bring it in. */
+#define RT_SKIP(needs)                                                                                       \
+    do {                                                                                                     \
+        print_message("skipped: needs %s\n", needs);                                                         \
+        skip();                                                                                              \
+    } while (0)
 
 /* Exit code of a test executable that ctest reports as skipped. */
 #define RT_TEST_SKIPPED 77

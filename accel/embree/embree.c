@@ -29,7 +29,8 @@
       "no ray slips between triangles that share an edge; user mode is exact either way",                    \
       "Embree's default")                                                                                    \
     X(QUERY, "query", RT_CHOICE("1", "1|8|16|stream"),                                                       \
-      "rays handed over at once: one, a packet of 8 or 16, a stream", "the most general one")
+      "rays handed over at once: one, a packet of 8 or 16, a stream (not by Embree 4)",                      \
+      "the most general one")
 
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};

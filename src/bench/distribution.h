@@ -31,7 +31,7 @@ typedef enum RtLeafQuantity { RT_LEAF_QUANTITIES(RT_QUANTITY_ENUM) RT_LEAF_QUANT
 #undef RT_QUANTITY_ENUM
 
 /* "object_tests", ..., and behind those over rays "leaf_size", ...: 0 <= i < RT_QUANTITY_COUNT. */
-enum { RT_QUANTITY_COUNT = RT_RAY_QUANTITY_COUNT + RT_LEAF_QUANTITY_COUNT };
+enum { RT_QUANTITY_COUNT = (int)RT_RAY_QUANTITY_COUNT + (int)RT_LEAF_QUANTITY_COUNT };
 const char *rt_quantity_name(size_t i);
 
 enum { RT_HISTOGRAM_BINS = 16 + 8 * 28 };

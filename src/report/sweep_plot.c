@@ -28,7 +28,7 @@ typedef struct Point {
 /* A figure: the cost of some lines over the values of one parameter. */
 typedef struct Figure {
     const RtResults *results;
-    const RtSweptKey *key;
+    RtSweptKey key;
     bool timed;
     uint32_t line_count, point_count, value_count;
     Line *lines;                                              /* [candidate_count] */
@@ -48,29 +48,29 @@ bool rt_sweep_plots_needed(const RtExperiment *experiment) {
 static double place_of(Figure *figure, const char *value) {
     double x = 0;
     uint32_t i = 0;
-    if (figure->key->number) rt_swept_number(value, &x);
-    for (; !figure->key->number && i < figure->value_count; i++) {
+    if (figure->key.number) rt_swept_number(value, &x);
+    for (; !figure->key.number && i < figure->value_count; i++) {
         if (strcmp(figure->words[i], value) == 0) return i;
     }
-    if (!figure->key->number) x = figure->value_count;
-    while (figure->key->number && i < figure->value_count && figure->values[i] < x) i++;
+    if (!figure->key.number) x = figure->value_count;
+    while (figure->key.number && i < figure->value_count && figure->values[i] < x) i++;
     bool there = i < figure->value_count && figure->values[i] == x;
     if (there || figure->value_count == RT_MAX_SWEEP_VALUES) return x;
     memmove(&figure->values[i + 1], &figure->values[i], (figure->value_count - i) * sizeof(double));
     figure->values[i] = x;
-    if (!figure->key->number) snprintf(figure->words[i], RT_MAX_SWEPT_CHARS, "%s", value);
+    if (!figure->key.number) snprintf(figure->words[i], RT_MAX_SWEPT_CHARS, "%s", value);
     figure->value_count++;
     return x;
 }
 
 static void name_line(const Figure *figure, uint32_t c, char name[NAME_CHARS]) {
     const RtCandidate *candidate = &figure->results->experiment->candidates[c];
-    if (figure->key->scene) {
+    if (figure->key.scene) {
         snprintf(name, NAME_CHARS, "%s", candidate->label);
         return;
     }
     snprintf(name, NAME_CHARS, "%s", candidate->base);
-    rt_swept_name(&candidate->swept, figure->key->key, name, NAME_CHARS);
+    rt_swept_name(&candidate->swept, figure->key.key, name, NAME_CHARS);
 }
 
 static uint32_t line_of(Figure *figure, uint32_t c, bool flat) {
@@ -121,9 +121,9 @@ static void gather(Figure *figure, uint32_t first) {
     figure->line_count = figure->point_count = figure->value_count = 0;
     figure->timed = false;
     for (uint32_t t = first; t < experiment->workload_count; t++) {
-        if (!results->workloads[t].known || !same_group(experiment, figure->key, first, t)) continue;
+        if (!results->workloads[t].known || !same_group(experiment, &figure->key, first, t)) continue;
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            const char *value = rt_swept_of(experiment, figure->key, t, c);
+            const char *value = rt_swept_of(experiment, &figure->key, t, c);
             RtTotal cost = rt_results_total(results, t, c);
             if (isnan(cost.seconds) && isnan(cost.object_tests)) continue;
             uint32_t line = line_of(figure, c, !value);
@@ -218,8 +218,8 @@ static bool is_wide(const Figure *figure, int panel) {
 static void put_axis(const Figure *figure, FILE *out) {
     const double *x = figure->values;
     uint32_t count = figure->value_count;
-    fprintf(out, "set xlabel \"%s\" noenhanced textcolor rgb ink\n", figure->key->key);
-    if (!figure->key->number) {
+    fprintf(out, "set xlabel \"%s\" noenhanced textcolor rgb ink\n", figure->key.key);
+    if (!figure->key.number) {
         fputs("set xtics rotate by -30 (", out);
         for (uint32_t i = 0; i < count; i++) fprintf(out, "%s\"%s\" %u", i ? "," : "", figure->words[i], i);
         fprintf(out, ")\nset xrange [-0.2:%.9g]\n", count - 0.8);
@@ -289,16 +289,16 @@ static void put_figure(const Figure *figure, uint32_t number, const char *group,
     fprintf(out,
             "\n#: %02u-sweep-%s: %s per ray of the accelerators on %s over %s.\n#:   All kinds of rays "
             "together%s; the legend has the order of the lines at their right ends in the first panel.\n",
-            number, figure->key->key,
-            figure->timed ? "Time, object tests and steps" : "Object tests and steps", group,
-            figure->key->key, figure->timed ? ", times with intervals" : "");
+            number, figure->key.key,
+            figure->timed ? "Time, object tests and steps" : "Object tests and steps", group, figure->key.key,
+            figure->timed ? ", times with intervals" : "");
     fprintf(out, "reset session\nload \"plots/names.gp\"; load \"plots/style.gp\"\n");
     put_data(figure, out);
     put_styles(figure, out);
     put_order(figure, out);
     fputs("names = \"", out);
     for (uint32_t i = 0; i < figure->line_count; i++) fprintf(out, "%s ", figure->lines[i].name);
-    fprintf(out, "\"\neval canvas(\"%02u-sweep-%s\", %.0f, %.0f)\n", number, figure->key->key, width, height);
+    fprintf(out, "\"\neval canvas(\"%02u-sweep-%s\", %.0f, %.0f)\n", number, figure->key.key, width, height);
     put_axis(figure, out);
     fprintf(out,
             "set grid xtics ytics\nset multiplot\n"
@@ -319,15 +319,15 @@ static void put_figures(Figure *figure, FILE *out) {
           "# name gnuplot scripts under `plots` of the experiment.\n",
           out);
     for (uint32_t k = 0; k < count; k++) {
-        figure->key = &keys[k];
+        figure->key = keys[k];
         for (uint32_t t = 0; t < experiment->workload_count; t++) {
             char group[NAME_CHARS];
             bool first = true;
             for (uint32_t before = 0; before < t; before++)
-                first &= !same_group(experiment, figure->key, before, t);
+                first &= !same_group(experiment, &figure->key, before, t);
             if (!first) continue;
             gather(figure, t);
-            name_group(experiment, figure->key, t, group);
+            name_group(experiment, &figure->key, t, group);
             if (figure->value_count > 1) put_figure(figure, ++number, group, out);
         }
     }

@@ -15,7 +15,23 @@ static inline bool embree_is_built_in(void) {
     const RtAccelOps *ops;
     RtError error = {RT_OK, ""};
     if (rt_accel_find("embree", &ops, &error) == RT_OK) return true;
-    printf("skipped: %s\n", error.message);
+    printf("skipped: needs Embree: %s\n", error.message);
+    return false;
+}
+
+/* Whether this processor and this Embree have what the spec asks for: Embree 4 has no streams. Anything else
+ * that is refused fails the test. */
+static inline bool embree_has(const char *text) {
+    RtSpec spec;
+    RtError why = {RT_OK, ""};
+    assert_ok(rt_spec_parse(text, &spec, error));
+    if (rt_spec_available(&spec, &why) == RT_OK) return true;
+    char isa[16] = "?", missing[32];
+    const char *at = strstr(text, "isa=");
+    if (at) sscanf(at, "isa=%15[^,]", isa);
+    snprintf(missing, sizeof missing, "has no %s;", isa);
+    bool lacks_streams = strstr(text, "query=stream") && strstr(why.message, "Embree 4 has no streams;");
+    if (!lacks_streams && !strstr(why.message, missing)) fail_msg("%s is refused: %s", text, why.message);
     return false;
 }
 
@@ -173,10 +189,12 @@ static inline void assert_same(const Answers *got, const Answers *right, Rays ra
     }
 }
 
+/* By those of the specs that can be had here. */
 static inline void compare_with_brute(const RtScene *scene, Rays rays, const char *const *specs,
                                       size_t count) {
     Answers right = ask(scene, "brute", rays, false);
     for (size_t i = 0; i < count; i++) {
+        if (!embree_has(specs[i])) continue;
         Answers got = ask(scene, specs[i], rays, i % 2 == 1);
         assert_same(&got, &right, rays, specs[i]);
         forget(&got);

@@ -38,6 +38,7 @@ RT_TEST(native_mode_agrees_with_brute_on_triangles) {
     Rays rays = make_plain_rays(20000, 1);
     Answers right = ask(&scene, "brute", rays, false);
     for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
+        if (!embree_has(specs[s])) continue;
         Answers got = ask(&scene, specs[s], rays, s % 2 == 1);
         size_t agree = 0, hits = 0;
         for (size_t i = 0; i < rays.count; i++) {
@@ -94,6 +95,7 @@ RT_TEST(native_mode_takes_every_valid_ray) {
     make_soup(&scene, 60, 2, 10);
     Rays rays = make_rays(&scene, 50000, 10, 3);
     for (size_t s = 0; s < sizeof specs / sizeof specs[0]; s++) {
+        if (!embree_has(specs[s])) continue;
         Answers got = ask(&scene, specs[s], rays, false);
         for (size_t i = 0; i < rays.count; i++) {
             assert_true(got.hits[i].object == RT_NO_OBJECT ? isinf(got.hits[i].t) : isfinite(got.hits[i].t));
@@ -114,7 +116,7 @@ static RtAnswer ask_native(const char *scene_spec, const char *spec, RtRay ray) 
     assert_int_equal(rt_scene_open(scene_spec, &scene, &error), RT_OK);
     RtStatus status = rt_failure_ask(&failure, &scene, rt_maker_of_spec(spec), &answer, &error);
     rt_scene_clear(&scene);
-    if (status == RT_NOT_AVAILABLE) skip(); /* no such processor */
+    if (status == RT_NOT_AVAILABLE) RT_SKIP(error.message);
     assert_int_equal(status, RT_OK);
     return answer;
 }

@@ -224,7 +224,7 @@ static int choose_standard(void **state) {
     } while (0)
 
 RT_TEST_WITH(whoever_is_called_works_in_the_locale_of_c, choose_comma, choose_standard) {
-    if (*localeconv()->decimal_point != ',') skip();
+    if (*localeconv()->decimal_point != ',') RT_SKIP("a locale with a decimal comma, or locales to make one");
     raytally_scene *scene;
     raytally_accelerator *accel;
     raytally_rays *rays;
@@ -268,7 +268,7 @@ RT_TEST_WITH(whoever_is_called_works_in_the_locale_of_c, choose_comma, choose_st
 }
 
 RT_TEST_WITH(numbers_are_written_and_read_with_a_point, choose_comma, choose_standard) {
-    if (*localeconv()->decimal_point != ',') skip();
+    if (*localeconv()->decimal_point != ',') RT_SKIP("a locale with a decimal comma, or locales to make one");
     char text[16], spec[RAYTALLY_SPEC_CHARS];
     raytally_scene *scene;
     raytally_accelerator *accel;

@@ -8,16 +8,9 @@
 #include <glob.h>
 #include <unistd.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED true /* valgrind cannot run such a program */
-#elif defined(__has_feature)
-#define SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
-#else
-#define SANITIZED false
-#endif
-
+/* Valgrind cannot run a program that has sanitizers. */
 static bool has_valgrind(void) {
-    return !SANITIZED && system("valgrind --version >/dev/null 2>&1") == 0;
+    return !RT_SANITIZED && system("valgrind --version >/dev/null 2>&1") == 0;
 }
 
 #define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
@@ -48,7 +41,7 @@ RT_TEST_IN_PLACE(instructions_are_the_same_figure_twice_whatever_the_environment
     const Place *place = *state;
     const char *const arguments = "balls:size=2 --accel bvh --accel grid --accel cache+wide --accel ideal "
                                   "--rays primary,shadow --size 32x32";
-    if (!has_valgrind()) skip();
+    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     json_t *one = instructions_of(place, arguments);
     assert_int_equal(setenv("RT_TEST_FILLER", "some text that moves the stack to another place", 1), 0);
     json_t *two = instructions_of(place, arguments);
@@ -76,7 +69,7 @@ static void write_alike(const Place *place, const char *name, uint64_t count) {
 RT_TEST_IN_PLACE(each_ray_more_costs_exactly_as_much_as_the_one_before) {
     const Place *place = *state;
     const char *const specs[] = {"brute", "bvh", "octree"};
-    if (!has_valgrind()) skip();
+    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     for (int s = 0; s < 3; s++) {
         json_int_t sums[3];
         for (int i = 0; i < 3; i++) {
@@ -98,7 +91,7 @@ RT_TEST_IN_PLACE(each_ray_more_costs_exactly_as_much_as_the_one_before) {
 
 RT_TEST_IN_PLACE(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_said) {
     const Place *place = *state;
-    if (!has_valgrind()) skip();
+    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     json_t *rows =
         instructions_of(place, "random:n=50 --accel wide --accel wide:isa=portable --rays primary --size "
                                "16x16");
@@ -111,7 +104,7 @@ RT_TEST_IN_PLACE(an_instruction_set_that_valgrind_does_not_know_is_replaced_and_
 /* It is built in the child's own process; one that breaks is not asked there. */
 RT_TEST_IN_PLACE(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named) {
     const Place *place = *state;
-    if (!has_valgrind()) skip();
+    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     assert_int_equal(raytally(place, "bench random:n=50 --count-only --threads 1 --json --callgrind=64 "
                                      "--rays primary,shadow --size 16x16 --plugin " RT_BINARY_DIR
                                      "/plugins/bvh_copy.so --plugin " RT_BINARY_DIR
@@ -133,7 +126,7 @@ RT_TEST_IN_PLACE(instructions_of_a_plugin_are_counted_and_a_broken_one_is_named)
 RT_TEST_IN_PLACE(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
     const Place *place = *state;
     glob_t found;
-    if (!has_valgrind()) skip();
+    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     assert_int_equal(setenv("TMPDIR", place->folder, 1), 0);
     json_t *rows = instructions_of(place, "random:n=50 --accel bvh --rays primary --size 64x64");
     unsetenv("TMPDIR");
@@ -145,7 +138,7 @@ RT_TEST_IN_PLACE(the_child_gets_a_few_rays_and_leaves_nothing_behind) {
 
 RT_TEST_IN_PLACE(the_table_names_the_instruction_set) {
     const Place *place = *state;
-    if (!has_valgrind()) skip();
+    if (!has_valgrind()) RT_SKIP("valgrind, and no sanitizers");
     assert_int_equal(raytally(place,
                               "bench random:n=50 --accel wide:isa=portable --rays primary --size 16x16 "
                               "--rounds 1 --callgrind"),

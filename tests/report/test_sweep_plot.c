@@ -54,7 +54,7 @@ RT_TEST_IN_PLACE(each_value_is_a_row_and_each_parameter_a_column_at_the_end) {
 RT_TEST_IN_PLACE(without_scripts_a_plot_is_drawn_for_each_parameter_and_scene) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1"), 0);
-    if (access("/usr/bin/gnuplot", X_OK) != 0) skip();
+    if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     const char *const drawn[] = {"out/plots/01-sweep-n.svg", "out/plots/02-sweep-density.svg",
                                  "out/plots/03-sweep-density.svg", "out/plots/04-sweep-build.svg"};
     for (size_t i = 0; i < sizeof drawn / sizeof drawn[0]; i++) assert_in_file(place, drawn[i], "</svg>");

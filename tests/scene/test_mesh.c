@@ -222,10 +222,7 @@ RT_TEST(every_failed_allocation_is_reported_and_leaves_nothing) {
 }
 
 RT_TEST(the_bunny_has_69666_triangles_all_with_area) {
-    if (!rt_file_exists(BUNNY)) {
-        print_message("%s is not there (package glmark2-data)\n", BUNNY);
-        skip();
-    }
+    if (!rt_file_exists(BUNNY)) RT_SKIP(BUNNY " (glmark2-data)");
     RtScene scene;
     assert_ok(rt_scene_open(BUNNY, &scene, error));
     assert_int_equal(scene.geometry.triangle_count, 69666);

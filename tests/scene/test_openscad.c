@@ -115,13 +115,13 @@ RT_TEST(openscad_and_embree_agree_with_our_csg_trees) {
 
 RT_TEST_GROUP(openscad) {
     if (system("openscad --version >/dev/null 2>&1") != 0) {
-        puts("openscad is not installed: the comparison with it is skipped");
+        puts("skipped: CSG trees against OpenSCAD's meshes; needs openscad");
         return RT_TEST_SKIPPED;
     }
     RtError error;
     const RtAccelOps *ops;
     if (rt_accel_find("embree", &ops, &error) != RT_OK) {
-        puts("this build has no Embree: the comparison with OpenSCAD's meshes is skipped");
+        puts("skipped: CSG trees against OpenSCAD's meshes; needs Embree");
         return RT_TEST_SKIPPED;
     }
     return RT_RUN_TESTS("openscad", NULL, NULL);

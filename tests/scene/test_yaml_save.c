@@ -132,7 +132,7 @@ RT_TEST(whichever_allocation_fails_saving_is_out_of_memory) {
 
 RT_TEST(a_full_disk_is_reported) {
     FILE *out = fopen("/dev/full", "wb");
-    if (!out) skip();
+    if (!out) RT_SKIP("/dev/full");
     setvbuf(out, NULL, _IONBF, 0);
     RtScene scene;
     RtError error = {RT_OK, ""};
