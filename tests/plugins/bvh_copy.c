@@ -100,11 +100,11 @@ static void try_axis(const Ref *refs, uint32_t count, const raytally_box *center
     if (!(lo < hi)) return;
     for (uint32_t i = 0; i < BINS; i++) {
         bins[i] = (Bin){empty, 0};
-        edges[i] = lo + (hi - lo) * (float)i / BINS;
+        edges[i] = lo + (hi - lo) * (float)i / (float)BINS;
     }
     for (uint32_t i = 0; i < count; i++) {
         const float at = center(&refs[i].box, axis);
-        uint32_t bin = (uint32_t)((at - lo) / (hi - lo) * BINS);
+        uint32_t bin = (uint32_t)((at - lo) / (hi - lo) * (float)BINS);
         bin = bin < BINS ? bin : BINS - 1;
         while (bin > 0 && at < edges[bin]) bin--;
         while (bin < BINS - 1 && at >= edges[bin + 1]) bin++;
