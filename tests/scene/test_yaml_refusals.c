@@ -74,7 +74,7 @@ static const struct {
     {"objects:\n- sphere: {center: [0, 1, 0], radius: \"1\\02\"}\n", 2, "zero byte"},
     {"objects:\n- sphere: {center: [0, 1, 0], radius: [1]}\n", 2,
      "expected a number, as in 1.5, found a list"},
-    {"objects:\n- sphere: {center: [0, 1], radius: 1}\n", 2, "has 2 entries"},
+    {"objects:\n- sphere: {center: [0, 1], radius: 1}\n", 2, "the length of the list is 2"},
     {"objects:\n- sphere: {center: [0, 1, 2, 3], radius: 1}\n", 2, "more than 3"},
     {"objects:\n- sphere: {center: 7, radius: 1}\n", 2, "invalid value '7': expected a list of 3 numbers"},
     {"objects:\n- sphere: {center: [1e18, 0, 0], radius: 1}\n", 2, "scale the scene down"},
