@@ -328,7 +328,7 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
         rt_alloc((size_t)experiment->workload_count * experiment->candidate_count, sizeof *points);
     RtStatus status = rt_claim_parse(experiment, experiment->claims[i], &claim, &error);
     if (points && status == RT_OK) count = gather(results, &claim, points);
-    for (uint32_t k = 0; k < count; k++) known += isfinite(points[k].y.value);
+    for (uint32_t k = 0; k < count; k++) known += isfinite(points[k].y.value) ? 1 : 0;
     if (known == 0) {
         *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "nothing was measured that it is about"};
     } else if (claim.form == RT_CLAIM_EXPONENT) {
