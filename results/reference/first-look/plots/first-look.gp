@@ -1,153 +1,132 @@
 # SPDX-License-Identifier: Apache-2.0
-# first-look: costs per ray and of building, a row of panels a scene; and time by ray kind.
-#: 1-overview: Tests, steps and time per ray, time to build and memory of each accelerator, a row of panels a scene.
-#:   Means over all kinds of rays, on logarithmic axes; times with intervals. ideal is the floor; – is not known, or not for
-#:   all kinds of rays.
-#: 2-time-by-kind: Nanoseconds per ray of each accelerator, by kind of ray, a panel a scene.
-#:   Medians with their intervals, on logarithmic axes; from left to right in the order of the legend.
+# first-look: the table of frames as bars, a column of panels a scene.
+#: frame: How many times faster, and with how many times fewer object tests, each accelerator traces a whole frame than no
+#:   structure does, on logarithmic axes. The columns at the right are milliseconds a frame and to build, and millions of
+#:   object tests. Blue: the lecture's six; orange: the one that helps most. item and light stand on wide: the pale part of a bar is what wide
+#:   does alone. ideal is
+#:   the least that any accelerator can do.
+#: by-kind: How many times faster than without a structure, for each kind of rays.
+#:   Logarithmic axes; secondary rays are reflected and transmitted ones. The item buffer answers primary rays alone, the light buffer shadow rays alone.
 
-n_scenes = words(scenes); n_accels = words(accels); n_kinds = words(kinds)
+n_scenes = words(scenes); n_accels = words(accels)
 
-# ---- from the CSV files: value[metric, scene, accelerator], time a ray with its interval ----
 
-chosen(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)
-known(s, a, counter) = chosen(s, a) && strcol(counter) ne ""
-place(m, s, a) = ((m - 1) * n_scenes + s - 1) * n_accels + a
-n_metrics = 6
-array value[n_metrics * n_scenes * n_accels]
-array low[n_scenes * n_accels]; array high[n_scenes * n_accels]
-array title[n_metrics] = ["object tests / ray", "extent tests / ray", "steps / ray", "ns / ray", "build, ms", "memory, MB"]
+# ---- rows: a heading and the accelerators of each group ----
 
-# A mean is over the same kinds of rays for all accelerators: unknown where one was left out.
-array whole[n_scenes] # rays of all kinds
-do for [s = 1:n_scenes] {
-  whole[s] = 0
-  do for [k = 1:n_kinds] {
-    stats "times.csv" using (strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) ? column("set_rays") : 0) nooutput
-    whole[s] = whole[s] + STATS_max
-  }
-  do for [a = 1:n_accels] {
-    do for [m = 1:3] {
-      counter = word("object_tests extent_tests steps", m)
-      stats "times.csv" using (known(s, a, counter) ? column("set_rays") : 0) nooutput
-      weight = STATS_sum
-      stats "times.csv" using (known(s, a, counter) ? column(counter) / column("rays") * column("set_rays") : 0) nooutput
-      value[place(m, s, a)] = weight > 0 && weight == whole[s] ? STATS_sum / weight : NaN
-    }
-    stats "times.csv" using (chosen(s, a) ? column("set_rays") : 0) nooutput
-    timed = STATS_sum
-    do for [name in "ns ns_low ns_high"] {
-      stats "times.csv" using (chosen(s, a) ? column(name) * column("set_rays") : 0) nooutput
-      mean = timed > 0 && timed == whole[s] ? STATS_sum / timed : NaN
-      if (name eq "ns") { value[place(4, s, a)] = mean }
-      if (name eq "ns_low") { low[place(1, s, a)] = mean }
-      if (name eq "ns_high") { high[place(1, s, a)] = mean }
-    }
-    stats "times.csv" using (chosen(s, a) ? column("build_seconds") * 1e3 : 0) nooutput
-    value[place(5, s, a)] = timed > 0 ? STATS_max : NaN
-    stats "times.csv" using (chosen(s, a) ? column("bytes") * 1e-6 : 0) nooutput
-    value[place(6, s, a)] = timed > 0 ? STATS_max : NaN
-  }
+array row[n_accels]
+rows = 0; headings = ""
+do for [a = 1:n_accels] {
+  if (a == 1 || word(groups, a) ne word(groups, a > 1 ? a - 1 : 1)) { rows = rows + 1; headings = headings.sprintf("%d %d ", a, rows) }
+  rows = rows + 1; row[a] = rows
 }
+number(name) = sum [a = 1:n_accels] (word(accels, a) eq name ? a : 0)
+row_of(name) = number(name) ? row[number(name)] : NaN
+paint(group, winner) = winner eq "yes" ? 0xd55e00 : group eq among ? 0x56b4e9 : 0x9a9a9a
+here(s) = strcol("scene") eq word(scenes, s)
+figure_of(s, column_name) = here(s) ? column(column_name) : NaN
+at(s) = here(s) ? row_of(strcol("accel")) : NaN
+least_of(a, b) = a < b ? a : b
+most_of(a, b) = a > b ? a : b
+bold(winner, text) = winner eq "yes" ? "{/:Bold ".text."}" : text
 
-# ---- the overview: points, one accelerator a line, the same line in every panel; a logarithm has no foot for bars ----
+left = 104.0; gap = 14.0; line = 17.0; head = 44.0; foot = 30.0; top = 16.0
+panel_height = line * rows
+panel_width = (960 - left) / n_scenes
 
-left = 0.115
-panel_width = (0.995 - left) / n_metrics
-array lowest[n_metrics] = [0.1, 0.1, 0.1, 1, 0.01, 0.001]
-row_height = 46 + 20 * n_accels
-height = 46 + row_height * n_scenes
+# Puts the names of the rows to the left of a panel at height `bottom` of the canvas.
+names = "do for [a = 1:n_accels] { set label 100 + a word(accels, a) at graph -0.02, first row[a] right font ',12' textcolor rgb ink }; \
+do for [i = 1:words(headings) / 2] { set label 200 + i word(groups, int(word(headings, 2 * i - 1))) at screen 6.0 / 960, first int(word(headings, 2 * i)) \
+left font ',11' textcolor rgb soft }"
 
-eval canvas("1-overview", 960, height)
+legend = "set label 11 among at screen 0.52, screen 1 - 18.0 / height left font ',12' textcolor rgb '#3a9fd8'; \
+set label 12 '{/:Bold the one that helps most}' at screen 0.635, screen 1 - 18.0 / height left font ',12' textcolor rgb '#d55e00'; \
+set label 13 'pale: without the buffer' at screen 0.995, screen 1 - 18.0 / height right font ',12' textcolor rgb soft"
+
+# ---- a whole frame: times as fast, and times fewer object tests ----
+
+n_metrics = 2
+array metric[2] = ["times_faster", "times_fewer"]
+array gain[2] = ["gain", "tests_gain"]
+array spare[2] = [2.3, 1.35]
+whole(s, m) = figure_of(s, metric[m])
+below(s, m) = figure_of(s, metric[m]) / column(gain[m])
+array title[2] = ["A whole frame: how many times faster than ".without, "How many times fewer object tests than ".without]
+array least[2]; array most[2]
+do for [m = 1:n_metrics] {
+  stats "frame.csv" using (column(metric[m])) nooutput
+  least[m] = STATS_min; most[m] = STATS_max
+}
+block = head + panel_height + foot
+height = top + n_metrics * block
+eval canvas("frame", 960, height)
 set multiplot
 set logscale x
-set yrange [n_accels + 0.6 : 0.4]
 set format x "10^{%T}"
-set grid xtics ytics linecolor rgb faint linetype 1 linewidth 0.5
+set yrange [rows + 0.7 : 0.3]
+unset ytics
+set grid xtics noytics
 set xtics scale 0.4 offset 0, 0.4 font ",11"
-do for [s = 1:n_scenes] {
-  do for [m = 1:n_metrics] {
-    highest = lowest[m]
-    do for [t = 1:n_scenes] {
-      do for [a = 1:n_accels] {
-        v = value[place(m, t, a)]
-        if (v == v && v > highest) { highest = v }
-      }
-    }
-    # room for the figure behind the last point
-    set xrange [lowest[m] : lowest[m] * (highest / lowest[m]) ** 1.6]
-    set xtics lowest[m], (highest / lowest[m] > 1e5 ? 1000 : 100), highest
-    set lmargin at screen left + (m - 1) * panel_width + 0.012
-    set rmargin at screen left + m * panel_width - 0.004
-    set tmargin at screen 1 - (46.0 + row_height * (s - 1)) / height
-    set bmargin at screen 1 - (46.0 + row_height * s - 36) / height
+do for [m = 1:n_metrics] {
+  highest = most[m]; lowest = least[m] < 0.5 ? least[m] : 0.5
+  # Room for the figure behind a bar, and for the columns at the right.
+  set xrange [lowest : highest * (highest / lowest) ** spare[m]]
+  set xtics 1, 100, highest
+  do for [s = 1:n_scenes] {
     unset label
-    set ytics 1, 1, n_accels format "" scale 0
-    if (m == 1) {
-      set label 1 word(scenes, s) at screen 0.008, graph 1.03 left font ",15" textcolor rgb ink
-      do for [a = 1:n_accels] {
-        set label 100 + a word(accels, a) at graph -0.06, first a right textcolor rgb ink font ",13"
-      }
+    set lmargin at screen (left + (s - 1) * panel_width) / 960
+    set rmargin at screen (left + s * panel_width - gap) / 960
+    set tmargin at screen 1 - (top + (m - 1) * block + head) / height
+    set bmargin at screen 1 - (top + (m - 1) * block + head + panel_height) / height
+    if (s == 1) {
+      set label 1 title[m] at screen 6.0 / 960, screen 1 - (top + (m - 1) * block + 2.0) / height left font ",15" textcolor rgb ink
+      eval names
+      if (m == 1) { eval legend }
     }
-    if (s == 1) { set label 2 title[m] at graph 0, screen 1 - 24.0 / height left font ",13" textcolor rgb ink }
-    do for [a = 1:n_accels] {
-      v = value[place(m, s, a)]
-      set label 200 + a figure(v) at first (v == v && v > lowest[m] ? v : lowest[m]), first a left offset character 0.8, 0 \
-          textcolor rgb (v == v ? ink : soft) font ",12"
-    }
-    plot for [a = 1:n_accels] "+" using (value[place(m, s, a)] > lowest[m] ? value[place(m, s, a)] : NaN):(a) every ::0::0 \
-           with points pointtype marker(a) pointsize 0.9 linecolor rgb color(a), \
-         for [a = 1:n_accels] "+" using (m == 4 ? low[place(1, s, a)] : NaN):(a):(high[place(1, s, a)] - low[place(1, s, a)]):(0) every ::0::0 \
-           with vectors nohead linewidth 1.5 linecolor rgb ink
+    set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 0.7 font ",14" textcolor rgb ink
+    set label 3 (m == 1 ? "ms" : "") at graph 0.82, graph 1 right offset 0, 0.7 font ",11" textcolor rgb soft
+    set label 4 (m == 1 ? "build ms" : "million tests") at graph 1, graph 1 right offset 0, 0.7 font ",11" textcolor rgb soft
+    last = highest * (highest / lowest) ** spare[m]
+    # What the accelerator below an overlay gains by itself, then what this one gains: logarithms add.
+    plot "frame.csv" using (least_of(1, below(s, m))):(at(s)):(least_of(1, below(s, m))):(most_of(1, below(s, m))):(at(s) - 0.36):(at(s) + 0.36) \
+           with boxxyerror linecolor rgb faint, \
+         "" using (least_of(whole(s, m), below(s, m))):(at(s)):(least_of(whole(s, m), below(s, m))):(most_of(whole(s, m), below(s, m))): \
+           (at(s) - 0.36):(at(s) + 0.36):(paint(strcol("group"), strcol("winner"))) with boxxyerror linecolor rgb variable, \
+         "" using (most_of(1, most_of(whole(s, m), below(s, m)))):(at(s)):(here(s) ? bold(strcol("winner"), figure(whole(s, m)). \
+           " ×".(m == 1 && strcol("winner") eq "yes" ? " helps most" : strcol("below") ne "" ? " (".figure(column(gain[m]))." × ".strcol("below").")" : "")) : "") \
+           with labels left offset 0.4, 0 font ",11" textcolor rgb ink, \
+         "" using (here(s) ? last : NaN):(at(s)):(here(s) ? figure(m == 1 ? column("build_ms") : 1e-6 * column("object_tests")) : "") \
+           with labels right font ",11" textcolor rgb soft, \
+         "" using (here(s) && m == 1 ? lowest * (last / lowest) ** 0.82 : NaN):(at(s)):(here(s) ? figure(column("ms")) : "") \
+           with labels right font ",11" textcolor rgb soft
   }
 }
 unset multiplot
 unset output
 
-# ---- time by ray kind: a group of points a kind, an accelerator a colour and marker, with its interval ----
+# ---- by kind of rays ----
 
-reset session
-load "plots/names.gp"
-load "plots/style.gp"
-n_scenes = words(scenes); n_accels = words(accels); n_kinds = words(kinds)
-chosen(s, a) = strcol("scene") eq word(scenes, s) && strcol("accel") eq word(accels, a)
-number(kind) = sum [k = 1:n_kinds] (word(kinds, k) eq kind ? k : 0)
-x_of(a) = number(strcol("kind")) + (a - (n_accels + 1) / 2.0) * 0.8 / n_accels
-
-array cells[n_scenes * n_kinds]
-do for [s = 1:n_scenes] {
-  do for [k = 1:n_kinds] {
-    stats "times.csv" using (strcol("scene") eq word(scenes, s) && strcol("kind") eq word(kinds, k) ? 1 : 0) nooutput
-    cells[(s - 1) * n_kinds + k] = STATS_sum > 0
-  }
-}
-
-height = 70 + 240 * n_scenes
-eval canvas("2-time-by-kind", 960, height)
+n_parts = 3
+array part[3] = ["primary_faster", "shadow_faster", "secondary_faster"]
+array part_title[3] = ["primary", "shadow", "secondary"]
+height = top + head + panel_height + foot
+eval canvas("by-kind", 960, height)
 set multiplot
-set logscale y
-set format y "10^{%T}"
-set grid noxtics ytics
-set xrange [0.5 : n_kinds + 0.5]
-set yrange [10 : *]
-set xtics scale 0 ()
-do for [k = 1:n_kinds] { set xtics add (word(kinds, k) k) }
+set xtics 1, 10, 1e9
 do for [s = 1:n_scenes] {
-  set lmargin at screen 0.06
-  set rmargin at screen 0.99
-  set tmargin at screen 1 - (80 + 240.0 * (s - 1)) / height
-  set bmargin at screen 1 - (20 + 240.0 * s) / height
-  set label 1 word(scenes, s).", ns / ray" at graph 0, 1.08 left font ",15" textcolor rgb ink
-  do for [k = 1:n_kinds] {
-    note = cells[(s - 1) * n_kinds + k] ? "" : "no such rays"
-    set label 10 + k note at first k, graph 0.06 center font ",12" textcolor rgb soft
-    set arrow k from k + 0.5, graph 0 to k + 0.5, graph 1 nohead linecolor rgb faint linewidth 0.5
-  }
+  unset label
+  set lmargin at screen (left + (s - 1) * panel_width) / 960
+  set rmargin at screen (left + s * panel_width - gap) / 960
+  set tmargin at screen 1 - (top + head) / height
+  set bmargin at screen 1 - (top + head + panel_height) / height
+  set xrange [0.5 : *]
   if (s == 1) {
-    set key at screen 0.99, screen 1 - 12.0 / height right top horizontal samplen 0.5 maxrows 2 textcolor rgb ink width 1
+    eval names
+    set label 1 "times as fast as ".without.", by kind of rays" at screen 6.0 / 960, screen 1 - 24.0 / height left font ",15" textcolor rgb ink
+    set key at screen 0.995, screen 1 - 6.0 / height right top horizontal maxrows 1 samplen 0.5 width -2 font ",11" textcolor rgb ink
   } else { unset key }
-  plot for [a = 1:n_accels] "times.csv" using (chosen(s, a) ? x_of(a) : NaN):"ns":"ns_low":"ns_high" with yerrorbars \
-         pointtype marker(a) pointsize 0.8 linewidth 1.2 linecolor rgb color(a) title word(accels, a)
+  set label 2 word(scenes, s) at graph 0, graph 1 left offset 0, 0.7 font ",14" textcolor rgb ink
+  plot for [p = 1:n_parts] "frame.csv" using (figure_of(s, part[p])):(row_of(strcol("accel"))) with points \
+         pointtype mark(p) pointsize 0.9 linecolor rgb hue(p) title part_title[p]
 }
 unset multiplot
 unset output
