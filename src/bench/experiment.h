@@ -81,7 +81,7 @@ typedef struct RtPublishedSetup {
 /* The table of what a whole frame costs (bench/frame_table.h). */
 typedef struct RtFrameSetup {
     char without[RT_MAX_LABEL]; /* the candidate that has no structure; "": there is no such table */
-    char among[RT_MAX_LABEL];   /* the group whose best is marked */
+    char among[RT_MAX_LABEL];   /* how the groups begin whose best is marked */
     char note[RT_MAX_TEXT];     /* what a reader of the table should know, or "" */
 } RtFrameSetup;
 

@@ -77,7 +77,8 @@ static double gain_of(const RtResults *results, uint32_t workload, uint32_t cand
 }
 
 static bool is_compared(const RtExperiment *experiment, uint32_t candidate) {
-    return strcmp(experiment->candidates[candidate].group, experiment->frame.among) == 0;
+    return strncmp(experiment->candidates[candidate].group, experiment->frame.among,
+                   strlen(experiment->frame.among)) == 0;
 }
 
 static uint32_t winner_of(const RtResults *results, uint32_t workload) {
@@ -157,7 +158,7 @@ static uint64_t rays_of(const Row *r) {
       1e3 * rt_build_at(r->results, r->workload, r->candidate)->seconds)                                     \
     X(primary, "primary", figure, "", "times faster for primary rays", faster(r, RT_FRAME_PRIMARY))          \
     X(shadow, "shadow", figure, "", "times faster for shadow rays", faster(r, RT_FRAME_SHADOW))              \
-    X(secondary, "second.", figure, "", "times faster for reflection and transmission rays",                 \
+    X(secondary, "second", figure, "", "times faster for reflection and transmission rays",                  \
       faster(r, RT_FRAME_SECONDARY))
 
 RT_TABLE_COLUMNS(columns, COLUMNS)
@@ -247,12 +248,12 @@ static void say_followers(Text *text, const RtResults *results, uint32_t t, uint
     char number[16];
     bool any = false;
     for (uint32_t c = previous; (c = next_of(results, t, none, c)) != none; any = true)
-        say(text, "%s%s %swith %s", any ? ", " : " ", rt_candidate_label(results->experiment, c),
-            any ? "" : "follows ", figure(gain_of(results, t, c), number));
+        say(text, "%s%s %swith %s%s", any ? ", " : " ", rt_candidate_label(results->experiment, c),
+            any ? "" : "follows ", figure(gain_of(results, t, c), number), any ? "" : " times");
     say(text, "%s", any ? "." : "");
 }
 
-/* "On top of wide, item+wide gains 1.12 times, and light+wide 1.00 times." Without the winner. */
+/* "Beside wide alone, item+wide is 1.12 times as fast, and light+wide 1.00 times." Without the winner. */
 static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count, told = below_of(results, t, winner);
@@ -261,9 +262,12 @@ static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint3
         bool any = false;
         for (uint32_t c = told == below ? winner : none; (c = next_of(results, t, below, c)) != none;
              any = true) {
-            if (!any) say(text, " On top of %s,", rt_candidate_label(experiment, below));
-            say(text, "%s %s %s%s times", any ? ", and" : "", rt_candidate_label(experiment, c),
-                any ? "" : "gains ", figure(gain_of(results, t, c), number));
+            if (!any) say(text, " Beside %s alone,", rt_candidate_label(experiment, below));
+            say(text, "%s %s %s%s times%s", any ? ", and" : "", rt_candidate_label(experiment, c),
+                any ? "" : "is ", figure(gain_of(results, t, c), number),
+                any                      ? ""
+                : experiment->count_only ? " better"
+                                         : " as fast");
         }
         say(text, "%s", any ? "." : "");
     }
@@ -283,7 +287,7 @@ static void say_fastest(Text *text, const RtResults *results, uint32_t t, const 
         best = c;
     }
     if (best == experiment->candidate_count) return;
-    say(text, " The fastest of all is %s: %s times as fast as %s.", rt_candidate_label(experiment, best),
+    say(text, " The fastest structure is %s: %s times as fast as %s.", rt_candidate_label(experiment, best),
         figure(without->seconds / least, number), experiment->frame.without);
 }
 
