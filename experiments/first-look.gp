@@ -29,7 +29,7 @@ least_of(a, b) = a < b ? a : b
 most_of(a, b) = a > b ? a : b
 bold(winner, text) = winner eq "yes" ? "{/:Bold ".text."}" : text
 
-left = 104.0; gap = 14.0; line = 17.0; head = 44.0; foot = 30.0; top = 16.0
+left = 164.0; gap = 14.0; line = 17.0; head = 44.0; foot = 30.0; top = 16.0
 panel_height = line * rows
 panel_width = (960 - left) / n_scenes
 
@@ -47,7 +47,7 @@ set label 13 'pale: wide alone' at screen 0.995, screen 1 - 18.0 / height right 
 n_metrics = 2
 array metric[2] = ["times_faster", "times_fewer"]
 array gain[2] = ["gain", "tests_gain"]
-array spare[2] = [2.3, 1.35]
+array spare[2] = [2.7, 1.5]
 whole(s, m) = figure_of(s, metric[m])
 below(s, m) = figure_of(s, metric[m]) / column(gain[m])
 array title[2] = ["A whole frame: how many times faster than ".without.", log scale", "How many times fewer object tests than ".without.", log scale"]

@@ -332,7 +332,7 @@ void rt_frame_legend(const RtExperiment *experiment, char out[RT_MAX_FRAME_SENTE
     snprintf(
         out, RT_MAX_FRAME_SENTENCE,
         "For a whole frame: object tests in millions, time and build time in ms, and how many times fewer "
-        "and faster than %s; then how many times faster for each kind of ray (second.: reflection and "
+        "and faster than %s; then how many times faster for each kind of ray (second: reflection and "
         "transmission). > helps most of %s.",
         experiment->frame.without, experiment->frame.among);
 }
@@ -362,7 +362,7 @@ void rt_print_frames(const RtResults *results, FILE *out) {
     snprintf(
         text, sizeof text,
         "For a whole frame: object tests in millions, time and build time in ms, and how many times fewer "
-        "and faster than %s; then how many times faster for each kind of ray (second.: reflection and "
+        "and faster than %s; then how many times faster for each kind of ray (second: reflection and "
         "transmission). > helps most of %s.",
         experiment->frame.without, experiment->frame.among);
     rt_print_wrapped(text, out);
