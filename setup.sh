@@ -81,7 +81,8 @@ install_missing() {
     [ -z "$names" ] || die "packages are missing; as root: apt-get install --no-install-recommends $names"
 }
 
-# build PRESET [CMAKE OPTION...]: from the beginning where build/PRESET came with a copy of another tree, which cmake refuses
+# build PRESET [CMAKE OPTION...]: the targets of $targets, or all; from the beginning where
+# build/PRESET came with a copy of another tree, which cmake refuses
 build() {
     local preset=$1 made_for fresh=()
     say "building build/$preset"
@@ -92,7 +93,9 @@ build() {
     fi
     logged "build/$preset.log" cmake "${fresh[@]}" --preset "$@" || die "cmake failed: build/$preset.log"
     grep -A 3 'CMake Warning' "build/$preset.log" | grep '^  ' || true
-    logged "build/$preset.log" cmake --build --preset "$preset" -j "$(nproc)" || die "the build failed: build/$preset.log"
+    # shellcheck disable=SC2086 # the targets are words of their own
+    logged "build/$preset.log" cmake --build --preset "$preset" -j "$(nproc)" --target ${targets:-all} ||
+        die "the build failed: build/$preset.log"
 }
 
 fetch_bunny() {

@@ -36,7 +36,7 @@ case "${1-}" in
     install_missing build optional data test check cluster pages
     fetch_bunny
     build release -DRT_WERROR=ON
-    run_tests release
+    RT_RAYS=256 run_tests release
     build clang -DRT_WERROR=ON
     run_tests clang -LE 'tree|once'
     build debug

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_guide.sh [--slow] [DOCUMENT...]: runs the commands of docs/guide/*.md and docs/accelerators/*.md, or of those
-# named. Uses $RT_PROGRAM. Of a document, in order and in one scratch directory that has copies of docs/,
+# named, a folder for all in it. Uses $RT_PROGRAM. Of a document, in order and in one scratch directory that has copies of docs/,
 # experiments/, results/ and scenes/:
 #   ```sh                 run by bash, -euo pipefail; `raytally` is in PATH; it must end with exit code 0
 #   ```sh exit=1          with that one
@@ -152,7 +152,10 @@ check_document() {
 [ "${1-}" != --slow ] || { slow=yes patience=1800 && shift; }
 if [ $# -gt 0 ]; then
     documents=()
-    for document; do documents+=("$(cd "$here" && realpath "$document")"); done
+    for document; do
+        document=$(cd "$here" && realpath "$document")
+        if [ -d "$document" ]; then documents+=("$document"/*.md); else documents+=("$document"); fi
+    done
 else
     shopt -s nullglob
     documents=(docs/guide/*.md docs/accelerators/*.md)

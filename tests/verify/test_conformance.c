@@ -5,7 +5,8 @@
  * each number, beside every choice of the other parameters. No accelerator is named here: a new one is
  * covered once it is registered.
  *
- * RT_SEED=N in the environment tries other scenes and rays of the same families (the default is 1). */
+ * RT_SEED=N in the environment tries other scenes and rays of the same families (the default is 1), RT_RAYS=N
+ * as many rays of each family (the default is 64; ./test.sh --all asks for 256 once). */
 #include "equivalence_testing.h"
 
 #include "scenes/builtin.h"
@@ -16,15 +17,10 @@
 #include <string.h>
 #include <xxhash.h>
 
-/* All by gcc; of the same sources by a second compiler, or under sanitizers, a quarter. */
-#if defined(__clang__) || defined(__SANITIZE_ADDRESS__)
-enum { RAYS_PER_FAMILY = 64 };
-#else
-enum { RAYS_PER_FAMILY = 256 };
-#endif
 enum { MAX_SCENES = 64 };
 
 static uint64_t seed = 1;
+static size_t rays_per_family = 64;
 
 /* Checks one spec; tells what is wrong and returns false if anything is. What would take too much memory may
  * be refused, with a value that fits, if `may_refuse`. */
@@ -54,12 +50,12 @@ static bool conforms(const FamilyBench *bench, const char *spec, bool may_refuse
     }
     if (result.any_wrong) {
         char text[512];
-        size_t rays_per_family = bench->reference.count / rt_ray_family_count();
+        size_t each_family = bench->reference.count / rt_ray_family_count();
         rt_wrong_answer_format(&result.first_wrong, text, sizeof text);
         print_error("%s on %s: %llu of %llu wrong, %llu occluded wrong; family %s, %s\n", spec, scene,
                     (unsigned long long)result.verdicts[RT_WRONG], (unsigned long long)result.rays,
                     (unsigned long long)result.occluded_wrong,
-                    rt_ray_family_name(result.first_wrong.index / rays_per_family), text);
+                    rt_ray_family_name(result.first_wrong.index / each_family), text);
         good = false;
     }
     rt_accel_destroy(accel);
@@ -68,7 +64,7 @@ static bool conforms(const FamilyBench *bench, const char *spec, bool may_refuse
 
 static void every_accelerator_answers_like_brute(void **state) {
     FamilyBench bench;
-    set_up_family(&bench, *(const size_t *)*state, seed, RAYS_PER_FAMILY);
+    set_up_family(&bench, *(const size_t *)*state, seed, rays_per_family);
     size_t failures = 0;
     for (size_t i = 0; i < rt_accel_count(); i++) {
         char spec[RT_MAX_SPEC_CHARS];
@@ -125,7 +121,7 @@ static void extreme_values_answer_like_brute(void **state) {
     char value[64];
     size_t failures = 0;
     assert_ok(rt_builtin_open(*state, &bench.scene, error));
-    set_up_rays(&bench, seed, RAYS_PER_FAMILY / 16);
+    set_up_rays(&bench, seed, rays_per_family / 16);
     for (size_t i = 0; i < rt_accel_count(); i++) {
         const RtAccelOps *ops = rt_accel_at(i);
         for (size_t p = 0; p < ops->param_count; p++) {
@@ -232,8 +228,10 @@ RT_TEST_GROUP(conformance) {
         extremes_test("random:n=40,shape=mixed,distribution=stadium,radius=0.02"),
     };
     size_t count = FIXED_TESTS;
-    const char *other_seed = getenv("RT_SEED");
+    const char *other_seed = getenv("RT_SEED"), *other_rays = getenv("RT_RAYS");
     if (other_seed) seed = strtoull(other_seed, NULL, 10);
+    if (other_rays) rays_per_family = strtoull(other_rays, NULL, 10);
+    if (rays_per_family < 16) return EXIT_FAILURE;
     if (rt_family_count() > MAX_SCENES) return EXIT_FAILURE;
     for (size_t i = 0; i < rt_family_count(); i++) {
         families[i] = i;
