@@ -39,5 +39,5 @@ array=$(submit --job-name="raytally-$name" --array="1-$shards" --output="$out-sh
 directories=()
 for ((i = 1; i <= shards; i++)); do directories+=("$out-shards/$i"); done
 join=$(submit --job-name="raytally-$name-merge" --dependency="afterok:$array" --output="$out-shards/merge.log" \
-    "$(printf '%q ' "$program" merge "${directories[@]}" --force -o "$out")")
+    "$(printf '%q ' "$program" merge "${directories[@]}" --trust --force -o "$out")")
 echo "$array $join"

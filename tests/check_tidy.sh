@@ -10,7 +10,8 @@ build=$(dirname "${RT_PROGRAM:-build/release/raytally}")
 
 tool=$(command -v clang-tidy-14 || command -v clang-tidy) || { echo "skipped: clang-tidy finds nothing; needs clang-tidy 14" && exit 77; }
 "$tool" --version | grep -q 'version 14\.' || { echo "skipped: clang-tidy finds nothing; needs clang-tidy 14, as on Debian 12" && exit 77; }
-options=(-p "$build" --quiet --extra-arg=-UNDEBUG --extra-arg=-Wno-ignored-optimization-argument)
+options=(-p "$build" --quiet --extra-arg=-UNDEBUG --extra-arg=-Wno-ignored-optimization-argument
+    --extra-arg=-Wno-unused-command-line-argument)
 [ "${1-}" = --deep ] || for option in -Xclang -analyzer-config -Xclang max-nodes=75000; do
     options+=("--extra-arg=$option")
 done

@@ -144,7 +144,7 @@ static bool wait_for(Away *away, uint32_t number, const char *doing, double limi
         unsigned value = atomic_load_explicit(answered, memory_order_acquire);
         bool overwritten = is_overwritten(away, number, value);
         if (!overwritten && value == away->asked[number]) return true;
-        if (!overwritten && rt_futex_wait(answered, value, &some)) continue;
+        if (!overwritten && rt_futex_wait(answered, value, &some) && atomic_load(answered) != value) continue;
         unsigned long seen = away->wire->beat;
         double now = rt_wall_seconds();
         waited = seen == beat ? waited + fmin(now - last, 1) : 0;
@@ -212,7 +212,8 @@ static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
         away->wire = NULL;
         return rt_fail_memory(error, "what is shared with a plugin", sizeof(Wire));
     }
-    away->asked[0] = away->wire->lanes[0].asked = WIRE_BUILD;
+    away->asked[0] = WIRE_BUILD;
+    away->wire->lanes[0].asked = WIRE_BUILD;
     if (pipe2(alive, O_CLOEXEC) == 0) return RT_OK;
     return rt_fail(error, RT_IO, "a pipe: %s", strerror(errno));
 }
@@ -364,6 +365,11 @@ static const RtHit *trace_some(const RtAccel *accel, const RtScratch *scratch, c
     return asked->hits;
 }
 
+/* Answers are looked at where they are written: what is not sound here was changed since. */
+static void tell_overwritten(const RtAccel *accel) {
+    rt_away_break(accel, "it overwrote its answers", "it answered a stream");
+}
+
 static bool is_object(const RtAccel *accel, uint32_t object) {
     return object < accel->scene->geometry.object_count;
 }
@@ -377,6 +383,7 @@ static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const 
         for (size_t i = first; i < first + n; i++) {
             bool sound = answers && is_object(accel, hits[i].object) && hits[i].t >= rays[i].tmin &&
                          hits[i].t <= rays[i].tmax;
+            if (answers && !sound && hits[i].object != RT_NO_OBJECT) tell_overwritten(accel);
             if (!sound) hits[i] = RT_MISS;
         }
     }
@@ -390,7 +397,9 @@ static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const
         for (uint32_t i = 0; i < n; i++) {
             uint32_t *blocker = &blockers[first + i];
             memcpy(blocker, answers ? &answers[i].object : &RT_MISS.object, sizeof *blocker);
-            if (!is_object(accel, *blocker)) *blocker = RT_NO_OBJECT;
+            if (is_object(accel, *blocker)) continue;
+            if (*blocker != RT_NO_OBJECT) tell_overwritten(accel);
+            *blocker = RT_NO_OBJECT;
         }
     }
 }

@@ -42,6 +42,8 @@ static void close_inherited(int keep) {
 /* Has the kernel refuse (EPERM) what would end raytally or stop it: signals to it, to its process group and
  * to all processes. Where the kernel cannot do that, nothing is refused. */
 static void protect(pid_t raytally, pid_t group) {
+    if (group == 0)
+        group = raytally; /* its leader is outside of this process namespace: nobody can name it */
     const struct {
         long call;
         int argument;
@@ -58,10 +60,11 @@ static void protect(pid_t raytally, pid_t group) {
                    {SYS_ptrace, 1, raytally},
                    {SYS_process_vm_writev, 0, raytally},
                    {SYS_setpgid, 1, group}};
-    enum { RULES = sizeof refused / sizeof refused[0], A_RULE = 5 };
-    struct sock_filter filter[RULES * A_RULE + 1];
+    const size_t rules = sizeof refused / sizeof refused[0];
+    enum { A_RULE = 5 };
+    struct sock_filter filter[sizeof refused / sizeof refused[0] * A_RULE + 1];
     const size_t low = __BYTE_ORDER == __BIG_ENDIAN ? 4 : 0; /* half of an argument */
-    for (size_t i = 0; i < RULES; i++) {
+    for (size_t i = 0; i < rules; i++) {
         const size_t argument = offsetof(struct seccomp_data, args) + 8 * (size_t)refused[i].argument + low;
         const struct sock_filter rule[A_RULE] = {
             BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
@@ -71,7 +74,7 @@ static void protect(pid_t raytally, pid_t group) {
             BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM)};
         memcpy(filter + i * A_RULE, rule, sizeof rule);
     }
-    filter[RULES * A_RULE] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
+    filter[rules * A_RULE] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
     const struct sock_fprog program = {sizeof filter / sizeof filter[0], filter};
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0) /* the flag: it costs what is timed nothing */
         syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &program);

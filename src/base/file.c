@@ -16,7 +16,7 @@
 #define TEMPORARY_END ".tmp"
 
 static RtStatus fail_io(RtError *error, const char *doing, const char *path) {
-    return rt_fail(error, RT_IO, "%s: %s failed: %s", path, doing, strerror(errno));
+    return rt_fail(error, RT_IO, "%s: %s failed: %s", path, doing, strerror(errno ? errno : EIO));
 }
 
 /* ---- writing ---- */
@@ -57,6 +57,7 @@ RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
 }
 
 RtStatus rt_output_finish(RtOutput *output, RtError *error) {
+    errno = 0;
     bool written = fflush(output->file) == 0 && !ferror(output->file) && fsync(fileno(output->file)) == 0;
     RtStatus status = written ? RT_OK : fail_io(error, "writing", output->path);
     bool closed = fclose(output->file) == 0;
@@ -254,13 +255,4 @@ void rt_path_folder(const char *path, char *out) {
     if (length >= RT_MAX_PATH) length = 0;
     memcpy(out, path, length);
     out[length] = '\0';
-}
-
-bool rt_path_is_within(const char *path, const char *folder) {
-    char *file = realpath(path, NULL), *above = realpath(folder, NULL);
-    size_t length = above ? strlen(above) : 0;
-    bool within = file && above && strncmp(file, above, length) == 0 && file[length] == '/';
-    free(file);
-    free(above);
-    return within;
 }

@@ -79,9 +79,6 @@ size_t rt_directory_each(const char *folder, const char *suffix,
  * what is too long. */
 RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error);
 
-/* Whether the file `path` is in the folder, however deep, links resolved; false where either is not there. */
-bool rt_path_is_within(const char *path, const char *folder);
-
 /* The folder of `path`, "" where it names none, to out[0..RT_MAX_PATH). */
 void rt_path_folder(const char *path, char *out);
 

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/table.h"
 
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -176,6 +177,7 @@ static void put_bounded(RtClaimResult *result, const RtClaim *claim, const Bound
 }
 
 static void put_place(RtClaimResult *result, const RtExperiment *experiment, const Point *point, bool line) {
+    assert(point);
     const RtCandidate *candidate = &experiment->candidates[point->candidate];
     const RtWorkload *workload = &experiment->workloads[point->workload];
     put(result, " (");
@@ -330,7 +332,7 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
     if (points && status == RT_OK) count = gather(results, &claim, points);
     for (uint32_t k = 0; k < count; k++) known += isfinite(points[k].y.value) ? 1 : 0;
     if (known == 0) {
-        *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "nothing was measured that it is about"};
+        *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "no measurements for this claim"};
     } else if (claim.form == RT_CLAIM_EXPONENT) {
         judge_lines(experiment, &claim, points, count, result);
     } else if (claim.form == RT_CLAIM_TREND) {

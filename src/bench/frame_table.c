@@ -27,13 +27,13 @@ static RtFrameCost cost_of(const RtResults *results, uint32_t workload, uint32_t
         const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
         const uint64_t rays = results->workloads[workload].rays[k];
         if (rays == 0 || !is_in_part(kind, part)) continue;
-        const double weight = (double)rays;
+        const double weight = (double)rays, timed = cell->timed ? weight : unknown;
         sum.rays += rays;
         sum.object_tests +=
             weight * rt_cell_per_ray(results, workload, candidate, kind, cell->tally.object_tests);
-        sum.seconds += weight * (cell->timed ? cell->seconds.median : unknown);
-        sum.low += weight * cell->seconds.low;
-        sum.high += weight * cell->seconds.high;
+        sum.seconds += timed * cell->seconds.median;
+        sum.low += timed * cell->seconds.low;
+        sum.high += timed * cell->seconds.high;
     }
     if (sum.rays == 0) return (RtFrameCost){0, unknown, unknown, unknown, unknown};
     return sum;
@@ -64,7 +64,9 @@ static double seconds_of(const RtFrameCost *cost) {
 static double factor_of(const RtResults *results, uint32_t workload, uint32_t candidate,
                         double (*of)(const RtFrameCost *cost)) {
     const RtExperiment *experiment = results->experiment;
+    const bool overlay = strchr(experiment->candidates[candidate].spec, '+') != NULL;
     uint32_t base = below_of(results, workload, candidate);
+    if (base == experiment->candidate_count && overlay) return (double)NAN;
     if (base == experiment->candidate_count) base = without_of(experiment, workload);
     const RtFrameCost own = cost_of(results, workload, candidate, RT_FRAME_ALL);
     const RtFrameCost other = cost_of(results, workload, base, RT_FRAME_ALL);
@@ -77,8 +79,9 @@ static double gain_of(const RtResults *results, uint32_t workload, uint32_t cand
 }
 
 static bool is_compared(const RtExperiment *experiment, uint32_t candidate) {
-    return strncmp(experiment->candidates[candidate].group, experiment->frame.among,
-                   strlen(experiment->frame.among)) == 0;
+    const RtCandidate *c = &experiment->candidates[candidate];
+    const char *among = experiment->frame.among;
+    return strncmp(c->group, among, strlen(among)) == 0 && strcmp(c->spec, rt_accel_yardstick()) != 0;
 }
 
 static uint32_t winner_of(const RtResults *results, uint32_t workload) {
@@ -114,10 +117,6 @@ static const char *below_label(const Row *r) {
     return below < experiment->candidate_count ? rt_candidate_label(experiment, below) : NULL;
 }
 
-static uint64_t rays_of(const Row *r) {
-    return r->cost[RT_FRAME_ALL].rays;
-}
-
 #define COLUMNS(X)                                                                                           \
     X(scene, "scene", text, "", "the scene's label in the experiment",                                       \
       r->results->experiment->workloads[r->workload].label)                                                  \
@@ -125,11 +124,11 @@ static uint64_t rays_of(const Row *r) {
       rt_candidate_label(r->results->experiment, r->candidate))                                              \
     X(group, "group", text, "", "the group that the experiment puts it in",                                  \
       r->results->experiment->candidates[r->candidate].group)                                                \
-    X(rays, "rays", integer, "", "rays of the frame", rays_of(r))                                            \
+    X(rays, "rays", integer, "", "rays of the frame", r->cost[RT_FRAME_ALL].rays)                            \
     X(object_tests, "object_tests", real6, "", "object tests of the frame", r->cost[0].object_tests)         \
     X(times_fewer, "times_fewer", real6, "", "how many times fewer than without a structure",                \
       r->without[0].object_tests / r->cost[0].object_tests)                                                  \
-    X(ms, "ms", real6, "ms", "time to trace the frame's rays on one thread; sum of medians",                 \
+    X(ms, "ms", real6, "ms", "time to trace the frame's rays, as the run timed it; sum of medians",          \
       1e3 * r->cost[0].seconds)                                                                              \
     X(ms_low, "ms_low", real6, "ms", "sum of the lower ends of the intervals", 1e3 * r->cost[0].low)         \
     X(ms_high, "ms_high", real6, "ms", "sum of the upper ends", 1e3 * r->cost[0].high)                       \
@@ -228,13 +227,13 @@ static const char *figure(double value, char room[16]) {
  * candidate_count is that before the first, and after the last. */
 static uint32_t next_of(const RtResults *results, uint32_t t, uint32_t below, uint32_t previous) {
     const uint32_t none = results->experiment->candidate_count;
-    const double least = previous == none ? INFINITY : gain_of(results, t, previous);
+    const double least = previous == none ? 0 : gain_of(results, t, previous);
     double most = 0;
     uint32_t best = none;
     for (uint32_t c = 0; c < none; c++) {
         if (!is_compared(results->experiment, c) || !rt_candidate_runs(results->experiment, c, t)) continue;
         const double gain = gain_of(results, t, c);
-        const bool after = gain < least || (gain == least && c > previous);
+        const bool after = previous == none || gain < least || (gain == least && c > previous);
         if (below_of(results, t, c) != below || !after || !(gain > most)) continue;
         most = gain;
         best = c;
@@ -242,14 +241,28 @@ static uint32_t next_of(const RtResults *results, uint32_t t, uint32_t below, ui
     return best;
 }
 
-/* "octree follows with 230, grid with 122." Those that stand on nothing, after `previous`. */
-static void say_followers(Text *text, const RtResults *results, uint32_t t, uint32_t previous) {
-    const uint32_t none = results->experiment->candidate_count;
+/* Whether the intervals of two frames overlap. */
+static bool is_level(const RtResults *results, uint32_t t, uint32_t winner, uint32_t other) {
+    return cost_of(results, t, other, RT_FRAME_ALL).low <= cost_of(results, t, winner, RT_FRAME_ALL).high;
+}
+
+/* "octree follows with 230 times, grid with 122." Those that are no overlays, without the winner; an overlay
+ * that won has another base. */
+static void say_followers(Text *text, const RtResults *results, uint32_t t, uint32_t winner) {
+    const RtExperiment *experiment = results->experiment;
+    const uint32_t none = experiment->candidate_count;
+    const bool overlay = below_of(results, t, winner) != none;
     char number[16];
     bool any = false;
-    for (uint32_t c = previous; (c = next_of(results, t, none, c)) != none; any = true)
-        say(text, "%s%s %swith %s%s", any ? ", " : " ", rt_candidate_label(results->experiment, c),
-            any ? "" : "follows ", figure(gain_of(results, t, c), number), any ? "" : " times");
+    for (uint32_t c = overlay ? none : winner; (c = next_of(results, t, none, c)) != none; any = true) {
+        if (!any && overlay) say(text, " Compared with %s,", experiment->frame.without);
+        say(text, "%s %s %s%s%s%s", any ? "," : "", rt_candidate_label(experiment, c),
+            any       ? "with "
+            : overlay ? "comes with "
+                      : "follows with ",
+            figure(gain_of(results, t, c), number), any ? "" : " times",
+            !overlay && is_level(results, t, winner, c) ? " (level: the intervals overlap)" : "");
+    }
     say(text, "%s", any ? "." : "");
 }
 
@@ -309,7 +322,7 @@ void rt_frame_sentence(const RtResults *results, uint32_t workload, char out[RT_
     if (!experiment->count_only) say(&text, "%s times as fast, with ", figure(gain, number));
     say(&text, "%s times fewer object tests than %s.", figure(other.object_tests / cost.object_tests, tests),
         than);
-    say_followers(&text, results, workload, overlay ? experiment->candidate_count : winner);
+    say_followers(&text, results, workload, winner);
     say_overlays(&text, results, workload, winner);
     if (!experiment->count_only) say_fastest(&text, results, workload, &without);
 }
@@ -319,8 +332,8 @@ void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX
     const RtWorkload *setup = &results->experiment->workloads[workload];
     const uint64_t samples = (uint64_t)(w->width + setup->corners) * (w->height + setup->corners);
     Text text = {out, 0};
-    say(&text, "%" PRIu32 " objects, %s frame of %" PRIu32 "x%" PRIu32 ": ", w->objects,
-        w->rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a", w->width, w->height);
+    say(&text, "%" PRIu32 " object%s, %s frame of %" PRIu32 "x%" PRIu32 ": ", w->objects,
+        rt_plural(w->objects), w->rays[RT_RAY_PRIMARY] == samples ? "a" : "a part of a", w->width, w->height);
     say(&text, "%" PRIu64 " primary, %" PRIu64 " shadow and %" PRIu64 " secondary rays",
         w->rays[RT_RAY_PRIMARY], w->rays[RT_RAY_SHADOW],
         w->rays[RT_RAY_REFLECTION] + w->rays[RT_RAY_TRANSMISSION]);
@@ -359,12 +372,7 @@ void rt_print_frames(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char text[RT_MAX_FRAME_SENTENCE];
     fputc('\n', out);
-    snprintf(
-        text, sizeof text,
-        "For a whole frame: object tests in millions, time and build time in ms, and how many times fewer "
-        "and faster than %s; then how many times faster for each kind of ray (second: reflection and "
-        "transmission). > helps most of %s.",
-        experiment->frame.without, experiment->frame.among);
+    rt_frame_legend(experiment, text);
     rt_print_wrapped(text, out);
     if (*experiment->frame.note) rt_print_wrapped(experiment->frame.note, out);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {

@@ -2,6 +2,7 @@
 #include "bench/run.h"
 
 #include "base/parallel.h"
+#include "base/words.h"
 #include "bench/distribution_tables.h"
 #include "bench/frame_table.h"
 #include "bench/hardware_table.h"
@@ -247,8 +248,9 @@ static void tell_end(const RtRun *run) {
     uint64_t cells = rt_results_size(run->results, &scenes);
     if (run->options->joined) {
         snprintf(message, sizeof message,
-                 "joined %" PRIu32 " shards: %" PRIu64 " cells of %" PRIu32 " scenes", run->options->joined,
-                 cells, scenes);
+                 "joined %" PRIu32 " shard%s: %" PRIu64 " cell%s of %" PRIu32 " scene%s",
+                 run->options->joined, rt_plural(run->options->joined), cells, rt_plural(cells), scenes,
+                 rt_plural(scenes));
         rt_run_notice(run, message);
     } else {
         rt_run_notice(run, "nothing was left to measure: this run is finished. --force begins it anew");

@@ -223,19 +223,11 @@ static RtStatus take_directory(const Merge *merge, const RtExperiment *experimen
     return status;
 }
 
-/* Then it came with the results, and so did the scripts beside it. */
-static bool is_in_shard(const Merge *merge, const RtExperiment *experiment) {
-    for (uint32_t i = 0; i < merge->count; i++) {
-        if (rt_path_is_within(experiment->path, merge->directories[i])) return true;
-    }
-    return false;
-}
-
 static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment *experiment,
                           RtResults *results, const RtObserver *observer, RtError *error) {
     RtRunOptions options = {.directory = merge->out,
                             .start = RT_START_RESUME,
-                            .scripts = trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_OWN,
+                            .scripts = trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_SHIPPED,
                             .joined = merge->count,
                             .workload = {.observer = *observer}};
     RT_TRY(load_journals(merge, error));
@@ -245,8 +237,6 @@ static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment 
     RT_TRY(load_experiment(merge, experiment, error));
     RT_TRY(check_plugins(merge, experiment, error));
     RT_TRY(rt_results_init(results, experiment, error));
-    if (options.scripts == RT_SCRIPTS_OWN && is_in_shard(merge, experiment))
-        options.scripts = RT_SCRIPTS_SHIPPED;
     RT_TRY(rt_scripts_check(experiment, merge->out, false, options.scripts, error));
     RT_TRY(take_directory(merge, experiment, start, error));
     return rt_run_experiment(results, &options, error);

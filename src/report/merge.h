@@ -10,8 +10,8 @@
 /* Writes the result directory `out` from the finished shards in directories[0..count), as one run that
  * measured all of it would have left it. Loads the experiment from where the shards say it lies, and
  * initialises and fills the results: rt_results_clear, also after a failure. `start`: whether results in
- * `out` may be lost (RT_START_ANEW). `trust`: whether scripts are run, too, that raytally does not ship where
- * the experiment lies in the directory of a shard, and came with it.
+ * `out` may be lost (RT_START_ANEW). `trust`: whether gnuplot scripts are run, too, that raytally does not
+ * ship: the shards say where the experiment lies, and so which scripts are its own.
  *
  * Refuses what is no finished shard, shards of different experiments, variants or builds, and one that is
  * missing or there twice. Nothing is measured. What lies in `out` is removed only once the joined journal,

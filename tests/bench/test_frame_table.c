@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "bench/frame_table.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A scene with 100 primary, 300 shadow and 100 reflection rays; and one with primary rays alone. */
@@ -115,10 +116,37 @@ FRAME_TEST(an_overlay_may_help_most) {
         1, "On tetra, grid helps most of the six: 100 times as fast, with 30.0 times fewer object "
            "tests than brute. clusters follows with 50.0 times. Beside wide alone, light+wide is 100 "
            "times as fast. The fastest structure is light+wide: 200 times as fast as brute.");
-    expect_sentence(0,
-                    "On balls, light+wide helps most of the six: 182 times as fast, with 3.00 times fewer "
-                    "object tests than wide. clusters follows with 50.0 times, grid with 29.4. The fastest "
-                    "structure is light+wide: 364 times as fast as brute.");
+    expect_sentence(0, "On balls, light+wide helps most of the six: 182 times as fast, with 3.00 times fewer "
+                       "object tests than wide. Compared with brute, clusters comes with 50.0 times, grid "
+                       "with 29.4. The fastest "
+                       "structure is light+wide: 364 times as fast as brute.");
+}
+
+FRAME_TEST(frames_whose_intervals_overlap_are_said_to_be_level) {
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++)
+        rt_cell_at(&results, 1, CLUSTERS, (RtRayKind)k)->seconds.low = 0;
+    expect_sentence(
+        1, "On tetra, grid helps most of the six: 100 times as fast, with 30.0 times fewer object "
+           "tests than brute. clusters follows with 50.0 times (level: the intervals overlap). Beside wide "
+           "alone, light+wide is 1.00 times as fast. The fastest structure is light+wide: 200 times as "
+           "fast as brute.");
+}
+
+static bool is_unknown(double value) {
+    return isnan(value) ? true : false;
+}
+
+FRAME_TEST(an_overlay_whose_base_is_not_measured_has_no_gain_and_what_is_not_timed_has_no_interval) {
+    RtFrameRow row = {.results = &results};
+    const RtTable table = rt_frame_table(&row);
+    rt_build_at(&results, 0, WIDE)->spec[0] = '\0';
+    rt_cell_at(&results, 0, GRID, RT_RAY_SHADOW)->timed = false;
+    assert_non_null(table.row(table.context, LIGHT));
+    assert_true(is_unknown(row.gain) && is_unknown(row.tests_gain));
+    assert_int_equal(row.winner, CLUSTERS);
+    assert_non_null(table.row(table.context, GRID));
+    assert_true(is_unknown(row.cost[RT_FRAME_ALL].low) && is_unknown(row.cost[RT_FRAME_ALL].high));
+    assert_false(is_unknown(row.cost[RT_FRAME_PRIMARY].low));
 }
 
 FRAME_TEST(where_nothing_is_timed_object_tests_decide) {

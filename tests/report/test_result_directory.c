@@ -375,7 +375,7 @@ RT_TEST_IN_PLACE(a_run_draws_by_the_scripts_beside_its_experiment_and_by_changed
     assert_in_file(place, "out/plots/x.gp", "print 1");
 }
 
-RT_TEST_IN_PLACE(a_merge_draws_by_the_scripts_beside_the_experiment_unless_that_came_with_a_shard) {
+RT_TEST_IN_PLACE(a_merge_draws_by_scripts_that_raytally_does_not_ship_only_if_they_are_trusted) {
     const Place *place = *state;
     const char *const runs[] = {"run small.yaml --shard 1/2 --out s1", "run small.yaml --shard 2/2 --out s2",
                                 "run t1/small.yaml --shard 1/2 --out t1",
@@ -388,9 +388,10 @@ RT_TEST_IN_PLACE(a_merge_draws_by_the_scripts_beside_the_experiment_unless_that_
     write_in(place, "t1/small.yaml", yaml);
     rt_free(yaml);
     for (int i = 0; i < 4; i++) assert_draws(place, runs[i], 0, "", false);
-    assert_draws(place, "merge s1 s2 -o all", 0, "", true);
+    assert_draws(place, "merge s1 s2 -o all", 2, "x.gp: raytally does not ship", false);
+    assert_draws(place, "merge s1 s2 -o all --trust", 0, "", true);
     write_in(place, "all/plots/x.gp", "print 2\n");
-    assert_draws(place, "merge s1 s2 -o all --force", 0, "", true);
+    assert_draws(place, "merge s1 s2 -o all --force --trust", 0, "", true);
     assert_in_file(place, "all/plots/x.gp", "print 1");
     assert_draws(place, "merge t1 t2 -o both", 2, "t1/x.gp: raytally does not ship", false);
     assert_draws(place, "merge t1 t2 -o both --trust", 0, "", true);
