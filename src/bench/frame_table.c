@@ -241,9 +241,10 @@ static uint32_t next_of(const RtResults *results, uint32_t t, uint32_t below, ui
     return best;
 }
 
-/* Whether the intervals of two frames overlap. */
+/* Whether the intervals of two timed frames overlap. */
 static bool is_level(const RtResults *results, uint32_t t, uint32_t winner, uint32_t other) {
-    return cost_of(results, t, other, RT_FRAME_ALL).low <= cost_of(results, t, winner, RT_FRAME_ALL).high;
+    const double low = cost_of(results, t, other, RT_FRAME_ALL).low;
+    return !results->experiment->count_only && low <= cost_of(results, t, winner, RT_FRAME_ALL).high;
 }
 
 /* "octree follows with 230 times, grid with 122." Those that are no overlays, without the winner; an overlay
