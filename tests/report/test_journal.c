@@ -81,7 +81,7 @@ RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {
         {"{\"scene\"", "{\"scene", "'this line' is not a JSON object"},
     };
     const Place *place = *state;
-    RtResults results;
+    RtResults results = {0};
     RtError why;
     static char changed[2 * sizeof written];
     char place_of[64];
@@ -96,6 +96,7 @@ RT_TEST_IN_PLACE(a_line_that_no_journal_has_is_refused_by_its_number) {
         snprintf(place_of, sizeof place_of, "out/cells.jsonl:%zu: ", number);
         assert_non_null(strstr(why.message, place_of));
         assert_non_null(strstr(why.message, cases[i][2]));
+        rt_results_clear(&results);
     }
 }
 
