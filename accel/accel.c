@@ -2,7 +2,7 @@
 /* The struct that every accelerator begins with, as its `build` gets it. */
 #include "accel/accel.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 RtStatus rt_accel_new(const RtBuild *what, size_t bytes, RtAccel **out, RtError *error) {
     RtAccel *accel = rt_alloc(1, bytes);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The interface of accelerators: structures that answer `nearest` and `occluded` for rays.
  *
- * Every accelerator returns the same hits, bit for bit (see base/ray.h for why that is possible); they differ
- * in what it costs. One that is not exact says so (RtAccel.exact) and is judged by verdicts.
+ * Every accelerator returns the same hits, bit for bit (see core/base/ray.h for why that is possible); they
+ * differ in what it costs. One that is not exact says so (RtAccel.exact) and is judged by verdicts.
  *
  * Queries come in streams: arrays of rays, one of them as a special case. Each accelerator answers them by
  * four kernels: nearest and occluded, timed and counted. The body of a traversal is written once, as an
@@ -22,10 +22,10 @@
 #ifndef RT_ACCEL_ACCEL_H
 #define RT_ACCEL_ACCEL_H
 
-#include "base/param.h"
-#include "base/ray.h"
-#include "base/tally.h"
-#include "scene/scene.h"
+#include "core/base/param.h"
+#include "core/base/ray.h"
+#include "core/base/tally.h"
+#include "core/scene/scene.h"
 
 typedef struct RtAccelOps RtAccelOps;
 

@@ -15,7 +15,7 @@
  * length. */
 #include "accel/kernel.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 typedef struct Cache {
     RtAccel base;

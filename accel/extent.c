@@ -4,7 +4,7 @@
  * more than that arithmetic can be wrong by. */
 #include "accel/extent.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #define THIRD 0.57735026918962576451
 #define HALF  0.70710678118654752440

@@ -2,8 +2,8 @@
 /* Extents: bounding volumes of one object or of a group of them, of four kinds, and the tests of a ray
  * against them. Shared by the accelerators that may use any kind.
  *
- * Exact for every kind. Boxes are, by the theorem in base/ray.h. There is none for spheres, oriented boxes
- * and slabs, so a ray is turned away by two tests that cannot be wrong:
+ * Exact for every kind. Boxes are, by the theorem in core/base/ray.h. There is none for spheres, oriented
+ * boxes and slabs, so a ray is turned away by two tests that cannot be wrong:
  *
  * 1. Its *line* misses the extent widened by a pad, in double. Let m be the distance along an axis from the
  *    origin to the farthest corner of the scene's box, e = 2^-24. Triangles have the coarsest hit function: a
@@ -191,7 +191,7 @@ RT_KERNEL bool rt_extent_hit(const RtExtentSet *set, RtExtentKind kind, uint32_t
     return rt_line_meets_slabs(line, set->slabs + (size_t)index * set->slabs_each, set->slabs_each);
 }
 
-/* Extent `index` for an onlooker (base/observe.h): NULL where it is no ball. */
+/* Extent `index` for an onlooker (core/base/observe.h): NULL where it is no ball. */
 RT_KERNEL const RtBall *rt_extent_ball(const RtExtentSet *set, RtExtentKind kind, uint32_t index) {
     return kind == RT_EXTENT_SPHERE ? &set->balls[index] : NULL;
 }

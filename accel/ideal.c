@@ -7,7 +7,7 @@
  * every object, as brute does, so the answers are right for any ray. */
 #include "accel/kernel.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 typedef struct Ideal {
     RtAccel base;

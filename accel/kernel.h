@@ -14,7 +14,7 @@
 #define RT_ACCEL_KERNEL_H
 
 #include "accel/accel.h"
-#include "base/observe.h"
+#include "core/base/observe.h"
 
 #define RT_KERNEL static inline __attribute__((always_inline))
 

@@ -20,7 +20,7 @@
 #ifndef RT_ACCEL_LANES_H
 #define RT_ACCEL_LANES_H
 
-#include "base/ray.h"
+#include "core/base/ray.h"
 
 #if defined(__AVX__)
 #include <immintrin.h>

@@ -3,8 +3,8 @@
  * destroying a stack, and the queries that are asked of it. */
 #include "accel/accel.h"
 
-#include "base/clock.h"
-#include "base/memory.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
 
 /* Puts `accel`, just built, upon `below`, which may be NULL. */
 static void stack(RtAccel *accel, RtAccel *below) {

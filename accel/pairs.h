@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Sixteen pairs of a ray and a triangle in lanes, tested in full: what rt_triangle_hit does, operation by
- * operation, to the same bits (shape/triangle.h). accel/sieve.h is the part of it that turns most pairs
+ * operation, to the same bits (core/shape/triangle.h). accel/sieve.h is the part of it that turns most pairs
  * away. */
 #ifndef RT_ACCEL_PAIRS_H
 #define RT_ACCEL_PAIRS_H

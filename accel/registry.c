@@ -4,7 +4,7 @@
 #include "accel/accel.h"
 #include "accel/plugin.h"
 
-#include "base/words.h"
+#include "core/base/words.h"
 
 #include <string.h>
 

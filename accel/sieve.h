@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Sixteen pairs of a ray and a triangle in lanes: what rt_triangle_hit does in float32, operation by
- * operation, up to its first test, which turns nearly all of them away (shape/triangle.h). Coordinates are
- * along kx, ky and kz of the ray. */
+ * operation, up to its first test, which turns nearly all of them away (core/shape/triangle.h). Coordinates
+ * are along kx, ky and kz of the ray. */
 #ifndef RT_ACCEL_SIEVE_H
 #define RT_ACCEL_SIEVE_H
 

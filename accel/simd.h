@@ -5,7 +5,7 @@
 #ifndef RT_ACCEL_SIMD_H
 #define RT_ACCEL_SIMD_H
 
-#include "base/four.h"
+#include "core/base/four.h"
 
 #if defined(__AVX2__)
 #include <immintrin.h>

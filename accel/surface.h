@@ -14,18 +14,18 @@
  * And q is within `margin`, along each axis, of the surface, for p is and points of the surface lie in the
  * own box, where q is no farther from them than p is. Let D be the distance, along the axis where it is
  * largest, from the origin to the farthest point of the scene. A triangle is hit as if its vertices, moved to
- * the origin and sheared in float32, lay up to 8 * 2^-24 D elsewhere (shape/triangle.h; what follows is in
- * double). Polygons and spheres are hit in double: off by less than 2^-44 D. So are cones; but near the apex
- * an error of 2^-50 D^2 in the square of the radius is 2^-25 D. (A sphere's error is divided by its radius,
- * that of which the square is subtracted.) Rounding t moves the point by 2^-24 D, and rt_box_admit by at most
- * 4 * 2^-24 D: the hit itself is inside the thick box, and the crossing it is held to has 4 roundings. In all
- * less than 16 * 2^-24 D.
+ * the origin and sheared in float32, lay up to 8 * 2^-24 D elsewhere (core/shape/triangle.h; what follows is
+ * in double). Polygons and spheres are hit in double: off by less than 2^-44 D. So are cones; but near the
+ * apex an error of 2^-50 D^2 in the square of the radius is 2^-25 D. (A sphere's error is divided by its
+ * radius, that of which the square is subtracted.) Rounding t moves the point by 2^-24 D, and rt_box_admit by
+ * at most 4 * 2^-24 D: the hit itself is inside the thick box, and the crossing it is held to has 4
+ * roundings. In all less than 16 * 2^-24 D.
  *
  * So a hit is not lost if some cell that holds q lists the object, and all cells that the ray is in at t are
  * visited. For an origin in `domain`, the scene's box grown by 8 times its longest side, D is at most 9 such
  * sides: `margin` is 4 times what that asks for, plus 2^-40 of the largest coordinate for the arithmetic of
- * shape/overlap.h. Rays from farther away are to be tested against every object; so are those with a dir so
- * long or short that float32 runs out of exponents.
+ * core/shape/overlap.h. Rays from farther away are to be tested against every object; so are those with a dir
+ * so long or short that float32 runs out of exponents.
  *
  * Instead of the cells the ray may be made thicker (rt_surface_thicken), from wherever it comes. Let s be the
  * point of the surface near to p. Then at t the ray is in every box that holds s: enter(box) <= t <=

@@ -5,7 +5,7 @@
  * nine of a third of its radius: six about its equator and three towards its tip, the root's being +Z, a
  * child's the direction in which it sits. Objects come depth first, in the order of the Standard Procedural
  * Databases. All angles have known sines and cosines, so nothing but + - * / sqrt is used. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/builtin.h"
 
-#include "base/memory.h"
-#include "base/words.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
 
 #include <assert.h>
 #include <stdio.h>

@@ -3,8 +3,8 @@
 #ifndef RT_SCENES_BUILTIN_H
 #define RT_SCENES_BUILTIN_H
 
-#include "base/param.h"
-#include "scene/scene.h"
+#include "core/base/param.h"
+#include "core/scene/scene.h"
 
 /* What an object may take while a scene is made, arrays that grow by doubling included: a sphere, a cone, a
  * triangle or a polygon of four corners. */

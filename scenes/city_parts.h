@@ -5,7 +5,7 @@
 #ifndef RT_SCENES_CITY_PARTS_H
 #define RT_SCENES_CITY_PARTS_H
 
-#include "base/random.h"
+#include "core/base/random.h"
 #include "scenes/forms.h"
 
 enum {

@@ -4,7 +4,7 @@
  * Tree i is made from the random numbers of stream i alone. Its solids (spheres, boxes, cones, cylinders,
  * tori, turned any way) lie in a ball, and are joined as a binary tree as even as can be: unions near the
  * root, so that no single operation empties it, and any operation below. */
-#include "base/random.h"
+#include "core/base/random.h"
 #include "scenes/builtin.h"
 #include "scenes/studio.h"
 

@@ -5,7 +5,7 @@
 #ifndef RT_SCENES_FAMILY_H
 #define RT_SCENES_FAMILY_H
 
-#include "base/param.h"
+#include "core/base/param.h"
 
 size_t rt_family_count(void);
 const char *rt_family_name(size_t family);

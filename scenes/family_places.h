@@ -3,7 +3,7 @@
 #ifndef RT_SCENES_FAMILY_PLACES_H
 #define RT_SCENES_FAMILY_PLACES_H
 
-#include "base/random.h"
+#include "core/base/random.h"
 
 /* Centre and size of object `i` of `count`, in a world of about [-1, 1]^3. */
 typedef struct RtPlace {

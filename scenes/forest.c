@@ -7,7 +7,7 @@
  * trunk with whorls of boughs, and hanging from each a few broad triangles of needles. Tree i is made from
  * the random numbers of stream i alone. The ground is noise from lattices of random heights (Perlin 1985, in
  * its simplest form); all lengths are in metres. */
-#include "base/random.h"
+#include "core/base/random.h"
 #include "scenes/builtin.h"
 #include "scenes/forms.h"
 

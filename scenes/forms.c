@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/forms.h"
 
-#include "base/elementary.h"
-#include "base/memory.h"
+#include "core/base/elementary.h"
+#include "core/base/memory.h"
 
 #include <assert.h>
 

@@ -9,9 +9,9 @@
 #ifndef RT_SCENES_FORMS_H
 #define RT_SCENES_FORMS_H
 
-#include "base/param.h"
-#include "base/transform.h"
-#include "scene/scene.h"
+#include "core/base/param.h"
+#include "core/base/transform.h"
+#include "core/scene/scene.h"
 
 typedef struct RtForms {
     RtScene *scene;    /* borrowed; NULL: count only */

@@ -5,7 +5,7 @@
  * which are concave polygons of four corners a tooth, and a rectangle under each edge between them. Angles
  * are whole tenths of a degree: so both faces have the same corners, bit for bit. Colours, of which the paper
  * says nothing, and the order of objects are those of the database. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

@@ -6,7 +6,7 @@
  * Like the atria and sibeniks of the papers, but made by the program. x is across, y along, z up, in metres.
  * The room itself comes first: one closed sheet, a section swept along y and drawn together to a point at
  * either end; everything else stands or hangs inside of it or is set into its walls. */
-#include "base/elementary.h"
+#include "core/base/elementary.h"
 #include "scenes/builtin.h"
 #include "scenes/ornaments.h"
 #include "scenes/teapot_mesh.h"

@@ -7,7 +7,7 @@
  * its arms are normal to. Inferred from the numbers of the database: the axes are turned by -20 degrees about
  * Y and by -30 about X; all lengths; and the order, which is that of the files: depth first, cylinders before
  * spheres. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

@@ -5,7 +5,7 @@
  * 0 to 1; the eye is half a spacing below its upper side. Cylinders reach from inside one sphere to inside
  * the next. Objects come in the order of the database: a sphere, and the cylinders to its upper
  * neighbours. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

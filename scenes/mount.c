@@ -7,7 +7,7 @@
  * depends on its place in the lattice alone, so that neighbours fit. Above size 7 the database leaves the
  * random numbers undefined (a shift by a negative amount); here the lattice coordinate is shifted the other
  * way. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

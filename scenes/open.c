@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/open.h"
 
-#include "scene/load.h"
+#include "core/scene/load.h"
 #include "scenes/builtin.h"
 
 RtStatus rt_scene_open(const char *spec, RtScene *scene, RtError *error) {

@@ -3,7 +3,7 @@
 #ifndef RT_SCENES_OPEN_H
 #define RT_SCENES_OPEN_H
 
-#include "scene/scene.h"
+#include "core/scene/scene.h"
 
 /* Opens `spec`: "name[:key=value,...]" of a built-in, or the path of a file (rt_scene_is_file). On success
  * *scene is finished and owned by the caller (rt_scene_clear); on failure it is empty. */

@@ -6,8 +6,8 @@
  * Sizes are in units of the mean spacing (edge of the cube over the cube root of n): the density of the scene
  * stays the same for any n. In clusters, the distance from a centre along each axis is the sum of four
  * uniform numbers: nearly a normal distribution, without a logarithm. */
-#include "base/random.h"
-#include "base/elementary.h"
+#include "core/base/random.h"
+#include "core/base/elementary.h"
 #include "scenes/builtin.h"
 #include "scenes/studio.h"
 

@@ -3,8 +3,8 @@
 #ifndef RT_SCENES_RANDOM_TREE_H
 #define RT_SCENES_RANDOM_TREE_H
 
-#include "base/random.h"
-#include "shape/csg.h"
+#include "core/base/random.h"
+#include "core/shape/csg.h"
 
 #define RT_MAX_RANDOM_TREE 64
 

@@ -7,7 +7,7 @@
  * pentagons are smaller by 1 + RADIUS, and the radius is not, so that cylinders of different rings overlap a
  * little. Layer n of the pyramid is n by n objects. Colours, of which the paper says nothing, and the order
  * of objects are those of the database. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

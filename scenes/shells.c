@@ -6,7 +6,7 @@
  * turns on a cone, each as large as it is far from the axis: at the angle a, from -12 pi to 6 pi, the radius
  * is r = e^(0.15 a) and the centre (r sin a, r cos a, -2 r). These numbers were inferred from the files of
  * the database, smallest sphere first. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/spd.h"
 
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 
 RtStatus rt_spd_add_lights(RtScene *scene, const RtVec3 *positions, uint32_t count, RtError *error) {
     for (uint32_t i = 0; i < count; i++) {

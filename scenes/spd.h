@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What scenes of the Standard Procedural Databases share. Their objects come in the order of the files that
- * the package writes. They are made in double with + - * / sqrt and base/elementary.h alone and rounded once,
- * so that every compiler and library makes the same float32. */
+ * the package writes. They are made in double with + - * / sqrt and core/base/elementary.h alone and rounded
+ * once, so that every compiler and library makes the same float32. */
 #ifndef RT_SCENES_SPD_H
 #define RT_SCENES_SPD_H
 
-#include "base/elementary.h"
-#include "scene/scene.h"
+#include "core/base/elementary.h"
+#include "core/scene/scene.h"
 
 #define RT_SPD_SOURCE "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/studio.h"
 
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 
 static RtMaterial make(RtStudioMaterial material) {
     switch (material) {

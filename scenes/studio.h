@@ -4,7 +4,7 @@
 #ifndef RT_SCENES_STUDIO_H
 #define RT_SCENES_STUDIO_H
 
-#include "scene/scene.h"
+#include "core/scene/scene.h"
 
 typedef enum RtStudioMaterial {
     RT_STUDIO_CLAY, /* matte, as are slate and moss */

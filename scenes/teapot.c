@@ -3,7 +3,7 @@
  *
  * As in the Standard Procedural Databases (E. Haines 1987): 64 size^2 - 8 size triangles (teapot_mesh.c) and
  * a board of size x size squares, all of them mirrors. The published tables are of size 12: 9264 objects. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 #include "scenes/teapot_mesh.h"

@@ -5,7 +5,7 @@
  * out. */
 #include "scenes/teapot_mesh.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "scenes/teapot_patches.h"
 
 enum { COLLAPSED = 8 };

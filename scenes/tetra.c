@@ -5,7 +5,7 @@
  * tetrahedron at the four corners whose signs have a product of +1; each level replaces it by four of half
  * its size in those corners. Objects come depth first, in the order of the Standard Procedural Databases. All
  * coordinates are exact. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

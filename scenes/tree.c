@@ -5,7 +5,7 @@
  * origin to (0, 0, 1). A branch has two children: smaller copies of it, turned and moved to its tip, of which
  * only the radii go by a factor of their own. Objects come depth first, in the order of the Standard
  * Procedural Databases. */
-#include "scene/nff.h"
+#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 

@@ -7,7 +7,7 @@
 #include "testing.h"
 
 #include "accel/accel.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <string.h>
 

@@ -45,6 +45,7 @@ needs | awk -v rooms="$(cat "$tests/rooms.txt")" '
         for (i = 1; i <= rooms_count; i++) level[list[i]] = i
     }
     function level_of(path,    part) {
+        sub(/^core\//, "", path)
         split(path, part, "/")
         return level[part[1]]
     }

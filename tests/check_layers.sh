@@ -14,7 +14,7 @@ find src accel scenes tests -name '*.[ch]' | sort | xargs awk -v rooms="$rooms" 
         for (i = 1; i in list; i++) level[list[i]] = i
     }
     function room_of(path,    part) {
-        sub(/^src\//, "", path)
+        sub(/^(src\/)?(core\/)?/, "", path)
         split(path, part, "/")
         return part[1]
     }

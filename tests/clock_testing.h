@@ -3,7 +3,7 @@
 #ifndef RT_TESTS_CLOCK_TESTING_H
 #define RT_TESTS_CLOCK_TESTING_H
 
-#include "base/clock.h"
+#include "core/base/clock.h"
 
 /* Processor time of the calling thread, and of all others of this process. */
 typedef struct Labour {

@@ -7,7 +7,7 @@
 #include "testing.h"
 
 #include "accel/accel.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "scenes/family.h"
 #include "scenes/open.h"
 #include "verify/equivalence.h"

@@ -3,7 +3,7 @@
 #ifndef RT_TESTS_ROOM_TESTING_H
 #define RT_TESTS_ROOM_TESTING_H
 
-#include "shape/csg.h"
+#include "core/shape/csg.h"
 
 static inline RtCrossing *room_of_tests(void) {
     static RtCrossing room[1 << 16];

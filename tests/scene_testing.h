@@ -5,7 +5,7 @@
 
 #include "testing.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "scenes/open.h"
 
 static inline RtScene open_scene(const char *spec) {

@@ -7,9 +7,9 @@
 
 #include "testing.h"
 
-#include "base/memory.h"
-#include "base/random.h"
-#include "shape/solid.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
+#include "core/shape/solid.h"
 
 #include <float.h>
 #include <math.h>

@@ -9,14 +9,14 @@ failures=0
 
 fresh_tree() {
     rm -rf "${tree:?}"/*
-    mkdir -p "$tree"/{src/base,src/scene,src/render,accel,scenes,tests/accel}
+    mkdir -p "$tree"/{src/core/base,src/core/scene,src/render,accel,scenes,tests/accel}
     echo '#include "accel/accel.h"' >"$tree/src/render/frame.c"
-    echo '#include "scene/scene.h"' >"$tree/scenes/balls.c"
-    echo '#include "base/file.h"' >"$tree/src/scene/load.c"
+    echo '#include "core/scene/scene.h"' >"$tree/scenes/balls.c"
+    echo '#include "core/base/file.h"' >"$tree/src/core/scene/load.c"
     echo 'const RtAccelOps rt_grid_ops = {' >"$tree/accel/grid.c"
     echo 'X(rt_grid_ops)' >"$tree/accel/registry.c"
     echo '#include "testing.h"' >"$tree/tests/accel/test_grid.c"
-    printf '%s\n' 'set(ALL src/render/frame.c' 'src/scene/load.c scenes/balls.c' 'accel/grid.c accel/registry.c)' \
+    printf '%s\n' 'set(ALL src/render/frame.c' 'src/core/scene/load.c scenes/balls.c' 'accel/grid.c accel/registry.c)' \
         'raytally_tests(accel bvh' '  grid)' >"$tree/CMakeLists.txt"
     find "$tree" -type f -exec sed -i '1i# SPDX-License-Identifier: Apache-2.0' {} +
 }
@@ -36,11 +36,11 @@ expect passes check_files.sh "a tree in order"
 
 fresh_tree && echo '#include "render/frame.h"' >>"$tree/accel/grid.c"
 expect fails check_layers.sh "an accelerator that includes the renderer"
-fresh_tree && echo '  # include "scene/scene.h"' >"$tree/src/base/box.h"
+fresh_tree && echo '  # include "core/scene/scene.h"' >"$tree/src/core/base/box.h"
 expect fails check_layers.sh "a base header that includes the scene"
 fresh_tree && echo '#include "accel/accel.h"' >>"$tree/scenes/balls.c"
 expect fails check_layers.sh "a generator that includes accelerators"
-fresh_tree && echo '#include "scenes/builtin.h"' >>"$tree/src/scene/load.c"
+fresh_tree && echo '#include "scenes/builtin.h"' >>"$tree/src/core/scene/load.c"
 expect fails check_layers.sh "a reader that includes generators"
 fresh_tree && echo 'return &rt_grid_ops;' >>"$tree/src/render/frame.c"
 expect fails check_layers.sh "a renderer that names an accelerator"
@@ -167,7 +167,7 @@ if command -v nm >/dev/null && command -v "${CC:-cc}" >/dev/null; then
     rm "$tree/src/render/frame.c"
     expect passes check_circles.sh "an object of a file that is gone"
     objects_in_order
-    echo '#include "scene/mesh.h"' >"$tree/src/scene/scene.h" && echo '#include "scene.h"' >"$tree/src/scene/mesh.h"
+    echo '#include "core/scene/mesh.h"' >"$tree/src/core/scene/scene.h" && echo '#include "scene.h"' >"$tree/src/core/scene/mesh.h"
     expect fails check_circles.sh "two headers that include each other"
     rm -r "$tree/build"
     mkdir -p "$tree/build/CMakeFiles"

@@ -7,7 +7,7 @@
 #include "accel/brute/brute.h"
 #include "accel/kernel.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #define PARAMS(X) X(PARAM_LANES, RT_LANES_PARAM("spheres or triangles"))
 

@@ -16,7 +16,7 @@
 #include "accel/tree/order.h"
 #include "accel/tree/recipe.h"
 #include "accel/tree/split.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #define PARAMS(X)                                                                                            \
     X(PARAM_BUILD, "build", RT_CHOICE("binned", RT_TREE_METHODS),                                            \

@@ -16,7 +16,7 @@
 #include "accel/clusters/clusters.h"
 
 #include "accel/tree/order.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 typedef enum Method { AGGLOMERATIVE, PLOC, GOLDSMITH_SALMON, RUBIN_WHITTED, SAH } Method;
 

@@ -10,7 +10,7 @@
 #include "accel/embree/embree.h"
 #include "accel/kernel.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>

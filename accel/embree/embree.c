@@ -12,7 +12,7 @@
  * are Embree's secret and reported as 0. */
 #include "accel/embree/embree.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <stdatomic.h>
 #include <string.h>

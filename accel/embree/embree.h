@@ -6,7 +6,7 @@
  *
  * Why user mode is exact. There Embree only proposes candidates, and our hit functions decide; so it must
  * propose every object that brute would find. Brute finds an object on a ray where the thick ray meets its
- * own box (base/ray.h). Embree knows no thick rays, so the boxes it gets are thick instead: grown by
+ * own box (core/base/ray.h). Embree knows no thick rays, so the boxes it gets are thick instead: grown by
  *
  *     growth = 2^-19 R + 2^-21 M,     R = reach, the farthest that a box may be from an origin,
  *                                     M = the largest coordinate of the scene,

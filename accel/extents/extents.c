@@ -8,7 +8,7 @@
  * Exact for every kind: see accel/extent.h. */
 #include "accel/extents/extents.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* ---- tracing ---- */
 

@@ -4,7 +4,7 @@
  * level; what went into those is dropped then. */
 #include "accel/grid/grid.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <string.h>
 

@@ -9,16 +9,16 @@
  *
  * Layout and invariant: grid.h.
  *
- * The walk is exact because it uses the crossings of base/ray.h. On each axis the thick ray is in interval i
- * of planes from near(i) = (plane - org_near) * inv until far(i) = (plane' - org_far) * inv; neighbours
- * overlap, because the thick ray is in both while it crosses their plane. A voxel is visited at the moment at
- * which the ray is in all three of its intervals. Now let a hit at t have own box b: enter(b) <= t <=
- * leave(b). Its intervals i0..i1 on an axis cover b, so near(i0) <= t <= far(i1), and at t the ray is in one
- * of them; on all three axes at once, so in a voxel that lists the object, entered at or before t. Stopping
- * when the next voxel is entered beyond the best t therefore loses nothing, and no hit need be refused for
- * lying outside the current voxel. Usually an axis has one current interval, two while the ray crosses a
- * plane; rays in a plane of voxels, or so far away that float32 cannot tell voxels apart, have more, and
- * visit more.
+ * The walk is exact because it uses the crossings of core/base/ray.h. On each axis the thick ray is in
+ * interval i of planes from near(i) = (plane - org_near) * inv until far(i) = (plane' - org_far) * inv;
+ * neighbours overlap, because the thick ray is in both while it crosses their plane. A voxel is visited at
+ * the moment at which the ray is in all three of its intervals. Now let a hit at t have own box b: enter(b)
+ * <= t <= leave(b). Its intervals i0..i1 on an axis cover b, so near(i0) <= t <= far(i1), and at t the ray is
+ * in one of them; on all three axes at once, so in a voxel that lists the object, entered at or before t.
+ * Stopping when the next voxel is entered beyond the best t therefore loses nothing, and no hit need be
+ * refused for lying outside the current voxel. Usually an axis has one current interval, two while the ray
+ * crosses a plane; rays in a plane of voxels, or so far away that float32 cannot tell voxels apart, have
+ * more, and visit more.
  *
  * Nested. A voxel that is a grid itself is walked through when it is visited, from the same moment on. Its
  * outermost planes are the voxel's, bit for bit, and the crossings of a plane are the same on every level; so

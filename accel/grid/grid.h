@@ -17,7 +17,7 @@
 
 #include "accel/accel.h"
 #include "accel/surface.h"
-#include "shape/overlap.h"
+#include "core/shape/overlap.h"
 
 #define RT_GRID_PARAMS(X)                                                                                    \
     X(RT_GRID_RULE, "rule", RT_CHOICE("cubic", "cubic|woo|heterogeneous|regular"),                           \

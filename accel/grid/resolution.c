@@ -2,7 +2,7 @@
 /* The parameters of a grid, and how they become a resolution. */
 #include "accel/grid/grid.h"
 
-#include "base/elementary.h"
+#include "core/base/elementary.h"
 
 #include <assert.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 /* Describing, validating and drawing a grid. */
 #include "accel/grid/grid.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 RtStatus rt_grid_each_voxel(const RtGridLevel *level,
                             RtStatus (*visit)(void *context, const RtGridVoxel *voxel), void *context) {

@@ -8,8 +8,8 @@
  * come in the same order however they were dealt out. */
 #include "accel/item/raster.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <stdio.h>
 #include <stdlib.h>

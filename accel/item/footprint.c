@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Footprints: the samples whose rays may hit an object, by projecting its box.
  *
- * Why they are complete. A hit at t means (base/ray.h) that the ray's point at t is in the object's box but
- * for the thickness, 2^-20 of the largest distance D between eye and box along an axis, 2^-23 of the eye's
- * coordinates, and three roundings of 2^-24 each of both. So it is in the box grown by
+ * Why they are complete. A hit at t means (core/base/ray.h) that the ray's point at t is in the object's box
+ * but for the thickness, 2^-20 of the largest distance D between eye and box along an axis, 2^-23 of the
+ * eye's coordinates, and three roundings of 2^-24 each of both. So it is in the box grown by
  *
  *     margin = 2^-19 D + 2^-21 |eye|,
  *

@@ -2,7 +2,7 @@
 /* What an item buffer looks like, and whether its invariants hold. */
 #include "accel/item/item.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* Validating asks hit functions at most about this often. */
 #define MOST_TESTS (UINT64_C(1) << 24)

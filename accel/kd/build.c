@@ -4,8 +4,8 @@
  * Paper: Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N). */
 #include "accel/kd/kd.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 enum { OVERLAP_BOX, OVERLAP_EXACT };
 

@@ -9,8 +9,8 @@
  * dropped, and those of its new parts merged in. */
 #include "accel/kd/kd.h"
 
-#include "base/memory.h"
-#include "shape/overlap.h"
+#include "core/base/memory.h"
+#include "core/shape/overlap.h"
 
 #include <string.h>
 

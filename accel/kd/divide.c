@@ -3,7 +3,7 @@
  * tree takes meanwhile. */
 #include "accel/kd/kd.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <float.h>
 #include <string.h>

@@ -5,8 +5,9 @@
  * (the traversal: the interval of the ray in a cell is cut at its plane, the far part waits on a stack); Wald
  * & Havran 2006 (building).
  *
- * Layout and invariants: kd.h. Exactness: in base/ray.h's terms the thick ray is in a cell at t if it has
- * crossed its near planes, (plane - org_near) * inv <= t, and not yet its far planes, (plane - org_far) * inv
+ * Layout and invariants: kd.h. Exactness: in core/base/ray.h's terms the thick ray is in a cell at t if it
+ * has crossed its near planes, (plane - org_near) * inv <= t, and not yet its far planes, (plane - org_far) *
+ * inv
  * >= t. Children overlap while the thick ray crosses their plane, so at each t at which it is in a cell it is
  * in one of its children or in both, and a crossing that is NaN, of a ray exactly in the moved plane, is
  * passed over: the ray is in both. Now let a hit at t have the own box b, and the ray be in a cell that lists

@@ -3,7 +3,7 @@
  * down. */
 #include "accel/kd/kd.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* Calls visit for each node, its cell and its depth, parents first, until it returns something else than
  * RT_OK. The tree may be broken as long as children come after their parents and none is deeper than

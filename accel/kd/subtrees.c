@@ -5,8 +5,8 @@
  * made it. */
 #include "accel/kd/kd.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <assert.h>
 #include <string.h>

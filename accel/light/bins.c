@@ -4,8 +4,8 @@
  * in one order, whatever the number of threads. */
 #include "accel/light/light.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 enum { MAX_CHUNKS = 64, LEAST_OF_CHUNK = 512 };
 

@@ -3,7 +3,7 @@
  * into the tiles (bins.c) and their lists (tile.c). */
 #include "accel/light/light.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <stdlib.h>
 

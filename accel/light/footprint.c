@@ -2,11 +2,11 @@
 /* Where on the faces of a light's cube an object is seen, and what covers whole cells. All in double, in
  * offsets from the light; raster.h does the same for small triangles in lanes.
  *
- * Why the lists are complete. A hit on an object at t means (base/ray.h) that the ray's point at t is in the
- * object's box but for the thickness and a few roundings: 2^-20 of the distance from the ray's origin, 2^-22
- * of the length of dir, 2^-22 of the coordinates. dir is the difference of light and origin in float32, so
- * the ray's point is off the true segment by another 2^-24 of its length. For origins inside `domain` all of
- * these are below
+ * Why the lists are complete. A hit on an object at t means (core/base/ray.h) that the ray's point at t is in
+ * the object's box but for the thickness and a few roundings: 2^-20 of the distance from the ray's origin,
+ * 2^-22 of the length of dir, 2^-22 of the coordinates. dir is the difference of light and origin in float32,
+ * so the ray's point is off the true segment by another 2^-24 of its length. For origins inside `domain` all
+ * of these are below
  *
  *     margin = 2^-18 * reach + 2^-20 * farthest,
  *

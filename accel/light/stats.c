@@ -2,7 +2,7 @@
 /* What a light buffer looks like, and whether its invariants hold. */
 #include "accel/light/light.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 bool rt_light_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell) {
     const RtLightCube *cube = &((const RtLightBuffer *)accel)->cubes[ray->source];

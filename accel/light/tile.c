@@ -8,8 +8,8 @@
  * not (light.h). */
 #include "accel/light/light.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <stdlib.h>
 #include <string.h>

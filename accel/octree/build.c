@@ -3,7 +3,7 @@
  * to the lists of its eight children (divide.c), the next level, as long as it seems to fit (limit.c). */
 #include "accel/octree/octree.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 const RtParam rt_octree_params[RT_OCTREE_PARAM_COUNT] = {RT_OCTREE_PARAMS(RT_PARAM_ENTRY)};
 

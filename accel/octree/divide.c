@@ -5,7 +5,7 @@
  * Split planes: Glassner 1984 (the centre); Whang et al. 1995, Octree-R (by cost, each axis on its own). */
 #include "accel/octree/octree.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* From the centre of a cell to where its objects are; planes are tried at both ends and between. */
 enum { STEPS = 10 };

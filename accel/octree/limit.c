@@ -7,8 +7,8 @@
  * Paper: Knuth 1975, Estimating the efficiency of backtrack programs, Mathematics of Computation 29. */
 #include "accel/octree/octree.h"
 
-#include "base/memory.h"
-#include "base/random.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 
 #include <string.h>
 

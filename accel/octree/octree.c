@@ -5,12 +5,12 @@
  * from the nearest common ancestor); Gargantini & Atkinson 1993, Revelles, Ureña & Lastra 2000 (parametric:
  * one descent by the ray's parameters at the planes).
  *
- * Layout and invariants: octree.h. Exactness: no point is nudged, and none computed. By base/ray.h a hit lies
- * at a t at which the thick ray is in the object's own box, so in a leaf that lists it; the ray is in a cell
- * at t unless it has not yet crossed one of its near planes, (plane - org_near) * inv > t, or has crossed one
- * of its far planes, (plane - org_far) * inv < t. (A crossing is NaN for a ray that runs exactly in the moved
- * plane: it is in the cells on both sides.) A leaf met may be visited in any order, and may be left out once
- * it is entered beyond the best t.
+ * Layout and invariants: octree.h. Exactness: no point is nudged, and none computed. By core/base/ray.h a hit
+ * lies at a t at which the thick ray is in the object's own box, so in a leaf that lists it; the ray is in a
+ * cell at t unless it has not yet crossed one of its near planes, (plane - org_near) * inv > t, or has
+ * crossed one of its far planes, (plane - org_far) * inv < t. (A crossing is NaN for a ray that runs exactly
+ * in the moved plane: it is in the cells on both sides.) A leaf met may be visited in any order, and may be
+ * left out once it is entered beyond the best t.
  *
  * `parametric` visits the nodes whose thick intervals overlap, nearest first; children inherit the crossings
  * of their parent and add those of its split.

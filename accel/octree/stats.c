@@ -2,7 +2,7 @@
 /* Describing, validating and drawing an octree. */
 #include "accel/octree/octree.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* Parents come before their children, so this ends. */
 static uint32_t depth_of(const RtOctree *tree, uint32_t index) {

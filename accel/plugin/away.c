@@ -6,10 +6,10 @@
 #include "accel/plugin/now.h"
 #include "accel/plugin/process.h"
 #include "accel/plugin/wire.h"
-#include "base/words.h"
+#include "core/base/words.h"
 
-#include "base/clock.h"
-#include "base/memory.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
 
 #include <errno.h>
 #include <fcntl.h>

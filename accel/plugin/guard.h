@@ -5,7 +5,7 @@
 #define RT_ACCEL_PLUGIN_GUARD_H
 
 #include "accel/plugin/now.h"
-#include "base/status.h"
+#include "core/base/status.h"
 
 #include <stdbool.h>
 

@@ -3,8 +3,8 @@
 
 #include "accel/plugin/query.h"
 #include "accel/plugin/wire.h"
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <string.h>
 

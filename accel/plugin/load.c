@@ -4,8 +4,8 @@
 #include "accel/plugin/library.h"
 #include "accel/plugin/process.h"
 
-#include "base/file.h"
-#include "base/memory.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
 
 #include <errno.h>
 #include <stdio.h>

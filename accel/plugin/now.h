@@ -4,7 +4,7 @@
 #ifndef RT_ACCEL_PLUGIN_NOW_H
 #define RT_ACCEL_PLUGIN_NOW_H
 
-#include "base/ray.h"
+#include "core/base/ray.h"
 
 /* What lies behind memory that a plugin writes to, and may not be touched: [begin, end). */
 typedef struct RtPluginGuard {

@@ -3,7 +3,7 @@
  * that is NULL has no length. */
 #include "accel/plugin/library.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <string.h>
 

@@ -7,7 +7,7 @@
 #ifndef RT_ACCEL_PLUGIN_PROCESS_H
 #define RT_ACCEL_PLUGIN_PROCESS_H
 
-#include "base/status.h"
+#include "core/base/status.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -4,7 +4,7 @@
 #include "accel/kernel.h"
 #include "accel/plugin/guard.h"
 #include "accel/plugin/now.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 #include "accel/plugin/process.h"
 #include "accel/plugin/wire.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <fenv.h>
 #include <locale.h>

@@ -10,7 +10,7 @@
  * at every slot in turn, round and round, which makes coincident objects a balanced tree. */
 #include "accel/tree/neighbours.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 typedef struct Link {
     uint32_t cluster;

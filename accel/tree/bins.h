@@ -7,7 +7,7 @@
 #ifndef RT_ACCEL_TREE_BINS_H
 #define RT_ACCEL_TREE_BINS_H
 
-#include "base/box4.h"
+#include "core/base/box4.h"
 
 enum {
     RT_MAX_BINS = 64,

@@ -3,8 +3,8 @@
  * are opened into their parent. */
 #include "accel/tree/hierarchy.h"
 #include "accel/tree/fold.h"
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <assert.h>
 

@@ -8,8 +8,8 @@
  * insertion where objects come in an unlucky order. */
 #include "accel/tree/tree.h"
 
-#include "base/memory.h"
-#include "base/random.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 
 typedef struct Insertion {
     RtTree *tree;

@@ -10,8 +10,8 @@
  * of BVHs, Octrees, and k-d Trees"; his order, in which all nodes can be made at once, is left out. */
 #include "accel/tree/order.h"
 #include "accel/tree/tree.h"
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 /* References row[begin..begin + count), and the first node of their subtree. */
 typedef struct Group {

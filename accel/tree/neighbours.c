@@ -2,7 +2,7 @@
 #include "accel/tree/neighbours.h"
 
 #include "accel/tree/split.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #define NOBODY                                                                                               \
     ((RtNeighbourBound){                                                                                     \

@@ -4,7 +4,7 @@
 #ifndef RT_ACCEL_TREE_ORDER_H
 #define RT_ACCEL_TREE_ORDER_H
 
-#include "base/box.h"
+#include "core/base/box.h"
 
 #include <stdint.h>
 

@@ -6,8 +6,8 @@
  * Clipped boxes are rounded outward one way for the tree and another way here; so leaves count as larger by a
  * few roundings, which is less than rays are thick. */
 #include "accel/tree/hierarchy.h"
-#include "base/memory.h"
-#include "shape/overlap.h"
+#include "core/base/memory.h"
+#include "core/shape/overlap.h"
 
 typedef struct Parts {
     const RtHierarchy *self;

@@ -17,9 +17,9 @@
  * is linear in the objects but for a logarithm. */
 #include "accel/tree/order.h"
 #include "accel/tree/tree.h"
-#include "base/box4.h"
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/box4.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 enum { PATIENCE = RT_TREE_MAX_DEPTH, CHUNK = 1 << 12 };
 

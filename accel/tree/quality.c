@@ -12,7 +12,7 @@
  * meet the root. */
 #include "accel/tree/hierarchy.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 
 enum { POINTS = 4096, LINES = 8192, POINT_SEED = 1, LINE_SEED = 2 };
 

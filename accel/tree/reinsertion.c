@@ -16,8 +16,8 @@
  * Left out: cyclic choice of a part of the nodes. */
 #include "accel/tree/tree.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <assert.h>
 #include <stdlib.h>

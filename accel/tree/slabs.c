@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "accel/tree/slabs.h"
 
-#include "shape/overlap.h"
+#include "core/shape/overlap.h"
 
 typedef struct Slab {
     RtBox4 box;             /* about the parts that are in it */

@@ -6,7 +6,7 @@
 #define RT_ACCEL_TREE_SLABS_H
 
 #include "accel/tree/bins.h"
-#include "shape/geometry.h"
+#include "core/shape/geometry.h"
 
 /* A split in two, and what it costs. */
 typedef struct RtSides {

@@ -12,7 +12,7 @@
  * plane both parts keep the plane, and rt_object_part makes a part smaller only where the surface is not. So
  * every point s of the surface is in a leaf's box and in all the boxes above; and a ray thick enough to be,
  * at the t of a hit, in every box that holds the point s near to it (accel/surface.h) meets all of those,
- * each entered at or before t and left at or after it. What else makes pruning exact, base/ray.h says.
+ * each entered at or before t and left at or after it. What else makes pruning exact, core/base/ray.h says.
  *
  * Parts may not exceed a budget of references. A node has a share of what is left of it; it divides it among
  * its children by the sums of their references' areas, which are the tests that a random line is expected to
@@ -25,9 +25,9 @@
 #include "accel/tree/hierarchy.h"
 #include "accel/tree/slabs.h"
 #include "accel/tree/subtree.h"
-#include "base/memory.h"
-#include "base/parallel.h"
-#include "shape/overlap.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/shape/overlap.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 /* Looking at hierarchies: what they are like, their boxes, and whether they are sound. */
 #include "accel/tree/hierarchy.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 typedef struct Stats {
     const RtHierarchy *self;

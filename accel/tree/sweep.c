@@ -9,7 +9,7 @@
 #include "accel/tree/order.h"
 #include "accel/tree/split.h"
 #include "accel/tree/tree.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 typedef struct Sweep {
     RtTree *tree;

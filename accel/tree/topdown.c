@@ -8,8 +8,8 @@
  * side of it is left to who has nothing to do. Which references go to which side depends on them alone
  * (split.h), so the tree is that of one thread. */
 #include "accel/tree/subtree.h"
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <assert.h>
 #include <stdatomic.h>

@@ -3,7 +3,7 @@
 #include "accel/tree/tree.h"
 
 #include "accel/tree/split.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <assert.h>
 

@@ -9,8 +9,8 @@
 #ifndef RT_ACCEL_TREE_TREE_H
 #define RT_ACCEL_TREE_TREE_H
 
-#include "base/status.h"
-#include "shape/geometry.h"
+#include "core/base/status.h"
+#include "core/shape/geometry.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -125,7 +125,7 @@ typedef struct RtSpatial {
     uint64_t limit;   /* refused where tree and nodes may take more bytes */
 } RtSpatial;
 
-/* What rt_object_part (shape/overlap.h) needs in a scene with this box. */
+/* What rt_object_part (core/shape/overlap.h) needs in a scene with this box. */
 static inline double rt_tree_part_margin(const RtBox *scene) {
     return 0x1p-40 * rt_box_largest_coordinate(*scene);
 }

@@ -7,7 +7,7 @@
 #include "accel/simd.h"
 #include "accel/surface.h"
 #include "accel/wide/wide.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* A vector of eight may be written above what waits. */
 enum { RT_WIDE_STACK = RT_TREE_MAX_DEPTH * (RT_WIDE - 1) + 2 * RT_WIDE };

@@ -6,8 +6,8 @@
  * thread comes first, and the arena is that of one thread. */
 #include "accel/wide/plan.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <assert.h>
 

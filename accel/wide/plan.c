@@ -15,7 +15,7 @@
 #include "accel/wide/plan.h"
 
 #include "accel/tree/fold.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <string.h>

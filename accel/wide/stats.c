@@ -3,7 +3,7 @@
  * described, drawn and checked; what only this form has is checked here. */
 #include "accel/wide/wide.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* ---- the plain form ---- */
 

@@ -16,7 +16,7 @@
 #include "accel/wide/wide.h"
 #include "accel/tree/recipe.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* What `bvh` has as parameters. */
 enum { MORTON_BITS = 21, PLOC_RADIUS = 25 };

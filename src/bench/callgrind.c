@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/callgrind.h"
 
-#include "base/file.h"
-#include "base/memory.h"
-#include "base/words.h"
 #include "bench/json_lines.h"
 #include "bench/result_tables.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
 
 #include <ctype.h>
 #include <errno.h>

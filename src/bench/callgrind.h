@@ -12,8 +12,8 @@
 #ifndef RT_BENCH_CALLGRIND_H
 #define RT_BENCH_CALLGRIND_H
 
-#include "base/table.h"
 #include "bench/workload.h"
+#include "core/text/table.h"
 
 #define RT_CALLGRIND_RAYS   4096     /* of a kind and scene, as a rule */
 #define RT_CALLGRIND_BROKEN "broken" /* file of the folder: {"scene", "accel", "kind", "why"} a line */

@@ -2,11 +2,11 @@
 /* The child that valgrind looks at, and the rays that it is left. */
 #include "accel/isa.h"
 #include "accel/plugin.h"
-#include "base/file.h"
-#include "base/memory.h"
 #include "bench/callgrind.h"
 #include "bench/json_lines.h"
 #include "bench/measure.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 /* Claims as text: a row of words, read from left to right. */
 #include "bench/claims.h"
 
-#include "base/words.h"
+#include "core/base/words.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -3,9 +3,9 @@
  * what follows for all of them together. */
 #include "bench/claims.h"
 
-#include "base/elementary.h"
-#include "base/memory.h"
-#include "base/table.h"
+#include "core/base/elementary.h"
+#include "core/base/memory.h"
+#include "core/text/table.h"
 
 #include <assert.h>
 #include <inttypes.h>

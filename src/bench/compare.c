@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/compare.h"
+#include "accel/columns.h"
 
-#include "base/json.h"
-#include "base/memory.h"
-#include "base/words.h"
 #include "bench/plugins_used.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
+#include "core/text/json.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -22,8 +22,8 @@
 #ifndef RT_BENCH_COMPARE_H
 #define RT_BENCH_COMPARE_H
 
-#include "base/table.h"
 #include "bench/results.h"
+#include "core/text/table.h"
 
 #define RT_TURNS 5 /* of each program in each cell, in a round */
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Two programs against one another: two workers (bench/worker.h), started anew for each round, that run by
  * turns. */
-#include "base/clock.h"
-#include "base/memory.h"
-#include "base/random.h"
 #include "bench/compare.h"
 #include "bench/worker.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 
 #include <math.h>
 #include <stdlib.h>

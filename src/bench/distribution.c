@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/distribution.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <assert.h>
 #include <string.h>

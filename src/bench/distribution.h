@@ -9,8 +9,8 @@
 #ifndef RT_BENCH_DISTRIBUTION_H
 #define RT_BENCH_DISTRIBUTION_H
 
-#include "base/status.h"
-#include "base/tally.h"
+#include "core/base/status.h"
+#include "core/base/tally.h"
 
 #include <jansson.h>
 #include <stdbool.h>

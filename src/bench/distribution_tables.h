@@ -3,8 +3,8 @@
 #ifndef RT_BENCH_DISTRIBUTION_TABLES_H
 #define RT_BENCH_DISTRIBUTION_TABLES_H
 
-#include "base/table.h"
 #include "bench/results.h"
+#include "core/text/table.h"
 
 #define RT_DISTRIBUTIONS_CSV "distributions.csv"
 #define RT_HISTOGRAMS_CSV    "histograms.csv"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/earlier.h"
 
-#include "base/file.h"
-#include "base/memory.h"
 #include "bench/distribution_tables.h"
 #include "bench/frame_table.h"
 #include "bench/hardware_table.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef RT_BENCH_EARLIER_H
 #define RT_BENCH_EARLIER_H
 
-#include "base/status.h"
+#include "core/base/status.h"
 
 #include <stdbool.h>
 

@@ -5,9 +5,9 @@
 #define RT_BENCH_EXPERIMENT_H
 
 #include "accel/accel.h"
-#include "base/file.h"
 #include "bench/statistics.h"
 #include "bench/sweep.h"
+#include "core/base/file.h"
 
 #include <jansson.h>
 
@@ -118,9 +118,9 @@ typedef struct RtExperiment {
     char rays_from[RT_MAX_PATH]; /* a file of rays (bench/ray_file.h) of the one kind, in place of recorded
                                     ones; or "" */
     bool count_only;             /* nothing is timed */
-    bool hardware;            /* what the machine did for rays is counted, where it tells (base/hardware.h) */
-    bool distributions;       /* of counts over rays, and of leaves (bench/distribution.h) */
-    bool quick;               /* the smaller variant, for a first look */
+    bool hardware;      /* what the machine did for rays is counted, where it tells (core/base/hardware.h) */
+    bool distributions; /* of counts over rays, and of leaves (bench/distribution.h) */
+    bool quick;         /* the smaller variant, for a first look */
     char path[RT_MAX_PATH];   /* of the YAML; "" where there is none */
     char folder[RT_MAX_PATH]; /* of the YAML */
     /* While it is loaded: the manifest of the results that it is loaded to read, or NULL. Nobody then asks

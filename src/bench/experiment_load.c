@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Experiments as YAML: each part of RtExperiment from its mapping, over the defaults of rt_experiment_init.
  * What is wrong with a value is told here; what does not go together, by rt_experiment_check. */
-#include "base/memory.h"
-#include "base/yaml.h"
 #include "bench/claims.h"
 #include "bench/experiment.h"
+#include "core/base/memory.h"
+#include "core/text/yaml.h"
 #include "render/frame.h"
 
 #include <string.h>

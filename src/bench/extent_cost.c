@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/extent_cost.h"
 
-#include "base/memory.h"
 #include "bench/rayset.h"
+#include "core/base/memory.h"
 
 #include <assert.h>
 

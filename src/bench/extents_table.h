@@ -4,9 +4,9 @@
 #ifndef RT_BENCH_EXTENTS_TABLE_H
 #define RT_BENCH_EXTENTS_TABLE_H
 
-#include "base/table.h"
 #include "bench/extent_cost.h"
-#include "scene/scene.h"
+#include "core/scene/scene.h"
+#include "core/text/table.h"
 
 /* Boxes, spheres, oriented boxes, and 3..RT_MAX_SLABS slabs. */
 enum { RT_MAX_EXTENT_CHOICES = RT_EXTENT_KIND_COUNT - 1 + RT_MAX_SLABS - 2 };

@@ -2,7 +2,7 @@
 #include "bench/frame_table.h"
 
 #include "accel/accel.h"
-#include "base/words.h"
+#include "core/base/words.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -9,8 +9,8 @@
 #ifndef RT_BENCH_FRAME_TABLE_H
 #define RT_BENCH_FRAME_TABLE_H
 
-#include "base/table.h"
 #include "bench/results.h"
+#include "core/text/table.h"
 
 #define RT_FRAME_CSV  "frame.csv"
 #define RT_FRAME_PLOT "plots/frame.svg" /* where a script of the experiment draws it */

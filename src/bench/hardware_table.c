@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/hardware_table.h"
 
-#include "base/words.h"
 #include "bench/result_tables.h"
+#include "core/base/words.h"
 
 #include <math.h>
 

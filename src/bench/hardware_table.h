@@ -3,8 +3,8 @@
 #ifndef RT_BENCH_HARDWARE_TABLE_H
 #define RT_BENCH_HARDWARE_TABLE_H
 
-#include "base/table.h"
 #include "bench/results.h"
+#include "core/text/table.h"
 
 #define RT_HARDWARE_CSV "hardware.csv"
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/journal.h"
 
-#include "accel/structure_json.h"
-#include "base/json.h"
+#include "accel/columns.h"
 #include "bench/journal_state.h"
 #include "bench/machine.h"
 #include "bench/plugins_used.h"
+#include "core/text/json.h"
 
 #include <math.h>
 #include <string.h>

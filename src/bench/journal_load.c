@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reading a journal back. */
-#include "base/memory.h"
 #include "bench/journal.h"
 #include "bench/journal_state.h"
 #include "bench/machine.h"
 #include "bench/plugins_used.h"
+#include "core/base/memory.h"
 
 #include <inttypes.h>
 #include <limits.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/json_lines.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <errno.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #ifndef RT_BENCH_JSON_LINES_H
 #define RT_BENCH_JSON_LINES_H
 
-#include "base/file.h"
+#include "core/base/file.h"
 
 #include <jansson.h>
 

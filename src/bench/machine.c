@@ -2,9 +2,9 @@
 #include "bench/machine.h"
 
 #include "accel/plugin.h"
-#include "base/json.h"
-#include "base/parallel.h"
 #include "build_info.h"
+#include "core/base/parallel.h"
+#include "core/text/json.h"
 
 #include <fcntl.h>
 #include <inttypes.h>

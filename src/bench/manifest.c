@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/manifest.h"
 
-#include "base/json.h"
-#include "base/parallel.h"
 #include "bench/machine.h"
+#include "core/base/parallel.h"
+#include "core/text/json.h"
 
 static json_t *scenes_json(const RtResults *results) {
     const RtExperiment *experiment = results->experiment;

@@ -2,11 +2,11 @@
 #include "bench/measure.h"
 
 #include "accel/away.h"
-#include "base/clock.h"
-#include "base/memory.h"
-#include "base/parallel.h"
 #include "bench/measure_here.h"
 #include "bench/rounds.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <string.h>
 

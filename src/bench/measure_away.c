@@ -2,9 +2,9 @@
 #include "bench/measure_away.h"
 
 #include "accel/away.h"
-#include "base/memory.h"
-#include "base/parallel.h"
 #include "bench/measure_here.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <math.h>
 #include <string.h>

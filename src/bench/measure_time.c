@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Timing accelerators against each other, wherever they live. */
 #include "accel/away.h"
-#include "base/memory.h"
 #include "bench/measure_away.h"
 #include "bench/measure_here.h"
+#include "core/base/memory.h"
 
 RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
     bool away = rt_accel_is_away(timed->accel);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Results for a terminal of 80 columns. */
-#include "base/words.h"
 #include "bench/result_tables.h"
+#include "core/base/words.h"
 
 #include <inttypes.h>
 #include <string.h>

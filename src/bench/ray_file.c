@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/ray_file.h"
 
-#include "base/file.h"
-#include "base/memory.h"
-#include "base/npy.h"
 #include "bench/experiment.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/text/npy.h"
 
 #include <inttypes.h>
 #include <string.h>

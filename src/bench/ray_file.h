@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Ray sets as arrays of NumPy (base/npy.h), so that rays may come from any other renderer, and answers and
- * counts may go to any other program. experiments/README.md says what each column is. */
+/* Ray sets as arrays of NumPy (core/text/npy.h), so that rays may come from any other renderer, and answers
+ * and counts may go to any other program. experiments/README.md says what each column is. */
 #ifndef RT_BENCH_RAY_FILE_H
 #define RT_BENCH_RAY_FILE_H
 

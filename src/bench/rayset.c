@@ -4,9 +4,9 @@
  * stream a ray, numbered by kind and index. */
 #include "bench/rayset.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
-#include "base/random.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
 #include "render/illumination.h"
 
 #include <assert.h>

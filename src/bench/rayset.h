@@ -9,7 +9,7 @@
 #ifndef RT_BENCH_RAYSET_H
 #define RT_BENCH_RAYSET_H
 
-#include "base/random.h"
+#include "core/base/random.h"
 #include "render/frame.h"
 
 typedef struct RtRaySet {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/result_tables.h"
 
-#include "accel/structure_json.h"
+#include "accel/columns.h"
 #include "bench/standing.h"
 
 #include <assert.h>

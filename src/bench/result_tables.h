@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Results as tables (base/table.h): those of a result directory, of bench --json, and for the eye. */
+/* Results as tables (core/text/table.h): those of a result directory, of bench --json, and for the eye. */
 #ifndef RT_BENCH_RESULT_TABLES_H
 #define RT_BENCH_RESULT_TABLES_H
 
-#include "base/table.h"
 #include "bench/results.h"
+#include "core/text/table.h"
 
 typedef enum RtResultTable {
     /* counts.csv: a row per cell of an accelerator whose counts are the same on every machine, with every

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/results.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,10 +5,10 @@
 #ifndef RT_BENCH_RESULTS_H
 #define RT_BENCH_RESULTS_H
 
-#include "base/hardware.h"
 #include "bench/distribution.h"
 #include "bench/experiment.h"
 #include "bench/statistics.h"
+#include "core/base/hardware.h"
 
 #include <stdio.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/rounds.h"
 
-#include "base/clock.h"
-#include "base/memory.h"
-#include "base/random.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 
 #include <assert.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 #ifndef RT_BENCH_ROUNDS_H
 #define RT_BENCH_ROUNDS_H
 
-#include "base/status.h"
+#include "core/base/status.h"
 
 #include <stdbool.h>
 #include <stdint.h>

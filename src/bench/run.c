@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/run.h"
 
-#include "base/parallel.h"
-#include "base/words.h"
 #include "bench/distribution_tables.h"
 #include "bench/frame_table.h"
 #include "bench/hardware_table.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
 #include "bench/result_tables.h"
+#include "core/base/parallel.h"
+#include "core/base/words.h"
 #include "render/image.h"
 
 #include <inttypes.h>

@@ -17,11 +17,11 @@
 #ifndef RT_BENCH_RUN_H
 #define RT_BENCH_RUN_H
 
-#include "base/lock.h"
-#include "base/table.h"
 #include "bench/earlier.h"
 #include "bench/json_lines.h"
 #include "bench/workload.h"
+#include "core/base/lock.h"
+#include "core/text/table.h"
 
 /* Which gnuplot scripts are run (report/scripts.h). */
 typedef enum RtScripts {

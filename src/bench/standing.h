@@ -3,8 +3,8 @@
 #ifndef RT_BENCH_STANDING_H
 #define RT_BENCH_STANDING_H
 
-#include "base/table.h"
 #include "bench/results.h"
+#include "core/text/table.h"
 
 /* How a candidate stands among those that were measured on the workload: for all kinds of rays together where
  * kind is RT_RAY_KIND_COUNT. By time where any was timed, else by object tests per ray. The best has the

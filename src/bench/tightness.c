@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/tightness.h"
 
-#include "base/memory.h"
-#include "base/random.h"
 #include "bench/rayset.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 
 /* ---- populations ---- */
 

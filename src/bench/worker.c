@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "bench/worker.h"
+#include "accel/columns.h"
 
-#include "base/json.h"
-#include "base/memory.h"
-#include "base/table.h"
 #include "bench/machine.h"
 #include "bench/rounds.h"
 #include "bench/workload_state.h"
+#include "core/base/memory.h"
+#include "core/text/json.h"
+#include "core/text/table.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -5,9 +5,9 @@
 #include "bench/workload_state.h"
 
 #include "accel/away.h"
-#include "base/memory.h"
-#include "base/parallel.h"
 #include "bench/ray_file.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "scenes/open.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The distributions of a workload: over rays, each asked by itself, and over the leaves of structures. */
-#include "base/memory.h"
 #include "bench/workload_state.h"
+#include "core/base/memory.h"
 
 static uint64_t value_of(const RtTally *tally, RtRayQuantity quantity) {
 #define GET(name, meaning)                                                                                   \

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the machine did for the rays of a workload: rounds of their own, after those that are timed, so that
  * no time is changed by counting. As those they are interleaved. */
-#include "base/memory.h"
-#include "base/parallel.h"
 #include "bench/machine.h"
 #include "bench/workload_state.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <math.h>
 #include <string.h>

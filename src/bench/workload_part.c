@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which part of a workload is measured: what is asked for, without what goes beyond a limit. */
-#include "base/clock.h"
 #include "bench/workload_state.h"
+#include "core/base/clock.h"
 
 #include <stdio.h>
 #include <string.h>

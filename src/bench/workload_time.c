@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The timing of one kind of rays in a workload. */
-#include "base/clock.h"
-#include "base/memory.h"
-#include "base/parallel.h"
 #include "bench/machine.h"
 #include "bench/workload_state.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <math.h>
 #include <string.h>

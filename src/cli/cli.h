@@ -4,10 +4,10 @@
 #ifndef RT_CLI_CLI_H
 #define RT_CLI_CLI_H
 
-#include "base/param.h"
-#include "base/ray.h"
-#include "base/status.h"
-#include "scene/camera.h"
+#include "core/base/param.h"
+#include "core/base/ray.h"
+#include "core/base/status.h"
+#include "core/scene/camera.h"
 
 #include <argp.h>
 #include <jansson.h>

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
  * workload that leaves no directory behind. */
-#include "base/memory.h"
 #include "bench/callgrind.h"
 #include "cli/bench_output.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
+#include "core/base/memory.h"
 #include "verify/spread.h"
 
 #include <argp.h>

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally compare: what a change has made faster or slower, and which counts it changed; by two result
  * directories, or by two programs that run in turns. */
-#include "base/memory.h"
 #include "bench/compare.h"
 #include "bench/manifest.h"
 #include "bench/plugins_used.h"
@@ -9,6 +8,7 @@
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/recording.h"
+#include "core/base/memory.h"
 #include "report/result_directory.h"
 
 #include <argp.h>

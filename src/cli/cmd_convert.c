@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally convert: a scene from one format to another. */
 #include "cli/cli.h"
-#include "scene/load.h"
+#include "core/scene/load.h"
 #include "scenes/open.h"
 
 #include <argp.h>

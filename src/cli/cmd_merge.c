@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally merge: one result directory from those of the shards of an experiment. */
-#include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/summary.h"
+#include "core/base/memory.h"
 #include "report/merge.h"
 
 #include <argp.h>

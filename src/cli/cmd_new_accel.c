@@ -3,8 +3,8 @@
  * files are those of cli/new_accel, with the name in the place of `my-accel`, and without the line that says
  * what their licence is here: what becomes of them is the user's. */
 #include "accel/accel.h"
-#include "base/file.h"
 #include "cli/cli.h"
+#include "core/base/file.h"
 #include "new_accel_c.h"
 #include "new_accel_cmake.h"
 #include "new_accel_readme.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally rays: the rays that `bench` records, as an array of NumPy. */
-#include "base/words.h"
 #include "bench/ray_file.h"
 #include "bench/workload.h"
 #include "cli/cli.h"
 #include "cli/recording.h"
+#include "core/base/words.h"
 
 #include <argp.h>
 #include <inttypes.h>

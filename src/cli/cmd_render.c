@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally render: a picture of a scene, and what it cost. The timed kernels make the picture; where counts
  * are asked for, a second frame is traced by the counted ones. */
-#include "accel/structure_json.h"
-#include "base/clock.h"
-#include "base/json.h"
-#include "base/memory.h"
-#include "base/parallel.h"
-#include "base/words.h"
+#include "accel/columns.h"
 #include "bench/rayset.h"
 #include "cli/cli.h"
 #include "cli/pictures.h"
 #include "cli/plugins.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/words.h"
+#include "core/text/json.h"
 #include "render/image.h"
 #include "scenes/open.h"
 #include "verify/equivalence.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: an experiment, from its YAML to a result directory. */
-#include "base/memory.h"
-#include "base/words.h"
 #include "bench/claims.h"
 #include "bench/journal.h"
 #include "bench/manifest.h"
@@ -9,6 +7,8 @@
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
 #include "report/result_directory.h"
 
 #include <argp.h>

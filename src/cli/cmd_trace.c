@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally trace: one ray's path through an accelerator, step by step. */
 #include "accel/away.h"
-#include "base/json.h"
-#include "base/table.h"
-#include "base/words.h"
+#include "accel/columns.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
+#include "core/base/words.h"
+#include "core/text/json.h"
+#include "core/text/table.h"
 #include "render/path.h"
 #include "scenes/open.h"
 

@@ -2,10 +2,11 @@
 /* raytally completion: what can be completed, from the tables of commands, options, accelerators and scenes,
  * as a function of bash that tells it by name; behind it cli/completion.bash, which asks that function. */
 #include "accel/accel.h"
-#include "base/ray.h"
-#include "base/table.h"
+#include "accel/columns.h"
 #include "cli/cli.h"
 #include "completion_bash.h"
+#include "core/base/ray.h"
+#include "core/text/table.h"
 #include "scenes/builtin.h"
 
 #include <argp.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/directory.h"
 
-#include "base/lock.h"
-#include "base/memory.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
+#include "core/base/lock.h"
+#include "core/base/memory.h"
 
 #include <argp.h>
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally: the list of commands. */
 #include "accel/away.h"
-#include "base/words.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/plugins.h"
+#include "core/base/words.h"
 
 #include <argp.h>
 #include <stdio.h>

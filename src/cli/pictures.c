@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/pictures.h"
 
-#include "base/words.h"
 #include "cli/cli.h"
-#include "render/cells.h"
+#include "core/base/words.h"
+#include "picture/cells.h"
 #include "render/path.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
 #ifndef RT_CLI_PICTURES_H
 #define RT_CLI_PICTURES_H
 
-#include "render/heatmap.h"
-#include "render/structure.h"
+#include "picture/heatmap.h"
+#include "picture/structure.h"
 
 #include <argp.h>
 

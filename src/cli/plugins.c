@@ -2,10 +2,10 @@
 #include "cli/plugins.h"
 
 #include "accel/plugin.h"
-#include "base/file.h"
-#include "base/memory.h"
 #include "bench/manifest.h"
 #include "bench/plugins_used.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/progress.h"
 
-#include "base/clock.h"
-#include "base/words.h"
+#include "core/base/clock.h"
+#include "core/base/words.h"
 
 #include <math.h>
 #include <signal.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/recording.h"
 
-#include "base/memory.h"
 #include "cli/cli.h"
+#include "core/base/memory.h"
 #include "render/frame.h"
 
 #include <stdio.h>

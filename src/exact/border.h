@@ -4,7 +4,7 @@
  *
  * The unit is what rounding to float32 may do to a place seen from the origin: 2^-24 of the distance from
  * there to the farthest plane of the object's box, along the axis that is largest. The thickness by which
- * boxes are widened (base/ray.h) is 16 of them. */
+ * boxes are widened (core/base/ray.h) is 16 of them. */
 #ifndef RT_EXACT_BORDER_H
 #define RT_EXACT_BORDER_H
 

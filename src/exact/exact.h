@@ -13,7 +13,7 @@
 #ifndef RT_EXACT_EXACT_H
 #define RT_EXACT_EXACT_H
 
-#include "base/vec.h"
+#include "core/base/vec.h"
 
 #include <gmp.h>
 #include <stddef.h>

@@ -6,7 +6,7 @@
  * array. */
 #include "exact/exact_csg.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "exact/exact_mesh.h"
 
 #include <assert.h>

@@ -3,8 +3,8 @@
 #ifndef RT_EXACT_EXACT_CSG_H
 #define RT_EXACT_EXACT_CSG_H
 
+#include "core/shape/csg.h"
 #include "exact/line.h"
-#include "shape/csg.h"
 
 /* Like rt_exact_hit. */
 RtFinding rt_exact_csg_hit(RtExactArena *arena, const RtCsgForest *forest, const RtCsg *tree,

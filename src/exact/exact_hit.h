@@ -23,8 +23,8 @@
 #ifndef RT_EXACT_EXACT_HIT_H
 #define RT_EXACT_EXACT_HIT_H
 
+#include "core/shape/geometry.h"
 #include "exact/line.h"
-#include "shape/geometry.h"
 
 /* Does the line meet object `id` within [tmin, tmax]? If so *t is the first such place. Undecided: a CSG tree
  * whose crossings memory does not suffice for, and nothing else. */

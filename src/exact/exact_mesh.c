@@ -12,7 +12,7 @@
  * a line in the plane of a face sees the faces beside it. t is that of the line that was not moved. */
 #include "exact/exact_mesh.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 /* Where the line crosses one triangle; `turn` is 1 where it goes in, -1 where it comes out. */
 typedef struct Crossing {

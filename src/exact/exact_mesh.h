@@ -3,8 +3,8 @@
 #ifndef RT_EXACT_EXACT_MESH_H
 #define RT_EXACT_EXACT_MESH_H
 
+#include "core/shape/solid.h"
 #include "exact/line.h"
-#include "shape/solid.h"
 
 /* Where the whole line, whatever its interval, goes in and out of mesh solid `index`, by turns and in
  * ascending order; places beyond FLT_MAX may be left out. *places is the caller's, who frees it by rt_free;

@@ -4,8 +4,8 @@
 #ifndef RT_EXACT_LINE_H
 #define RT_EXACT_LINE_H
 
-#include "base/box.h"
-#include "base/ray.h"
+#include "core/base/box.h"
+#include "core/base/ray.h"
 #include "exact/place.h"
 
 /* A ray whose origin need not be float32. */

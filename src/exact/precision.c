@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "exact/precision.h"
 
-#include "base/memory.h"
-#include "base/random.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 #include "exact/border.h"
 
 #include <stdlib.h>

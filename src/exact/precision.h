@@ -5,10 +5,10 @@
 #ifndef RT_EXACT_PRECISION_H
 #define RT_EXACT_PRECISION_H
 
-#include "base/status.h"
-#include "shape/geometry.h"
+#include "core/base/status.h"
+#include "core/shape/geometry.h"
 
-/* X(CONSTANT, name): the shapes in their order (shape/geometry.h), and trees of one kind of solid. */
+/* X(CONSTANT, name): the shapes in their order (core/shape/geometry.h), and trees of one kind of solid. */
 #define RT_SUBJECTS(X)                                                                                       \
     X(SPHERE, sphere)                                                                                        \
     X(POLYGON, polygon)                                                                                      \

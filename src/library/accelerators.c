@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Accelerators for those who embed us, and tracers. */
 #include "accel/plugin.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "library/library.h"
 
 /* ---- specs ---- */

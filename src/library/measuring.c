@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Counting, timing and statistics for those who embed us. */
-#include "base/memory.h"
 #include "bench/measure.h"
+#include "core/base/memory.h"
 #include "library/library.h"
 
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes for those who embed us: opened, or made of arrays; and the camera. */
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "library/library.h"
 #include "scenes/open.h"
 

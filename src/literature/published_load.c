@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "base/csv.h"
-#include "base/memory.h"
-#include "base/words.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
+#include "core/text/csv.h"
 #include "literature/published.h"
 
 #include <ctype.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What was compared with published figures, as tables (base/table.h): those of a result directory,
+/* What was compared with published figures, as tables (core/text/table.h): those of a result directory,
  * byte-identical wherever they are made, and for the eye. */
 #ifndef RT_LITERATURE_PUBLISHED_TABLES_H
 #define RT_LITERATURE_PUBLISHED_TABLES_H
 
-#include "base/table.h"
+#include "core/text/table.h"
 #include "literature/published.h"
 
 typedef enum RtPublishedTable {

@@ -4,8 +4,8 @@
  * interleaved. */
 #include "render/image.h"
 
-#include "base/file.h"
-#include "base/memory.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
 
 #include <errno.h>
 #include <openexr.h>

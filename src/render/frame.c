@@ -8,9 +8,9 @@
  * a single stream. */
 #include "render/frame.h"
 
-#include "base/clock.h"
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "render/illumination.h"
 
 #include <pthread.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "render/illumination.h"
 
-#include "base/elementary.h"
+#include "core/base/elementary.h"
 
 static double max_norm(RtVec3d a) {
     return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));

@@ -27,7 +27,7 @@
 #ifndef RT_RENDER_ILLUMINATION_H
 #define RT_RENDER_ILLUMINATION_H
 
-#include "scene/scene.h"
+#include "core/scene/scene.h"
 
 /* A hit, made ready for shading. Borrows the scene's material, that of the solid for a CSG tree. */
 typedef struct RtSurface {

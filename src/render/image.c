@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "render/image.h"
 
-#include "base/elementary.h"
-#include "base/memory.h"
+#include "core/base/elementary.h"
+#include "core/base/memory.h"
 
 RtStatus rt_image_init(RtImage *image, uint32_t width, uint32_t height, RtError *error) {
     size_t pixels = (size_t)width * height;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "render/path.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "render/illumination.h"
 
 #include <string.h>

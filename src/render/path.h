@@ -4,8 +4,8 @@
 #define RT_RENDER_PATH_H
 
 #include "accel/accel.h"
-#include "base/observe.h"
-#include "shape/ball.h"
+#include "core/base/observe.h"
+#include "core/shape/ball.h"
 
 /* A row of the path. An object test and its hit are one row. */
 typedef struct RtPathRow {

@@ -2,7 +2,7 @@
 /* PNG through libpng's simplified interface, which has no long jumps. */
 #include "render/image.h"
 
-#include "base/file.h"
+#include "core/base/file.h"
 
 #include <png.h>
 

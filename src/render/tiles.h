@@ -9,7 +9,7 @@
 #ifndef RT_RENDER_TILES_H
 #define RT_RENDER_TILES_H
 
-#include "scene/camera.h"
+#include "core/scene/camera.h"
 
 #define RT_TILE       16
 #define RT_TILE_BLOCK 64 /* samples of an aligned block of 8 x 8 */

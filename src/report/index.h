@@ -3,7 +3,7 @@
 #ifndef RT_REPORT_INDEX_H
 #define RT_REPORT_INDEX_H
 
-#include "base/status.h"
+#include "core/base/status.h"
 
 #include <stddef.h>
 

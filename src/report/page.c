@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/page.h"
 
-#include "base/table.h"
-#include "base/words.h"
 #include "bench/claims.h"
+#include "core/base/words.h"
+#include "core/text/table.h"
 #include "page_css.h"
 #include "page_js.h"
 

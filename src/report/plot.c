@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/plot.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "histograms_gp.h"
 #include "report/color.h"
 #include "report/page.h"

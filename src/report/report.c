@@ -3,13 +3,13 @@
  * images go in as data URLs, so that the file can be mailed. */
 #include "report/report.h"
 
-#include "base/memory.h"
-#include "base/words.h"
 #include "bench/claims.h"
 #include "bench/distribution_tables.h"
 #include "bench/frame_table.h"
 #include "bench/hardware_table.h"
 #include "bench/result_tables.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
 #include "literature/published_tables.h"
 #include "report/color.h"
 #include "report/page.h"

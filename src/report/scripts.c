@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/scripts.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "shipped_scripts.h"
 
 #include <string.h>

@@ -8,8 +8,8 @@
 #ifndef RT_REPORT_SCRIPTS_H
 #define RT_REPORT_SCRIPTS_H
 
-#include "base/file.h"
 #include "bench/run.h"
+#include "core/base/file.h"
 
 /* Refuses a script that cannot be read. */
 RtStatus rt_scripts_find(const RtExperiment *experiment, RtError *error);

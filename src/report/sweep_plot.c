@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/sweep_plot.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "report/color.h"
 #include "report/page.h"
 #include "style_gp.h"

@@ -2,8 +2,8 @@
 #include "verify/equivalence.h"
 
 #include "accel/away.h"
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 #include <stdio.h>
 #include <string.h>

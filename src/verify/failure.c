@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/failure.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 static RtStatus build_spec(const void *context, const RtScene *scene, int threads, RtAccel **out,
                            RtError *error) {

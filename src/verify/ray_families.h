@@ -9,7 +9,7 @@
 #define RT_VERIFY_RAY_FAMILIES_H
 
 #include "accel/accel.h"
-#include "base/random.h"
+#include "core/base/random.h"
 
 /* So many in a row, from a multiple of it on, go nearly the same way where the family is of bundles. */
 enum { RT_RAY_BUNDLE = 256 };

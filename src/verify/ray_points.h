@@ -4,8 +4,8 @@
 #ifndef RT_VERIFY_RAY_POINTS_H
 #define RT_VERIFY_RAY_POINTS_H
 
-#include "base/random.h"
-#include "shape/geometry.h"
+#include "core/base/random.h"
+#include "core/shape/geometry.h"
 
 /* Where on an object. Of a sphere the vertices are the six points at which it touches its box, of a cone the
  * points of its two circles; of a CSG tree vertices and edges are those of the box of one of its solids. */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/replay.h"
 
-#include "base/file.h"
-#include "base/json.h"
-#include "base/memory.h"
-#include "scene/append.h"
-#include "scene/yaml.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/scene/append.h"
+#include "core/scene/yaml.h"
+#include "core/text/json.h"
 #include "scenes/builtin.h"
 #include "scenes/open.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/shrink.h"
 
-#include "base/memory.h"
-#include "scene/append.h"
+#include "core/base/memory.h"
+#include "core/scene/append.h"
 
 #include <string.h>
 

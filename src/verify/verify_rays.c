@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/verify_rays.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "verify/ray_families.h"
 
 #include <string.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/verify_table.h"
 
-#include "base/file.h"
-#include "base/memory.h"
-#include "base/words.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/base/words.h"
 
 #include <inttypes.h>
 #include <string.h>

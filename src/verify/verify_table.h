@@ -4,8 +4,8 @@
 #ifndef RT_VERIFY_VERIFY_TABLE_H
 #define RT_VERIFY_VERIFY_TABLE_H
 
-#include "base/param.h"
-#include "base/table.h"
+#include "core/base/param.h"
+#include "core/text/table.h"
 #include "exact/referee.h"
 #include "verify/verdict.h"
 

@@ -6,8 +6,8 @@
 
 #include "slivers_testing.h"
 
-#include "base/random.h"
-#include "scene/scene.h"
+#include "core/base/random.h"
+#include "core/scene/scene.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 #include "accel_testing.h"
 
 #include "accel/light/light.h"
-#include "base/random.h"
+#include "core/base/random.h"
 
 /* A screen, polygon 0, at z = 5 from -4 to 4, and a sphere of radius 1 above its middle, at z = 8; the light
  * at z = 10. */

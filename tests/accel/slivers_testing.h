@@ -5,7 +5,7 @@
 
 #include "accel_testing.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 
 static inline void add_triangle(RtScene *scene, RtVec3 a, RtVec3 b, RtVec3 c) {
     const RtVec3 v[3] = {a, b, c};

@@ -5,7 +5,7 @@
 
 #include "accel_testing.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 #include "verify/spread.h"
 
 /* ---- threads ---- */

@@ -4,7 +4,7 @@
 #include "clock_testing.h"
 
 #include "accel/bvh/bvh.h"
-#include "base/random.h"
+#include "core/base/random.h"
 
 #include <stdio.h>
 

@@ -5,7 +5,7 @@
 #include "equivalence_testing.h"
 
 #include "accel/clusters/clusters.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <stdio.h>
 #include <string.h>

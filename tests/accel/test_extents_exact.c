@@ -3,7 +3,7 @@
 #include "equivalence_testing.h"
 #include "extents_testing.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 
 /* ---- a soup of everything that is hard ---- */
 

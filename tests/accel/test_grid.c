@@ -3,7 +3,7 @@
 #include "accel_testing.h"
 
 #include "accel/grid/grid.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * and in their planes, objects that touch, rounding, scenes tiny and huge. */
 #include "item_testing.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 
 #include <math.h>
 

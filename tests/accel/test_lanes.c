@@ -9,7 +9,7 @@
 #include "accel/kernel.h"
 #include "accel/lanes.h"
 #include "accel_testing.h"
-#include "base/random.h"
+#include "core/base/random.h"
 
 /* What is asked, and what is answered, timed and counted. */
 typedef struct Asked {

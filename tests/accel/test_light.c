@@ -2,7 +2,7 @@
 /* The light buffer: what it counts, counted by hand, and what its cells remember. */
 #include "light_testing.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "scenes/builtin.h"
 
 /* ---- counted by hand ---- */

@@ -3,7 +3,7 @@
  * rays along edges and corners of cells; and it is no worse for it. */
 #include "light_testing.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <string.h>
 

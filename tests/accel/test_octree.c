@@ -4,7 +4,7 @@
 #include "equivalence_testing.h"
 
 #include "accel/octree/octree.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "scenes/open.h"
 
 #include <stdio.h>

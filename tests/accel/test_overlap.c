@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shape/overlap.h: which boxes the surface of an object meets, and grids that list objects by it. */
+/* core/shape/overlap.h: which boxes the surface of an object meets, and grids that list objects by it. */
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
 #include "accel/grid/grid.h"
+#include "core/shape/overlap.h"
 #include "scenes/family.h"
-#include "shape/overlap.h"
 #include "verify/ray_families.h"
 
 static const double margin = 1e-9;

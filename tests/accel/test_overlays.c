@@ -3,7 +3,7 @@
 #include "accel_testing.h"
 
 #include "accel/accel.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <string.h>
 

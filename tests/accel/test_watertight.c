@@ -7,7 +7,7 @@
  * are in all. What Embree's own arithmetic loses of the same rays is printed, where Embree is there. */
 #include "accel_testing.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 #include "scenes/forms.h"
 #include "scenes/open.h"
 

@@ -3,8 +3,8 @@
  * trace; memory. That it hits like brute is in test_wide_exact.c. */
 #include "wide_testing.h"
 
-#include "base/random.h"
 #include "clock_testing.h"
+#include "core/base/random.h"
 #include "scenes/open.h"
 
 #include <math.h>

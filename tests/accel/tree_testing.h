@@ -6,8 +6,8 @@
 #include "testing.h"
 
 #include "accel/tree/tree.h"
-#include "base/memory.h"
-#include "base/random.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 
 /* `count` small boxes about a few centres. */
 static inline RtBox *make_boxes(uint32_t count, uint64_t seed) {

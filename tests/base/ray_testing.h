@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rays and points at the ends of float32, and what base/ray.h does in vectors said again, number by number.
+/* Rays and points at the ends of float32, and what core/base/ray.h does in vectors said again, number by
+ * number.
  */
 #ifndef RT_TESTS_RAY_TESTING_H
 #define RT_TESTS_RAY_TESTING_H
 
-#include "base/random.h"
-#include "base/ray.h"
+#include "core/base/random.h"
+#include "core/base/ray.h"
 
 #include <string.h>
 

@@ -2,13 +2,13 @@
 /* base/: files, tallies, parameters, memory, rounding, random numbers. */
 #include "testing.h"
 
-#include "base/box.h"
-#include "base/elementary.h"
-#include "base/file.h"
-#include "base/memory.h"
-#include "base/param.h"
-#include "base/random.h"
-#include "base/tally.h"
+#include "core/base/box.h"
+#include "core/base/elementary.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/base/param.h"
+#include "core/base/random.h"
+#include "core/base/tally.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* base/hardware.h, by events of the kernel's own, which there are on machines without counters, too: what is
- * opened, counted, scaled and closed is the same code. */
+/* core/base/hardware.h, by events of the kernel's own, which there are on machines without counters, too:
+ * what is opened, counted, scaled and closed is the same code. */
 #include "testing.h"
 
-#include "base/clock.h"
-#include "base/hardware.h"
-#include "base/parallel.h"
+#include "core/base/clock.h"
+#include "core/base/hardware.h"
+#include "core/base/parallel.h"
 
 #include <fcntl.h>
 #include <linux/perf_event.h>

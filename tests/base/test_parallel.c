@@ -2,8 +2,8 @@
 /* base/parallel: also run under ThreadSanitizer. */
 #include "testing.h"
 
-#include "base/memory.h"
-#include "base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 
 enum { ITEMS = 1000 };
 

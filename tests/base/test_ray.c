@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* base/ray.h works in vectors: here it is held against the same, number by number, bit for bit, where numbers
- * are zero, denormal or huge. */
+/* core/base/ray.h works in vectors: here it is held against the same, number by number, bit for bit, where
+ * numbers are zero, denormal or huge. */
 #include "testing.h"
 
 #include "ray_testing.h"

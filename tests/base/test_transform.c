@@ -2,7 +2,7 @@
 /* scene/transform: steps in order, exact quarter turns, normals, uniform scale. */
 #include "testing.h"
 
-#include "base/transform.h"
+#include "core/base/transform.h"
 
 #include <string.h>
 

@@ -2,9 +2,9 @@
 /* Claims, held against results that are made by hand. */
 #include "testing.h"
 
-#include "base/memory.h"
 #include "bench/claims.h"
 #include "bench/standing.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,9 +2,9 @@
 /* bench/distribution.h: bins, percentiles, JSON; and that what is distributed is what was counted. */
 #include "testing.h"
 
-#include "base/memory.h"
-#include "base/random.h"
 #include "bench/workload.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 /* What whole frames cost, of results that are made by hand. */
 #include "testing.h"
 
-#include "base/memory.h"
 #include "bench/frame_table.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,9 +4,9 @@
  * expected depends on no machine, its load or its kernel. */
 #include "testing.h"
 
-#include "base/memory.h"
 #include "bench/hardware_table.h"
 #include "bench/workload.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <stdatomic.h>

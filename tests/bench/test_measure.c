@@ -3,10 +3,10 @@
  * answers; thinned candidates are timed against the baseline on their own rays. */
 #include "testing.h"
 
-#include "base/clock.h"
-#include "base/memory.h"
 #include "bench/measure.h"
 #include "bench/workload.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
 #include "scenes/open.h"
 
 #include <string.h>

@@ -2,9 +2,9 @@
 /* Ray sets: the same on any number of threads, every ray valid, of its kind and where it should be. */
 #include "testing.h"
 
-#include "base/memory.h"
 #include "bench/ray_file.h"
 #include "bench/rayset.h"
+#include "core/base/memory.h"
 
 #include <malloc.h>
 #include <stdlib.h>

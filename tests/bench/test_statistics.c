@@ -4,7 +4,7 @@
 
 #include "bench/statistics.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 
 RT_TEST(the_median_is_the_middle_one_or_the_mean_of_the_middle_two) {
     const double odd[] = {9, 1, 5}, even[] = {4, 100, 1, 2}, one[] = {7};

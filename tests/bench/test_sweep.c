@@ -2,8 +2,8 @@
 /* Specs that stand for several. */
 #include "testing.h"
 
-#include "base/memory.h"
 #include "bench/experiment.h"
+#include "core/base/memory.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "testing.h"
 
 #include "bench/tightness.h"
-#include "scene/scene.h"
+#include "core/scene/scene.h"
 
 #define PI 3.14159265358979323846
 

@@ -10,8 +10,8 @@
  * branches went.
  */
 #include "accel/accel.h"
-#include "base/random.h"
 #include "bench/rounds.h"
+#include "core/base/random.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 /* raytally rays, and what takes its files: bench and verify --rays-from, bench --hits and --counts. */
 #include "testing.h"
 
-#include "base/file.h"
-#include "base/memory.h"
-#include "base/tally.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/base/tally.h"
 
 #include <jansson.h>
 #include <math.h>

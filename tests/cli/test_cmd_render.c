@@ -3,7 +3,7 @@
  * Procedural Databases. */
 #include "testing.h"
 
-#include "base/file.h"
+#include "core/base/file.h"
 
 #include <jansson.h>
 #include <math.h>

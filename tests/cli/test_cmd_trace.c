@@ -2,8 +2,8 @@
 /* raytally trace, as a user runs it. */
 #include "testing.h"
 
-#include "base/file.h"
-#include "base/tally.h"
+#include "core/base/file.h"
+#include "core/base/tally.h"
 
 #include <jansson.h>
 #include <stdio.h>

@@ -3,9 +3,6 @@
  * And the files and documents that are there have these columns. */
 #include "testing.h"
 
-#include "base/csv.h"
-#include "base/file.h"
-#include "base/memory.h"
 #include "bench/callgrind.h"
 #include "bench/compare.h"
 #include "bench/distribution_tables.h"
@@ -13,6 +10,9 @@
 #include "bench/frame_table.h"
 #include "bench/hardware_table.h"
 #include "bench/result_tables.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/text/csv.h"
 #include "literature/published_tables.h"
 #include "verify/verify_table.h"
 

@@ -3,7 +3,7 @@
  * ones are told from those that nearly are. */
 #include "testing.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 #include "exact/place.h"
 
 /* ---- polynomials by their roots ---- */

@@ -4,7 +4,7 @@
  * shapes. */
 #include "testing.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 #include "exact/border.h"
 #include "verify/verdict.h"
 

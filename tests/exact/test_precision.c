@@ -3,9 +3,9 @@
  * looks whether it is the one that is printed there. */
 #include "testing.h"
 
-#include "base/file.h"
-#include "base/memory.h"
-#include "base/random.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/base/random.h"
 #include "exact/exact.h"
 #include "exact/precision.h"
 

@@ -3,7 +3,7 @@
  * nothing behind. */
 #include "library_testing.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "scenes/open.h"
 
 #include <math.h>

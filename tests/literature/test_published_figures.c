@@ -2,7 +2,7 @@
 /* literature/published.h: how figures are judged, against tolerances, reasons and ours. */
 #include "published_testing.h"
 
-#include "base/csv.h"
+#include "core/text/csv.h"
 #include "report/result_directory.h"
 
 /* Runs the experiment with these rows and reasons into DIR/out, and gives what the check says. */

@@ -4,7 +4,7 @@
  * timed and by the counted kernels, on one thread and on three; and the same counts on both. */
 #include "testing.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "render/frame.h"
 #include "scenes/open.h"
 #include "verify/spread.h"

@@ -2,10 +2,10 @@
 /* render/: images, heatmaps and pictures of structures, read back from the files they were written to. */
 #include "testing.h"
 
-#include "base/file.h"
-#include "base/memory.h"
-#include "render/draw.h"
-#include "render/heatmap.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "picture/draw.h"
+#include "picture/heatmap.h"
 #include "render/image.h"
 #include "scenes/open.h"
 

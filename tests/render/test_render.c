@@ -3,7 +3,7 @@
  * number of threads. */
 #include "render_testing.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <pthread.h>
 

@@ -2,7 +2,7 @@
 /* Distributions in a result directory, and in bench. */
 #include "experiment_testing.h"
 
-#include "base/csv.h"
+#include "core/text/csv.h"
 
 #include <unistd.h>
 

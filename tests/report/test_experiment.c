@@ -4,9 +4,9 @@
 #include "clock_testing.h"
 #include "experiment_testing.h"
 
-#include "base/csv.h"
-#include "base/json.h"
 #include "bench/result_tables.h"
+#include "core/text/csv.h"
+#include "core/text/json.h"
 #include "report/result_directory.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 /* Shards of one experiment, joined. */
 #include "experiment_testing.h"
 
-#include "base/csv.h"
+#include "core/text/csv.h"
 
 #include <sys/stat.h>
 

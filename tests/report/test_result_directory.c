@@ -4,7 +4,7 @@
  * Linked so that openings of scenes come here, to be counted. */
 #include "experiment_testing.h"
 
-#include "base/lock.h"
+#include "core/base/lock.h"
 #include "report/result_directory.h"
 #include "scenes/open.h"
 

@@ -2,7 +2,7 @@
 /* Experiments that sweep parameters: rows, columns, and the plot that needs no script. */
 #include "experiment_testing.h"
 
-#include "base/csv.h"
+#include "core/text/csv.h"
 
 #include <unistd.h>
 

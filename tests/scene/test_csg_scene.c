@@ -3,9 +3,9 @@
  * fingerprint, counting, and lack of memory while one is added. */
 #include "csg_testing.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
+#include "core/scene/append.h"
 #include "render/illumination.h"
-#include "scene/append.h"
 
 /* ---- helpers ---- */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Formulas of CSG trees: what they mean, and what is said of those that mean nothing. */
-#include "scene/formula.h"
+#include "core/scene/formula.h"
 #include "testing.h"
 
 #include <stdio.h>

@@ -2,10 +2,10 @@
 /* Meshes through Assimp: what is kept, what is placed where, what is refused. */
 #include "testing.h"
 
-#include "base/file.h"
-#include "base/memory.h"
-#include "scene/load.h"
-#include "scene/mesh.h"
+#include "core/base/file.h"
+#include "core/base/memory.h"
+#include "core/scene/load.h"
+#include "core/scene/mesh.h"
 #include "scenes/open.h"
 
 #include <stdio.h>

@@ -2,10 +2,10 @@
 /* NFF: what is read, what is written, and what is refused with which line. */
 #include "scene_testing.h"
 
-#include "base/file.h"
-#include "base/random.h"
-#include "scene/load.h"
-#include "scene/nff.h"
+#include "core/base/file.h"
+#include "core/base/random.h"
+#include "core/scene/load.h"
+#include "core/scene/nff.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -6,9 +6,9 @@
 
 #include "testing.h"
 
-#include "base/memory.h"
-#include "scene/append.h"
-#include "scene/yaml.h"
+#include "core/base/memory.h"
+#include "core/scene/append.h"
+#include "core/scene/yaml.h"
 #include "scenes/builtin.h"
 
 #include <stdio.h>

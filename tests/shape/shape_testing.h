@@ -6,7 +6,7 @@
 #include "room_testing.h"
 #include "testing.h"
 
-#include "shape/geometry.h"
+#include "core/shape/geometry.h"
 
 static inline RtRay make_ray(RtVec3 org, RtVec3 dir) {
     return (RtRay){.org = org, .dir = dir, .tmin = 0, .tmax = INFINITY};

@@ -2,8 +2,8 @@
 /* Boxes, balls and support functions of every shape hold a thousand points of its surface, and touch it. */
 #include "testing.h"
 
-#include "base/random.h"
-#include "shape/geometry.h"
+#include "core/base/random.h"
+#include "core/shape/geometry.h"
 
 enum { POINTS = 1000, OBJECTS = 40 };
 

@@ -5,8 +5,8 @@
  * true. RAYTALLY_CSG_RAYS sets the number of rays. */
 #include "csg_testing.h"
 
-#include "base/memory.h"
-#include "scene/formula.h"
+#include "core/base/memory.h"
+#include "core/scene/formula.h"
 #include "scenes/open.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 /* shape/csg: trees as a whole. Extents that change nothing, moves, trees of any depth, and lack of memory. */
 #include "csg_testing.h"
 
-#include "base/memory.h"
+#include "core/base/memory.h"
 
 #include <pthread.h>
 

@@ -3,7 +3,7 @@
  * hits beyond an object, however flat. */
 #include "shape_testing.h"
 
-#include "base/random.h"
+#include "core/base/random.h"
 
 /* One object of each kind, about the origin, 2^exponent in size; 0.75 and the like survive the scaling. */
 static RtGeometry one_of_each(int exponent) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shape/solid.h: solids of each kind met by lines whose crossings are known by hand, and what is refused. */
+/* core/shape/solid.h: solids of each kind met by lines whose crossings are known by hand, and what is
+ * refused. */
 #include "solids_testing.h"
 
 /* ---- by hand ---- */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shape/solid.h: meshes, hulls and planes that coincide: faces that several solids, or several triangles,
- * share. */
+/* core/shape/solid.h: meshes, hulls and planes that coincide: faces that several solids, or several
+ * triangles, share. */
 #include "solids_testing.h"
 
 /* ---- what different solids have in common ---- */

@@ -6,7 +6,7 @@
 #define RT_TESTS_MUTANTS_H
 
 #include "accel/kernel.h"
-#include "base/memory.h"
+#include "core/base/memory.h"
 #include "verify/failure.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
  * one another, for every accelerator at every setting of the spread. */
 #include "equivalence_testing.h"
 
-#include "base/parallel.h"
+#include "core/base/parallel.h"
 #include "verify/spread.h"
 
 #include <string.h>

@@ -4,7 +4,7 @@
 #include "mutants.h"
 #include "testing.h"
 
-#include "base/file.h"
+#include "core/base/file.h"
 #include "scenes/open.h"
 #include "verify/replay.h"
 #include "verify/spread.h"

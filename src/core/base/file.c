@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/base/file.h"
+
+#include "core/base/memory.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define TEMPORARY_END ".tmp"
+
+static RtStatus fail_io(RtError *error, const char *doing, const char *path) {
+    return rt_fail(error, RT_IO, "%s: %s failed: %s", path, doing, strerror(errno ? errno : EIO));
+}
+
+/* ---- writing ---- */
+
+/* Nobody can put a link, or another file, where the temporary file is going to be: its name holds 64 random
+ * bits, and what has that name already is not opened. */
+static RtStatus create_temporary(RtOutput *output, RtError *error) {
+    uint64_t number = 0;
+    int descriptor = -1;
+    if (getrandom(&number, sizeof number, 0) == sizeof number) {
+        snprintf(output->temporary, sizeof output->temporary, "%s.%016" PRIx64 TEMPORARY_END, output->path,
+                 number);
+        descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    }
+    if (descriptor >= 0) output->file = fdopen(descriptor, "wb");
+    if (output->file) return RT_OK;
+    RtStatus status = fail_io(error, "creating the file", output->path);
+    if (descriptor >= 0) {
+        close(descriptor);
+        remove(output->temporary);
+    }
+    output->temporary[0] = '\0';
+    return status;
+}
+
+RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
+    output->file = NULL;
+    output->temporary[0] = '\0';
+    if (strlen(path) >= RT_MAX_PATH)
+        return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
+    struct stat info;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) {
+        return rt_fail(error, RT_IO, "%s is a %s: give the name of a file", path,
+                       S_ISDIR(info.st_mode) ? "folder" : "device or pipe, which a file would replace");
+    }
+    strcpy(output->path, path);
+    return create_temporary(output, error);
+}
+
+RtStatus rt_output_finish(RtOutput *output, RtError *error) {
+    errno = 0;
+    bool written = fflush(output->file) == 0 && !ferror(output->file) && fsync(fileno(output->file)) == 0;
+    RtStatus status = written ? RT_OK : fail_io(error, "writing", output->path);
+    bool closed = fclose(output->file) == 0;
+    output->file = NULL;
+    if (written && !closed) status = fail_io(error, "writing", output->path);
+    if (status != RT_OK) rt_output_discard(output);
+    return status;
+}
+
+RtStatus rt_output_commit(RtOutput *output, RtError *error) {
+    if (output->file) RT_TRY(rt_output_finish(output, error));
+    RtStatus status = RT_OK;
+    if (rename(output->temporary, output->path) != 0) status = fail_io(error, "writing", output->path);
+    if (status != RT_OK) remove(output->temporary);
+    output->temporary[0] = '\0';
+    return status;
+}
+
+void rt_output_discard(RtOutput *output) {
+    if (output->file) fclose(output->file);
+    output->file = NULL;
+    if (*output->temporary) remove(output->temporary);
+    output->temporary[0] = '\0';
+}
+
+RtStatus rt_file_write(const char *path, const void *data, size_t size, RtError *error) {
+    RtOutput output;
+    RT_TRY(rt_output_open(&output, path, error));
+    fwrite(data, 1, size, output.file);
+    return rt_output_commit(&output, error);
+}
+
+/* ---- several at once ---- */
+
+RtStatus rt_outputs_add(RtOutputs *outputs, const char *path, RtOutput **output, RtError *error) {
+    RT_TRY(rt_reserve(&outputs->list, &outputs->capacity, outputs->count + UINT64_C(1), sizeof *outputs->list,
+                      error));
+    *output = &outputs->list[outputs->count];
+    RT_TRY(rt_output_open(*output, path, error));
+    outputs->count++;
+    return RT_OK;
+}
+
+RtStatus rt_outputs_copy(RtOutputs *outputs, const char *from, const char *to, RtError *error) {
+    enum { MOST_BYTES = 1 << 24 };
+    RtOutput *output;
+    char *data;
+    size_t size;
+    RT_TRY(rt_file_read(from, MOST_BYTES, &data, &size, error));
+    RtStatus status = rt_outputs_add(outputs, to, &output, error);
+    if (status == RT_OK) {
+        fwrite(data, 1, size, output->file);
+        status = rt_output_finish(output, error);
+    }
+    rt_free(data);
+    return status;
+}
+
+RtStatus rt_outputs_commit(RtOutputs *outputs, RtError *error) {
+    for (uint32_t i = 0; i < outputs->count; i++) RT_TRY(rt_output_commit(&outputs->list[i], error));
+    return RT_OK;
+}
+
+void rt_outputs_clear(RtOutputs *outputs) {
+    for (uint32_t i = 0; i < outputs->count; i++) rt_output_discard(&outputs->list[i]);
+    rt_free(outputs->list);
+    *outputs = (RtOutputs){0};
+}
+
+/* "NAME.", 16 digits, ".tmp". */
+static void remove_temporary(void *context, const char *path) {
+    size_t length = strlen(path), tail = strlen(".0123456789abcdef" TEMPORARY_END);
+    (void)context;
+    if (length <= tail || path[length - tail] != '.') return;
+    if (strspn(path + length - tail + 1, "0123456789abcdef") == 16) remove(path);
+}
+
+void rt_outputs_remove_left(const char *folder) {
+    rt_directory_each(folder, TEMPORARY_END, remove_temporary, NULL);
+}
+
+/* ---- reading ---- */
+
+static RtStatus read_all(FILE *file, const char *path, size_t limit, char **data, size_t *size,
+                         RtError *error) {
+    struct stat info;
+    if (fstat(fileno(file), &info) != 0) return fail_io(error, "reading", path);
+    if ((uint64_t)info.st_size > limit) {
+        return rt_fail(error, RT_BAD_INPUT, "%s: %lld bytes are too many: the limit is %zu", path,
+                       (long long)info.st_size, limit);
+    }
+    char *buffer = rt_alloc((size_t)info.st_size + 1, 1);
+    if (!buffer) return rt_fail_memory(error, path, (size_t)info.st_size + 1);
+    *size = fread(buffer, 1, (size_t)info.st_size, file);
+    if (ferror(file)) {
+        rt_free(buffer);
+        return fail_io(error, "reading", path);
+    }
+    buffer[*size] = '\0';
+    *data = buffer;
+    return RT_OK;
+}
+
+RtStatus rt_file_open(const char *path, FILE **file, RtError *error) {
+    struct stat info;
+    /* Before it is opened: opening a pipe waits for somebody to write to it. */
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+        return rt_fail(error, RT_BAD_INPUT, "%s: this is not a file", path);
+    *file = fopen(path, "rb");
+    if (*file) return RT_OK;
+    int reason = errno;
+    if (rt_file_is_dead_link(path, error)) return RT_BAD_INPUT;
+    return rt_fail(error, RT_BAD_INPUT, "%s: cannot be opened: %s", path, strerror(reason));
+}
+
+RtStatus rt_file_read(const char *path, size_t limit, char **data, size_t *size, RtError *error) {
+    *data = NULL;
+    *size = 0;
+    FILE *file;
+    RT_TRY(rt_file_open(path, &file, error));
+    RtStatus status = read_all(file, path, limit, data, size, error);
+    fclose(file);
+    return status;
+}
+
+bool rt_file_exists(const char *path) {
+    return access(path, R_OK) == 0;
+}
+
+bool rt_file_is_dead_link(const char *path, RtError *error) {
+    char target[RT_MAX_PATH];
+    struct stat info;
+    ssize_t length = readlink(path, target, sizeof target - 1);
+    if (length < 0 || stat(path, &info) == 0 || errno == EACCES) return false;
+    target[length] = '\0';
+    rt_fail(error, RT_BAD_INPUT, "%s is a symbolic link that leads to no file: its target is '%s'", path,
+            target);
+    return true;
+}
+
+/* ---- folders and names ---- */
+
+RtStatus rt_directory_create(const char *path, RtError *error) {
+    char part[RT_MAX_PATH];
+    if (strlen(path) >= sizeof part)
+        return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
+    for (size_t i = 0; path[i]; i++) {
+        part[i] = path[i];
+        part[i + 1] = '\0';
+        bool end = path[i + 1] == '/' || path[i + 1] == '\0';
+        if (path[i] == '/' || !end) continue;
+        if (mkdir(part, 0777) != 0 && errno != EEXIST) return fail_io(error, "creating the directory", part);
+    }
+    struct stat info;
+    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return RT_OK;
+    return rt_fail(error, RT_IO, "%s: this is not a directory", path);
+}
+
+static bool ends_in(const char *name, const char *suffix) {
+    size_t length = strlen(name), tail = strlen(suffix);
+    return length >= tail && strcmp(name + length - tail, suffix) == 0;
+}
+
+size_t rt_directory_each(const char *folder, const char *suffix,
+                         void (*visit)(void *context, const char *path), void *context) {
+    struct dirent **entries;
+    int count = scandir(folder, &entries, NULL, alphasort);
+    if (count < 0) return 0;
+    size_t visited = 0;
+    for (int i = 0; i < count; i++) {
+        char path[RT_MAX_PATH];
+        const char *name = entries[i]->d_name;
+        if (ends_in(name, suffix) && rt_path_join(folder, name, path, NULL) == RT_OK) {
+            visit(context, path);
+            visited++;
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    return visited;
+}
+
+RtStatus rt_path_join(const char *folder, const char *name, char *out, RtError *error) {
+    bool alone = name[0] == '/' || folder[0] == '\0';
+    int length =
+        alone ? snprintf(out, RT_MAX_PATH, "%s", name) : snprintf(out, RT_MAX_PATH, "%s/%s", folder, name);
+    if (length >= 0 && length < RT_MAX_PATH) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", name);
+}
+
+void rt_path_folder(const char *path, char *out) {
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) : 0;
+    if (slash == path) length = 1;
+    if (length >= RT_MAX_PATH) length = 0;
+    memcpy(out, path, length);
+    out[length] = '\0';
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/base/lock.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+/* The process that holds the lock on the file behind `descriptor`, as /proc/locks has it; 0 where it does
+ * not. */
+static int find_holder(int descriptor) {
+    char line[256];
+    struct stat info;
+    int holder = 0;
+    FILE *locks = fopen("/proc/locks", "r");
+    if (!locks) return 0;
+    while (fstat(descriptor, &info) == 0 && holder == 0 && fgets(line, sizeof line, locks)) {
+        unsigned major_number, minor_number;
+        unsigned long long inode;
+        int process;
+        if (sscanf(line, "%*d: FLOCK %*s %*s %d %x:%x:%llu", &process, &major_number, &minor_number,
+                   &inode) == 4 &&
+            inode == info.st_ino && major_number == major(info.st_dev) &&
+            minor_number == minor(info.st_dev)) {
+            holder = process;
+        }
+    }
+    fclose(locks);
+    return holder;
+}
+
+static RtStatus fail_held(const char *path, int holder, RtError *error) {
+    char who[48] = "another process";
+    if (holder > 0) snprintf(who, sizeof who, "process %d", holder);
+    return rt_fail(error, RT_BAD_INPUT, "%s: %s is writing into this directory: wait until it has ended",
+                   path, who);
+}
+
+RtStatus rt_lock_take(RtLock *lock, const char *path, RtError *error) {
+    *lock = RT_NO_LOCK;
+    int descriptor = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0 && (errno == ENOENT || errno == ENOTDIR)) return RT_OK;
+    if (descriptor < 0) return rt_fail(error, RT_IO, "%s: cannot be opened: %s", path, strerror(errno));
+    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+        lock->descriptor = descriptor;
+        return RT_OK;
+    }
+    RtStatus status = errno == EWOULDBLOCK ? fail_held(path, find_holder(descriptor), error) : RT_OK;
+    close(descriptor);
+    return status;
+}
+
+void rt_lock_release(RtLock *lock) {
+    if (rt_lock_is_held(lock)) close(lock->descriptor);
+    *lock = RT_NO_LOCK;
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/base/memory.h"
+
+#include <malloc.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+static _Atomic uint64_t fail_countdown;
+static _Atomic int64_t live_blocks, live_bytes, most_bytes = INT64_MAX;
+
+static bool told_to_fail(void) {
+    uint64_t left = atomic_load(&fail_countdown);
+    while (left > 0) {
+        if (atomic_compare_exchange_weak(&fail_countdown, &left, left - 1)) return left == 1;
+    }
+    return false;
+}
+
+/* Pages of this size are asked for from blocks of LARGE_BLOCK bytes on. */
+enum { LARGE_PAGE = 1 << 21, LARGE_BLOCK = 2 * LARGE_PAGE };
+
+/* `count` elements of `size` bytes on a boundary; to *padded their bytes and what follows up to the next. */
+static void *allocate(size_t count, size_t size, size_t boundary, size_t *padded) {
+    if (size != 0 && count > (SIZE_MAX - boundary) / size) return NULL;
+    if (told_to_fail()) return NULL;
+    *padded = (count * size + boundary) / boundary * boundary;
+    if (*padded > (uint64_t)INT64_MAX / 2 ||
+        atomic_load(&live_bytes) + (int64_t)*padded > atomic_load(&most_bytes))
+        return NULL;
+    void *block = aligned_alloc(boundary, *padded);
+    if (!block) return NULL;
+    atomic_fetch_add(&live_blocks, 1);
+    atomic_fetch_add(&live_bytes, (int64_t)malloc_usable_size(block));
+    return block;
+}
+
+void *rt_alloc(size_t count, size_t size) {
+    size_t padded;
+    void *block = allocate(count, size, RT_CACHE_LINE, &padded);
+    if (block) memset(block, 0, padded);
+    return block;
+}
+
+void *rt_alloc_unset(size_t count, size_t size) {
+    size_t padded;
+    bool large = size != 0 && count >= LARGE_BLOCK / size;
+    void *block = allocate(count, size, large ? LARGE_PAGE : RT_CACHE_LINE, &padded);
+    if (block && large) madvise(block, padded, MADV_HUGEPAGE); /* does what it can: it may fail */
+    return block;
+}
+
+void rt_free(void *block) {
+    if (!block) return;
+    atomic_fetch_sub(&live_blocks, 1);
+    atomic_fetch_sub(&live_bytes, (int64_t)malloc_usable_size(block));
+    free(block);
+}
+
+void rt_memory_limit(uint64_t bytes) {
+    atomic_store(&most_bytes, bytes ? atomic_load(&live_bytes) + (int64_t)bytes : INT64_MAX);
+}
+
+RtStatus rt_reserve(void *array, uint32_t *capacity, uint64_t needed, size_t size, RtError *error) {
+    if (needed <= *capacity) return RT_OK;
+    if (needed > UINT32_MAX) {
+        return rt_fail(error, RT_BAD_INPUT, "more than %u elements are needed: split the scene", UINT32_MAX);
+    }
+    uint64_t grown = (uint64_t)*capacity * 2;
+    if (grown < needed) grown = needed;
+    if (grown < 16) grown = 16;
+    if (grown > UINT32_MAX) grown = UINT32_MAX;
+    void *block = rt_alloc_unset((size_t)grown, size);
+    if (!block) return rt_fail_memory(error, "a growing array", (size_t)grown * size);
+    /* The caller's pointer is read and written as bytes: it is no void pointer, and may not be taken for
+     * one. */
+    void *old;
+    memcpy(&old, array, sizeof old);
+    if (old) memcpy(block, old, (size_t)*capacity * size);
+    rt_free(old);
+    memcpy(array, &block, sizeof block);
+    *capacity = (uint32_t)grown;
+    return RT_OK;
+}
+
+uint64_t rt_memory_size(void) {
+    return (uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+void rt_alloc_fail_at(uint64_t n) {
+    atomic_store(&fail_countdown, n);
+}
+
+int64_t rt_alloc_live(void) {
+    return atomic_load(&live_blocks);
+}

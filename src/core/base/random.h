@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Counter-based random numbers (Philox 4x32-10, Salmon et al. 2011, through Random123): the nth number of a
+ * stream is a function of (seed, stream, n) alone, so any part of an experiment can be generated on its own
+ * and on any thread. Uniform numbers use + - * only; the same bits everywhere, as long as no two are drawn in
+ * one list of initialisers or arguments, nor on both sides of an operator: C leaves their order open. */
+#ifndef RT_BASE_RANDOM_H
+#define RT_BASE_RANDOM_H
+
+#include "core/base/vec.h"
+
+#include <stdint.h>
+
+typedef struct RtRandom {
+    uint64_t seed, stream;
+    uint64_t next; /* block to generate next */
+    uint32_t block[4];
+    uint32_t used; /* words of `block` already handed out, 4 = none left */
+} RtRandom;
+
+/* The stream numbered `stream` of `seed`, from its beginning. */
+RtRandom rt_random(uint64_t seed, uint64_t stream);
+
+/* 32 uniform bits. */
+uint32_t rt_random_bits(RtRandom *random);
+
+/* One of 0..count-1, count > 0; uniform but for count / 2^32. */
+static inline uint32_t rt_random_below(RtRandom *random, uint32_t count) {
+    return rt_random_bits(random) % count;
+}
+
+/* Uniform in [0, 1), a multiple of 2^-24. */
+float rt_random_unit(RtRandom *random);
+
+/* Uniform in [lo, hi). */
+static inline float rt_random_between(RtRandom *random, float lo, float hi) {
+    return lo + (hi - lo) * rt_random_unit(random);
+}
+
+static inline double rt_random_betweend(RtRandom *random, double lo, double hi) {
+    return lo + (hi - lo) * (double)rt_random_unit(random);
+}
+
+/* Uniform in the cube of points with coordinates in [-size, size). */
+static inline RtVec3 rt_random_point(RtRandom *random, float size) {
+    RtVec3 p;
+    for (int a = 0; a < 3; a++) p.at[a] = rt_random_between(random, -size, size);
+    return p;
+}
+
+/* Uniform on the unit sphere, by rejection from the cube: no sine or cosine, the same bits everywhere. */
+RtVec3d rt_random_direction(RtRandom *random);
+
+/* Cosine-distributed about the unit vector `normal`: normal + a uniform direction, normalised. */
+RtVec3d rt_random_cosine(RtRandom *random, RtVec3d normal);
+
+#endif

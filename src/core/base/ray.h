@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Rays, hits, and the one box test that everything conservative rests on.
+ *
+ * A ray is org + t * dir for tmin <= t <= tmax; dir need not have length 1, so t is in lengths of dir. Before
+ * it is traced a ray is prepared once (rt_ray_prepare): reciprocals, signs, and a thickness.
+ *
+ * Thickness. Hit functions compute in rounded arithmetic, so a ray may be said to hit an object that it
+ * misses by a few ulps of the distance between them. A box test that is to be trusted must be wider than
+ * that: it moves the planes of the box outward by
+ *
+ *     thickness(ray, B) = 2^-20 * max over axes of max(|B.lo - org|, |B.hi - org|)          (16 half-ulps)
+ *
+ * which is done for free by using one origin for near planes and another for far planes (the idea is in Woop,
+ * Benthin & Wald 2013, "Watertight Ray/Triangle Intersection", section 3.4). The origin moves along each axis
+ * by 2^-23 |org| more (rt_four_shift), for otherwise the rounding of the sum would swallow the thickness
+ * where a scene lies far from the zero of coordinates.
+ *
+ * Why pruning is exact. The crossings (plane - org') * inv are monotone in the plane, in float32 as in the
+ * real numbers, and the thickness grows with the box. So for b inside B, with the thickness of B or of
+ * anything larger:
+ *
+ *     enter(B) <= enter(b)  and  leave(b) <= leave(B),  bit for bit.
+ *
+ * rt_box_admit makes enter(b) <= t <= leave(b) part of what a hit on an object with box b *is*. Therefore a
+ * structure that skips B only if enter(B) > leave(B) or enter(B) > t of the best hit never skips the answer,
+ * whatever the rounding of the hit function. No other epsilon is needed anywhere. */
+#ifndef RT_BASE_RAY_H
+#define RT_BASE_RAY_H
+
+#include "core/base/box.h"
+#include "core/base/four.h"
+#include "core/base/status.h"
+
+#include <float.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* X(CONSTANT, name, meaning) */
+#define RT_RAY_KINDS(X)                                                                                      \
+    X(PRIMARY, primary, "from the eye through a sample of the image")                                        \
+    X(SHADOW, shadow, "from a surface to a light; answered by `occluded`")                                   \
+    X(REFLECTION, reflection, "mirrored at a reflective surface")                                            \
+    X(TRANSMISSION, transmission, "refracted through a transparent surface")                                 \
+    X(DIFFUSE, diffuse, "from a surface, cosine-distributed about the normal")                               \
+    X(RANDOM, random, "a random chord of the scene's bounding sphere")                                       \
+    X(OCCLUSION, occlusion, "a diffuse ray that asks for any hit; answered by `occluded`")
+
+typedef enum RtRayKind {
+#define RT_RAY_KIND_ENUM(CONSTANT, name, meaning) RT_RAY_##CONSTANT,
+    RT_RAY_KINDS(RT_RAY_KIND_ENUM)
+#undef RT_RAY_KIND_ENUM
+        RT_RAY_KIND_COUNT
+} RtRayKind;
+
+/* Rays that ask whether anything lies on them, and not what is nearest: `occluded` answers them. */
+static inline bool rt_ray_kind_is_occlusion(RtRayKind kind) {
+    return kind == RT_RAY_SHADOW || kind == RT_RAY_OCCLUSION;
+}
+
+/* Rays that a frame is rendered with. */
+static inline bool rt_ray_kind_is_of_frame(RtRayKind kind) {
+    return kind == RT_RAY_PRIMARY || kind == RT_RAY_SHADOW || kind == RT_RAY_REFLECTION ||
+           kind == RT_RAY_TRANSMISSION;
+}
+
+/* "primary", ...; and the kind of a name, or RT_BAD_INPUT and the names there are. */
+const char *rt_ray_kind_name(RtRayKind kind);
+RtStatus rt_ray_kind_parse(const char *name, RtRayKind *kind, RtError *error);
+
+/* Invariants (rt_ray_is_valid): org and dir finite, |org| <= RT_MAX_COORDINATE, dir not zero,
+ * 0 <= tmin <= tmax, tmin finite, tmax possibly infinite. */
+typedef struct RtRay {
+    RtVec3 org;
+    float tmin;
+    RtVec3 dir;
+    float tmax;
+    uint32_t kind;   /* RtRayKind */
+    uint32_t source; /* primary: index of the sample in the frame's sample grid; shadow: index of the light */
+} RtRay;
+
+/* "org (0, 0, 5) dir (0, 0, -1) t in [0, inf]", of nine digits, which read back to the same bits. */
+#define RT_RAY_TEXT 192
+void rt_ray_format(const RtRay *ray, char *out, size_t room);
+
+#define RT_NO_OBJECT UINT32_MAX
+
+/* The nearest hit: the least (t, object) in that order. A miss is {INFINITY, RT_NO_OBJECT}. */
+typedef struct RtHit {
+    float t;
+    uint32_t object;
+} RtHit;
+
+#define RT_MISS ((RtHit){INFINITY, RT_NO_OBJECT})
+
+/* Coordinates of scenes and origins stay below this (about 2^59), so that products of four of them are finite
+ * in double and Embree, which drops what is above 1.8e18, sees all that we see. */
+#define RT_MAX_COORDINATE 5e17f
+
+/* A ray with what box and triangle tests need, computed once. Arrays are indexed by axis. */
+typedef struct RtPreparedRay {
+    const RtRay *original;   /* what it was made from */
+    struct RtCrossing *room; /* what hit functions write to (rt_hit_ray); NULL: for boxes alone */
+    RtVec3 org, dir;
+    float tmin, tmax; /* tmax finite: a hit at infinity is none */
+    float inv[4];     /* 1 / dir, possibly infinite; here and below x, y, z and one more for vectors */
+    float org_near[4], org_far[4]; /* origins moved by the thickness */
+    uint32_t negative[4];          /* 1 where dir has its sign bit set, -0 included */
+    uint32_t first[4], last[4]; /* where in a box the sides are that it crosses first and last: rt_box_side */
+    int kx, ky, kz;             /* kz: the axis of largest |dir|; kx, ky the others, right-handed */
+    float shear_x, shear_y;     /* dir[kx] / dir[kz], dir[ky] / dir[kz] */
+} RtPreparedRay;
+
+static inline bool rt_ray_is_valid(const RtRay *ray) {
+    return rt_finite(ray->org) && rt_finite(ray->dir) && fabsf(ray->org.x) <= RT_MAX_COORDINATE &&
+           fabsf(ray->org.y) <= RT_MAX_COORDINATE && fabsf(ray->org.z) <= RT_MAX_COORDINATE &&
+           (ray->dir.x != 0 || ray->dir.y != 0 || ray->dir.z != 0) && ray->tmin >= 0 && isfinite(ray->tmin) &&
+           ray->tmin <= ray->tmax;
+}
+
+/* org + t * dir, in double. */
+static inline RtVec3d rt_ray_point(const RtRay *ray, float t) {
+    return rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), (double)t);
+}
+
+/* Does `a` come before `b` in the order that defines the nearest hit? */
+static inline bool rt_hit_before(float t, uint32_t object, RtHit best) {
+    return t < best.t || (t == best.t && object < best.object);
+}
+
+static inline float rt_four_thickness(RtFour lo, RtFour hi, RtFour org) {
+    return rt_four_most(rt_four_max(rt_four_abs(lo - org), rt_four_abs(hi - org))) * 0x1p-20f;
+}
+
+static inline float rt_thickness(RtVec3 org, const RtBox *box) {
+    return rt_four_thickness(rt_four_lo(box), rt_four_hi(box), (RtFour){org.x, org.y, org.z, org.z});
+}
+
+/* By how much an origin moves along each axis for a thickness, towards where the ray comes from, of which
+ * `sign` has the sign bits. */
+static inline RtFour rt_four_shift(float thickness, RtFour org, RtFourBits sign) {
+    RtFour shift = thickness + rt_four_abs(org) * 0x1p-23f;
+    return (RtFour)((RtFourBits)shift ^ sign);
+}
+
+static inline void rt_ray_set_thickness(RtPreparedRay *ray, float thickness) {
+    RtFour org = rt_four(&ray->org); /* and what follows, here and below */
+    RtFour shift = rt_four_shift(thickness, org, rt_four_sign(rt_four(&ray->dir)));
+    RtFour near = org + shift, far = org - shift;
+    memcpy(ray->org_near, &near, sizeof ray->org_near);
+    memcpy(ray->org_far, &far, sizeof ray->org_far);
+}
+
+/* Gives the ray the thickness for boxes inside `around`. */
+static inline void rt_ray_thicken(RtPreparedRay *ray, const RtBox *around) {
+    rt_ray_set_thickness(ray, rt_thickness(ray->org, around));
+}
+
+/* To *p. `scene_box` must contain every box the prepared ray will be tested against; it sets the thickness.
+ * `room` is for hit functions, and may be NULL where none are asked (rt_hit_ray in core/shape/geometry.h). */
+static inline void rt_ray_prepare_in(RtPreparedRay *p, const RtRay *ray, const RtBox *scene_box,
+                                     struct RtCrossing *room) {
+    /* A ray is org, tmin, dir, tmax, and what follows. */
+    RtFour org = rt_four(ray), dir = rt_four((const char *)ray + offsetof(RtRay, dir)), inv = 1 / dir;
+    RtFourBits sign = rt_four_sign(dir), negative = sign < 0;
+    RtFour shift =
+        rt_four_shift(rt_four_thickness(rt_four_lo(scene_box), rt_four_hi(scene_box), org), org, sign);
+    RtFour near = org + shift, far = org - shift;
+    RtFourBits first = (RtFourBits){0, 4, 8, 8} + (negative & 12),
+               last = (RtFourBits){12, 16, 20, 20} - (negative & 12);
+    negative &= 1;
+    p->original = ray;
+    p->room = room;
+    p->org = ray->org;
+    p->dir = ray->dir;
+    memcpy(p->inv, &inv, sizeof p->inv);
+    memcpy(p->org_near, &near, sizeof p->org_near);
+    memcpy(p->org_far, &far, sizeof p->org_far);
+    memcpy(p->negative, &negative, sizeof p->negative);
+    memcpy(p->first, &first, sizeof p->first);
+    memcpy(p->last, &last, sizeof p->last);
+    p->tmin = ray->tmin;
+    p->tmax = rt_minf(ray->tmax, FLT_MAX);
+    p->kz = rt_major_axis(ray->dir);
+    p->kx = rt_next_axis(p->kz);
+    p->ky = rt_next_axis(p->kx);
+    p->shear_x = p->dir.at[p->kx] * p->inv[p->kz];
+    p->shear_y = p->dir.at[p->ky] * p->inv[p->kz];
+}
+
+/* The same for tests of boxes alone. */
+static inline RtPreparedRay rt_ray_prepare(const RtRay *ray, const RtBox *scene_box) {
+    RtPreparedRay p;
+    rt_ray_prepare_in(&p, ray, scene_box, NULL);
+    return p;
+}
+
+/* A side of a box, so many bytes from its beginning. Which of two a ray crosses first is looked up, not
+ * asked: of rays in all directions no one could predict that branch. */
+static inline float rt_box_side(const RtBox *box, uint32_t place) {
+    float at;
+    memcpy(&at, (const char *)box + place, sizeof at);
+    return at;
+}
+
+/* The slab test (Kay & Kajiya 1986): brings [*near, *far] down to where the thick ray is within the box; none
+ * is left where *near > *far. Where dir is 0, inv is infinite: the crossings are -inf or +inf, or NaN for an
+ * origin exactly on a moved plane, and NaN is passed over: such a ray counts as inside. */
+static inline void rt_box_cut(const RtBox *box, const RtPreparedRay *ray, float *near, float *far) {
+    for (int a = 0; a < 3; a++) {
+        float first = (rt_box_side(box, ray->first[a]) - ray->org_near[a]) * ray->inv[a];
+        float second = (rt_box_side(box, ray->last[a]) - ray->org_far[a]) * ray->inv[a];
+        *near = rt_maxf(first, *near);
+        *far = rt_minf(second, *far);
+    }
+}
+
+/* True if the thick ray meets the box for some t in [ray->tmin, tmax]; then *enter is where, at least
+ * tmin. */
+static inline bool rt_box_hit(const RtBox *box, const RtPreparedRay *ray, float tmax, float *enter) {
+    float near = ray->tmin, far = tmax;
+    rt_box_cut(box, ray, &near, &far);
+    *enter = near;
+    return near <= far;
+}
+
+/* The interval [*near, *far] of t in which the ray is within an object's box, from `lo` to `hi`, by the
+ * thickness of that box alone; none where *near > *far. */
+static inline void rt_four_own_span(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *near, float *far) {
+    RtFour org = rt_four(&ray->org), inv = rt_four(ray->inv); /* and what follows org */
+    RtFourBits sign = rt_four_sign(rt_four(&ray->dir));
+    RtFour shift = rt_four_shift(rt_four_thickness(lo, hi, org), org, sign);
+    RtFour first = (rt_four_pick(sign, lo, hi) - (org + shift)) * inv;
+    RtFour second = (rt_four_pick(sign, hi, lo) - (org - shift)) * inv;
+    *near = -INFINITY, *far = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        *near = rt_maxf(first[a], *near);
+        *far = rt_minf(second[a], *far);
+    }
+}
+
+/* What makes a candidate t a hit on an object whose own box is from `lo` to `hi`: the thick ray meets the
+ * box, t is brought into [enter, leave] (it moves by rounding only), and then lies in [tmin, tmax]. NaN is
+ * refused. */
+static inline bool rt_four_admit(RtFour lo, RtFour hi, const RtPreparedRay *ray, float *t) {
+    float near, far;
+    rt_four_own_span(lo, hi, ray, &near, &far);
+    if (!(near <= far)) return false;
+    float clamped = *t < near ? near : *t > far ? far : *t;
+    if (!(clamped >= ray->tmin && clamped <= ray->tmax)) return false;
+    *t = clamped;
+    return true;
+}
+
+/* The same for a box in memory. */
+static inline void rt_box_own_span(const RtBox *own, const RtPreparedRay *ray, float *near, float *far) {
+    rt_four_own_span(rt_four_lo(own), rt_four_hi(own), ray, near, far);
+}
+
+static inline bool rt_box_admit(const RtBox *own, const RtPreparedRay *ray, float *t) {
+    return rt_four_admit(rt_four_lo(own), rt_four_hi(own), ray, t);
+}
+
+#endif

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/base/tally.h"
+
+#include <assert.h>
+
+static const struct {
+    const char *name, *meaning;
+} counters[] = {
+#define COUNTER(name, meaning) {#name, meaning},
+    RT_TALLY_COUNTERS(COUNTER)};
+
+const char *rt_tally_name(size_t i) {
+    assert(i < RT_TALLY_COUNTER_COUNT);
+    return counters[i].name;
+}
+
+const char *rt_tally_meaning(size_t i) {
+    assert(i < RT_TALLY_COUNTER_COUNT);
+    return counters[i].meaning;
+}
+
+uint64_t rt_tally_get(const RtTally *tally, size_t i) {
+    assert(i < RT_TALLY_COUNTER_COUNT);
+    return ((const uint64_t *)tally)[i]; /* counters are all a tally has */
+}
+
+void rt_tally_add(RtTally *sum, const RtTally *part) {
+#define ADD(name, meaning) sum->name += part->name;
+    RT_TALLY_COUNTERS(ADD)
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/base/words.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Levenshtein distance, for words of up to 63 characters. */
+static size_t edit_distance(const char *a, const char *b) {
+    size_t row[64], n = strlen(b);
+    if (n > 63 || strlen(a) > 63) return 64;
+    for (size_t j = 0; j <= n; j++) row[j] = j;
+    for (size_t i = 0; a[i]; i++) {
+        size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (size_t j = 0; j < n; j++) {
+            size_t replace = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            size_t remove = row[j + 1] + 1, insert = row[j] + 1;
+            row[j + 1] = replace < remove ? (replace < insert ? replace : insert)
+                                          : (remove < insert ? remove : insert);
+        }
+    }
+    return row[n];
+}
+
+const char *rt_nearest_name(const char *word, const char *const *names, size_t count) {
+    const char *best = NULL;
+    size_t least = strlen(word) / 2 + 1;
+    for (size_t i = 0; i < count; i++) {
+        size_t distance = edit_distance(word, names[i]);
+        if (distance < least) {
+            least = distance;
+            best = names[i];
+        }
+    }
+    return best;
+}
+
+void rt_suggest(const char *word, const char *const *names, size_t count, char out[RT_MAX_SUGGESTION]) {
+    const char *near = rt_nearest_name(word, names, count);
+    out[0] = '\0';
+    if (near) snprintf(out, RT_MAX_SUGGESTION, ": did you mean '%s'?", near);
+}
+
+void rt_join_names(const char *const *names, size_t count, char *out, size_t room) {
+    out[0] = '\0';
+    for (size_t i = 0; i < count; i++) {
+        size_t used = strlen(out);
+        snprintf(out + used, room - used, "%s%s", i ? ", " : "", names[i]);
+    }
+}
+
+void rt_print_wrapped(const char *text, FILE *out) {
+    enum { WIDTH = 80 };
+    while (strlen(text) > WIDTH) {
+        size_t end = WIDTH;
+        while (end > 0 && text[end] != ' ') end--;
+        if (end == 0) end = strcspn(text, " ");
+        if (text[end] == '\0') break;
+        fprintf(out, "%.*s\n", (int)end, text);
+        text += end + 1;
+    }
+    fprintf(out, "%s\n", text);
+}

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/scene/load.h"
+
+#include "core/base/file.h"
+#include "core/base/words.h"
+#include "core/scene/mesh.h"
+#include "core/scene/nff.h"
+#include "core/scene/yaml.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+typedef RtStatus Load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error);
+
+static RtStatus load_nff(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+    (void)open_named;
+    return rt_nff_load(path, scene, error);
+}
+
+static RtStatus load_mesh(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+    (void)open_named;
+    return rt_mesh_load(path, scene, error);
+}
+
+/* Formats with a reader and a writer of our own; all else is a mesh. */
+static const struct {
+    const char *extension; /* without the dot */
+    Load *load;
+    RtStatus (*save)(const RtScene *scene, FILE *file, RtError *error);
+} formats[] = {
+    {"yaml", rt_yaml_load, rt_yaml_save},
+    {"yml", rt_yaml_load, rt_yaml_save},
+    {"nff", load_nff, rt_nff_save},
+};
+
+enum { FORMAT_COUNT = sizeof formats / sizeof formats[0], MAX_WRITTEN = FORMAT_COUNT + 8 };
+
+/* What follows the last dot of the last part of a path; "" if there is none. */
+static const char *extension_of(const char *path) {
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    return dot && (!slash || dot > slash) ? dot + 1 : "";
+}
+
+/* Index of our own format of that extension, or -1. */
+static int find_format(const char *extension) {
+    for (int i = 0; i < FORMAT_COUNT; i++) {
+        if (strcasecmp(formats[i].extension, extension) == 0) return i;
+    }
+    return -1;
+}
+
+static Load *find_loader(const char *extension) {
+    int own = find_format(extension);
+    return own >= 0 ? formats[own].load : rt_mesh_reads(extension) ? load_mesh : NULL;
+}
+
+/* The extensions that can be written, to names[0..MAX_WRITTEN); returns how many there are. */
+static size_t list_written(const char *names[MAX_WRITTEN]) {
+    size_t count = 0;
+    for (int i = 0; i < FORMAT_COUNT; i++) names[count++] = formats[i].extension;
+    for (size_t i = 0; rt_mesh_written(i) && count < MAX_WRITTEN; i++) names[count++] = rt_mesh_written(i);
+    return count;
+}
+
+/* `more` ends the list of extensions. */
+static RtStatus fail_extension(const char *path, const char *doing, const char *more, RtError *error) {
+    const char *names[MAX_WRITTEN], *extension = extension_of(path);
+    size_t count = list_written(names);
+    char list[256] = "";
+    for (size_t i = 0; i < count; i++) {
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s.%s", i ? " " : "", names[i]);
+    }
+    const char *near = rt_nearest_name(extension, names, count);
+    return rt_fail(error, RT_BAD_INPUT, "%s: no format '.%.40s' can be %s%s%s%s These can: %s%s", path,
+                   extension, doing, near ? ": did you mean '." : "", near ? near : "", near ? "'?" : ".",
+                   list, more);
+}
+
+/* Names the file of the same folder whose name is nearest. */
+static RtStatus fail_missing(const char *path, RtError *error) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    char folder[RT_MAX_PATH], best[256] = "";
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 2, slash ? path : "./");
+    DIR *dir = opendir(folder);
+    if (!dir) return rt_fail(error, RT_BAD_INPUT, "%s: there is no such file, nor a folder %s", path, folder);
+    for (struct dirent *entry; (entry = readdir(dir));) {
+        const char *names[2] = {entry->d_name, best};
+        if (entry->d_name[0] == '.') continue;
+        const char *near = rt_nearest_name(name, names, best[0] ? 2 : 1);
+        if (near && near != best) snprintf(best, sizeof best, "%s", near);
+    }
+    closedir(dir);
+    return rt_fail(error, RT_BAD_INPUT, "%s: there is no such file%s%s%s%s", path,
+                   best[0] ? ": did you mean '" : "", best[0] && slash ? folder : "", best,
+                   best[0] ? "'?" : "");
+}
+
+bool rt_scene_is_file(const char *spec) {
+    return rt_file_exists(spec) || strchr(spec, '/') || extension_of(spec)[0];
+}
+
+RtStatus rt_scene_load(const char *path, RtSceneOpener *open_named, RtScene *scene, RtError *error) {
+    *scene = (RtScene){0};
+    struct stat found;
+    bool exists = stat(path, &found) == 0;
+    if (exists && S_ISDIR(found.st_mode)) {
+        return rt_fail(error, RT_BAD_INPUT, "%s is a folder: give the name of a file in it", path);
+    }
+    Load *load = find_loader(extension_of(path));
+    if (!load) return fail_extension(path, "read", ", and the other mesh formats of Assimp", error);
+    if (!exists) return rt_file_is_dead_link(path, error) ? RT_BAD_INPUT : fail_missing(path, error);
+    rt_scene_init(scene);
+    snprintf(scene->name, sizeof scene->name, "%.*s", (int)sizeof scene->name - 1, path);
+    RtStatus status = load(path, open_named, scene, error);
+    if (status == RT_OK && scene->geometry.object_count == 0) {
+        status = rt_fail_at(error, path, 0, 0, "the scene is empty: it needs at least one object");
+    }
+    if (status == RT_OK) status = rt_scene_finish(scene, error);
+    if (status != RT_OK) rt_scene_clear(scene);
+    return status;
+}
+
+RtStatus rt_scene_save(const RtScene *scene, const char *path, bool overwrite, RtError *error) {
+    const char *extension = extension_of(path), *names[MAX_WRITTEN];
+    size_t count = list_written(names), named = 0;
+    while (named < count && strcasecmp(names[named], extension) != 0) named++;
+    if (named == count) return fail_extension(path, "written", "", error);
+    if (!overwrite && rt_file_exists(path)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s exists already: remove it, choose another name, or convert with --force", path);
+    }
+    RtOutput output;
+    RT_TRY(rt_output_open(&output, path, error));
+    RtStatus status = named < FORMAT_COUNT ? formats[named].save(scene, output.file, error)
+                                           : rt_mesh_save(scene, extension, output.file, error);
+    if (status == RT_OK) return rt_output_commit(&output, error);
+    rt_output_discard(&output);
+    return status;
+}

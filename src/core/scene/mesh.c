@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reading meshes. Assimp's scene is a tree of nodes, each with a matrix and indices of meshes; the matrices
+ * are multiplied on the way down, in double, and every vertex is rounded to float32 once. */
+#include "core/scene/mesh.h"
+
+#include "core/base/file.h"
+
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct Reader {
+    const char *path;
+    const struct aiScene *file;
+    RtScene *scene;
+    uint32_t material;
+    RtError *error;
+} Reader;
+
+static RtTransform transform_of(const struct aiMatrix4x4 *m) {
+    return (RtTransform){{{(double)m->a1, (double)m->a2, (double)m->a3, (double)m->a4},
+                          {(double)m->b1, (double)m->b2, (double)m->b3, (double)m->b4},
+                          {(double)m->c1, (double)m->c2, (double)m->c3, (double)m->c4}}};
+}
+
+/* Turns the inside out: then corners are taken in reverse, and normals, which go by cofactors, change
+ * sign. */
+static bool is_mirror(const RtTransform *t) {
+    const RtVec3d x = {t->m[0][0], t->m[1][0], t->m[2][0]}, y = {t->m[0][1], t->m[1][1], t->m[2][1]};
+    const RtVec3d z = {t->m[0][2], t->m[1][2], t->m[2][2]};
+    return rt_dotd(rt_crossd(x, y), z) < 0;
+}
+
+static RtVec3 vector_at(const struct aiVector3D *vectors, unsigned i) {
+    return rt_vec3(vectors[i].x, vectors[i].y, vectors[i].z);
+}
+
+/* Assimp does not look before it splits polygons: it reads vertices that are not there, and stops the program
+ * at a face without corners. */
+static RtStatus check_faces(const struct aiMesh *mesh, const char *path, RtError *error) {
+    for (unsigned face = 0; face < mesh->mNumFaces; face++) {
+        const struct aiFace *f = &mesh->mFaces[face];
+        if (f->mNumIndices == 0) {
+            return rt_fail_at(error, path, 0, 0,
+                              "face %u of mesh '%.60s' (counted from 0) has no corners: the file is damaged",
+                              face, mesh->mName.data);
+        }
+        for (unsigned i = 0; i < f->mNumIndices; i++) {
+            if (f->mIndices[i] < mesh->mNumVertices) continue;
+            return rt_fail_at(error, path, 0, 0,
+                              "face %u of mesh '%.60s' names vertex %u of %u: the file is damaged", face,
+                              mesh->mName.data, f->mIndices[i], mesh->mNumVertices);
+        }
+    }
+    return RT_OK;
+}
+
+static RtStatus check_vertices(const Reader *r, const struct aiMesh *mesh) {
+    for (unsigned i = 0; i < mesh->mNumVertices; i++) {
+        RtVec3 v = vector_at(mesh->mVertices, i);
+        if (rt_finite(v)) continue;
+        return rt_fail_at(
+            r->error, r->path, 0, 0,
+            "vertex %u of mesh '%.60s' (counted from 0) is not finite: (%g, %g, %g); repair the "
+            "file",
+            i, mesh->mName.data, (double)v.x, (double)v.y, (double)v.z);
+    }
+    return RT_OK;
+}
+
+static RtStatus add_face(const Reader *r, const struct aiMesh *mesh, unsigned face,
+                         const RtTransform *transform, bool mirror) {
+    RtVec3 vertices[3], normals[3];
+    bool has_normals = mesh->mNormals != NULL;
+    for (int i = 0; i < 3; i++) {
+        unsigned vertex = mesh->mFaces[face].mIndices[mirror ? 2 - i : i];
+        vertices[i] = rt_transform_point(transform, vector_at(mesh->mVertices, vertex));
+        if (!has_normals) continue;
+        RtVec3 normal = vector_at(mesh->mNormals, vertex);
+        normals[i] = rt_transform_normal(transform, mirror ? rt_scale(normal, -1) : normal);
+        has_normals = rt_finite(normals[i]) && rt_lengthd(rt_widen(normals[i])) > 0;
+    }
+    RtStatus status =
+        rt_scene_add_triangle(r->scene, r->material, vertices, has_normals ? normals : NULL, r->error);
+    if (status != RT_BAD_INPUT || !r->error) return status;
+    RtError inner = *r->error;
+    return rt_fail_at(r->error, r->path, 0, 0, "face %u of mesh '%.60s' (counted from 0): %s", face,
+                      mesh->mName.data, inner.message);
+}
+
+static RtStatus add_mesh(const Reader *r, const struct aiMesh *mesh, const RtTransform *transform) {
+    bool mirror = is_mirror(transform);
+    RT_TRY(check_vertices(r, mesh));
+    for (unsigned face = 0; face < mesh->mNumFaces; face++) {
+        if (mesh->mFaces[face].mNumIndices != 3) continue; /* points and lines */
+        RT_TRY(add_face(r, mesh, face, transform, mirror));
+    }
+    return RT_OK;
+}
+
+static RtStatus add_node(const Reader *r, const struct aiNode *node, const RtTransform *above) {
+    RtTransform own = transform_of(&node->mTransformation), transform = rt_transform_compose(&own, above);
+    for (unsigned i = 0; i < node->mNumMeshes; i++) {
+        RT_TRY(add_mesh(r, r->file->mMeshes[node->mMeshes[i]], &transform));
+    }
+    for (unsigned i = 0; i < node->mNumChildren; i++) RT_TRY(add_node(r, node->mChildren[i], &transform));
+    return RT_OK;
+}
+
+/* Headers of PLY and OFF say how many elements follow, and Assimp makes room for them before it looks; so one
+ * that promises more elements than the file has bytes is refused. */
+static RtStatus check_header(FILE *file, const char *path, RtError *error) {
+    fseek(file, 0, SEEK_END);
+    long bytes = ftell(file);
+    rewind(file);
+    char line[256];
+    bool ply = false, end = false;
+    for (size_t number = 1; !end && fgets(line, sizeof line, file); number++) {
+        unsigned long long count = 0;
+        if (number == 1) {
+            ply = strncmp(line, "ply", 3) == 0;
+            end = !ply && strncmp(line, "OFF", 3) != 0;
+            continue;
+        }
+        sscanf(line, ply ? "element %*s %llu" : "%llu", &count);
+        if (bytes >= 0 && count > (unsigned long long)bytes) {
+            return rt_fail_at(error, path, number, 0,
+                              "%llu elements are promised, but the file has only %ld bytes: it is cut off or "
+                              "damaged",
+                              count, bytes);
+        }
+        end = !ply || strncmp(line, "end_header", 10) == 0;
+    }
+    return RT_OK;
+}
+
+/* The file as Assimp reads it, with all polygons split into triangles; aiReleaseImport. */
+static RtStatus import(const char *path, const struct aiScene **out, RtError *error) {
+    const struct aiScene *file = aiImportFile(path, 0);
+    if (!file) return rt_fail_at(error, path, 0, 0, "Assimp cannot read this file: %s", aiGetErrorString());
+    for (unsigned i = 0; i < file->mNumMeshes; i++) {
+        RtStatus status = check_faces(file->mMeshes[i], path, error);
+        if (status == RT_OK) continue;
+        aiReleaseImport(file);
+        return status;
+    }
+    *out = aiApplyPostProcessing(file, aiProcess_Triangulate); /* which on failure has freed the file */
+    if (*out) return RT_OK;
+    return rt_fail_at(error, path, 0, 0, "Assimp cannot split its polygons into triangles");
+}
+
+bool rt_mesh_reads(const char *extension) {
+    char dotted[16];
+    if (strlen(extension) + 2 > sizeof dotted || !extension[0]) return false;
+    snprintf(dotted, sizeof dotted, ".%s", extension);
+    return aiIsExtensionSupported(dotted);
+}
+
+RtStatus rt_mesh_append(RtScene *scene, const char *path, uint32_t material, const RtTransform *transform,
+                        RtError *error) {
+    FILE *opened;
+    RT_TRY(rt_file_open(path, &opened, error));
+    RtStatus status = check_header(opened, path, error);
+    fclose(opened);
+    if (status != RT_OK) return status;
+    const struct aiScene *file;
+    RT_TRY(import(path, &file, error));
+    RtTransform identity = rt_transform_identity();
+    Reader reader = {path, file, scene, material, error};
+    uint32_t before = scene->geometry.object_count;
+    if (file->mRootNode) status = add_node(&reader, file->mRootNode, transform ? transform : &identity);
+    if (status == RT_OK && scene->geometry.object_count == before) {
+        status =
+            rt_fail_at(error, path, 0, 0, "there is no triangle in this file: a mesh needs at least one");
+    }
+    aiReleaseImport(file);
+    return status;
+}
+
+RtStatus rt_mesh_load(const char *path, RtScene *scene, RtError *error) {
+    uint32_t material;
+    RtMaterial standard = rt_default_material();
+    scene->camera.up = rt_vec3(0, 1, 0);
+    RT_TRY(rt_scene_add_material(scene, &standard, &material, error));
+    return rt_mesh_append(scene, path, material, NULL, error);
+}

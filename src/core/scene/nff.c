@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reading NFF. The file is read whole and cut into tokens, words between blanks, each of which knows its
+ * line; line ends matter only to the optional colour of a light and to comments. Invariant: `at` never passes
+ * `end`, where a 0 stands, so that strtod stops there too. Numbers announced by the file are checked against
+ * what is left of it before room is made for them. */
+#include "core/scene/nff.h"
+
+#include "core/base/file.h"
+#include "core/base/memory.h"
+
+#include <ctype.h>
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Token {
+    const char *text;
+    size_t length; /* 0 at the end of the file */
+    size_t line;
+} Token;
+
+typedef struct Reader {
+    const char *path;
+    const char *at, *end;
+    size_t line;      /* of `at` */
+    size_t statement; /* line of the keyword being read */
+    size_t last;      /* line of the last token taken */
+    RtScene *scene;
+    uint32_t material; /* of what follows */
+    uint32_t vertex_capacity, normal_capacity, plain_count, plain_capacity;
+    RtVec3 *vertices, *normals; /* of one polygon */
+    uint32_t *plain;            /* [plain_count] indices of lights without a colour */
+    RtError *error;
+} Reader;
+
+#define NO_MATERIAL UINT32_MAX
+
+/* ---- tokens ---- */
+
+/* The next token, which is left where it is. */
+static Token peek(Reader *r) {
+    while (r->at < r->end) {
+        if (*r->at == '\n') {
+            r->line++;
+        } else if (*r->at == '#') {
+            while (r->at + 1 < r->end && r->at[1] != '\n') r->at++;
+        } else if (!isspace((unsigned char)*r->at)) {
+            break;
+        }
+        r->at++;
+    }
+    const char *stop = r->at;
+    while (stop < r->end && !isspace((unsigned char)*stop) && *stop != '#') stop++;
+    return (Token){r->at, (size_t)(stop - r->at), r->line};
+}
+
+static bool is_word(Token token, const char *word) {
+    return strlen(word) == token.length && strncmp(token.text, word, token.length) == 0;
+}
+
+/* The token for a message: in quotes, cut, without bytes that are no text. */
+static const char *show(Token token, char out[48]) {
+    if (token.length == 0) return "the end of the file";
+    size_t n = token.length < 32 ? token.length : 32;
+    out[0] = '\'';
+    for (size_t i = 0; i < n; i++) {
+        out[i + 1] = (char)(isprint((unsigned char)token.text[i]) ? token.text[i] : '?');
+    }
+    strcpy(out + 1 + n, n < token.length ? "...'" : "'");
+    return out;
+}
+
+static void take(Reader *r, Token token) {
+    r->at += token.length;
+    r->last = token.line;
+}
+
+static RtStatus fail_token(Reader *r, Token token, const char *wanted) {
+    char text[48];
+    return rt_fail_at(r->error, r->path, token.line, 0, "expected %s, found %s", wanted, show(token, text));
+}
+
+/* The same inside a statement: where the next statement or the end has come too soon, the place is the end of
+ * what was read. */
+static RtStatus fail_inside(Reader *r, Token token, const char *wanted) {
+    bool too_soon = token.length == 0 || isalpha((unsigned char)token.text[0]);
+    if (too_soon) token.line = r->last;
+    return fail_token(r, token, wanted);
+}
+
+/* What the scene refuses gets the line of its statement. */
+static RtStatus located(Reader *r, RtStatus status) {
+    if (status != RT_BAD_INPUT || !r->error) return status;
+    RtError inner = *r->error;
+    return rt_fail_at(r->error, r->path, r->statement, 0, "%s", inner.message);
+}
+
+/* ---- numbers ---- */
+
+static RtStatus read_double(Reader *r, const char *what, double *out) {
+    Token token = peek(r);
+    char *stop = NULL;
+    if (token.length > 0) *out = strtod(token.text, &stop);
+    if (token.length == 0 || stop != token.text + token.length) return fail_inside(r, token, what);
+    if (!isfinite(*out) || fabs(*out) > (double)FLT_MAX) {
+        char text[48];
+        return rt_fail_at(r->error, r->path, token.line, 0,
+                          "%s: invalid value %s: expected a finite number that fits float32", what,
+                          show(token, text));
+    }
+    take(r, token);
+    return RT_OK;
+}
+
+static RtStatus read_float(Reader *r, const char *what, float *out) {
+    double number;
+    RT_TRY(read_double(r, what, &number));
+    *out = (float)number;
+    return RT_OK;
+}
+
+static RtStatus read_vector(Reader *r, const char *what, RtVec3 *out) {
+    for (int a = 0; a < 3; a++) RT_TRY(read_float(r, what, &out->at[a]));
+    return RT_OK;
+}
+
+static RtStatus read_count(Reader *r, const char *what, double lo, double hi, uint32_t *out) {
+    double number;
+    Token token = peek(r);
+    RT_TRY(read_double(r, what, &number));
+    if (number < lo || number > hi || number != floor(number)) {
+        return rt_fail_at(r->error, r->path, token.line, 0,
+                          "%s: invalid value '%.15g': expected a whole number %.15g..%.15g", what, number, lo,
+                          hi);
+    }
+    *out = (uint32_t)number;
+    return RT_OK;
+}
+
+/* Is there another token on this line, and might it be a number? */
+static bool number_follows(Reader *r) {
+    size_t line = r->line;
+    Token token = peek(r);
+    return token.length > 0 && token.line == line && strchr("+-.0123456789", token.text[0]) != NULL;
+}
+
+/* ---- camera, lights, materials ---- */
+
+/* Refuses here, where the line is known, a camera that could make no rays. */
+static RtStatus check_camera(Reader *r, const RtCamera *camera) {
+    RtSampling sampling;
+    RtView view;
+    RT_TRY(located(r, rt_sampling_init(&sampling, camera->width, camera->height, 1, false, r->error)));
+    return located(r, rt_view_init(&view, camera, sampling, r->error));
+}
+
+static RtStatus read_camera(Reader *r) {
+    enum { FROM, AT, UP, ANGLE, HITHER, RESOLUTION, WORDS, REQUIRED = HITHER };
+    static const char *const words[WORDS] = {"from", "at", "up", "angle", "hither", "resolution"};
+    RtCamera *camera = &r->scene->camera;
+    bool given[WORDS] = {false};
+    for (;;) {
+        Token token = peek(r);
+        int word = 0;
+        while (word < WORDS && !is_word(token, words[word])) word++;
+        if (word == WORDS) break;
+        take(r, token);
+        given[word] = true;
+        switch (word) {
+        case FROM: RT_TRY(read_vector(r, "from x y z", &camera->from)); break;
+        case AT: RT_TRY(read_vector(r, "at x y z", &camera->at)); break;
+        case UP: RT_TRY(read_vector(r, "up x y z", &camera->up)); break;
+        case ANGLE: RT_TRY(read_float(r, "angle in degrees", &camera->fov)); break;
+        case HITHER: RT_TRY(read_float(r, "hither", &camera->near)); break;
+        case RESOLUTION:
+            RT_TRY(read_count(r, "resolution x", 1, RT_MAX_IMAGE_SIDE, &camera->width));
+            RT_TRY(read_count(r, "resolution y", 1, RT_MAX_IMAGE_SIDE, &camera->height));
+            break;
+        }
+    }
+    for (int i = 0; i < REQUIRED; i++) {
+        char wanted[64];
+        snprintf(wanted, sizeof wanted, "'%s' of the camera (v: from, at, up, angle)", words[i]);
+        if (!given[i]) return fail_inside(r, peek(r), wanted);
+    }
+    if (camera->near < 0) {
+        return rt_fail_at(r->error, r->path, r->statement, 0, "hither is %g: expected at least 0",
+                          (double)camera->near);
+    }
+    return check_camera(r, camera);
+}
+
+static RtStatus read_light(Reader *r) {
+    RtVec3 position, color = {0, 0, 0};
+    RT_TRY(read_vector(r, "l x y z, the position of a light", &position));
+    bool plain = !number_follows(r);
+    if (plain) {
+        RT_TRY(rt_reserve(&r->plain, &r->plain_capacity, (uint64_t)r->plain_count + 1, sizeof(uint32_t),
+                          r->error));
+        r->plain[r->plain_count++] = r->scene->light_count;
+    } else {
+        RT_TRY(read_vector(r, "l x y z r g b, the colour of a light", &color));
+    }
+    return located(r, rt_scene_add_light(r->scene, position, color, r->error));
+}
+
+RtMaterial rt_nff_material(const char *name, RtVec3 color, float kd, float ks, float shine, float t,
+                           float ior) {
+    RtMaterial material = {.color = color,
+                           .ambient = RT_NFF_AMBIENT,
+                           .diffuse = kd,
+                           .specular = ks,
+                           .shine = shine,
+                           .reflection = ks,
+                           .transmission = t,
+                           .ior = ior == 0 && t == 0 ? 1 : ior};
+    snprintf(material.name, sizeof material.name, "%s", name);
+    return material;
+}
+
+static bool same_material(const RtMaterial *a, const RtMaterial *b) {
+    return a->color.x == b->color.x && a->color.y == b->color.y && a->color.z == b->color.z &&
+           a->diffuse == b->diffuse && a->specular == b->specular && a->shine == b->shine &&
+           a->transmission == b->transmission && a->ior == b->ior;
+}
+
+static RtStatus read_material(Reader *r) {
+    static const char *const what = "a number of f r g b Kd Ks shine T ior";
+    RtVec3 color;
+    float k[5];
+    RT_TRY(read_vector(r, what, &color));
+    for (int i = 0; i < 5; i++) RT_TRY(read_float(r, what, &k[i]));
+    char name[RT_MAX_NAME];
+    snprintf(name, sizeof name, "line %zu", r->statement);
+    RtMaterial material = rt_nff_material(name, color, k[0], k[1], k[2], k[3], k[4]);
+
+    /* Files tend to switch between a few materials, naming them anew each time. */
+    uint32_t count = r->scene->material_count;
+    for (uint32_t i = count; i > 0 && count - i < 64; i--) {
+        if (!same_material(&r->scene->materials[i - 1], &material)) continue;
+        r->material = i - 1;
+        return RT_OK;
+    }
+    return located(r, rt_scene_add_material(r->scene, &material, &r->material, r->error));
+}
+
+/* The material in force; the default one where no `f` came before. */
+static RtStatus use_material(Reader *r) {
+    if (r->material != NO_MATERIAL) return RT_OK;
+    RtMaterial material = rt_default_material();
+    return rt_scene_add_material(r->scene, &material, &r->material, r->error);
+}
+
+/* ---- objects ---- */
+
+static RtStatus read_sphere(Reader *r) {
+    static const char *const what = "a number of s x y z radius";
+    RtVec3 center;
+    float radius;
+    RT_TRY(read_vector(r, what, &center));
+    RT_TRY(read_float(r, what, &radius));
+    RT_TRY(use_material(r));
+    return located(r, rt_scene_add_sphere(r->scene, r->material, center, fabsf(radius), r->error));
+}
+
+static RtStatus read_cone(Reader *r) {
+    static const char *const what = "a number of c base.x y z base.radius apex.x y z apex.radius";
+    RtVec3 ends[2];
+    float radii[2];
+    for (int i = 0; i < 2; i++) {
+        RT_TRY(read_vector(r, what, &ends[i]));
+        RT_TRY(read_float(r, what, &radii[i]));
+    }
+    RT_TRY(use_material(r));
+    return located(r, rt_scene_add_cone(r->scene, r->material, ends[0], fabsf(radii[0]), ends[1],
+                                        fabsf(radii[1]), r->error));
+}
+
+/* n and the n vertices of a polygon, or of a patch with their normals. */
+static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
+    const char *what =
+        patch ? "a number of a vertex and its normal, x y z nx ny nz" : "a number of a vertex x y z";
+    RT_TRY(read_count(r, "the number of vertices", 3, UINT32_MAX, count));
+    size_t least = patch ? 12 : 6; /* bytes of a vertex, with blanks */
+    size_t room = (size_t)(r->end - r->at) / least + 1;
+    if (*count > room) {
+        return rt_fail_at(r->error, r->path, r->statement, 0,
+                          "%u vertices are announced, but what is left of the file holds at most %zu", *count,
+                          room);
+    }
+    RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->error));
+    if (patch) {
+        RT_TRY(rt_reserve(&r->normals, &r->normal_capacity, *count, sizeof(RtVec3), r->error));
+    }
+    for (uint32_t i = 0; i < *count; i++) {
+        RT_TRY(read_vector(r, what, &r->vertices[i]));
+        if (patch) RT_TRY(read_vector(r, what, &r->normals[i]));
+    }
+    return use_material(r);
+}
+
+static RtStatus read_polygon(Reader *r) {
+    uint32_t count;
+    RT_TRY(read_vertices(r, false, &count));
+    if (count > 3) {
+        return located(r, rt_scene_add_polygon(r->scene, r->material, r->vertices, count, r->error));
+    }
+    RtTriangle triangle = {{r->vertices[0], r->vertices[1], r->vertices[2]}};
+    if (rt_lengthd(rt_triangle_normal(&triangle)) == 0) {
+        return rt_fail_at(r->error, r->path, r->statement, 0,
+                          "the polygon has no area: its vertices lie on a line or in a point; remove it");
+    }
+    return located(r, rt_scene_add_triangle(r->scene, r->material, r->vertices, NULL, r->error));
+}
+
+static RtVec3d twice_area(const RtVec3 *v, uint32_t i) {
+    RtVec3d origin = rt_widen(v[0]);
+    return rt_crossd(rt_subd(rt_widen(v[i]), origin), rt_subd(rt_widen(v[i + 1]), origin));
+}
+
+/* A fan about the first vertex; no triangle of it may be turned against the whole. */
+static RtStatus read_patch(Reader *r) {
+    uint32_t count;
+    RT_TRY(read_vertices(r, true, &count));
+    const RtVec3 *v = r->vertices, *n = r->normals;
+    RtVec3d whole = {0, 0, 0};
+    for (uint32_t i = 1; i + 1 < count; i++) whole = rt_addd(whole, twice_area(v, i));
+    for (uint32_t i = 1; i + 1 < count; i++) {
+        if (rt_dotd(whole, twice_area(v, i)) < 0) {
+            return rt_fail_at(
+                r->error, r->path, r->statement, 0,
+                "the patch is concave: vertex %u cannot be seen from the first; split the patch "
+                "into triangles",
+                i + 2);
+        }
+    }
+    for (uint32_t i = 1; i + 1 < count; i++) {
+        const RtVec3 vertices[3] = {v[0], v[i], v[i + 1]}, normals[3] = {n[0], n[i], n[i + 1]};
+        RT_TRY(located(r, rt_scene_add_triangle(r->scene, r->material, vertices, normals, r->error)));
+    }
+    return RT_OK;
+}
+
+/* ---- the file ---- */
+
+static RtStatus read_background(Reader *r) {
+    RtVec3 color;
+    RT_TRY(read_vector(r, "a number of b r g b", &color));
+    if (color.x < 0 || color.y < 0 || color.z < 0) {
+        return rt_fail_at(r->error, r->path, r->statement, 0,
+                          "the background has a negative colour: expected at least 0 for each of r g b");
+    }
+    r->scene->background = color;
+    return RT_OK;
+}
+
+static RtStatus read_statement(Reader *r) {
+    static const struct {
+        const char *word;
+        RtStatus (*read)(Reader *r);
+    } statements[] = {{"v", read_camera}, {"b", read_background}, {"l", read_light},   {"f", read_material},
+                      {"s", read_sphere}, {"c", read_cone},       {"p", read_polygon}, {"pp", read_patch}};
+    Token token = peek(r);
+    r->statement = token.line;
+    for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++) {
+        if (!is_word(token, statements[i].word)) continue;
+        take(r, token);
+        return statements[i].read(r);
+    }
+    return fail_token(r, token, "a statement of NFF (v b l f s c p pp, or a # comment)");
+}
+
+static RtStatus read_file(Reader *r) {
+    const char *zero = memchr(r->at, '\0', (size_t)(r->end - r->at));
+    if (zero) {
+        return rt_fail_at(r->error, r->path, 0, 0,
+                          "byte %zu is 0: this is a binary file, NFF is text; convert it first",
+                          (size_t)(zero - r->at));
+    }
+    while (peek(r).length > 0) RT_TRY(read_statement(r));
+    for (uint32_t i = 0; i < r->plain_count; i++) {
+        r->scene->lights[r->plain[i]].intensity = rt_nff_light_intensity(r->scene->light_count);
+    }
+    return RT_OK;
+}
+
+RtVec3 rt_nff_light_intensity(uint32_t count) {
+    float i = (float)(sqrt((double)count) / (2.0 * count));
+    return rt_vec3(i, i, i);
+}
+
+RtStatus rt_nff_load(const char *path, RtScene *scene, RtError *error) {
+    char *text;
+    size_t size;
+    RT_TRY(rt_file_read(path, RT_NFF_MAX_BYTES, &text, &size, error));
+    RtError own;
+    Reader reader = {.path = path,
+                     .at = text,
+                     .end = text + size,
+                     .line = 1,
+                     .scene = scene,
+                     .material = NO_MATERIAL,
+                     .error = error ? error : &own};
+    RtStatus status = read_file(&reader);
+    rt_free(reader.vertices);
+    rt_free(reader.normals);
+    rt_free(reader.plain);
+    rt_free(text);
+    return status;
+}

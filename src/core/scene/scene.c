@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/scene/scene.h"
+
+#include "core/base/elementary.h"
+#include "core/base/memory.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* Its state is on our stack, where it cannot fail to be had. */
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+void rt_scene_init(RtScene *scene) {
+    *scene = (RtScene){
+        .ambient = {1, 1, 1},
+        .background = {0.078f, 0.361f, 0.753f}, /* SPD's sky */
+        .camera = {.up = {0, 0, 1}, .fov = 45, .width = 512, .height = 512},
+    };
+}
+
+RtMaterial rt_default_material(void) {
+    return (RtMaterial){.name = "default",
+                        .color = {0.8f, 0.8f, 0.8f},
+                        .ambient = 0.1f,
+                        .diffuse = 0.9f,
+                        .shine = 1,
+                        .ior = 1};
+}
+
+static RtStatus check_range(const char *material, const char *what, float value, float lo, float hi,
+                            RtError *error) {
+    if (value >= lo && value <= hi) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "material '%s': %s is %g: expected %g..%g", material, what,
+                   (double)value, (double)lo, (double)hi);
+}
+
+RtStatus rt_scene_add_material(RtScene *scene, const RtMaterial *material, uint32_t *index, RtError *error) {
+    const RtMaterial *m = material;
+    const float color_max = 1e6f;
+    RT_TRY(check_range(m->name, "the red of the colour", m->color.x, 0, color_max, error));
+    RT_TRY(check_range(m->name, "the green of the colour", m->color.y, 0, color_max, error));
+    RT_TRY(check_range(m->name, "the blue of the colour", m->color.z, 0, color_max, error));
+    RT_TRY(check_range(m->name, "ambient", m->ambient, 0, 1e6f, error));
+    RT_TRY(check_range(m->name, "diffuse", m->diffuse, 0, 1e6f, error));
+    RT_TRY(check_range(m->name, "specular", m->specular, 0, 1e6f, error));
+    RT_TRY(check_range(m->name, "shine", m->shine, 0, 1e6f, error));
+    RT_TRY(check_range(m->name, "reflection", m->reflection, 0, 1, error));
+    RT_TRY(check_range(m->name, "transmission", m->transmission, 0, 1, error));
+    RT_TRY(check_range(m->name, "ior", m->ior, 1e-3f, 1e3f, error));
+    RT_TRY(rt_reserve(&scene->materials, &scene->material_capacity, (uint64_t)scene->material_count + 1,
+                      sizeof(RtMaterial), error));
+    *index = scene->material_count++;
+    scene->materials[*index] = *material;
+    return RT_OK;
+}
+
+uint32_t rt_scene_find_material(const RtScene *scene, const char *name) {
+    for (uint32_t i = 0; i < scene->material_count; i++) {
+        if (strcmp(scene->materials[i].name, name) == 0) return i;
+    }
+    return UINT32_MAX;
+}
+
+RtStatus rt_scene_add_light(RtScene *scene, RtVec3 position, RtVec3 intensity, RtError *error) {
+    if (!rt_finite(position) || !rt_finite(intensity)) {
+        return rt_fail(error, RT_BAD_INPUT, "a light's position or intensity is not finite");
+    }
+    if (rt_maxf(fabsf(position.x), rt_maxf(fabsf(position.y), fabsf(position.z))) > RT_MAX_COORDINATE) {
+        return rt_fail(error, RT_BAD_INPUT, "a light is farther away than %g: bring it nearer",
+                       (double)RT_MAX_COORDINATE);
+    }
+    if (intensity.x < 0 || intensity.y < 0 || intensity.z < 0) {
+        return rt_fail(error, RT_BAD_INPUT, "a light's intensity is negative");
+    }
+    RT_TRY(rt_reserve(&scene->lights, &scene->light_capacity, (uint64_t)scene->light_count + 1,
+                      sizeof(RtLight), error));
+    scene->lights[scene->light_count++] = (RtLight){position, intensity};
+    return RT_OK;
+}
+
+/* Room for the material of the next object, made before the object is added. */
+static RtStatus reserve_material_of(RtScene *scene, uint32_t material, RtError *error) {
+    assert(material < scene->material_count);
+    RT_TRY(rt_reserve(&scene->material_of, &scene->material_of_capacity,
+                      (uint64_t)scene->geometry.object_count + 1, sizeof(uint32_t), error));
+    scene->material_of[scene->geometry.object_count] = material;
+    return RT_OK;
+}
+
+RtStatus rt_scene_add_sphere(RtScene *scene, uint32_t material, RtVec3 center, float radius, RtError *error) {
+    RT_TRY(reserve_material_of(scene, material, error));
+    return rt_geometry_add_sphere(&scene->geometry, center, radius, error);
+}
+
+RtStatus rt_scene_add_polygon(RtScene *scene, uint32_t material, const RtVec3 *vertices, uint32_t count,
+                              RtError *error) {
+    RT_TRY(reserve_material_of(scene, material, error));
+    return rt_geometry_add_polygon(&scene->geometry, vertices, count, error);
+}
+
+RtStatus rt_scene_add_triangle(RtScene *scene, uint32_t material, const RtVec3 vertices[3],
+                               const RtVec3 *normals, RtError *error) {
+    RT_TRY(reserve_material_of(scene, material, error));
+    return rt_geometry_add_triangle(&scene->geometry, vertices, normals, error);
+}
+
+RtStatus rt_scene_add_cone(RtScene *scene, uint32_t material, RtVec3 base, float base_radius, RtVec3 apex,
+                           float apex_radius, RtError *error) {
+    RT_TRY(reserve_material_of(scene, material, error));
+    return rt_geometry_add_cone(&scene->geometry, base, base_radius, apex, apex_radius, error);
+}
+
+/* The tree just added as a whole has the material of its first solid. */
+static void set_csg_material(RtScene *scene) {
+    const RtGeometry *g = &scene->geometry;
+    const RtSolid *solids = g->forest.set.solids + g->csgs[g->csg_count - 1].first_solid;
+    scene->material_of[g->object_count - 1] = solids[0].material;
+}
+
+RtStatus rt_scene_add_csg(RtScene *scene, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
+                          RtError *error) {
+    RT_TRY(reserve_material_of(scene, 0, error));
+    RT_TRY(rt_geometry_add_csg(&scene->geometry, builder, root, extents, error));
+    set_csg_material(scene);
+    return RT_OK;
+}
+
+void rt_scene_paint_csg(RtScene *scene, uint32_t material) {
+    const RtGeometry *g = &scene->geometry;
+    const RtCsg *tree = &g->csgs[g->csg_count - 1];
+    for (uint32_t i = 0; i < tree->solid_count; i++) {
+        g->forest.set.solids[tree->first_solid + i].material = material;
+    }
+    set_csg_material(scene);
+}
+
+RtStatus rt_scene_copy_csg(RtScene *scene, const RtScene *from, uint32_t index, const uint32_t *materials,
+                           const RtTransform *move, RtError *error) {
+    RT_TRY(reserve_material_of(scene, 0, error));
+    RT_TRY(rt_geometry_copy_csg(&scene->geometry, &from->geometry, index, move, error));
+    RtGeometry *g = &scene->geometry;
+    const RtCsg *tree = &g->csgs[g->csg_count - 1];
+    for (uint32_t i = 0; i < tree->solid_count; i++) {
+        RtSolid *solid = &g->forest.set.solids[tree->first_solid + i];
+        solid->material = materials[solid->material];
+    }
+    set_csg_material(scene);
+    return RT_OK;
+}
+
+static bool same_point(RtVec3 a, RtVec3 b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* The nearest point that may be an origin of rays. */
+static RtVec3 within_bounds(RtVec3d p) {
+    RtVec3 q;
+    for (int a = 0; a < 3; a++)
+        q.at[a] = rt_maxf(-RT_MAX_COORDINATE, rt_minf((float)p.at[a], RT_MAX_COORDINATE));
+    return q;
+}
+
+/* From the front, a little to the right and above, far enough for the bounding sphere to fill the view. */
+static void place_camera(RtCamera *camera, const RtBox *box) {
+    RtVec3d center = {0, 0, 0};
+    double radius = 1;
+    if (!rt_box_is_empty(*box)) {
+        center = rt_widen(rt_box_center(*box));
+        radius = rt_lengthd(rt_subd(rt_widen(box->hi), center));
+        /* A point has no size, but float32 has to tell `from` and `at` apart. */
+        radius = fmax(radius, fmax(1e-5 * rt_lengthd(center), 1e-30));
+    }
+    RtVec3d up = rt_normalized(rt_widen(camera->up));
+    /* Two directions across `up`, whichever axis that is. */
+    RtVec3d side = fabs(up.x) < 0.5 ? rt_vec3d(1, 0, 0) : rt_vec3d(0, 1, 0);
+    RtVec3d front = rt_normalized(rt_crossd(side, up));
+    RtVec3d towards = rt_addd(rt_scaled(front, 1), rt_addd(rt_scaled(side, 0.4), rt_scaled(up, 0.3)));
+    double distance = 1.05 * radius / rt_turn((double)camera->fov / 2).sine;
+    camera->at = rt_narrow(center);
+    camera->from = within_bounds(rt_add_scaledd(center, rt_normalized(towards), distance));
+}
+
+RtStatus rt_scene_finish(RtScene *scene, RtError *error) {
+    RT_TRY(rt_geometry_finish(&scene->geometry, error));
+    RtCamera *camera = &scene->camera;
+    if (same_point(camera->from, camera->at)) place_camera(camera, &scene->geometry.box);
+    if (scene->light_count == 0) {
+        RtVec3d above = rt_scaled(rt_widen(camera->up),
+                                  0.5 * rt_lengthd(rt_subd(rt_widen(camera->from), rt_widen(camera->at))));
+        RtVec3 position = within_bounds(rt_addd(rt_widen(camera->from), above));
+        RT_TRY(rt_scene_add_light(scene, position, rt_vec3(1, 1, 1), error));
+    }
+    return rt_scene_sample(scene, 0, 0, 1, false, error);
+}
+
+RtStatus rt_scene_sample(RtScene *scene, uint32_t width, uint32_t height, uint32_t samples, bool corners,
+                         RtError *error) {
+    return rt_sampling_init(&scene->sampling, width ? width : scene->camera.width,
+                            height ? height : scene->camera.height, samples, corners, error);
+}
+
+/* The bytes of these are hashed, so they have no padding. */
+_Static_assert(sizeof(RtSphere) == 4 * sizeof(float), "a sphere has no padding");
+_Static_assert(sizeof(RtCone) == 8 * sizeof(float) + 8 * sizeof(double), "a cone has no padding");
+_Static_assert(sizeof(RtMaterial) == RT_MAX_NAME + 10 * sizeof(float), "a material has no padding");
+_Static_assert(sizeof(RtLight) == 6 * sizeof(float), "a light has no padding");
+_Static_assert(sizeof(RtCamera) == 11 * sizeof(float) + 2 * sizeof(uint32_t), "a camera has no padding");
+
+_Static_assert(sizeof(RtPlane) == 4 * sizeof(double), "a plane has no padding");
+_Static_assert(sizeof(RtTransform) == 12 * sizeof(double), "a transform has no padding");
+
+#define ADD(array, count) XXH3_64bits_update(state, array, (size_t)(count) * sizeof *(array))
+
+/* Solids and operations; boxes follow from them, and their tests change no answer. */
+static void add_forest(XXH3_state_t *state, const RtCsgForest *forest) {
+    const RtSolidSet *set = &forest->set;
+    for (uint32_t i = 0; i < set->solid_count; i++) {
+        const RtSolid *s = &set->solids[i];
+        const uint32_t numbers[4] = {(uint32_t)s->kind, s->material, s->subtracted, s->count};
+        ADD(numbers, 4);
+        ADD(&s->ratio, 1);
+        ADD(&s->place, 1);
+    }
+    ADD(set->planes, set->plane_count);
+    ADD(set->triangles, set->triangle_count);
+    for (uint32_t i = 0; i < forest->instruction_count; i++) {
+        RtCsgInstruction instruction = forest->instructions[i];
+        if (instruction.code != RT_CSG_PUSH && instruction.code != RT_CSG_APPLY) continue;
+        const uint32_t numbers[3] = {instruction.code, instruction.reversed, instruction.operand};
+        ADD(numbers, 3);
+    }
+}
+
+uint64_t rt_scene_fingerprint(const RtScene *scene) {
+    const RtGeometry *g = &scene->geometry;
+    XXH3_state_t whole, *state = &whole;
+    XXH3_64bits_reset(state);
+    ADD(g->objects, g->object_count);
+    ADD(scene->material_of, g->object_count);
+    ADD(g->spheres, g->sphere_count);
+    ADD(g->triangles, g->triangle_count);
+    ADD(g->polygon_vertices, g->polygon_vertex_count);
+    for (uint32_t i = 0; i < g->polygon_count; i++) ADD(&g->polygons[i].count, 1);
+    ADD(g->cones, g->cone_count);
+    if (g->csg_count) add_forest(state, &g->forest);
+    ADD(g->vertex_normals, g->vertex_normal_count);
+    /* Which triangles they belong to; where all have some, that is known. */
+    bool some = g->vertex_normal_count > 0 && g->vertex_normal_count < g->triangle_count;
+    if (some) ADD(g->triangle_normals, g->triangle_count);
+    for (uint32_t i = 0; i < scene->material_count; i++) { /* all but the name */
+        XXH3_64bits_update(state, &scene->materials[i].color,
+                           sizeof(RtMaterial) - offsetof(RtMaterial, color));
+    }
+    ADD(scene->lights, scene->light_count);
+    ADD(&scene->ambient, 1);
+    ADD(&scene->background, 1);
+    ADD(&scene->camera, 1);
+    return XXH3_64bits_digest(state);
+}
+#undef ADD
+
+uint64_t rt_scene_bytes(const RtScene *scene) {
+    return rt_geometry_bytes(&scene->geometry) + (uint64_t)scene->material_of_capacity * sizeof(uint32_t) +
+           (uint64_t)scene->material_capacity * sizeof(RtMaterial) +
+           (uint64_t)scene->light_capacity * sizeof(RtLight);
+}
+
+void rt_scene_clear(RtScene *scene) {
+    rt_geometry_clear(&scene->geometry);
+    rt_free(scene->material_of);
+    rt_free(scene->materials);
+    rt_free(scene->lights);
+    *scene = (RtScene){0};
+}

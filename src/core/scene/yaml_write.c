@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A scene to YAML, plainly printed. Numbers are written with as many significant digits as give the float32
+ * back bit for bit: 9 always do, 6 often. */
+#include "core/base/memory.h"
+#include "core/scene/yaml.h"
+#include "core/scene/yaml_reader.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Writer {
+    const RtScene *scene;
+    FILE *out;
+    bool numbered; /* the names of materials cannot be used: m0, m1 ... */
+} Writer;
+
+/* ---- values ---- */
+
+/* As few digits as give the value back, as a float32 or a double. */
+static void number(Writer *w, double value, bool wide) {
+    char text[32];
+    for (int digits = wide ? 15 : 6; digits <= (wide ? 17 : 9); digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if ((wide ? strtod(text, NULL) : (double)strtof(text, NULL)) == value) break;
+    }
+    fputs(text, w->out);
+}
+
+static void numbers(Writer *w, const float *values, int count) {
+    for (int i = 0; i < count; i++) {
+        fputs(i ? ", " : "[", w->out);
+        number(w, (double)values[i], false);
+    }
+    fputc(']', w->out);
+}
+
+static void wide_numbers(Writer *w, const double *values, int count) {
+    for (int i = 0; i < count; i++) {
+        fputs(i ? ", " : "[", w->out);
+        number(w, values[i], true);
+    }
+    fputc(']', w->out);
+}
+
+/* Keys are given with what stands before and behind them: "{center: ", ", radius: ". */
+
+static void number_key(Writer *w, const char *key, float value) {
+    fputs(key, w->out);
+    number(w, (double)value, false);
+}
+
+static void point_key(Writer *w, const char *key, RtVec3 p) {
+    fputs(key, w->out);
+    numbers(w, p.at, 3);
+}
+
+static void points_key(Writer *w, const char *key, const RtVec3 *p, uint32_t count) {
+    fputs(key, w->out);
+    for (uint32_t i = 0; i < count; i++) point_key(w, i ? ", " : "[", p[i]);
+    fputc(']', w->out);
+}
+
+/* In single quotes nothing but these has a meaning. */
+static void quote(const char *name, char out[2 * RT_MAX_NAME + 2]) {
+    *out++ = '\'';
+    for (; *name; name++) {
+        if (*name == '\'') *out++ = '\'';
+        *out++ = *name;
+    }
+    strcpy(out, "'");
+}
+
+static void material_name(Writer *w, const char *key, uint32_t index) {
+    char name[2 * RT_MAX_NAME + 2];
+    if (w->numbered) {
+        snprintf(name, sizeof name, "'m%u'", index);
+    } else {
+        quote(w->scene->materials[index].name, name);
+    }
+    fprintf(w->out, "%s%s", key, name);
+}
+
+/* ---- the parts of a scene ---- */
+
+static void write_camera(Writer *w, const RtCamera *camera) {
+    point_key(w, "camera: {from: ", camera->from);
+    point_key(w, ", at: ", camera->at);
+    point_key(w, ", up: ", camera->up);
+    number_key(w, ", fov: ", camera->fov);
+    number_key(w, ", near: ", camera->near);
+    fprintf(w->out, ", size: [%u, %u]}\n", camera->width, camera->height);
+}
+
+static void write_lights(Writer *w) {
+    fputs(w->scene->light_count ? "lights:\n" : "lights: []\n", w->out);
+    for (uint32_t i = 0; i < w->scene->light_count; i++) {
+        point_key(w, "- {position: ", w->scene->lights[i].position);
+        point_key(w, ", intensity: ", w->scene->lights[i].intensity);
+        fputs("}\n", w->out);
+    }
+}
+
+static void write_materials(Writer *w) {
+    fputs("materials:\n", w->out);
+    for (uint32_t i = 0; i < w->scene->material_count; i++) {
+        const RtMaterial *m = &w->scene->materials[i];
+        material_name(w, "- {name: ", i);
+        point_key(w, ", color: ", m->color);
+#define WRITE(key) number_key(w, ", " #key ": ", m->key);
+        RT_YAML_COEFFICIENTS(WRITE)
+#undef WRITE
+        fputs("}\n", w->out);
+    }
+}
+
+/* ---- solids ---- */
+
+static void write_planes(Writer *w, const RtPlane *planes, uint32_t count) {
+    fputs("polyhedron: {planes: ", w->out);
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d n = planes[i].normal;
+        fputs(i ? ", " : "[", w->out);
+        wide_numbers(w, (const double[4]){n.x, n.y, n.z, planes[i].offset}, 4);
+    }
+    fputc(']', w->out);
+}
+
+static void write_facets(Writer *w, const RtTriangle *triangles, uint32_t count) {
+    fputs("facets: {triangles: ", w->out);
+    for (uint32_t i = 0; i < count; i++) {
+        fputs(i ? ", " : "[", w->out);
+        numbers(w, (const float *)&triangles[i], 9);
+    }
+    fputc(']', w->out);
+}
+
+static void write_solids(Writer *w) {
+    const RtSolidSet *set = &w->scene->geometry.forest.set;
+    if (set->solid_count > 0) fputs("solids:\n", w->out);
+    for (uint32_t i = 0; i < set->solid_count; i++) {
+        const RtSolid *solid = &set->solids[i];
+        fprintf(w->out, "- {name: s%u, ", i);
+        if (solid->kind == RT_SOLID_POLYHEDRON) {
+            write_planes(w, set->planes + solid->first, solid->count);
+        } else if (solid->kind == RT_SOLID_MESH) {
+            write_facets(w, set->triangles + solid->first, solid->count);
+        } else {
+            fprintf(w->out, "standard: {kind: %s, ratio: ", rt_solid_kind_name(solid->kind));
+            number(w, solid->ratio, true);
+            fputs(", place: ", w->out);
+            wide_numbers(w, &solid->place.m[0][0], 12);
+        }
+        material_name(w, ", material: ", solid->material);
+        fputs("}}\n", w->out);
+    }
+}
+
+/* ---- objects ---- */
+
+static RtStatus write_csg(Writer *w, const RtCsg *tree, RtError *error) {
+    char *formula;
+    RT_TRY(rt_formula_write(&w->scene->geometry.forest, tree, &formula, error));
+    fprintf(w->out, "formula: '%s', extents: '%s'", formula, tree->extents ? "on" : "off");
+    rt_free(formula);
+    return RT_OK;
+}
+
+static RtStatus write_shape(Writer *w, RtShape shape, uint32_t index, RtError *error) {
+    const RtGeometry *g = &w->scene->geometry;
+    switch (shape) {
+    case RT_SHAPE_SPHERE:
+        point_key(w, "center: ", g->spheres[index].center);
+        number_key(w, ", radius: ", g->spheres[index].radius);
+        break;
+    case RT_SHAPE_POLYGON:
+        points_key(w, "vertices: ", g->polygon_vertices + g->polygons[index].first, g->polygons[index].count);
+        break;
+    case RT_SHAPE_TRIANGLE:
+        points_key(w, "vertices: ", g->triangles[index].v, 3);
+        if (g->triangle_normals && g->triangle_normals[index] != RT_NO_NORMALS) {
+            points_key(w, ", normals: ", g->vertex_normals[g->triangle_normals[index]].n, 3);
+        }
+        break;
+    case RT_SHAPE_CONE:
+        point_key(w, "base: ", g->cones[index].base);
+        number_key(w, ", base_radius: ", g->cones[index].base_radius);
+        point_key(w, ", apex: ", g->cones[index].apex);
+        number_key(w, ", apex_radius: ", g->cones[index].apex_radius);
+        break;
+    case RT_SHAPE_CSG: return write_csg(w, &g->csgs[index], error);
+    case RT_SHAPE_COUNT: break;
+    }
+    return RT_OK;
+}
+
+static RtStatus write_objects(Writer *w, RtError *error) {
+    const RtGeometry *g = &w->scene->geometry;
+    fputs(g->object_count ? "objects:\n" : "objects: []\n", w->out);
+    for (uint32_t id = 0; id < g->object_count && !ferror(w->out); id++) {
+        RtShape shape = rt_ref_shape(g->objects[id]);
+        fprintf(w->out, "- {%s: {", rt_shape_name(shape));
+        RT_TRY(write_shape(w, shape, rt_ref_index(g->objects[id]), error));
+        if (shape != RT_SHAPE_CSG) material_name(w, ", material: ", w->scene->material_of[id]);
+        fputs("}}\n", w->out);
+    }
+    return RT_OK;
+}
+
+/* ---- names ---- */
+
+static int compare_names(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Whether reading tells the name back: it is not empty, and UTF-8 without control characters. */
+static RtStatus try_name(const char *name, bool *good, RtError *error) {
+    char text[2 * RT_MAX_NAME + 2];
+    RtYaml yaml;
+    quote(name, text);
+    RtStatus status = rt_yaml_parse(&yaml, "the name of a material", text, strlen(text), error);
+    *good = status == RT_OK && name[0] && strcmp(yaml.text, name) == 0;
+    if (status == RT_OK) rt_yaml_close(&yaml);
+    return status == RT_NO_MEMORY ? status : RT_OK;
+}
+
+static RtStatus try_names(const RtScene *scene, const char **names, bool *good, RtError *error) {
+    uint32_t count = scene->material_count;
+    *good = true;
+    for (uint32_t i = 0; i < count && *good; i++) {
+        names[i] = scene->materials[i].name;
+        RT_TRY(try_name(names[i], good, error));
+    }
+    if (*good) qsort(names, count, sizeof *names, compare_names);
+    for (uint32_t i = 1; i < count && *good; i++) *good = strcmp(names[i - 1], names[i]) != 0;
+    return RT_OK;
+}
+
+/* ---- saving ---- */
+
+RtStatus rt_yaml_save(const RtScene *scene, FILE *out, RtError *error) {
+    Writer w = {.scene = scene, .out = out};
+    const char **names = rt_alloc(scene->material_count, sizeof *names);
+    if (!names) return rt_fail_memory(error, "the names of materials", scene->material_count * sizeof *names);
+    bool good;
+    RtStatus status = try_names(scene, names, &good, error);
+    rt_free(names);
+    RT_TRY(status);
+    w.numbered = !good;
+    write_camera(&w, &scene->camera);
+    point_key(&w, "background: ", scene->background);
+    point_key(&w, "\nambient: ", scene->ambient);
+    fputc('\n', out);
+    write_lights(&w);
+    write_materials(&w);
+    write_solids(&w);
+    RT_TRY(write_objects(&w, error));
+    if (!ferror(out)) return RT_OK;
+    return rt_fail(error, RT_IO, "writing the scene failed: is the disk full?");
+}

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Cones: the side of a truncated cone between two circles, open at both ends as in NFF; equal radii make a
+ * cylinder, one radius 0 a full cone. Both sides are hit.
+ *
+ * With s the height along the axis and R(s) = base_radius + slope * s, a point is on the cone where its
+ * distance from the axis equals R(s), 0 <= s <= height: a quadratic in t, solved in double about the point of
+ * the ray nearest to the middle of the axis, so that far origins cost no precision. */
+#ifndef RT_SHAPE_CONE_H
+#define RT_SHAPE_CONE_H
+
+#include "core/base/ray.h"
+#include "core/base/status.h"
+#include "core/shape/ball.h"
+#include "core/shape/quadratic.h"
+
+typedef struct RtCone {
+    RtVec3 base, apex; /* centres of the circles */
+    float base_radius, apex_radius;
+    RtVec3d axis;   /* unit, base to apex */
+    RtVec3d middle; /* of the axis */
+    double height;  /* length of the axis */
+    double slope;   /* change of radius per unit of height */
+} RtCone;
+
+/* Fills `cone`; refuses negative radii, two radii of 0 and equal centres, with a message without a place. */
+RtStatus rt_cone_init(RtCone *cone, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
+                      RtError *error);
+
+/* The box of the two circles, rounded outward. */
+RtBox rt_cone_box(const RtCone *cone);
+/* The smallest ball about both circles. */
+RtBall rt_cone_ball(const RtCone *cone);
+double rt_cone_support(const RtCone *cone, RtVec3d direction);
+/* Unit normal at `point` on the side, away from the axis. */
+RtVec3d rt_cone_normal(const RtCone *cone, RtVec3d point);
+
+/* Is across + root * d_across, an offset from the axis, as long as a radius of the cone? Where a cone is flat
+ * the height of a point says little about that: it is 2^-20 of the radius, say, and has lost all its
+ * digits. */
+static inline bool rt_cone_between_radii(const RtCone *cone, RtVec3d across, RtVec3d d_across, double root) {
+    RtVec3d offset = rt_add_scaledd(across, d_across, root);
+    double lo = (double)rt_minf(cone->base_radius, cone->apex_radius);
+    double hi = (double)rt_maxf(cone->base_radius, cone->apex_radius);
+    double squared = rt_dotd(offset, offset);
+    return squared >= lo * lo && squared <= hi * hi;
+}
+
+/* The first t in [tmin, tmax] at which the ray meets the side. */
+static inline bool rt_cone_hit(const RtCone *cone, const RtBox *own, const RtPreparedRay *ray, float *t) {
+    RtVec3d org = rt_widen(ray->org);
+    RtVec3d dir = rt_widen(ray->dir);
+    RtVec3d from_middle = rt_subd(org, cone->middle);
+    double closest = -rt_dotd(from_middle, dir) / rt_dotd(dir, dir);
+    RtVec3d near = rt_add_scaledd(from_middle, dir, closest);
+
+    /* Split position and direction into the part along the axis and the part across it. */
+    double s0 = rt_dotd(near, cone->axis), ds = rt_dotd(dir, cone->axis);
+    RtVec3d across = rt_add_scaledd(near, cone->axis, -s0), d_across = rt_add_scaledd(dir, cone->axis, -ds);
+    double half = cone->height / 2;
+    double radius = (double)cone->base_radius + cone->slope * (s0 + half), d_radius = cone->slope * ds;
+
+    double a = rt_dotd(d_across, d_across) - d_radius * d_radius;
+    double half_b = rt_dotd(across, d_across) - radius * d_radius;
+    double c = rt_dotd(across, across) - radius * radius;
+    double roots[2];
+    int count = rt_quadratic_roots(a, half_b, c, half_b * half_b - a * c, roots);
+    for (int i = 0; i < count; i++) {
+        double s = s0 + roots[i] * ds;
+        if (!(fabs(s) <= half)) continue;
+        if (fabs(cone->slope) > 1 && !rt_cone_between_radii(cone, across, d_across, roots[i])) continue;
+        *t = (float)(closest + roots[i]);
+        if (rt_box_admit(own, ray, t)) return true;
+    }
+    return false;
+}
+
+#endif

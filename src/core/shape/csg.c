@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Rays and trees: the machine that runs a tree's program (csg.h). Its stack of lists lies in one array of
+ * crossings, list after list: the ray's room. Two lists are merged to behind them, and the result moved down
+ * to where they began. */
+#include "core/shape/csg.h"
+
+#include "core/base/observe.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define INLINE static inline __attribute__((always_inline))
+
+typedef struct Machine {
+    RtCrossing *crossings;
+    uint32_t capacity;
+    uint32_t depth;                        /* lists on the stack */
+    uint32_t starts[RT_CSG_MAX_LISTS + 1]; /* list i: crossings [starts[i], starts[i + 1]) */
+} Machine;
+
+static inline void start(Machine *m, const RtCsg *tree, const RtPreparedRay *ray) {
+    assert(ray->room);
+    m->crossings = ray->room;
+    m->capacity = tree->most_crossings;
+    m->depth = 0;
+    m->starts[0] = m->starts[1] = 0; /* also what a program without instructions leaves */
+}
+
+/* Is there room for `more` crossings behind all lists? For assertions. */
+__attribute__((unused)) static inline bool has_room(const Machine *m, uint32_t more) {
+    return (uint64_t)m->starts[m->depth] + more <= m->capacity;
+}
+
+static inline void push(Machine *m, uint32_t count) {
+    assert(m->depth < RT_CSG_MAX_LISTS);
+    m->starts[m->depth + 1] = m->starts[m->depth] + count;
+    m->depth++;
+}
+
+/* ---- operations ---- */
+
+static inline bool holds(RtCsgOp op, bool in_left, bool in_right) {
+    switch (op) {
+    case RT_CSG_UNION: return in_left || in_right;
+    case RT_CSG_INTERSECTION: return in_left && in_right;
+    case RT_CSG_DIFFERENCE: return in_left && !in_right;
+    }
+    return false;
+}
+
+/* The one rule of csg.h: place by place. Even a NaN is passed by. */
+static uint32_t merge(RtCsgOp op, const RtCrossing *left, const RtCrossing *left_end, const RtCrossing *right,
+                      const RtCrossing *right_end, RtCrossing *out) {
+    bool in_left = false, in_right = false, inside = false;
+    uint32_t count = 0;
+    while (left < left_end || right < right_end) {
+        bool leftmost = right == right_end || (left < left_end && left->t <= right->t);
+        float t = leftmost ? left->t : right->t;
+        const RtCrossing *from_left = left, *from_right = right;
+        while (left < left_end && !(left->t > t)) left++;
+        while (right < right_end && !(right->t > t)) right++;
+        bool left_turns = (left - from_left) % 2, right_turns = (right - from_right) % 2;
+        in_left ^= left_turns;
+        in_right ^= right_turns;
+        bool now = holds(op, in_left, in_right);
+        if (now == inside) continue;
+        inside = now;
+        out[count++] = left_turns && in_left == inside ? *from_left : *from_right;
+    }
+    return count;
+}
+
+static void apply(Machine *m, RtCsgOp op, bool reversed) {
+    assert(m->depth > 1);
+    uint32_t lower = m->starts[m->depth - 2], top = m->starts[m->depth - 1], end = m->starts[m->depth];
+    bool left_empty = reversed ? top == end : lower == top;
+    bool right_empty = reversed ? lower == top : top == end;
+    m->depth--;
+    if (left_empty || right_empty) {
+        bool stays = op == RT_CSG_UNION || (op == RT_CSG_DIFFERENCE && right_empty);
+        m->starts[m->depth] = stays ? end : lower;
+        return;
+    }
+    m->starts[m->depth] = end;
+    assert(has_room(m, end - lower));
+    const RtCrossing *begin = m->crossings + lower, *middle = m->crossings + top;
+    RtCrossing *behind = m->crossings + end;
+    uint32_t count = reversed ? merge(op, middle, behind, begin, middle, behind)
+                              : merge(op, begin, middle, middle, behind, behind);
+    memmove(m->crossings + lower, behind, count * sizeof(RtCrossing));
+    m->starts[m->depth] = lower + count;
+}
+
+/* ---- running a program ---- */
+
+INLINE void push_solid(Machine *m, const RtSolidSet *set, uint32_t index, const RtSolidRay *ray,
+                       RtTally *tally) {
+    float near = -INFINITY, far = INFINITY;
+    RT_COUNT(tally, extent_tests, 1);
+    rt_box_cut(&set->solids[index].box, &ray->thick, &near, &far);
+    bool met = near <= far && near <= ray->thick.tmax && far >= ray->thick.tmin;
+    RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "solid", .index = index,
+               .box = &set->solids[index].box, .met = met);
+    if (!met) {
+        push(m, 0);
+        return;
+    }
+    assert(has_room(m, rt_solid_most_crossings(&set->solids[index])));
+    RT_COUNT(tally, csg_tests, 1);
+    RT_OBSERVE(tally, .kind = RT_TRACED_CSG_TEST, .what = "solid", .index = index,
+               .box = &set->solids[index].box);
+    push(m, rt_solid_crossings(set, index, ray, near, far, m->crossings + m->starts[m->depth]));
+}
+
+/* Leaves one list on the stack. */
+INLINE void run(Machine *m, const RtCsgForest *forest, const RtCsg *tree, const RtSolidRay *ray,
+                RtTally *tally) {
+    const RtCsgInstruction *program = forest->instructions + tree->first;
+    float enter;
+    for (uint32_t i = 0; i < tree->count; i++) {
+        RtCsgInstruction instruction = program[i];
+        switch ((RtCsgOpcode)instruction.code) {
+        case RT_CSG_TEST:
+            RT_COUNT(tally, extent_tests, 1);
+            const RtBox *box = &forest->boxes[instruction.operand];
+            bool met = rt_box_hit(box, &ray->thick, ray->thick.tmax, &enter);
+            RT_OBSERVE(tally, .kind = RT_TRACED_EXTENT_TEST, .what = "solids", .index = instruction.operand,
+                       .box = box, .met = met);
+            if (met) break;
+            push(m, 0);
+            i = instruction.to - 1;
+            break;
+        case RT_CSG_PUSH: push_solid(m, &forest->set, instruction.operand, ray, tally); break;
+        case RT_CSG_SKIP_IF_EMPTY:
+            assert(m->depth > 0);
+            if (m->starts[m->depth - 1] == m->starts[m->depth]) i = instruction.to - 1;
+            break;
+        case RT_CSG_APPLY: apply(m, (RtCsgOp)instruction.operand, instruction.reversed); break;
+        }
+    }
+}
+
+static inline RtSolidRay solid_ray(const RtCsg *tree, const RtPreparedRay *ray) {
+    RtSolidRay solid = {rt_widen(ray->org), rt_widen(ray->dir), *ray};
+    rt_ray_thicken(&solid.thick, &tree->reach);
+    return solid;
+}
+
+/* Can rt_box_admit admit anything at all? An empty tree has a point for a box. */
+static inline bool comes_near(const RtCsg *tree, const RtPreparedRay *ray) {
+    float near, far;
+    rt_box_own_span(&tree->box, ray, &near, &far);
+    return near <= far && near <= ray->tmax && far >= ray->tmin && tree->box.lo.x < tree->box.hi.x;
+}
+
+INLINE bool search(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float *t,
+                   RtTally *tally) {
+    if (!comes_near(tree, ray)) return false;
+    RtSolidRay solid = solid_ray(tree, ray);
+    Machine m;
+    start(&m, tree, ray);
+    run(&m, forest, tree, &solid, tally);
+    bool found = false;
+    for (uint32_t i = 0; i < m.starts[1] && !found; i++) {
+        *t = m.crossings[i].t + 0.0f; /* of two faces one may be met at -0, the other at 0 */
+        found = *t >= ray->tmin && *t <= ray->tmax && rt_box_admit(&tree->box, ray, t);
+    }
+    return found;
+}
+
+bool rt_csg_hit(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float *t,
+                RtTally *tally) {
+    return tally ? search(forest, tree, ray, t, tally) : search(forest, tree, ray, t, NULL);
+}
+
+/* ---- facets ---- */
+
+static RtCsgFacet facet_of(const RtCsgForest *forest, const RtPreparedRay *ray, const RtCrossing *crossing) {
+    RtVec3d point = rt_add_scaledd(rt_widen(ray->org), rt_widen(ray->dir), (double)crossing->t);
+    RtVec3d normal = rt_solid_normal(&forest->set, crossing->solid, crossing->face, point);
+    bool inward = forest->set.solids[crossing->solid].subtracted;
+    return (RtCsgFacet){inward ? rt_scaled(normal, -1) : normal, crossing->solid};
+}
+
+RtCsgFacet rt_csg_facet(const RtCsgForest *forest, const RtCsg *tree, const RtPreparedRay *ray, float t) {
+    RtCsgFacet facet = {{0, 0, 0}, tree->first_solid};
+    RtSolidRay solid = solid_ray(tree, ray);
+    Machine m;
+    start(&m, tree, ray);
+    run(&m, forest, tree, &solid, NULL);
+    const RtCrossing *best = NULL;
+    float least = INFINITY;
+    for (uint32_t i = 0; i < m.starts[1]; i++) {
+        float at = m.crossings[i].t; /* as rt_csg_hit would say it */
+        (void)rt_box_admit(&tree->box, ray, &at);
+        if (!(fabsf(at - t) < least)) continue;
+        least = fabsf(at - t);
+        best = &m.crossings[i];
+    }
+    if (best) facet = facet_of(forest, ray, best);
+    return facet;
+}

@@ -1,0 +1,356 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* From terms to programs (csg.h). The tree is written out as an array of parts in preorder, one for each use
+ * of a term: a part's left operand follows it at once, its right one after all of that. So a pass from the
+ * back sees operands before operations, and nothing here calls itself; what must be remembered lies on stacks
+ * of our own, no higher than the tree is deep. */
+#include "core/shape/csg.h"
+
+#include "core/base/memory.h"
+
+#include <assert.h>
+
+#define NONE UINT32_MAX
+
+/* Up to here operands are ordered to be spared, beyond it to need few lists. */
+#define FEW_LISTS 16
+
+typedef struct Part {
+    RtBox box;
+    RtCsgTerm term;           /* never a move */
+    uint32_t right;           /* operation: its right operand */
+    uint32_t solid;           /* leaf: in the forest's set */
+    uint32_t crossings, room; /* most in its list, and on the stack while it is made; UINT32_MAX and more */
+    uint8_t lists;            /* most on the stack while it is made */
+    bool right_first;
+} Part;
+
+/* A term to be written out. */
+typedef struct Use {
+    RtCsgTerm term;
+    uint32_t move;     /* index, or NONE */
+    uint32_t right_of; /* part, or NONE */
+    bool subtracted;
+} Use;
+
+/* An operation of which a part of the instructions is there. */
+typedef struct Frame {
+    uint32_t part;
+    uint32_t operands;   /* done */
+    uint32_t test, skip; /* instructions that lead to its end, or NONE */
+    RtBox box;           /* where it matters; before the first operand: that of the operation around */
+    double tested_area;  /* half, of the nearest box around that is tested */
+} Frame;
+
+typedef struct Compiler {
+    RtCsgForest *forest;
+    const RtCsgBuilder *builder;
+    uint32_t first; /* instruction */
+    uint32_t part_count;
+    Part *parts;
+    uint32_t move_count, move_capacity;
+    RtTransform *moves;
+    uint32_t use_count, use_capacity;
+    Use *uses;
+    uint32_t frame_count, frame_capacity;
+    Frame *frames;
+    RtError *error;
+} Compiler;
+
+/* ---- writing out ---- */
+
+static RtStatus push_use(Compiler *p, Use use) {
+    RT_TRY(rt_reserve(&p->uses, &p->use_capacity, (uint64_t)p->use_count + 1, sizeof(Use), p->error));
+    p->uses[p->use_count++] = use;
+    return RT_OK;
+}
+
+/* `move`, and then what *index stands for; to *index. */
+static RtStatus add_move(Compiler *p, const RtTransform *move, uint32_t *index) {
+    RT_TRY(
+        rt_reserve(&p->moves, &p->move_capacity, (uint64_t)p->move_count + 1, sizeof(RtTransform), p->error));
+    p->moves[p->move_count] = *index == NONE ? *move : rt_transform_compose(move, &p->moves[*index]);
+    *index = p->move_count++;
+    return RT_OK;
+}
+
+static RtStatus write_part(Compiler *p, Use use) {
+    const RtCsgNode *node = &p->builder->nodes[use.term];
+    uint32_t at = p->part_count++;
+    Part *part = &p->parts[at];
+    part->term = use.term;
+    if (use.right_of != NONE) p->parts[use.right_of].right = at;
+    if (node->kind == RT_CSG_SOLID) {
+        const RtTransform *move = use.move == NONE ? NULL : &p->moves[use.move];
+        RtSolidSet *set = &p->forest->set;
+        RT_TRY(rt_solid_add_moved(set, &p->builder->set, node->left, move, &part->solid, p->error));
+        set->solids[part->solid].subtracted = use.subtracted;
+        return RT_OK;
+    }
+    bool turned = use.subtracted != (node->op == RT_CSG_DIFFERENCE);
+    RT_TRY(push_use(p, (Use){node->right, use.move, at, turned}));
+    return push_use(p, (Use){node->left, use.move, NONE, use.subtracted});
+}
+
+static RtStatus write_out(Compiler *p, RtCsgTerm root) {
+    RT_TRY(push_use(p, (Use){root, NONE, NONE, false}));
+    while (p->use_count > 0) {
+        Use use = p->uses[--p->use_count];
+        const RtCsgNode *node = &p->builder->nodes[use.term];
+        if (node->kind == RT_CSG_MOVE) {
+            RT_TRY(add_move(p, &node->move, &use.move));
+            use.term = node->left;
+        }
+        RT_TRY(write_part(p, use));
+    }
+    return RT_OK;
+}
+
+/* ---- measuring ---- */
+
+static uint32_t saturating_sum(uint32_t a, uint32_t b) {
+    return a > UINT32_MAX - b ? UINT32_MAX : a + b;
+}
+
+static uint32_t max_of(uint32_t a, uint32_t b) {
+    return a > b ? a : b;
+}
+
+static uint32_t lists_in_order(const Part *first, const Part *second) {
+    return max_of(first->lists, second->lists + 1u);
+}
+
+/* Which operand comes first: see csg.h. */
+static bool is_right_first(const Compiler *p, RtCsgOp op, const Part *left, const Part *right) {
+    const RtCsgNode *nodes = p->builder->nodes;
+    bool smaller = nodes[right->term].size < nodes[left->term].size;
+    bool right_spares = op == RT_CSG_INTERSECTION && smaller;
+    uint32_t lists = right_spares ? lists_in_order(right, left) : lists_in_order(left, right);
+    if (op != RT_CSG_UNION && lists <= FEW_LISTS) return right_spares;
+    return right->lists > left->lists;
+}
+
+static void measure_operation(const Compiler *p, Part *part) {
+    RtCsgOp op = p->builder->nodes[part->term].op;
+    const Part *left = part + 1, *right = &p->parts[part->right];
+    part->box = op == RT_CSG_UNION          ? rt_box_union(left->box, right->box)
+                : op == RT_CSG_INTERSECTION ? rt_box_common(left->box, right->box)
+                                            : left->box;
+    part->right_first = is_right_first(p, op, left, right);
+    const Part *first = part->right_first ? right : left, *second = part->right_first ? left : right;
+    part->lists = (uint8_t)lists_in_order(first, second);
+    part->crossings = saturating_sum(left->crossings, right->crossings);
+    /* While lists are merged, they and the result are there. */
+    part->room = max_of(first->room, saturating_sum(first->crossings, second->room));
+    part->room = max_of(part->room, saturating_sum(part->crossings, part->crossings));
+}
+
+static void measure(const Compiler *p) {
+    for (uint32_t i = p->part_count; i-- > 0;) {
+        Part *part = &p->parts[i];
+        if (p->builder->nodes[part->term].kind == RT_CSG_COMBINE) {
+            measure_operation(p, part);
+            continue;
+        }
+        const RtSolid *solid = &p->forest->set.solids[part->solid];
+        part->box = solid->box;
+        part->lists = 1;
+        part->crossings = part->room = rt_solid_most_crossings(solid);
+    }
+}
+
+/* ---- instructions ---- */
+
+static RtStatus emit(Compiler *p, RtCsgInstruction instruction, uint32_t *at) {
+    RtCsgForest *f = p->forest;
+    RT_TRY(rt_reserve(&f->instructions, &f->instruction_capacity, (uint64_t)f->instruction_count + 1,
+                      sizeof(RtCsgInstruction), p->error));
+    *at = f->instruction_count++;
+    f->instructions[*at] = instruction;
+    return RT_OK;
+}
+
+/* `box`: of the operation around. */
+static RtStatus push_frame(Compiler *p, uint32_t part, RtBox box, double tested_area) {
+    RT_TRY(rt_reserve(&p->frames, &p->frame_capacity, (uint64_t)p->frame_count + 1, sizeof(Frame), p->error));
+    p->frames[p->frame_count++] = (Frame){part, 0, NONE, NONE, box, tested_area};
+    return RT_OK;
+}
+
+static RtStatus emit_test(Compiler *p, Frame *frame) {
+    RtCsgForest *f = p->forest;
+    double area = rt_box_half_area(frame->box);
+    double spared = (1 - area / frame->tested_area) * p->builder->nodes[p->parts[frame->part].term].size;
+    if (!(spared > 1)) return RT_OK;
+    RT_TRY(rt_reserve(&f->boxes, &f->box_capacity, (uint64_t)f->box_count + 1, sizeof(RtBox), p->error));
+    f->boxes[f->box_count] = frame->box;
+    frame->tested_area = area;
+    return emit(p, (RtCsgInstruction){.code = RT_CSG_TEST, .operand = f->box_count++}, &frame->test);
+}
+
+/* What comes before the first operand of an operation, between them, or after the second. */
+static RtStatus advance(Compiler *p, bool extents) {
+    Frame *frame = &p->frames[p->frame_count - 1];
+    const Part *part = &p->parts[frame->part];
+    const RtCsgNode *node = &p->builder->nodes[part->term];
+    uint32_t left = frame->part + 1, at;
+    if (node->kind == RT_CSG_SOLID) {
+        p->frame_count--;
+        return emit(p, (RtCsgInstruction){.code = RT_CSG_PUSH, .operand = part->solid}, &at);
+    }
+    switch (frame->operands++) {
+    case 0:
+        frame->box = rt_box_common(frame->box, part->box);
+        if (extents) RT_TRY(emit_test(p, frame));
+        return push_frame(p, part->right_first ? part->right : left, frame->box, frame->tested_area);
+    case 1:
+        if (node->op == RT_CSG_INTERSECTION || (node->op == RT_CSG_DIFFERENCE && !part->right_first)) {
+            RT_TRY(emit(p, (RtCsgInstruction){.code = RT_CSG_SKIP_IF_EMPTY}, &frame->skip));
+        }
+        return push_frame(p, part->right_first ? left : part->right, frame->box, frame->tested_area);
+    default: break;
+    }
+    RtCsgInstruction apply = {RT_CSG_APPLY, part->right_first, (uint32_t)node->op, 0};
+    RT_TRY(emit(p, apply, &at));
+    RtCsgInstruction *instructions = p->forest->instructions;
+    if (frame->test != NONE) instructions[frame->test].to = at + 1 - p->first;
+    if (frame->skip != NONE) instructions[frame->skip].to = at + 1 - p->first;
+    p->frame_count--;
+    return RT_OK;
+}
+
+static RtStatus write_program(Compiler *p, bool extents) {
+    RtBox box = p->parts[0].box;
+    RT_TRY(push_frame(p, 0, box, rt_box_half_area(box)));
+    while (p->frame_count > 0) RT_TRY(advance(p, extents));
+    return RT_OK;
+}
+
+/* ---- trees ---- */
+
+/* About the boxes of solids[0..count), infinite sides left out. */
+static RtBox reach_of(const RtSolid *solids, uint32_t count) {
+    RtBox reach = RT_EMPTY_BOX;
+    for (uint32_t i = 0; i < count; i++) {
+        for (int a = 0; a < 3; a++) {
+            const float sides[2] = {solids[i].box.lo.at[a], solids[i].box.hi.at[a]};
+            for (int s = 0; s < 2; s++) {
+                if (!isfinite(sides[s])) continue;
+                reach.lo.at[a] = rt_minf(reach.lo.at[a], sides[s]);
+                reach.hi.at[a] = rt_maxf(reach.hi.at[a], sides[s]);
+            }
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        if (reach.lo.at[a] > reach.hi.at[a]) reach.lo.at[a] = reach.hi.at[a] = 0;
+    }
+    return reach;
+}
+
+/* Nothing with an inside is in such a box. */
+static bool is_flat(RtBox box) {
+    return !(box.lo.x < box.hi.x && box.lo.y < box.hi.y && box.lo.z < box.hi.z);
+}
+
+static RtStatus check_end(RtBox box, RtError *error) {
+    if (rt_finite(box.lo) && rt_finite(box.hi)) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the tree has no end, or none that the boxes of its solids show: intersect it with a "
+                   "bounded solid, or make one polyhedron of its half-spaces");
+}
+
+static RtStatus compile(Compiler *p, RtCsgTerm root, bool extents, RtCsg *out) {
+    RtCsgForest *f = p->forest;
+    RtCsg tree = {.first = f->instruction_count, .first_solid = f->set.solid_count, .extents = extents};
+    p->first = tree.first;
+    uint64_t most_parts = 2 * (uint64_t)p->builder->nodes[root].size - 1;
+    p->parts = rt_alloc(most_parts, sizeof(Part));
+    if (!p->parts) return rt_fail_memory(p->error, "a CSG tree", most_parts * sizeof(Part));
+    RT_TRY(write_out(p, root));
+    assert(p->part_count == most_parts);
+    measure(p);
+    assert(p->parts[0].lists <= RT_CSG_MAX_LISTS);
+
+    tree.solid_count = f->set.solid_count - tree.first_solid;
+    tree.most_crossings = p->parts[0].room;
+    tree.reach = reach_of(f->set.solids + tree.first_solid, tree.solid_count);
+    tree.box = p->parts[0].box;
+    if (is_flat(tree.box)) tree.box.lo = tree.box.hi = rt_box_center(tree.reach);
+    RT_TRY(check_end(tree.box, p->error));
+    RT_TRY(write_program(p, extents));
+    tree.count = f->instruction_count - tree.first;
+    tree.ball = rt_csg_ball(f, &tree);
+    *out = tree;
+    return RT_OK;
+}
+
+RtStatus rt_csg_compile(RtCsgForest *forest, const RtCsgBuilder *builder, RtCsgTerm root, bool extents,
+                        RtCsg *out, RtError *error) {
+    assert(root < builder->node_count);
+    const RtCsgForest before = *forest;
+    Compiler p = {.forest = forest, .builder = builder, .error = error};
+    RtStatus status = compile(&p, root, extents, out);
+    if (status != RT_OK) {
+        forest->set.solid_count = before.set.solid_count;
+        forest->set.plane_count = before.set.plane_count;
+        forest->set.triangle_count = before.set.triangle_count;
+        forest->instruction_count = before.instruction_count;
+        forest->box_count = before.box_count;
+    }
+    rt_free(p.parts);
+    rt_free(p.moves);
+    rt_free(p.uses);
+    rt_free(p.frames);
+    return status;
+}
+
+/* ---- moving trees ---- */
+
+/* The terms that `tree` was made from. */
+static RtStatus recover_terms(RtCsgBuilder *builder, const RtCsgForest *from, const RtCsg *tree,
+                              RtCsgTerm *root, RtError *error) {
+    RtCsgTerm terms[RT_CSG_MAX_LISTS];
+    uint32_t count = 0, solid;
+    for (uint32_t i = 0; i < tree->count; i++) {
+        RtCsgInstruction instruction = from->instructions[tree->first + i];
+        if (instruction.code == RT_CSG_PUSH) {
+            RT_TRY(rt_solid_add_moved(&builder->set, &from->set, instruction.operand, NULL, &solid, error));
+            uint32_t material = from->set.solids[instruction.operand].material;
+            RT_TRY(rt_csg_solid(builder, solid, material, &terms[count], error));
+            count++;
+        } else if (instruction.code == RT_CSG_APPLY) {
+            count--;
+            RtCsgTerm lower = terms[count - 1], top = terms[count];
+            RT_TRY(rt_csg_combine(builder, (RtCsgOp)instruction.operand, instruction.reversed ? top : lower,
+                                  instruction.reversed ? lower : top, &terms[count - 1], error));
+        }
+    }
+    assert(count == 1);
+    *root = terms[0];
+    return RT_OK;
+}
+
+RtStatus rt_csg_copy(RtCsgForest *forest, const RtCsgForest *from, const RtCsg *tree, const RtTransform *move,
+                     RtCsg *out, RtError *error) {
+    RtCsgBuilder builder = {0};
+    RtCsgTerm root = 0;
+    RtStatus status = recover_terms(&builder, from, tree, &root, error);
+    if (status == RT_OK && move) status = rt_csg_move(&builder, root, move, &root, error);
+    if (status == RT_OK) status = rt_csg_compile(forest, &builder, root, tree->extents, out, error);
+    rt_csg_builder_clear(&builder);
+    return status;
+}
+
+/* ---- forests ---- */
+
+void rt_csg_forest_clear(RtCsgForest *forest) {
+    rt_solid_set_clear(&forest->set);
+    rt_free(forest->instructions);
+    rt_free(forest->boxes);
+    *forest = (RtCsgForest){0};
+}
+
+uint64_t rt_csg_forest_bytes(const RtCsgForest *forest) {
+    return rt_solid_set_bytes(&forest->set) +
+           (uint64_t)forest->instruction_capacity * sizeof(RtCsgInstruction) +
+           (uint64_t)forest->box_capacity * sizeof(RtBox);
+}

@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Surfaces against boxes: a convex thing and a box are apart if their shadows on some axis are. For polygons
+ * the axes that can tell are their normal, the box's, and the cross products of an edge of each (Akenine-
+ * Möller 2001, "Fast 3D Triangle-Box Overlap Testing", JGT 6(1), from Gottschalk, Lin & Manocha 1996). Of
+ * other shapes the support function gives the shadows on the axes of their frame. Everything is taken
+ * relative to the centre of the box and in double, and the box is grown by the margin first.
+ *
+ * The part of a surface within a box: polygons are clipped by one plane of the box after the other
+ * (Sutherland & Hodgman 1974, "Reentrant Polygon Clipping"), balls and cones cut along their axes of
+ * symmetry. Rounding loses only what is as near as rounding to the faces of the grown box, far from the box
+ * itself. */
+#include "core/shape/overlap.h"
+
+/* Polygons of more vertices are judged by plane and box alone: the edges take the square of their number. */
+enum { MAX_EDGES = 16 };
+
+typedef struct Block {
+    RtVec3d center, half;
+} Block;
+
+static Block grown_block(const RtBox *box, double margin) {
+    Block block;
+    for (int a = 0; a < 3; a++) {
+        double lo = (double)box->lo.at[a], hi = (double)box->hi.at[a];
+        block.center.at[a] = lo / 2 + hi / 2;
+        block.half.at[a] = (hi - lo) / 2 + margin;
+    }
+    return block;
+}
+
+/* Is the block beyond [lo, hi] along `axis`, which may have any length? */
+static bool beyond(const Block *block, RtVec3d axis, double lo, double hi) {
+    double reach = fabs(axis.x) * block->half.x + fabs(axis.y) * block->half.y + fabs(axis.z) * block->half.z;
+    return lo > reach || hi < -reach;
+}
+
+static bool points_beyond(const Block *block, const RtVec3d *points, uint32_t count, RtVec3d axis) {
+    double lo = INFINITY, hi = -INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        double at = rt_dotd(points[i], axis);
+        lo = fmin(lo, at);
+        hi = fmax(hi, at);
+    }
+    return beyond(block, axis, lo, hi);
+}
+
+/* For a flat convex chain of points, relative to the block. */
+static bool chain_meets(const Block *block, const RtVec3d *points, uint32_t count, RtVec3d normal) {
+    if (points_beyond(block, points, count, normal)) return false;
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d e = rt_subd(points[(i + 1) % count], points[i]);
+        const RtVec3d axes[3] = {{0, e.z, -e.y}, {-e.z, 0, e.x}, {e.y, -e.x, 0}};
+        for (int a = 0; a < 3; a++) {
+            if (points_beyond(block, points, count, axes[a])) return false;
+        }
+    }
+    return true;
+}
+
+static void triangle_points(const RtTriangle *triangle, const Block *block, RtVec3d points[3]) {
+    for (int i = 0; i < 3; i++) points[i] = rt_subd(rt_widen(triangle->v[i]), block->center);
+}
+
+static bool triangle_meets(const RtTriangle *triangle, const Block *block) {
+    RtVec3d points[3];
+    triangle_points(triangle, block, points);
+    RtVec3d normal = rt_crossd(rt_subd(points[1], points[0]), rt_subd(points[2], points[0]));
+    return chain_meets(block, points, 3, normal);
+}
+
+/* The polygon as it is hit: its vertices moved to its plane along the axis it is projected along. */
+static void polygon_points(const RtPolygon *polygon, const RtVec3 *vertices, const Block *block,
+                           RtVec3d points[MAX_EDGES]) {
+    RtVec3d center = rt_subd(polygon->center, block->center), n = polygon->normal;
+    uint32_t u = polygon->u, v = polygon->v, w = 3 - u - v;
+    for (uint32_t i = 0; i < polygon->count; i++) {
+        points[i] = rt_subd(rt_widen(vertices[i]), block->center);
+        points[i].at[w] = center.at[w] - (n.at[u] * (points[i].at[u] - center.at[u]) +
+                                          n.at[v] * (points[i].at[v] - center.at[v])) /
+                                             n.at[w];
+    }
+}
+
+static bool polygon_meets(const RtPolygon *polygon, const RtVec3 *vertices, const Block *block) {
+    RtVec3d points[MAX_EDGES];
+    double plane = rt_dotd(polygon->normal, rt_subd(polygon->center, block->center));
+    if (polygon->count > MAX_EDGES) return !beyond(block, polygon->normal, plane, plane);
+    polygon_points(polygon, vertices, block, points);
+    return chain_meets(block, points, polygon->count, polygon->normal);
+}
+
+/* The nearest point of the block is within the ball, the farthest is not. */
+static bool sphere_meets(const RtSphere *sphere, const Block *block) {
+    RtVec3d offset = rt_subd(rt_widen(sphere->center), block->center);
+    double radius = (double)sphere->radius, nearest = 0, farthest = 0;
+    for (int a = 0; a < 3; a++) {
+        double near = fmax(fabs(offset.at[a]) - block->half.at[a], 0);
+        double far = fabs(offset.at[a]) + block->half.at[a];
+        nearest += near * near;
+        farthest += far * far;
+    }
+    return nearest <= radius * radius && farthest >= radius * radius;
+}
+
+static bool frame_meets(const RtOutline *outline, const Block *block) {
+    for (int a = 0; a < 3; a++) {
+        double at = rt_dotd(outline->axes[a], block->center);
+        if (beyond(block, outline->axes[a], outline->lo[a] - at, outline->hi[a] - at)) return false;
+    }
+    return true;
+}
+
+RtOutline rt_object_outline(const RtGeometry *geometry, uint32_t id) {
+    RtOutline outline = {.geometry = geometry, .id = id};
+    RtShape shape = rt_ref_shape(geometry->objects[id]);
+    if (shape != RT_SHAPE_CONE && shape != RT_SHAPE_CSG) return outline;
+    rt_object_frame(geometry, id, outline.axes);
+    for (int a = 0; a < 3; a++) {
+        outline.lo[a] = -rt_object_support(geometry, id, rt_scaled(outline.axes[a], -1));
+        outline.hi[a] = rt_object_support(geometry, id, outline.axes[a]);
+    }
+    return outline;
+}
+
+bool rt_outline_meets_box(const RtOutline *outline, const RtBox *box, double margin) {
+    const RtGeometry *geometry = outline->geometry;
+    uint32_t id = outline->id;
+    const RtBox *own = &geometry->boxes[id];
+    Block block = grown_block(box, margin);
+    bool held = true;
+    for (int a = 0; a < 3; a++) {
+        double lo = (double)box->lo.at[a], hi = (double)box->hi.at[a];
+        double own_lo = (double)own->lo.at[a], own_hi = (double)own->hi.at[a];
+        if (own_lo - hi > margin || lo - own_hi > margin) return false;
+        held &= lo - own_lo <= margin && own_hi - hi <= margin;
+    }
+    if (held) return true; /* what the grown box holds whole need not be looked at */
+    uint32_t index = rt_ref_index(geometry->objects[id]);
+    switch (rt_ref_shape(geometry->objects[id])) {
+    case RT_SHAPE_TRIANGLE: return triangle_meets(&geometry->triangles[index], &block);
+    case RT_SHAPE_SPHERE: return sphere_meets(&geometry->spheres[index], &block);
+    case RT_SHAPE_POLYGON: {
+        const RtPolygon *polygon = &geometry->polygons[index];
+        return polygon_meets(polygon, geometry->polygon_vertices + polygon->first, &block);
+    }
+    default: return frame_meets(outline, &block);
+    }
+}
+
+bool rt_object_meets_box(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin) {
+    RtOutline outline = rt_object_outline(geometry, id);
+    return rt_outline_meets_box(&outline, box, margin);
+}
+
+/* ---- parts ---- */
+
+/* Each plane cuts each edge at most once, and at most half as often as there are edges. */
+enum { MAX_CLIPPED = 192 };
+
+/* Shadows on the axes. */
+typedef struct Bounds {
+    double lo[3], hi[3];
+} Bounds;
+
+/* Keeps what of a closed chain is within `half` of the block's centre along an axis, on the side of `sign`;
+ * gives its length. */
+static uint32_t clip_chain(const RtVec3d *in, uint32_t count, int axis, double sign, double half,
+                           RtVec3d *out) {
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d from = in[i], to = in[(i + 1) % count];
+        double before = half - sign * from.at[axis], after = half - sign * to.at[axis];
+        if (before >= 0) out[n++] = from;
+        if ((before < 0) == (after < 0)) continue;
+        out[n] = rt_add_scaledd(from, rt_subd(to, from), before / (before - after));
+        out[n++].at[axis] = sign * half;
+    }
+    return n;
+}
+
+static bool chain_part(const Block *block, RtVec3d *points, uint32_t count, Bounds *bounds) {
+    RtVec3d clipped[MAX_CLIPPED];
+    for (int a = 0; a < 3; a++) {
+        count = clip_chain(points, count, a, 1, block->half.at[a], clipped);
+        count = clip_chain(clipped, count, a, -1, block->half.at[a], points);
+    }
+    for (int a = 0; a < 3; a++) {
+        bounds->lo[a] = INFINITY;
+        bounds->hi[a] = -INFINITY;
+        for (uint32_t i = 0; i < count; i++) {
+            bounds->lo[a] = fmin(bounds->lo[a], block->center.at[a] + points[i].at[a]);
+            bounds->hi[a] = fmax(bounds->hi[a], block->center.at[a] + points[i].at[a]);
+        }
+    }
+    return count > 0;
+}
+
+/* Along an axis the ball reaches as far as the point of the block that is nearest to its centre along the
+ * others lets it. */
+static bool sphere_part(const RtSphere *sphere, const Block *block, Bounds *bounds) {
+    double square = (double)sphere->radius * (double)sphere->radius * (1 + 0x1p-40), apart[3];
+    if (!sphere_meets(sphere, block)) return false;
+    for (int a = 0; a < 3; a++) {
+        apart[a] = fmax(fabs((double)sphere->center.at[a] - block->center.at[a]) - block->half.at[a], 0);
+    }
+    for (int a = 0; a < 3; a++) {
+        double b = apart[(a + 1) % 3], c = apart[(a + 2) % 3];
+        double reach = sqrt(fmax(square - b * b - c * c, 0)), center = (double)sphere->center.at[a];
+        bounds->lo[a] = center - reach;
+        bounds->hi[a] = center + reach;
+    }
+    return true;
+}
+
+/* Cuts [*from, *to] down to where value + slope * s <= limit. */
+static void keep_below(double value, double slope, double limit, double *from, double *to) {
+    if (slope > 0) *to = fmin(*to, (limit - value) / slope);
+    if (slope < 0) *from = fmax(*from, (limit - value) / slope);
+}
+
+/* The circle at height s reaches, along an axis, from one linear function of s to another: these are cut by
+ * the block, which leaves some of the heights. */
+static bool cone_part(const RtCone *cone, const Block *block, Bounds *bounds) {
+    double from = -cone->height / 2, to = cone->height / 2, value[3][2], slope[3][2];
+    double radius = (double)cone->base_radius + cone->slope * cone->height / 2;
+    for (int a = 0; a < 3; a++) {
+        double tilt = sqrt(fmax(1 - cone->axis.at[a] * cone->axis.at[a], 0)) * (1 + 0x1p-40);
+        double middle = cone->middle.at[a] - block->center.at[a], half = block->half.at[a];
+        for (int side = 0; side < 2; side++) {
+            double reach = side == 0 ? -tilt : tilt;
+            value[a][side] = middle + reach * radius;
+            slope[a][side] = cone->axis.at[a] + reach * cone->slope;
+        }
+        keep_below(value[a][0], slope[a][0], half, &from, &to);
+        keep_below(-value[a][1], -slope[a][1], half, &from, &to);
+    }
+    if (from > to) return false;
+    for (int a = 0; a < 3; a++) {
+        double center = block->center.at[a];
+        bounds->lo[a] = center + value[a][0] + fmin(slope[a][0] * from, slope[a][0] * to);
+        bounds->hi[a] = center + value[a][1] + fmax(slope[a][1] * from, slope[a][1] * to);
+    }
+    return true;
+}
+
+/* False if there is none; `bounds`, of the whole own box at first, may stay as they are. */
+static bool surface_part(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin,
+                         Bounds *bounds) {
+    RtVec3d points[MAX_CLIPPED];
+    Block block = grown_block(box, margin);
+    uint32_t index = rt_ref_index(geometry->objects[id]);
+    switch (rt_ref_shape(geometry->objects[id])) {
+    case RT_SHAPE_TRIANGLE:
+        triangle_points(&geometry->triangles[index], &block, points);
+        return chain_part(&block, points, 3, bounds);
+    case RT_SHAPE_SPHERE: return sphere_part(&geometry->spheres[index], &block, bounds);
+    case RT_SHAPE_CONE: return cone_part(&geometry->cones[index], &block, bounds);
+    case RT_SHAPE_POLYGON: {
+        const RtPolygon *polygon = &geometry->polygons[index];
+        if (polygon->count > MAX_EDGES) break;
+        polygon_points(polygon, geometry->polygon_vertices + polygon->first, &block, points);
+        return chain_part(&block, points, polygon->count, bounds);
+    }
+    default: break;
+    }
+    return rt_object_meets_box(geometry, id, box, margin);
+}
+
+bool rt_object_part(const RtGeometry *geometry, uint32_t id, const RtBox *box, double margin, RtBox *out) {
+    const RtBox *own = &geometry->boxes[id];
+    Bounds bounds;
+    for (int a = 0; a < 3; a++) {
+        bounds.lo[a] = (double)own->lo.at[a];
+        bounds.hi[a] = (double)own->hi.at[a];
+    }
+    if (!surface_part(geometry, id, box, margin, &bounds)) return false;
+    for (int a = 0; a < 3; a++) {
+        out->lo.at[a] = rt_maxf(rt_float_below(bounds.lo[a] - margin), rt_maxf(own->lo.at[a], box->lo.at[a]));
+        out->hi.at[a] = rt_minf(rt_float_above(bounds.hi[a] + margin), rt_minf(own->hi.at[a], box->hi.at[a]));
+    }
+    return !rt_box_is_empty(*out);
+}

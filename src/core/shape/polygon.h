@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Polygons: planar, n >= 3 vertices, convex or concave, both sides hit.
+ *
+ * Hit by projection (the lecture's way): the ray meets the plane, and the point is tested for being inside in
+ * the coordinate plane that the polygon is least perpendicular to, by counting crossings of its edges. Edges
+ * and vertices belong to the polygon, so that a symmetric ray through the edge of a cube does not slip
+ * through. The plane is Newell's, through the centroid, in double. Vertices lie in one array of the
+ * geometry. */
+#ifndef RT_SHAPE_POLYGON_H
+#define RT_SHAPE_POLYGON_H
+
+#include "core/base/ray.h"
+#include "core/base/status.h"
+#include "core/shape/ball.h"
+
+typedef struct RtPolygon {
+    RtVec3d normal; /* unit, right-hand rule over the vertices */
+    RtVec3d center; /* a point of the plane */
+    uint32_t first; /* first vertex */
+    uint32_t count; /* vertices */
+    uint32_t u, v;  /* axes of the plane it is projected to */
+    float warp;     /* the largest distance of a vertex from the plane along the third axis, rounded up */
+} RtPolygon;
+
+/* A polygon with a vertex farther from the plane (along the normal) than this part of its size is refused. */
+#define RT_POLYGON_MAX_WARP 1e-3
+
+/* Fills `polygon` from vertices[0..count): its plane and projection. Refuses fewer than 3 vertices, no area,
+ * or a warp above RT_POLYGON_MAX_WARP, with a message without a place. */
+RtStatus rt_polygon_init(RtPolygon *polygon, const RtVec3 *vertices, uint32_t first, uint32_t count,
+                         RtError *error);
+
+/* In what follows `vertices` are the polygon's own: the geometry's array from `first` on. */
+
+/* Extents hold the vertices and the polygon as it is hit, that is, projected to its plane along the third
+ * axis. The box is flat and exact where the polygon lies in a coordinate plane. */
+RtBox rt_polygon_box(const RtPolygon *polygon, const RtVec3 *vertices);
+RtBall rt_polygon_ball(const RtPolygon *polygon, const RtVec3 *vertices);
+double rt_polygon_support(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d direction);
+
+/* Even-odd rule in the plane of projection; a point on an edge is inside. */
+static inline bool rt_polygon_inside(const RtPolygon *polygon, const RtVec3 *vertices, RtVec3d point) {
+    double pu = point.at[polygon->u], pv = point.at[polygon->v];
+    const float *last = vertices[polygon->count - 1].at;
+    double au = (double)last[polygon->u], av = (double)last[polygon->v];
+    bool inside = false;
+    for (uint32_t i = 0; i < polygon->count; i++) {
+        const float *vertex = vertices[i].at;
+        double bu = (double)vertex[polygon->u], bv = (double)vertex[polygon->v];
+        if ((av >= pv || bv >= pv) && (av <= pv || bv <= pv)) {
+            double side = (bu - au) * (pv - av) - (pu - au) * (bv - av);
+            if (side == 0 && (au >= pu || bu >= pu) && (au <= pu || bu <= pu)) return true;
+            bool crosses = (av > pv) != (bv > pv);
+            if (crosses && (bv > av ? side > 0 : side < 0)) inside = !inside;
+        }
+        au = bu;
+        av = bv;
+    }
+    return inside;
+}
+
+/* The t in [tmin, tmax] at which the ray meets the polygon; a ray in its plane misses it. */
+static inline bool rt_polygon_hit(const RtPolygon *polygon, const RtVec3 *vertices, const RtBox *own,
+                                  const RtPreparedRay *ray, float *t) {
+    RtVec3d org = rt_widen(ray->org);
+    RtVec3d dir = rt_widen(ray->dir);
+    double approach = rt_dotd(polygon->normal, dir);
+    if (approach == 0) return false;
+    double at = rt_dotd(polygon->normal, rt_subd(polygon->center, org)) / approach;
+    if (!rt_polygon_inside(polygon, vertices, rt_add_scaledd(org, dir, at))) return false;
+    *t = (float)at;
+    return rt_box_admit(own, ray, t);
+}
+
+#endif

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The convex cone of standard coordinates, cut by its caps: |(x, y)| <= r(z) = 1 + (ratio - 1) z between two
+ * planes of the world.
+ *
+ * With p(s) = near + s dir, x^2 + y^2 - r^2 is the quadratic a s^2 + 2 b s + c, whose inside is that of both
+ * nappes of the double cone. A line that is steeper than the side (a < 0) goes into one and out of the other;
+ * of its two half-lines the one is inside on which r is above 0. A line that is less steep (a > 0) is inside
+ * between the roots, if that is on the nappe with r > 0; it is the same nappe at both. A line as steep as the
+ * side (a = 0) has one root, and goes into one nappe for good. So the apex needs no care, and the second
+ * nappe is never met.
+ *
+ * Caps across an axis of the world are at a float32, like all such faces, and the place is drawn to them, as
+ * near as a double comes: what is between the caps is what the place says, for extents and for the referee,
+ * too. */
+#include "core/base/memory.h"
+#include "core/shape/quadratic.h"
+#include "core/shape/solid_parts.h"
+
+enum { SIDE, BASE, APEX };
+
+/* Fills span->open and close with where near + s dir, from the middle of the axis, is within the side. */
+static bool within_side(double ratio, const RtStandardLine *line, RtSpan *span) {
+    RtVec3d p = line->near, d = line->dir;
+    double r = 1 + (ratio - 1) * (p.z + 0.5), dr = (ratio - 1) * d.z;
+    double a = d.x * d.x + d.y * d.y - dr * dr;
+    double half_b = p.x * d.x + p.y * d.y - r * dr;
+    double c = p.x * p.x + p.y * p.y - r * r;
+    *span = (RtSpan){-INFINITY, INFINITY, SIDE, SIDE};
+    if (a == 0 && half_b == 0) return c < 0 && r > 0;
+    if (a == 0 && (half_b < 0) != (dr > 0)) return false;
+
+    double roots[2], discriminant = half_b * half_b - a * c;
+    if (a > 0) {
+        if (!(discriminant > 0) || rt_quadratic_roots(a, half_b, c, discriminant, roots) < 2) return false;
+        span->open = roots[0], span->close = roots[1];
+        return r + dr * (roots[0] / 2 + roots[1] / 2) > 0;
+    }
+    int count = rt_quadratic_roots(a, half_b, c, fmax(discriminant, 0), roots);
+    if (dr > 0) {
+        span->open = roots[count - 1];
+    } else {
+        span->close = roots[0];
+    }
+    return true;
+}
+
+uint32_t rt_solid_cone_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray, float near,
+                                 float far, RtCrossing *out) {
+    const RtSolid *solid = &set->solids[index];
+    RtStandardLine line = rt_solid_line(solid, ray, rt_vec3d(0, 0, 0.5));
+    RtSpan span;
+    if (!within_side(solid->ratio, &line, &span)) return 0;
+    span.open += line.closest, span.close += line.closest;
+    for (uint32_t i = 0; i < solid->count; i++)
+        rt_span_cut(&span, &set->planes[solid->first + i], BASE + i, ray);
+    return rt_span_put(&span, index, near, far, out, 0);
+}
+
+/* Of the side the gradient, in which the distance from the axis stands for r: at the apex it is along the
+ * axis. */
+RtVec3d rt_solid_cone_normal(const RtSolidSet *set, const RtSolid *solid, uint32_t face, RtVec3d point) {
+    if (face != SIDE) return set->planes[solid->first + face - BASE].normal;
+    RtVec3d p = rt_solid_point_back(solid, point);
+    double across = sqrt(p.x * p.x + p.y * p.y);
+    if (across == 0) return rt_solid_normal_to_world(solid, rt_vec3d(0, 0, 1));
+    return rt_solid_normal_to_world(solid, rt_vec3d(p.x, p.y, (1 - solid->ratio) * across));
+}
+
+/* ---- extents: those of the two discs ---- */
+
+static RtVec3d column(const RtSolid *solid, int i) {
+    return rt_transform_column(&solid->place, i);
+}
+
+static RtVec3d apex_of(const RtSolid *solid) {
+    return rt_addd(column(solid, 3), column(solid, 2));
+}
+
+/* Half the width of the disc of radius 1 along `direction`. */
+static double disc_reach(const RtSolid *solid, RtVec3d direction) {
+    double x = rt_dotd(direction, column(solid, 0)), y = rt_dotd(direction, column(solid, 1));
+    return sqrt(x * x + y * y);
+}
+
+double rt_solid_cone_support(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction) {
+    (void)set;
+    double reach = disc_reach(solid, direction);
+    return fmax(rt_dotd(direction, column(solid, 3)) + reach,
+                rt_dotd(direction, apex_of(solid)) + solid->ratio * reach);
+}
+
+/* At most how far a point of the disc about v, of `radius` times the standard one, is from the origin,
+ * squared: |v + w|^2 = v^2 + 2 v.w + w^2. Exact where v is across the disc. */
+static double farthest_squared(const RtSolid *solid, RtVec3d v, double radius, double stretch) {
+    return rt_dotd(v, v) + 2 * radius * disc_reach(solid, v) + radius * radius * stretch * stretch;
+}
+
+/* About the point of the axis from which both circles of an upright cone are equally far; if that is beyond
+ * an end, the larger circle alone decides. */
+RtBall rt_solid_cone_ball(const RtSolidSet *set, const RtSolid *solid) {
+    (void)set;
+    RtVec3d axis = column(solid, 2);
+    double stretch = rt_largest_stretch(column(solid, 0), column(solid, 1), rt_vec3d(0, 0, 0));
+    double smaller = (1 - solid->ratio * solid->ratio) * stretch * stretch;
+    double s = fmax((1 - smaller / rt_dotd(axis, axis)) / 2, 0);
+    double squared = fmax(farthest_squared(solid, rt_scaled(axis, -s), 1, stretch),
+                          farthest_squared(solid, rt_scaled(axis, 1 - s), solid->ratio, stretch));
+    return (RtBall){rt_add_scaledd(column(solid, 3), axis, s), sqrt(squared) * (1 + 0x1p-40)};
+}
+
+/* ---- making ---- */
+
+void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid) {
+    const RtPlane *caps = set->planes + solid->first;
+    int a = rt_axis_of(caps[0].normal);
+    if (a < 0) return;
+    double apex = solid->place.m[a][3] + solid->place.m[a][2];
+    if (solid->count > 1) apex = caps[1].normal.at[a] * caps[1].offset;
+    solid->place.m[a][3] = caps[0].normal.at[a] * caps[0].offset;
+    solid->place.m[a][2] = apex - solid->place.m[a][3];
+}
+
+RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *place, uint32_t *index,
+                           RtError *error) {
+    if (!(ratio >= 0 && ratio <= 1)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the ratio of a cone's radii is %g: expected 0..1; turn the cone round", ratio);
+    }
+    RT_TRY(rt_solid_check_place(place, error));
+    RtSolid solid = {.kind = RT_SOLID_CONE,
+                     .first = set->plane_count,
+                     .count = ratio > 0 ? 2 : 1,
+                     .ratio = ratio,
+                     .place = *place};
+    RT_TRY(rt_reserve(&set->planes, &set->plane_capacity, (uint64_t)set->plane_count + 2, sizeof(RtPlane),
+                      error));
+    RtVec3d up = rt_crossd(column(&solid, 0), column(&solid, 1));
+    RtPlane *caps = set->planes + set->plane_count;
+    caps[0] = rt_plane_through(column(&solid, 3), rt_scaled(up, -1));
+    caps[1] = rt_plane_through(apex_of(&solid), up);
+    rt_solid_cone_to_caps(set, &solid);
+    return rt_solid_finish(set, &solid, rt_solid_cone_support, index, error);
+}
+
+RtStatus rt_solid_add_frustum(RtSolidSet *set, RtVec3 base, float base_radius, RtVec3 apex, float apex_radius,
+                              uint32_t *index, RtError *error) {
+    if (!(base_radius >= 0) || !(apex_radius >= 0) || !(base_radius + apex_radius > 0)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "a cone needs radii of at least 0, one of them above 0; these are %g and %g",
+                       (double)base_radius, (double)apex_radius);
+    }
+    if (apex_radius > base_radius)
+        return rt_solid_add_frustum(set, apex, apex_radius, base, base_radius, index, error);
+    RtVec3d axis = rt_subd(rt_widen(apex), rt_widen(base));
+    if (!(rt_lengthd(axis) > 0)) {
+        return rt_fail(error, RT_BAD_INPUT, "the two ends of the cone are the same point: move one of them");
+    }
+    RtTransform place = rt_solid_place_about(rt_widen(base), axis, (double)base_radius, rt_lengthd(axis));
+    return rt_solid_add_cone(set, (double)apex_radius / (double)base_radius, &place, index, error);
+}

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The convex hull of points, as a polyhedron: the planes of all faces that the points have, by trying the
+ * plane of each three. Most are given up at once, at a point on one side and a point on the other; those that
+ * are left are faces, found as often as they have triples of vertices, and taken once.
+ *
+ * Points have been rounded to float32, so that four of a face need not be in one plane: all that are within
+ * `close` of the plane of three belong to the face. Its plane is then that of the three of them which span
+ * the most, so that a sliver does not tilt it, moved outward to hold all points. */
+#include "core/base/memory.h"
+#include "core/shape/solid_parts.h"
+
+typedef struct Cloud {
+    const RtVec3 *points;
+    uint32_t count;
+    double close; /* distance at which a point is in a plane */
+} Cloud;
+
+static RtVec3d point_of(const Cloud *cloud, uint32_t i) {
+    return rt_widen(cloud->points[i]);
+}
+
+/* A few ulps of the largest coordinate. */
+static double closeness(const RtVec3 *points, uint32_t count) {
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        for (int a = 0; a < 3; a++) most = fmax(most, fabs((double)points[i].at[a]));
+    }
+    return 0x1p-21 * most;
+}
+
+static double height_above(const RtPlane *plane, RtVec3d point) {
+    return rt_dotd(plane->normal, point) - plane->offset;
+}
+
+/* The plane of three points; false if they are nearly on a line. */
+static bool plane_of_three(const Cloud *cloud, const uint32_t at[3], RtPlane *plane) {
+    RtVec3d a = point_of(cloud, at[0]), ab = rt_subd(point_of(cloud, at[1]), a),
+            ac = rt_subd(point_of(cloud, at[2]), a), bc = rt_subd(ac, ab), normal = rt_crossd(ab, ac);
+    double longest = sqrt(fmax(fmax(rt_dotd(ab, ab), rt_dotd(ac, ac)), rt_dotd(bc, bc)));
+    if (!(rt_lengthd(normal) > cloud->close * longest)) return false;
+    *plane = rt_plane_through(a, normal);
+    return true;
+}
+
+/* Turns the plane so that no point is above it; false if there are points on both sides, or on neither. */
+static bool turn_outward(const Cloud *cloud, RtPlane *plane) {
+    bool above = false, below = false;
+    for (uint32_t i = 0; i < cloud->count && !(above && below); i++) {
+        double height = height_above(plane, point_of(cloud, i));
+        above |= height > cloud->close;
+        below |= height < -cloud->close;
+    }
+    if (above == below) return false;
+    if (above) *plane = (RtPlane){rt_scaled(plane->normal, -1), -plane->offset};
+    return true;
+}
+
+/* Of the points in the plane the one that is farthest from `from`, or, with `to`, from the line through
+ * both. */
+static uint32_t farthest_in(const Cloud *cloud, const RtPlane *plane, RtVec3d from, const RtVec3d *to) {
+    uint32_t best = 0;
+    double most = -1;
+    for (uint32_t i = 0; i < cloud->count; i++) {
+        RtVec3d point = point_of(cloud, i), away = rt_subd(point, from);
+        if (fabs(height_above(plane, point)) > cloud->close) continue;
+        if (to) away = rt_crossd(away, rt_subd(*to, from));
+        double squared = rt_dotd(away, away);
+        if (squared > most) most = squared, best = i;
+    }
+    return best;
+}
+
+/* The plane of three points of the face that are far from each other, moved out to the highest point. */
+static void settle(const Cloud *cloud, RtPlane *plane, uint32_t any) {
+    RtPlane rough = *plane;
+    uint32_t at[3] = {any};
+    at[0] = farthest_in(cloud, &rough, point_of(cloud, any), NULL);
+    RtVec3d a = point_of(cloud, at[0]);
+    at[1] = farthest_in(cloud, &rough, a, NULL);
+    RtVec3d b = point_of(cloud, at[1]);
+    at[2] = farthest_in(cloud, &rough, a, &b);
+    if (!plane_of_three(cloud, at, plane)) *plane = rough;
+    if (rt_dotd(plane->normal, rough.normal) < 0) plane->normal = rt_scaled(plane->normal, -1);
+    uint32_t highest = 0;
+    for (uint32_t i = 1; i < cloud->count; i++) {
+        double more = rt_dotd(plane->normal, rt_subd(point_of(cloud, i), point_of(cloud, highest)));
+        highest = more > 0 ? i : highest;
+    }
+    *plane = rt_plane_through(point_of(cloud, highest), plane->normal);
+}
+
+/* Is the face of these three points there already? */
+static bool is_known(const Cloud *cloud, const RtPlane *planes, uint32_t count, const uint32_t at[3]) {
+    for (uint32_t i = 0; i < count; i++) {
+        bool holds = true;
+        for (int k = 0; k < 3; k++)
+            holds &= fabs(height_above(&planes[i], point_of(cloud, at[k]))) <= 2 * cloud->close;
+        if (holds) return true;
+    }
+    return false;
+}
+
+/* Finds the faces of the hull, `capacity` at most, and gives their number. */
+static uint32_t find_faces(const Cloud *cloud, RtPlane *planes, uint32_t capacity) {
+    uint32_t found = 0, at[3];
+    for (at[0] = 0; at[0] < cloud->count; at[0]++) {
+        for (at[1] = at[0] + 1; at[1] < cloud->count; at[1]++) {
+            for (at[2] = at[1] + 1; at[2] < cloud->count && found < capacity; at[2]++) {
+                RtPlane plane;
+                if (!plane_of_three(cloud, at, &plane) || !turn_outward(cloud, &plane)) continue;
+                if (is_known(cloud, planes, found, at)) continue;
+                settle(cloud, &plane, at[0]);
+                planes[found++] = plane;
+            }
+        }
+    }
+    return found;
+}
+
+RtStatus rt_solid_add_hull(RtSolidSet *set, const RtVec3 *vertices, uint32_t count, uint32_t *index,
+                           RtError *error) {
+    if (count < 4 || count > RT_SOLID_MAX_VERTICES) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "a convex polyhedron of %u vertices: it can have from 4 to %d; more make a mesh",
+                       count, RT_SOLID_MAX_VERTICES);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        if (rt_finite(vertices[i])) continue;
+        return rt_fail(error, RT_BAD_INPUT, "vertex %u of the polyhedron is not finite", i);
+    }
+    Cloud cloud = {vertices, count, closeness(vertices, count)};
+    RtPlane *planes = rt_alloc(RT_SOLID_MAX_FACES, sizeof *planes);
+    if (!planes)
+        return rt_fail_memory(error, "the faces of a polyhedron", RT_SOLID_MAX_FACES * sizeof *planes);
+    uint32_t faces = find_faces(&cloud, planes, RT_SOLID_MAX_FACES);
+    RtTransform here = rt_transform_identity();
+    RtStatus status =
+        faces >= 4 ? rt_solid_add_polyhedron(set, planes, faces, &here, index, error)
+                   : rt_fail(error, RT_BAD_INPUT,
+                             "the %u vertices of the polyhedron are in one plane, or nearly so", count);
+    rt_free(planes);
+    return status;
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the files of the solids share: the functions that each kind has, planes, lines in standard
+ * coordinates, and how spans become crossings. For the solid_*.c alone. */
+#ifndef RT_SHAPE_SOLID_PARTS_H
+#define RT_SHAPE_SOLID_PARTS_H
+
+#include "core/base/clamp.h"
+#include "core/shape/solid.h"
+
+/* What solid.h promises of all solids, by kind. */
+#define RT_SOLID_FUNCTIONS(CONSTANT, name)                                                                   \
+    uint32_t rt_solid_##name##_crossings(const RtSolidSet *set, uint32_t index, const RtSolidRay *ray,       \
+                                         float near, float far, RtCrossing *out);                            \
+    RtVec3d rt_solid_##name##_normal(const RtSolidSet *set, const RtSolid *solid, uint32_t face,             \
+                                     RtVec3d point);                                                         \
+    double rt_solid_##name##_support(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction);        \
+    RtBall rt_solid_##name##_ball(const RtSolidSet *set, const RtSolid *solid);
+RT_SOLID_KINDS(RT_SOLID_FUNCTIONS)
+#undef RT_SOLID_FUNCTIONS
+
+/* ---- making solids: in solid_parts.c, but where another file is named ---- */
+
+/* Largest dot product of `direction` with a point of the solid. */
+typedef double RtSolidSupport(const RtSolidSet *set, const RtSolid *solid, RtVec3d direction);
+
+/* Adds `solid`, of which all is filled in but `back` and `box`, and whose `count` planes or triangles, if it
+ * has any, and the boxes of a mesh stand ready behind those of the set (room for them: rt_reserve). */
+RtStatus rt_solid_finish(RtSolidSet *set, RtSolid *solid, RtSolidSupport *support, uint32_t *index,
+                         RtError *error);
+
+/* In solid_mesh_make.c: makes the boxes of a mesh, behind those of the set, and fills in first_box and
+ * leaves. */
+RtStatus rt_solid_mesh_boxes(RtSolidSet *set, RtSolid *solid, RtError *error);
+
+/* Triangles in a leaf of them. */
+#define RT_SOLID_LEAF 4
+
+/* In solid_cone.c: draws the place of a cone to its caps, which stand in the set: those across an axis of the
+ * world are rounded to float32. The place may become flat, which rt_solid_finish refuses. */
+void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid);
+
+/* Refuse planes that leave no inside, or a flat one (in solid_polyhedron.c), and a closed mesh whose volume
+ * is not above 0 (in solid_mesh_make.c). */
+RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *error);
+RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtError *error);
+
+/* Refuses a transform that is not finite, or flattens. */
+RtStatus rt_solid_check_place(const RtTransform *place, RtError *error);
+
+/* The place whose z axis is `height` along `axis`, and whose x and y axes are `radius` long; all at right
+ * angles. Axes along those of the world give such. */
+RtTransform rt_solid_place_about(RtVec3d origin, RtVec3d axis, double radius, double height);
+
+/* The axis along which the vector lies, or -1. */
+static inline int rt_axis_of(RtVec3d v) {
+    if (v.y == 0 && v.z == 0) return v.x == 0 ? -1 : 0;
+    if (v.x == 0 && v.z == 0) return 1;
+    return v.x == 0 && v.y == 0 ? 2 : -1;
+}
+
+/* The plane through `point` across `normal`, of any length but 0. */
+RtPlane rt_plane_through(RtVec3d point, RtVec3d normal);
+
+/* The plane where `move` takes it. */
+RtPlane rt_plane_moved(const RtPlane *plane, const RtTransform *move);
+
+/* The largest factor, or very little more, by which M stretches any vector; its columns are x, y, z. */
+double rt_largest_stretch(RtVec3d x, RtVec3d y, RtVec3d z);
+
+/* ---- spans ---- */
+
+/* Where a line is inside. */
+typedef struct RtSpan {
+    double open, close; /* t */
+    uint32_t open_face, close_face;
+} RtSpan;
+
+/* Adds the crossings of a span, which opens at or after the close of the one before, to the `count` there are
+ * by now; gives their new number. */
+static inline uint32_t rt_span_put(const RtSpan *span, uint32_t solid, float near, float far, RtCrossing *out,
+                                   uint32_t count) {
+    float open = (float)rt_clampd(span->open, (double)near, (double)far);
+    float close = (float)rt_clampd(span->close, (double)near, (double)far);
+    if (!(open < close)) return count;
+    if (count > 0 && out[count - 1].t == open) {
+        count--;
+    } else {
+        out[count++] = (RtCrossing){open, solid, span->open_face};
+    }
+    out[count++] = (RtCrossing){close, solid, span->close_face};
+    return count;
+}
+
+/* Cuts the span down to the side of the plane on which the solid is. */
+static inline void rt_span_cut(RtSpan *span, const RtPlane *plane, uint32_t face, const RtSolidRay *ray) {
+    double gap = plane->offset - rt_dotd(plane->normal, ray->org);
+    double rate = rt_dotd(plane->normal, ray->dir);
+    if (rate == 0) {
+        if (!(gap > 0)) span->close = -INFINITY;
+        return;
+    }
+    double t = gap / rate;
+    if (rate < 0 && t > span->open) span->open = t, span->open_face = face;
+    if (rate > 0 && t < span->close) span->close = t, span->close_face = face;
+}
+
+/* ---- standard coordinates ---- */
+
+static inline RtVec3d rt_solid_back(const RtSolid *solid, RtVec3d v) {
+    return rt_vec3d(rt_dotd(solid->back[0], v), rt_dotd(solid->back[1], v), rt_dotd(solid->back[2], v));
+}
+
+/* A point of the world in standard coordinates. The origins are subtracted first: that is exact, or nearly
+ * so, where a product would lose digits. */
+static inline RtVec3d rt_solid_point_back(const RtSolid *solid, RtVec3d point) {
+    return rt_solid_back(solid, rt_subd(point, rt_transform_column(&solid->place, 3)));
+}
+
+/* A normal in standard coordinates, in the world, of length 1. */
+static inline RtVec3d rt_solid_normal_to_world(const RtSolid *solid, RtVec3d normal) {
+    RtVec3d sum = rt_scaled(solid->back[0], normal.x);
+    sum = rt_add_scaledd(sum, solid->back[1], normal.y);
+    return rt_normalized(rt_add_scaledd(sum, solid->back[2], normal.z));
+}
+
+/* The line of a ray in standard coordinates, as seen from `middle`: p(t) = near + (t - closest) dir, with
+ * `near` the point nearest to the middle, so that far origins cost no precision. */
+typedef struct RtStandardLine {
+    RtVec3d near, dir;
+    double closest;
+} RtStandardLine;
+
+static inline RtStandardLine rt_solid_line(const RtSolid *solid, const RtSolidRay *ray, RtVec3d middle) {
+    RtVec3d org = rt_subd(rt_solid_point_back(solid, ray->org), middle);
+    RtVec3d dir = rt_solid_back(solid, ray->dir);
+    double closest = -rt_dotd(org, dir) / rt_dotd(dir, dir);
+    return (RtStandardLine){rt_add_scaledd(org, dir, closest), dir, closest};
+}
+
+#endif

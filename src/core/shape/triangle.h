@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Triangles: three vertices, both sides hit, edges and vertices included.
+ *
+ * Woop, Benthin & Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2(1)): vertices are moved to the
+ * ray's origin and sheared until the ray is the z axis; the three edge functions of the projection decide.
+ * The transformed position of a shared vertex is the same for every triangle that shares it, and the signs of
+ * edge functions are exact: so neighbours agree, and a ray cannot pass between them.
+ *
+ * An edge function in float32 has the right sign or is 0, because rounding is monotone; that turns nearly all
+ * rays away. Only for the rest are the functions evaluated in double, where products of two float32 are exact
+ * and one rounding is left. Their ratios, the weights, are then right too: on a sliver those of float32 would
+ * be noise, and the t with them. Only + - * / in a fixed order, for SIMD kernels to repeat bit for bit: in
+ * float32 up to the first test, and in double for the few lanes that pass it. */
+#ifndef RT_SHAPE_TRIANGLE_H
+#define RT_SHAPE_TRIANGLE_H
+
+#include "core/base/ray.h"
+#include "core/shape/ball.h"
+
+typedef struct RtTriangle {
+    RtVec3 v[3];
+} RtTriangle;
+
+/* The box: exact, no rounding. */
+static inline RtBox rt_triangle_box(const RtTriangle *triangle) {
+    return (RtBox){rt_vec_min(rt_vec_min(triangle->v[0], triangle->v[1]), triangle->v[2]),
+                   rt_vec_max(rt_vec_max(triangle->v[0], triangle->v[1]), triangle->v[2])};
+}
+
+/* The smallest ball. */
+RtBall rt_triangle_ball(const RtTriangle *triangle);
+
+/* Largest dot product of `direction` with a point of the triangle. */
+double rt_triangle_support(const RtTriangle *triangle, RtVec3d direction);
+
+/* Unit normal by the right-hand rule over v[0], v[1], v[2]; zero for a triangle without area. */
+RtVec3d rt_triangle_normal(const RtTriangle *triangle);
+
+/* Barycentric weights of v[0], v[1], v[2] at `point` in the plane of the triangle; they sum to 1. */
+RtVec3d rt_triangle_weights(const RtTriangle *triangle, RtVec3d point);
+
+/* A coordinate of each vertex, and 0: a lane that is loaded with what does not matter takes a shuffle more.
+ */
+static inline RtFour rt_triangle_along(const float *v, size_t vertex, size_t axis) {
+    v += axis;
+    return (RtFour){v[0], v[vertex], v[2 * vertex], 0};
+}
+
+/* A vertex, and 0. */
+static inline RtFour rt_triangle_vertex(const float *v, size_t axis) {
+    return (RtFour){v[0], v[axis], v[2 * axis], 0};
+}
+
+/* The t in [tmin, tmax] at which the ray meets a triangle; a ray in its plane misses it. Coordinate a of
+ * vertex i is v[i * vertex + a * axis], so that a triangle among others, coordinate by coordinate, can be
+ * tested where it is. */
+static inline bool rt_triangle_hit_strided(const float *v, size_t vertex, size_t axis,
+                                           const RtPreparedRay *ray, float *t) {
+    const float *org = ray->org.at;
+    RtFour z = rt_triangle_along(v, vertex, (size_t)ray->kz * axis) - org[ray->kz];
+    RtFour x = rt_triangle_along(v, vertex, (size_t)ray->kx * axis) - org[ray->kx] - ray->shear_x * z;
+    RtFour y = rt_triangle_along(v, vertex, (size_t)ray->ky * axis) - org[ray->ky] - ray->shear_y * z;
+    RtFour x1 = __builtin_shufflevector(x, x, 1, 2, 0, 3), x2 = __builtin_shufflevector(x, x, 2, 0, 1, 3);
+    RtFour y1 = __builtin_shufflevector(y, y, 1, 2, 0, 3), y2 = __builtin_shufflevector(y, y, 2, 0, 1, 3);
+    RtFour edges = x2 * y1 - y2 * x1;
+    if (rt_four_any(edges < 0) && rt_four_any(edges > 0)) return false;
+    double u = (double)x[2] * (double)y[1] - (double)y[2] * (double)x[1];
+    double w1 = (double)x[0] * (double)y[2] - (double)y[0] * (double)x[2];
+    double w2 = (double)x[1] * (double)y[0] - (double)y[1] * (double)x[0];
+    if ((u < 0 || w1 < 0 || w2 < 0) && (u > 0 || w1 > 0 || w2 > 0)) return false;
+    double determinant = u + w1 + w2;
+    if (determinant == 0) return false;
+    double depth = (u * (double)z[0] + w1 * (double)z[1] + w2 * (double)z[2]) / determinant;
+    *t = (float)(depth / (double)ray->dir.at[ray->kz]);
+    RtFour a = rt_triangle_vertex(v, axis), b = rt_triangle_vertex(v + vertex, axis);
+    RtFour c = rt_triangle_vertex(v + 2 * vertex, axis);
+    return rt_four_admit(rt_four_min(rt_four_min(a, b), c), rt_four_max(rt_four_max(a, b), c), ray, t);
+}
+
+static inline bool rt_triangle_hit(const RtTriangle *triangle, const RtPreparedRay *ray, float *t) {
+    return rt_triangle_hit_strided(triangle->v[0].at, 3, 1, ray, t);
+}
+
+#endif

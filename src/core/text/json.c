@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/text/json.h"
+
+#include "core/base/file.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <time.h>
+
+json_t *rt_json_number(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *rt_json_ratio_end(double value) {
+    if (value > 1 && value < 1 + 1e-8) value = 1 + 1e-8;
+    if (value < 1 && value > 1 - 1e-9) value = 1 - 1e-9;
+    return rt_json_number(value);
+}
+
+json_t *rt_json_hex(uint64_t value) {
+    return json_sprintf("%016" PRIx64, value);
+}
+
+json_t *rt_json_now(void) {
+    char date[32];
+    time_t now = time(NULL);
+    struct tm utc;
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+    return json_string(date);
+}
+
+RtStatus rt_json_save(const char *path, json_t *document, RtError *error) {
+    RtOutput output;
+    if (!document) return rt_fail_memory(error, path, 0);
+    RtStatus status = rt_output_open(&output, path, error);
+    if (status == RT_OK) {
+        bool whole = json_dumpf(document, output.file, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) == 0;
+        fputc('\n', output.file);
+        /* A failed write is the output's to report; without one it was memory that ran out. */
+        if (whole || ferror(output.file)) {
+            status = rt_output_commit(&output, error);
+        } else {
+            rt_output_discard(&output);
+            status = rt_fail_memory(error, path, 0);
+        }
+    }
+    json_decref(document);
+    return status;
+}

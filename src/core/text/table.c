@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/text/table.h"
+
+#include "core/text/csv.h"
+#include "core/text/json.h"
+#include "core/text/table_line.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct {
+    const char *says, *format;
+} forms[] = {
+#define ROW(form, says, format) {says, format},
+    RT_FORMS(ROW)
+#undef ROW
+};
+
+const char *rt_form_name(RtForm form) {
+    return forms[form].says;
+}
+
+bool rt_column_is_number(const RtTableColumn *column) {
+    return column->form >= RT_FORM_integer;
+}
+
+/* ---- fields ---- */
+
+RtField rt_field_missing(void) {
+    return (RtField){.is = RT_FIELD_MISSING};
+}
+
+RtField rt_field_text(const char *text) {
+    return (RtField){.is = text ? RT_FIELD_TEXT : RT_FIELD_MISSING, .text = text};
+}
+
+RtField rt_field_flag(bool flag) {
+    return (RtField){.is = RT_FIELD_FLAG, .integer = flag};
+}
+
+RtField rt_field_integer(uint64_t integer) {
+    return (RtField){.is = RT_FIELD_INTEGER, .integer = integer};
+}
+
+RtField rt_field_real(double real) {
+    return (RtField){.is = isfinite(real) ? RT_FIELD_REAL : RT_FIELD_MISSING, .real = real};
+}
+
+RtField rt_field_interval(double value, double low, double high) {
+    return (RtField){.is = RT_FIELD_INTERVAL, .real = value, .low = low, .high = high};
+}
+
+RtField rt_field_same(RtField field) {
+    return field;
+}
+
+RtField rt_field_print(const char *format, ...) {
+    RtField field = {.is = RT_FIELD_TEXT};
+    va_list args;
+    va_start(args, format);
+    /* clang-tidy 14 does not see va_start. NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
+    vsnprintf(field.room, sizeof field.room, format, args);
+    va_end(args);
+    return field;
+}
+
+void rt_format_figure(double value, char *out) {
+    double size = fabs(value);
+    int digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : size >= 0.9995 ? 2 : size >= 0.0995 ? 3 : 4;
+    if (isnan(value)) {
+        strcpy(out, "-");
+    } else if (value == 0) {
+        strcpy(out, "0");
+    } else if (size < 0.00095 || size >= 1e7) {
+        snprintf(out, 16, "%.1e", value);
+    } else {
+        snprintf(out, 16, "%.*f", digits, value);
+    }
+}
+
+/* Is it 1, or was it only printed so? */
+static bool reads_as_1(const char *text) {
+    return strtod(text, NULL) == 1;
+}
+
+static void show_end(double value, char room[RT_MAX_FIELD]) {
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(room, RT_MAX_FIELD, "%.*g", digits, value);
+        if (value == 1 || !reads_as_1(room)) break;
+    }
+}
+
+/* As figures; where the interval does not hold 1, the end that is nearer to it says how many decimals there
+ * are. */
+static void show_interval(const RtField *field, char room[RT_MAX_FIELD]) {
+    char value[32], low[32], high[32];
+    rt_format_figure(field->real, value);
+    rt_format_figure(field->low, low);
+    rt_format_figure(field->high, high);
+    bool holds_1 = field->low <= 1 && 1 <= field->high;
+    const char *nearer = field->low > 1 ? low : high;
+    for (int decimals = 3; !holds_1 && decimals <= 17 && reads_as_1(nearer); decimals++) {
+        snprintf(value, sizeof value, "%.*f", decimals, field->real);
+        snprintf(low, sizeof low, "%.*f", decimals, field->low);
+        snprintf(high, sizeof high, "%.*f", decimals, field->high);
+    }
+    snprintf(room, RT_MAX_FIELD, isnan(field->low) ? "%s" : "%s [%s, %s]", value, low, high);
+}
+
+static void show_real(RtForm form, double value, char room[RT_MAX_FIELD]) {
+    if (form == RT_FORM_end) {
+        show_end(value, room);
+    } else if (forms[form].format) {
+        snprintf(room, RT_MAX_FIELD, forms[form].format, value);
+    } else if (form == RT_FORM_amount && value > 0 && value < 0.00095) {
+        strcpy(room, "<0.001");
+    } else {
+        rt_format_figure(value, room);
+    }
+}
+
+const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FIELD]) {
+    room[0] = '\0';
+    switch (field->is) {
+    case RT_FIELD_MISSING: break;
+    case RT_FIELD_TEXT: return field->text ? field->text : field->room;
+    case RT_FIELD_FLAG: return field->integer ? "yes" : "no";
+    case RT_FIELD_INTEGER:
+        snprintf(room, RT_MAX_FIELD, form == RT_FORM_hash ? "%016" PRIx64 : "%" PRIu64, field->integer);
+        break;
+    case RT_FIELD_REAL: show_real(form, field->real, room); break;
+    case RT_FIELD_INTERVAL:
+        if (isfinite(field->real)) show_interval(field, room);
+        break;
+    }
+    return room;
+}
+
+/* What nine digits do not show as 1 if it is not 1. */
+static double not_quite_1(double value) {
+    if (value > 1 && value < 1 + 1e-8) return 1 + 1e-8;
+    return value < 1 && value > 1 - 1e-9 ? 1 - 1e-9 : value;
+}
+
+static json_t *field_json(RtForm form, const RtField *field) {
+    char room[RT_MAX_FIELD];
+    switch (field->is) {
+    case RT_FIELD_FLAG: return json_boolean(field->integer);
+    case RT_FIELD_INTEGER:
+        if (form != RT_FORM_hash) return json_integer((json_int_t)field->integer);
+        break;
+    case RT_FIELD_REAL: return json_real(form == RT_FORM_end ? not_quite_1(field->real) : field->real);
+    case RT_FIELD_INTERVAL:
+        return json_pack("{s:o, s:o, s:o}", "value", rt_json_number(field->real), "low",
+                         rt_json_number(field->low), "high", rt_json_number(field->high));
+    case RT_FIELD_MISSING: return json_null();
+    case RT_FIELD_TEXT: break;
+    }
+    return json_string(rt_field_show(form, field, room));
+}
+
+/* ---- rows ---- */
+
+static RtField field_of(const RtColumnGroup *group, size_t i, const void *row) {
+    if (row && group->of) row = group->of(row);
+    return row ? group->columns[i].get(row, &group->columns[i]) : rt_field_missing();
+}
+
+/* Without a row the columns alone. */
+static void take(RtTableLine *line, const RtTable *table, const void *row) {
+    line->count = 0;
+    for (size_t g = 0; g < table->group_count; g++) {
+        const RtColumnGroup *group = &table->groups[g];
+        for (size_t i = 0; i < group->count; i++) {
+            assert(line->count < RT_MAX_TABLE_COLUMNS);
+            line->columns[line->count] = &group->columns[i];
+            line->fields[line->count++] = field_of(group, i, row);
+        }
+    }
+}
+
+const char *rt_line_show(const RtTableLine *line, size_t i, char room[RT_MAX_FIELD]) {
+    return rt_field_show(line->columns[i]->form, &line->fields[i], room);
+}
+
+static void write_row(RtTableWriter *w, const void *row) {
+    RtTableLine line;
+    take(&line, w->table, row);
+    w->put(w, &line, row);
+}
+
+void rt_table_walk(RtTableWriter w) {
+    write_row(&w, NULL);
+    for (size_t i = 0; i < w.table->row_count; i++) {
+        const void *row = w.table->row(w.table->context, i);
+        if (row) write_row(&w, row);
+    }
+}
+
+/* ---- CSV ---- */
+
+static void put_csv(RtTableWriter *w, const RtTableLine *line, const void *row) {
+    char room[RT_MAX_FIELD];
+    for (size_t i = 0; i < line->count; i++) {
+        if (i) fputc(',', w->out);
+        rt_csv_put(w->out, row ? rt_line_show(line, i, room) : line->columns[i]->id);
+    }
+    fputc('\n', w->out);
+}
+
+void rt_table_csv(const RtTable *table, FILE *out) {
+    rt_table_walk((RtTableWriter){.table = table, .put = put_csv, .out = out});
+}
+
+/* ---- text ---- */
+
+static const char *show_text(const RtTableLine *line, size_t i, const void *row, char room[RT_MAX_FIELD]) {
+    const char *text = row ? rt_line_show(line, i, room) : line->columns[i]->name;
+    return *text ? text : "-";
+}
+
+static void widen(RtTableWriter *w, const RtTableLine *line, const void *row) {
+    char room[RT_MAX_FIELD];
+    for (size_t i = 0; i < line->count; i++) {
+        int width = (int)strlen(show_text(line, i, row, room));
+        if (width > w->widths[i]) w->widths[i] = width;
+    }
+}
+
+static void put_text(RtTableWriter *w, const RtTableLine *line, const void *row) {
+    char room[RT_MAX_FIELD];
+    for (size_t i = 0; i < line->count; i++) {
+        bool last = i + 1 == line->count, left = !rt_column_is_number(line->columns[i]);
+        int width = left && last ? 0 : w->widths[i];
+        fprintf(w->out, left ? "%-*s%s" : "%*s%s", width, show_text(line, i, row, room), last ? "\n" : "  ");
+    }
+}
+
+void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]) {
+    memset(widths, 0, RT_MAX_TABLE_COLUMNS * sizeof *widths);
+    rt_table_walk((RtTableWriter){.table = table, .put = widen, .widths = widths});
+}
+
+void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out) {
+    write_row(&(RtTableWriter){table, put_text, out, widths}, row);
+}
+
+void rt_table_text(const RtTable *table, FILE *out) {
+    int widths[RT_MAX_TABLE_COLUMNS];
+    rt_table_widths(table, widths);
+    rt_table_walk((RtTableWriter){table, put_text, out, widths});
+}
+
+/* ---- JSON ---- */
+
+/* False where memory is short. */
+static bool put_members(const RtColumnGroup *group, const void *row, json_t *object) {
+    for (size_t i = 0; i < group->count; i++) {
+        RtField field = field_of(group, i, row);
+        json_t *value = field_json(group->columns[i].form, &field);
+        if (json_object_set_new(object, group->columns[i].name, value) != 0) return false;
+    }
+    return true;
+}
+
+static bool put_group(const RtColumnGroup *group, const void *row, json_t *object) {
+    const char *name = group->name, *dot = name ? strchr(name, '.') : NULL;
+    if (!name) return put_members(group, row, object);
+    json_t *into = dot ? json_object_getn(object, name, (size_t)(dot - name)) : object;
+    if (dot) name = dot + 1;
+    if (group->of && !group->of(row)) return json_object_set_new(into, name, json_null()) == 0;
+    json_t *members = json_object();
+    if (json_object_set(into, name, members) != 0) return json_decref(members), false;
+    json_decref(members);
+    return put_members(group, row, members);
+}
+
+json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row) {
+    json_t *object = json_object();
+    bool whole = object != NULL;
+    for (size_t g = 0; whole && g < count; g++) whole = put_group(&groups[g], row, object);
+    if (whole) return object;
+    json_decref(object);
+    return NULL;
+}
+
+json_t *rt_table_json(const RtTable *table) {
+    json_t *rows = json_array();
+    for (size_t i = 0; i < table->row_count; i++) {
+        const void *row = table->row(table->context, i);
+        if (!row || json_array_append_new(rows, rt_row_json(table->groups, table->group_count, row)) == 0)
+            continue;
+        json_decref(rows);
+        return NULL;
+    }
+    return rows;
+}

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Tables: what was found, described once and written in every form: CSV, text for a terminal, Markdown,
+ * LaTeX, HTML and JSON.
+ *
+ * A column says what it is called, what it means, in which unit and form its fields are written, and how one
+ * is got from a row. Columns come in groups; a table is some groups over some rows. A row is whatever the
+ * getters of its columns take, as a rule a cursor of the caller's that is set to one place after another. A
+ * field that is not known is empty in CSV and Markdown, null in JSON, - elsewhere.
+ *
+ * Columns are listed by a macro, so that each stands on a line with its value, an expression of `r`, the row,
+ * which is a Row, a type that the file defines:
+ *
+ *     typedef RtThing Row;
+ *     #define COLUMNS(X) X(bytes, "bytes", integer, "bytes", "what it takes in memory", r->bytes)
+ *     RT_TABLE_COLUMNS(columns, COLUMNS)
+ *
+ * defines the array `columns`; rt_field says what a value may be. */
+#ifndef RT_TEXT_TABLE_H
+#define RT_TEXT_TABLE_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* X(form, what docs call it, printf format of a real number): how fields are written. Numbers stand to the
+ * right. An end is that of a ratio's interval: six digits, or as many as show that it is not 1; an interval
+ * that does not hold 1 is seen not to, too. A figure takes about four characters; so does an amount, but for
+ * what is less than 0.001; markup is text with Markdown's `code` and **bold**; json is what no table has a
+ * cell for. */
+#define RT_FORMS(X)                                                                                          \
+    X(text, "text", NULL)                                                                                    \
+    X(markup, "text", NULL)                                                                                  \
+    X(flag, "yes or no", NULL)                                                                               \
+    X(hash, "16 hexadecimal digits", NULL)                                                                   \
+    X(json, "JSON", NULL)                                                                                    \
+    X(interval, "interval: value, low, high", NULL)                                                          \
+    X(integer, "integer", "%.9g")                                                                            \
+    X(real4, "real", "%.4g")                                                                                 \
+    X(real6, "real", "%.6g")                                                                                 \
+    X(real9, "real", "%.9g")                                                                                 \
+    X(end, "real", NULL)                                                                                     \
+    X(percent, "real", "%.2f")                                                                               \
+    X(figure, "real", NULL)                                                                                  \
+    X(amount, "real", NULL)
+
+typedef enum RtForm {
+#define RT_FORM_ENUM(form, says, format) RT_FORM_##form,
+    RT_FORMS(RT_FORM_ENUM)
+#undef RT_FORM_ENUM
+} RtForm;
+
+/* "text", "integer", ... */
+const char *rt_form_name(RtForm form);
+
+/* ---- fields ---- */
+
+#define RT_MAX_FIELD 160 /* characters of a text that is made for a field */
+
+typedef struct RtField {
+    enum {
+        RT_FIELD_MISSING,
+        RT_FIELD_TEXT,
+        RT_FIELD_FLAG,
+        RT_FIELD_INTEGER,
+        RT_FIELD_REAL,
+        RT_FIELD_INTERVAL
+    } is;
+    const char *text; /* borrowed; NULL: it is in `room` */
+    uint64_t integer; /* flags, too */
+    double real, low, high;
+    const char *note; /* borrowed; HTML shows it when the field is pointed at. Or NULL */
+    bool missed;      /* HTML marks it: not what was hoped for */
+    char room[RT_MAX_FIELD];
+} RtField;
+
+RtField rt_field_missing(void);
+RtField rt_field_text(const char *text); /* NULL: missing */
+RtField rt_field_flag(bool flag);
+RtField rt_field_integer(uint64_t integer);
+RtField rt_field_real(double real); /* NAN and infinities: missing */
+RtField rt_field_interval(double value, double low, double high);
+RtField rt_field_same(RtField field);
+
+/* A text that is printed; cut to what there is room for. */
+__attribute__((format(printf, 1, 2))) RtField rt_field_print(const char *format, ...);
+
+/* The field of a value, of any of these types. */
+#define rt_field(value)                                                                                      \
+    _Generic((value), RtField                                                                                \
+             : rt_field_same, char *                                                                         \
+             : rt_field_text, const char *                                                                   \
+             : rt_field_text, bool                                                                           \
+             : rt_field_flag, uint32_t                                                                    \
+             : rt_field_integer, uint64_t                                                                    \
+             : rt_field_integer, double                                                                      \
+             : rt_field_real)(value)
+
+/* A field as text; "" if it is missing. In `room` or the field. */
+const char *rt_field_show(RtForm form, const RtField *field, char room[RT_MAX_FIELD]);
+
+/* A figure in about four characters: 0, 0.0034, 1.24, 12.4, 124, 69666; "-" for NAN. Room for 16. */
+void rt_format_figure(double value, char *out);
+
+/* ---- columns ---- */
+
+typedef struct RtTableColumn RtTableColumn;
+struct RtTableColumn {
+    const char *id;      /* in CSV */
+    const char *name;    /* everywhere else */
+    const char *unit;    /* or "" */
+    const char *meaning; /* one line */
+    RtField (*get)(const void *row, const RtTableColumn *column);
+    RtForm form;
+    int key; /* the getter's own */
+};
+
+/* LIST(X) is of X(id, name, form, unit, meaning, value); the ids are those of one file. */
+#define RT_TABLE_GETTER(id, name, form, unit, meaning, value)                                                \
+    static RtField get_##id(const void *row, const RtTableColumn *column) {                                  \
+        const Row *r = row;                                                                                  \
+        (void)r, (void)column;                                                                               \
+        return rt_field(value);                                                                              \
+    }
+#define RT_TABLE_COLUMN(id, name, form, unit, meaning, value)                                                \
+    {#id, name, unit, meaning, get_##id, RT_FORM_##form, 0},
+#define RT_TABLE_PLACE(id, name, form, unit, meaning, value) AT_##id,
+#define RT_TABLE_COLUMNS(array, LIST)                                                                        \
+    LIST(RT_TABLE_GETTER)                                                                                    \
+    enum { LIST(RT_TABLE_PLACE) };                                                                           \
+    static const RtTableColumn array[] = {LIST(RT_TABLE_COLUMN)};
+
+/* Columns that stand together, over one kind of row. A named group is an object of its own in JSON, and one
+ * named "GROUP.NAME" a member of the object of the group before it. */
+typedef struct RtColumnGroup {
+    const char *name; /* or NULL */
+    const RtTableColumn *columns;
+    size_t count;
+    const void *(*of)(const void *row); /* their row, from the table's; NULL: it is the same. Where it gives
+                                           NULL all are missing */
+} RtColumnGroup;
+
+/* All columns of an array; those from one to another; one. */
+#define RT_ALL(array)                                                                                        \
+    { NULL, array, sizeof(array) / sizeof *(array), NULL }
+#define RT_FROM_TO(array, first, last)                                                                       \
+    { NULL, &(array)[AT_##first], AT_##last - AT_##first + 1, NULL }
+#define RT_ONE(array, id) RT_FROM_TO(array, id, id)
+
+/* ---- tables ---- */
+
+#define RT_MAX_TABLE_COLUMNS 80
+
+/* How a row compares with the others: the best is marked, and what intervals do not tell apart from it. */
+typedef enum RtStanding { RT_STANDING_BEHIND, RT_STANDING_LEVEL, RT_STANDING_BEST } RtStanding;
+
+typedef struct RtTable {
+    const RtColumnGroup *groups;
+    size_t group_count;
+    size_t row_count;
+    const void *(*row)(void *context, size_t i); /* NULL: there is no such row; the next call may reuse it */
+    void *context;
+    const char *(*color)(const void *row);   /* HTML: of a dot before the row; or NULL */
+    RtStanding (*standing)(const void *row); /* Markdown, LaTeX, HTML; or NULL: none is marked */
+    const char *caption;                     /* LaTeX, HTML; or NULL */
+    bool ragged;                             /* Markdown: numbers do not stand to the right */
+} RtTable;
+
+/* The first two members of a table of all groups of an array; the others are named. */
+#define RT_GROUPS(array) .groups = array, .group_count = sizeof(array) / sizeof *(array)
+
+void rt_table_csv(const RtTable *table, FILE *out);
+void rt_table_text(const RtTable *table, FILE *out);
+void rt_table_markdown(const RtTable *table, FILE *out);
+
+/* A table environment for the packages booktabs and graphicx, made smaller where it is wider than the column.
+ */
+void rt_table_tex(const RtTable *table, FILE *out);
+
+/* <table>; data-id of a header and data-value of a number serve for sorting. */
+void rt_table_html(const RtTable *table, FILE *out);
+
+/* An array of objects, and one of them: new references, NULL where memory is short. */
+json_t *rt_table_json(const RtTable *table);
+json_t *rt_row_json(const RtColumnGroup *groups, size_t count, const void *row);
+
+/* Text line by line, for rows that come one after another: widths that do for the header and all rows that
+ * are there, and one row; NULL is the header. */
+void rt_table_widths(const RtTable *table, int widths[RT_MAX_TABLE_COLUMNS]);
+void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out);
+
+/* Text as HTML, with what has a meaning there escaped; NULL is "". */
+void rt_html_put(FILE *out, const char *text);
+
+/* The same with `code` and **bold** as in Markdown. */
+void rt_html_markup(FILE *out, const char *text);
+
+#endif

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the writers of tables share (table.c: CSV, text, JSON; table_markup.c: Markdown, LaTeX, HTML), and
+ * nobody else: a row whose fields are got, and the walk over all rows. */
+#ifndef RT_TEXT_TABLE_LINE_H
+#define RT_TEXT_TABLE_LINE_H
+
+#include "core/text/table.h"
+
+/* The fields of a row, in the order of the columns. */
+typedef struct RtTableLine {
+    size_t count;
+    const RtTableColumn *columns[RT_MAX_TABLE_COLUMNS];
+    RtField fields[RT_MAX_TABLE_COLUMNS];
+} RtTableLine;
+
+typedef struct RtTableWriter RtTableWriter;
+struct RtTableWriter {
+    const RtTable *table;
+    void (*put)(RtTableWriter *writer, const RtTableLine *line, const void *row); /* `row` NULL: the header */
+    FILE *out;
+    int *widths; /* of text */
+};
+
+/* Puts the header, then each row that there is. */
+void rt_table_walk(RtTableWriter writer);
+
+/* Numbers stand to the right. */
+bool rt_column_is_number(const RtTableColumn *column);
+
+/* Field `i` as text; in `room` or the line. */
+const char *rt_line_show(const RtTableLine *line, size_t i, char room[RT_MAX_FIELD]);
+
+#endif

@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The path of a ray: what counted kernels tell an onlooker adds up to what they count. */
+#include "accel_testing.h"
+
+#include "core/base/file.h"
+#include "render/path.h"
+#include "scenes/open.h"
+#include "verify/spread.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Looks on as a ray is traced by the counted kernels, which is what a path is made of, and compares with the
+ * tally that the same ray has where nobody looks on. */
+static void assert_adds_up(RtAccel *accel, const char *spec, const RtRay *ray) {
+    RtQuery query;
+    RtTally counted[RT_RAY_KIND_COUNT] = {0};
+    RtPath path;
+    RtHit hit;
+    bool blocked;
+    RtError problem;
+    if (rt_path_trace(&path, accel, ray, &problem) != RT_OK) fail_msg("%s: %s", spec, problem.message);
+    assert_ok(rt_query_init(&query, accel, error));
+    rt_query_begin(&query);
+    if (path.any)
+        rt_occluded(&query, &path.ray, 1, &blocked, counted);
+    else
+        rt_nearest(&query, &path.ray, 1, &hit, counted);
+    if (memcmp(&counted[ray->kind], &path.tally, sizeof path.tally) != 0)
+        fail_msg("%s: a %s ray's path does not add up", spec, rt_ray_kind_name((RtRayKind)ray->kind));
+    if (path.any)
+        assert_int_equal(blocked, path.hit.object != RT_NO_OBJECT);
+    else
+        assert_memory_equal(&hit, &path.hit, sizeof hit);
+    rt_query_clear(&query);
+    rt_path_clear(&path);
+}
+
+static const RtRayKind kinds[] = {RT_RAY_PRIMARY, RT_RAY_SHADOW, RT_RAY_REFLECTION, RT_RAY_TRANSMISSION};
+
+/* Primary rays over the image, and the rays that follow from them where there are any; counted by kind. */
+static void assert_paths_add_up(RtAccel *accel, const char *spec, uint32_t compared[RT_RAY_KIND_COUNT]) {
+    const RtSampling *sampling = &accel->scene->sampling;
+    for (uint32_t i = 0; i < 40; i++) {
+        RtRay ray;
+        RtError error;
+        uint32_t column = i * 7 % sampling->columns, row = i * 11 % sampling->rows;
+        RtRayKind kind = kinds[i % 4];
+        uint32_t lights = accel->scene->light_count;
+        if (rt_path_ray(accel, kind, column, row, i / 4 % lights, &ray, &error) != RT_OK) continue;
+        assert_adds_up(accel, spec, &ray);
+        compared[kind]++;
+    }
+}
+
+RT_TEST(what_happens_to_a_ray_adds_up_to_its_tally_for_every_accelerator_at_every_setting) {
+    static const char *const scenes[] = {"balls:size=2", "csg-field", "teapot:size=2",
+                                         RT_SOURCE_DIR "/scenes/lecture.yaml"};
+    uint32_t compared[RT_RAY_KIND_COUNT] = {0};
+    for (size_t s = 0; s < sizeof scenes / sizeof scenes[0]; s++) {
+        RtScene scene;
+        assert_ok(rt_scene_open(scenes[s], &scene, error));
+        assert_ok(rt_scene_sample(&scene, 32, 32, 1, false, error));
+        for (size_t i = 0; i < rt_accel_count(); i++) {
+            char spec[RT_MAX_SPEC_CHARS];
+            for (size_t n = 0; rt_spread_spec(rt_accel_at(i), n, spec); n++) {
+                RtAccel *accel;
+                RtError error;
+                RtStatus status = rt_accel_open(spec, &scene, &accel, &error);
+                if (status == RT_NOT_AVAILABLE) continue;
+                assert_int_equal(status, RT_OK);
+                assert_paths_add_up(accel, spec, compared);
+                rt_accel_destroy(accel);
+            }
+        }
+        rt_scene_clear(&scene);
+    }
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+        if (compared[kinds[k]] == 0) fail_msg("no %s ray was compared", rt_ray_kind_name(kinds[k]));
+    }
+}
+
+/* Three unit cubes' worth of spheres in a row, seen from the left, at a height `up` above their centres. */
+static RtPath path_along_the_row(const char *spec, float up, RtScene *scene, RtAccel **accel) {
+    RtPath path;
+    RtRay ray = {.org = {{-3, up, up}}, .dir = {{1, 0, 0}}, .tmax = INFINITY};
+    make_lattice(scene, 3, 1, 1);
+    assert_ok(rt_accel_open(spec, scene, accel, error));
+    assert_ok(rt_path_trace(&path, *accel, &ray, error));
+    return path;
+}
+
+static void forget(RtPath *path, RtScene *scene, RtAccel *accel) {
+    rt_path_clear(path);
+    rt_accel_destroy(accel);
+    rt_scene_clear(scene);
+}
+
+RT_TEST(a_path_says_where_the_ray_is_in_boxes_and_what_is_nearest_so_far) {
+    RtScene scene;
+    RtAccel *accel;
+    RtPath path = path_along_the_row("extents", 0, &scene, &accel);
+    /* Of each object a step, an extent test, and of the first an object test; the others lie behind its hit.
+     */
+    assert_int_equal(path.count, 7);
+    assert_int_equal(path.rows[0].kind, RT_TRACED_STEP);
+    assert_int_equal(path.rows[1].kind, RT_TRACED_EXTENT_TEST);
+    assert_true(path.rows[1].met);
+    assert_true(path.rows[1].enter == 2.5 && path.rows[1].leave == 3.5);
+    assert_true(path.rows[1].nearest == INFINITY);
+    assert_int_equal(path.rows[2].kind, RT_TRACED_OBJECT_TEST);
+    assert_true(path.rows[2].met && path.rows[2].t == 2.5f && path.rows[2].nearest == 2.5f);
+    assert_false(path.rows[4].met);
+    assert_true(path.rows[4].enter == 3.5 && path.rows[4].leave == 4.5);
+    assert_int_equal(path.hit.object, 0);
+    forget(&path, &scene, accel);
+}
+
+RT_TEST(voxels_are_met_in_order_each_where_the_one_before_is_left) {
+    RtScene scene;
+    RtAccel *accel;
+    /* Past the spheres, in the corners of their boxes: nothing is hit, and the walk goes through. */
+    RtPath path = path_along_the_row("grid:resolution=6x1x1", 0.45f, &scene, &accel);
+    double left = -INFINITY;
+    uint32_t voxels = 0;
+    for (uint32_t i = 0; i < path.count; i++) {
+        const RtPathRow *row = &path.rows[i];
+        if (row->kind != RT_TRACED_STEP) continue;
+        assert_true(row->boxed && row->leaf);
+        assert_true(row->enter < row->leave);
+        if (voxels++) assert_true(row->enter == left);
+        left = row->leave;
+    }
+    assert_int_equal(path.hit.object, RT_NO_OBJECT);
+    assert_int_equal(voxels, 6);
+    forget(&path, &scene, accel);
+}
+
+RT_TEST(nobody_looks_on_after_a_path) {
+    RtScene scene;
+    RtAccel *accel;
+    RtPath path = path_along_the_row("bvh", 0, &scene, &accel);
+    assert_null(rt_onlooker);
+    forget(&path, &scene, accel);
+}
+
+/* ---- the drawing ---- */
+
+enum { FAR_OUT = 2000 }; /* pixels: what lies farther outside of the drawing is cut off */
+#define SVG_FILE RT_BINARY_DIR "/test_path.svg"
+
+/* The drawing of made-up rows along the x axis, with z up, to *svg; free with rt_free. */
+static void draw(RtPathRow *rows, uint32_t count, const RtScene *scene, char **svg) {
+    size_t size;
+    RtPath path = {
+        .ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY}, .hit = RT_MISS, .rows = rows, .count = count};
+    assert_ok(rt_path_draw(&path, scene, "title", "spec", SVG_FILE, error));
+    assert_ok(rt_file_read(SVG_FILE, 1000000, svg, &size, error));
+    unlink(SVG_FILE);
+}
+
+static int count_of(const char *text, const char *part) {
+    int count = 0;
+    while ((text = strstr(text, part))) text++, count++;
+    return count;
+}
+
+RT_TEST(a_slanted_wall_that_leaves_the_drawing_keeps_its_slope) {
+    RtScene scene;
+    RtVec3 wall[4] = {{{-9e5f, -1, -3e5f}}, {{9e5f, -1, 3e5f}}, {{9e5f, 1, 3e5f}}, {{-9e5f, 1, -3e5f}}};
+    begin_scene(&scene);
+    assert_ok(rt_scene_add_polygon(&scene, 0, wall, 4, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    RtBox box = {{{1, -1, -1}}, {{2, 1, 1}}};
+    RtPathRow row = {.kind = RT_TRACED_OBJECT_TEST, .boxed = true, .box = box, .enter = 1, .leave = 2};
+    char *svg;
+    draw(&row, 1, &scene, &svg);
+    double x[2], y[2];
+    int lines = 0;
+    for (const char *at = svg; (at = strstr(at, "<line x1")); at++) {
+        int style = 0;
+        assert_int_equal(sscanf(at, "<line x1=\"%lf\" y1=\"%lf\" x2=\"%lf\" y2=\"%lf\" %n", &x[0], &y[0],
+                                &x[1], &y[1], &style),
+                         4);
+        if (strncmp(at + style, "stroke=\"#555\"", 13) != 0) continue; /* the ray, or a tick */
+        lines++;
+        for (int i = 0; i < 2; i++) assert_true(fabs(x[i]) <= FAR_OUT && fabs(y[i]) <= FAR_OUT);
+        assert_true(fabs((y[1] - y[0]) / (x[1] - x[0]) + 1.0 / 3) < 1e-4);
+    }
+    assert_int_equal(lines, 1);
+    rt_free(svg);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(a_ball_of_any_size_goes_by_the_middle_of_the_drawing_in_numbers_that_viewers_like) {
+    RtScene scene;
+    make_lattice(&scene, 1, 1, 1);
+    for (double r = 1e3; r < 1e12; r *= 100) { /* its surface is 0.05 below the ray */
+        RtPathRow row = {.kind = RT_TRACED_STEP,
+                         .boxed = true,
+                         .round = true,
+                         .box = {{{1, -1, -1}}, {{2, 1, 1}}},
+                         .ball = {{{1.5, 0, -r - 0.05}}, r},
+                         .enter = 1,
+                         .leave = 2};
+        RtPathRow rows[2] = {row, row};
+        rows[1].round = false; /* the drawing is as wide as this box */
+        char *svg;
+        draw(rows, 2, &scene, &svg);
+        double x, y, around;
+        assert_int_equal(count_of(svg, "<circle"), 1);
+        assert_int_equal(
+            sscanf(strstr(svg, "<circle"), "<circle cx=\"%lf\" cy=\"%lf\" r=\"%lf\"", &x, &y, &around), 3);
+        assert_true(fabs(x) <= 1e6 + FAR_OUT && fabs(y) <= 1e6 + FAR_OUT && around <= 1e6);
+        double scale = 730 / 1.1; /* pixels per unit; the ray is at y = 64 + 330 / 2 */
+        assert_true(fabs(y - around - (229 + 0.05 * scale)) < 0.1);
+        rt_free(svg);
+    }
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length) {
+    RtScene scene;
+    make_lattice(&scene, 1, 1, 1);
+    for (double far = 1; far < 1e30; far *= 10) {
+        RtPathRow row = {.kind = RT_TRACED_STEP,
+                         .boxed = true,
+                         .box = {{{1, -1, -1}}, {{2, 1, 1}}},
+                         .enter = far,
+                         .leave = nextafter(far, INFINITY)};
+        char *svg;
+        draw(&row, 1, &scene, &svg);
+        int ticks = count_of(svg, ">t = ");
+        assert_true(ticks >= 3 && ticks <= 20);
+        rt_free(svg);
+    }
+    rt_scene_clear(&scene);
+}
+
+RT_TESTS(path, NULL, assert_nothing_is_kept)

@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Pictures of structures: boxes in perspective and in section, levels, leaves; cells of overlays. */
+#include "render_testing.h"
+
+#include "core/base/memory.h"
+#include "picture/cells.h"
+#include "picture/draw.h"
+#include "picture/net.h"
+#include "picture/section.h"
+#include "picture/structure.h"
+
+#include <string.h>
+
+enum { SIDE = 200 };
+
+/* A sphere of radius 1 at the origin, and small ones far apart in a plane; a camera at z = 10. */
+static void open_scene(RtScene *scene) {
+    start_scene(scene, rt_default_material());
+    scene->camera.fov = 45;
+    assert_ok(rt_scene_add_sphere(scene, 0, rt_vec3(0, 0, 0), 1, error));
+    for (int i = 0; i < 4; i++) {
+        RtVec3 center = {{i % 2 ? 2.5f : -2.5f, i / 2 ? 2.5f : -2.5f, 0.5f}};
+        assert_ok(rt_scene_add_sphere(scene, 0, center, 0.5f, error));
+    }
+    assert_ok(rt_scene_finish(scene, error));
+    assert_ok(rt_scene_sample(scene, SIDE, SIDE, 1, false, error));
+}
+
+/* The picture of a structure over a frame of it. */
+static RtStatus draw(const RtScene *scene, const char *spec, RtStructureOptions options, RtImage *image,
+                     RtError *error) {
+    RtAccel *accel;
+    RtFrame frame;
+    RtFrameOptions how = {.depth = 1, .threads = 1};
+    RT_TRY(rt_accel_open(spec, scene, &accel, error));
+    RtStatus status = rt_frame_trace(&frame, accel, &how, error);
+    if (status == RT_OK) status = rt_structure_image(image, accel, &frame, &options, error);
+    rt_frame_clear(&frame);
+    rt_accel_destroy(accel);
+    return status;
+}
+
+static const uint8_t *pixel(const RtImage *image, int x, int y) {
+    return image->rgb + 3 * ((size_t)y * image->width + (size_t)x);
+}
+
+static int colored(const RtImage *image, RtColor color) {
+    int count = 0;
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) count += memcmp(pixel(image, x, y), color.rgb, 3) == 0;
+    }
+    return count;
+}
+
+RT_TEST(the_root_box_is_drawn_where_the_camera_sees_it) {
+    RtScene scene;
+    RtImage image = {0};
+    open_scene(&scene);
+    assert_ok(draw(&scene, "bvh:max_leaf_size=64", RT_ALL_LEVELS, &image, error));
+    /* The near face of the box is x, y in -3..3 at z = 1, 9 in front of the eye. */
+    double reach = 3 / 9.0 / tan(45 * 3.14159265358979 / 360) * 100;
+    int left = (int)floor(100 - reach);
+    RtColor yellow = rt_color_scale(1);
+    assert_memory_equal(pixel(&image, left, 100), yellow.rgb, 3);
+    assert_int_equal(pixel(&image, left - 1, 100)[0], 0);
+    rt_image_clear(&image);
+    /* From inside the box, with corners behind the eye: clipped, and no crash. */
+    scene.camera.from = rt_vec3(0, 2, 0.5f);
+    assert_ok(draw(&scene, "bvh", RT_ALL_LEVELS, &image, error));
+    rt_image_clear(&image);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(boxes_behind_what_is_seen_are_faint) {
+    RtScene scene;
+    RtImage image = {0};
+    open_scene(&scene);
+    /* The box of the sphere in the middle: its far face, at z = -1, is behind the sphere. */
+    assert_ok(draw(&scene, "extents", RT_ALL_LEVELS, &image, error));
+    RtColor yellow = rt_color_scale(1);
+    double scale = 100 / tan(45 * 3.14159265358979 / 360);
+    int near = (int)floor(100 - scale / 9), far = (int)floor(100 - scale / 11);
+    assert_memory_equal(pixel(&image, near, 100), yellow.rgb, 3);
+    assert_memory_not_equal(pixel(&image, far, 100), yellow.rgb, 3);
+    rt_image_clear(&image);
+    rt_scene_clear(&scene);
+}
+
+/* What is told of lines of nets, and of the corners of sections: how far from a ball's surface. */
+typedef struct Seen {
+    const RtBoxView *view;
+    uint32_t lines;
+    double least, most;
+} Seen;
+
+static void see_line(void *context, RtVec3d from, RtVec3d to) {
+    Seen *seen = context;
+    const RtBall *ball = &seen->view->extents->balls[seen->view->extent];
+    double away = rt_lengthd(rt_subd(rt_scaled(rt_add_scaledd(from, to, 1), 0.5), ball->center));
+    seen->least = seen->lines ? fmin(seen->least, away / ball->radius) : away / ball->radius;
+    seen->most = fmax(seen->most, away / ball->radius);
+    seen->lines++;
+}
+
+static void check_ball(void *context, const RtBoxView *view) {
+    Seen seen = {.view = view};
+    RtVec3d corners[RT_NET_CORNERS];
+    const RtBall *ball = &view->extents->balls[view->extent];
+    double cut = ball->center.z + 0.6 * ball->radius;
+    rt_net_lines(view, rt_vec3d(0, 0, 10), (RtLineViewer){see_line, &seen});
+    assert_int_equal(seen.lines, 4 * RT_NET_CORNERS);
+    assert_true(seen.least >= 1 && seen.most < 1.01);
+    assert_int_equal(rt_net_section(view, 2, cut, corners), RT_NET_CORNERS);
+    for (int i = 0; i < RT_NET_CORNERS; i++)
+        assert_true(fabs(rt_lengthd(rt_subd(corners[i], ball->center)) / ball->radius - 1) < 1e-9);
+    assert_int_equal(rt_net_section(view, 2, ball->center.z + 1.01 * ball->radius, corners), 0);
+    ++*(int *)context;
+}
+
+RT_TEST(spheres_are_drawn_as_nets_around_them_and_cut_in_circles) {
+    RtScene scene;
+    RtAccel *accel;
+    int count = 0;
+    open_scene(&scene);
+    assert_ok(rt_accel_open("clusters:extent=sphere", &scene, &accel, error));
+    accel->ops->each_box(accel, (RtBoxViewer){check_ball, &count});
+    assert_int_equal(count, 9);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static void count_line(void *context, RtVec3d from, RtVec3d to) {
+    (void)from, (void)to;
+    ++*(int *)context;
+}
+
+/* Its three slabs are the box: the twelve edges of either, and the four corners of a section. */
+static void check_body(void *context, const RtBoxView *view) {
+    RtVec3d corners[RT_NET_CORNERS];
+    double middle = (double)rt_box_center(*view->box).z;
+    int lines = 0;
+    rt_net_lines(view, rt_vec3d(0, 0, 10), (RtLineViewer){count_line, &lines});
+    assert_int_equal(lines, 12);
+    assert_int_equal(rt_net_section(view, 2, middle, corners), 4);
+    for (int i = 0; i < 4; i++) {
+        for (int a = 0; a < 2; a++) {
+            double lo = (double)view->box->lo.at[a], hi = (double)view->box->hi.at[a];
+            assert_true(fmin(fabs(corners[i].at[a] - lo), fabs(corners[i].at[a] - hi)) < 1e-4);
+        }
+    }
+    ++*(int *)context;
+}
+
+RT_TEST(three_slabs_and_oriented_boxes_of_spheres_have_the_edges_of_boxes) {
+    static const char *const specs[] = {"extents:kind=slabs,slabs=3", "extents:kind=obb"};
+    RtScene scene;
+    open_scene(&scene);
+    for (int i = 0; i < 2; i++) {
+        RtAccel *accel;
+        int count = 0;
+        assert_ok(rt_accel_open(specs[i], &scene, &accel, error));
+        accel->ops->each_box(accel, (RtBoxViewer){check_body, &count});
+        assert_int_equal(count, 5);
+        rt_accel_destroy(accel);
+    }
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(levels_and_leaves_leave_the_other_boxes_out) {
+    RtScene scene;
+    RtImage all = {0}, root = {0}, leaves = {0};
+    RtError refusal;
+    open_scene(&scene);
+    RtStructureOptions options = RT_ALL_LEVELS;
+    RtColor yellow = rt_color_scale(1);
+    assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &all, error));
+    options.leaves = true;
+    assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &leaves, error));
+    options = (RtStructureOptions){0, 0, false, false, 0, 0};
+    assert_ok(draw(&scene, "bvh:max_leaf_size=1", options, &root, error));
+    assert_true(colored(&root, yellow) > 400);
+    assert_true(colored(&all, yellow) > 400);
+    double reach = 3 / 9.0 / tan(45 * 3.14159265358979 / 360) * 100;
+    int left = (int)floor(100 - reach); /* a place of the root's box alone */
+    assert_memory_equal(pixel(&root, left, 100), yellow.rgb, 3);
+    assert_memory_not_equal(pixel(&leaves, left, 100), yellow.rgb, 3);
+    rt_image_clear(&all);
+    rt_image_clear(&root);
+    rt_image_clear(&leaves);
+    options.first_level = options.last_level = 60;
+    assert_int_equal(draw(&scene, "bvh", options, &all, &refusal), RT_BAD_INPUT);
+    assert_non_null(strstr(refusal.message, "levels"));
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(a_section_shows_the_boxes_and_outlines_of_what_the_plane_cuts) {
+    RtScene scene;
+    RtImage image = {0};
+    RtError refusal;
+    open_scene(&scene);
+    RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = -0.5};
+    assert_ok(draw(&scene, "extents", options, &image, error));
+    /* The scene is 6 wide, in 96 % of the image. Only the middle sphere reaches z = -0.5, in x from -1 to 1.
+     */
+    double scale = 0.96 * SIDE / 6;
+    const uint8_t *edge = pixel(&image, (int)(100 - scale), 100),
+                  *other = pixel(&image, (int)(100 - 3 * scale) + 1, 20);
+    assert_true(edge[0] > 200 && edge[1] > 180);
+    assert_int_equal(other[0], 20);
+    rt_image_clear(&image);
+    options.at = 5;
+    assert_int_equal(draw(&scene, "extents", options, &image, &refusal), RT_BAD_INPUT);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(a_line_is_cut_where_it_leaves_the_rectangle_and_keeps_its_slope) {
+    const double lo[2] = {0, 0}, hi[2] = {10, 20};
+    double a[2] = {-10, -15}, b[2] = {30, 45}; /* y = 1.5 x */
+    assert_true(rt_section_clip(a, b, lo, hi));
+    assert_true(a[0] == 0 && a[1] == 0 && b[0] == 10 && b[1] == 15);
+    assert_true(rt_section_clip(b, a, lo, hi)); /* inside: as it is */
+    assert_true(a[0] == 0 && a[1] == 0 && b[0] == 10 && b[1] == 15);
+    double c[2] = {-4, 10}, d[2] = {4, 26}; /* past a corner, though each end lies beside the rectangle */
+    assert_true(rt_section_clip(c, d, lo, hi));
+    assert_true(c[0] == 0 && c[1] == 18 && d[0] == 1 && d[1] == 20);
+    double e[2] = {-4, 14}, f[2] = {4, 30};
+    assert_false(rt_section_clip(e, f, lo, hi));
+    double g[2] = {5, -1}, h[2] = {5, 90}, i[2] = {11, -1}, j[2] = {11, 90}; /* upright */
+    assert_true(rt_section_clip(g, h, lo, hi));
+    assert_true(g[0] == 5 && g[1] == 0 && h[0] == 5 && h[1] == 20);
+    assert_false(rt_section_clip(i, j, lo, hi));
+}
+
+RT_TEST(a_wall_that_is_far_larger_than_a_section_is_outlined_where_it_is) {
+    RtScene scene;
+    RtImage image = {0};
+    RtVec3 wall[4] = {
+        {{-1000, -1499.5f, -9}}, {{1000, 1500.5f, -9}}, {{1000, 1500.5f, 9}}, {{-1000, -1499.5f, 9}}};
+    start_scene(&scene, rt_default_material());
+    scene.camera.fov = 45;
+    assert_ok(rt_scene_add_polygon(&scene, 0, wall, 4, error));
+    assert_ok(rt_scene_finish(&scene, error));
+    assert_ok(rt_scene_sample(&scene, SIDE, SIDE, 1, false, error));
+    RtStructureOptions options = {.last_level = UINT32_MAX, .slice = true, .axis = 2, .at = -0.5};
+    assert_ok(draw(&scene, "extents", options, &image, error));
+    double scale = 100 / (10 * tan(45 * 3.14159265358979 / 360)); /* what the camera sees at its aim */
+    for (int i = -8; i <= 8; i++) {
+        double x = 0.25 * i, y = 1.5 * x + 0.5;
+        int column = (int)floor(100 + scale * x), row = (int)floor(100 - scale * y), white = 0;
+        for (int near = row - 2; near <= row + 2; near++)
+            white += near >= 0 && near < SIDE && pixel(&image, column, near)[2] > 190;
+        assert_true(white > 0);
+    }
+    rt_image_clear(&image);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(the_topmost_layer_that_can_be_drawn_is_and_any_can_be_named) {
+    RtScene scene;
+    RtAccel *accel;
+    const RtAccel *layer = NULL;
+    RtError refusal;
+    RtSpec spec;
+    open_scene(&scene);
+    assert_ok(rt_accel_open("cache+item+bvh", &scene, &accel, error));
+    assert_ok(rt_structure_layer(accel, NULL, &layer, error));
+    assert_string_equal(layer->ops->name, "item");
+    assert_ok(rt_structure_layer(accel, "bvh", &layer, error));
+    assert_string_equal(layer->ops->name, "bvh");
+    assert_int_equal(rt_structure_layer(accel, "cache", &layer, &refusal), RT_NOT_AVAILABLE);
+    assert_int_equal(rt_structure_layer(accel, "grid", &layer, &refusal), RT_BAD_INPUT);
+    assert_ok(rt_spec_parse("brute", &spec, error));
+    assert_int_equal(rt_structure_available(&spec, NULL, &refusal), RT_NOT_AVAILABLE);
+    assert_ok(rt_spec_parse("item+brute", &spec, error));
+    assert_ok(rt_structure_available(&spec, NULL, error));
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(the_item_buffer_has_a_color_for_each_object_black_for_none_and_magenta_for_undecided) {
+    RtScene scene;
+    RtAccel *accel;
+    RtImage image = {0};
+    open_scene(&scene);
+    assert_ok(rt_accel_open("item+bvh", &scene, &accel, error));
+    assert_ok(rt_cells_image(&image, accel, 0, NULL, error));
+    RtColor middle = rt_color_of_number(0);
+    assert_memory_equal(pixel(&image, 100, 100), middle.rgb, 3);
+    assert_int_equal(pixel(&image, 2, 2)[0] + pixel(&image, 2, 2)[1], 0);
+    assert_int_equal(colored(&image, (RtColor){{255, 0, 200}}), 0); /* all are settled */
+    rt_image_clear(&image);
+    rt_accel_destroy(accel);
+    assert_ok(rt_accel_open("item:settle=off+bvh", &scene, &accel, error));
+    assert_ok(rt_cells_image(&image, accel, 0, NULL, error));
+    assert_true(colored(&image, (RtColor){{255, 0, 200}}) > 100);
+    rt_image_clear(&image);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+/* What is looked up for a picture is what the kernel reads: a ray's steps are entries of that cell. */
+RT_TEST(a_shadow_ray_reads_the_cell_that_is_marked) {
+    RtScene scene;
+    RtAccel *accel;
+    RtQuery query;
+    open_scene(&scene);
+    assert_ok(rt_accel_open("light:cells=16,extents=off,full_occlusion=off+bvh", &scene, &accel, error));
+    assert_ok(rt_query_init(&query, accel, error));
+    RtVec3 light = scene.lights[0].position;
+    uint32_t listed = 0;
+    for (int i = 0; i < 400;
+         i++) { /* from the far side of the scene to the light: no entry is deeper than the ray */
+        int column = i % 20, row = i / 20;
+        RtRay ray = {.org = rt_vec3(-3 + 6 * (float)column / 19, -3 + 6 * (float)row / 19, -1),
+                     .tmax = 1,
+                     .kind = RT_RAY_SHADOW};
+        RtTally tallies[RT_RAY_KIND_COUNT] = {0};
+        RtCellView cell = {0};
+        bool blocked, there;
+        ray.dir = rt_sub(light, ray.org);
+        rt_occluded(&query, &ray, 1, &blocked, tallies);
+        there = accel->ops->look_up(accel, &ray, &cell);
+        uint64_t steps = tallies[RT_RAY_SHADOW].steps;
+        assert_true(steps <= (there ? cell.length : 0));
+        if (there && !blocked && !cell.cut) assert_int_equal(steps, cell.length);
+        listed += there && cell.length > 0;
+    }
+    assert_true(listed > 20);
+    rt_query_clear(&query);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+RT_TEST(the_cells_around_a_light_are_drawn_and_a_light_without_cells_is_refused) {
+    RtScene scene;
+    RtAccel *accel;
+    RtImage image = {0};
+    RtError refusal;
+    open_scene(&scene);
+    assert_ok(rt_accel_open("light:cells=16+bvh", &scene, &accel, error));
+    RtRay ray = {.org = rt_vec3(0, 0, -1), .tmax = 1, .kind = RT_RAY_SHADOW};
+    ray.dir = rt_sub(scene.lights[0].position, ray.org);
+    assert_ok(rt_cells_image(&image, accel, 0, &ray, error));
+    assert_true(image.width > 900 && image.height > 700);
+    const uint8_t *hidden = pixel(&image, 4 * 240 - 10, 10); /* beside the cross */
+    assert_memory_equal(hidden, RT_BLACK.rgb, 3);
+    RtColor none = rt_color_scale(0);
+    int empty = 0;
+    for (uint32_t i = 0; i < 720 * image.width; i++)
+        empty += memcmp(image.rgb + 3 * (size_t)i, none.rgb, 3) == 0;
+    assert_true(empty > 1000); /* lists without an object have the scale's colour of 0 */
+    rt_image_clear(&image);
+    assert_int_equal(rt_cells_image(&image, accel, 7, NULL, &refusal), RT_BAD_INPUT);
+    rt_accel_destroy(accel);
+    assert_ok(rt_accel_open("light+bvh", &scene, &accel, error));
+    assert_int_equal(rt_cells_image(&image, accel, 0, NULL, &refusal), RT_NOT_AVAILABLE);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+static int nothing_is_kept(void **state) {
+    (void)state;
+    return rt_alloc_live() == 0 ? 0 : -1;
+}
+
+RT_TESTS(structure, NULL, nothing_is_kept)

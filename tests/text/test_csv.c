@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* core/text/csv.h: fields that are quoted, and files that are no tables. */
+#include "experiment_testing.h"
+
+#include "core/text/csv.h"
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
+
+RT_TEST_IN_PLACE(a_csv_field_may_be_quoted_and_is_written_as_it_was_read) {
+    const Place *place = *state;
+    const char text[] = "# told here: a, b\na,b,c\r\n1,\"x, \"\"y\"\"\",\n\n,2,3\n";
+    char *written = NULL;
+    size_t size;
+    RtCsv csv;
+    write_in(place, "some.csv", text);
+    assert_ok(rt_csv_read(&csv, path_in(place, "some.csv").text, error));
+    assert_int_equal(csv.rows, 2);
+    assert_int_equal(csv.lines[1], 5);
+    assert_string_equal(rt_csv_field(&csv, 0, rt_csv_find(&csv, "b")), "x, \"y\"");
+    assert_string_equal(rt_csv_field(&csv, 0, 2), "");
+    assert_string_equal(rt_csv_field(&csv, 1, 2), "3");
+    assert_string_equal(rt_csv_field(&csv, 1, rt_csv_find(&csv, "none")), "");
+    FILE *out = open_memstream(&written, &size);
+    rt_csv_put(out, rt_csv_field(&csv, 0, 1));
+    fclose(out);
+    assert_string_equal(written, "\"x, \"\"y\"\"\"");
+    free(written);
+    rt_csv_clear(&csv);
+}
+
+RT_TEST_IN_PLACE(a_csv_file_with_a_byte_0_is_refused_and_not_cut_off_there) {
+    const Place *place = *state;
+    static const char text[] = "a,b\n1,2\n\0,3,4\n";
+    RtCsv csv;
+    assert_ok(rt_file_write(path_in(place, "some.csv").text, text, sizeof text - 1, error));
+    RtError error = {RT_OK, ""};
+    RtStatus status = rt_csv_read(&csv, path_in(place, "some.csv").text, &error);
+    rt_csv_clear(&csv);
+    assert_refused(status, RT_BAD_INPUT, &error, ":3: there is a zero byte");
+}
+
+RT_TEST_IN_PLACE(a_csv_file_that_is_none_is_refused_with_its_line) {
+    const Place *place = *state;
+    const char *const cases[][2] = {
+        {"a,b\n1\n", ":2: there are fewer"}, {"a,b\n1,2\n1,2,3\n", ":3: there are more"},
+        {"a,b\n\"1,2\n", ":2: a quote"},     {"a,b\n\"1\"x,2\n", ":2: a quote"},
+        {"# nothing\n\n", "no header"},      {"", "no header"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtCsv csv;
+        RtError error = {RT_OK, ""};
+        write_in(place, "some.csv", cases[i][0]);
+        RtStatus status = rt_csv_read(&csv, path_in(place, "some.csv").text, &error);
+        rt_csv_clear(&csv);
+        assert_refused(status, RT_BAD_INPUT, &error, cases[i][1]);
+    }
+}
+
+RT_TESTS(csv, NULL, NULL)

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* core/text/npy.h: arrays as NumPy writes them, and files that are none, or other ones. */
+#include "experiment_testing.h"
+
+#include "core/text/npy.h"
+
+#include <fcntl.h>
+#include <string.h>
+#include <unistd.h>
+
+#define RT_TEST_IN_PLACE(name) RT_TEST_WITH(name, make_place, remove_place)
+
+#define SHAPE(text) "{'descr': '<f4', 'fortran_order': False, 'shape': " text ", }"
+
+/* A file of version `major`.`minor`, of this header, and `bytes` bytes of numbers. */
+static Path write_array(const Place *place, int major, int minor, const char *header, size_t bytes) {
+    Path path = path_in(place, "some.npy");
+    FILE *out = fopen(path.text, "wb");
+    assert_non_null(out);
+    size_t length = strlen(header);
+    fputs("\x93NUMPY", out);
+    const unsigned char rest[] = {(unsigned char)major,
+                                  (unsigned char)minor,
+                                  (unsigned char)(length & 255),
+                                  (unsigned char)(length >> 8),
+                                  0,
+                                  0};
+    fwrite(rest, 1, major == 1 ? 4 : 6, out);
+    fputs(header, out);
+    for (size_t i = 0; i < bytes; i++) fputc(0, out);
+    fclose(out);
+    return path;
+}
+
+RT_TEST_IN_PLACE(what_is_written_is_read) {
+    const Place *place = *state;
+    const float values[3][8] = {{1, 2, 3}, {4, 5, -6, 0, 0, 0, 0, 7e-40f}, {8}};
+    float read[3][8];
+    Path path = path_in(place, "some.npy");
+    FILE *out = fopen(path.text, "wb");
+    rt_npy_begin(out, "'<f4'", 3, 8);
+    assert_int_equal(ftell(out) % 64, 0);
+    fwrite(values, sizeof values, 1, out);
+    fclose(out);
+    RtNpy npy;
+    assert_ok(rt_npy_open(&npy, path.text, 8, 1000, error));
+    assert_int_equal(npy.rows, 3);
+    assert_ok(rt_npy_read(&npy, 2, read[0], error));
+    assert_ok(rt_npy_read(&npy, 1, read[2], error));
+    rt_npy_close(&npy);
+    assert_memory_equal(values, read, sizeof values);
+}
+
+RT_TEST_IN_PLACE(headers_of_any_version_and_order_of_keys_are_read) {
+    const struct {
+        int major;
+        const char *header;
+    } cases[] = {{1, SHAPE("(2, 8)")},
+                 {1, SHAPE("(2, 8)") "      \n"},
+                 {2, SHAPE("(2, 8)")},
+                 {3, SHAPE("(2,8,)")},
+                 {1, "{\"shape\":(2,8),\"fortran_order\":False,\"descr\":\"<f4\"}"},
+                 {1, "  { 'fortran_order' : False , 'descr' : '<f4' , 'shape' : ( 2 , 8 ) , }\n\n"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtNpy npy;
+        Path path = write_array(*state, cases[i].major, 0, cases[i].header, 64);
+        assert_ok(rt_npy_open(&npy, path.text, 8, 2, error));
+        assert_int_equal(npy.rows, 2);
+        rt_npy_close(&npy);
+    }
+}
+
+RT_TEST_IN_PLACE(arrays_of_another_type_order_shape_or_length_are_refused) {
+    const struct {
+        int major, minor;
+        const char *header;
+        size_t bytes;
+        const char *says;
+    } cases[] = {
+        {1, 1, SHAPE("(2, 8)"), 64, "version 1.1"},
+        {4, 0, SHAPE("(2, 8)"), 64, "version 4.0"},
+        {0, 0, SHAPE("(2, 8)"), 64, "version 0.0"},
+        {1, 0, SHAPE("(2, 8)"), 63, "64 bytes, but 63 follow"},
+        {1, 0, SHAPE("(2, 8)"), 65, "64 bytes, but 65 follow"},
+        {1, 0, SHAPE("(2, 8)"), 0, "cut off"},
+        {1, 0, SHAPE("(2, 7)"), 56, "expected the shape (N, 8)"},
+        {1, 0, SHAPE("(16,)"), 64, "expected the shape (N, 8)"},
+        {1, 0, SHAPE("()"), 4, "expected the shape (N, 8)"},
+        {1, 0, SHAPE("(2, 8, 1)"), 64, "expected the shape (N, 8)"},
+        {1, 0, SHAPE("(1001, 8)"), 1001 * 32, "at most 1000"},
+        {1, 0, SHAPE("(18446744073709551615, 8)"), 64, "at most 1000"},
+        {1, 0, SHAPE("(18446744073709551616, 8)"), 64, "the header is not"},
+        {1, 0, SHAPE("(-2, 8)"), 64, "the header is not"},
+        {1, 0, SHAPE("(2 8)"), 64, "the header is not"},
+        {1, 0, SHAPE("(2)"), 64, "the header is not"},
+        {1, 0, SHAPE("(2, 8"), 64, "the header is not"},
+        {1, 0, SHAPE("2, 8"), 64, "the header is not"},
+        {1, 0, SHAPE("(2, 8)") "x", 64, "the header is not"},
+        {1, 0, "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 8)}", 128, "expected '<f4'"},
+        {1, 0, "{'descr': '>f4', 'fortran_order': False, 'shape': (2, 8)}", 64, "expected '<f4'"},
+        {1, 0, "{'descr': [('t', '<f4')], 'fortran_order': False, 'shape': (2, 8)}", 64, "expected '<f4'"},
+        {1, 0, "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 8)}", 64, "row after row"},
+        {1, 0, "{'descr': '<f4', 'fortran_order': 0, 'shape': (2, 8)}", 64, "the header is not"},
+        {1, 0, "{'descr': '<f4', 'shape': (2, 8)}", 64, "the header is not"},
+        {1, 0, "{'descr': '<f4', 'fortran_order': False}", 64, "the header is not"},
+        {1, 0, "{'fortran_order': False, 'shape': (2, 8)}", 64, "the header is not"},
+        {1, 0, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), 'more': 1}", 64,
+         "the header is not"},
+        {1, 0, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), 'shape': (2, 8)}", 64,
+         "the header is not"},
+        {1, 0, "{'descr': '<f4, 'fortran_order': False, 'shape': (2, 8)}", 64, "expected '<f4'"},
+        {1, 0, "", 64, "the header is not"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        RtNpy npy;
+        RtError error = {RT_OK, ""};
+        Path path = write_array(*state, cases[i].major, cases[i].minor, cases[i].header, cases[i].bytes);
+        assert_int_equal(rt_npy_open(&npy, path.text, 8, 1000, &error), RT_BAD_INPUT);
+        rt_npy_close(&npy);
+        if (!strstr(error.message, cases[i].says)) fail_msg("'%s': %s", cases[i].header, error.message);
+    }
+}
+
+/* Whatever byte is another one, and wherever the file ends, it is the array, or is refused. */
+RT_TEST_IN_PLACE(no_damage_to_a_file_goes_further_than_a_message) {
+    const char header[] = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 8), }\n";
+    Path path = write_array(*state, 1, 0, header, 64);
+    char bytes[256];
+    int file = open(path.text, O_RDWR); /* written in place: a file that is replaced may wait for the disk */
+    size_t size = (size_t)read(file, bytes, sizeof bytes);
+    for (size_t at = 0; at < size - 64; at++) {
+        for (int value = -1; value < 256; value++) { /* -1: cut off here */
+            char damaged[sizeof bytes];
+            RtNpy npy;
+            RtError why = {RT_OK, ""};
+            memcpy(damaged, bytes, size);
+            if (value >= 0) damaged[at] = (char)value;
+            assert_int_equal(pwrite(file, damaged, size, 0), size);
+            assert_int_equal(ftruncate(file, (off_t)(value < 0 ? at : size)), 0);
+            RtStatus status = rt_npy_open(&npy, path.text, 8, 1000, &why);
+            rt_npy_close(&npy);
+            assert_true(status == RT_OK ? npy.rows == 2 : status == RT_BAD_INPUT && why.message[0]);
+        }
+    }
+    close(file);
+}
+
+RT_TESTS(npy, NULL, NULL)

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* core/text/table.h: one small table, with every kind of field, in every form. */
+#include "testing.h"
+
+#include "core/text/table.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Part {
+    uint64_t rays;
+} Part;
+
+typedef struct Row {
+    const char *name;
+    uint64_t hits;
+    double seconds;
+    bool exact;
+    const Part *part;
+} Row;
+
+static RtField seconds_of(const Row *r) {
+    RtField field = rt_field_real(r->seconds);
+    field.missed = r->seconds > 1;
+    field.note = field.missed ? "a \"slow\" one" : NULL;
+    return field;
+}
+
+#define COLUMNS(X)                                                                                           \
+    X(name, "name", markup, "", "what it is called", r->name)                                                \
+    X(hits, "hit count", integer, "", "hits", r->hits)                                                       \
+    X(seconds, "seconds", real6, "s", "how long it took", seconds_of(r))                                     \
+    X(exact, "exact", flag, "", "whether it is exact", r->exact)                                             \
+    X(range, "range", interval, "s", "how long it may take",                                                 \
+      rt_field_interval(r->seconds, r->seconds / 2, 2 * r->seconds))
+RT_TABLE_COLUMNS(columns, COLUMNS)
+
+static const void *part_of(const void *row) {
+    return ((const Row *)row)->part;
+}
+
+static RtField rays_of(const void *row, const RtTableColumn *column) {
+    (void)column;
+    return rt_field_integer(((const Part *)row)->rays);
+}
+static const RtTableColumn part_columns[] = {
+    {"rays", "rays", "", "rays traced", rays_of, RT_FORM_integer, 0}};
+
+static const Part part = {7};
+static const Row things[] = {{"a|b, `c` **d**", 12, 1.5, true, &part},
+                             {NULL, 0, 0, false, NULL}, /* left out */
+                             {"<x>", 3456, NAN, false, NULL}};
+static const RtColumnGroup groups[] = {RT_ALL(columns), {"tally", part_columns, 1, part_of}};
+
+static const void *thing_at(void *context, size_t i) {
+    (void)context;
+    return things[i].name ? &things[i] : NULL;
+}
+
+static const char *red(const void *row) {
+    return row == things ? "red" : NULL;
+}
+
+static const RtTable table = {RT_GROUPS(groups), .row_count = 3, .row = thing_at, .color = red};
+
+static void assert_written(const RtTable *what, void (*write)(const RtTable *, FILE *),
+                           const char *expected) {
+    char *text;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    write(what, out);
+    fclose(out);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+RT_TEST(csv_quotes_and_leaves_empty_what_is_missing) {
+    assert_written(&table, rt_table_csv,
+                   "name,hits,seconds,exact,range,rays\n"
+                   "\"a|b, `c` **d**\",12,1.5,yes,\"1.50 [0.750, 3.00]\",7\n"
+                   "<x>,3456,,no,,\n");
+}
+
+RT_TEST(text_is_aligned_and_has_a_dash_for_what_is_missing) {
+    assert_written(&table, rt_table_text,
+                   "name            hit count  seconds  exact  range               rays\n"
+                   "a|b, `c` **d**         12      1.5  yes    1.50 [0.750, 3.00]     7\n"
+                   "<x>                  3456        -  no     -                      -\n");
+}
+
+RT_TEST(markdown_escapes_bars_and_aligns_numbers_unless_it_is_ragged) {
+    RtTable ragged = table;
+    ragged.ragged = true;
+    ragged.row_count = ragged.group_count = 1;
+    assert_written(&table, rt_table_markdown,
+                   "| name | hit count | seconds | exact | range | rays |\n"
+                   "| --- | ---: | ---: | --- | --- | ---: |\n"
+                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.50 [0.750, 3.00] | 7 |\n"
+                   "| <x> | 3456 | | no | | |\n");
+    assert_written(&ragged, rt_table_markdown,
+                   "| name | hit count | seconds | exact | range |\n| --- | --- | --- | --- | --- |\n"
+                   "| a\\|b, `c` **d** | 12 | 1.5 | yes | 1.50 [0.750, 3.00] |\n");
+}
+
+static RtStanding first_is_best(const void *row) {
+    return row == things ? RT_STANDING_BEST : RT_STANDING_BEHIND;
+}
+
+RT_TEST(markdown_and_latex_have_the_best_in_bold_and_escape_what_they_must) {
+    RtTable marked = table;
+    const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
+    marked.groups = first;
+    marked.group_count = 1;
+    marked.caption = "50 % of {a_b}";
+    marked.standing = first_is_best;
+    assert_written(&marked, rt_table_markdown,
+                   "| name | hit count | seconds |\n| --- | ---: | ---: |\n"
+                   "| **a\\|b, `c` **d**** | 12 | 1.5 |\n| <x> | 3456 | |\n");
+    assert_written(
+        &marked, rt_table_tex,
+        "\\begin{table}\n\\scriptsize\\centering\\setlength{\\tabcolsep}{3pt}\n\\caption{50 \\% of "
+        "\\{a\\_b\\}}\n"
+        "\\resizebox{\\ifdim\\width>\\columnwidth\\columnwidth\\else\\width\\fi}{!}{%\n\\begin{tabular}{@{}"
+        "lrr@{}}\n\\toprule\nname & hit count & seconds \\\\\n\\midrule\n"
+        "\\textbf{a\\textbar{}b, `c` **d**} & 12 & 1.5 \\\\\n"
+        "\\textless{}x\\textgreater{} & 3456 & -- \\\\\n\\bottomrule\n\\end{tabular}}\n\\end{table}\n");
+}
+
+RT_TEST(html_escapes_marks_notes_and_keeps_numbers_for_sorting) {
+    RtTable narrow = table;
+    const RtColumnGroup first[] = {RT_FROM_TO(columns, name, seconds)};
+    narrow.groups = first;
+    narrow.group_count = 1;
+    narrow.caption = "a & b";
+    narrow.standing = first_is_best;
+    assert_written(
+        &narrow, rt_table_html,
+        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"a &amp; b\"><table>"
+        "<caption>a &amp; b</caption><thead><tr>"
+        "<th scope=\"col\" data-id=\"name\" title=\"what it is called\">name</th>"
+        "<th scope=\"col\" class=\"number\" data-id=\"hits\" title=\"hits\">hit count</th>"
+        "<th scope=\"col\" class=\"number\" data-id=\"seconds\" title=\"how long it took\">seconds</th>"
+        "</tr></thead><tbody>\n"
+        "<tr class=\"best\" style=\"--dot:red\"><td>a|b, <code>c</code> <b>d</b> <span class=\"mark\">"
+        "&#9733;&#8239;best</span></td><td data-value=\"12\">12</td>"
+        "<td class=\"missed\" data-value=\"1.5\" title=\"a &quot;slow&quot; one\">1.5</td></tr>\n"
+        "<tr><td>&lt;x&gt;</td><td data-value=\"3456\">3456</td><td data-value=\"\">-</td></tr>\n"
+        "</tbody></table></div>\n");
+}
+
+RT_TEST(json_has_an_object_a_row_and_null_for_what_is_missing) {
+    json_t *rows = rt_table_json(&table);
+    json_t *expected = json_pack(
+        "[{s:s, s:i, s:f, s:b, s:{s:f, s:f, s:f}, s:{s:i}}, {s:s, s:i, s:n, s:b, s:{s:n, s:n, s:n}, s:n}]",
+        "name", "a|b, `c` **d**", "hit count", 12, "seconds", 1.5, "exact", 1, "range", "value", 1.5, "low",
+        0.75, "high", 3.0, "tally", "rays", 7, "name", "<x>", "hit count", 3456, "seconds", "exact", 0,
+        "range", "value", "low", "high", "tally");
+    assert_non_null(expected);
+    assert_true(json_equal(rows, expected));
+    json_decref(rows);
+    json_decref(expected);
+}
+
+RT_TEST(lines_one_by_one_are_those_of_the_whole_table) {
+    int widths[RT_MAX_TABLE_COLUMNS];
+    char *text;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    rt_table_widths(&table, widths);
+    rt_table_line(&table, widths, NULL, out);
+    rt_table_line(&table, widths, &things[0], out);
+    rt_table_line(&table, widths, &things[2], out);
+    fclose(out);
+    assert_written(&table, rt_table_text, text);
+    free(text);
+}
+
+RT_TEST(figures_are_about_four_characters) {
+    const struct {
+        double value;
+        const char *text;
+    } cases[] = {{0, "0"},        {0.00341, "0.0034"}, {0.341, "0.341"},  {1.239, "1.24"},
+                 {12.39, "12.4"}, {123.9, "124"},      {69666, "69666"},  {0.00012, "1.2e-04"},
+                 {NAN, "-"},      {9.999, "10.0"},     {1.5e8, "1.5e+08"}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[16];
+        rt_format_figure(cases[i].value, text);
+        assert_string_equal(text, cases[i].text);
+    }
+}
+
+static double ratio_end;
+
+static RtField get_ratio_end(const void *row, const RtTableColumn *column) {
+    (void)row, (void)column;
+    return rt_field_real(ratio_end);
+}
+
+/* The end of a ratio's interval as JSON has it, in nine digits. */
+static double nine_digits(double end) {
+    static const RtTableColumn column = {"end", "end", "", "an end", get_ratio_end, RT_FORM_end, 0};
+    char text[64];
+    ratio_end = end;
+    json_t *object = rt_row_json(&(RtColumnGroup){NULL, &column, 1, NULL}, 1, &ratio_end);
+    size_t length = json_dumpb(json_object_get(object, "end"), text, sizeof text - 1,
+                               JSON_ENCODE_ANY | JSON_REAL_PRECISION(9));
+    text[length] = '\0';
+    json_decref(object);
+    return strtod(text, NULL);
+}
+
+RT_TEST(an_interval_is_seen_not_to_hold_1_if_it_does_not) {
+    static const double ends[] = {0.5,         0.98,     0.9951, 0.9994, 0.9996, 1 - 1e-7, 1 - 0x1p-53, 1,
+                                  1 + 0x1p-52, 1 + 1e-7, 1.0004, 1.0031, 1.0049, 1.02,     2.5};
+    enum { ENDS = sizeof ends / sizeof ends[0] };
+    char room[RT_MAX_FIELD];
+    for (int i = 0; i < ENDS; i++) {
+        const RtField end = rt_field_real(ends[i]);
+        assert_int_equal(strtod(rt_field_show(RT_FORM_end, &end, room), NULL) == 1, ends[i] == 1);
+        for (int k = i; k < ENDS; k++) {
+            const RtField field = rt_field_interval(0.5 * (ends[i] + ends[k]), ends[i], ends[k]);
+            const bool holds = ends[i] <= 1 && 1 <= ends[k];
+            double value, low, high;
+            const char *text = rt_field_show(RT_FORM_interval, &field, room);
+            assert_int_equal(sscanf(text, "%lf [%lf, %lf]", &value, &low, &high), 3);
+            assert_int_equal(low <= 1 && 1 <= high, holds);
+            assert_true(low <= value && value <= high);
+            assert_int_equal(nine_digits(ends[i]) <= 1 && 1 <= nine_digits(ends[k]), holds);
+        }
+    }
+    const RtField usual = rt_field_interval(1.0134, 1.0061, 1.0279),
+                  close = rt_field_interval(1.0041, 1.0031, 1.0279);
+    assert_string_equal(rt_field_show(RT_FORM_interval, &usual, room), "1.01 [1.01, 1.03]");
+    assert_string_equal(rt_field_show(RT_FORM_interval, &close, room), "1.004 [1.003, 1.028]");
+}
+
+RT_TESTS(table, NULL, NULL)
