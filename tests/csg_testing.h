@@ -6,7 +6,7 @@
 #include "room_testing.h"
 #include "testing.h"
 
-#include "bench/rayset.h"
+#include "rays/rayset.h"
 #include "scenes/random_tree.h"
 
 #include <string.h>

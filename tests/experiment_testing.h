@@ -5,9 +5,9 @@
 
 #include "testing.h"
 
-#include "bench/experiment.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "experiment/experiment.h"
 
 #include <stdio.h>
 #include <stdlib.h>

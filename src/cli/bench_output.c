@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/bench_output.h"
 
-#include "bench/distribution_tables.h"
-#include "bench/hardware_table.h"
-#include "bench/machine.h"
-#include "bench/result_tables.h"
 #include "cli/cli.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
+#include "experiment/distribution_tables.h"
+#include "experiment/hardware_table.h"
+#include "experiment/result_tables.h"
+#include "measure/machine.h"
 
 /* Appends the rows of one scene. */
 static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {

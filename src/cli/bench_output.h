@@ -3,7 +3,7 @@
 #ifndef RT_CLI_BENCH_OUTPUT_H
 #define RT_CLI_BENCH_OUTPUT_H
 
-#include "bench/callgrind.h"
+#include "experiment/callgrind.h"
 
 typedef struct RtBenchOutput {
     const char *csv; /* a file for a row per cell, or NULL */

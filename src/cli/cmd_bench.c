@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
  * workload that leaves no directory behind. */
-#include "bench/callgrind.h"
 #include "cli/bench_output.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
 #include "core/base/memory.h"
+#include "experiment/callgrind.h"
 #include "verify/spread.h"
 
 #include <argp.h>
@@ -88,7 +88,7 @@ static const struct argp_option options[] = {
      "asks it "
      "N of the rays of each kind (4096). Without AVX-512, which valgrind does not know",
      0},
-    {"callgrind-child", OPT_CALLGRIND_CHILD, "DIR", OPTION_HIDDEN, NULL, 0}, /* bench/callgrind.h */
+    {"callgrind-child", OPT_CALLGRIND_CHILD, "DIR", OPTION_HIDDEN, NULL, 0}, /* experiment/callgrind.h */
     {"csv", OPT_CSV, "FILE", 0,
      "Also write a row per cell to FILE, in the columns of times.csv; with "
      "--count-only of counts.csv",

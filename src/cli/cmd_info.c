@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally info: what is in a scene. */
-#include "bench/extents_table.h"
 #include "cli/cli.h"
 #include "core/base/words.h"
+#include "measure/extents_table.h"
 #include "scenes/open.h"
 
 #include <argp.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally rays: the rays that `bench` records, as an array of NumPy. */
-#include "bench/ray_file.h"
-#include "bench/workload.h"
 #include "cli/cli.h"
 #include "cli/recording.h"
 #include "core/base/words.h"
+#include "experiment/workload.h"
+#include "measure/ray_file.h"
 
 #include <argp.h>
 #include <inttypes.h>

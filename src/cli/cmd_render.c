@@ -2,7 +2,6 @@
 /* raytally render: a picture of a scene, and what it cost. The timed kernels make the picture; where counts
  * are asked for, a second frame is traced by the counted ones. */
 #include "accel/columns.h"
-#include "bench/rayset.h"
 #include "cli/cli.h"
 #include "cli/pictures.h"
 #include "cli/plugins.h"
@@ -11,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
+#include "rays/rayset.h"
 #include "render/image.h"
 #include "scenes/open.h"
 #include "verify/equivalence.h"

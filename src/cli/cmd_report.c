@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally report: the report of a result directory, written again; the page over all of them. */
-#include "bench/manifest.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/plugins.h"
 #include "core/base/words.h"
+#include "experiment/manifest.h"
 #include "report/index.h"
 #include "report/report.h"
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally reproduce: the counts of a result directory, counted again and compared byte for byte, with all
  * that is made of them alone. */
-#include "bench/manifest.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "core/base/memory.h"
+#include "experiment/manifest.h"
 #include "report/result_directory.h"
 
 #include <stdio.h>

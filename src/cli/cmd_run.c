@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally run: an experiment, from its YAML to a result directory. */
-#include "bench/claims.h"
-#include "bench/journal.h"
-#include "bench/manifest.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/summary.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
+#include "experiment/claims.h"
+#include "experiment/journal.h"
+#include "experiment/manifest.h"
 #include "report/result_directory.h"
 
 #include <argp.h>

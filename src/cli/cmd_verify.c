@@ -2,13 +2,13 @@
 /* raytally verify: does every accelerator answer every ray like brute? And --replay: does one still answer
  * one ray wrong? What is done lies in verify/verify.h and verify/replay.h; this is its command
  * line. */
-#include "bench/ray_file.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/verify_choice.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
+#include "measure/ray_file.h"
 #include "verify/replay.h"
 #include "verify/verify_table.h"
 

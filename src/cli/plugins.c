@@ -2,10 +2,10 @@
 #include "cli/plugins.h"
 
 #include "accel/plugin.h"
-#include "bench/manifest.h"
-#include "bench/plugins_used.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
+#include "experiment/manifest.h"
+#include "experiment/plugins_used.h"
 
 #include <stdio.h>
 #include <stdlib.h>

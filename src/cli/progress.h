@@ -4,7 +4,7 @@
 #ifndef RT_CLI_PROGRESS_H
 #define RT_CLI_PROGRESS_H
 
-#include "bench/forecast.h"
+#include "experiment/forecast.h"
 
 #include <pthread.h>
 

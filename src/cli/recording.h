@@ -3,7 +3,7 @@
 #ifndef RT_CLI_RECORDING_H
 #define RT_CLI_RECORDING_H
 
-#include "bench/experiment.h"
+#include "experiment/experiment.h"
 
 #include <argp.h>
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/summary.h"
 
-#include "bench/claims.h"
-#include "bench/frame_table.h"
-#include "bench/hardware_table.h"
-#include "bench/result_tables.h"
 #include "core/base/words.h"
+#include "experiment/claims.h"
+#include "experiment/frame_table.h"
+#include "experiment/hardware_table.h"
+#include "experiment/result_tables.h"
 
 void rt_cli_print_summary(const RtResults *results, FILE *out) {
     const RtExperiment *experiment = results->experiment;

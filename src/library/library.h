@@ -4,7 +4,7 @@
 #ifndef RT_LIBRARY_LIBRARY_H
 #define RT_LIBRARY_LIBRARY_H
 
-#include "bench/rayset.h"
+#include "rays/rayset.h"
 
 #include <locale.h>
 #include <raytally/raytally.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Counting, timing and statistics for those who embed us. */
-#include "bench/measure.h"
 #include "core/base/memory.h"
 #include "library/library.h"
+#include "measure/measure.h"
 
 #include <inttypes.h>
 #include <math.h>

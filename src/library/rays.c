@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Sets of rays for those who embed us: recorded, or their own. */
-#include "bench/experiment.h"
 #include "core/base/memory.h"
+#include "experiment/experiment.h"
 #include "library/library.h"
 
 #include <string.h>

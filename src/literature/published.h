@@ -19,7 +19,7 @@
 #ifndef RT_LITERATURE_PUBLISHED_H
 #define RT_LITERATURE_PUBLISHED_H
 
-#include "bench/results.h"
+#include "experiment/results.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 #ifndef RT_REPORT_COLOR_H
 #define RT_REPORT_COLOR_H
 
-#include "bench/experiment.h"
+#include "experiment/experiment.h"
 
 /* A colour is that of the registered accelerator on top of the spec; of several candidates with the same one
  * the first has it as it is, the others are darker and lighter. Markers and dashes go by the place in the

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/index.h"
 
-#include "bench/manifest.h"
 #include "core/base/memory.h"
 #include "core/text/table.h"
+#include "experiment/manifest.h"
 #include "report/page.h"
 #include "report/result_directory.h"
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/merge.h"
 
-#include "bench/journal.h"
-#include "bench/machine.h"
-#include "bench/manifest.h"
-#include "bench/plugins_used.h"
 #include "core/text/json.h"
+#include "experiment/journal.h"
+#include "experiment/manifest.h"
+#include "experiment/plugins_used.h"
+#include "measure/machine.h"
 #include "report/scripts.h"
 
 #include <inttypes.h>

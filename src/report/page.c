@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/page.h"
 
-#include "bench/claims.h"
 #include "core/base/words.h"
 #include "core/text/table.h"
+#include "experiment/claims.h"
 #include "page_css.h"
 #include "page_js.h"
 

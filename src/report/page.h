@@ -5,7 +5,7 @@
 #ifndef RT_REPORT_PAGE_H
 #define RT_REPORT_PAGE_H
 
-#include "bench/results.h"
+#include "experiment/results.h"
 
 #include <jansson.h>
 #include <stdio.h>

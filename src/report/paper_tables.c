@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/paper_tables.h"
 
-#include "bench/result_tables.h"
 #include "core/base/file.h"
+#include "experiment/result_tables.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -3,11 +3,11 @@
 #ifndef RT_REPORT_PAPER_TABLES_H
 #define RT_REPORT_PAPER_TABLES_H
 
-#include "bench/results.h"
+#include "experiment/results.h"
 
 /* Writes `directory`/tables.md and tables.tex (for the packages booktabs and graphicx): a table a scene and
  * ray kind, as wide as a column of a paper. In bold the best, and what intervals do not tell apart from it
- * (bench/standing.h). */
+ * (experiment/standing.h). */
 RtStatus rt_paper_tables_write(const RtResults *results, const char *directory, RtError *error);
 
 #endif

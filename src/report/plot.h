@@ -9,7 +9,7 @@
 #ifndef RT_REPORT_PLOT_H
 #define RT_REPORT_PLOT_H
 
-#include "bench/results.h"
+#include "experiment/results.h"
 
 /* Draws, by the experiment's scripts; where it names none and sweeps parameters, by one that is written
  * (sweep_plot.h); and where it asks for distributions, by experiments/histograms.gp, too. RT_NOT_AVAILABLE

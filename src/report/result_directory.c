@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report/result_directory.h"
 
-#include "bench/distribution_tables.h"
-#include "bench/journal.h"
-#include "bench/manifest.h"
-#include "bench/result_tables.h"
+#include "experiment/distribution_tables.h"
+#include "experiment/journal.h"
+#include "experiment/manifest.h"
+#include "experiment/result_tables.h"
 #include "literature/published_tables.h"
+#include "measure/previous_results.h"
 #include "report/plot.h"
 #include "report/report.h"
 #include "report/scripts.h"

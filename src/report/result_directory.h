@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Running an experiment into a result directory, and working on one that is there. Besides what a run keeps
- * (bench/run.h) it has:
+ * (experiment/run.h) it has:
  *
  *   experiment.yaml  a copy of what was run
  *   manifest.json    with what it was run: seed, fingerprints, version, compiler, machine, date
@@ -12,7 +12,7 @@
 #ifndef RT_REPORT_RESULT_DIRECTORY_H
 #define RT_REPORT_RESULT_DIRECTORY_H
 
-#include "bench/run.h"
+#include "experiment/run.h"
 #include "literature/published.h"
 
 /* Runs what is not yet known, and writes everything. `results` is initialised for the experiment, and filled.

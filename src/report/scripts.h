@@ -8,8 +8,8 @@
 #ifndef RT_REPORT_SCRIPTS_H
 #define RT_REPORT_SCRIPTS_H
 
-#include "bench/run.h"
 #include "core/base/file.h"
+#include "experiment/run.h"
 
 /* Refuses a script that cannot be read. */
 RtStatus rt_scripts_find(const RtExperiment *experiment, RtError *error);

@@ -9,7 +9,7 @@
 #ifndef RT_REPORT_SWEEP_PLOT_H
 #define RT_REPORT_SWEEP_PLOT_H
 
-#include "bench/results.h"
+#include "experiment/results.h"
 
 /* Whether there is anything to draw without scripts: something is swept, and the experiment names no plots.
  */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The families of rays: one function a family, which makes one ray from the random numbers it is given. */
 #include "verify/ray_families.h"
-#include "bench/rayset.h"
+#include "rays/rayset.h"
 #include "verify/ray_points.h"
 
 #include <assert.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/ray_points.h"
 
-#include "bench/rayset.h"
+#include "rays/rayset.h"
 
 RtVec3d rt_point_in_box(const RtBox *box, RtRandom *random) {
     RtVec3d p;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/verify.h"
 
-#include "bench/json_lines.h"
-#include "bench/machine.h"
 #include "core/base/lock.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "core/text/json.h"
+#include "core/text/json_lines.h"
+#include "measure/machine.h"
 #include "scenes/open.h"
 #include "verify/replay.h"
 #include "verify/verify_table.h"

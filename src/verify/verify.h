@@ -10,7 +10,7 @@
 #ifndef RT_VERIFY_VERIFY_H
 #define RT_VERIFY_VERIFY_H
 
-#include "bench/earlier.h"
+#include "measure/previous_results.h"
 #include "verify/failure.h"
 #include "verify/verify_rays.h"
 

@@ -7,7 +7,7 @@
 #ifndef RT_VERIFY_VERIFY_RAYS_H
 #define RT_VERIFY_VERIFY_RAYS_H
 
-#include "bench/rayset.h"
+#include "rays/rayset.h"
 #include "verify/equivalence.h"
 
 typedef struct RtVerifyRays {

@@ -7,8 +7,8 @@
 
 #include "accel/away.h"
 #include "accel/plugin.h"
-#include "bench/measure.h"
 #include "core/base/clock.h"
+#include "measure/measure.h"
 
 #include <errno.h>
 #include <float.h>

@@ -3,7 +3,7 @@
  * line meets one, nothing stops a line, as the predictions assume. */
 #include "testing.h"
 
-#include "bench/rayset.h"
+#include "rays/rayset.h"
 #include "scenes/open.h"
 
 enum { LINES = 20000 };

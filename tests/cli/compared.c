@@ -10,8 +10,8 @@
  * branches went.
  */
 #include "accel/accel.h"
-#include "bench/rounds.h"
 #include "core/base/random.h"
+#include "measure/rounds.h"
 
 #include <stdio.h>
 #include <stdlib.h>

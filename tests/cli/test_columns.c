@@ -3,17 +3,17 @@
  * And the files and documents that are there have these columns. */
 #include "testing.h"
 
-#include "bench/callgrind.h"
-#include "bench/compare.h"
-#include "bench/distribution_tables.h"
-#include "bench/extents_table.h"
-#include "bench/frame_table.h"
-#include "bench/hardware_table.h"
-#include "bench/result_tables.h"
 #include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/text/csv.h"
+#include "experiment/callgrind.h"
+#include "experiment/compare.h"
+#include "experiment/distribution_tables.h"
+#include "experiment/frame_table.h"
+#include "experiment/hardware_table.h"
+#include "experiment/result_tables.h"
 #include "literature/published_tables.h"
+#include "measure/extents_table.h"
 #include "verify/verify_table.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures of structures: boxes in perspective and in section, levels, leaves; cells of overlays. */
-#include "render_testing.h"
+#include "render/render_testing.h"
 
 #include "core/base/memory.h"
 #include "picture/cells.h"

@@ -2,8 +2,8 @@
 /* bench --callgrind: instructions per ray by valgrind, in a child that is this program. */
 #include "experiment_testing.h"
 
-#include "bench/ray_file.h"
 #include "core/text/json.h"
+#include "measure/ray_file.h"
 
 #include <glob.h>
 #include <unistd.h>

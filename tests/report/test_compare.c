@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bench/compare.h: two result directories, one of which is changed as a change would. */
+/* experiment/compare.h: two result directories, one of which is changed as a change would. */
 #include "experiment_testing.h"
 
-#include "bench/compare.h"
+#include "experiment/compare.h"
 #include "report/result_directory.h"
 
 static const char experiment_yaml[] = "name: small\n"

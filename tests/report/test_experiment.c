@@ -4,9 +4,9 @@
 #include "clock_testing.h"
 #include "experiment_testing.h"
 
-#include "bench/result_tables.h"
 #include "core/text/csv.h"
 #include "core/text/json.h"
+#include "experiment/result_tables.h"
 #include "report/result_directory.h"
 
 #include <math.h>

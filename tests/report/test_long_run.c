@@ -2,9 +2,9 @@
 /* Runs that take long: how long, a part of them, what is left out, and what remains of them when they end. */
 #include "experiment_testing.h"
 
-#include "bench/forecast.h"
-#include "bench/result_tables.h"
 #include "core/base/clock.h"
+#include "experiment/forecast.h"
+#include "experiment/result_tables.h"
 #include "report/result_directory.h"
 
 #include <fcntl.h>

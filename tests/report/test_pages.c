@@ -3,8 +3,8 @@
  * the index. In a browser: tests/check_pages.sh. */
 #include "experiment_testing.h"
 
-#include "bench/results.h"
-#include "bench/standing.h"
+#include "experiment/results.h"
+#include "experiment/standing.h"
 #include "report/color.h"
 
 #include <unistd.h>

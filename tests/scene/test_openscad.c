@@ -7,8 +7,8 @@
  * rays around it, as far away as that: what we hit must lie between the nearest and the farthest that the
  * bundle hits. */
 #include "accel/accel.h"
-#include "bench/rayset.h"
 #include "core/base/random.h"
+#include "rays/rayset.h"
 #include "room_testing.h"
 #include "scenes/open.h"
 #include "testing.h"

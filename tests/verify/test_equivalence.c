@@ -3,7 +3,7 @@
  * ties are told from errors. */
 #include "equivalence_testing.h"
 
-#include "bench/measure.h"
+#include "measure/measure.h"
 #include "render/frame.h"
 #include "verify/failure.h"
 #include "verify/verify_rays.h"

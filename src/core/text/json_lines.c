@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "core/text/json_lines.h"
+
+#include "core/base/memory.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MOST_BYTES = 1 << 28 };
+
+/* Cuts off what an interruption left behind the last whole line. */
+static RtStatus trim(const char *path, RtError *error) {
+    char *text;
+    size_t size;
+    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
+    while (size > 0 && text[size - 1] != '\n') size--;
+    rt_free(text);
+    if (truncate(path, (off_t)size) == 0) return RT_OK;
+    return rt_fail(error, RT_IO, "%s: truncating failed: %s", path, strerror(errno));
+}
+
+static bool put_line(const json_t *line, FILE *file) {
+    return json_dumpf(line, file, JSON_COMPACT | JSON_REAL_PRECISION(17)) == 0 && fputc('\n', file) != EOF;
+}
+
+RtStatus rt_json_lines_put(RtOutput *output, const json_t *lines, RtError *error) {
+    bool put = true;
+    for (size_t i = 0; put && i < json_array_size(lines); i++)
+        put = put_line(json_array_get(lines, i), output->file);
+    if (put) return RT_OK;
+    rt_output_discard(output);
+    return rt_fail(error, RT_IO, "%s: writing failed", output->path);
+}
+
+RtStatus rt_json_lines_save(const char *path, const json_t *lines, RtError *error) {
+    RtOutput output;
+    RT_TRY(rt_output_open(&output, path, error));
+    RT_TRY(rt_json_lines_put(&output, lines, error));
+    return rt_output_commit(&output, error);
+}
+
+static RtStatus begin(const char *path, const json_t *first, RtError *error) {
+    json_t *lines = json_pack("[O]", first);
+    if (!lines) return rt_fail_memory(error, path, 0);
+    RtStatus status = rt_json_lines_save(path, lines, error);
+    json_decref(lines);
+    return status;
+}
+
+RtStatus rt_json_lines_open(RtJsonLines *lines, const char *path, const json_t *first, RtError *error) {
+    lines->file = NULL;
+    snprintf(lines->path, sizeof lines->path, "%s", path);
+    RT_TRY(first ? begin(path, first, error) : trim(path, error));
+    lines->file = fopen(path, "ab");
+    if (lines->file) return RT_OK;
+    return rt_fail(error, RT_IO, "%s: cannot be written: %s", path, strerror(errno));
+}
+
+void rt_json_lines_close(RtJsonLines *lines) {
+    if (lines->file) fclose(lines->file);
+    lines->file = NULL;
+}
+
+RtStatus rt_json_lines_write(RtJsonLines *lines, json_t *line, RtError *error) {
+    if (!line) return rt_fail_memory(error, lines->path, 0);
+    bool put = put_line(line, lines->file);
+    json_decref(line);
+    if (put && fflush(lines->file) == 0 && fdatasync(fileno(lines->file)) == 0) return RT_OK;
+    return rt_fail(error, RT_IO, "%s: writing failed: %s", lines->path, strerror(errno));
+}
+
+RtStatus rt_json_lines_load(const char *path, json_t **lines, RtError *error) {
+    char *text;
+    size_t size;
+    RT_TRY(rt_file_read(path, MOST_BYTES, &text, &size, error));
+    *lines = json_array();
+    for (const char *line = text, *end; (end = memchr(line, '\n', (size_t)(text + size - line)));
+         line = end + 1) {
+        json_t *object = json_loadb(line, (size_t)(end - line), 0, NULL);
+        json_array_append_new(*lines, object ? object : json_null());
+    }
+    rt_free(text);
+    if (json_array_size(*lines) > 0) return RT_OK;
+    json_decref(*lines);
+    *lines = NULL;
+    return rt_fail(error, RT_BAD_INPUT, "%s: the journal is empty: start over with --force", path);
+}

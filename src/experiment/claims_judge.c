@@ -1,0 +1,377 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Claims against results: the cells that one is about, their values with what their intervals leave open, and
+ * what follows for all of them together. */
+#include "experiment/claims.h"
+
+#include "core/base/elementary.h"
+#include "core/base/memory.h"
+#include "core/text/table.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Bounded {
+    double value, low, high;
+} Bounded;
+
+/* A value of the claim's measure, and where it was found. */
+typedef struct Point {
+    uint32_t workload, candidate;
+    double x; /* of the parameter of an exponent or a trend */
+    Bounded y;
+} Point;
+
+static const Bounded UNKNOWN = {NAN, NAN, NAN};
+
+const char *rt_claim_verdict_name(RtClaimVerdict verdict) {
+    static const char *const names[] = {"holds", "undecided", "does not hold"};
+    return names[verdict];
+}
+
+/* ---- values ---- */
+
+static Bounded exactly(double value) {
+    return (Bounded){value, value, value};
+}
+
+static Bounded of_estimate(const RtEstimate *e) {
+    return (Bounded){e->median, e->low, e->high};
+}
+
+/* Of one kind; known only where it was counted, or timed. */
+static Bounded cell_value(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+    const RtCell *cell = rt_cell_at(results, t, c, claim->kind);
+    uint64_t counters[] = {0, cell->tally.object_tests, cell->tally.extent_tests, cell->tally.steps};
+    if (claim->measure == RT_CLAIM_TIME) return cell->timed ? of_estimate(&cell->seconds) : UNKNOWN;
+    return exactly(rt_cell_per_ray(results, t, c, claim->kind, counters[claim->measure]));
+}
+
+static Bounded value_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+    const RtBuildResult *build = rt_build_at(results, t, c);
+    if (claim->measure >= RT_CLAIM_BUILD_TIME && !build->known) return UNKNOWN;
+    if (claim->measure == RT_CLAIM_BUILD_TIME) return exactly(build->seconds);
+    if (claim->measure == RT_CLAIM_BYTES) return exactly((double)build->shape.bytes);
+    if (claim->one_kind) return cell_value(results, claim, t, c);
+    RtTotal total = rt_results_total(results, t, c);
+    if (!total.whole) return UNKNOWN;
+    if (claim->measure == RT_CLAIM_TIME)
+        return (Bounded){total.seconds, total.seconds_low, total.seconds_high};
+    return exactly(claim->measure == RT_CLAIM_OBJECT_TESTS   ? total.object_tests
+                   : claim->measure == RT_CLAIM_EXTENT_TESTS ? total.extent_tests
+                                                             : total.steps);
+}
+
+/* Times of `c` over those of `other`, from ratios of throughput that were paired round by round. */
+static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, Bounded *out) {
+    const RtExperiment *experiment = results->experiment;
+    RtRayKind kind = claim->one_kind ? claim->kind : experiment->kinds[0];
+    if (claim->measure != RT_CLAIM_TIME || (!claim->one_kind && experiment->kind_count > 1)) return false;
+    const RtCell *own = rt_cell_at(results, t, c, kind), *other = rt_cell_at(results, t, claim->other, kind);
+    if (!own->timed || !other->timed) return false;
+    if (own->baseline == claim->other) {
+        *out = (Bounded){1 / own->ratio.median, 1 / own->ratio.high, 1 / own->ratio.low};
+        return true;
+    }
+    *out = of_estimate(&other->ratio);
+    return other->baseline == c;
+}
+
+static Bounded ratio_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
+    Bounded ratio;
+    if (paired(results, claim, t, c, &ratio)) return ratio;
+    Bounded over = value_at(results, claim, t, c), under = value_at(results, claim, t, claim->other);
+    return (Bounded){over.value / under.value, over.low / under.high, over.high / under.low};
+}
+
+/* ---- what a claim is about ---- */
+
+static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c) {
+    const RtCandidate *candidate = &experiment->candidates[c];
+    const RtWorkload *workload = &experiment->workloads[t];
+    if (!rt_candidate_runs(experiment, c, t)) return false;
+    if (strcmp(candidate->label, claim->accel) != 0 && strcmp(candidate->base, claim->accel) != 0)
+        return false;
+    if (*claim->scene && strcmp(workload->label, claim->scene) != 0 &&
+        strcmp(workload->base, claim->scene) != 0)
+        return false;
+    for (uint32_t p = 0; p < claim->place_count; p++) {
+        const char *value = rt_swept_of(experiment, &claim->places[p].key, t, c);
+        if (!value || strcmp(value, claim->places[p].value) != 0) return false;
+    }
+    return true;
+}
+
+/* Whether two points lie on one line: they differ in nothing but the parameter. */
+static bool same_line(const RtExperiment *experiment, const RtClaim *claim, const Point *a, const Point *b) {
+    enum { ROOM = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
+    char names[2][2 * ROOM];
+    const Point *points[] = {a, b};
+    for (int i = 0; i < 2; i++) {
+        const RtCandidate *candidate = &experiment->candidates[points[i]->candidate];
+        const RtWorkload *workload = &experiment->workloads[points[i]->workload];
+        snprintf(names[i], sizeof names[i], "%s %s", candidate->base, workload->base);
+        rt_swept_name(&candidate->swept, claim->key.scene ? NULL : claim->key.key, names[i], sizeof names[i]);
+        rt_swept_name(&workload->swept, claim->key.scene ? claim->key.key : NULL, names[i], sizeof names[i]);
+    }
+    return strcmp(names[0], names[1]) == 0;
+}
+
+/* The cells of a claim, to points[0..]: how many. Those without a value have none that is finite. */
+static uint32_t gather(const RtResults *results, const RtClaim *claim, Point *points) {
+    const RtExperiment *experiment = results->experiment;
+    bool lines = claim->form >= RT_CLAIM_EXPONENT;
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            Point point = {.workload = t, .candidate = c};
+            const char *x = lines ? rt_swept_of(experiment, &claim->key, t, c) : "0";
+            if (!is_about(experiment, claim, t, c) || !x) continue;
+            rt_swept_number(x, &point.x);
+            point.y = claim->form == RT_CLAIM_RATIO ? ratio_at(results, claim, t, c)
+                                                    : value_at(results, claim, t, c);
+            points[count++] = point;
+        }
+    }
+    return count;
+}
+
+static int by_x(const void *a, const void *b) {
+    const Point *p = a, *q = b;
+    return (p->x > q->x) - (p->x < q->x);
+}
+
+/* ---- verdicts ---- */
+
+static void put(RtClaimResult *result, const char *text) {
+    size_t used = strlen(result->figures);
+    snprintf(result->figures + used, sizeof result->figures - used, "%s", text);
+}
+
+static void put_figure(RtClaimResult *result, double value) {
+    char text[16];
+    rt_format_figure(value, text);
+    put(result, text);
+}
+
+static double in_units(const RtClaim *claim, double value) {
+    bool time =
+        claim->measure == RT_CLAIM_TIME && (claim->form == RT_CLAIM_VALUE || claim->form == RT_CLAIM_TREND);
+    return time ? 1e9 * value : value;
+}
+
+static void put_bounded(RtClaimResult *result, const RtClaim *claim, const Bounded *b) {
+    if (!isfinite(b->value)) {
+        put(result, "not known");
+        return;
+    }
+    put_figure(result, in_units(claim, b->value));
+    if (b->low == b->high) return;
+    put(result, " [");
+    put_figure(result, in_units(claim, b->low));
+    put(result, ", ");
+    put_figure(result, in_units(claim, b->high));
+    put(result, "]");
+}
+
+static void put_place(RtClaimResult *result, const RtExperiment *experiment, const Point *point, bool line) {
+    assert(point);
+    const RtCandidate *candidate = &experiment->candidates[point->candidate];
+    const RtWorkload *workload = &experiment->workloads[point->workload];
+    put(result, " (");
+    put(result, line ? candidate->base : candidate->label);
+    put(result, " on ");
+    put(result, line ? workload->base : workload->label);
+    put(result, ")");
+}
+
+static bool compares(const RtClaim *claim, double value) {
+    if (value == claim->number) return claim->or_equal;
+    return claim->greater ? value > claim->number : value < claim->number;
+}
+
+static RtClaimVerdict compare(const RtClaim *claim, const Bounded *b) {
+    bool low = compares(claim, in_units(claim, b->low)), high = compares(claim, in_units(claim, b->high));
+    return low && high ? RT_CLAIM_HOLDS : low || high ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
+}
+
+/* Takes a figure for the claim's where its verdict is worse than what was found so far, or is as bad and it
+ * is further off. */
+typedef struct Worst {
+    RtClaimVerdict verdict;
+    const Point *point; /* or NULL */
+    Bounded figure;
+} Worst;
+
+static void take(const RtClaim *claim, const Point *point, const Bounded *figure, Worst *worst) {
+    RtClaimVerdict verdict = isfinite(figure->value) ? compare(claim, figure) : RT_CLAIM_UNDECIDED;
+    bool further = worst->point && (claim->greater ? figure->value < worst->figure.value
+                                                   : figure->value > worst->figure.value);
+    if (worst->point && verdict <= worst->verdict && !(verdict == worst->verdict && further)) return;
+    *worst = (Worst){verdict, point, *figure};
+}
+
+/* Slope of the least squares of log y over log x; points[0..count) is one line. Unknown where any of them is:
+ * the slope of the others may be quite another. */
+static Bounded exponent_of(const Point *points, uint32_t count) {
+    double mean = 0, squares = 0;
+    Bounded slope = {0, 0, 0};
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(points[i].x > 0 && points[i].y.low > 0)) return UNKNOWN;
+        mean += rt_log(points[i].x) / count;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        double d = rt_log(points[i].x) - mean;
+        squares += d * d;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const Bounded *y = &points[i].y;
+        double d = (rt_log(points[i].x) - mean) / squares;
+        slope.value += d * rt_log(y->value);
+        slope.low += d * rt_log(d > 0 ? y->low : y->high);
+        slope.high += d * rt_log(d > 0 ? y->high : y->low);
+    }
+    return slope;
+}
+
+/* From one value of the parameter to the next. */
+static RtClaimVerdict step_of(const RtClaim *claim, const Bounded *from, const Bounded *to) {
+    double least = claim->rises ? to->low - from->high : from->low - to->high;
+    double most = claim->rises ? to->high - from->low : from->high - to->low;
+    if (claim->strictly ? least > 0 : least >= 0) return RT_CLAIM_HOLDS;
+    return (claim->strictly ? most > 0 : most >= 0) ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
+}
+
+static void put_step(RtClaimResult *result, const RtClaim *claim, const Point *from, const Point *to) {
+    char text[96];
+    put_bounded(result, claim, &from->y);
+    snprintf(text, sizeof text, " at %s=%.9g, ", claim->key.key, from->x);
+    put(result, text);
+    put_bounded(result, claim, &to->y);
+    snprintf(text, sizeof text, " at %s=%.9g", claim->key.key, to->x);
+    put(result, text);
+}
+
+/* The first step that is worst; where all hold, from the first value to the last. */
+static void judge_trend(const RtExperiment *experiment, const RtClaim *claim, const Point *points,
+                        uint32_t count, RtClaimResult *result) {
+    const Point *from = &points[0], *to = &points[count - 1];
+    RtClaimVerdict verdict = RT_CLAIM_HOLDS;
+    for (uint32_t i = 1; i < count; i++) {
+        RtClaimVerdict step = step_of(claim, &points[i - 1].y, &points[i].y);
+        if (step <= verdict) continue;
+        verdict = step;
+        from = &points[i - 1];
+        to = &points[i];
+    }
+    if (*result->figures && verdict <= result->verdict) return;
+    *result = (RtClaimResult){.verdict = verdict};
+    put_step(result, claim, from, to);
+    put_place(result, experiment, from, true);
+}
+
+/* Line by line: the points of each are brought together at the front. */
+static void judge_lines(const RtExperiment *experiment, const RtClaim *claim, Point *points, uint32_t count,
+                        RtClaimResult *result) {
+    Worst worst = {RT_CLAIM_HOLDS, NULL, UNKNOWN};
+    bool any = false;
+    for (uint32_t first = 0, end; first < count; first = end) {
+        end = first + 1;
+        for (uint32_t i = end; i < count; i++) {
+            if (!same_line(experiment, claim, &points[first], &points[i])) continue;
+            Point point = points[i];
+            points[i] = points[end];
+            points[end++] = point;
+        }
+        if (end - first < 2) continue;
+        any = true;
+        qsort(points + first, end - first, sizeof *points, by_x);
+        if (claim->form == RT_CLAIM_TREND) {
+            judge_trend(experiment, claim, points + first, end - first, result);
+        } else {
+            Bounded slope = exponent_of(points + first, end - first);
+            take(claim, &points[first], &slope, &worst);
+        }
+    }
+    if (!any) *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "fewer than two values were measured"};
+    if (!worst.point) return;
+    result->verdict = worst.verdict;
+    put_bounded(result, claim, &worst.figure);
+    put_place(result, experiment, worst.point, true);
+}
+
+static void judge_values(const RtExperiment *experiment, const RtClaim *claim, const Point *points,
+                         uint32_t count, RtClaimResult *result) {
+    Worst worst = {RT_CLAIM_HOLDS, NULL, UNKNOWN};
+    for (uint32_t i = 0; i < count; i++) take(claim, &points[i], &points[i].y, &worst);
+    result->verdict = worst.verdict;
+    put_bounded(result, claim, &worst.figure);
+    put_place(result, experiment, worst.point, false);
+}
+
+/* Drops the points without a value: how many are left. */
+static uint32_t drop_unknown(Point *points, uint32_t count) {
+    uint32_t known = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (isfinite(points[i].y.value)) points[known++] = points[i];
+    }
+    return known;
+}
+
+void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result) {
+    const RtExperiment *experiment = results->experiment;
+    uint32_t count = 0, known = 0;
+    RtClaim claim = {0};
+    RtError error;
+    *result = (RtClaimResult){.verdict = RT_CLAIM_HOLDS};
+    Point *points =
+        rt_alloc((size_t)experiment->workload_count * experiment->candidate_count, sizeof *points);
+    RtStatus status = rt_claim_parse(experiment, experiment->claims[i], &claim, &error);
+    if (points && status == RT_OK) count = gather(results, &claim, points);
+    for (uint32_t k = 0; k < count; k++) known += isfinite(points[k].y.value) ? 1 : 0;
+    if (known == 0) {
+        *result = (RtClaimResult){RT_CLAIM_UNDECIDED, "no measurements for this claim"};
+    } else if (claim.form == RT_CLAIM_EXPONENT) {
+        judge_lines(experiment, &claim, points, count, result);
+    } else if (claim.form == RT_CLAIM_TREND) {
+        judge_lines(experiment, &claim, points, drop_unknown(points, count), result);
+    } else {
+        judge_values(experiment, &claim, points, drop_unknown(points, count), result);
+    }
+    if (known > 0 && known < count) {
+        char text[64];
+        if (result->verdict == RT_CLAIM_HOLDS) result->verdict = RT_CLAIM_UNDECIDED;
+        snprintf(text, sizeof text, "; %" PRIu32 " of %" PRIu32 " values are not known", count - known,
+                 count);
+        put(result, text);
+    }
+    rt_free(points);
+}
+
+RtStatus rt_claims_check(const RtResults *results, RtError *error) {
+    const RtExperiment *experiment = results->experiment;
+    uint32_t wrong = 0, first = 0;
+    RtClaimResult result;
+    for (uint32_t i = experiment->claim_count; i-- > 0;) {
+        rt_claim_judge(results, i, &result);
+        if (result.verdict != RT_CLAIM_FALSE) continue;
+        first = i;
+        wrong++;
+    }
+    if (wrong == 0) return RT_OK;
+    return rt_fail(error, RT_MISMATCH, "%" PRIu32 " of %" PRIu32 " claims do not hold, the first: %s", wrong,
+                   experiment->claim_count, experiment->claims[first]);
+}
+
+void rt_claims_print(const RtResults *results, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    if (experiment->claim_count) fputs("\nClaims:\n", out);
+    for (uint32_t i = 0; i < experiment->claim_count; i++) {
+        RtClaimResult result;
+        rt_claim_judge(results, i, &result);
+        fprintf(out, "  %-13s  %s\n  %-13s  %s\n", rt_claim_verdict_name(result.verdict),
+                experiment->claims[i], "", result.figures);
+    }
+}

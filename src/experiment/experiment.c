@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "experiment/experiment.h"
+
+#include "experiment/manifest_experiment.h"
+#include "measure/previous_results.h"
+
+#include <string.h>
+
+void rt_experiment_init(RtExperiment *experiment) {
+    memset(experiment, 0, sizeof *experiment);
+    experiment->limit = 100000;
+    experiment->coherent_run = 1;
+    experiment->rounds = 10;
+    experiment->milliseconds = 20;
+    experiment->seed = 1;
+    experiment->baseline_count = 1;
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        if (k != RT_RAY_OCCLUSION) experiment->kinds[experiment->kind_count++] = (RtRayKind)k;
+    }
+}
+
+/* ---- rays of a file ---- */
+
+/* Random rays are those that nothing is known of. */
+static const struct {
+    const char *name;
+    RtRayKind kind;
+} given[] = {{"nearest", RT_RAY_RANDOM}, {"occlusion", RT_RAY_OCCLUSION}};
+
+RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error) {
+    for (int i = 0; i < 2; i++) {
+        *kind = given[i].kind;
+        if (strcmp(given[i].name, name) == 0) return RT_OK;
+    }
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "rays of a file are asked for the nearest hit, or for any: nearest or occlusion, not '%.40s'", name);
+}
+
+const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind) {
+    for (int i = 0; i < 2 && *experiment->rays_from; i++) {
+        if (given[i].kind == kind) return given[i].name;
+    }
+    return rt_ray_kind_name(kind);
+}
+
+/* ---- the baseline ---- */
+
+/* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without the commas that
+ * gnuplot stops at. */
+static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
+    size_t used = 0;
+    for (const char *c = spec; *c && used + 1 < RT_MAX_LABEL; c++) {
+        label[used] = *c;
+        if (*c == ':' || *c == ',') {
+            label[used] = '-';
+            c += strcspn(c, "=");
+        }
+        used++;
+    }
+    label[used] = '\0';
+}
+
+/* As it was when the results were made: the accelerators that the manifest has behind those of the YAML. */
+static void append_kept(RtExperiment *experiment, const char *label) {
+    RtCandidate candidate = {.ray_stride = 1};
+    uint32_t first = experiment->candidate_count;
+    while (experiment->candidate_count < RT_MAX_CANDIDATES &&
+           rt_kept_candidate(experiment->kept, experiment->candidate_count, &candidate)) {
+        memcpy(candidate.base, candidate.label, sizeof candidate.base);
+        experiment->candidates[experiment->candidate_count++] = candidate;
+    }
+    snprintf(experiment->best, sizeof experiment->best, "%s", label);
+    experiment->baseline = first;
+    experiment->baseline_count = experiment->candidate_count - first;
+}
+
+static RtStatus append_best(RtExperiment *experiment, const char *label, RtError *error) {
+    char specs[RT_MAX_BEST][RT_MAX_SPEC_CHARS];
+    size_t count = 0;
+    RT_TRY(rt_best_specs(label, specs, &count, error));
+    if (experiment->candidate_count + count > RT_MAX_CANDIDATES) {
+        return rt_fail(error, RT_BAD_INPUT, "'%s' stands for %zu accelerators: at most %d fit together",
+                       label, count, RT_MAX_CANDIDATES);
+    }
+    snprintf(experiment->best, sizeof experiment->best, "%s", label);
+    experiment->baseline = experiment->candidate_count;
+    experiment->baseline_count = (uint32_t)count;
+    for (size_t i = 0; i < count; i++) {
+        RtCandidate *candidate = &experiment->candidates[experiment->candidate_count++];
+        *candidate = (RtCandidate){.ray_stride = 1};
+        memcpy(candidate->spec, specs[i], sizeof candidate->spec);
+        label_setting(specs[i], candidate->label);
+        memcpy(candidate->base, candidate->label, sizeof candidate->base);
+    }
+    return RT_OK;
+}
+
+/* The first that is not of a plugin: with one that breaks nothing could be compared. */
+static uint32_t default_baseline(const RtExperiment *experiment) {
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        if (!rt_spec_text_is_away(experiment->candidates[c].spec)) return c;
+    }
+    return 0;
+}
+
+RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
+    uint32_t c = 0;
+    if (!label && experiment->kept) label = rt_kept_baseline(experiment->kept);
+    if (!label) {
+        experiment->baseline = default_baseline(experiment);
+        return RT_OK;
+    }
+    while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
+    experiment->baseline = c;
+    if (c < experiment->candidate_count || !rt_best_is(label)) return RT_OK;
+    if (experiment->kept) {
+        append_kept(experiment, label);
+        return RT_OK;
+    }
+    return append_best(experiment, label, error);
+}
+
+bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c) {
+    return c - experiment->baseline < experiment->baseline_count;
+}
+
+const char *rt_baseline_label(const RtExperiment *experiment) {
+    return *experiment->best ? experiment->best : experiment->candidates[experiment->baseline].label;
+}
+
+/* ---- who is where ---- */
+
+bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t) {
+    if (c == experiment->candidate_count) return true;
+    return !experiment->candidates[c].missing && !(experiment->candidates[c].left_out >> t & 1);
+}
+
+uint32_t rt_candidate_find(const RtExperiment *experiment, const char *label, uint32_t t) {
+    if (strcmp(label, experiment->again) == 0) return experiment->candidate_count;
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
+        if (strcmp(candidate->label, label) == 0 && !(candidate->left_out >> t & 1)) return c;
+    }
+    return experiment->candidate_count + 1;
+}
+
+uint32_t rt_workload_find(const RtExperiment *experiment, const char *label) {
+    uint32_t t = 0;
+    while (t < experiment->workload_count && strcmp(experiment->workloads[t].label, label) != 0) t++;
+    return t;
+}
+
+const char *rt_plot_name(const RtExperiment *experiment, uint32_t plot) {
+    const char *path = experiment->plots[plot], *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* ---- checks ---- */
+
+static RtStatus check_label(const char *label, RtError *error) {
+    for (const char *c = label; *c; c++) {
+        if (rt_may_label(*c)) continue;
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s' cannot name a row or a plot: give a `label` without blanks, quotes and any of "
+                       "/ \\ $ & < > @ ^ { }",
+                       label);
+    }
+    return RT_OK;
+}
+
+static RtStatus fail_twice(const char *label, RtError *error) {
+    return rt_fail(error, RT_BAD_INPUT, "the label '%s' is used twice: give one of them another `label`",
+                   label);
+}
+
+/* Where results are only read, it is what it was. */
+static RtStatus check_spec(const RtExperiment *experiment, uint32_t i, bool *missing, RtError *error) {
+    RtSpec spec;
+    RtError why = {RT_OK, ""};
+    *missing = experiment->kept && rt_kept_is_missing(experiment->kept, i);
+    if (experiment->kept || rt_spec_parse(experiment->candidates[i].spec, &spec, &why) == RT_OK) return RT_OK;
+    *missing = why.status == RT_NOT_AVAILABLE;
+    return *missing ? RT_OK : rt_fail(error, why.status, "%s", why.message);
+}
+
+static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *error) {
+    RtCandidate *candidate = &experiment->candidates[i];
+    RT_TRY(check_spec(experiment, i, &candidate->missing, error));
+    const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->workload_count) - 1);
+    for (uint32_t k = 0; k < i; k++) {
+        const RtCandidate *other = &experiment->candidates[k];
+        bool meet = ~(candidate->left_out | other->left_out) & all;
+        if (meet && strcmp(candidate->label, other->label) == 0) return fail_twice(candidate->label, error);
+    }
+    return check_label(candidate->label, error);
+}
+
+static RtStatus check_workload(const RtExperiment *experiment, uint32_t i, RtError *error) {
+    const RtWorkload *workload = &experiment->workloads[i];
+    if (rt_workload_find(experiment, workload->label) < i) return fail_twice(workload->label, error);
+    return check_label(workload->label, error);
+}
+
+static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
+    if (experiment->baseline >= experiment->candidate_count) {
+        return rt_fail(error, RT_BAD_INPUT, "this is not the label of one of the accelerators");
+    }
+    const RtCandidate *baseline = &experiment->candidates[experiment->baseline];
+    if (baseline->missing) {
+        return rt_fail(error, RT_NOT_AVAILABLE, "the baseline '%s' is not in this build: choose another",
+                       baseline->label);
+    }
+    if (baseline->ray_stride == 1 && !baseline->left_out) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the baseline '%s' has to be measured on every ray of every scene: choose another, or "
+                   "leave its `ray_stride` and `scenes` out",
+                   baseline->label);
+}
+
+/* The files are copied into the result directory under their names. */
+static RtStatus check_beside(const char *name, RtError *error) {
+    if (rt_earlier_is_result(name)) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "'%s' is what the result directory calls a file of its own: rename it, or put it into a "
+            "folder beside the experiment",
+            name);
+    }
+    if (*name != '/' && !strstr(name, "..")) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "'%s' must lie beside the experiment, or in a folder there: its name may not begin with / or "
+        "have .. in it",
+        name);
+}
+
+static RtStatus check_published(const RtExperiment *experiment, RtError *error) {
+    const RtPublishedSetup *published = &experiment->published;
+    for (uint32_t i = 0; i < published->table_count; i++) {
+        RT_TRY(check_beside(published->tables[i], error));
+    }
+    return check_beside(published->reasons, error);
+}
+
+/* All scripts are copied into one folder, to names.gp and histograms.gp (report/plot.h). */
+static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *error) {
+    const char *name = rt_plot_name(experiment, i);
+    if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+        return rt_fail(error, RT_BAD_INPUT, "'%s' does not name a gnuplot script", experiment->plots[i]);
+    }
+    bool taken =
+        strcmp(name, "names.gp") == 0 || (experiment->distributions && strcmp(name, "histograms.gp") == 0);
+    for (uint32_t k = 0; k < i; k++) taken |= strcmp(name, rt_plot_name(experiment, k)) == 0;
+    if (!taken) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "the result directory has a plots/%s already: give the script another name, though it lies in "
+        "another folder",
+        name);
+}
+
+/* There is a column in tables for each, and both words of it stand in plots/sweep.gp. */
+static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept, RtError *error) {
+    RtSweptKey keys[RT_MAX_SWEPT_KEYS];
+    uint32_t count = rt_experiment_swept(experiment, keys);
+    for (uint32_t i = 0; i < swept->count; i++) {
+        uint32_t k = 0;
+        RT_TRY(check_label(swept->keys[i], error));
+        RT_TRY(check_label(swept->values[i], error));
+        while (k < count && strcmp(keys[k].key, swept->keys[i]) != 0) k++;
+        if (k < count) continue;
+        return rt_fail(error, RT_BAD_INPUT, "'%s' is one too many: at most %d parameters are swept",
+                       swept->keys[i], RT_MAX_SWEPT_KEYS);
+    }
+    return RT_OK;
+}
+
+/* Nothing is run for the machine to count. */
+static RtStatus check_hardware(const RtExperiment *experiment, RtError *error) {
+    if (!experiment->hardware || !experiment->count_only) return RT_OK;
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "hardware counters are read while rays are traced for their time, which `count_only` leaves "
+        "out");
+}
+
+static bool has_kind(const RtExperiment *experiment, RtRayKind kind) {
+    for (uint32_t k = 0; k < experiment->kind_count; k++) {
+        if (experiment->kinds[k] == kind) return true;
+    }
+    return false;
+}
+
+static RtStatus check_frame(const RtExperiment *experiment, RtError *error) {
+    const RtFrameSetup *frame = &experiment->frame;
+    bool grouped = false;
+    if (!*frame->without) return RT_OK;
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        if (rt_candidate_find(experiment, frame->without, t) < experiment->candidate_count) continue;
+        return rt_fail(error, RT_BAD_INPUT, "without: '%s' is not the label of an accelerator on %s",
+                       frame->without, experiment->workloads[t].label);
+    }
+    for (uint32_t c = 0; c < experiment->candidate_count; c++)
+        grouped |= strncmp(experiment->candidates[c].group, frame->among, strlen(frame->among)) == 0;
+    if (!grouped)
+        return rt_fail(error, RT_BAD_INPUT, "among: '%s' is not the group of an accelerator", frame->among);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtRayKind kind = (RtRayKind)k;
+        if (!rt_ray_kind_is_of_frame(kind) || has_kind(experiment, kind)) continue;
+        return rt_fail(error, RT_BAD_INPUT, "a frame has %s rays, too: name that kind under `rays`",
+                       rt_ray_kind_name(kind));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_experiment_check(RtExperiment *experiment, char *where, RtError *error) {
+    for (uint32_t i = 0; i < experiment->workload_count; i++) {
+        snprintf(where, RT_MAX_LABEL, "scenes[%u]", experiment->workloads[i].entry);
+        RT_TRY(check_workload(experiment, i, error));
+        RT_TRY(check_swept(experiment, &experiment->workloads[i].swept, error));
+    }
+    for (uint32_t i = 0; i < experiment->candidate_count; i++) {
+        snprintf(where, RT_MAX_LABEL, "accelerators[%u]", experiment->candidates[i].entry);
+        if (*experiment->best && rt_candidate_is_baseline(experiment, i)) strcpy(where, "baseline");
+        RT_TRY(check_candidate(experiment, i, error));
+        RT_TRY(check_swept(experiment, &experiment->candidates[i].swept, error));
+    }
+    for (uint32_t i = 0; i < experiment->kind_count; i++) {
+        snprintf(where, RT_MAX_LABEL, "rays[%u]", i);
+        for (uint32_t k = 0; k < i; k++) {
+            if (experiment->kinds[k] != experiment->kinds[i]) continue;
+            return rt_fail(error, RT_BAD_INPUT, "%s rays are given twice",
+                           rt_ray_kind_name(experiment->kinds[i]));
+        }
+    }
+    strcpy(where, "baseline");
+    RT_TRY(check_baseline(experiment, error));
+    snprintf(experiment->again, sizeof experiment->again, "%s (again)",
+             experiment->candidates[experiment->baseline].label);
+    strcpy(where, "published");
+    RT_TRY(check_published(experiment, error));
+    strcpy(where, "frame");
+    RT_TRY(check_frame(experiment, error));
+    for (uint32_t i = 0; i < experiment->plot_count; i++) {
+        snprintf(where, RT_MAX_LABEL, "plots[%u]", i);
+        RT_TRY(check_plot(experiment, i, error));
+    }
+    strcpy(where, "hardware");
+    RT_TRY(check_hardware(experiment, error));
+    strcpy(where, "name");
+    if (*experiment->name == '.') {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%s' cannot name a result directory: begin it with another letter", experiment->name);
+    }
+    return check_label(experiment->name, error);
+}

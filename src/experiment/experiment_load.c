@@ -1,0 +1,346 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Experiments as YAML: each part of RtExperiment from its mapping, over the defaults of rt_experiment_init.
+ * What is wrong with a value is told here; what does not go together, by rt_experiment_check. */
+#include "core/base/memory.h"
+#include "core/text/yaml.h"
+#include "experiment/claims.h"
+#include "experiment/experiment.h"
+#include "render/frame.h"
+
+#include <string.h>
+#include <xxhash.h>
+
+/* ---- values ---- */
+
+static RtStatus read_flag(const RtYaml *y, const RtYamlNode *n, const char *key, bool *flag) {
+    uint32_t word = *flag ? 0 : 1;
+    RT_TRY(rt_yaml_word(y, n, key, "yes no true false", &word));
+    *flag = word % 2 == 0;
+    return RT_OK;
+}
+
+static RtStatus read_size(const RtYaml *y, const RtYamlNode *n, uint32_t *width, uint32_t *height) {
+    const char *text = NULL;
+    RT_TRY(rt_yaml_text(y, n, "size", RT_MAX_LABEL, &text));
+    if (!text || rt_image_size_parse(text, width, height)) return RT_OK;
+    return rt_yaml_fail(y, rt_yaml_get(y, n, "size"),
+                        "invalid value '%s': expected WIDTHxHEIGHT, each 1..%d, as in 512x512", text,
+                        RT_MAX_IMAGE_SIDE);
+}
+
+/* A list of up to `room` texts; *count stays as it is where there is none. */
+static RtStatus read_labels(const RtYaml *y, const RtYamlNode *n, const char *key, uint32_t room,
+                            char (*labels)[RT_MAX_LABEL], uint32_t *count) {
+    const RtYamlNode *list = rt_yaml_get(y, n, key);
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, room, key));
+    if (list) *count = 0;
+    for (const RtYamlNode *e = rt_yaml_first(list); e != rt_yaml_end(list); e += e->size) {
+        RT_TRY(rt_yaml_copy(y, e, NULL, RT_MAX_LABEL, labels[(*count)++]));
+    }
+    return RT_OK;
+}
+
+/* How much is measured, which `quick` may say again. */
+static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit, uint32_t *rounds,
+                           uint32_t *milliseconds) {
+    RT_TRY(rt_yaml_u64(y, n, "limit", 1, RT_MAX_RAYS_A_KIND, limit));
+    RT_TRY(rt_yaml_u32(y, n, "rounds", 1, RT_MAX_ROUNDS, rounds));
+    return rt_yaml_u32(y, n, "milliseconds", 0, 60000, milliseconds);
+}
+
+static RtStatus read_limits(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
+    RT_TRY(rt_yaml_keys(y, n, "seconds? megabytes?"));
+    RT_TRY(rt_yaml_double(y, n, "seconds", &experiment->limit_seconds));
+    RT_TRY(rt_yaml_u64(y, n, "megabytes", 1, 1000000000, &experiment->limit_megabytes));
+    if (!rt_yaml_get(y, n, "seconds") || experiment->limit_seconds > 0) return RT_OK;
+    return rt_yaml_fail(y, rt_yaml_get(y, n, "seconds"), "invalid value '%g': expected more than 0",
+                        experiment->limit_seconds);
+}
+
+/* ---- parts ---- */
+
+static RtStatus read_workloads(const RtYaml *y, const RtYamlNode *n, uint32_t entry, RtExperiment *experiment,
+                               RtError *error) {
+    const char *spec = "";
+    RtWorkload like = {.entry = entry, .depth = RT_DEFAULT_DEPTH};
+    RT_TRY(rt_yaml_keys(y, n, "scene label? size? corners? light_from_outside? depth? optional?"));
+    RT_TRY(rt_yaml_text(y, n, "scene", RT_MAX_SCENE_NAME - 1, &spec));
+    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
+    RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &like.depth));
+    RT_TRY(read_size(y, n, &like.width, &like.height));
+    RT_TRY(read_flag(y, n, "corners", &like.corners));
+    RT_TRY(read_flag(y, n, "light_from_outside", &like.light_from_outside));
+    RT_TRY(read_flag(y, n, "optional", &like.optional));
+    RtStatus status = rt_experiment_add_scenes(experiment, &like, spec, experiment->folder, error);
+    return rt_yaml_place(y, status, n, "scene");
+}
+
+/* Leaves the candidate out on all workloads that its `scenes` do not name; none named: on none. */
+static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExperiment *experiment,
+                            RtCandidate *candidate) {
+    uint32_t on = 0;
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_WORKLOADS, "labels"));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        const char *label = "";
+        RT_TRY(rt_yaml_text(y, n, NULL, RT_MAX_LABEL - 1, &label));
+        bool found = false;
+        for (uint32_t t = 0; t < experiment->workload_count; t++) {
+            const RtWorkload *workload = &experiment->workloads[t];
+            if (strcmp(workload->label, label) != 0 && strcmp(workload->base, label) != 0) continue;
+            on |= UINT32_C(1) << t;
+            found = true;
+        }
+        if (!found) return rt_yaml_fail(y, n, "'%s' is not the label of one of the scenes", label);
+    }
+    candidate->left_out = list ? ~on : 0;
+    return RT_OK;
+}
+
+/* The name of a group of accelerators, which gnuplot reads between double quotes. */
+static RtStatus read_group(const RtYaml *y, const RtYamlNode *n, const char *key, char group[RT_MAX_LABEL]) {
+    RT_TRY(rt_yaml_copy(y, n, key, RT_MAX_LABEL, group));
+    for (const char *c = group; *c; c++) {
+        if (!rt_may_label(*c) && *c != ' ' && *c != '\'')
+            return rt_yaml_fail(y, rt_yaml_get(y, n, key),
+                                "'%s' has the character '%c', which plots cannot show", group, *c);
+    }
+    return RT_OK;
+}
+
+static RtStatus read_candidates(const RtYaml *y, const RtYamlNode *n, uint32_t entry,
+                                RtExperiment *experiment, RtError *error) {
+    RtCandidate like = {.entry = entry, .ray_stride = 1};
+    RT_TRY(rt_yaml_keys(y, n, "accel label? group? ray_stride? scenes?"));
+    RT_TRY(read_group(y, n, "group", like.group));
+    RT_TRY(rt_yaml_copy(y, n, "accel", RT_MAX_SPEC_CHARS, like.spec));
+    RT_TRY(rt_yaml_copy(y, n, "label", RT_MAX_LABEL, like.label));
+    RT_TRY(rt_yaml_u64(y, n, "ray_stride", 1, RT_MAX_RAYS_A_KIND, &like.ray_stride));
+    RT_TRY(read_scenes(y, rt_yaml_get(y, n, "scenes"), experiment, &like));
+    return rt_yaml_place(y, rt_experiment_add_accels(experiment, &like, error), n, "accel");
+}
+
+static RtStatus read_tolerances(const RtYaml *y, const RtYamlNode *n, double tolerance[RT_COLUMN_COUNT]) {
+#define NAME(name) #name,
+#define KEY(name)  #name "? "
+    static const char *const names[] = {RT_PUBLISHED_COLUMNS(NAME)};
+    RT_TRY(rt_yaml_keys(y, n, RT_PUBLISHED_COLUMNS(KEY)));
+    for (int c = 0; c < RT_COLUMN_COUNT; c++) {
+        RT_TRY(rt_yaml_double(y, n, names[c], &tolerance[c]));
+        if (tolerance[c] >= 0) continue;
+        return rt_yaml_fail(y, rt_yaml_get(y, n, names[c]),
+                            "invalid value '%g': expected a percentage, 0 or more", tolerance[c]);
+    }
+    return RT_OK;
+}
+
+/* A label may belong to several candidates, each on other scenes: all of them are ours. */
+static RtStatus read_published(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
+    RtPublishedSetup *published = &experiment->published;
+    RT_TRY(rt_yaml_keys(y, n, "tables reasons? tolerance? ours?"));
+    RT_TRY(read_labels(y, n, "tables", RT_MAX_PUBLISHED, published->tables, &published->table_count));
+    RT_TRY(rt_yaml_copy(y, n, "reasons", RT_MAX_LABEL, published->reasons));
+    const RtYamlNode *tolerance = rt_yaml_get(y, n, "tolerance"), *ours = rt_yaml_get(y, n, "ours");
+    if (tolerance) RT_TRY(read_tolerances(y, tolerance, published->tolerance));
+    RT_TRY(rt_yaml_list(y, ours, NULL, 1, RT_MAX_CANDIDATES, "labels"));
+    for (const RtYamlNode *e = rt_yaml_first(ours); e != rt_yaml_end(ours); e += e->size) {
+        const char *label = "";
+        bool found = false;
+        RT_TRY(rt_yaml_text(y, e, NULL, RT_MAX_LABEL - 1, &label));
+        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+            if (strcmp(experiment->candidates[c].label, label) != 0) continue;
+            experiment->candidates[c].ours = found = true;
+        }
+        if (!found) return rt_yaml_fail(y, e, "'%s' is not the label of one of the accelerators", label);
+    }
+    return RT_OK;
+}
+
+static RtStatus read_frame(const RtYaml *y, const RtYamlNode *n, RtFrameSetup *frame) {
+    RT_TRY(rt_yaml_keys(y, n, "without among note?"));
+    RT_TRY(rt_yaml_copy(y, n, "without", RT_MAX_LABEL, frame->without));
+    RT_TRY(read_group(y, n, "among", frame->among));
+    return rt_yaml_copy(y, n, "note", RT_MAX_TEXT, frame->note);
+}
+
+static RtStatus read_rays(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment, RtError *error) {
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_RAY_KIND_COUNT, "kinds of rays"));
+    if (list) experiment->kind_count = 0;
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        const char *kind = "";
+        RT_TRY(rt_yaml_text(y, n, NULL, RT_MAX_LABEL - 1, &kind));
+        RtStatus status = rt_ray_kind_parse(kind, &experiment->kinds[experiment->kind_count++], error);
+        RT_TRY(rt_yaml_place(y, status, n, NULL));
+    }
+    return RT_OK;
+}
+
+static RtStatus read_baseline(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment,
+                              RtError *error) {
+    const char *label = NULL;
+    RT_TRY(rt_yaml_text(y, n, "baseline", RT_MAX_LABEL - 1, &label));
+    return rt_yaml_place(y, rt_experiment_set_baseline(experiment, label, error), n, "baseline");
+}
+
+/* Understood even where it is not asked for, so that mistakes in it do not wait. */
+static RtStatus read_quick(const RtYaml *y, const RtYamlNode *n, bool quick, RtExperiment *experiment) {
+    uint64_t limit = experiment->limit;
+    uint32_t rounds = experiment->rounds, milliseconds = experiment->milliseconds;
+    uint32_t width = 0, height = 0, depth = 0;
+    RT_TRY(rt_yaml_keys(y, n, "size? limit? rounds? milliseconds? depth?"));
+    RT_TRY(read_scale(y, n, &limit, &rounds, &milliseconds));
+    RT_TRY(read_size(y, n, &width, &height));
+    RT_TRY(rt_yaml_u32(y, n, "depth", 1, RT_MAX_DEPTH, &depth));
+    if (!quick) return RT_OK;
+    experiment->limit = limit;
+    experiment->rounds = rounds;
+    experiment->milliseconds = milliseconds;
+    for (uint32_t i = 0; i < experiment->workload_count; i++) {
+        RtWorkload *workload = &experiment->workloads[i];
+        if (depth) workload->depth = depth;
+        if (!width) continue;
+        workload->width = width;
+        workload->height = height;
+    }
+    return RT_OK;
+}
+
+/* ---- all of it ---- */
+
+static RtStatus read_lists(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment, RtError *error) {
+    const RtYamlNode *scenes = rt_yaml_get(y, n, "scenes"), *accels = rt_yaml_get(y, n, "accelerators");
+    RT_TRY(rt_yaml_list(y, scenes, NULL, 1, RT_MAX_WORKLOADS, "scenes"));
+    uint32_t entry = 0;
+    for (const RtYamlNode *e = rt_yaml_first(scenes); e != rt_yaml_end(scenes); e += e->size)
+        RT_TRY(read_workloads(y, e, entry++, experiment, error));
+    RT_TRY(rt_yaml_list(y, accels, NULL, 1, RT_MAX_CANDIDATES, "accelerators"));
+    entry = 0;
+    for (const RtYamlNode *e = rt_yaml_first(accels); e != rt_yaml_end(accels); e += e->size)
+        RT_TRY(read_candidates(y, e, entry++, experiment, error));
+    RT_TRY(read_rays(y, rt_yaml_get(y, n, "rays"), experiment, error));
+    return read_labels(y, n, "plots", RT_MAX_PLOTS, experiment->plots, &experiment->plot_count);
+}
+
+static RtStatus read_claims(const RtYaml *y, const RtYamlNode *list, RtExperiment *experiment,
+                            RtError *error) {
+    RT_TRY(rt_yaml_list(y, list, NULL, 1, RT_MAX_CLAIMS, "claims"));
+    for (const RtYamlNode *n = rt_yaml_first(list); n != rt_yaml_end(list); n += n->size) {
+        RtClaim claim;
+        char *text = experiment->claims[experiment->claim_count++];
+        RT_TRY(rt_yaml_copy(y, n, NULL, RT_MAX_CLAIM, text));
+        RT_TRY(rt_yaml_place(y, rt_claim_parse(experiment, text, &claim, error), n, NULL));
+    }
+    return RT_OK;
+}
+
+/* Gives a failure of rt_experiment_check its place: `where` is "name", or "scenes[3]". */
+static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
+    char key[RT_MAX_LABEL];
+    unsigned index = 0;
+    if (sscanf(where, "%47[a-z][%u]", key, &index) < 2) return rt_yaml_place(y, status, y->nodes, where);
+    const RtYamlNode *list = rt_yaml_get(y, y->nodes, key), *n = rt_yaml_first(list);
+    if (!list) return rt_yaml_place(y, status, y->nodes, NULL);
+    for (; index > 0; index--) n += n->size;
+    return rt_yaml_place(y, status, n, NULL);
+}
+
+static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *experiment, RtError *error) {
+    const RtYamlNode *n = y->nodes;
+    RT_TRY(rt_yaml_keys(
+        y, n,
+        "name question prediction scenes accelerators baseline? rays? limit? coherent_run? rounds? "
+        "milliseconds? seed? count_only? hardware? distributions? published? frame? quick? plots? expect? "
+        "finding? "
+        "limits?"));
+    RT_TRY(rt_yaml_copy(y, n, "name", RT_MAX_LABEL, experiment->name));
+    RT_TRY(rt_yaml_copy(y, n, "question", RT_MAX_TEXT, experiment->question));
+    RT_TRY(rt_yaml_copy(y, n, "prediction", RT_MAX_TEXT, experiment->prediction));
+    RT_TRY(rt_yaml_copy(y, n, "finding", RT_MAX_TEXT, experiment->finding));
+    RT_TRY(read_scale(y, n, &experiment->limit, &experiment->rounds, &experiment->milliseconds));
+    if (rt_yaml_get(y, n, "limits")) RT_TRY(read_limits(y, rt_yaml_get(y, n, "limits"), experiment));
+    RT_TRY(rt_yaml_u64(y, n, "coherent_run", 1, RT_MAX_RAYS_A_KIND, &experiment->coherent_run));
+    RT_TRY(rt_yaml_u64(y, n, "seed", 0, INT64_MAX, &experiment->seed));
+    RT_TRY(read_flag(y, n, "count_only", &experiment->count_only));
+    RT_TRY(read_flag(y, n, "hardware", &experiment->hardware));
+    RT_TRY(read_flag(y, n, "distributions", &experiment->distributions));
+    RT_TRY(read_lists(y, n, experiment, error));
+    RT_TRY(read_baseline(y, n, experiment, error));
+    const RtYamlNode *published = rt_yaml_get(y, n, "published"), *smaller = rt_yaml_get(y, n, "quick");
+    const RtYamlNode *frame = rt_yaml_get(y, n, "frame");
+    if (frame) RT_TRY(read_frame(y, frame, &experiment->frame));
+    if (published) RT_TRY(read_published(y, published, experiment));
+    if (smaller) RT_TRY(read_quick(y, smaller, quick, experiment));
+    experiment->quick = quick;
+    char where[RT_MAX_LABEL] = "";
+    RtStatus status = rt_experiment_check(experiment, where, error);
+    RT_TRY(place(y, status, where));
+    return read_claims(y, rt_yaml_get(y, n, "expect"), experiment, error);
+}
+
+/* ---- what the results depend on ---- */
+
+/* Where line number `line` begins. */
+static size_t begin_of(const char *text, size_t length, uint32_t line) {
+    size_t at = 0;
+    for (; line > 1 && at < length; at++) line -= text[at] == '\n';
+    return at;
+}
+
+/* Of the text without the lines of `finding` and `expect`, which are written, or written better, when the
+ * results are there. Those that share a line with another key count. */
+static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length) {
+    XXH3_state_t *state = XXH3_createState();
+    size_t from = 0;
+    if (!state) return XXH3_64bits(text, length);
+    XXH3_64bits_reset(state);
+    const RtYamlNode *end = rt_yaml_end(y->nodes);
+    for (const RtYamlNode *key = rt_yaml_first(y->nodes); key != end;) {
+        const RtYamlNode *next = key + key->size;
+        next += next->size;
+        const char *name = rt_yaml_text_of(y, key);
+        size_t begin = begin_of(text, length, key->line);
+        size_t behind = next == end ? length : begin_of(text, length, next->line);
+        bool apart = key->column == 1 && behind > begin;
+        if (apart && (strcmp(name, "finding") == 0 || strcmp(name, "expect") == 0)) {
+            XXH3_64bits_update(state, text + from, begin - from);
+            from = behind;
+        }
+        key = next;
+    }
+    XXH3_64bits_update(state, text + from, length - from);
+    uint64_t fingerprint = XXH3_64bits_digest(state);
+    XXH3_freeState(state);
+    return fingerprint;
+}
+
+static RtStatus load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
+    char *text;
+    size_t length;
+    RtYaml yaml;
+    if (strlen(path) >= RT_MAX_PATH)
+        return rt_fail(error, RT_BAD_INPUT, "%.80s...: the path is too long", path);
+    strcpy(experiment->path, path);
+    rt_path_folder(path, experiment->folder);
+    RT_TRY(rt_file_read(path, RT_YAML_MAX_BYTES, &text, &length, error));
+    RtStatus status = rt_yaml_parse(&yaml, path, text, length, error);
+    bool mapping = status == RT_OK && yaml.nodes->kind == RT_YAML_MAPPING;
+    if (mapping) experiment->fingerprint = fingerprint_of(&yaml, text, length);
+    rt_free(text);
+    RT_TRY(status);
+    status = read_experiment(&yaml, quick, experiment, error);
+    rt_yaml_close(&yaml);
+    return status;
+}
+
+RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool quick, RtError *error) {
+    rt_experiment_init(experiment);
+    return load(experiment, path, quick, error);
+}
+
+RtStatus rt_experiment_load_kept(RtExperiment *experiment, const char *path, const json_t *manifest,
+                                 RtError *error) {
+    rt_experiment_init(experiment);
+    experiment->kept = manifest;
+    RtStatus status = load(experiment, path, json_is_true(json_object_get(manifest, "quick")), error);
+    experiment->kept = NULL;
+    return status;
+}

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "experiment/manifest.h"
+
+#include "core/base/parallel.h"
+#include "core/text/json.h"
+#include "measure/machine.h"
+
+static json_t *scenes_json(const RtResults *results) {
+    const RtExperiment *experiment = results->experiment;
+    json_t *list = json_array();
+    for (uint32_t t = 0; t < experiment->workload_count; t++) {
+        const RtWorkloadResult *workload = &results->workloads[t];
+        json_t *sets = json_object();
+        for (uint32_t k = 0; workload->known && k < experiment->kind_count; k++) {
+            RtRayKind kind = experiment->kinds[k];
+            json_object_set_new(sets, rt_ray_kind_name(kind),
+                                json_pack("{s:I, s:o}", "rays", (json_int_t)workload->rays[kind], "hash",
+                                          rt_json_hex(workload->ray_fingerprints[kind])));
+        }
+        json_array_append_new(
+            list, json_pack("{s:s, s:s, s:b, s:I, s:o, s:I, s:I, s:b, s:b, s:I, s:o}", "label",
+                            experiment->workloads[t].label, "scene", experiment->workloads[t].spec, "skipped",
+                            workload->skipped, "objects", (json_int_t)workload->objects, "hash",
+                            rt_json_hex(workload->scene), "width", (json_int_t)workload->width, "height",
+                            (json_int_t)workload->height, "corners", experiment->workloads[t].corners,
+                            "light_from_outside", experiment->workloads[t].light_from_outside, "depth",
+                            (json_int_t)experiment->workloads[t].depth, "rays", sets));
+    }
+    return list;
+}
+
+static json_t *candidates_json(const RtExperiment *experiment) {
+    json_t *list = json_array();
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
+        json_t *scenes = json_array();
+        for (uint32_t t = 0; t < experiment->workload_count; t++) {
+            if (candidate->left_out >> t & 1) continue;
+            json_array_append_new(scenes, json_string(experiment->workloads[t].label));
+        }
+        json_array_append_new(list,
+                              json_pack("{s:s, s:s, s:I, s:b, s:o}", "label", candidate->label, "accel",
+                                        candidate->spec, "ray_stride", (json_int_t)candidate->ray_stride,
+                                        "missing", candidate->missing, "scenes", scenes));
+    }
+    return list;
+}
+
+static json_t *manifest_json(const RtResults *results, const RtWorkloadOptions *options) {
+    const RtExperiment *experiment = results->experiment;
+    return json_pack(
+        "{s:s, s:s, s:o, s:s, s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:i, s:i, s:o, s:o, s:o}",
+        "experiment", experiment->name, "file", experiment->path, "hash",
+        rt_json_hex(experiment->fingerprint), "question", experiment->question, "prediction",
+        experiment->prediction, "quick", experiment->quick, "seed", (json_int_t)experiment->seed, "limit",
+        (json_int_t)experiment->limit, "coherent_run", (json_int_t)experiment->coherent_run, "rounds",
+        (json_int_t)experiment->rounds, "milliseconds", (json_int_t)experiment->milliseconds, "baseline",
+        rt_baseline_label(experiment), "date", rt_json_now(), "threads_counting",
+        rt_thread_count(options->threads), "threads_timing", rt_thread_count(options->timing), "scenes",
+        scenes_json(results), "accelerators", candidates_json(experiment), "machine", rt_machine_json());
+}
+
+RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *options, const char *directory,
+                           RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    return rt_json_save(path, manifest_json(results, options), error);
+}
+
+RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error) {
+    char path[RT_MAX_PATH];
+    json_error_t fault;
+    *manifest = NULL;
+    RT_TRY(rt_path_join(directory, "manifest.json", path, error));
+    if (!rt_file_exists(path)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s is not a finished result directory: it has no manifest.json; what --only or an "
+                       "interruption left out is measured by `raytally run EXPERIMENT --out %s --resume`",
+                       directory, directory);
+    }
+    *manifest = json_load_file(path, 0, &fault);
+    if (*manifest) return RT_OK;
+    return rt_fail_at(error, path, fault.line > 0 ? (size_t)fault.line : 0, 0,
+                      "%s; the file is damaged: run the experiment again", fault.text);
+}
+
+static RtStatus load_experiment(const json_t *manifest, const char *directory, RtExperiment *experiment,
+                                RtError *error) {
+    const char *file = json_string_value(json_object_get(manifest, "file"));
+    const json_t *hash = json_object_get(manifest, "hash");
+    if (!file || !json_is_string(hash)) {
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s/manifest.json does not say what was run: run the experiment by its YAML",
+                       directory);
+    }
+    RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));
+    json_t *now = rt_json_hex(experiment->fingerprint);
+    bool same = now && json_equal(now, hash);
+    json_decref(now);
+    if (same) return RT_OK;
+    return rt_fail(error, RT_MISMATCH, "%s has changed since %s was made from it", file, directory);
+}
+
+RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error) {
+    json_t *manifest;
+    RT_TRY(rt_manifest_read(directory, &manifest, error));
+    RtStatus status = load_experiment(manifest, directory, experiment, error);
+    json_decref(manifest);
+    return status;
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "experiment/plugins_used.h"
+
+#include "measure/machine.h"
+
+#include <string.h>
+
+/* Whether one of the spec's layers, joined by '+' as in accel/spec.c, is called that. */
+static bool has_layer(const char *spec, const char *name) {
+    const size_t length = strlen(name);
+    for (const char *layer = spec;; layer++) {
+        if (strncmp(layer, name, length) == 0 && strchr(":+", layer[length])) return true;
+        layer = strchr(layer, '+');
+        if (!layer) return false;
+    }
+}
+
+static bool is_used(const RtExperiment *experiment, const char *name) {
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        if (has_layer(experiment->candidates[c].spec, name)) return true;
+    }
+    return false;
+}
+
+/* Of the list that rt_machine_json has under "plugins". */
+static json_t *used_of(const RtExperiment *experiment, const json_t *plugins) {
+    json_t *used = json_object(), *plugin, *name;
+    size_t i, n;
+    json_array_foreach((json_t *)plugins, i, plugin) {
+        json_array_foreach(json_object_get(plugin, "accelerators"), n, name) {
+            if (!json_is_string(name) || !is_used(experiment, json_string_value(name))) continue;
+            json_object_set_new(used, json_string_value(name),
+                                json_pack("{s:O?, s:O?}", "file", json_object_get(plugin, "file"), "hash",
+                                          json_object_get(plugin, "hash")));
+        }
+    }
+    return used;
+}
+
+json_t *rt_plugins_used(const RtExperiment *experiment) {
+    json_t *plugins = rt_plugins_json();
+    json_t *used = used_of(experiment, plugins);
+    json_decref(plugins);
+    return used;
+}
+
+json_t *rt_plugins_used_then(const RtExperiment *experiment, const json_t *manifest) {
+    return used_of(experiment, json_object_get(json_object_get(manifest, "machine"), "plugins"));
+}
+
+json_t *rt_plugins_changed(const json_t *before, const json_t *after) {
+    json_t *changed = json_object(), *plugin;
+    const char *name;
+    json_object_foreach((json_t *)before, name, plugin) {
+        json_t *now = json_object_get(after, name);
+        if (json_equal(json_object_get(plugin, "hash"), json_object_get(now, "hash"))) continue;
+        json_object_set_new(changed, name, json_pack("{s:O, s:O?}", "before", plugin, "after", now));
+    }
+    json_object_foreach((json_t *)after, name, plugin) {
+        if (json_object_get(before, name)) continue;
+        json_object_set_new(changed, name, json_pack("{s:n, s:O}", "before", "after", plugin));
+    }
+    return changed;
+}
+
+bool rt_plugins_concern(const json_t *object, const RtExperiment *experiment, uint32_t candidate) {
+    const char *name;
+    json_t *plugin;
+    uint32_t c = candidate < experiment->candidate_count ? candidate : experiment->baseline;
+    json_object_foreach((json_t *)object, name, plugin) {
+        if (has_layer(experiment->candidates[c].spec, name)) return true;
+    }
+    return false;
+}
+
+/* ---- for the eye ---- */
+
+static const char *text_of(const json_t *plugin, const char *key) {
+    const char *text = json_string_value(json_object_get(plugin, key));
+    return text ? text : "unknown";
+}
+
+void rt_plugins_change_format(const char *name, const json_t *change, const char *before, const char *after,
+                              char out[RT_MAX_PLUGIN_CHANGE]) {
+    const json_t *then = json_object_get(change, "before"), *now = json_object_get(change, "after");
+    if (json_is_object(then) && json_is_object(now))
+        snprintf(out, RT_MAX_PLUGIN_CHANGE,
+                 "the plugin of '%s' is another one: %.200s (%.16s) %s, %.200s (%.16s) %s", name,
+                 text_of(then, "file"), text_of(then, "hash"), before, text_of(now, "file"),
+                 text_of(now, "hash"), after);
+    else if (json_is_object(then))
+        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' was of the plugin %.400s (%.16s) %s, and is not %s", name,
+                 text_of(then, "file"), text_of(then, "hash"), before, after);
+    else
+        snprintf(out, RT_MAX_PLUGIN_CHANGE, "'%s' is of the plugin %.400s (%.16s) %s, and was not %s", name,
+                 text_of(now, "file"), text_of(now, "hash"), after, before);
+}
+
+void rt_plugins_tell_changes(const RtExperiment *experiment, const json_t *manifest,
+                             void (*tell)(void *context, const char *sentence), void *context) {
+    json_t *then = rt_plugins_used_then(experiment, manifest), *now = rt_plugins_used(experiment), *change;
+    json_t *changed = rt_plugins_changed(then, now);
+    const char *name;
+    json_object_foreach(changed, name, change) {
+        char sentence[RT_MAX_PLUGIN_CHANGE];
+        rt_plugins_change_format(name, change, "then", "now", sentence);
+        tell(context, sentence);
+    }
+    json_decref(changed);
+    json_decref(then);
+    json_decref(now);
+}

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Results for a terminal of 80 columns. */
+#include "core/base/words.h"
+#include "experiment/result_tables.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+void rt_interval_title(const RtExperiment *experiment, char out[RT_MAX_INTERVAL_TITLE]) {
+    double coverage = rt_interval_coverage(experiment->rounds);
+    snprintf(out, RT_MAX_INTERVAL_TITLE, "%.3g %%",
+             experiment->rounds >= RT_FULL_ROUNDS ? 95 : 100 * coverage);
+}
+
+/* ---- one workload ---- */
+
+static void print_title(const RtResults *results, uint32_t t, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    const RtWorkloadResult *workload = &results->workloads[t];
+    fprintf(out, "\n%s: %" PRIu32 " object%s, ", experiment->workloads[t].label, workload->objects,
+            rt_plural(workload->objects));
+    if (*experiment->rays_from) {
+        fprintf(out, "rays of %s", experiment->rays_from);
+    } else {
+        fprintf(out, "%" PRIu32 "x%" PRIu32 ", depth %" PRIu32 ", seed %" PRIu64, workload->width,
+                workload->height, experiment->workloads[t].depth, experiment->seed);
+    }
+    fputc('\n', out);
+}
+
+/* A heading before the rows of each kind of rays, and labels that are long on lines of their own. */
+void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out) {
+    RtResultRow row = {.results = results, .workload = workload};
+    const RtTable table = rt_result_table(which, &row);
+    int widths[RT_MAX_TABLE_COLUMNS];
+    bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_SPREADS ||
+                   which == RT_MACHINE_CELLS,
+         any = false;
+    RtRayKind kind = RT_RAY_PRIMARY;
+    fputc('\n', out);
+    rt_table_widths(&table, widths);
+    rt_table_line(&table, widths, NULL, out);
+    for (size_t i = 0; i < table.row_count; i++) {
+        char label[RT_MAX_EYE_LABEL];
+        if (!table.row(table.context, i)) continue;
+        if (by_kind && (!any || row.kind != kind)) {
+            const uint64_t rays = row.scene->rays[row.kind];
+            fprintf(out, "  %s, %" PRIu64 " ray%s\n", rt_experiment_kind_name(results->experiment, row.kind),
+                    rays, rt_plural(rays));
+        }
+        any = true;
+        kind = row.kind;
+        rt_result_eye_label(&row, label);
+        if (strlen(label) > RT_EYE_WIDTH) fprintf(out, "%s\n", label);
+        rt_table_line(&table, widths, &row, out);
+    }
+}
+
+/* The least and the most rounds that any cell was timed for; 0 if none was. */
+static uint32_t rounds_of(const RtResults *results, uint32_t t, uint32_t *least) {
+    uint32_t most = 0;
+    for (uint32_t c = 0; c <= results->experiment->candidate_count; c++) {
+        for (uint32_t k = 0; k < results->experiment->kind_count; k++) {
+            const RtCell *cell = rt_cell_at(results, t, c, results->experiment->kinds[k]);
+            if (!cell->timed) continue;
+            *least = most == 0 || cell->rounds < *least ? cell->rounds : *least;
+            most = cell->rounds > most ? cell->rounds : most;
+        }
+    }
+    return most;
+}
+
+/* What the ratios refer to, and what intervals are worth. */
+static void print_ratios(const RtResults *results, uint32_t least, uint32_t most, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char title[RT_MAX_INTERVAL_TITLE], rounds[32], text[RT_MAX_SENTENCE];
+    rt_interval_title(experiment, title);
+    snprintf(rounds, sizeof rounds, least == most ? "%" PRIu32 : "%" PRIu32 " to %" PRIu32, least, most);
+    snprintf(text, sizeof text,
+             "Ratios are of throughput to that of %s, paired in each of %s round%s; intervals of %s.",
+             rt_baseline_label(experiment), rounds, rt_plural(most), title);
+    rt_print_wrapped(text, out);
+    if (experiment->baseline_count == 1) return;
+    snprintf(text, sizeof text, "%s: of %" PRIu32 " settings the fastest for each kind, which is shown.",
+             experiment->best, experiment->baseline_count);
+    rt_print_wrapped(text, out);
+}
+
+/* What is measured on part of the rays, and why its ratio is not the quotient of the throughputs beside it.
+ */
+static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE *out) {
+    const RtExperiment *experiment = results->experiment;
+    char text[RT_MAX_SENTENCE];
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtCandidate *candidate = &experiment->candidates[c];
+        if (candidate->ray_stride == 1 || !rt_candidate_runs(experiment, c, t)) continue;
+        size_t n = (size_t)snprintf(text, sizeof text, "* %s is measured on one of %" PRIu64 " rays.",
+                                    candidate->label, candidate->ray_stride);
+        if (timed) {
+            snprintf(text + n, sizeof text - n,
+                     " Its ratio is to %s on those same rays, and so not the quotient of the throughputs "
+                     "above.",
+                     rt_baseline_label(experiment));
+        }
+        rt_print_wrapped(text, out);
+    }
+}
+
+static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
+    uint32_t least = 0, most = rounds_of(results, t, &least);
+    const bool timed = most > 0;
+    rt_print_wrapped("Object tests, extent tests and steps are those of a ray.", out);
+    if (timed) print_ratios(results, least, most, out);
+    rt_print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
+    print_strides(results, t, timed, out);
+    rt_print_rows(results, timed ? RT_STRUCTURES : RT_COUNTED_STRUCTURES, t, out);
+}
+
+void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) {
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        RtResultRow row = {.results = results, .workload = t};
+        RtTable table = rt_result_table(which, &row);
+        if (!results->workloads[t].known) continue;
+        print_title(results, t, out);
+        if (which == RT_CELLS) {
+            print_cells(results, t, out);
+        } else {
+            rt_table_text(&table, out);
+        }
+    }
+}
+
+/* ---- null runs ---- */
+
+void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
+    const size_t room = RT_MAX_SENTENCE;
+    uint32_t runs, straddling;
+    rt_null_verdict(results, &runs, &straddling);
+    out[0] = '\0';
+    if (runs == 0) return;
+    int n = snprintf(out, room,
+                     "Null runs (%s against itself): %" PRIu32 " of %" PRIu32 " interval%s straddle%s 1",
+                     results->experiment->candidates[results->experiment->baseline].label, straddling, runs,
+                     rt_plural(runs), runs == 1 ? "s" : "");
+    uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
+    double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
+    if (misses == 0) {
+        n += snprintf(out + n, room - (size_t)n, ", as they should.");
+    } else if (misses <= 1 + 2 * chance * runs) {
+        n += snprintf(out + n, room - (size_t)n, "; %.3g %% of all may miss by chance.", 100 * chance);
+    } else {
+        n += snprintf(out + n, room - (size_t)n,
+                      ": this machine was not quiet; take small differences for noise.");
+    }
+    if (rounds >= RT_FULL_ROUNDS) return;
+    snprintf(out + n, room - (size_t)n,
+             " Rounds: %" PRIu32
+             ", too few for 95 %%; an interval is all that was measured and holds the median in "
+             "%.3g %%. Take %d or more.",
+             rounds, 100 * coverage, RT_FULL_ROUNDS);
+}

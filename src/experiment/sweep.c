@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "experiment/sweep.h"
+
+#include "experiment/manifest_experiment.h"
+#include "scenes/builtin.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what was swept ---- */
+
+const char *rt_swept_value(const RtSwept *swept, const char *key) {
+    for (uint32_t i = 0; i < swept->count; i++) {
+        if (strcmp(swept->keys[i], key) == 0) return swept->values[i];
+    }
+    return NULL;
+}
+
+bool rt_swept_number(const char *value, double *number) {
+    char *end;
+    *number = strtod(value, &end);
+    return (isdigit((unsigned char)*value) || strchr("+-.", *value)) && end != value && !*end &&
+           isfinite(*number);
+}
+
+/* Evenly: the largest of the steps, or of the quotients, is not much larger than the least. Of two values
+ * those that are more than fourfold. */
+bool rt_swept_logarithmic(const double *values, uint32_t count) {
+    double quotient[2] = {INFINITY, 0}, step[2] = {INFINITY, 0};
+    if (count < 2 || values[0] <= 0) return false;
+    if (count == 2) return values[1] > 4 * values[0];
+    for (uint32_t i = 1; i < count; i++) {
+        double q = values[i] / values[i - 1], d = values[i] - values[i - 1];
+        quotient[0] = fmin(quotient[0], q);
+        quotient[1] = fmax(quotient[1], q);
+        step[0] = fmin(step[0], d);
+        step[1] = fmax(step[1], d);
+    }
+    return quotient[1] / quotient[0] < step[1] / step[0];
+}
+
+void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t room) {
+    for (uint32_t i = 0; i < swept->count; i++) {
+        size_t used = strlen(out);
+        if (but && strcmp(swept->keys[i], but) == 0) continue;
+        snprintf(out + used, room - used, ":%s=%s", swept->keys[i], swept->values[i]);
+    }
+}
+
+/* ---- values ---- */
+
+static RtStatus fail_range(const char *text, int length, RtError *error) {
+    return rt_fail(
+        error, RT_BAD_INPUT,
+        "'%.*s' is no range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a "
+        "factor above 1 and LOW above 0, and LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is "
+        "1|4|16",
+        length, text);
+}
+
+static RtStatus add_value(RtSweptParam *param, const char *text, size_t length, RtError *error) {
+    if (length == 0 || length >= RT_MAX_SWEPT_CHARS) {
+        return rt_fail(error, RT_BAD_INPUT, "'%.*s' of %s is no value for a list: one has 1..%d characters",
+                       (int)length, text, param->key, RT_MAX_SWEPT_CHARS - 1);
+    }
+    for (uint32_t i = 0; i < param->count; i++) {
+        if (strlen(param->values[i]) == length && strncmp(param->values[i], text, length) == 0) return RT_OK;
+    }
+    if (param->count == RT_MAX_SWEEP_VALUES) {
+        return rt_fail(error, RT_BAD_INPUT, "%s takes more than %d values: take a larger step or factor",
+                       param->key, RT_MAX_SWEEP_VALUES);
+    }
+    snprintf(param->values[param->count++], RT_MAX_SWEPT_CHARS, "%.*s", (int)length, text);
+    return RT_OK;
+}
+
+/* A number that is all of text[0..length), without which there is no range. */
+static bool read_number(const char *text, size_t length, double *number) {
+    char copy[RT_MAX_SWEPT_CHARS];
+    if (length == 0 || length >= sizeof copy) return false;
+    snprintf(copy, sizeof copy, "%.*s", (int)length, text);
+    return rt_swept_number(copy, number);
+}
+
+/* Where the step or factor of what follows the dots begins: a '+' behind an e is that of an exponent. */
+static size_t find_step(const char *text, size_t length) {
+    for (size_t i = 1; i < length; i++) {
+        if (text[i] == '*' || (text[i] == '+' && tolower((unsigned char)text[i - 1]) != 'e')) return i;
+    }
+    return length;
+}
+
+/* Values are not added up, so that no error grows; nine digits hide what there is. */
+static RtStatus add_range(RtSweptParam *param, const char *text, size_t length, size_t dots, bool whole,
+                          RtError *error) {
+    const char *above = text + dots + 2;
+    size_t rest = length - dots - 2, at = find_step(above, rest);
+    double low, high, step = 0, value = 0, power = 1;
+    bool factor = above[at] == '*' && at < rest;
+    bool fine = read_number(text, dots, &low) && read_number(above, at, &high) && at < rest &&
+                read_number(above + at + 1, rest - at - 1, &step) && low < high;
+    if (!fine || (factor ? step <= 1 || low <= 0 : step <= 0)) return fail_range(text, (int)length, error);
+    for (uint32_t i = 0; i <= RT_MAX_SWEEP_VALUES; i++, power *= step) {
+        char number[RT_MAX_SWEPT_CHARS];
+        value = factor ? low * power : low + i * step;
+        if (value > high + 1e-9 * (high - low)) return RT_OK;
+        snprintf(number, sizeof number, "%.9g", whole ? round(value) : value);
+        RT_TRY(add_value(param, number, strlen(number), error));
+    }
+    return rt_fail(error, RT_BAD_INPUT, "'%.*s' is more than %d values: take a larger step or factor",
+                   (int)length, text, RT_MAX_SWEEP_VALUES);
+}
+
+static size_t find_dots(const char *text, size_t length) {
+    size_t at = 0;
+    while (at + 1 < length && !(text[at] == '.' && text[at + 1] == '.')) at++;
+    return at + 1 < length ? at : length;
+}
+
+static RtStatus read_values(const char *text, size_t length, bool whole, RtSweptParam *param,
+                            RtError *error) {
+    for (size_t start = 0, part; start <= length; start += part + 1) {
+        const char *bar = memchr(text + start, '|', length - start);
+        part = bar ? (size_t)(bar - text) - start : length - start;
+        size_t dots = find_dots(text + start, part);
+        RT_TRY(dots < part ? add_range(param, text + start, part, dots, whole, error)
+                           : add_value(param, text + start, part, error));
+    }
+    return RT_OK;
+}
+
+/* ---- the text ---- */
+
+static bool is_whole(const char *owner, const char *key, bool scene, const json_t *kept) {
+    const RtAccelOps *ops = NULL;
+    const RtBuiltin *builtin = scene ? rt_builtin_find(owner) : NULL;
+    if (!scene && kept) return rt_kept_is_whole(kept, owner, key);
+    if (!scene && rt_accel_find(owner, &ops, NULL) != RT_OK) return false;
+    const RtParam *params = scene ? (builtin ? builtin->params : NULL) : ops->params;
+    size_t count = scene ? (builtin ? builtin->param_count : 0) : ops->param_count;
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(params[i].name, key) == 0) return params[i].type == RT_PARAM_INT;
+    }
+    return false;
+}
+
+/* A '+' before a digit or a dot is that of a step or an exponent, as in spec.c. */
+static bool ends_layer(const char *c, bool scene) {
+    return *c == '+' && !scene && !isdigit((unsigned char)c[1]) && c[1] != '.';
+}
+
+/* The value at `start` of a layer's parameter, whose name ends before the '='. */
+static RtStatus read_param(RtSweep *sweep, const char *layer, size_t start, size_t length, bool scene,
+                           const json_t *kept, RtError *error) {
+    const char *text = sweep->text, *value = text + start;
+    if (!memchr(value, '|', length) && find_dots(value, length) == length) return RT_OK;
+    char owner[RT_MAX_NAME] = "";
+    size_t key = start - 1, name = strcspn(layer, ":");
+    while (key > 0 && text[key - 1] != ',' && text[key - 1] != ':') key--;
+    if (sweep->param_count == RT_MAX_SWEPT) {
+        return rt_fail(error, RT_BAD_INPUT, "'%.80s' sweeps more than %d parameters", text, RT_MAX_SWEPT);
+    }
+    RtSweptParam *param = &sweep->params[sweep->param_count];
+    param->start = start;
+    param->length = length;
+    param->count = 0;
+    snprintf(param->key, sizeof param->key, "%.*s", (int)(start - 1 - key), text + key);
+    for (uint32_t i = 0; i < sweep->param_count; i++) {
+        if (strcmp(sweep->params[i].key, param->key) != 0) continue;
+        return rt_fail(error, RT_BAD_INPUT, "'%.80s' sweeps %s twice: sweep it in one of the accelerators",
+                       text, param->key);
+    }
+    if (name < sizeof owner) snprintf(owner, sizeof owner, "%.*s", (int)name, layer);
+    RT_TRY(read_values(value, length, is_whole(owner, param->key, scene, kept), param, error));
+    sweep->param_count++;
+    sweep->count *= param->count; /* at most 2^16 by 2^8 */
+    if (sweep->count <= UINT16_MAX) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "'%.80s' stands for more than %d: sweep fewer values", text,
+                   UINT16_MAX);
+}
+
+RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *kept, RtSweep *sweep, RtError *error) {
+    const char *layer = text;
+    sweep->text = text;
+    sweep->count = 1;
+    sweep->param_count = 0;
+    if (scene && !rt_builtin_find(text)) return RT_OK;
+    for (const char *c = text; *c; c++) {
+        if (ends_layer(c, scene)) layer = c + 1;
+        if (*c != '=') continue;
+        size_t length = 0;
+        while (c[1 + length] && c[1 + length] != ',' && !ends_layer(c + 1 + length, scene)) length++;
+        RT_TRY(read_param(sweep, layer, (size_t)(c + 1 - text), length, scene, kept, error));
+    }
+    return RT_OK;
+}
+
+RtStatus rt_sweep_at(const RtSweep *sweep, uint32_t i, char *out, RtSwept *swept, RtError *error) {
+    uint32_t index[RT_MAX_SWEPT];
+    size_t from = 0, used = 0;
+    for (uint32_t p = sweep->param_count; p-- > 0; i /= sweep->params[p].count)
+        index[p] = i % sweep->params[p].count;
+    swept->count = sweep->param_count;
+    for (uint32_t p = 0; p < sweep->param_count && used < RT_MAX_SPEC_CHARS; p++) {
+        const RtSweptParam *param = &sweep->params[p];
+        strcpy(swept->keys[p], param->key);
+        strcpy(swept->values[p], param->values[index[p]]);
+        used += (size_t)snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%.*s%s", (int)(param->start - from),
+                                 sweep->text + from, swept->values[p]);
+        from = param->start + param->length;
+    }
+    if (used < RT_MAX_SPEC_CHARS)
+        used += (size_t)snprintf(out + used, RT_MAX_SPEC_CHARS - used, "%s", sweep->text + from);
+    if (used < RT_MAX_SPEC_CHARS) return RT_OK;
+    return rt_fail(error, RT_BAD_INPUT, "'%.80s...': a spec has at most %d characters", sweep->text,
+                   RT_MAX_SPEC_CHARS - 1);
+}
+
+void rt_sweep_base(const RtSweep *sweep, char *out, size_t room) {
+    const char *text = sweep->text;
+    size_t used = 0, from = 0, end = strlen(text);
+    for (uint32_t p = 0; p <= sweep->param_count; p++) {
+        const RtSweptParam *param = &sweep->params[p];
+        size_t to = p < sweep->param_count ? param->start - 1 - strlen(param->key) : end;
+        for (; from < to && used + 1 < room; from++) out[used++] = text[from];
+        if (p == sweep->param_count) break;
+        from = param->start + param->length;
+        /* "grid:" and what followed: the separator before goes, or the comma behind. */
+        if (text[from] == ',')
+            from++;
+        else if (used > 0)
+            used--;
+    }
+    out[used] = '\0';
+}

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the machine did for the rays of a workload: rounds of their own, after those that are timed, so that
+ * no time is changed by counting. As those they are interleaved. */
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "experiment/workload_state.h"
+#include "measure/machine.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { ROUNDS = 5 }; /* medians of these: instructions hardly differ, cycles and misses little */
+
+typedef struct Contest {
+    const RtHardware *hardware;
+    RtRunner *runners;        /* [count] */
+    RtHardwareCounts *counts; /* [count][ROUNDS] a ray */
+    uint32_t count;
+} Contest;
+
+static RtStatus run_counted(const Contest *contest, uint32_t i, int round, RtError *error) {
+    const RtRunner *runner = &contest->runners[i];
+    RtStatus status = RT_OK;
+    RtHardwareStart start = rt_hardware_start(contest->hardware);
+    for (uint32_t k = 0; k < runner->repeats && status == RT_OK; k++)
+        status = runner->run(runner->context, error);
+    RtHardwareCounts *counts = &contest->counts[(size_t)i * ROUNDS + (size_t)round];
+    *counts = rt_hardware_stop(contest->hardware, &start);
+    for (int e = 0; e < RT_HARDWARE_COUNT; e++) counts->of[e] /= runner->repeats * runner->work;
+    return status;
+}
+
+static RtStatus run_rounds(const Contest *contest, double least, RtError *error) {
+    for (uint32_t i = 0; i < contest->count; i++) {
+        double seconds, wall;
+        RT_TRY(rt_runner_time(&contest->runners[i], 1, &seconds, &wall, error)); /* warms up, too */
+        contest->runners[i].repeats = rt_runner_repeats(seconds, least);
+    }
+    for (int round = 0; round < ROUNDS; round++) {
+        for (uint32_t i = 0; i < contest->count; i++) RT_TRY(run_counted(contest, i, round, error));
+    }
+    return RT_OK;
+}
+
+/* Medians of the rounds; what was not counted in one of them is not known. */
+static RtHardwareCounts median_of(const RtHardwareCounts counts[ROUNDS]) {
+    RtHardwareCounts median = {.running = 1};
+    for (int e = 0; e < RT_HARDWARE_COUNT; e++) {
+        double values[ROUNDS], sum = 0;
+        for (int r = 0; r < ROUNDS; r++) sum += values[r] = counts[r].of[e];
+        median.of[e] = isnan(sum) ? (double)NAN : rt_median(values, ROUNDS);
+    }
+    for (int r = 0; r < ROUNDS; r++) median.running = fmin(median.running, counts[r].running);
+    return median;
+}
+
+/* What an accelerator of a plugin does is done in another process, which these counters do not see. */
+static bool is_seen(const RtWorkloadState *workload, uint32_t c) {
+    return workload->accels[c] && !rt_accel_is_away(workload->accels[c]);
+}
+
+static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, Contest *contest, RtError *error) {
+    const uint32_t candidates = workload->experiment->candidate_count;
+    RtStatus status = RT_OK;
+    for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
+        RtTimed timed = {.accel = workload->accels[c], .set = &workload->shares[c].set};
+        if (!is_seen(workload, c)) continue;
+        status =
+            rt_runner_open(&contest->runners[contest->count++], &timed, workload->options->timing, error);
+    }
+    if (status == RT_OK) status = run_rounds(contest, 1e-3 * workload->experiment->milliseconds, error);
+    for (uint32_t c = 0, i = 0; c < candidates && status == RT_OK; c++) {
+        if (!is_seen(workload, c)) continue;
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        cell->hardware.counts = median_of(&contest->counts[(size_t)ROUNDS * i++]);
+    }
+    for (uint32_t i = 0; i < contest->count; i++) rt_runner_close(&contest->runners[i]);
+    return status;
+}
+
+/* Where nothing can be counted the reason is what is known. */
+static RtStatus count_or_say_why(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    const uint32_t candidates = workload->experiment->candidate_count;
+    const RtHardwareEvent *events = workload->options->events;
+    RtHardware hardware;
+    RtError why = {RT_OK, ""};
+    bool available = rt_hardware_open(&hardware, events ? events : rt_hardware_events, &why) == RT_OK;
+    Contest contest = {.hardware = &hardware,
+                       .runners = rt_alloc(candidates, sizeof(RtRunner)),
+                       .counts = rt_alloc((size_t)ROUNDS * candidates, sizeof(RtHardwareCounts))};
+    RtStatus status = RT_OK;
+    if (!contest.runners || !contest.counts) {
+        status = rt_fail_memory(error, "hardware counters", candidates * sizeof(RtRunner));
+    } else if (available) {
+        status = count_all(workload, kind, &contest, error);
+    }
+    rt_hardware_close(&hardware);
+    rt_free(contest.runners);
+    rt_free(contest.counts);
+    for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        bool away = workload->accels[c] && !is_seen(workload, c);
+        if (available && !away) continue;
+        snprintf(cell->hardware.why, sizeof cell->hardware.why, "%.*s", RT_MAX_WHY - 1,
+                 away ? "a plugin lives in a process of its own, which is not counted" : why.message);
+        for (int e = 0; e < RT_HARDWARE_COUNT; e++) cell->hardware.counts.of[e] = (double)NAN;
+    }
+    return status;
+}
+
+RtStatus rt_workload_hardware(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    const RtMachine here = rt_machine_here();
+    RT_TRY(count_or_say_why(workload, kind, error));
+    for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        if (!workload->accels[c] || cell->hardware.known) continue;
+        cell->hardware.known = true;
+        cell->hardware.threads = rt_thread_count(workload->options->timing);
+        cell->hardware.machine = rt_results_machine(workload->results, &here);
+        RT_TRY(rt_workload_tell(workload, RT_EVENT_HARDWARE, c, kind, error));
+    }
+    return RT_OK;
+}

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "measure/machine.h"
+
+#include "accel/plugin.h"
+#include "build_info.h"
+#include "core/base/parallel.h"
+#include "core/text/json.h"
+
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+/* What /proc says of the first processor under `key`, "" where it does not tell. */
+static void read_cpu(const char *key, char *out, size_t room) {
+    char line[512];
+    out[0] = '\0';
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file && !out[0] && fgets(line, sizeof line, file)) {
+        char *value = strchr(line, ':');
+        if (strncmp(line, key, strlen(key)) != 0 || !value) continue;
+        line[strcspn(line, "\n")] = '\0';
+        snprintf(out, room, "%s", value + 1 + strspn(value + 1, " \t"));
+    }
+    if (file) fclose(file);
+}
+
+/* The first line of a file of the kernel's, "" where there is none. */
+static void read_line(const char *path, char *out, int room) {
+    out[0] = '\0';
+    FILE *file = fopen(path, "r");
+    if (file && !fgets(out, room, file)) out[0] = '\0';
+    if (file) fclose(file);
+    out[strcspn(out, "\n")] = '\0';
+}
+
+#define CPUFREQ "/sys/devices/system/cpu/cpu0/cpufreq/"
+
+static json_t *clock_mhz(void) {
+    char text[64];
+    read_line(CPUFREQ "cpuinfo_max_freq", text, sizeof text);
+    double mhz = 1e-3 * strtod(text, NULL);
+    if (!(mhz > 0)) {
+        read_cpu("cpu MHz", text, sizeof text);
+        mhz = strtod(text, NULL);
+    }
+    return mhz > 0 ? json_real(mhz) : json_null();
+}
+
+static const char *simd_level(void) {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("avx512f") ? "AVX-512"
+           : __builtin_cpu_supports("avx2")  ? "AVX2"
+           : __builtin_cpu_supports("avx")   ? "AVX"
+                                             : "SSE2";
+#elif defined(__aarch64__)
+    return "NEON";
+#else
+    return "";
+#endif
+}
+
+static json_t *text_or_null(const char *text) {
+    return *text ? json_string(text) : json_null();
+}
+
+json_t *rt_plugins_json(void) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < rt_plugin_count(); i++) {
+        const RtPlugin *plugin = rt_plugin_at(i);
+        json_t *names = json_array();
+        for (uint32_t n = 0; n < plugin->count; n++)
+            json_array_append_new(names, json_string(plugin->names[n]));
+        json_array_append_new(list, json_pack("{s:s, s:o, s:o}", "file", plugin->path, "hash",
+                                              rt_json_hex(plugin->fingerprint), "accelerators", names));
+    }
+    return list;
+}
+
+/* Of all bytes of the running program; 0 where it cannot be read. */
+static uint64_t program_hash(void) {
+    static uint64_t hash;
+    struct stat info;
+    int file = hash ? -1 : open("/proc/self/exe", O_RDONLY | O_CLOEXEC);
+    if (file < 0) return hash;
+    size_t size = fstat(file, &info) == 0 ? (size_t)info.st_size : 0;
+    void *bytes = mmap(NULL, size, PROT_READ, MAP_PRIVATE, file, 0);
+    if (bytes != MAP_FAILED) {
+        hash = XXH3_64bits(bytes, size);
+        munmap(bytes, size);
+    }
+    close(file);
+    return hash;
+}
+
+json_t *rt_machine_json(void) {
+    char cpu[256], governor[64], system[256] = "";
+    struct utsname name;
+    read_cpu("model name", cpu, sizeof cpu);
+    read_line(CPUFREQ "scaling_governor", governor, sizeof governor);
+    if (uname(&name) == 0) {
+        snprintf(system, sizeof system, "%.64s %.64s %.64s", name.sysname, name.release, name.machine);
+    }
+    json_t *machine =
+        json_pack("{s:o, s:o, s:o, s:o, s:i, s:o, s:s, s:s, s:s, s:s, s:b, s:o}", "cpu", text_or_null(cpu),
+                  "clock_mhz", clock_mhz(), "governor", text_or_null(governor), "simd",
+                  text_or_null(simd_level()), "processors", rt_processor_count(), "os", text_or_null(system),
+                  "compiler", RT_COMPILER, "flags", RT_FLAGS, "version", RT_VERSION, "commit", RT_COMMIT,
+                  "dirty", RT_DIRTY, "program", rt_json_hex(program_hash()));
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        char library[64];
+        if (!ops->library) continue;
+        ops->library(library, sizeof library);
+        json_object_set_new(machine, ops->name, text_or_null(library));
+    }
+    if (rt_plugin_count() > 0) json_object_set_new(machine, "plugins", rt_plugins_json());
+    return machine;
+}
+
+/* Programs of one clean commit differ at most by paths, and by compiler and flags, which are named. */
+const char *rt_build_alone(void) {
+    static char identity[1024];
+    char program[64] = "";
+    if (RT_DIRTY || strcmp(RT_COMMIT, "unknown") == 0)
+        snprintf(program, sizeof program, "%s (program %016" PRIx64 ")", RT_DIRTY ? " with changes" : "",
+                 program_hash());
+    snprintf(identity, sizeof identity, "%s %s%s, %s, %s", RT_VERSION, RT_COMMIT, program, RT_COMPILER,
+             RT_FLAGS);
+    return identity;
+}
+
+const char *rt_build_identity(void) {
+    static char identity[4096];
+    int used = snprintf(identity, sizeof identity, "%s", rt_build_alone());
+    for (size_t i = 0; i < rt_plugin_count() && used < (int)sizeof identity; i++) {
+        const RtPlugin *plugin = rt_plugin_at(i);
+        used += snprintf(identity + used, sizeof identity - (size_t)used, ", plugin of %s %016" PRIx64,
+                         plugin->names[0], plugin->fingerprint);
+    }
+    return identity;
+}
+
+RtMachine rt_machine_here(void) {
+    RtMachine machine = {"", ""};
+    read_cpu("model name", machine.cpu, sizeof machine.cpu);
+    if (gethostname(machine.host, sizeof machine.host - 1) != 0) machine.host[0] = '\0';
+    return machine;
+}

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "measure/previous_results.h"
+
+#include "core/base/file.h"
+#include "core/base/memory.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const result_files[] = {
+    RT_RUN_JOURNAL,    RT_VERIFY_JOURNAL, RT_MANIFEST, "counts.csv",   "times.csv",
+    "rounds.csv",      "published.csv",   "best.csv",  "published.md", "report.html",
+    "verify.csv",      "verify.md",       "tables.md", "tables.tex",   RT_DISTRIBUTIONS_CSV,
+    RT_HISTOGRAMS_CSV, RT_HARDWARE_CSV,   RT_FRAME_CSV};
+
+enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
+
+bool rt_earlier_is_result(const char *name) {
+    for (int i = 0; i < RESULT_FILES; i++) {
+        if (strcmp(name, result_files[i]) == 0) return true;
+    }
+    return strcmp(name, "experiment.yaml") == 0;
+}
+
+static bool has(const char *directory, const char *name) {
+    char path[RT_MAX_PATH];
+    return rt_path_join(directory, name, path, NULL) == RT_OK && rt_file_exists(path);
+}
+
+/* The journal that stands for results that are being removed. */
+static const char given_up[] = "{\"given_up\": true}\n";
+
+static bool is_given_up(const char *directory, const char *journal) {
+    char path[RT_MAX_PATH], *text;
+    size_t size;
+    if (rt_path_join(directory, journal, path, NULL) != RT_OK) return false;
+    if (rt_file_read(path, sizeof given_up - 1, &text, &size, NULL) != RT_OK) return false;
+    bool same = strcmp(text, given_up) == 0;
+    rt_free(text);
+    return same;
+}
+
+static const char *find_result(const char *directory) {
+    for (int i = 0; i < RESULT_FILES; i++) {
+        if (has(directory, result_files[i])) return result_files[i];
+    }
+    return NULL;
+}
+
+RtStatus rt_earlier_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
+                         RtError *error) {
+    const char *result = find_result(directory);
+    bool whole = has(directory, journal), removed = is_given_up(directory, journal);
+    bool finished = has(directory, RT_MANIFEST) && !removed;
+    *goes_on = whole && !removed && start == RT_START_RESUME;
+    if (!result || *goes_on || start == RT_START_ANEW) return RT_OK;
+    if (removed && start == RT_START_RESUME) return RT_OK;
+    if (whole) {
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s holds a run that %s: %s with --resume, start over and lose it with --force, or give "
+            "another --out",
+            directory, finished ? "is finished" : "was interrupted",
+            finished ? "write its tables again" : "go on");
+    }
+    return rt_fail(error, RT_BAD_INPUT,
+                   "%s holds results of another kind, or without their journal (%s, but no %s), which cannot "
+                   "be resumed: start over and lose them with --force, or give another --out",
+                   directory, result, journal);
+}
+
+static void remove_file(void *context, const char *path) {
+    (void)context;
+    remove(path);
+}
+
+static void remove_each(const char *directory, const char *folder, const char *suffix) {
+    char path[RT_MAX_PATH];
+    if (rt_path_join(directory, folder, path, NULL) == RT_OK)
+        rt_directory_each(path, suffix, remove_file, NULL);
+}
+
+RtStatus rt_earlier_remove(const char *directory, const char *journal, RtError *error) {
+    char path[RT_MAX_PATH];
+    if (!find_result(directory)) return RT_OK;
+    RT_TRY(rt_path_join(directory, journal, path, error));
+    RT_TRY(rt_file_write(path, given_up, sizeof given_up - 1, error));
+    for (int i = 0; i < RESULT_FILES; i++) {
+        if (strcmp(result_files[i], journal) == 0) continue;
+        if (rt_path_join(directory, result_files[i], path, NULL) == RT_OK) remove(path);
+    }
+    remove_each(directory, "plots", ".svg");
+    remove_each(directory, "plots", ".pdf");
+    remove_each(directory, "images", ".png");
+    return RT_OK;
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "measure/statistics.h"
+
+#include "core/base/elementary.h"
+#include "core/base/memory.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double WANTED = 0.95;
+
+static int compare(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median_of(const double *sorted, uint32_t count) {
+    return 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
+}
+
+static void sort(const double *values, uint32_t count, double *sorted) {
+    assert(count >= 1 && count <= RT_MAX_ROUNDS);
+    memcpy(sorted, values, count * sizeof(double));
+    qsort(sorted, count, sizeof(double), compare);
+}
+
+double rt_median(const double *values, uint32_t count) {
+    double sorted[RT_MAX_ROUNDS];
+    sort(values, count, sorted);
+    return median_of(sorted, count);
+}
+
+/* How many measurements lie outside the interval on either side, and with what probability it holds the
+ * median. 2^-RT_MAX_ROUNDS is still a normal number. */
+static uint32_t outside(uint32_t count, double wanted, double *coverage) {
+    assert(count >= 1 && count <= RT_MAX_ROUNDS);
+    double probability = ldexp(1, -(int)count), below = probability;
+    uint32_t out = 0;
+    for (;; out++) {
+        *coverage = 1 - 2 * below;
+        probability *= (double)(count - out) / (double)(out + 1);
+        below += probability;
+        if (1 - 2 * below < wanted) return out;
+    }
+}
+
+double rt_interval_coverage(uint32_t count) {
+    double coverage;
+    outside(count, WANTED, &coverage);
+    return coverage;
+}
+
+RtEstimate rt_estimate(const double *values, uint32_t count) {
+    return rt_estimate_at(values, count, WANTED);
+}
+
+RtEstimate rt_estimate_at(const double *values, uint32_t count, double coverage) {
+    double sorted[RT_MAX_ROUNDS], covered;
+    sort(values, count, sorted);
+    uint32_t out = outside(count, coverage, &covered);
+    return (RtEstimate){.median = median_of(sorted, count),
+                        .low = sorted[out],
+                        .high = sorted[count - 1 - out],
+                        .least = sorted[0]};
+}
+
+uint32_t rt_rounds_for(double coverage) {
+    double covered;
+    uint32_t count = 1;
+    while (count < RT_MAX_ROUNDS && outside(count, coverage, &covered) == 0) count++;
+    return count;
+}
+
+double rt_coverage_of_each(uint32_t count) {
+    return 1 - (1 - WANTED) / (count > 1 ? count : 1);
+}
+
+bool rt_estimate_holds(const RtEstimate *estimate, double value) {
+    return estimate->low <= value && value <= estimate->high;
+}
+
+double rt_estimate_width(const RtEstimate *estimate) {
+    return fmax(estimate->high - estimate->median, estimate->median - estimate->low) / estimate->median;
+}
+
+RtEstimate rt_estimate_ratio(const double *over, const double *under, uint32_t count) {
+    double ratios[RT_MAX_ROUNDS];
+    assert(count >= 1 && count <= RT_MAX_ROUNDS);
+    for (uint32_t i = 0; i < count; i++) ratios[i] = over[i] / under[i];
+    return rt_estimate(ratios, count);
+}
+
+/* ---- unpaired ---- */
+
+/* From so many measurements of both together on, the normal distribution is near enough. */
+enum { UNPAIRED_EXACT = 60, NORMAL_STEPS = 300 };
+
+/* How many of the smallest of n * m pairs lie below the interval: the largest k with P(U < k) <= tail, where
+ * U, the number of pairs in which one of m is less than one of n, has its distribution if both are alike. The
+ * number of orders with U = u is built up one element of m after the other (the Gaussian binomial
+ * coefficients). */
+static uint64_t outside_exactly(uint32_t n, uint32_t m, double tail) {
+    double orders[UNPAIRED_EXACT * UNPAIRED_EXACT / 4 + 1] = {1}, all = 0, below = 0;
+    const uint32_t pairs = n * m;
+    for (uint32_t j = 1; j <= m; j++) {
+        for (uint32_t u = pairs; u >= n + j; u--) orders[u] -= orders[u - n - j];
+        for (uint32_t u = j; u <= pairs; u++) orders[u] += orders[u - j];
+    }
+    for (uint32_t u = 0; u <= pairs; u++) all += orders[u];
+    for (uint32_t u = 0; u <= pairs; u++) {
+        below += orders[u];
+        if (below > tail * all) return u;
+    }
+    return pairs;
+}
+
+/* How much of the normal distribution lies above z >= 0: the integral of its density, by Simpson's rule. */
+static double normal_tail(double z) {
+    const double e = 2.7182818284590452, root = 2.5066282746310002, step = 12.0 / (2 * NORMAL_STEPS);
+    double sum = 0;
+    for (int i = 0; i <= 2 * NORMAL_STEPS; i++) {
+        double x = z + i * step, weight = i == 0 || i == 2 * NORMAL_STEPS ? 1 : i % 2 ? 4 : 2;
+        sum += weight * rt_power(e, -0.5 * x * x);
+    }
+    return sum * step / 3 / root;
+}
+
+/* By the normal approximation, z by the bisection of its tail. */
+static uint64_t outside_nearly(double n, double m, double tail) {
+    double lo = 0, hi = 40;
+    for (int i = 0; i < 60; i++) {
+        double z = 0.5 * (lo + hi);
+        if (normal_tail(z) > tail)
+            lo = z;
+        else
+            hi = z;
+    }
+    double k = floor(0.5 * n * m - hi * sqrt(n * m * (n + m + 1) / 12));
+    return k > 0 ? (uint64_t)k : 0;
+}
+
+RtStatus rt_estimate_unpaired(const double *over, uint32_t over_count, const double *under,
+                              uint32_t under_count, double coverage, RtEstimate *estimate, RtError *error) {
+    assert(over_count >= 1 && under_count >= 1);
+    size_t count = (size_t)over_count * under_count, used = 0;
+    double *ratios = rt_alloc(count, sizeof(double)), tail = 0.5 * (1 - coverage);
+    if (!ratios) return rt_fail_memory(error, "ratios", count * sizeof(double));
+    for (uint32_t i = 0; i < over_count; i++) {
+        for (uint32_t k = 0; k < under_count; k++) ratios[used++] = over[i] / under[k];
+    }
+    qsort(ratios, count, sizeof(double), compare);
+    uint64_t out = over_count + under_count <= UNPAIRED_EXACT ? outside_exactly(over_count, under_count, tail)
+                                                              : outside_nearly(over_count, under_count, tail);
+    if (out > 0) out--; /* the k-th smallest is an end of it */
+    *estimate = (RtEstimate){.median = 0.5 * (ratios[(count - 1) / 2] + ratios[count / 2]),
+                             .low = ratios[out],
+                             .high = ratios[count - 1 - out],
+                             .least = ratios[0]};
+    rt_free(ratios);
+    return RT_OK;
+}

@@ -1,0 +1,253 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Ray sets. The sink of a frame appends each ray to the list of its tile and kind; the lists are joined in
+ * the order of tiles, so threads cannot change a set. Diffuse and random rays draw their numbers from one
+ * stream a ray, numbered by kind and index. */
+#include "rays/rayset.h"
+
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
+#include "core/base/random.h"
+#include "render/illumination.h"
+
+#include <assert.h>
+#include <string.h>
+#include <xxhash.h>
+
+_Static_assert(sizeof(RtRay) == 10 * sizeof(uint32_t), "a ray has no padding, so its bytes may be hashed");
+
+/* Rays made by one item of parallel work. */
+#define CHUNK 4096
+
+/* The rays of one tile, by kind. */
+typedef struct TileRays {
+    uint32_t count[RT_RAY_KIND_COUNT], capacity[RT_RAY_KIND_COUNT];
+    RtRay *rays[RT_RAY_KIND_COUNT];
+} TileRays;
+
+typedef struct Recorder {
+    const RtRecording *recording;
+    const RtScene *scene;
+    const RtFrame *frame;
+    TileRays *tiles; /* [tile_count] */
+    size_t tile_count;
+    RtRaySet *sets; /* [RT_RAY_KIND_COUNT] */
+} Recorder;
+
+static uint64_t stream_of(RtRayKind kind, uint64_t index) {
+    return (uint64_t)kind << 56 | index;
+}
+
+RtStatus rt_rayset_init(RtRaySet *set, RtRayKind kind, uint64_t count, RtError *error) {
+    *set = (RtRaySet){.kind = kind, .count = count, .rays = rt_alloc_unset(count, sizeof(RtRay))};
+    return set->rays ? RT_OK : rt_fail_memory(error, "a ray set", count * sizeof(RtRay));
+}
+
+void rt_rayset_seal(RtRaySet *set) {
+    set->fingerprint = XXH3_64bits(set->rays, set->count * sizeof(RtRay));
+}
+
+/* ---- rays of the frame ---- */
+
+static RtStatus record(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error) {
+    Recorder *recorder = context;
+    assert(tile < recorder->tile_count);
+    TileRays *to = &recorder->tiles[tile];
+    for (size_t i = 0; i < count; i++) {
+        uint32_t kind = rays[i].kind;
+        RT_TRY(rt_reserve(&to->rays[kind], &to->capacity[kind], (uint64_t)to->count[kind] + 1, sizeof(RtRay),
+                          error));
+        to->rays[kind][to->count[kind]++] = rays[i];
+    }
+    return RT_OK;
+}
+
+/* Joins the tiles' lists of one kind, and frees them as it goes. */
+static RtStatus join(Recorder *recorder, RtRayKind kind, RtError *error) {
+    uint64_t count = 0;
+    for (size_t i = 0; i < recorder->tile_count; i++) count += recorder->tiles[i].count[kind];
+    RtRaySet *set = &recorder->sets[kind];
+    RT_TRY(rt_rayset_init(set, kind, count, error));
+    uint64_t used = 0;
+    for (size_t i = 0; i < recorder->tile_count; i++) {
+        TileRays *tile = &recorder->tiles[i];
+        if (tile->count[kind] == 0) continue;
+        memcpy(set->rays + used, tile->rays[kind], tile->count[kind] * sizeof(RtRay));
+        used += tile->count[kind];
+        rt_free(tile->rays[kind]);
+        tile->rays[kind] = NULL;
+    }
+    return RT_OK;
+}
+
+/* ---- diffuse rays ---- */
+
+/* The ray that bounces where `primary` hit, off the side it came from. */
+static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtCrossing *room) {
+    uint32_t sample = primary->source;
+    RtHit hit = {recorder->frame->depth[sample], recorder->frame->object[sample]};
+    RtSurface surface = rt_surface(recorder->scene, primary, hit, room);
+    RtRandom random = rt_random(recorder->recording->seed, stream_of(RT_RAY_DIFFUSE, sample));
+    return (RtRay){.org = rt_narrow(rt_add_scaledd(surface.point, surface.side, surface.offset)),
+                   .dir = rt_narrow(rt_random_cosine(&random, surface.side)),
+                   .tmin = 0,
+                   .tmax = INFINITY,
+                   .kind = RT_RAY_DIFFUSE,
+                   .source = sample};
+}
+
+static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
+    const RtRaySet *primary = &recorder->sets[RT_RAY_PRIMARY];
+    RtRaySet *set = &recorder->sets[RT_RAY_DIFFUSE];
+    RT_TRY(rt_rayset_init(set, RT_RAY_DIFFUSE, primary->count, error));
+    set->count = 0;
+    RtCrossing *room;
+    RT_TRY(rt_hit_room(&recorder->scene->geometry, &room, error));
+    for (uint64_t i = 0; i < primary->count; i++) {
+        if (recorder->frame->object[primary->rays[i].source] == RT_NO_OBJECT) continue;
+        RtRay ray = bounce(recorder, &primary->rays[i], room);
+        if (rt_ray_is_valid(&ray)) set->rays[set->count++] = ray;
+    }
+    rt_free(room);
+    return RT_OK;
+}
+
+/* The same rays, to be asked whether anything lies on them. */
+static RtStatus make_occlusion(Recorder *recorder, RtError *error) {
+    const RtRaySet *diffuse = &recorder->sets[RT_RAY_DIFFUSE];
+    RtRaySet *set = &recorder->sets[RT_RAY_OCCLUSION];
+    RT_TRY(rt_rayset_init(set, RT_RAY_OCCLUSION, diffuse->count, error));
+    for (uint64_t i = 0; i < diffuse->count; i++) {
+        set->rays[i] = diffuse->rays[i];
+        set->rays[i].kind = RT_RAY_OCCLUSION;
+    }
+    return RT_OK;
+}
+
+/* ---- random rays ---- */
+
+static RtVec3 point_of_sphere(RtRandom *random, const RtBall *sphere) {
+    RtVec3 p = rt_narrow(rt_add_scaledd(sphere->center, rt_random_direction(random), sphere->radius));
+    for (int a = 0; a < 3; a++) {
+        p.at[a] = rt_maxf(-RT_MAX_COORDINATE, rt_minf(p.at[a], RT_MAX_COORDINATE));
+    }
+    return p;
+}
+
+RtBall rt_bounding_sphere(const RtBox *box) {
+    if (rt_box_is_empty(*box)) return (RtBall){{0, 0, 0}, 1};
+    RtVec3d center = rt_widen(rt_box_center(*box));
+    return (RtBall){center, rt_lengthd(rt_subd(rt_widen(box->hi), center))};
+}
+
+RtRay rt_sphere_chord(const RtBall *sphere, RtRandom *random) {
+    RtVec3 from = point_of_sphere(random, sphere);
+    RtVec3 to = point_of_sphere(random, sphere);
+    RtVec3 dir = rt_sub(to, from);
+    /* So small a sphere, or so far from the origin, that its points coincide in float32: any direction. */
+    if (dir.x == 0 && dir.y == 0 && dir.z == 0) dir = rt_narrow(rt_random_direction(random));
+    return (RtRay){.org = from, .dir = dir, .tmin = 0, .tmax = INFINITY, .kind = RT_RAY_RANDOM};
+}
+
+RtRay rt_random_chord(const RtBox *box, RtRandom *random) {
+    RtBall sphere = rt_bounding_sphere(box);
+    return rt_sphere_chord(&sphere, random);
+}
+
+static RtStatus make_chunk(void *context, size_t item, int thread, RtError *error) {
+    (void)thread, (void)error;
+    Recorder *recorder = context;
+    RtRaySet *set = &recorder->sets[RT_RAY_RANDOM];
+    for (uint64_t i = (uint64_t)item * CHUNK; i < set->count && i < (uint64_t)(item + 1) * CHUNK; i++) {
+        RtRandom random = rt_random(recorder->recording->seed, stream_of(RT_RAY_RANDOM, i));
+        set->rays[i] = rt_random_chord(&recorder->scene->geometry.box, &random);
+    }
+    return RT_OK;
+}
+
+static RtStatus make_random(Recorder *recorder, RtError *error) {
+    uint64_t count = recorder->scene->geometry.object_count ? recorder->recording->random : 0;
+    RT_TRY(rt_rayset_init(&recorder->sets[RT_RAY_RANDOM], RT_RAY_RANDOM, count, error));
+    return rt_parallel_for((count + CHUNK - 1) / CHUNK, recorder->recording->threads, make_chunk, recorder,
+                           error);
+}
+
+/* ---- recording ---- */
+
+static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *frame, RtError *error) {
+    RtFrameOptions options = {.depth = recorder->recording->depth,
+                              .threads = recorder->recording->threads,
+                              .light_from_outside = recorder->recording->light_from_outside,
+                              .sink = record,
+                              .sink_context = recorder};
+    RT_TRY(rt_frame_trace(frame, accel, &options, error));
+    recorder->frame = frame;
+    for (RtRayKind kind = RT_RAY_PRIMARY; kind <= RT_RAY_TRANSMISSION; kind++) {
+        RT_TRY(join(recorder, kind, error));
+    }
+    RT_TRY(make_diffuse(recorder, error));
+    RT_TRY(make_occlusion(recorder, error));
+    RT_TRY(make_random(recorder, error));
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_seal(&recorder->sets[kind]);
+    return RT_OK;
+}
+
+RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording,
+                          RtError *error) {
+    const RtSampling *sampling = &accel->scene->sampling;
+    Recorder recorder = {
+        .recording = recording, .scene = accel->scene, .tile_count = rt_tile_count(sampling), .sets = sets};
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sets[kind] = (RtRaySet){.kind = (RtRayKind)kind};
+    recorder.tiles = rt_alloc(recorder.tile_count, sizeof(TileRays));
+    if (!recorder.tiles) {
+        return rt_fail_memory(error, "the ray lists of tiles", recorder.tile_count * sizeof(TileRays));
+    }
+    RtFrame frame = {0};
+    RtStatus status = make_sets(&recorder, accel, &frame, error);
+    rt_frame_clear(&frame);
+    for (size_t i = 0; i < recorder.tile_count; i++) {
+        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_free(recorder.tiles[i].rays[kind]);
+    }
+    rt_free(recorder.tiles);
+    for (int kind = 0; status != RT_OK && kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
+    return status;
+}
+
+/* ---- thinning ---- */
+
+RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtError *error) {
+    assert(stride > 0);
+    RT_TRY(rt_rayset_init(to, from->kind, (from->count + stride - 1) / stride, error));
+    for (uint64_t i = 0; i < to->count; i++) to->rays[i] = from->rays[i * stride];
+    rt_rayset_seal(to);
+    return RT_OK;
+}
+
+/* Where the run of a group of `stride` runs starts, in runs from the start of the group. At random, for a
+ * constant would pick columns of the image where `stride` divides the runs of a row. */
+static uint64_t pick(uint64_t group, uint64_t stride) {
+    RtRandom random = rt_random(0, group);
+    return (uint64_t)rt_random_bits(&random) * stride >> 32;
+}
+
+RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error) {
+    assert(limit > 0 && run > 0);
+    uint64_t stride = (from->count + limit - 1) / limit;
+    if (run > limit / 64) run = limit / 64;
+    if (run > RT_TILE_BLOCK) run -= run % RT_TILE_BLOCK;
+    if (stride <= 1 || run <= 1) return rt_rayset_thin(from, stride ? stride : 1, to, error);
+    RT_TRY(rt_rayset_init(to, from->kind, limit, error));
+    to->count = 0;
+    for (uint64_t group = 0; group * stride * run < from->count; group++) {
+        uint64_t first = (group * stride + pick(group, stride)) * run;
+        for (uint64_t i = first; i < first + run && i < from->count && to->count < limit; i++) {
+            to->rays[to->count++] = from->rays[i];
+        }
+    }
+    rt_rayset_seal(to);
+    return RT_OK;
+}
+
+void rt_rayset_clear(RtRaySet *set) {
+    rt_free(set->rays);
+    *set = (RtRaySet){.kind = set->kind};
+}

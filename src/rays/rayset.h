@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Ray sets: rays of one kind recorded from one scene, to be replayed to every accelerator alike.
+ *
+ * Primary, shadow, reflection and transmission rays are those of a frame of the scene, in the order in which
+ * the frame's tiles produce them (tile after tile, each along a Z-order curve: render/tiles.h), whatever the
+ * number of threads: neighbours in a set start and end close to one another where the kind allows it. Diffuse
+ * rays start at the primary hits, cosine-distributed about the normal; random rays are chords of the scene's
+ * bounding sphere between two uniform points of it. Occlusion rays are the diffuse ones, of another kind. */
+#ifndef RT_RAYS_RAYSET_H
+#define RT_RAYS_RAYSET_H
+
+#include "core/base/random.h"
+#include "render/frame.h"
+
+#define RT_MAX_RAYS_A_KIND UINT64_C(100000000)
+
+typedef struct RtRaySet {
+    RtRayKind kind;
+    uint64_t count;
+    RtRay *rays;          /* [count], owned; every ray is valid */
+    uint64_t fingerprint; /* XXH3 of the rays: equal sets, equal fingerprint, on every machine */
+} RtRaySet;
+
+typedef struct RtRecording {
+    uint32_t depth;          /* levels of the ray tree */
+    uint64_t seed;           /* of diffuse and random rays */
+    uint64_t random;         /* number of random rays */
+    int threads;             /* 0 = all processors; does not change the sets */
+    bool light_from_outside; /* as in RtFrameOptions */
+} RtRecording;
+
+/* Fills sets[RT_RAY_KIND_COUNT], indexed by kind; a kind that the scene does not produce gets an empty set.
+ * `accel` answers the recorded rays (any exact one will do: hits are the same). Free each with
+ * rt_rayset_clear. */
+RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording, RtError *error);
+
+/* Keeps each `stride`th ray, starting with the first; 1 keeps all. */
+RtStatus rt_rayset_thin(const RtRaySet *from, uint64_t stride, RtRaySet *to, RtError *error);
+
+/* At most `limit` rays, evenly spread, in runs of `run` neighbours: of every ceil(count / limit) runs
+ * one is kept. Runs of 1 thin the set as above: the widest spread, for counting. Longer ones, up to a
+ * 64th of `limit`, are picked at random within their group and keep the coherence that packets and caches
+ * live on, for timing; from 64 rays on they are cut to a multiple of that, so that of primary rays whole
+ * blocks of 8 x 8 samples are kept. */
+RtStatus rt_rayset_limit(const RtRaySet *from, uint64_t limit, uint64_t run, RtRaySet *to, RtError *error);
+
+/* A set of `count` rays for the caller to fill, all of them zero, and what is to follow: its fingerprint. */
+RtStatus rt_rayset_init(RtRaySet *set, RtRayKind kind, uint64_t count, RtError *error);
+void rt_rayset_seal(RtRaySet *set);
+
+void rt_rayset_clear(RtRaySet *set);
+
+/* The sphere through the corners of `box`; the unit sphere for the empty box. */
+RtBall rt_bounding_sphere(const RtBox *box);
+
+/* One random ray: from one uniform point of `sphere` towards another, dir not normalised, so that t = 1 is
+ * the other point; tmin 0, tmax infinite. Such chords are uniformly distributed lines: by direction, and
+ * across it by area. */
+RtRay rt_sphere_chord(const RtBall *sphere, RtRandom *random);
+
+/* The same of the bounding sphere of `box`. */
+RtRay rt_random_chord(const RtBox *box, RtRandom *random);
+
+#endif

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What whole frames cost, of results that are made by hand. */
+#include "testing.h"
+
+#include "core/base/memory.h"
+#include "experiment/frame_table.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A scene with 100 primary, 300 shadow and 100 reflection rays; and one with primary rays alone. */
+static RtExperiment *e;
+static RtResults results;
+enum { BRUTE, GRID, CLUSTERS, LIGHT, WIDE, IDEAL };
+
+static void add(const char *spec, const char *group) {
+    RtCandidate candidate = {.ray_stride = 1};
+    strcpy(candidate.spec, spec);
+    strcpy(candidate.group, group);
+    assert_ok(rt_experiment_add_accels(e, &candidate, error));
+}
+
+/* One ray of each kind takes `ns` and `tests`; `shadow` ns a shadow ray. */
+static void set(uint32_t t, uint32_t c, const char *spec, double ns, double shadow, uint64_t tests) {
+    RtBuildResult *build = rt_build_at(&results, t, c);
+    *build = (RtBuildResult){.known = true, .counts = true, .seconds = 0.002};
+    strcpy(build->spec, spec);
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        const RtRayKind kind = (RtRayKind)k;
+        const double time = 1e-9 * (kind == RT_RAY_SHADOW ? shadow : ns);
+        if (results.workloads[t].rays[k] == 0) continue;
+        *rt_cell_at(&results, t, c, kind) = (RtCell){.counted = true,
+                                                     .timed = true,
+                                                     .tally = {.rays = 10, .object_tests = 10 * tests},
+                                                     .seconds = {time, time, time, time}};
+    }
+}
+
+static int set_up(void **state) {
+    (void)state;
+    RtWorkload scene = {.depth = 1};
+    char where[RT_MAX_LABEL];
+    e = rt_alloc(1, sizeof *e);
+    if (!e) return -1;
+    rt_experiment_init(e);
+    strcpy(e->name, "frames");
+    strcpy(e->frame.without, "brute");
+    strcpy(e->frame.among, "the six");
+    assert_ok(rt_experiment_add_scenes(e, &scene, "balls", "", error));
+    assert_ok(rt_experiment_add_scenes(e, &scene, "tetra", "", error));
+    add("brute", "none");
+    add("grid", "the six");
+    add("clusters", "the six");
+    add("light+wide", "the six");
+    add("wide", "newer");
+    add("ideal", "least");
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    for (uint32_t t = 0; t < 2; t++) {
+        results.workloads[t].known = true;
+        results.workloads[t].width = results.workloads[t].height = 10;
+        results.workloads[t].rays[RT_RAY_PRIMARY] = 100;
+    }
+    results.workloads[0].rays[RT_RAY_SHADOW] = 300;
+    results.workloads[0].rays[RT_RAY_REFLECTION] = 100;
+    results.workloads[0].rays[RT_RAY_RANDOM] = 1000; /* not of a frame */
+    for (uint32_t t = 0; t < 2; t++) {
+        set(t, BRUTE, "brute:lanes=1", 8000, 8000, 600);
+        set(t, GRID, "grid:density=4", 80, 400, 20);
+        set(t, CLUSTERS, "clusters:extent=box", 160, 160, 3);
+        set(t, LIGHT, "light:cells=0+wide:width=8", 40, 10, 2);
+        set(t, WIDE, "wide:width=8", 40, 40, 6);
+        set(t, IDEAL, "ideal", 1, 1, 1);
+    }
+    return 0;
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    rt_results_clear(&results);
+    rt_free(e);
+    return 0;
+}
+
+#define FRAME_TEST(name) RT_TEST_WITH(name, set_up, tear_down)
+
+static void expect_sentence(uint32_t t, const char *sentence) {
+    char text[RT_MAX_FRAME_SENTENCE];
+    rt_frame_sentence(&results, t, text);
+    assert_string_equal(text, sentence);
+}
+
+/* Frames take 4 ms, 0.136, 0.08, 0.011 and 0.02 ms. */
+FRAME_TEST(a_frame_weighs_each_kind_of_ray_by_its_set_and_an_overlay_gains_over_what_lies_below) {
+    expect_sentence(0,
+                    "On balls, clusters helps most of the six: 50.0 times as fast, with 200 times fewer "
+                    "object tests than brute. grid follows with 29.4 times. Beside wide alone, light+wide is "
+                    "1.82 times as fast. The fastest structure is light+wide: 364 times as fast as brute.");
+    expect_sentence(
+        1, "On tetra, grid helps most of the six: 100 times as fast, with 30.0 times fewer object "
+           "tests than brute. clusters follows with 50.0 times. Beside wide alone, light+wide is 1.00 "
+           "times as fast. The fastest structure is light+wide: 200 times as fast as brute.");
+}
+
+FRAME_TEST(an_accelerator_without_one_kind_of_ray_has_no_frame_and_does_not_win) {
+    rt_cell_at(&results, 0, CLUSTERS, RT_RAY_REFLECTION)->timed = false;
+    rt_cell_at(&results, 0, LIGHT, RT_RAY_SHADOW)->timed = false;
+    expect_sentence(0,
+                    "On balls, grid helps most of the six: 29.4 times as fast, with 30.0 times fewer object "
+                    "tests than brute. The fastest structure is wide: 200 times as fast as brute.");
+}
+
+FRAME_TEST(an_overlay_may_help_most) {
+    for (uint32_t t = 0; t < 2; t++) set(t, WIDE, "wide:width=8", 4000, 4000, 6);
+    expect_sentence(
+        1, "On tetra, grid helps most of the six: 100 times as fast, with 30.0 times fewer object "
+           "tests than brute. clusters follows with 50.0 times. Beside wide alone, light+wide is 100 "
+           "times as fast. The fastest structure is light+wide: 200 times as fast as brute.");
+    expect_sentence(0, "On balls, light+wide helps most of the six: 182 times as fast, with 3.00 times fewer "
+                       "object tests than wide. Compared with brute, clusters comes with 50.0 times, grid "
+                       "with 29.4. The fastest "
+                       "structure is light+wide: 364 times as fast as brute.");
+}
+
+FRAME_TEST(frames_whose_intervals_overlap_are_said_to_be_level) {
+    for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++)
+        rt_cell_at(&results, 1, CLUSTERS, (RtRayKind)k)->seconds.low = 0;
+    expect_sentence(
+        1, "On tetra, grid helps most of the six: 100 times as fast, with 30.0 times fewer object "
+           "tests than brute. clusters follows with 50.0 times (level: the intervals overlap). Beside wide "
+           "alone, light+wide is 1.00 times as fast. The fastest structure is light+wide: 200 times as "
+           "fast as brute.");
+}
+
+static bool is_unknown(double value) {
+    return isnan(value) ? true : false;
+}
+
+FRAME_TEST(an_overlay_whose_base_is_not_measured_has_no_gain_and_what_is_not_timed_has_no_interval) {
+    RtFrameRow row = {.results = &results};
+    const RtTable table = rt_frame_table(&row);
+    rt_build_at(&results, 0, WIDE)->spec[0] = '\0';
+    rt_cell_at(&results, 0, GRID, RT_RAY_SHADOW)->timed = false;
+    assert_non_null(table.row(table.context, LIGHT));
+    assert_true(is_unknown(row.gain) && is_unknown(row.tests_gain));
+    assert_int_equal(row.winner, CLUSTERS);
+    assert_non_null(table.row(table.context, GRID));
+    assert_true(is_unknown(row.cost[RT_FRAME_ALL].low) && is_unknown(row.cost[RT_FRAME_ALL].high));
+    assert_false(is_unknown(row.cost[RT_FRAME_PRIMARY].low));
+}
+
+FRAME_TEST(where_nothing_is_timed_object_tests_decide) {
+    e->count_only = true;
+    expect_sentence(1, "On tetra, clusters helps most of the six: 200 times fewer object tests than brute. "
+                       "grid follows with 30.0 times. Beside wide alone, light+wide is 3.00 times better.");
+}
+
+FRAME_TEST(a_thinned_set_is_told_as_a_part_of_a_frame) {
+    char text[RT_MAX_FRAME_SENTENCE];
+    rt_frame_title(&results, 0, text);
+    assert_string_equal(text, "0 objects, a frame of 10x10: 100 primary, 300 shadow and 100 secondary rays");
+    results.workloads[0].rays[RT_RAY_PRIMARY] = 50;
+    rt_frame_title(&results, 0, text);
+    assert_non_null(strstr(text, "a part of a frame of 10x10: 50 primary"));
+}
+
+static void refused(const char *why) {
+    char where[RT_MAX_LABEL];
+    RtError error = {RT_OK, ""};
+    assert_int_equal(rt_experiment_check(e, where, &error), RT_BAD_INPUT);
+    assert_string_equal(where, "frame");
+    if (!strstr(error.message, why)) fail_msg("%s", error.message);
+}
+
+FRAME_TEST(a_frame_needs_its_accelerator_its_group_and_its_kinds_of_rays) {
+    strcpy(e->frame.without, "none");
+    refused("'none' is not the label of an accelerator");
+    strcpy(e->frame.without, "brute");
+    strcpy(e->frame.among, "nobody");
+    refused("'nobody' is not the group");
+    strcpy(e->frame.among, "the six");
+    e->kind_count = 1;
+    refused("a frame has shadow rays, too");
+}
+
+RT_TESTS(frame_table, NULL, NULL)

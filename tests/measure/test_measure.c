@@ -1,0 +1,420 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* measure/measure.h and workload.h: what is counted is the sum over threads and is compared with right
+ * answers; thinned candidates are timed against the baseline on their own rays. */
+#include "testing.h"
+
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "experiment/workload.h"
+#include "measure/measure.h"
+#include "scenes/open.h"
+
+#include <string.h>
+
+/* The spheres of balls:size=1 are 10, and one polygon; brute tests each for every ray. */
+RT_TEST(a_count_is_the_sum_over_threads_and_finds_wrong_answers) {
+    RtScene scene;
+    RtAccel *accel;
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RtRecording recording = {.depth = 1, .seed = 1, .random = 10000, .threads = 1};
+    RtCount count;
+    assert_ok(rt_scene_open("balls:size=1", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 8, 8, 1, false, error));
+    assert_ok(rt_accel_open("brute", &scene, &accel, error));
+    assert_ok(rt_rayset_record(sets, accel, &recording, error));
+    const RtRaySet *set = &sets[RT_RAY_RANDOM];
+    RtHit *expected = rt_alloc(set->count, sizeof(RtHit));
+    assert_ok(rt_measure_answers(accel, set, 2, expected, error));
+    for (int threads = 1; threads <= 3; threads++) {
+        assert_ok(rt_measure_count(accel, set, expected, threads, &count, error));
+        assert_int_equal(count.tally.rays, 10000);
+        assert_int_equal(count.tally.object_tests, 10000u * scene.geometry.object_count);
+        assert_int_equal(count.differ, 0);
+    }
+    expected[42].object ^= 1;
+    expected[4242].t += 1;
+    assert_ok(rt_measure_count(accel, set, expected, 2, &count, error));
+    assert_int_equal(count.differ, expected[4242].object == RT_NO_OBJECT ? 1 : 2);
+    assert_int_equal(count.first, 42);
+    rt_free(expected);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+/* Where `occluded` is asked, t does not matter, and a ray that hits is done before every object was tested.
+ */
+RT_TEST(shadow_and_occlusion_rays_are_asked_for_any_hit) {
+    RtScene scene;
+    RtAccel *accel;
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RtRecording recording = {.depth = 1, .seed = 1, .random = 100, .threads = 1};
+    assert_ok(rt_scene_open("balls:size=1", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 16, 16, 1, false, error));
+    assert_ok(rt_accel_open("brute", &scene, &accel, error));
+    assert_ok(rt_rayset_record(sets, accel, &recording, error));
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
+        RtCount count;
+        uint64_t hits = 0, tests = sets[k].count * scene.geometry.object_count;
+        RtHit *expected = rt_alloc(sets[k].count, sizeof(RtHit));
+        assert_ok(rt_measure_answers(accel, &sets[k], 1, expected, error));
+        for (uint64_t i = 0; i < sets[k].count; i++) {
+            hits += expected[i].object != RT_NO_OBJECT;
+            expected[i].t = -1;
+        }
+        assert_ok(rt_measure_count(accel, &sets[k], expected, 1, &count, error));
+        bool any = k == RT_RAY_SHADOW || k == RT_RAY_OCCLUSION;
+        assert_int_equal(count.tally.hits, hits);
+        assert_int_equal(count.differ, any ? 0 : sets[k].count);
+        assert_true((count.tally.object_tests < tests) == (any && hits > 0));
+        rt_free(expected);
+        rt_rayset_clear(&sets[k]);
+    }
+    rt_accel_destroy(accel);
+    rt_scene_clear(&scene);
+}
+
+/* Times `spec` on every 64th primary ray of a cloud against `baseline` on all, and gives the cell. In a frame
+ * of 8 x 8 that is the ray of the upper left corner, which passes by everything. */
+static RtCell time_thinned(const char *baseline, const char *spec) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    RtResults results;
+    char where[RT_MAX_LABEL];
+    assert_non_null(e);
+    rt_experiment_init(e);
+    strcpy(e->name, "thinned");
+    e->milliseconds = 1;
+    e->kind_count = 1;
+    const RtWorkload scene = {.depth = 1, .width = 8, .height = 8};
+    e->candidate_count = 2;
+    e->candidates[0] = (RtCandidate){.label = "all", .ray_stride = 1};
+    e->candidates[1] = (RtCandidate){.label = "some", .ray_stride = 64};
+    strcpy(e->candidates[0].spec, baseline);
+    strcpy(e->candidates[1].spec, spec);
+    assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    assert_ok(rt_workload_run(&results, 0, &options, error));
+    RtCell cell = *rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    assert_true(fabs(rt_results_total(&results, 0, 1).ratio / cell.ratio.median - 1) < 1e-9);
+    rt_results_clear(&results);
+    rt_free(e);
+    return cell;
+}
+
+/* The hierarchy needs 1 extent test for this ray and 10 for one of all: on all rays the ratio would
+ * be 4 and more. */
+RT_TEST(a_thinned_candidate_is_compared_with_the_baseline_on_its_own_rays) {
+    RtCell cell = time_thinned("bvh", "bvh");
+    assert_int_equal(cell.tally.rays, 1);
+    assert_int_equal(cell.tally.extent_tests, 1);
+    assert_true(0.5 < cell.ratio.median && cell.ratio.median < 2);
+}
+
+/* ideal knows rays by their addresses; a ray that it does not know costs it 300 tests. */
+RT_TEST(a_baseline_that_learns_knows_the_rays_of_thinned_candidates) {
+    RtCell cell = time_thinned("ideal", "ideal");
+    assert_int_equal(cell.tally.object_tests, cell.tally.hits);
+    assert_true(0.2 < cell.ratio.median && cell.ratio.median < 5);
+}
+
+/* Two structures that were built and timed by hand: seconds to build, nanoseconds a ray. */
+static double pay_off(double theirs, double their_ray, double ours, double our_ray) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtResults results;
+    assert_non_null(e);
+    rt_experiment_init(e);
+    e->workload_count = 1;
+    e->candidate_count = 2;
+    e->baseline_count = 1;
+    assert_ok(rt_results_init(&results, e, error));
+    results.workloads[0].rays[RT_RAY_SHADOW] = 1000;
+    rt_build_at(&results, 0, 0)->seconds = theirs;
+    rt_build_at(&results, 0, 1)->seconds = ours;
+    *rt_cell_at(&results, 0, 1, RT_RAY_SHADOW) =
+        (RtCell){.timed = true, .wall = {.median = 1e-9 * our_ray}, .ratio = {.median = their_ray / our_ray}};
+    double rays = rt_results_pay_off(&results, 0, 1);
+    assert_true(isnan(rt_results_pay_off(&results, 0, 0)));
+    rt_results_clear(&results);
+    rt_free(e);
+    return rays;
+}
+
+RT_TEST(a_build_pays_off_after_as_many_rays_as_save_what_it_takes_more) {
+    assert_true(fabs(pay_off(1, 300, 3, 200) - 2e7) < 1);
+    assert_true(fabs(pay_off(3, 200, 1, 300) + 2e7) < 1); /* ahead up to so many */
+    assert_true(pay_off(1, 300, 1, 200) == 0);
+    assert_true(isinf(pay_off(1, 200, 2, 300)));
+}
+
+/* What a pass over the rays before all others was given: rays, and of the eight parts of a frame of 64 rows
+ * those that it has rays of. */
+static uint64_t first_count;
+static unsigned first_parts;
+
+RtStatus __real_rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected,
+                                 int threads, RtCount *count, RtError *error);
+RtStatus __wrap_rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected,
+                                 int threads, RtCount *count, RtError *error);
+
+RtStatus __wrap_rt_measure_count(const RtAccel *accel, const RtRaySet *set, const RtHit *expected,
+                                 int threads, RtCount *count, RtError *error) {
+    for (uint64_t i = 0; i < set->count && first_count == 0; i++)
+        first_parts |= 1u << set->rays[i].source / (8 * 64);
+    if (first_count == 0) first_count = set->count;
+    return __real_rt_measure_count(accel, set, expected, threads, count, error);
+}
+
+RT_TEST(a_time_is_foretold_from_rays_of_all_parts_of_the_image) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtWorkloadOptions options = {.threads = 1, .timing = 1, .count_only = true};
+    RtResults results;
+    char where[RT_MAX_LABEL];
+    assert_non_null(e);
+    rt_experiment_init(e);
+    strcpy(e->name, "limited");
+    e->limit_seconds = 1e9;
+    e->kind_count = 1;
+    const RtWorkload scene = {.depth = 1, .width = 64, .height = 64};
+    e->candidate_count = 1;
+    e->candidates[0] = (RtCandidate){.label = "ideal", .spec = "ideal", .ray_stride = 1};
+    assert_ok(rt_experiment_add_scenes(e, &scene, "balls:size=1", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    first_count = first_parts = 0;
+    assert_ok(rt_workload_run(&results, 0, &options, error));
+    assert_in_range(first_count, 128, 256);
+    assert_int_equal(first_parts, 0xff);
+    const RtTally *tally = &rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY)->tally;
+    assert_int_equal(tally->rays, 64 * 64);
+    assert_int_equal(tally->object_tests, tally->hits);
+    rt_results_clear(&results);
+    rt_free(e);
+}
+
+/* A name for the best of several, of any accelerator that has one; NULL where none was built in. */
+static const char *any_best(char name[RT_MAX_LABEL]) {
+    for (size_t i = 0; i < rt_accel_count(); i++) {
+        const RtAccelOps *ops = rt_accel_at(i);
+        if (ops->best_count == 0) continue;
+        snprintf(name, RT_MAX_LABEL, "%s:%s", ops->name, ops->bests[0].name);
+        return name;
+    }
+    return NULL;
+}
+
+/* One of the baseline's candidates has a ratio of exactly 1, and the ratios of all refer to it. */
+static void assert_one_is_baseline(const RtResults *results, RtRayKind kind) {
+    const RtExperiment *e = results->experiment;
+    uint32_t best = rt_cell_at(results, 0, e->baseline, kind)->baseline;
+    for (uint32_t c = 0; c < e->candidate_count; c++) {
+        const RtCell *cell = rt_cell_at(results, 0, c, kind);
+        bool thinned = e->candidates[c].ray_stride > 1;
+        assert_true(cell->timed && rt_candidate_is_baseline(e, cell->baseline));
+        assert_true(thinned || cell->baseline == best);
+        assert_true((cell->ratio.low == 1 && cell->ratio.high == 1) == (c == best));
+    }
+    assert_int_equal(rt_cell_at(results, 0, e->candidate_count, kind)->baseline, e->baseline);
+}
+
+/* Of the baseline's candidates most are slower than the one that ratios refer to. */
+static bool most_are_slower(const RtResults *results, RtRayKind kind) {
+    const RtExperiment *e = results->experiment;
+    uint32_t slower = 0;
+    for (uint32_t c = e->baseline; c < e->baseline + e->baseline_count; c++) {
+        slower += rt_cell_at(results, 0, c, kind)->ratio.median < 1;
+    }
+    return slower > e->baseline_count / 2;
+}
+
+RT_TEST(ratios_to_a_best_of_several_refer_to_the_fastest_of_them) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtWorkloadOptions options = {.threads = 1, .timing = 1};
+    RtResults results;
+    char where[RT_MAX_LABEL], name[RT_MAX_LABEL];
+    assert_non_null(e);
+    if (!any_best(name)) {
+        rt_free(e);
+        return;
+    }
+    rt_experiment_init(e);
+    strcpy(e->name, "best");
+    e->milliseconds = 1;
+    e->kind_count = 2;
+    const RtWorkload scene = {.depth = 1, .width = 32, .height = 32};
+    e->candidate_count = 2;
+    e->candidates[0] = (RtCandidate){.label = "all", .spec = "bvh", .ray_stride = 1};
+    e->candidates[1] = (RtCandidate){.label = "some", .spec = "bvh", .ray_stride = 7};
+    assert_ok(rt_experiment_set_baseline(e, name, error));
+    assert_true(e->baseline == 2 && e->baseline_count > 1 && e->candidate_count == 2 + e->baseline_count);
+    assert_string_equal(rt_baseline_label(e), name);
+    assert_ok(rt_experiment_add_scenes(e, &scene, "random:n=300", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    /* Who else is on the machine may slow the fastest down for a while: one of some attempts will do. */
+    bool most = false;
+    for (int attempt = 0; attempt < 5 && !most; attempt++) {
+        assert_ok(rt_results_init(&results, e, error));
+        assert_ok(rt_workload_run(&results, 0, &options, error));
+        assert_one_is_baseline(&results, RT_RAY_PRIMARY);
+        assert_one_is_baseline(&results, RT_RAY_SHADOW);
+        most = most_are_slower(&results, RT_RAY_PRIMARY) && most_are_slower(&results, RT_RAY_SHADOW);
+        rt_results_clear(&results);
+    }
+    assert_true(most);
+    rt_free(e);
+}
+
+/* ---- what measuring itself takes ---- */
+
+/* A set takes longer than a round has to, so that each round is one pass: `seconds` is all of it. Memory,
+ * warm-up and what is between the passes are the rest. In processor time, so that others on the machine do
+ * not matter; the best of some attempts, as what they leave of the caches does. */
+RT_TEST(of_the_time_that_timing_takes_ninety_eight_percent_are_rounds) {
+    enum { ROUNDS = 10 };
+    const char *const specs[] = {"brute", "extents"};
+    double seconds[2][ROUNDS], wall[2][ROUNDS], best = 0;
+    RtScene scene;
+    RtAccel *accels[2];
+    RtRaySet sets[RT_RAY_KIND_COUNT];
+    RtRecording recording = {.depth = 1, .seed = 1, .random = 20000, .threads = 1};
+    const RtTiming timing = {.rounds = {.rounds = ROUNDS, .most = ROUNDS, .least = 2e-3, .seed = 1},
+                             .threads = 1};
+    assert_ok(rt_scene_open("balls:size=3", &scene, error));
+    assert_ok(rt_scene_sample(&scene, 8, 8, 1, false, error));
+    for (int i = 0; i < 2; i++) assert_ok(rt_accel_open(specs[i], &scene, &accels[i], error));
+    assert_ok(rt_rayset_record(sets, accels[0], &recording, error));
+    for (int attempt = 0; attempt < 5 && best < 0.98; attempt++) {
+        const RtRaySet *set = &sets[RT_RAY_RANDOM];
+        RtTimed timed[2] = {{.accel = accels[0], .set = set, .seconds = seconds[0], .wall = wall[0]},
+                            {.accel = accels[1], .set = set, .seconds = seconds[1], .wall = wall[1]}};
+        uint32_t done;
+        double rounds = 0, start = rt_thread_seconds();
+        assert_ok(rt_measure_time(timed, 2, &timing, &done, error));
+        double all = rt_thread_seconds() - start;
+        for (int i = 0; i < 2 * ROUNDS; i++) rounds += seconds[i / ROUNDS][i % ROUNDS] * (double)set->count;
+        if (rounds / all > best) best = rounds / all;
+    }
+    if (best < 0.98) fail_msg("rounds are %.2f %% of the time", 100 * best);
+    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) rt_rayset_clear(&sets[k]);
+    for (int i = 0; i < 2; i++) rt_accel_destroy(accels[i]);
+    rt_scene_clear(&scene);
+}
+
+static RtStatus spin_a_millisecond(void *context, RtError *error) {
+    double start = rt_thread_seconds();
+    (void)context, (void)error;
+    while (rt_thread_seconds() - start < 1e-3) continue;
+    return RT_OK;
+}
+
+/* Ten times slower than all of it is. */
+static RtStatus warm_wrongly(void *context, double seconds, double *part, RtError *error) {
+    (void)seconds;
+    *part = 0.1;
+    return spin_a_millisecond(context, error);
+}
+
+RT_TEST(what_was_told_wrong_from_a_part_of_the_work_is_repeated_often_enough_from_the_second_round_on) {
+    double seconds[3], wall[3];
+    uint32_t done;
+    const RtRounds rounds = {.rounds = 3, .most = 3, .least = 10e-3, .seed = 1};
+    RtRunner runner = {
+        .run = spin_a_millisecond, .warm = warm_wrongly, .work = 1, .seconds = seconds, .wall = wall};
+    assert_ok(rt_rounds_run(&runner, 1, &rounds, &done, error));
+    assert_true(9 <= runner.repeats && runner.repeats <= 11);
+    for (int r = 0; r < 3; r++) assert_true(0.9e-3 < seconds[r] && seconds[r] < 2e-3);
+}
+
+/* ---- until the intervals are narrow ---- */
+
+static RtStatus do_nothing(void *context, RtError *error) {
+    (void)error;
+    ++*(int *)context;
+    return RT_OK;
+}
+
+static bool five_will_do(void *context, uint32_t rounds) {
+    ++*(int *)context;
+    return rounds >= 5;
+}
+
+RT_TEST(rounds_go_on_until_they_will_do_and_no_longer_than_they_may) {
+    const uint32_t cases[][3] = {{3, 9, 5}, {3, 4, 4}, {7, 9, 7}, {9, 9, 9}}; /* at least, at most, done */
+    for (int i = 0; i < 4; i++) {
+        int runs = 0, asked = 0;
+        double seconds[9];
+        uint32_t done;
+        RtRunner runner = {.run = do_nothing, .context = &runs, .work = 1, .seconds = seconds};
+        RtRounds rounds = {
+            .rounds = cases[i][0], .most = cases[i][1], .enough = five_will_do, .context = &asked};
+        assert_ok(rt_rounds_run(&runner, 1, &rounds, &done, error));
+        assert_int_equal(done, cases[i][2]);
+        assert_int_equal(runs, done + 1); /* one to warm up */
+        assert_int_equal(asked, i == 0 ? 3 : i == 1 || i == 2 ? 1 : 0);
+    }
+}
+
+static void note(void *context, const char *message) {
+    snprintf(context, 256, "%s", message);
+}
+
+/* Where a test asks for it the wall clock is a millisecond later each time that somebody looks at it. */
+static bool wall_ticks;
+
+int __real_clock_gettime(clockid_t clock, struct timespec *now);
+int __wrap_clock_gettime(clockid_t clock, struct timespec *now);
+
+int __wrap_clock_gettime(clockid_t clock, struct timespec *now) {
+    static long looks;
+    if (!wall_ticks || clock != CLOCK_MONOTONIC) return __real_clock_gettime(clock, now);
+    looks++;
+    *now = (struct timespec){.tv_sec = looks / 1000, .tv_nsec = looks % 1000 * 1000000};
+    return 0;
+}
+
+/* Times bvh until its null run is as narrow as `until`, and gives the rounds; `says` is what was told. */
+static uint32_t rounds_until(double until, double patience, char says[256]) {
+    RtExperiment *e = rt_alloc(1, sizeof(RtExperiment));
+    RtWorkloadOptions options = {.threads = 1, .timing = 1, .until = until, .patience = patience};
+    RtResults results;
+    char where[RT_MAX_LABEL];
+    assert_non_null(e);
+    says[0] = '\0';
+    options.observer = (RtObserver){says, NULL, note};
+    rt_experiment_init(e);
+    strcpy(e->name, "until");
+    e->milliseconds = 1;
+    e->rounds = 6;
+    e->kind_count = 1;
+    e->candidate_count = 1;
+    e->candidates[0] = (RtCandidate){.label = "bvh", .spec = "bvh", .ray_stride = 1};
+    RtWorkload like = {.depth = 1, .width = 16, .height = 16};
+    assert_ok(rt_experiment_add_scenes(e, &like, "random:n=300", "", error));
+    assert_ok(rt_experiment_check(e, where, error));
+    assert_ok(rt_results_init(&results, e, error));
+    wall_ticks = true;
+    RtStatus status = rt_workload_run(&results, 0, &options, NULL);
+    wall_ticks = false;
+    assert_int_equal(status, RT_OK);
+    const RtCell *null = rt_cell_at(&results, 0, 1, RT_RAY_PRIMARY);
+    uint32_t rounds = null->rounds;
+    assert_true((rt_estimate_width(&null->ratio) <= until) == (says[0] == '\0'));
+    assert_non_null(null->each);
+    rt_results_clear(&results);
+    rt_free(e);
+    return rounds;
+}
+
+RT_TEST(timing_goes_on_until_the_intervals_of_ratios_are_narrow_or_says_that_they_are_not) {
+    char says[256];
+    assert_int_equal(rounds_until(100, 60, says), 6);
+    assert_string_equal(says, "");
+    assert_true(rounds_until(1e-12, 0.2, says) > 6);
+    assert_non_null(strstr(says, "primary rays on random:n=300: after "));
+    assert_non_null(strstr(says, "the widest is that of bvh (again)"));
+    assert_int_equal(rounds_until(1e-12, 600, says), RT_MAX_ROUNDS);
+    assert_non_null(strstr(says, "after 1000 rounds"));
+}
+
+RT_TESTS(measure, NULL, NULL)

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* experiments/statistics: the median, its interval, and ratios paired within a round. */
+#include "testing.h"
+
+#include "measure/statistics.h"
+
+#include "core/base/random.h"
+
+RT_TEST(the_median_is_the_middle_one_or_the_mean_of_the_middle_two) {
+    const double odd[] = {9, 1, 5}, even[] = {4, 100, 1, 2}, one[] = {7};
+    assert_true(rt_median(odd, 3) == 5);
+    assert_true(rt_median(even, 4) == 3);
+    assert_true(rt_median(one, 1) == 7);
+    assert_true(odd[0] == 9); /* and its input stays as it was */
+}
+
+RT_TEST(equal_measurements_have_an_interval_of_no_width) {
+    const double same[] = {3, 3, 3, 3, 3};
+    RtEstimate e = rt_estimate(same, 5);
+    assert_true(e.median == 3 && e.low == 3 && e.high == 3 && e.least == 3);
+}
+
+/* 1..count in a mixed order; 1009 is a prime above RT_MAX_ROUNDS. */
+static void mix(double *values, uint32_t count) {
+    for (uint32_t i = 0, next = 0; next < count; i++) {
+        uint32_t value = i * 37 % 1009;
+        if (value >= 1 && value <= count) values[next++] = value;
+    }
+}
+
+/* Ranks as in the tables of the binomial distribution with p = 1/2. */
+RT_TEST(the_interval_lies_at_the_ranks_that_the_binomial_distribution_says) {
+    const struct {
+        uint32_t count, low;
+        double coverage;
+    } cases[] = {{1, 1, 0},          {2, 1, 0.5},         {3, 1, 0.75},         {5, 1, 0.9375},
+                 {6, 1, 0.96875},    {8, 1, 0.9921875},   {9, 2, 0.9609375},    {10, 2, 0.978515625},
+                 {11, 2, 0.988281},  {12, 3, 0.961426},   {20, 6, 0.958611},    {30, 10, 0.957226},
+                 {50, 18, 0.967161}, {100, 40, 0.964800}, {1000, 469, 0.953709}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        double values[RT_MAX_ROUNDS];
+        uint32_t count = cases[i].count;
+        mix(values, count);
+        RtEstimate e = rt_estimate(values, count);
+        assert_true(e.least == 1 && e.median == 0.5 * (count + 1));
+        assert_true(e.low == cases[i].low && e.high == count + 1 - cases[i].low);
+        assert_true(fabs(rt_interval_coverage(count) - cases[i].coverage) < 1e-6);
+    }
+}
+
+RT_TEST(from_six_rounds_on_an_interval_covers_95_percent) {
+    for (uint32_t count = 1; count <= RT_MAX_ROUNDS; count++) {
+        double coverage = rt_interval_coverage(count);
+        assert_true(coverage < 1 && (coverage >= 0.95) == (count >= RT_FULL_ROUNDS));
+    }
+}
+
+/* Times have a long tail: 1 / (1 - u) for u uniform, with median 2. 4000 workloads have a standard error of
+ * at most 0.8 %. */
+RT_TEST(intervals_hold_the_true_median_as_often_as_they_say) {
+    const uint32_t counts[] = {1, 3, 5, 6, 7, 10, 11, 30};
+    for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
+        int inside = 0;
+        for (uint64_t workload = 0; workload < 4000; workload++) {
+            RtRandom random = rt_random(11, workload);
+            double values[30];
+            for (uint32_t i = 0; i < counts[c]; i++) values[i] = 1 / (1 - (double)rt_random_unit(&random));
+            RtEstimate e = rt_estimate(values, counts[c]);
+            inside += e.low <= 2 && 2 <= e.high;
+        }
+        assert_true(fabs(inside / 4000.0 - rt_interval_coverage(counts[c])) < 0.016);
+    }
+}
+
+/* Both slow down together from round to round; only pairing shows that one is always twice the other. */
+RT_TEST(ratios_are_paired_within_a_round) {
+    double over[20], under[20];
+    for (int i = 0; i < 20; i++) {
+        under[i] = 1 + 10 * i;
+        over[i] = 2 * under[i];
+    }
+    RtEstimate e = rt_estimate_ratio(over, under, 20);
+    assert_true(e.median == 2 && e.low == 2 && e.high == 2);
+}
+
+/* Critical values of Mann and Whitney's U for two samples of 10, of 5, of 4 at 5 %: 23, 2, 0 (so the ends are
+ * the 24th, third and first of the ratios), and none for two of 3. At 1 % for two of 10: 16. */
+RT_TEST(unpaired_intervals_lie_at_the_ranks_that_the_tables_of_mann_and_whitney_say) {
+    const struct {
+        uint32_t count;
+        double coverage;
+        uint32_t low;
+    } cases[] = {{10, 0.95, 24}, {5, 0.95, 3}, {4, 0.95, 1}, {3, 0.95, 1}, {10, 0.99, 17}, {40, 0.95, 596}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        double over[40], under[40], ratios[1600];
+        uint32_t n = cases[i].count, below = 0;
+        RtEstimate e;
+        for (uint32_t k = 0; k < n; k++) { /* all ratios differ */
+            over[k] = 1 + 0.013 * k + 1e-5 * k * k;
+            under[k] = 1 + 0.0007 * k + 1e-7 * k * k;
+        }
+        for (uint32_t k = 0; k < n * n; k++) ratios[k] = over[k / n] / under[k % n];
+        assert_ok(rt_estimate_unpaired(over, n, under, n, cases[i].coverage, &e, error));
+        for (uint32_t k = 0; k < n * n; k++) below += ratios[k] <= e.low;
+        assert_int_equal(below, cases[i].low);
+        below = 0;
+        for (uint32_t k = 0; k < n * n; k++) below += ratios[k] >= e.high;
+        assert_int_equal(below, cases[i].low);
+        assert_true(e.low <= e.median && e.median <= e.high);
+    }
+}
+
+/* Times of a common median 1, after a change by a fifth: 2000 workloads, exactly and nearly. */
+RT_TEST(unpaired_intervals_hold_the_true_ratio_as_often_as_they_say) {
+    const uint32_t counts[][2] = {{10, 10}, {6, 17}, {40, 35}};
+    for (size_t c = 0; c < 3; c++) {
+        int inside = 0;
+        for (uint64_t workload = 0; workload < 2000; workload++) {
+            RtRandom random = rt_random(12, workload);
+            double over[40], under[40];
+            RtEstimate e;
+            for (uint32_t i = 0; i < counts[c][0]; i++)
+                over[i] = 1.2 / (1 - 0.5 * (double)rt_random_unit(&random));
+            for (uint32_t i = 0; i < counts[c][1]; i++)
+                under[i] = 1 / (1 - 0.5 * (double)rt_random_unit(&random));
+            assert_ok(rt_estimate_unpaired(over, counts[c][0], under, counts[c][1], 0.95, &e, error));
+            inside += rt_estimate_holds(&e, 1.2);
+        }
+        assert_true(inside >= 1880 && inside <= 1950);
+    }
+}
+
+RT_TEST(as_many_rounds_are_taken_as_so_many_cells_ask_for) {
+    assert_true(rt_coverage_of_each(0) == 0.95 && rt_coverage_of_each(1) == 0.95);
+    assert_true(fabs(rt_coverage_of_each(10) - 0.995) < 1e-12);
+    assert_int_equal(rt_rounds_for(0.95), 9);
+    assert_int_equal(rt_rounds_for(rt_coverage_of_each(10)), 13);
+    assert_int_equal(rt_rounds_for(rt_coverage_of_each(100)), 17);
+}
+
+/* Rounds of `cells` cells with a spread of half a percent about `truth`; how many of them say what is so. */
+static int decided(uint64_t seed, uint32_t cells, double truth) {
+    RtRandom random = rt_random(seed, cells);
+    const double coverage = rt_coverage_of_each(cells);
+    const uint32_t rounds = rt_rounds_for(coverage);
+    int count = 0;
+    for (uint32_t c = 0; c < cells; c++) {
+        double ratios[RT_MAX_ROUNDS];
+        for (uint32_t r = 0; r < rounds; r++) {
+            double noise = 0;
+            for (int i = 0; i < 12; i++) noise += (double)rt_random_unit(&random) - 0.5; /* deviation 1 */
+            ratios[r] = truth * exp(0.005 * noise);
+        }
+        RtEstimate e = rt_estimate_at(ratios, rounds, coverage);
+        count += !rt_estimate_holds(&e, 1);
+    }
+    return count;
+}
+
+/* Of 1000 comparisons of things that are alike at most a twentieth reports anything, however many cells they
+ * have; and a difference of 2 % is found. */
+RT_TEST(comparisons_of_many_cells_report_no_more_than_those_of_one_and_find_two_percent) {
+    const uint32_t cells[] = {1, 4, 40};
+    for (size_t i = 0; i < 3; i++) {
+        int reports = 0, found = 0;
+        for (uint64_t seed = 0; seed < 1000; seed++) {
+            reports += decided(seed, cells[i], 1) > 0;
+            if (seed < 100) found += decided(seed, cells[i], 1.02);
+        }
+        assert_true(reports <= 70); /* 50 and three standard errors */
+        assert_true(found >= 99 * (int)cells[i]);
+    }
+}
+
+RT_TESTS(statistics, NULL, NULL)
