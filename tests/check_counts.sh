@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_counts.sh [--update]: tests/golden/experiment.yaml gives tests/golden/counts.csv, byte for byte, on one thread
 # and on two; run for every build, this makes the counts of compilers and optimisation levels the same. --update
-# replaces the file: say in CHANGELOG.md why it changed. Uses $RT_PROGRAM.
+# replaces the file: say in tests/golden/CHANGES.md why it changed. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}

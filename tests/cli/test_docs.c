@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct Text {
     char chars[16384];
@@ -77,12 +78,28 @@ RT_TEST(every_accelerator_has_its_section_with_its_parameters_as_they_are) {
     free(readme);
 }
 
+/* The papers without their titles: of each, what stands before the first comma behind a year. */
+static void append_papers(Text *text, const char *papers) {
+    for (const char *paper = papers; paper; paper = strstr(paper, "; ") ? strstr(paper, "; ") + 2 : NULL) {
+        size_t length = strcspn(paper, ";"), end = length;
+        for (size_t i = 4; i <= length && end == length; i++)
+            if (strspn(paper + i - 4, "0123456789") == 4) end = i;
+        append(text, "%s%.*s", paper == papers ? "" : "; ", (int)end, paper);
+    }
+}
+
 RT_TEST(the_readme_lists_every_accelerator) {
     char *readme = read_document("README.md");
     for (size_t i = 0; i < rt_accel_count(); i++) {
-        char row[64];
-        snprintf(row, sizeof row, "\n| `%s` |", rt_accel_at(i)->name);
-        if (!strstr(readme, row)) fail_msg("the table of README.md lacks a row%s", row);
+        const RtAccelOps *ops = rt_accel_at(i);
+        char file[1024];
+        snprintf(file, sizeof file, "%s/accel/%s.c", RT_SOURCE_DIR, ops->name);
+        const char *extension = access(file, F_OK) == 0 ? ".c" : "";
+        Text row = {.length = 0};
+        append(&row, "\n| [`%s`](docs/accelerators/%s.md) | %s | ", ops->name, ops->name, ops->summary);
+        append_papers(&row, ops->paper);
+        append(&row, " | [accel/%s%s](accel/%s%s) |", ops->name, extension, ops->name, extension);
+        if (!strstr(readme, row.chars)) fail_msg("the table of README.md lacks a row%s", row.chars);
     }
     free(readme);
 }
