@@ -60,7 +60,7 @@ as_expected() {
 # What is left of a text without figures, blanks, and what follows from times: verdicts, who is ahead, null runs.
 without_figures() {
     sed -E '/^Null runs/,/^$/d; s/[-+<]?[0-9][0-9.,]*(e[-+]?[0-9]+)?/0/g; s/faster|slower|no difference/verdict/g
-        s/ ((from|to) 0|always|never)$/ ahead/; s/[-=|+ ]+/ /g; s/^ //; s/ $//' "$1"
+        s/ (ahead (from|up to) 0|(always|never) ahead)$/ ahead/; s/[-=|+ ]+/ /g; s/^ //; s/ $//' "$1"
 }
 
 # run_block PLACE WORD...: the lines in $work/block; leaves what was printed in $work/printed, and `last`

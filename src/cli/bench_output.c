@@ -5,7 +5,6 @@
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "experiment/distribution_tables.h"
-#include "experiment/hardware_table.h"
 #include "experiment/result_tables.h"
 #include "measure/machine.h"
 
@@ -61,8 +60,8 @@ static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
         json_object_set_new(all, "histograms", distributions_json(results, RT_HISTOGRAMS));
     }
     if (e->hardware) {
-        RtHardwareRow row = {.results = results};
-        RtTable table = rt_hardware_table(&row);
+        RtResultRow row = {.results = results};
+        RtTable table = rt_result_table(RT_HARDWARE, &row);
         json_object_set_new(all, "hardware", rt_table_json(&table));
     }
     if (callgrind->count) json_object_set_new(all, "instructions", instructions_json(callgrind));

@@ -4,7 +4,6 @@
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/frame_table.h"
-#include "experiment/hardware_table.h"
 #include "experiment/result_tables.h"
 
 void rt_cli_print_summary(const RtResults *results, FILE *out) {

@@ -206,7 +206,6 @@ static RtStatus read_kind(Reader *r) {
             asked |= r->experiment->kinds[k] == claim->kind;
     }
     if (!asked) return fail(r, "'%s' is no kind of the rays of this experiment", word(r));
-    claim->one_kind = true;
     r->at++;
     return need(r, "rays");
 }
@@ -272,7 +271,7 @@ static RtStatus read_claim(Reader *r) {
 
 RtStatus rt_claim_parse(const RtExperiment *experiment, const char *text, RtClaim *claim, RtError *error) {
     Reader r = {.experiment = experiment, .claim = claim, .error = error};
-    memset(claim, 0, sizeof *claim);
+    *claim = (RtClaim){.kind = RT_ALL_RAYS};
     RT_TRY(split(&r, text));
     RT_TRY(read_claim(&r));
     return r.at == r.count ? RT_OK : fail(&r, "'%s' comes after its end", word(&r));

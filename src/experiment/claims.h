@@ -48,8 +48,7 @@ typedef struct RtClaim {
     char accel[RT_MAX_LABEL], scene[RT_MAX_LABEL]; /* scene: "" for all */
     uint32_t other;                                /* of a ratio: what stands below */
     RtSweptKey key;                                /* of an exponent or a trend */
-    bool one_kind;
-    RtRayKind kind; /* where one_kind */
+    RtRayKind kind;                                /* or RT_ALL_RAYS */
     uint32_t place_count;
     struct {
         RtSweptKey key;

@@ -41,34 +41,23 @@ static Bounded of_estimate(const RtEstimate *e) {
     return (Bounded){e->median, e->low, e->high};
 }
 
-/* Of one kind; known only where it was counted, or timed. */
-static Bounded cell_value(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
-    const RtCell *cell = rt_cell_at(results, t, c, claim->kind);
-    uint64_t counters[] = {0, cell->tally.object_tests, cell->tally.extent_tests, cell->tally.steps};
-    if (claim->measure == RT_CLAIM_TIME) return cell->timed ? of_estimate(&cell->seconds) : UNKNOWN;
-    return exactly(rt_cell_per_ray(results, t, c, claim->kind, counters[claim->measure]));
-}
-
 static Bounded value_at(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c) {
     const RtBuildResult *build = rt_build_at(results, t, c);
+    const RtCost cost = rt_results_cost(results, t, c, claim->kind);
+    const double counts[] = {0, cost.object_tests, cost.extent_tests, cost.steps};
     if (claim->measure >= RT_CLAIM_BUILD_TIME && !build->known) return UNKNOWN;
     if (claim->measure == RT_CLAIM_BUILD_TIME) return exactly(build->seconds);
     if (claim->measure == RT_CLAIM_BYTES) return exactly((double)build->shape.bytes);
-    if (claim->one_kind) return cell_value(results, claim, t, c);
-    RtTotal total = rt_results_total(results, t, c);
-    if (!total.whole) return UNKNOWN;
-    if (claim->measure == RT_CLAIM_TIME)
-        return (Bounded){total.seconds, total.seconds_low, total.seconds_high};
-    return exactly(claim->measure == RT_CLAIM_OBJECT_TESTS   ? total.object_tests
-                   : claim->measure == RT_CLAIM_EXTENT_TESTS ? total.extent_tests
-                                                             : total.steps);
+    if (!cost.whole) return UNKNOWN;
+    return claim->measure == RT_CLAIM_TIME ? of_estimate(&cost.seconds) : exactly(counts[claim->measure]);
 }
 
 /* Times of `c` over those of `other`, from ratios of throughput that were paired round by round. */
 static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, Bounded *out) {
     const RtExperiment *experiment = results->experiment;
-    RtRayKind kind = claim->one_kind ? claim->kind : experiment->kinds[0];
-    if (claim->measure != RT_CLAIM_TIME || (!claim->one_kind && experiment->kind_count > 1)) return false;
+    const bool all = claim->kind == RT_ALL_RAYS;
+    RtRayKind kind = all ? experiment->kinds[0] : claim->kind;
+    if (claim->measure != RT_CLAIM_TIME || (all && experiment->kind_count > 1)) return false;
     const RtCell *own = rt_cell_at(results, t, c, kind), *other = rt_cell_at(results, t, claim->other, kind);
     if (!own->timed || !other->timed) return false;
     if (own->baseline == claim->other) {

@@ -62,11 +62,11 @@ static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
 }
 
 /* As it was when the results were made: the accelerators that the manifest has behind those of the YAML. */
-static void append_kept(RtExperiment *experiment, const char *label) {
+static void append_from_manifest(RtExperiment *experiment, const char *label) {
     RtCandidate candidate = {.ray_stride = 1};
     uint32_t first = experiment->candidate_count;
     while (experiment->candidate_count < RT_MAX_CANDIDATES &&
-           rt_kept_candidate(experiment->kept, experiment->candidate_count, &candidate)) {
+           rt_manifest_candidate(experiment->manifest, experiment->candidate_count, &candidate)) {
         memcpy(candidate.base, candidate.label, sizeof candidate.base);
         experiment->candidates[experiment->candidate_count++] = candidate;
     }
@@ -106,7 +106,7 @@ static uint32_t default_baseline(const RtExperiment *experiment) {
 
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error) {
     uint32_t c = 0;
-    if (!label && experiment->kept) label = rt_kept_baseline(experiment->kept);
+    if (!label && experiment->manifest) label = rt_manifest_baseline(experiment->manifest);
     if (!label) {
         experiment->baseline = default_baseline(experiment);
         return RT_OK;
@@ -114,8 +114,8 @@ RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label,
     while (c < experiment->candidate_count && strcmp(experiment->candidates[c].label, label) != 0) c++;
     experiment->baseline = c;
     if (c < experiment->candidate_count || !rt_best_is(label)) return RT_OK;
-    if (experiment->kept) {
-        append_kept(experiment, label);
+    if (experiment->manifest) {
+        append_from_manifest(experiment, label);
         return RT_OK;
     }
     return append_best(experiment, label, error);
@@ -178,8 +178,9 @@ static RtStatus fail_twice(const char *label, RtError *error) {
 static RtStatus check_spec(const RtExperiment *experiment, uint32_t i, bool *missing, RtError *error) {
     RtSpec spec;
     RtError why = {RT_OK, ""};
-    *missing = experiment->kept && rt_kept_is_missing(experiment->kept, i);
-    if (experiment->kept || rt_spec_parse(experiment->candidates[i].spec, &spec, &why) == RT_OK) return RT_OK;
+    *missing = experiment->manifest && rt_manifest_is_missing(experiment->manifest, i);
+    if (experiment->manifest || rt_spec_parse(experiment->candidates[i].spec, &spec, &why) == RT_OK)
+        return RT_OK;
     *missing = why.status == RT_NOT_AVAILABLE;
     return *missing ? RT_OK : rt_fail(error, why.status, "%s", why.message);
 }
@@ -220,7 +221,7 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
 
 /* The files are copied into the result directory under their names. */
 static RtStatus check_beside(const char *name, RtError *error) {
-    if (rt_earlier_is_result(name)) {
+    if (rt_previous_results_has(name)) {
         return rt_fail(
             error, RT_BAD_INPUT,
             "'%s' is what the result directory calls a file of its own: rename it, or put it into a "

@@ -125,7 +125,7 @@ typedef struct RtExperiment {
     char folder[RT_MAX_PATH]; /* of the YAML */
     /* While it is loaded: the manifest of the results that it is loaded to read, or NULL. Nobody then asks
      * which accelerators are there (experiment/manifest_experiment.h). */
-    const json_t *kept;
+    const json_t *manifest;
     uint64_t fingerprint; /* of the YAML's bytes, without finding and expect, which change no result */
 } RtExperiment;
 
@@ -139,8 +139,8 @@ RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool qui
 
 /* The same of the YAML that results were made from, for those who only read them: accelerators, baseline and
  * what was missing are as their manifest has them, and need not be there. It cannot be run. */
-RtStatus rt_experiment_load_kept(RtExperiment *experiment, const char *path, const json_t *manifest,
-                                 RtError *error);
+RtStatus rt_experiment_load_from_manifest(RtExperiment *experiment, const char *path, const json_t *manifest,
+                                          RtError *error);
 
 /* What rays of a file may be: asked for the nearest hit, or for any. They stand under these names in tables,
  * where recorded ones have theirs. */

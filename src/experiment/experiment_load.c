@@ -336,11 +336,11 @@ RtStatus rt_experiment_load(RtExperiment *experiment, const char *path, bool qui
     return load(experiment, path, quick, error);
 }
 
-RtStatus rt_experiment_load_kept(RtExperiment *experiment, const char *path, const json_t *manifest,
-                                 RtError *error) {
+RtStatus rt_experiment_load_from_manifest(RtExperiment *experiment, const char *path, const json_t *manifest,
+                                          RtError *error) {
     rt_experiment_init(experiment);
-    experiment->kept = manifest;
+    experiment->manifest = manifest;
     RtStatus status = load(experiment, path, json_is_true(json_object_get(manifest, "quick")), error);
-    experiment->kept = NULL;
+    experiment->manifest = NULL;
     return status;
 }

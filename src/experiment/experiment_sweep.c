@@ -105,7 +105,7 @@ static RtStatus add_accel(RtExperiment *experiment, const RtCandidate *like, con
 
 RtStatus rt_experiment_add_accels(RtExperiment *experiment, const RtCandidate *like, RtError *error) {
     RtSweep sweep;
-    RT_TRY(rt_sweep_parse(like->spec, false, experiment->kept, &sweep, error));
+    RT_TRY(rt_sweep_parse(like->spec, false, experiment->manifest, &sweep, error));
     for (uint32_t i = 0; i < sweep.count; i++) RT_TRY(add_accel(experiment, like, &sweep, i, error));
     return RT_OK;
 }

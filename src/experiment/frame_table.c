@@ -23,17 +23,15 @@ static RtFrameCost cost_of(const RtResults *results, uint32_t workload, uint32_t
     const double unknown = (double)NAN;
     RtFrameCost sum = {0};
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-        const RtRayKind kind = (RtRayKind)k;
-        const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
         const uint64_t rays = results->workloads[workload].rays[k];
-        if (rays == 0 || !is_in_part(kind, part)) continue;
-        const double weight = (double)rays, timed = cell->timed ? weight : unknown;
+        if (rays == 0 || !is_in_part((RtRayKind)k, part)) continue;
+        const RtCost cost = rt_results_cost(results, workload, candidate, (RtRayKind)k);
+        const double weight = (double)rays;
         sum.rays += rays;
-        sum.object_tests +=
-            weight * rt_cell_per_ray(results, workload, candidate, kind, cell->tally.object_tests);
-        sum.seconds += timed * cell->seconds.median;
-        sum.low += timed * cell->seconds.low;
-        sum.high += timed * cell->seconds.high;
+        sum.object_tests += weight * cost.object_tests;
+        sum.seconds += weight * cost.seconds.median;
+        sum.low += weight * cost.seconds.low;
+        sum.high += weight * cost.seconds.high;
     }
     if (sum.rays == 0) return (RtFrameCost){0, unknown, unknown, unknown, unknown};
     return sum;

@@ -28,7 +28,7 @@ RtStatus rt_journal_append(RtJsonLines *journal, const RtResults *results, const
 /* Fills `results` with all that the journal at `path` knows. Refuses one of another experiment; with `only`,
  * that is to be gone on with, one of another build, another shard, or another build of a plugin that the
  * experiment uses. Of the last, `renew` takes all lines but those about what the plugin does, unless ratios
- * refer to that. One that says that its results are given up (earlier.h) knows nothing. */
+ * refer to that. One that says that its results are given up (previous_results.h) knows nothing. */
 RtStatus rt_journal_load(const char *path, RtResults *results, const RtOnly *only, bool renew,
                          RtError *error);
 

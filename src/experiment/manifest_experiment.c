@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *rt_kept_baseline(const json_t *manifest) {
+const char *rt_manifest_baseline(const json_t *manifest) {
     return json_string_value(json_object_get(manifest, "baseline"));
 }
 
@@ -14,7 +14,7 @@ static const json_t *entry_at(const json_t *manifest, size_t i) {
     return json_array_get(json_object_get(manifest, "accelerators"), i);
 }
 
-bool rt_kept_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate) {
+bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate) {
     const json_t *entry = entry_at(manifest, i);
     const char *spec = json_string_value(json_object_get(entry, "accel"));
     const char *label = json_string_value(json_object_get(entry, "label"));
@@ -24,7 +24,7 @@ bool rt_kept_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidat
     return true;
 }
 
-bool rt_kept_is_missing(const json_t *manifest, uint32_t i) {
+bool rt_manifest_is_missing(const json_t *manifest, uint32_t i) {
     return json_is_true(json_object_get(entry_at(manifest, i), "missing"));
 }
 
@@ -43,7 +43,7 @@ static bool is_whole_in(const char *layer, const char *owner, const char *key) {
     return true;
 }
 
-bool rt_kept_is_whole(const json_t *manifest, const char *owner, const char *key) {
+bool rt_manifest_is_whole(const json_t *manifest, const char *owner, const char *key) {
     const json_t *list = json_object_get(manifest, "accelerators");
     for (size_t i = 0; i < json_array_size(list); i++) {
         const char *layer = json_string_value(json_object_get(json_array_get(list, i), "accel"));

@@ -10,16 +10,16 @@
 #include <jansson.h>
 
 /* The label of the baseline, or NULL. */
-const char *rt_kept_baseline(const json_t *manifest);
+const char *rt_manifest_baseline(const json_t *manifest);
 
 /* Spec and label of accelerator number `i` to *candidate; false where there are no more. */
-bool rt_kept_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate);
+bool rt_manifest_candidate(const json_t *manifest, uint32_t i, RtCandidate *candidate);
 
 /* Whether the build that ran it lacked accelerator number `i`. */
-bool rt_kept_is_missing(const json_t *manifest, uint32_t i);
+bool rt_manifest_is_missing(const json_t *manifest, uint32_t i);
 
 /* Whether every value that parameter `key` of the accelerator `owner` has in it is a whole number, as those
  * of a parameter that takes no other are. */
-bool rt_kept_is_whole(const json_t *manifest, const char *owner, const char *key);
+bool rt_manifest_is_whole(const json_t *manifest, const char *owner, const char *key);
 
 #endif

@@ -34,7 +34,7 @@ void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workl
     const RtTable table = rt_result_table(which, &row);
     int widths[RT_MAX_TABLE_COLUMNS];
     bool by_kind = which == RT_CELLS || which == RT_COUNTED_CELLS || which == RT_SPREADS ||
-                   which == RT_MACHINE_CELLS,
+                   which == RT_HARDWARE_CELLS,
          any = false;
     RtRayKind kind = RT_RAY_PRIMARY;
     fputc('\n', out);
@@ -127,6 +127,35 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
         } else {
             rt_table_text(&table, out);
         }
+    }
+}
+
+/* ---- hardware counters ---- */
+
+/* The first reason; NULL where anything was counted. */
+static const char *find_why(const RtResults *results) {
+    const char *why = NULL;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const RtCellHardware *hardware = &at.cell->hardware;
+        if (hardware->known && !*hardware->why) return NULL;
+        if (hardware->known && !why) why = hardware->why;
+    }
+    return why ? why : "no cell was measured";
+}
+
+void rt_print_hardware(const RtResults *results, FILE *out) {
+    const char *why = find_why(results);
+    char text[RT_MAX_SENTENCE];
+    if (why) {
+        snprintf(text, sizeof text, "Hardware counters: not available: %s.", why);
+        fputc('\n', out);
+        rt_print_wrapped(text, out);
+        return;
+    }
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
+        if (!results->workloads[t].known) continue;
+        fprintf(out, "\n%s, hardware counters per ray:\n", results->experiment->workloads[t].label);
+        rt_print_rows(results, RT_HARDWARE_CELLS, t, out);
     }
 }
 

@@ -2,7 +2,6 @@
 #include "experiment/result_tables.h"
 
 #include "accel/columns.h"
-#include "experiment/standing.h"
 
 #include <assert.h>
 #include <inttypes.h>
@@ -36,24 +35,19 @@ static RtField short_label_of(const Row *r) {
     return rt_field_print("%s", strlen(label) > RT_EYE_WIDTH ? " " : label);
 }
 
-static RtField ratio_of(const Row *r) {
-    bool ends = r->which != RT_TOTALS && r->which != RT_TOTALS_MORE;
-    return rt_field_interval(r->all.ratio, ends ? r->cell->ratio.low : (double)NAN,
-                             ends ? r->cell->ratio.high : (double)NAN);
+static RtField estimate(const RtEstimate *e, double unit) {
+    return rt_field_interval(e->median / unit, e->low / unit, e->high / unit);
 }
 
-static RtField pay_off_of(const Row *r) {
-    double rays = rt_results_pay_off(r->results, r->workload, r->candidate);
-    return isnan(rays)   ? rt_field_missing()
-           : isinf(rays) ? rt_field_text("never")
-           : rays == 0   ? rt_field_text("always")
-                         : rt_field_print(rays > 0 ? "from %.3g" : "to %.3g", 1e-6 * fabs(rays));
-}
-
-static RtField ns_of(const Row *r) {
-    const bool total = r->which == RT_TOTALS_MORE;
-    return rt_field_interval(1e9 * r->all.seconds, 1e9 * (total ? r->all.seconds_low : r->cell->seconds.low),
-                             1e9 * (total ? r->all.seconds_high : r->cell->seconds.high));
+/* Three digits, for a number of rays. */
+static RtField break_even_of(const Row *r) {
+    const double rays = rt_results_break_even(r->results, r->workload, r->candidate), count = fabs(rays);
+    if (isnan(rays)) return rt_field_missing();
+    if (isinf(rays)) return rt_field_text("never ahead");
+    if (rays == 0) return rt_field_text("always ahead");
+    double unit = 1;
+    while (count / unit >= 1000) unit *= 10;
+    return rt_field_print("ahead %s %.0f", rays > 0 ? "from" : "up to", unit * round(count / unit));
 }
 
 static RtField baseline_of(const Row *r) {
@@ -87,6 +81,23 @@ static const void *build_of(const void *row) {
     return &((const Row *)row)->build->shape.build;
 }
 
+/* Hardware counters have rounds and so a machine and threads of their own. */
+static const RtMachine *machine_of(const Row *r) {
+    return &r->results->machines[r->which == RT_HARDWARE ? r->cell->hardware.machine : r->cell->machine];
+}
+
+static uint32_t threads_of(const Row *r) {
+    return (uint32_t)(r->which == RT_HARDWARE ? r->cell->hardware.threads : r->cell->threads);
+}
+
+static double running_of(const Row *r) {
+    return *r->cell->hardware.why ? (double)NAN : r->cell->hardware.counts.running;
+}
+
+static RtField why_of(const Row *r) {
+    return *r->cell->hardware.why ? rt_field_text(r->cell->hardware.why) : rt_field_missing();
+}
+
 static double each_ns(const Row *r, RtEach each) {
     return 1e9 * rt_cell_rounds(r->cell, each)[r->round];
 }
@@ -95,7 +106,7 @@ static double each_ns(const Row *r, RtEach each) {
 
 #define SPREAD(quantity) (&r->cell->distributions[RT_QUANTITY_##quantity])
 #define LEAVES(quantity) (&r->build->leaves[RT_QUANTITY_##quantity])
-#define MACHINE(name)    (r->cell->hardware.counts.of[RT_HARDWARE_##name])
+#define EVENT(name)      (r->cell->hardware.counts.of[RT_HARDWARE_##name])
 #define TIMED(figure)    (r->cell->timed ? (figure) : (double)NAN)
 
 #define COLUMNS(X)                                                                                           \
@@ -119,7 +130,7 @@ static double each_ns(const Row *r, RtEach each) {
     X(hits, "hits", integer, "", "of them, those that hit an object", r->cell->tally.hits)                   \
     X(build_seconds, "build_seconds", real6, "s", "time to build; median of up to 3", r->build->seconds)     \
     X(bytes, "bytes", integer, "bytes", "memory of the structure's arrays", r->build->shape.bytes)           \
-    X(threads, "threads", integer, "", "threads of the timing", (uint32_t)r->cell->threads)                  \
+    X(threads, "threads", integer, "", "threads of the timing", threads_of(r))                               \
     X(rounds, "rounds", integer, "", "how often it was timed", r->cell->rounds)                              \
     X(coverage, "ratio_coverage", real6, "", "probability with which intervals hold the median",             \
       TIMED(rt_interval_coverage(r->cell->rounds)))                                                          \
@@ -131,11 +142,13 @@ static double each_ns(const Row *r, RtEach each) {
     X(wall_ns, "wall_ns", real6, "ns", "time per ray by the clock; median", 1e9 * r->cell->wall.median)      \
     X(wall_ns_low, "wall_ns_low", real6, "ns", "lower end of its interval", 1e9 * r->cell->wall.low)         \
     X(wall_ns_high, "wall_ns_high", real6, "ns", "upper end of its interval", 1e9 * r->cell->wall.high)      \
-    X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays a second, by the median", 1e-6 / r->all.seconds) \
+    X(mrays_per_s, "mrays_per_s", real6, "million/s", "rays per second, by the median",                      \
+      1e-6 / r->all.seconds.median)                                                                          \
     X(baseline, "baseline", text, "", "the accelerator that the ratio refers to", baseline_of(r))            \
-    X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by rounds; median", r->all.ratio)   \
-    X(ratio_low, "ratio_low", end, "", "lower end of its interval", TIMED(r->cell->ratio.low))               \
-    X(ratio_high, "ratio_high", end, "", "upper end of its interval", TIMED(r->cell->ratio.high))            \
+    X(ratio, "ratio", real6, "", "throughput over the baseline's, paired by round; median",                  \
+      r->all.ratio.median)                                                                                   \
+    X(ratio_low, "ratio_low", end, "", "lower end of its interval", r->all.ratio.low)                        \
+    X(ratio_high, "ratio_high", end, "", "upper end of its interval", r->all.ratio.high)                     \
     X(straddles_1, "straddles_1", flag, "", "whether 1 is between them, as it should be in a null run",      \
       rt_field_flag(rt_estimate_holds(&r->cell->ratio, 1)))                                                  \
     X(object_tests, "object_tests", integer, "", "object tests counted here; empty: not known",              \
@@ -145,31 +158,42 @@ static double each_ns(const Row *r, RtEach each) {
     X(steps, "steps", integer, "", "steps counted here; empty: not known",                                   \
       known(r->cell->tally.steps, r->all.steps))                                                             \
     X(differ, "differ", integer, "", "answers unlike the baseline's; 0 if exact", r->cell->differ)           \
-    X(host, "host", text, "", "the machine that timed it", r->results->machines[r->cell->machine].host)      \
-    X(cpu, "cpu", text, "", "its processor", r->results->machines[r->cell->machine].cpu)                     \
+    X(instructions, "instructions", real6, "", "instructions retired, per ray; median of 5 rounds",          \
+      EVENT(instructions))                                                                                   \
+    X(cycles, "cycles", real6, "", "processor cycles, per ray", EVENT(cycles))                               \
+    X(cache_misses, "cache_misses", real6, "", "misses of the last-level cache, per ray",                    \
+      EVENT(cache_misses))                                                                                   \
+    X(branch_misses, "branch_misses", real6, "", "mispredicted branches, per ray", EVENT(branch_misses))     \
+    X(instructions_per_cycle, "instructions_per_cycle", real6, "", "instructions per cycle",                 \
+      EVENT(instructions) / EVENT(cycles))                                                                   \
+    X(running, "running", real6, "",                                                                         \
+      "least part of the time that an event was counted; below 1 events took turns, and counts are scaled",  \
+      running_of(r))                                                                                         \
+    X(why, "why", text, "", "why nothing could be counted; else empty", why_of(r))                           \
+    X(host, "host", text, "", "the machine that measured", machine_of(r)->host)                              \
+    X(cpu, "cpu", text, "", "its processor", machine_of(r)->cpu)                                             \
     X(tests_a_ray, "tests/ray", figure, "", "object tests per ray", r->all.object_tests)                     \
     X(extents_a_ray, "ext./ray", figure, "", "extent tests per ray", r->all.extent_tests)                    \
     X(steps_a_ray, "steps/ray", figure, "", "steps per ray", r->all.steps)                                   \
-    X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->all.seconds)                         \
-    X(ns_interval, "ns/ray", interval, "ns", "median time per ray, with its interval", ns_of(r))             \
-    X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds)                            \
-    X(interval, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                        \
-    X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
-    X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
-    X(pay_off, "ahead, Mrays", text, "million",                                                              \
-      "for how many rays, with both builds, it takes less time than the baseline", pay_off_of(r))            \
-    X(min_ns, "min ns", figure, "ns", "smallest time per ray", TIMED(1e9 * r->cell->seconds.least))          \
-    X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps a second: mrays_per_s by steps per ray",      \
-      1e-6 * r->all.steps / r->all.seconds)                                                                  \
-    X(mtests_per_s, "mtests_per_s", real6, "million/s",                                                      \
-      "object tests a second: mrays_per_s by object tests per ray",                                          \
-      1e-6 * r->all.object_tests / r->all.seconds)                                                           \
+    X(ns_a_ray, "ns/ray", figure, "ns", "median time per ray", 1e9 * r->all.seconds.median)                  \
+    X(ns_interval, "ns/ray", interval, "ns", "median time per ray, with its interval",                       \
+      estimate(&r->all.seconds, 1e-9))                                                                       \
     X(eye_label, "accelerator", text, "", "the label, where there is room", short_label_of(r))               \
     X(eye_tests, "tests", figure, "", "object tests per ray", r->all.object_tests)                           \
     X(eye_extents, "ext.", figure, "", "extent tests per ray", r->all.extent_tests)                          \
     X(eye_steps, "steps", figure, "", "steps per ray", r->all.steps)                                         \
-    X(eye_mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds)                        \
-    X(eye_ratio, "ratio", interval, "", "throughput over the baseline's", ratio_of(r))                       \
+    X(mrays, "Mrays/s", figure, "million/s", "throughput", 1e-6 / r->all.seconds.median)                     \
+    X(interval, "ratio", interval, "", "throughput over the baseline's", estimate(&r->all.ratio, 1))         \
+    X(build_ms, "build ms", amount, "ms", "time to build the structure", 1e3 * r->build->seconds)            \
+    X(mb, "MB", amount, "MB", "memory of the structure", 1e-6 * (double)r->build->shape.bytes)               \
+    X(break_even, "break-even (rays)", text, "rays",                                                         \
+      "for how many rays it takes less time than the baseline, both builds included", break_even_of(r))      \
+    X(min_ns, "min ns", figure, "ns", "smallest time per ray", 1e9 * r->all.seconds.least)                   \
+    X(msteps_per_s, "msteps_per_s", real6, "million/s", "steps per second: mrays_per_s times steps per ray", \
+      1e-6 * r->all.steps / r->all.seconds.median)                                                           \
+    X(mtests_per_s, "mtests_per_s", real6, "million/s",                                                      \
+      "object tests per second: mrays_per_s times object tests per ray",                                     \
+      1e-6 * r->all.object_tests / r->all.seconds.median)                                                    \
     X(tests_median, "tests: 50 %", integer, "", "object tests that half of the rays do not exceed",          \
       SPREAD(object_tests)->median)                                                                          \
     X(tests_p99, "99 %", integer, "", "that 99 % do not exceed", SPREAD(object_tests)->p99)                  \
@@ -184,11 +208,11 @@ static double each_ns(const Row *r, RtEach each) {
     X(depth_median, "depth: 50 %", integer, "", "the same of depths", LEAVES(leaf_depth)->median)            \
     X(depth_p99, "99 %", integer, "", "that 99 % do not exceed", LEAVES(leaf_depth)->p99)                    \
     X(depth_most, "most", integer, "", "of the deepest", LEAVES(leaf_depth)->most)                           \
-    X(eye_instructions, "instr./ray", figure, "", "instructions", MACHINE(instructions))                     \
-    X(eye_cycles, "cycles/ray", figure, "", "cycles", MACHINE(cycles))                                       \
-    X(eye_ipc, "instr./cycle", figure, "", "instructions a cycle", MACHINE(instructions) / MACHINE(cycles))  \
-    X(eye_cache, "cache m.", figure, "", "cache misses a ray", MACHINE(cache_misses))                        \
-    X(eye_branch, "branch m.", figure, "", "mispredicted branches a ray", MACHINE(branch_misses))            \
+    X(eye_instructions, "instr./ray", figure, "", "instructions", EVENT(instructions))                       \
+    X(eye_cycles, "cycles/ray", figure, "", "cycles", EVENT(cycles))                                         \
+    X(eye_ipc, "instr./cycle", figure, "", "instructions per cycle", EVENT(instructions) / EVENT(cycles))    \
+    X(eye_cache, "cache m.", figure, "", "cache misses per ray", EVENT(cache_misses))                        \
+    X(eye_branch, "branch m.", figure, "", "mispredicted branches per ray", EVENT(branch_misses))            \
     X(round, "round", integer, "", "number of the round, from 1", r->round + 1)                              \
     X(round_ns, "ns", real6, "ns", "processor time per ray in it, by the clock on several threads",          \
       each_ns(r, RT_EACH_SECONDS))                                                                           \
@@ -216,13 +240,13 @@ static const RtColumnGroup times[] = {
     RT_FROM_TO(columns, host, cpu),
 };
 
-static const RtColumnGroup each_round[] = {
-    RT_ONE(columns, scene),
-    RT_ONE(columns, kind),
-    RT_ONE(columns, accel),
-    RT_ONE(columns, baseline),
-    RT_FROM_TO(columns, round, round_baseline_ns),
-};
+static const RtColumnGroup each_round[] = {RT_ONE(columns, scene), RT_ONE(columns, kind),
+                                           RT_ONE(columns, accel), RT_ONE(columns, baseline),
+                                           RT_FROM_TO(columns, round, round_baseline_ns)};
+
+static const RtColumnGroup hardware[] = {
+    RT_ONE(columns, scene), RT_ONE(columns, kind),    RT_FROM_TO(columns, accel, spec),
+    RT_ONE(columns, rays),  RT_ONE(columns, threads), RT_FROM_TO(columns, instructions, cpu)};
 
 static const RtColumnGroup bench[] = {
     RT_ONE(columns, scene_spec),
@@ -241,15 +265,15 @@ static const RtColumnGroup null_runs[] = {RT_ONE(columns, scene_spec), RT_ONE(co
                                           RT_FROM_TO(columns, accel, spec), RT_ONE(columns, rays),
                                           RT_FROM_TO(columns, build_seconds, straddles_1)};
 
-static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, eye_ratio)};
+static const RtColumnGroup for_the_eye[] = {RT_FROM_TO(columns, eye_label, interval)};
 
-static const RtColumnGroup for_papers[] = {RT_ONE(columns, accel), RT_FROM_TO(columns, eye_tests, eye_ratio)};
+static const RtColumnGroup for_papers[] = {RT_ONE(columns, accel), RT_FROM_TO(columns, eye_tests, interval)};
 
 static const RtColumnGroup counted_for_papers[] = {RT_ONE(columns, accel),
                                                    RT_FROM_TO(columns, eye_tests, eye_steps)};
 
 static const RtColumnGroup structures[] = {RT_ONE(columns, eye_label),
-                                           RT_FROM_TO(columns, build_ms, pay_off)};
+                                           RT_FROM_TO(columns, build_ms, break_even)};
 
 static const RtColumnGroup counted_cells[] = {RT_FROM_TO(columns, eye_label, eye_steps)};
 
@@ -267,7 +291,7 @@ static const RtColumnGroup cells[] = {
 
 static const RtColumnGroup totals[] = {RT_ONE(columns, accel), RT_ONE(columns, rays),
                                        RT_FROM_TO(columns, tests_a_ray, ns_a_ray),
-                                       RT_FROM_TO(columns, interval, pay_off)};
+                                       RT_FROM_TO(columns, interval, break_even)};
 
 static const RtColumnGroup spreads[] = {RT_ONE(columns, eye_label),
                                         RT_FROM_TO(columns, tests_median, steps_most)};
@@ -275,19 +299,19 @@ static const RtColumnGroup spreads[] = {RT_ONE(columns, eye_label),
 static const RtColumnGroup leaf_spreads[] = {RT_ONE(columns, eye_label),
                                              RT_FROM_TO(columns, size_median, depth_most)};
 
-static const RtColumnGroup machine_cells[] = {RT_ONE(columns, eye_label),
-                                              RT_FROM_TO(columns, eye_instructions, eye_branch)};
+static const RtColumnGroup hardware_cells[] = {RT_ONE(columns, eye_label),
+                                               RT_FROM_TO(columns, eye_instructions, eye_branch)};
 
 static const RtColumnGroup totals_more[] = {
     RT_ONE(columns, accel), RT_ONE(columns, rays), RT_FROM_TO(columns, tests_a_ray, steps_a_ray),
-    RT_ONE(columns, ns_interval), RT_FROM_TO(columns, interval, pay_off)};
+    RT_ONE(columns, ns_interval), RT_FROM_TO(columns, interval, break_even)};
 
 /* ---- rows ---- */
 
 /* A workload after the other, in each an accelerator after the other, the null run last, in each all
  * kinds; for the eye and bench, of one workload, a kind after the other. */
 static bool is_by_workload(RtResultTable which) {
-    return which <= RT_ROUNDS;
+    return which <= RT_HARDWARE;
 }
 
 static void find(Row *r, size_t i) {
@@ -307,22 +331,6 @@ static void find(Row *r, size_t i) {
     r->cell = rt_cell_at(r->results, r->workload, r->candidate, r->kind);
 }
 
-static double per_ray(const Row *r, uint64_t counter) {
-    return rt_cell_per_ray(r->results, r->workload, r->candidate, r->kind, counter);
-}
-
-static RtTotal all_of(const Row *r) {
-    const RtTally *tally = &r->cell->tally;
-    if (r->which == RT_TOTALS || r->which == RT_TOTALS_MORE)
-        return rt_results_total(r->results, r->workload, r->candidate);
-    return (RtTotal){.rays = tally->rays,
-                     .object_tests = per_ray(r, tally->object_tests),
-                     .extent_tests = per_ray(r, tally->extent_tests),
-                     .steps = per_ray(r, tally->steps),
-                     .seconds = TIMED(r->cell->seconds.median),
-                     .ratio = TIMED(r->cell->ratio.median)};
-}
-
 /* One of the baseline's candidates that is not the fastest of them on these rays. */
 static bool is_lost(const Row *r, const RtCell *cell) {
     return cell->timed && r->candidate < r->results->experiment->candidate_count &&
@@ -339,39 +347,78 @@ static bool is_shown(const Row *r) {
     return false;
 }
 
+static bool is_total(const Row *r) {
+    return r->which == RT_TOTALS || r->which == RT_TOTALS_MORE;
+}
+
 static const void *row_at(void *context, size_t i) {
     Row *r = context;
     find(r, i);
-    const bool null = r->candidate == r->results->experiment->candidate_count;
+    const RtExperiment *e = r->results->experiment;
+    const bool null = r->candidate == e->candidate_count, first = i < e->candidate_count;
     const bool counted = r->cell->counted, timed = r->cell->timed;
+    r->all = rt_results_cost(r->results, r->workload, r->candidate, is_total(r) ? RT_ALL_RAYS : r->kind);
     const bool there[RT_RESULT_TABLE_COUNT] = {
         [RT_COUNTS] = counted && r->build->counts,
         [RT_TIMES] = timed,
         [RT_ROUNDS] = timed && r->cell->each && r->round < r->cell->rounds,
+        [RT_HARDWARE] = r->cell->hardware.known,
         [RT_BENCH] = counted && !null,
         [RT_NULL_RUNS] = timed && null,
         [RT_CELLS] = (counted || timed) && !is_lost(r, r->cell),
         [RT_CELLS_PAPER] = (counted || timed) && !null && !is_lost(r, r->cell),
         [RT_COUNTED_PAPER] = counted && !null,
-        [RT_STRUCTURES] = is_shown(r) && !null && i < r->results->experiment->candidate_count,
-        [RT_COUNTED_CELLS] = r->cell->counted,
-        [RT_COUNTED_STRUCTURES] = is_shown(r) && i < r->results->experiment->candidate_count,
+        [RT_STRUCTURES] = first && is_shown(r),
+        [RT_COUNTED_CELLS] = counted,
+        [RT_COUNTED_STRUCTURES] = first && is_shown(r),
         [RT_CELLS_MORE] = counted || timed,
-        [RT_TOTALS] = r->build->known && !null && i < r->results->experiment->candidate_count,
-        [RT_SPREADS] = r->cell->distributions && !isnan(per_ray(r, r->cell->tally.object_tests)),
-        [RT_LEAF_SPREADS] = r->build->leaves && !null && i < r->results->experiment->candidate_count,
-        [RT_MACHINE_CELLS] = r->cell->hardware.known && !*r->cell->hardware.why,
-        [RT_TOTALS_MORE] = r->build->known && !null && i < r->results->experiment->candidate_count,
+        [RT_TOTALS] = first && r->build->known,
+        [RT_SPREADS] = r->cell->distributions && !isnan(r->all.object_tests),
+        [RT_LEAF_SPREADS] = first && r->build->leaves,
+        [RT_HARDWARE_CELLS] = r->cell->hardware.known && !*r->cell->hardware.why,
+        [RT_TOTALS_MORE] = first && r->build->known,
     };
-    if (!there[r->which]) return NULL;
-    r->all = all_of(r);
-    return r;
+    return there[r->which] ? r : NULL;
+}
+
+/* ---- the best ---- */
+
+static bool takes_part(const RtExperiment *experiment, uint32_t candidate) {
+    return candidate < experiment->candidate_count &&
+           strcmp(experiment->candidates[candidate].spec, rt_accel_yardstick()) != 0;
+}
+
+static bool is_timed(const RtResults *results, uint32_t t) {
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        if (at.workload == t && at.cell->timed) return true;
+    }
+    return false;
+}
+
+/* Time, or object tests, which are exact. */
+static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool timed) {
+    const RtCost cost = rt_results_cost(results, t, c, kind);
+    const double tests = cost.object_tests;
+    return timed ? cost.seconds : (RtEstimate){tests, tests, tests, tests};
+}
+
+RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    const RtExperiment *experiment = results->experiment;
+    if (!takes_part(experiment, candidate)) return RT_STANDING_BEHIND;
+    const bool timed = is_timed(results, workload);
+    const RtEstimate own = weigh(results, workload, candidate, kind, timed);
+    RtEstimate best = {INFINITY, INFINITY, INFINITY, INFINITY};
+    for (uint32_t c = 0; c < experiment->candidate_count; c++) {
+        const RtEstimate other = weigh(results, workload, c, kind, timed);
+        if (takes_part(experiment, c) && other.median < best.median) best = other;
+    }
+    if (own.median == best.median) return RT_STANDING_BEST; /* not of NAN */
+    return own.low <= best.high ? RT_STANDING_LEVEL : RT_STANDING_BEHIND;
 }
 
 static RtStanding standing_of(const void *row) {
     const Row *r = row;
-    const bool total = r->which == RT_TOTALS || r->which == RT_TOTALS_MORE;
-    return rt_standing(r->results, r->workload, r->candidate, total ? RT_RAY_KIND_COUNT : r->kind);
+    return rt_standing(r->results, r->workload, r->candidate, is_total(r) ? RT_ALL_RAYS : r->kind);
 }
 
 /* ---- what is swept ---- */
@@ -412,6 +459,7 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
         [RT_COUNTS] = {RT_GROUPS(counts)},
         [RT_TIMES] = {RT_GROUPS(times)},
         [RT_ROUNDS] = {RT_GROUPS(each_round)},
+        [RT_HARDWARE] = {RT_GROUPS(hardware)},
         [RT_BENCH] = {RT_GROUPS(bench)},
         [RT_NULL_RUNS] = {RT_GROUPS(null_runs)},
         [RT_CELLS] = {RT_GROUPS(for_the_eye)},
@@ -420,7 +468,7 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
         [RT_COUNTED_STRUCTURES] = {RT_GROUPS(counted_structures)},
         [RT_SPREADS] = {RT_GROUPS(spreads)},
         [RT_LEAF_SPREADS] = {RT_GROUPS(leaf_spreads)},
-        [RT_MACHINE_CELLS] = {RT_GROUPS(machine_cells)},
+        [RT_HARDWARE_CELLS] = {RT_GROUPS(hardware_cells)},
         [RT_CELLS_PAPER] = {RT_GROUPS(for_papers)},
         [RT_COUNTED_PAPER] = {RT_GROUPS(counted_for_papers)},
         [RT_CELLS_MORE] = {RT_GROUPS(cells)},
@@ -436,6 +484,6 @@ RtTable rt_result_table(RtResultTable which, RtResultRow *row) {
     table.context = row;
     table.standing = which >= RT_CELLS_PAPER ? standing_of : NULL;
     row->which = which;
-    if (which <= RT_BENCH) add_swept(&table, row);
+    if (which <= RT_BENCH && which != RT_HARDWARE) add_swept(&table, row);
     return table;
 }

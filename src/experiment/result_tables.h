@@ -17,6 +17,8 @@ typedef enum RtResultTable {
     RT_TIMES,
     /* rounds.csv: a row per round of a timed cell, null runs included. */
     RT_ROUNDS,
+    /* hardware.csv: a row per cell for which counters were asked for. Where there are none it says why. */
+    RT_HARDWARE,
     RT_BENCH,         /* "rows" of bench --json: of each cell that was counted */
     RT_NULL_RUNS,     /* "null_runs" there */
     RT_CELLS,         /* for the eye: one workload by accelerator and ray kind; of a best of only the best */
@@ -25,8 +27,8 @@ typedef enum RtResultTable {
     RT_COUNTED_STRUCTURES,
     RT_SPREADS, /* for the eye: one workload by accelerator and ray kind: medians, 99th percentiles and maxima
                    of object tests and steps */
-    RT_LEAF_SPREADS,  /* for the eye: by accelerator: those of sizes and depths of leaves */
-    RT_MACHINE_CELLS, /* for the eye: one workload by accelerator and ray kind: what the machine did */
+    RT_LEAF_SPREADS,   /* for the eye: by accelerator: those of sizes and depths of leaves */
+    RT_HARDWARE_CELLS, /* for the eye: one workload by accelerator and ray kind: hardware counters */
     /* Those from here on mark the best. */
     RT_CELLS_PAPER,   /* as RT_CELLS, with whole labels and without null runs */
     RT_COUNTED_PAPER, /* the same where nothing was timed */
@@ -50,7 +52,7 @@ typedef struct RtResultRow {
     const RtWorkloadResult *scene;
     const RtBuildResult *build;
     const RtCell *cell;
-    RtTotal all; /* of the cell, or of RT_TOTALS... */
+    RtCost all; /* of the cell, or of RT_TOTALS... of all kinds of rays */
     uint32_t swept_count;
     RtSweptKey swept[RT_MAX_SWEPT_KEYS]; /* what the experiment sweeps */
     char swept_names[RT_MAX_SWEPT_KEYS]
@@ -63,6 +65,12 @@ typedef struct RtResultRow {
  * workload, filled in. */
 RtTable rt_result_table(RtResultTable which, RtResultRow *row);
 
+/* How a candidate compares with all others that were measured on the workload, for one kind of rays or
+ * RT_ALL_RAYS: by time where any was timed, else by object tests per ray. The best has the smallest median;
+ * one whose interval overlaps with that of the best is level with it. Null runs and the yardstick
+ * (rt_accel_yardstick) are not compared. */
+RtStanding rt_standing(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
+
 /* How a row is called for the eye: its label, and a star if it is measured on a part of the rays. One of more
  * than RT_EYE_WIDTH characters stands on a line of its own. */
 #define RT_EYE_WIDTH     24
@@ -72,6 +80,9 @@ void rt_result_eye_label(const RtResultRow *row, char out[RT_MAX_EYE_LABEL]);
 /* RT_CELLS, in 80 columns, with RT_STRUCTURES and what the figures refer to, or where nothing was timed what
  * there is then; or RT_TOTALS; of each workload that is known. */
 void rt_print_results(const RtResults *results, RtResultTable which, FILE *out);
+
+/* Hardware counters of each workload that is known; or why there are none. */
+void rt_print_hardware(const RtResults *results, FILE *out);
 
 /* The rows of a table for the eye, behind a blank line and the names of its columns. */
 void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out);

@@ -71,19 +71,22 @@ const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidat
                                                    : experiment->again;
 }
 
+bool rt_results_next(const RtResults *results, RtCellCursor *at) {
+    const RtExperiment *e = results->experiment;
+    const uint32_t i = at->next++;
+    at->kind = e->kinds[i % e->kind_count];
+    at->candidate = i / e->kind_count % e->candidate_count;
+    at->workload = i / e->kind_count / e->candidate_count;
+    if (at->workload >= e->workload_count) return false;
+    at->cell = rt_cell_at(results, at->workload, at->candidate, at->kind);
+    return true;
+}
+
 uint64_t rt_results_size(const RtResults *results, uint32_t *scenes) {
-    const RtExperiment *experiment = results->experiment;
     uint64_t cells = 0;
     *scenes = 0;
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        *scenes += results->workloads[t].known;
-        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            for (uint32_t k = 0; k < experiment->kind_count; k++) {
-                const RtCell *cell = rt_cell_at(results, t, c, experiment->kinds[k]);
-                cells += cell->counted || cell->timed;
-            }
-        }
-    }
+    for (uint32_t t = 0; t < results->experiment->workload_count; t++) *scenes += results->workloads[t].known;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) cells += at.cell->counted || at.cell->timed;
     return cells;
 }
 
@@ -98,48 +101,30 @@ void rt_null_verdict(const RtResults *results, uint32_t *runs, uint32_t *straddl
     }
 }
 
-static bool any_cell_is_broken(const RtResults *results, uint32_t t, uint32_t c) {
-    bool broken = rt_build_at(results, t, c)->broken;
-    for (int k = 0; k < RT_RAY_KIND_COUNT; k++) broken |= rt_cell_at(results, t, c, (RtRayKind)k)->broken;
-    return broken;
-}
-
 RtStatus rt_results_check_broken(const RtResults *results, RtError *error) {
     const RtExperiment *e = results->experiment;
-    for (uint32_t t = 0; t < e->workload_count; t++) {
-        for (uint32_t c = 0; c < e->candidate_count; c++) {
-            if (!any_cell_is_broken(results, t, c)) continue;
-            return rt_fail(error, RT_BROKEN,
-                           "'%s' is broken and left out, at least on %s: see above; `raytally verify --accel "
-                           "%s` says more. The others are measured",
-                           e->candidates[c].label, e->workloads[t].label, e->candidates[c].spec);
-        }
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        if (!at.cell->broken && !rt_build_at(results, at.workload, at.candidate)->broken) continue;
+        return rt_fail(error, RT_BROKEN,
+                       "'%s' is broken and left out, at least on %s: see above; `raytally verify --accel %s` "
+                       "says more. All other accelerators are measured",
+                       e->candidates[at.candidate].label, e->workloads[at.workload].label,
+                       e->candidates[at.candidate].spec);
     }
     return RT_OK;
 }
 
 void rt_print_limits(const RtResults *results, FILE *out) {
-    const RtExperiment *experiment = results->experiment;
-    for (uint32_t t = 0; t < experiment->workload_count; t++) {
-        for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-            const char *scene = experiment->workloads[t].label, *accel = experiment->candidates[c].label;
-            const RtBuildResult *build = rt_build_at(results, t, c);
-            if (*build->limit) fprintf(out, "Left out: %s on %s: %s\n", accel, scene, build->limit);
-            for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
-                const RtCell *cell = rt_cell_at(results, t, c, (RtRayKind)k);
-                if (!*cell->limit) continue;
-                fprintf(out, "Left out: %s on %s, %s rays: %s\n", accel, scene,
-                        rt_ray_kind_name((RtRayKind)k), cell->limit);
-            }
-        }
+    const RtExperiment *e = results->experiment;
+    for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
+        const char *scene = e->workloads[at.workload].label, *accel = e->candidates[at.candidate].label;
+        const RtBuildResult *build = rt_build_at(results, at.workload, at.candidate);
+        if (*build->limit && at.kind == e->kinds[0])
+            fprintf(out, "Left out: %s on %s: %s\n", accel, scene, build->limit);
+        if (*at.cell->limit)
+            fprintf(out, "Left out: %s on %s, %s rays: %s\n", accel, scene, rt_ray_kind_name(at.kind),
+                    at.cell->limit);
     }
-}
-
-double rt_cell_per_ray(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind,
-                       uint64_t counter) {
-    const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
-    bool known = cell->counted && (counter || rt_build_at(results, workload, candidate)->counts);
-    return known ? (double)counter / (double)cell->tally.rays : (double)NAN;
 }
 
 bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind) {
@@ -150,66 +135,75 @@ bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind 
     return false;
 }
 
-/* A weighted mean; NAN as soon as one of its values is. */
-typedef struct Mean {
-    double sum, weight;
-} Mean;
-
-static void add(Mean *mean, double value, double weight) {
-    mean->sum += weight * value;
-    mean->weight += weight;
+/* A count per ray. It is unknown where nothing was counted, and where the counter stayed at 0 in an
+ * accelerator that does not count everything (Embree's own boxes). */
+static double per_ray(const RtCell *cell, const RtBuildResult *build, uint64_t counter) {
+    bool known = cell->counted && (counter || build->counts);
+    return known ? (double)counter / (double)cell->tally.rays : (double)NAN;
 }
 
-static double timed(const RtCell *cell, double figure) {
-    return cell->timed ? figure : (double)NAN;
+static RtCost cost_of_cell(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
+    const RtBuildResult *build = rt_build_at(results, workload, candidate);
+    const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
+    const double unknown = (double)NAN;
+    RtCost cost = {.whole = true,
+                   .rays = cell->tally.rays,
+                   .object_tests = per_ray(cell, build, cell->tally.object_tests),
+                   .extent_tests = per_ray(cell, build, cell->tally.extent_tests),
+                   .steps = per_ray(cell, build, cell->tally.steps),
+                   .seconds = {unknown, unknown, unknown, unknown},
+                   .ratio = {unknown, unknown, unknown, unknown}};
+    if (!cell->timed) return cost;
+    cost.seconds = cell->seconds;
+    cost.ratio = cell->ratio;
+    return cost;
 }
 
-RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate) {
+RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind) {
     const RtExperiment *experiment = results->experiment;
-    Mean object_tests = {0}, extent_tests = {0}, steps = {0}, seconds = {0}, baseline = {0}, low = {0},
-         high = {0};
-    RtTotal total = {.whole = true};
+    const double unknown = (double)NAN;
+    double weights = 0, baseline = 0;
+    RtCost sum = {.whole = true, .seconds.least = unknown};
+    if (kind != RT_ALL_RAYS) return cost_of_cell(results, workload, candidate, kind);
     for (uint32_t k = 0; k < experiment->kind_count; k++) {
-        RtRayKind kind = experiment->kinds[k];
-        const RtCell *cell = rt_cell_at(results, workload, candidate, kind);
-        const RtTally *tally = &cell->tally;
-        double weight = (double)results->workloads[workload].rays[kind];
+        const RtCost cost = cost_of_cell(results, workload, candidate, experiment->kinds[k]);
+        const double weight = (double)results->workloads[workload].rays[experiment->kinds[k]];
         if (weight == 0) continue;
-        total.whole &= rt_results_has_kind(results, workload, kind);
-        if (!rt_results_has_kind(results, workload, kind)) continue;
-        total.rays += tally->rays;
-        add(&object_tests, rt_cell_per_ray(results, workload, candidate, kind, tally->object_tests), weight);
-        add(&extent_tests, rt_cell_per_ray(results, workload, candidate, kind, tally->extent_tests), weight);
-        add(&steps, rt_cell_per_ray(results, workload, candidate, kind, tally->steps), weight);
-        add(&seconds, timed(cell, cell->seconds.median), weight);
-        add(&low, timed(cell, cell->seconds.low), weight);
-        add(&high, timed(cell, cell->seconds.high), weight);
-        add(&baseline, timed(cell, cell->ratio.median * cell->seconds.median), weight);
+        sum.whole &= rt_results_has_kind(results, workload, experiment->kinds[k]);
+        if (!rt_results_has_kind(results, workload, experiment->kinds[k])) continue;
+        weights += weight;
+        sum.rays += cost.rays;
+        sum.object_tests += weight * cost.object_tests;
+        sum.extent_tests += weight * cost.extent_tests;
+        sum.steps += weight * cost.steps;
+        sum.seconds.median += weight * cost.seconds.median;
+        sum.seconds.low += weight * cost.seconds.low;
+        sum.seconds.high += weight * cost.seconds.high;
+        baseline += weight * (cost.ratio.median * cost.seconds.median);
     }
-    /* 0 / 0 is NAN: not known. */
-    total.object_tests = object_tests.sum / object_tests.weight;
-    total.extent_tests = extent_tests.sum / extent_tests.weight;
-    total.steps = steps.sum / steps.weight;
-    total.seconds = seconds.sum / seconds.weight;
-    total.ratio = baseline.sum / seconds.sum;
-    total.seconds_low = low.sum / low.weight;
-    total.seconds_high = high.sum / high.weight;
-    return total;
+    sum.ratio = (RtEstimate){baseline / sum.seconds.median, unknown, unknown, unknown};
+    sum.object_tests /= weights; /* 0 / 0 is NAN: unknown */
+    sum.extent_tests /= weights;
+    sum.steps /= weights;
+    sum.seconds.median /= weights;
+    sum.seconds.low /= weights;
+    sum.seconds.high /= weights;
+    return sum;
 }
 
-double rt_results_pay_off(const RtResults *results, uint32_t workload, uint32_t candidate) {
-    Mean saved = {0};
-    double build = INFINITY;
+double rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate) {
+    double saved = 0, weights = 0, build = INFINITY;
     if (rt_candidate_is_baseline(results->experiment, candidate)) return (double)NAN;
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtCell *cell = rt_cell_at(results, workload, candidate, (RtRayKind)k);
+        const double weight = (double)results->workloads[workload].rays[k];
         if (!rt_results_has_kind(results, workload, (RtRayKind)k)) continue;
         if (!cell->timed) return (double)NAN;
-        double ray = cell->wall.median;
-        add(&saved, (cell->ratio.median - 1) * ray, (double)results->workloads[workload].rays[k]);
+        saved += weight * ((cell->ratio.median - 1) * cell->wall.median);
+        weights += weight;
         build = fmin(build, rt_build_at(results, workload, cell->baseline)->seconds);
     }
-    double more = rt_build_at(results, workload, candidate)->seconds - build, each = saved.sum / saved.weight;
+    double more = rt_build_at(results, workload, candidate)->seconds - build, each = saved / weights;
     if (isnan(each)) return (double)NAN;
     if (more <= 0 && each >= 0) return 0;
     return more * each > 0 ? copysign(more / each, each) : (double)INFINITY;

@@ -97,7 +97,16 @@ double *rt_cell_rounds(const RtCell *cell, RtEach each);
 /* The candidate's label, that of the baseline and " (again)" for the null run. */
 const char *rt_candidate_label(const RtExperiment *experiment, uint32_t candidate);
 
-/* How many cells were measured, of how many scenes. */
+/* Every cell of the experiment but those of the null run, scene by scene, accelerator by accelerator:
+ *     for (RtCellCursor at = {0}; rt_results_next(results, &at);) use(at.cell); */
+typedef struct RtCellCursor {
+    uint32_t next, workload, candidate;
+    RtRayKind kind;
+    RtCell *cell;
+} RtCellCursor;
+bool rt_results_next(const RtResults *results, RtCellCursor *at);
+
+/* How many cells were measured, and on how many scenes. */
 uint64_t rt_results_size(const RtResults *results, uint32_t *scenes);
 
 /* How many of the null runs there are, and how many of them have an interval with 1 inside. */
@@ -112,31 +121,25 @@ void rt_print_limits(const RtResults *results, FILE *out);
 /* Whether any candidate was measured on the workload's rays of that kind. */
 bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind kind);
 
-/* What a candidate's cells of one workload add up to. Per ray means per ray of all kinds together, each kind
- * with the weight of its unthinned set, so that thinned and full measurements compare. The totals of a
- * workload are all over the same kinds, those that any candidate was measured on: a figure that is unknown
- * for one of them is NAN. */
-typedef struct RtTotal {
-    bool whole;                               /* over all kinds of rays that the experiment asks for */
+/* What a ray costs: of one kind, or of all kinds together (RT_ALL_RAYS). Then each kind has the weight of its
+ * unthinned set, so that thinned and full measurements compare, and all candidates of a workload are over the
+ * same kinds, those that any of them was measured on. What is unknown is NAN. */
+#define RT_ALL_RAYS RT_RAY_KIND_COUNT
+typedef struct RtCost {
+    bool whole;                               /* all kinds of rays that the experiment asks for are in it */
     uint64_t rays;                            /* measured */
-    double object_tests, extent_tests, steps; /* a ray */
-    double seconds;                           /* a ray */
-    double ratio;                             /* of throughput to the baseline's on the same rays */
-    double seconds_low,
-        seconds_high; /* ends of the intervals of all kinds, weighted alike: rather too wide */
-} RtTotal;
+    double object_tests, extent_tests, steps; /* per ray */
+    RtEstimate
+        seconds;      /* per ray; of all kinds the weighted ends of their intervals, which is conservative */
+    RtEstimate ratio; /* of throughput to the baseline's on the same rays; of all kinds the median alone */
+} RtCost;
 
-RtTotal rt_results_total(const RtResults *results, uint32_t workload, uint32_t candidate);
+RtCost rt_results_cost(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind);
 
-/* For how many rays, of all kinds in the shares that their sets have, a candidate with its build takes less
- * time by the clock than the baseline with its (of several the least, where ratios refer to the fastest of
- * several). 0: always; from so many on; below 0: up to so many; INFINITY: never; NAN: not known, or the
- * baseline. Builds are of as many threads as a run builds on: they are to be those of the timing. */
-double rt_results_pay_off(const RtResults *results, uint32_t workload, uint32_t candidate);
-
-/* How often a counter counted for a ray of the cell; NAN where that is not known: nothing was counted, or the
- * counter stayed at 0 in an accelerator that does not count everything (Embree its own boxes). */
-double rt_cell_per_ray(const RtResults *results, uint32_t workload, uint32_t candidate, RtRayKind kind,
-                       uint64_t counter);
+/* The break-even with the baseline: for how many rays, of all kinds in the shares that their sets have, a
+ * candidate with its build takes less time than the baseline with its own (the shortest build where ratios
+ * refer to the fastest of several). 0: for any number; n: from n rays on; -n: up to n rays; INFINITY: for
+ * none; NAN: unknown, or the baseline itself. Builds are to run on as many threads as the timing. */
+double rt_results_break_even(const RtResults *results, uint32_t workload, uint32_t candidate);
 
 #endif

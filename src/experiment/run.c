@@ -5,7 +5,6 @@
 #include "core/base/words.h"
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
-#include "experiment/hardware_table.h"
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
 #include "experiment/result_tables.h"
@@ -45,7 +44,7 @@ static RtStatus take_directory(RtRun *run, RtError *error) {
     if (options->start != RT_START_ANEW && rt_file_exists(path)) {
         RT_TRY(rt_journal_load(path, run->results, &options->workload.only, options->renew, error));
     }
-    return rt_earlier_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
+    return rt_previous_results_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
 
 /* Where a workload's scene is kept: at the first workload of the same scene. */
@@ -123,7 +122,7 @@ RtStatus rt_run_begin(RtRun *run, RtError *error) {
 
 RtStatus rt_run_replace(RtRun *run, RtError *error) {
     if (run->resumed) return RT_OK;
-    return rt_earlier_remove(run->options->directory, RT_RUN_JOURNAL, error);
+    return rt_previous_results_remove(run->options->directory, RT_RUN_JOURNAL, error);
 }
 
 /* ---- measuring ---- */
@@ -192,8 +191,7 @@ static RtStatus write_tables(const RtRun *run, RtError *error) {
         RT_TRY(rt_run_write_table(run, RT_FRAME_CSV, &frames, error));
     }
     if (!run->experiment->hardware) return RT_OK;
-    RtHardwareRow cell = {.results = run->results};
-    RtTable hardware = rt_hardware_table(&cell);
+    RtTable hardware = rt_result_table(RT_HARDWARE, &row);
     return rt_run_write_table(run, RT_HARDWARE_CSV, &hardware, error);
 }
 

@@ -134,10 +134,10 @@ static RtStatus read_values(const char *text, size_t length, bool whole, RtSwept
 
 /* ---- the text ---- */
 
-static bool is_whole(const char *owner, const char *key, bool scene, const json_t *kept) {
+static bool is_whole(const char *owner, const char *key, bool scene, const json_t *manifest) {
     const RtAccelOps *ops = NULL;
     const RtBuiltin *builtin = scene ? rt_builtin_find(owner) : NULL;
-    if (!scene && kept) return rt_kept_is_whole(kept, owner, key);
+    if (!scene && manifest) return rt_manifest_is_whole(manifest, owner, key);
     if (!scene && rt_accel_find(owner, &ops, NULL) != RT_OK) return false;
     const RtParam *params = scene ? (builtin ? builtin->params : NULL) : ops->params;
     size_t count = scene ? (builtin ? builtin->param_count : 0) : ops->param_count;
@@ -154,7 +154,7 @@ static bool ends_layer(const char *c, bool scene) {
 
 /* The value at `start` of a layer's parameter, whose name ends before the '='. */
 static RtStatus read_param(RtSweep *sweep, const char *layer, size_t start, size_t length, bool scene,
-                           const json_t *kept, RtError *error) {
+                           const json_t *manifest, RtError *error) {
     const char *text = sweep->text, *value = text + start;
     if (!memchr(value, '|', length) && find_dots(value, length) == length) return RT_OK;
     char owner[RT_MAX_NAME] = "";
@@ -174,7 +174,7 @@ static RtStatus read_param(RtSweep *sweep, const char *layer, size_t start, size
                        text, param->key);
     }
     if (name < sizeof owner) snprintf(owner, sizeof owner, "%.*s", (int)name, layer);
-    RT_TRY(read_values(value, length, is_whole(owner, param->key, scene, kept), param, error));
+    RT_TRY(read_values(value, length, is_whole(owner, param->key, scene, manifest), param, error));
     sweep->param_count++;
     sweep->count *= param->count; /* at most 2^16 by 2^8 */
     if (sweep->count <= UINT16_MAX) return RT_OK;
@@ -182,7 +182,8 @@ static RtStatus read_param(RtSweep *sweep, const char *layer, size_t start, size
                    UINT16_MAX);
 }
 
-RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *kept, RtSweep *sweep, RtError *error) {
+RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *manifest, RtSweep *sweep,
+                        RtError *error) {
     const char *layer = text;
     sweep->text = text;
     sweep->count = 1;
@@ -193,7 +194,7 @@ RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *kept, RtSwee
         if (*c != '=') continue;
         size_t length = 0;
         while (c[1 + length] && c[1 + length] != ',' && !ends_layer(c + 1 + length, scene)) length++;
-        RT_TRY(read_param(sweep, layer, (size_t)(c + 1 - text), length, scene, kept, error));
+        RT_TRY(read_param(sweep, layer, (size_t)(c + 1 - text), length, scene, manifest, error));
     }
     return RT_OK;
 }

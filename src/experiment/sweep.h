@@ -55,9 +55,9 @@ typedef struct RtSweep {
 
 /* Reads `text`, a spec of a built-in scene (`scene`) or of an accelerator; files are never swept. Refuses
  * values that are neither words nor ranges, with what would be right. Whether a spec that results is one is
- * for those to say who read it. `kept`: the manifest by which is told which parameters of accelerators are
+ * for those to say who read it. `manifest`: that by which is told which parameters of accelerators are
  * whole numbers, where those need not be here (experiment/manifest_experiment.h), or NULL. */
-RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *kept, RtSweep *sweep, RtError *error);
+RtStatus rt_sweep_parse(const char *text, bool scene, const json_t *manifest, RtSweep *sweep, RtError *error);
 
 /* Spec number `i` < count to out[0..RT_MAX_SPEC_CHARS), and what it has of the swept. Refuses one that is too
  * long. */

@@ -11,33 +11,33 @@
 
 enum { ROUNDS = 5 }; /* medians of these: instructions hardly differ, cycles and misses little */
 
-typedef struct Contest {
+typedef struct TimingRun {
     const RtHardware *hardware;
     RtRunner *runners;        /* [count] */
     RtHardwareCounts *counts; /* [count][ROUNDS] a ray */
     uint32_t count;
-} Contest;
+} TimingRun;
 
-static RtStatus run_counted(const Contest *contest, uint32_t i, int round, RtError *error) {
-    const RtRunner *runner = &contest->runners[i];
+static RtStatus run_counted(const TimingRun *run, uint32_t i, int round, RtError *error) {
+    const RtRunner *runner = &run->runners[i];
     RtStatus status = RT_OK;
-    RtHardwareStart start = rt_hardware_start(contest->hardware);
+    RtHardwareStart start = rt_hardware_start(run->hardware);
     for (uint32_t k = 0; k < runner->repeats && status == RT_OK; k++)
         status = runner->run(runner->context, error);
-    RtHardwareCounts *counts = &contest->counts[(size_t)i * ROUNDS + (size_t)round];
-    *counts = rt_hardware_stop(contest->hardware, &start);
+    RtHardwareCounts *counts = &run->counts[(size_t)i * ROUNDS + (size_t)round];
+    *counts = rt_hardware_stop(run->hardware, &start);
     for (int e = 0; e < RT_HARDWARE_COUNT; e++) counts->of[e] /= runner->repeats * runner->work;
     return status;
 }
 
-static RtStatus run_rounds(const Contest *contest, double least, RtError *error) {
-    for (uint32_t i = 0; i < contest->count; i++) {
+static RtStatus run_rounds(const TimingRun *run, double least, RtError *error) {
+    for (uint32_t i = 0; i < run->count; i++) {
         double seconds, wall;
-        RT_TRY(rt_runner_time(&contest->runners[i], 1, &seconds, &wall, error)); /* warms up, too */
-        contest->runners[i].repeats = rt_runner_repeats(seconds, least);
+        RT_TRY(rt_runner_time(&run->runners[i], 1, &seconds, &wall, error)); /* warms up, too */
+        run->runners[i].repeats = rt_runner_repeats(seconds, least);
     }
     for (int round = 0; round < ROUNDS; round++) {
-        for (uint32_t i = 0; i < contest->count; i++) RT_TRY(run_counted(contest, i, round, error));
+        for (uint32_t i = 0; i < run->count; i++) RT_TRY(run_counted(run, i, round, error));
     }
     return RT_OK;
 }
@@ -59,22 +59,21 @@ static bool is_seen(const RtWorkloadState *workload, uint32_t c) {
     return workload->accels[c] && !rt_accel_is_away(workload->accels[c]);
 }
 
-static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, Contest *contest, RtError *error) {
+static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, TimingRun *run, RtError *error) {
     const uint32_t candidates = workload->experiment->candidate_count;
     RtStatus status = RT_OK;
     for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
         RtTimed timed = {.accel = workload->accels[c], .set = &workload->shares[c].set};
         if (!is_seen(workload, c)) continue;
-        status =
-            rt_runner_open(&contest->runners[contest->count++], &timed, workload->options->timing, error);
+        status = rt_runner_open(&run->runners[run->count++], &timed, workload->options->timing, error);
     }
-    if (status == RT_OK) status = run_rounds(contest, 1e-3 * workload->experiment->milliseconds, error);
+    if (status == RT_OK) status = run_rounds(run, 1e-3 * workload->experiment->milliseconds, error);
     for (uint32_t c = 0, i = 0; c < candidates && status == RT_OK; c++) {
         if (!is_seen(workload, c)) continue;
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        cell->hardware.counts = median_of(&contest->counts[(size_t)ROUNDS * i++]);
+        cell->hardware.counts = median_of(&run->counts[(size_t)ROUNDS * i++]);
     }
-    for (uint32_t i = 0; i < contest->count; i++) rt_runner_close(&contest->runners[i]);
+    for (uint32_t i = 0; i < run->count; i++) rt_runner_close(&run->runners[i]);
     return status;
 }
 
@@ -85,18 +84,18 @@ static RtStatus count_or_say_why(RtWorkloadState *workload, RtRayKind kind, RtEr
     RtHardware hardware;
     RtError why = {RT_OK, ""};
     bool available = rt_hardware_open(&hardware, events ? events : rt_hardware_events, &why) == RT_OK;
-    Contest contest = {.hardware = &hardware,
-                       .runners = rt_alloc(candidates, sizeof(RtRunner)),
-                       .counts = rt_alloc((size_t)ROUNDS * candidates, sizeof(RtHardwareCounts))};
+    TimingRun run = {.hardware = &hardware,
+                     .runners = rt_alloc(candidates, sizeof(RtRunner)),
+                     .counts = rt_alloc((size_t)ROUNDS * candidates, sizeof(RtHardwareCounts))};
     RtStatus status = RT_OK;
-    if (!contest.runners || !contest.counts) {
+    if (!run.runners || !run.counts) {
         status = rt_fail_memory(error, "hardware counters", candidates * sizeof(RtRunner));
     } else if (available) {
-        status = count_all(workload, kind, &contest, error);
+        status = count_all(workload, kind, &run, error);
     }
     rt_hardware_close(&hardware);
-    rt_free(contest.runners);
-    rt_free(contest.counts);
+    rt_free(run.runners);
+    rt_free(run.counts);
     for (uint32_t c = 0; c < candidates && status == RT_OK; c++) {
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
         bool away = workload->accels[c] && !is_seen(workload, c);

@@ -167,11 +167,11 @@ static RtBest find_best(const RtPublished *published, const RtResults *results, 
     }
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         if (!experiment->candidates[c].ours || !rt_build_at(results, workload, c)->known) continue;
-        RtTotal total = rt_results_total(results, workload, c);
-        double value = total.object_tests + (steps ? total.steps : 0);
+        const RtCost cost = rt_results_cost(results, workload, c, RT_ALL_RAYS);
+        double value = cost.object_tests + (steps ? cost.steps : 0);
         if (!is_less(value, best.ours)) continue;
         best.ours = value;
-        best.extent_tests = total.extent_tests;
+        best.extent_tests = cost.extent_tests;
         best.candidate = c;
     }
     return best;

@@ -15,7 +15,7 @@ static const char *const result_files[] = {
 
 enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
 
-bool rt_earlier_is_result(const char *name) {
+bool rt_previous_results_has(const char *name) {
     for (int i = 0; i < RESULT_FILES; i++) {
         if (strcmp(name, result_files[i]) == 0) return true;
     }
@@ -47,8 +47,8 @@ static const char *find_result(const char *directory) {
     return NULL;
 }
 
-RtStatus rt_earlier_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
-                         RtError *error) {
+RtStatus rt_previous_results_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
+                                  RtError *error) {
     const char *result = find_result(directory);
     bool whole = has(directory, journal), removed = is_given_up(directory, journal);
     bool finished = has(directory, RT_MANIFEST) && !removed;
@@ -80,7 +80,7 @@ static void remove_each(const char *directory, const char *folder, const char *s
         rt_directory_each(path, suffix, remove_file, NULL);
 }
 
-RtStatus rt_earlier_remove(const char *directory, const char *journal, RtError *error) {
+RtStatus rt_previous_results_remove(const char *directory, const char *journal, RtError *error) {
     char path[RT_MAX_PATH];
     if (!find_result(directory)) return RT_OK;
     RT_TRY(rt_path_join(directory, journal, path, error));

@@ -27,17 +27,17 @@ typedef enum RtStart {
 #define RT_FRAME_CSV         "frame.csv"
 
 /* Whether a result directory has a file of that name of its own. */
-bool rt_earlier_is_result(const char *name);
+bool rt_previous_results_has(const char *name);
 
 /* Whether there is the journal that such a start goes on with. Refuses results that are not to be touched:
  * any at all by a fresh start, any without the journal by one that resumes, unless they are given up. */
-RtStatus rt_earlier_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
-                         RtError *error);
+RtStatus rt_previous_results_look(const char *directory, const char *journal, RtStart start, bool *goes_on,
+                                  RtError *error);
 
 /* Removes the results in the directory, where there are any: tables, manifest, report, pictures, plots, and
  * the journal of the other kind. Scripts, replay files and all else stay. Before that, one line takes the
  * place of the journal, in one step: it says that the results are given up. So whenever the process ends,
  * either nothing is removed, or a start that resumes begins anew. */
-RtStatus rt_earlier_remove(const char *directory, const char *journal, RtError *error);
+RtStatus rt_previous_results_remove(const char *directory, const char *journal, RtError *error);
 
 #endif

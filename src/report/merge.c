@@ -215,9 +215,9 @@ static RtStatus take_directory(const Merge *merge, const RtExperiment *experimen
                                RtError *error) {
     RtOutputs files = {0};
     bool goes_on;
-    RT_TRY(rt_earlier_look(merge->out, RT_RUN_JOURNAL, start, &goes_on, error));
+    RT_TRY(rt_previous_results_look(merge->out, RT_RUN_JOURNAL, start, &goes_on, error));
     RtStatus status = add_files(merge, experiment, &files, error);
-    if (status == RT_OK) status = rt_earlier_remove(merge->out, RT_RUN_JOURNAL, error);
+    if (status == RT_OK) status = rt_previous_results_remove(merge->out, RT_RUN_JOURNAL, error);
     if (status == RT_OK) status = rt_outputs_commit(&files, error);
     rt_outputs_clear(&files);
     return status;

@@ -8,7 +8,6 @@
 #include "experiment/claims.h"
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
-#include "experiment/hardware_table.h"
 #include "experiment/result_tables.h"
 #include "literature/published_tables.h"
 #include "measure/previous_results.h"
@@ -253,9 +252,9 @@ static void put_details(FILE *out, const char *summary, RtTable *table) {
 /* What an experiment may ask for besides, of all scenes. */
 static void put_more_tables(FILE *out, const RtResults *results) {
     RtDistributionRow distribution = {.results = results};
-    RtHardwareRow cell = {.results = results};
+    RtResultRow cell = {.results = results};
     RtTable distributions = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
-    RtTable hardware = rt_hardware_table(&cell);
+    RtTable hardware = rt_result_table(RT_HARDWARE, &cell);
     if (results->experiment->distributions)
         put_details(out, "How counts are distributed, over rays and over leaves", &distributions);
     if (results->experiment->hardware) put_details(out, "What the machine did for a ray", &hardware);

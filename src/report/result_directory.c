@@ -107,7 +107,7 @@ static RtStatus copy_experiment(const RtRun *run, RtOutputs *copies, RtError *er
 }
 
 /* The copies are on the disk before the earlier results are removed, and get their names after that. */
-static RtStatus replace_earlier(RtRun *run, RtError *error) {
+static RtStatus replace_previous(RtRun *run, RtError *error) {
     RtOutputs copies = {0};
     RtStatus status = copy_experiment(run, &copies, error);
     if (status == RT_OK) status = rt_run_replace(run, error);
@@ -123,7 +123,7 @@ static RtStatus begin(Work *work, RtError *error) {
     RT_TRY(rt_scripts_check(run->experiment, run->options->directory, run->resumed, run->options->scripts,
                             error));
     RT_TRY(rt_run_begin(run, error));
-    return replace_earlier(run, error);
+    return replace_previous(run, error);
 }
 
 static RtStatus write_exact(const Work *work, const RtExactFile *file, RtError *error) {
@@ -211,7 +211,7 @@ RtStatus rt_run_load(const char *directory, RtExperiment *experiment, RtResults 
                        "%s is not the result directory of an experiment: it has no experiment.yaml",
                        directory);
     }
-    RtStatus status = rt_experiment_load_kept(experiment, path, manifest, error);
+    RtStatus status = rt_experiment_load_from_manifest(experiment, path, manifest, error);
     json_decref(manifest);
     RT_TRY(status);
     RT_TRY(rt_results_init(results, experiment, error));

@@ -22,7 +22,7 @@ typedef struct Line {
 typedef struct Point {
     uint32_t line;
     double x;
-    RtTotal cost;
+    RtCost cost;
 } Point;
 
 /* A figure: the cost of some lines over the values of one parameter. */
@@ -84,8 +84,8 @@ static uint32_t line_of(Figure *figure, uint32_t c, bool flat) {
     return figure->line_count++;
 }
 
-static double cost_of(const Figure *figure, const RtTotal *total) {
-    return figure->timed ? total->seconds : total->object_tests;
+static double cost_of(const Figure *figure, const RtCost *cost) {
+    return figure->timed ? cost->seconds.median : cost->object_tests;
 }
 
 /* What the scenes of one figure have in common: all but the parameter, where that is theirs. */
@@ -109,9 +109,9 @@ static int by_place(const void *a, const void *b) {
     return (p->x > q->x) - (p->x < q->x);
 }
 
-static void add_point(Figure *figure, uint32_t line, double x, const RtTotal *cost) {
+static void add_point(Figure *figure, uint32_t line, double x, const RtCost *cost) {
     figure->points[figure->point_count++] = (Point){line, x, *cost};
-    figure->timed |= !isnan(cost->seconds);
+    figure->timed |= !isnan(cost->seconds.median);
 }
 
 /* The lines of the group of scene `first`. */
@@ -124,8 +124,8 @@ static void gather(Figure *figure, uint32_t first) {
         if (!results->workloads[t].known || !same_group(experiment, &figure->key, first, t)) continue;
         for (uint32_t c = 0; c < experiment->candidate_count; c++) {
             const char *value = rt_swept_of(experiment, &figure->key, t, c);
-            RtTotal cost = rt_results_total(results, t, c);
-            if (isnan(cost.seconds) && isnan(cost.object_tests)) continue;
+            const RtCost cost = rt_results_cost(results, t, c, RT_ALL_RAYS);
+            if (isnan(cost.seconds.median) && isnan(cost.object_tests)) continue;
             uint32_t line = line_of(figure, c, !value);
             add_point(figure, line, value ? place_of(figure, value) : -INFINITY, &cost);
         }
@@ -159,9 +159,9 @@ static void put_data(const Figure *figure, FILE *out) {
             const Point *point = &figure->points[i];
             if (point->line != line) continue;
             fprintf(out, "%.9g", point->x);
-            put_number(out, 1e9 * point->cost.seconds);
-            put_number(out, 1e9 * point->cost.seconds_low);
-            put_number(out, 1e9 * point->cost.seconds_high);
+            put_number(out, 1e9 * point->cost.seconds.median);
+            put_number(out, 1e9 * point->cost.seconds.low);
+            put_number(out, 1e9 * point->cost.seconds.high);
             put_number(out, point->cost.object_tests);
             put_number(out, point->cost.steps);
             fputc('\n', out);
@@ -206,8 +206,8 @@ static void put_order(const Figure *figure, FILE *out) {
 static bool is_wide(const Figure *figure, int panel) {
     double least = INFINITY, most = 0;
     for (uint32_t i = 0; i < figure->point_count; i++) {
-        const RtTotal *cost = &figure->points[i].cost;
-        double y = panel == 0 ? cost->seconds : panel == 1 ? cost->object_tests : cost->steps;
+        const RtCost *cost = &figure->points[i].cost;
+        double y = panel == 0 ? cost->seconds.median : panel == 1 ? cost->object_tests : cost->steps;
         if (!(y > 0)) continue;
         least = fmin(least, y);
         most = fmax(most, y);

@@ -10,7 +10,6 @@
 #include "experiment/compare.h"
 #include "experiment/distribution_tables.h"
 #include "experiment/frame_table.h"
-#include "experiment/hardware_table.h"
 #include "experiment/result_tables.h"
 #include "literature/published_tables.h"
 #include "measure/extents_table.h"
@@ -29,11 +28,6 @@ static RtPublished published = {.experiment = &experiment};
 static RtTable of_results(RtResultTable which) {
     static RtResultRow row = {.results = &results};
     return rt_result_table(which, &row);
-}
-
-static RtTable of_hardware(void) {
-    static RtHardwareRow row = {.results = &results};
-    return rt_hardware_table(&row);
 }
 
 static RtTable of_distributions(RtDistributionTable which) {
@@ -80,7 +74,7 @@ static void list(Section sections[SECTIONS]) {
         {"times.csv", true, NULL, of_results(RT_TIMES)},
         {"rounds.csv", true, NULL, of_results(RT_ROUNDS)},
         {"frame.csv", true, NULL, of_frames()},
-        {"hardware.csv", true, NULL, of_hardware()},
+        {"hardware.csv", true, NULL, of_results(RT_HARDWARE)},
         {"distributions.csv", true, NULL, of_distributions(RT_DISTRIBUTIONS)},
         {"histograms.csv", true, NULL, of_distributions(RT_HISTOGRAMS)},
         {"published.csv", true, "results/havran-1999/published.csv", of_published(RT_FIGURES)},
@@ -88,7 +82,7 @@ static void list(Section sections[SECTIONS]) {
         {"verify.csv", true, "results/verify/verify.csv", verify_csv},
         {"bench --json: rows", false, NULL, of_results(RT_BENCH)},
         {"bench --json: null_runs", false, NULL, of_results(RT_NULL_RUNS)},
-        {"bench --json --hardware: hardware", false, NULL, of_hardware()},
+        {"bench --json --hardware: hardware", false, NULL, of_results(RT_HARDWARE)},
         {"bench --json --distribution: distributions", false, NULL, of_distributions(RT_DISTRIBUTIONS)},
         {"bench --json --callgrind: instructions", false, NULL, of_instructions()},
         {"compare --json: cells", false, NULL, of_comparison()},

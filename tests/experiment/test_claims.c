@@ -4,7 +4,7 @@
 
 #include "core/base/memory.h"
 #include "experiment/claims.h"
-#include "experiment/standing.h"
+#include "experiment/result_tables.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -155,8 +155,8 @@ RT_TEST(a_kind_of_rays_that_one_side_lacks_leaves_a_claim_about_all_kinds_undeci
     expect(RT_CLAIM_UNDECIDED, faster, "no measurements");
     expect(RT_CLAIM_HOLDS,
            "ratio of object_tests of grid:density=1 to bvh on random:n=10 for primary rays < 1", "0.40");
-    assert_true(isnan(rt_results_total(&results, 0, 1).seconds));
-    assert_true(isnan(rt_results_pay_off(&results, 0, 1)));
+    assert_true(isnan(rt_results_cost(&results, 0, 1, RT_ALL_RAYS).seconds.median));
+    assert_true(isnan(rt_results_break_even(&results, 0, 1)));
     assert_int_equal(rt_standing(&results, 0, 0, RT_RAY_KIND_COUNT), RT_STANDING_BEST);
     assert_int_equal(rt_standing(&results, 0, 1, RT_RAY_KIND_COUNT), RT_STANDING_BEHIND);
     assert_int_equal(rt_standing(&results, 0, 1, RT_RAY_PRIMARY), RT_STANDING_BEST);
@@ -166,7 +166,7 @@ RT_TEST(a_kind_of_rays_that_one_side_lacks_leaves_a_claim_about_all_kinds_undeci
 RT_TEST(totals_of_a_kind_that_all_were_measured_on_compare_and_a_claim_waits_for_the_others) {
     set_all();
     for (uint32_t c = 0; c < 4; c++) *rt_cell_at(&results, 0, c, RT_RAY_SHADOW) = (RtCell){0};
-    RtTotal total = rt_results_total(&results, 0, 0);
+    const RtCost total = rt_results_cost(&results, 0, 0, RT_ALL_RAYS);
     assert_true(total.object_tests == 2);
     assert_false(total.whole);
     expect(RT_CLAIM_UNDECIDED, "object_tests of bvh on random:n=10 < 5", "no measurements");

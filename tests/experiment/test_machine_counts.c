@@ -5,7 +5,7 @@
 #include "testing.h"
 
 #include "core/base/memory.h"
-#include "experiment/hardware_table.h"
+#include "experiment/result_tables.h"
 #include "experiment/workload.h"
 
 #include <math.h>
@@ -90,8 +90,8 @@ static void measure(RtExperiment *e, RtResults *results, const RtHardwareEvent *
 }
 
 static char *text_of(const RtResults *results, bool csv) {
-    RtHardwareRow row = {.results = results};
-    RtTable table = rt_hardware_table(&row);
+    RtResultRow row = {.results = results};
+    RtTable table = rt_result_table(RT_HARDWARE, &row);
     char *text;
     size_t size;
     FILE *out = open_memstream(&text, &size);

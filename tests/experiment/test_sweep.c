@@ -9,12 +9,12 @@
 #include <string.h>
 
 /* All that `text` stands for, with blanks between; or what is wrong with it. */
-static const char *expand_kept(const char *text, bool scene, const json_t *kept) {
+static const char *expand_by_manifest(const char *text, bool scene, const json_t *manifest) {
     static char all[8192];
     static RtSweep sweep;
     RtError error = {RT_OK, ""};
     all[0] = '\0';
-    if (rt_sweep_parse(text, scene, kept, &sweep, &error) != RT_OK) return strcpy(all, error.message);
+    if (rt_sweep_parse(text, scene, manifest, &sweep, &error) != RT_OK) return strcpy(all, error.message);
     for (uint32_t i = 0; i < sweep.count; i++) {
         char spec[RT_MAX_SPEC_CHARS];
         RtSwept swept;
@@ -26,7 +26,7 @@ static const char *expand_kept(const char *text, bool scene, const json_t *kept)
 }
 
 static const char *expand(const char *text, bool scene) {
-    return expand_kept(text, scene, NULL);
+    return expand_by_manifest(text, scene, NULL);
 }
 
 RT_TEST(a_range_is_linear_or_logarithmic_and_a_list_holds_words_and_ranges) {
@@ -65,11 +65,12 @@ RT_TEST(whole_numbers_of_results_are_told_by_their_manifest) {
     json_t *kept =
         json_pack("{s:[{s:s}, {s:s}, {s:s}, {s:s}]}", "accelerators", "accel", "mine:leaf=1,part=.5", "accel",
                   "mine:part=1,leaf=2", "accel", "light+mine:leaf=3", "accel", "other:leaf=0.5");
-    assert_string_equal(expand_kept("mine:leaf=1..2.3*1.5", false, kept), "mine:leaf=1 mine:leaf=2");
-    assert_string_equal(expand_kept("light+mine:leaf=1..2.3*1.5", false, kept),
+    assert_string_equal(expand_by_manifest("mine:leaf=1..2.3*1.5", false, kept), "mine:leaf=1 mine:leaf=2");
+    assert_string_equal(expand_by_manifest("light+mine:leaf=1..2.3*1.5", false, kept),
                         "light+mine:leaf=1 light+mine:leaf=2");
-    assert_string_equal(expand_kept("mine:part=1..1.6*1.5", false, kept), "mine:part=1 mine:part=1.5");
-    assert_string_equal(expand_kept("other:leaf=1..1.6*1.5", false, kept), "other:leaf=1 other:leaf=1.5");
+    assert_string_equal(expand_by_manifest("mine:part=1..1.6*1.5", false, kept), "mine:part=1 mine:part=1.5");
+    assert_string_equal(expand_by_manifest("other:leaf=1..1.6*1.5", false, kept),
+                        "other:leaf=1 other:leaf=1.5");
     json_decref(kept);
 }
 

@@ -3,8 +3,7 @@
  * the index. In a browser: tests/check_pages.sh. */
 #include "experiment_testing.h"
 
-#include "experiment/results.h"
-#include "experiment/standing.h"
+#include "experiment/result_tables.h"
 #include "report/color.h"
 
 #include <unistd.h>

@@ -115,8 +115,8 @@ RT_TEST_IN_PLACE(a_swept_value_that_gnuplot_would_run_is_refused_also_in_results
     json_t *manifest = json_object();
     write_changed(place, "small.yaml", swept, "grid:density=1..16*2",
                   "grid:mailbox=on,resolution=auto,empty_steps_stay=on,rule=woo|`harm`");
-    RtStatus status =
-        rt_experiment_load_kept(place->experiment, path_in(place, "small.yaml").text, manifest, &error);
+    RtStatus status = rt_experiment_load_from_manifest(place->experiment, path_in(place, "small.yaml").text,
+                                                       manifest, &error);
     json_decref(manifest);
     assert_refused(status, RT_BAD_INPUT, &error, "'`harm`' cannot name");
 }
