@@ -1,36 +1,29 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_faults.sh [TREE]: the patches of tests/faults/ are there to be used: each applies to the tree and says what the fault
-# is, its kind, and which accelerators are to be verified, by name; there are 60 at least, and one for each accelerator that
-# is registered. Whether verify finds them is what tests/faults.sh tells, in an hour. Skipped (77) where there is no patch(1).
+# check_faults.sh [TREE]: each line of tests/faults/faults.tsv can be used: its text occurs exactly once in its file, and its
+# accelerators exist. There are at least 60 faults, and at least one for each registered accelerator.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
-command -v patch >/dev/null || { echo "skipped: faults on purpose apply; needs patch" && exit 77; }
-failures=0
+failures=0 names= layers=
+registered=$(sed -n 's/^const RtAccelOps rt_\([a-z]*\)_ops = {.*/\1/p' accel/*.c accel/*/*.c)
 report() {
     echo "$*"
     failures=$((failures + 1))
 }
-
-count=0 named=
-registered=$(sed -n 's/^const RtAccelOps rt_\([a-z]*\)_ops = {.*/\1/p' accel/*.c accel/*/*.c)
-for patch in tests/faults/*.patch; do
-    [ -e "$patch" ] || break
-    count=$((count + 1))
-    said=$(patch -p1 --dry-run --force --fuzz=0 <"$patch" 2>&1) || report "$patch does not apply: ${said//$'\n'/; }"
-    header=$(sed '/^--- /,$d' "$patch")
-    for key in fault kind accel; do
-        [ "$(grep -c "^$key: ." <<<"$header")" = 1 ] || report "$patch does not say '$key: ...' once, above the diff"
-    done
-    read -ra layers < <(sed -n 's/, / /g; s/+/ /g; s/^accel: //p' <<<"$header")
-    for layer in "${layers[@]}"; do
-        name=${layer%%:*}
-        grep -qx "$name" <<<"$registered" || report "$patch is for $name, which is no accelerator"
-        named+=" $name"
-    done
-done
-[ "$count" -ge 60 ] || report "there are $count faults: at least 60 are wanted"
-for name in $registered; do
-    [[ "$named " = *" $name "* ]] || report "there is no fault for $name"
-done
+while IFS=$'\t' read -r name accels kind file text instead meaning _; do
+    [ -n "$meaning" ] || report "$name: a fault has seven fields and, if verify misses it, an eighth that says why ($kind)"
+    source=$(cat "$file") || source=
+    if [[ $source != *"$text"* ]]; then
+        report "$name: $file does not contain: $text"
+    elif [[ ${source/"$text"/} = *"$text"* ]]; then
+        report "$name: $file contains more than once: $text"
+    fi
+    [ "$text" != "$instead" ] || report "$name changes nothing"
+    names+=$name$'\n'
+    for accel in ${accels//+/ }; do layers+=${accel%%:*}$'\n'; done
+done < <(grep -v '^#' tests/faults/faults.tsv)
+sort <<<"$names" | uniq -d | grep . && report "faults have names of their own"
+sort -u <<<"$layers" | grep -vxF -e '' -e "$registered" && report "these are no accelerators"
+sort -u <<<"$registered" | grep -vxF "$layers" && report "these accelerators have no fault"
+[ "$(wc -l <<<"$names")" -gt 60 ] || report "there are fewer than 60 faults"
 [ "$failures" -eq 0 ]
