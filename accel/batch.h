@@ -14,15 +14,15 @@
 
 enum {
     RT_BATCH = 128, /* rays */
-    RT_LANES = 16,
+    RT_BLOCK_LANES = 16,
     RT_BLOCKS = 16, /* of a chunk */
-    RT_CHUNK = RT_BLOCKS * RT_LANES,
+    RT_CHUNK = RT_BLOCKS * RT_BLOCK_LANES,
     RT_MOST_ROWS = sizeof(RtTriangle) / sizeof(float) /* of the longest record */
 };
 
 /* Sixteen records: row i holds float i of each. */
 typedef struct RtBlock {
-    _Alignas(64) float row[RT_MOST_ROWS][RT_LANES];
+    _Alignas(64) float row[RT_MOST_ROWS][RT_BLOCK_LANES];
 } RtBlock;
 
 typedef struct RtActiveRay {
@@ -41,7 +41,7 @@ typedef struct RtBatch {
 /* ---- filling a chunk ---- */
 
 /* Four floats of each of four records, which are `size` floats apart, to lanes of four rows. */
-RT_KERNEL void rt_block_transpose(float row[][RT_LANES], size_t lane, const float *from, size_t size) {
+RT_KERNEL void rt_block_transpose(float row[][RT_BLOCK_LANES], size_t lane, const float *from, size_t size) {
     RtFour columns[4];
     for (size_t i = 0; i < 4; i++) columns[i] = rt_four(from + i * size);
     rt_four_transpose(columns);
@@ -51,7 +51,7 @@ RT_KERNEL void rt_block_transpose(float row[][RT_LANES], size_t lane, const floa
 /* `count` records, at least one, of `size` floats each; the first sixteen fill the block. */
 RT_KERNEL void rt_fill_block(RtBlock *block, const float *from, size_t size, size_t count) {
     size_t lane = 0;
-    for (; lane + 4 <= count && lane < RT_LANES; lane += 4) {
+    for (; lane + 4 <= count && lane < RT_BLOCK_LANES; lane += 4) {
         const float *four = from + lane * size;
         size_t row = 0;
         for (; row + 4 <= size; row += 4) rt_block_transpose(block->row + row, lane, four + row, size);
@@ -59,15 +59,15 @@ RT_KERNEL void rt_fill_block(RtBlock *block, const float *from, size_t size, siz
             for (size_t i = 0; i < 4; i++) block->row[row][lane + i] = four[i * size + row];
         }
     }
-    for (; lane < RT_LANES; lane++) {
+    for (; lane < RT_BLOCK_LANES; lane++) {
         for (size_t row = 0; row < size; row++)
             block->row[row][lane] = lane < count ? from[lane * size + row] : NAN;
     }
 }
 
 RT_KERNEL void rt_fill_chunk(RtBatch *batch, const float *from, size_t size, uint32_t count) {
-    for (uint32_t i = 0; i < count; i += RT_LANES)
-        rt_fill_block(&batch->chunk[i / RT_LANES], from + i * size, size, count - i);
+    for (uint32_t i = 0; i < count; i += RT_BLOCK_LANES)
+        rt_fill_block(&batch->chunk[i / RT_BLOCK_LANES], from + i * size, size, count - i);
 }
 
 /* ---- a stream ---- */

@@ -42,7 +42,7 @@ RT_KERNEL void make_line(Line *line, const RtPreparedRay *ray) {
 RT_KERNEL uint32_t sieve_triangles(const RtBlock *block, const Line *line) {
     RtV16 x[3], y[3], z[3];
     for (size_t i = 0; i < 3; i++) {
-        const float(*vertex)[RT_LANES] = block->row + 3 * i;
+        const float(*vertex)[RT_BLOCK_LANES] = block->row + 3 * i;
         x[i] = rt_v16_load(vertex[line->x]);
         y[i] = rt_v16_load(vertex[line->y]);
         z[i] = rt_v16_load(vertex[line->z]);
@@ -77,10 +77,10 @@ RT_KERNEL bool test_chunk(const RtBatch *batch, const RtGeometry *g, RtActiveRay
     Line line;
     uint32_t told = first;
     make_line(&line, &a->ray);
-    for (uint32_t i = 0; i < count; i += RT_LANES) {
-        const RtBlock *block = &batch->chunk[i / RT_LANES];
+    for (uint32_t i = 0; i < count; i += RT_BLOCK_LANES) {
+        const RtBlock *block = &batch->chunk[i / RT_BLOCK_LANES];
         uint32_t left = objects->shape == RT_SHAPE_SPHERE
-                            ? rt_spheres_left16(block->row[0], RT_LANES, &a->line)
+                            ? rt_spheres_left16(block->row[0], RT_BLOCK_LANES, &a->line)
                             : sieve_triangles(block, &line);
         for (; left; left &= left - 1) {
             uint32_t index = first + i + (uint32_t)__builtin_ctz(left), id = objects->ids[index];

@@ -33,7 +33,8 @@ RT_KERNEL void make_line(Line *line, const RtPreparedRay *ray) {
 }
 
 /* Bit i: rt_box_hit of box i; where the ray enters it, to enter[i]. */
-RT_KERNEL uint32_t meet_boxes(const RtBlock *block, const Line *line, float limit, float enter[RT_LANES]) {
+RT_KERNEL uint32_t meet_boxes(const RtBlock *block, const Line *line, float limit,
+                              float enter[RT_BLOCK_LANES]) {
     RtV16 near = line->tmin, far = rt_v16_all(limit);
     for (int a = 0; a < 3; a++) {
         RtV16 first = rt_v16_sub(rt_v16_load(block->row[line->first[a]]), line->org_near[a]);
@@ -65,10 +66,11 @@ RT_KERNEL bool test_chunk(const RtBatch *batch, const RtGeometry *g, RtActiveRay
     Line line;
     uint32_t told = first;
     make_line(&line, &a->ray);
-    for (uint32_t i = 0; i < count; i += RT_LANES) {
-        _Alignas(64) float enter[RT_LANES];
-        uint32_t met = meet_boxes(&batch->chunk[i / RT_LANES], &line, rt_limit(&a->ray, &a->best), enter);
-        if (count - i < RT_LANES) met &= (1u << (count - i)) - 1; /* NaN is passed over */
+    for (uint32_t i = 0; i < count; i += RT_BLOCK_LANES) {
+        _Alignas(64) float enter[RT_BLOCK_LANES];
+        uint32_t met =
+            meet_boxes(&batch->chunk[i / RT_BLOCK_LANES], &line, rt_limit(&a->ray, &a->best), enter);
+        if (count - i < RT_BLOCK_LANES) met &= (1u << (count - i)) - 1; /* NaN is passed over */
         for (; met; met &= met - 1) {
             uint32_t lane = (uint32_t)__builtin_ctz(met), id = first + i + lane;
             if (!(enter[lane] <= rt_limit(&a->ray, &a->best))) continue;

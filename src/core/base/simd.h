@@ -1,0 +1,557 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* SIMD by the vector extension of gcc and clang. No other file knows an instruction set.
+ *
+ * How to write a kernel. Operators compute lane by lane, to the bits of the scalar operators:
+ *
+ *     RtFloats x = rt_load(&block->x[i]) - ray->org.x;    a scalar operand counts for all lanes
+ *     RtInts inside = (x >= 0) & (x <= limit);            a comparison is -1 in lanes where it holds, else 0
+ *     nearest = rt_min(rt_select(inside, x, far), nearest);
+ *
+ * RtFloats, RtInts, RtWords and RtDoubles fill a register of the instruction set that the file is compiled
+ * for: RT_LANES floats (16 with AVX-512, 8 with AVX2, else 4), as many signed or unsigned 32-bit words, half
+ * as many doubles. A kernel takes its items RT_LANES at a time. gcc would keep wider vectors in memory, which
+ * doubles the instructions. Where the data set the width, use RtFloat4 or RtFloat8.
+ *
+ * The helpers below stand where operators do not reach. Those that take a vector accept each width and
+ * element. Those that make one end in the number of its lanes (rt_load8), or make RT_LANES (rt_load). A mask
+ * is a vector of -1 and 0, for rt_select, or an integer whose bit i is lane i, for loops and branches:
+ * rt_le_bits(a, b) and its kin compare straight to such bits, which AVX-512 does in one instruction.
+ *
+ * rt_min(a, b) is a < b ? a : b, as in x86 and rt_minf: b where one is NaN. rt_max likewise. */
+#ifndef RT_BASE_SIMD_H
+#define RT_BASE_SIMD_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
+#define RT_AVX512 1
+#define RT_LANES  16
+#define RT_HALF   8
+#define RT_MM(op) _mm512_##op
+#elif defined(__AVX2__)
+#define RT_AVX512 0
+#define RT_LANES  8
+#define RT_HALF   4
+#define RT_MM(op) _mm256_##op
+#else
+#define RT_AVX512 0
+#define RT_LANES  4
+#define RT_HALF   2
+#endif
+
+#define RT_INLINE static inline __attribute__((always_inline))
+
+/* ---- types, and what operators do for every width ----
+ *
+ * rt_all(x): x in all lanes (x - 0 keeps -0)
+ * rt_load(p): aligned to the vector; rt_loadu(p), rt_load_ints(p), rt_store(p, a): anywhere
+ * rt_abs(a): of floats or doubles
+ * rt_select(mask, a, b): a where the mask is -1, b where it is 0; of floats or words */
+
+#define RT_DEFINE_VECTORS(N, HALF)                                                                           \
+    typedef float RtFloat##N __attribute__((vector_size(4 * N)));                                            \
+    typedef int32_t RtInt##N __attribute__((vector_size(4 * N)));                                            \
+    typedef uint32_t RtWord##N __attribute__((vector_size(4 * N)));                                          \
+    typedef double RtDouble##HALF __attribute__((vector_size(4 * N)));                                       \
+    typedef int64_t RtLong##HALF __attribute__((vector_size(4 * N)));                                        \
+    typedef RtFloat##N RtFloatAt##N __attribute__((may_alias));                                              \
+    typedef RtFloat##N RtFloatAnywhere##N __attribute__((aligned(4), may_alias));                            \
+    typedef RtInt##N RtIntAnywhere##N __attribute__((aligned(4), may_alias));                                \
+    RT_INLINE RtFloat##N rt_all##N(float x) {                                                                \
+        return x - (RtFloat##N){0};                                                                          \
+    }                                                                                                        \
+    RT_INLINE RtInt##N rt_all_ints##N(int32_t x) {                                                           \
+        return x - (RtInt##N){0};                                                                            \
+    }                                                                                                        \
+    RT_INLINE RtDouble##HALF rt_all_doubles##HALF(double x) {                                                \
+        return x - (RtDouble##HALF){0};                                                                      \
+    }                                                                                                        \
+    RT_INLINE RtFloat##N rt_load##N(const void *at) {                                                        \
+        return *(const RtFloatAt##N *)at;                                                                    \
+    }                                                                                                        \
+    RT_INLINE RtFloat##N rt_loadu##N(const void *at) {                                                       \
+        return *(const RtFloatAnywhere##N *)at;                                                              \
+    }                                                                                                        \
+    RT_INLINE RtInt##N rt_load_ints##N(const void *at) {                                                     \
+        return *(const RtIntAnywhere##N *)at;                                                                \
+    }                                                                                                        \
+    RT_INLINE void rt_store_float##N(void *at, RtFloat##N a) {                                               \
+        *(RtFloatAnywhere##N *)at = a;                                                                       \
+    }                                                                                                        \
+    RT_INLINE void rt_store_int##N(void *at, RtInt##N a) {                                                   \
+        *(RtIntAnywhere##N *)at = a;                                                                         \
+    }                                                                                                        \
+    RT_INLINE RtFloat##N rt_abs_float##N(RtFloat##N a) {                                                     \
+        return (RtFloat##N)((RtInt##N)a & INT32_MAX);                                                        \
+    }                                                                                                        \
+    RT_INLINE RtDouble##HALF rt_abs_double##HALF(RtDouble##HALF a) {                                         \
+        return (RtDouble##HALF)((RtLong##HALF)a & INT64_MAX);                                                \
+    }                                                                                                        \
+    RT_INLINE RtInt##N rt_select_int##N(RtInt##N mask, RtInt##N a, RtInt##N b) {                             \
+        return (mask & a) | (~mask & b);                                                                     \
+    }                                                                                                        \
+    RT_INLINE RtFloat##N rt_select_float##N(RtInt##N mask, RtFloat##N a, RtFloat##N b) {                     \
+        return (RtFloat##N)rt_select_int##N(mask, (RtInt##N)a, (RtInt##N)b);                                 \
+    }                                                                                                        \
+    RT_INLINE RtDouble##HALF rt_select_double##HALF(RtLong##HALF mask, RtDouble##HALF a, RtDouble##HALF b) { \
+        return (RtDouble##HALF)((mask & (RtLong##HALF)a) | (~mask & (RtLong##HALF)b));                       \
+    }
+
+RT_DEFINE_VECTORS(4, 2)
+RT_DEFINE_VECTORS(8, 4)
+#if RT_AVX512
+RT_DEFINE_VECTORS(16, 8)
+#endif
+
+/* ---- minimum, maximum, signs ----
+ *
+ * rt_bits(mask): bit i is the sign of lane i */
+
+#define RT_DEFINE_BY_REGISTER(N, HALF, MM)                                                                   \
+    RT_INLINE RtFloat##N rt_min_float##N(RtFloat##N a, RtFloat##N b) {                                       \
+        return MM##_min_ps(a, b);                                                                            \
+    }                                                                                                        \
+    RT_INLINE RtFloat##N rt_max_float##N(RtFloat##N a, RtFloat##N b) {                                       \
+        return MM##_max_ps(a, b);                                                                            \
+    }                                                                                                        \
+    RT_INLINE RtDouble##HALF rt_min_double##HALF(RtDouble##HALF a, RtDouble##HALF b) {                       \
+        return MM##_min_pd(a, b);                                                                            \
+    }                                                                                                        \
+    RT_INLINE RtDouble##HALF rt_max_double##HALF(RtDouble##HALF a, RtDouble##HALF b) {                       \
+        return MM##_max_pd(a, b);                                                                            \
+    }
+
+#define RT_DEFINE_BITS_BY_REGISTER(N, HALF, MM)                                                              \
+    RT_INLINE uint32_t rt_bits_int##N(RtInt##N mask) {                                                       \
+        return (uint32_t)MM##_movemask_ps((RtFloat##N)mask);                                                 \
+    }                                                                                                        \
+    RT_INLINE uint32_t rt_bits_long##HALF(RtLong##HALF mask) {                                               \
+        return (uint32_t)MM##_movemask_pd((RtDouble##HALF)mask);                                             \
+    }
+
+#define RT_DEFINE_BY_OPERATOR(Type, type)                                                                    \
+    RT_INLINE Type rt_min_##type(Type a, Type b) {                                                           \
+        return rt_select_##type(a < b, a, b);                                                                \
+    }                                                                                                        \
+    RT_INLINE Type rt_max_##type(Type a, Type b) {                                                           \
+        return rt_select_##type(a > b, a, b);                                                                \
+    }
+
+#define RT_DEFINE_BITS_BY_LANE(Type, type, lanes)                                                            \
+    RT_INLINE uint32_t rt_bits_##type(Type mask) {                                                           \
+        uint32_t bits = 0;                                                                                   \
+        for (int i = 0; i < lanes; i++) bits |= (uint32_t)(mask[i] < 0) << i;                                \
+        return bits;                                                                                         \
+    }
+
+#if defined(__SSE2__)
+RT_DEFINE_BY_REGISTER(4, 2, _mm)
+RT_DEFINE_BITS_BY_REGISTER(4, 2, _mm)
+#else
+RT_DEFINE_BY_OPERATOR(RtFloat4, float4)
+RT_DEFINE_BY_OPERATOR(RtDouble2, double2)
+RT_DEFINE_BITS_BY_LANE(RtInt4, int4, 4)
+RT_DEFINE_BITS_BY_LANE(RtLong2, long2, 2)
+#endif
+RT_DEFINE_BY_OPERATOR(RtInt4, int4)
+RT_DEFINE_BY_OPERATOR(RtInt8, int8)
+
+RT_INLINE RtFloat4 rt_lower4(RtFloat8 a) {
+    return __builtin_shufflevector(a, a, 0, 1, 2, 3);
+}
+RT_INLINE RtFloat4 rt_upper4(RtFloat8 a) {
+    return __builtin_shufflevector(a, a, 4, 5, 6, 7);
+}
+RT_INLINE RtFloat8 rt_join4(RtFloat4 lower, RtFloat4 upper) {
+    return __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+#if defined(__AVX2__)
+RT_DEFINE_BY_REGISTER(8, 4, _mm256)
+RT_DEFINE_BITS_BY_REGISTER(8, 4, _mm256)
+#else
+RT_INLINE RtFloat8 rt_min_float8(RtFloat8 a, RtFloat8 b) {
+    return rt_join4(rt_min_float4(rt_lower4(a), rt_lower4(b)), rt_min_float4(rt_upper4(a), rt_upper4(b)));
+}
+RT_INLINE RtFloat8 rt_max_float8(RtFloat8 a, RtFloat8 b) {
+    return rt_join4(rt_max_float4(rt_lower4(a), rt_lower4(b)), rt_max_float4(rt_upper4(a), rt_upper4(b)));
+}
+RT_INLINE uint32_t rt_bits_int8(RtInt8 mask) {
+    return rt_bits_int4((RtInt4)rt_lower4((RtFloat8)mask)) | rt_bits_int4((RtInt4)rt_upper4((RtFloat8)mask))
+                                                                 << 4;
+}
+#endif
+#if RT_AVX512
+RT_DEFINE_BY_REGISTER(16, 8, _mm512)
+RT_DEFINE_BY_OPERATOR(RtInt16, int16)
+RT_INLINE uint32_t rt_bits_int16(RtInt16 mask) {
+    return _mm512_movepi32_mask((__m512i)mask);
+}
+#endif
+
+/* ---- comparisons to bits ---- */
+
+#define RT_DEFINE_COMPARISON(name, op, type, Type, sign, Sign)                                               \
+    RT_INLINE uint32_t rt_##name##_bits_##type(Type a, Type b) {                                             \
+        return rt_bits_##sign((Sign)(a op b));                                                               \
+    }
+#define RT_DEFINE_COMPARISONS(N)                                                                             \
+    RT_DEFINE_COMPARISON(le, <=, float##N, RtFloat##N, int##N, RtInt##N)                                     \
+    RT_DEFINE_COMPARISON(lt, <, float##N, RtFloat##N, int##N, RtInt##N)                                      \
+    RT_DEFINE_COMPARISON(lt, <, int##N, RtInt##N, int##N, RtInt##N)                                          \
+    RT_DEFINE_COMPARISON(eq, ==, int##N, RtInt##N, int##N, RtInt##N)
+#define RT_DEFINE_DOUBLE_COMPARISONS(N)                                                                      \
+    RT_DEFINE_COMPARISON(le, <=, double##N, RtDouble##N, long##N, RtLong##N)                                 \
+    RT_DEFINE_COMPARISON(eq, ==, double##N, RtDouble##N, long##N, RtLong##N)
+#define RT_DEFINE_MASK_COMPARISON(name, type, Type, intrinsic, Reg, predicate)                               \
+    RT_INLINE uint32_t rt_##name##_bits_##type(Type a, Type b) {                                             \
+        return intrinsic((Reg)a, (Reg)b, predicate);                                                         \
+    }
+
+RT_DEFINE_COMPARISONS(4)
+RT_DEFINE_DOUBLE_COMPARISONS(2)
+#if RT_AVX512
+RT_DEFINE_MASK_COMPARISON(le, float8, RtFloat8, _mm256_cmp_ps_mask, __m256, _CMP_LE_OQ)
+RT_DEFINE_MASK_COMPARISON(lt, float8, RtFloat8, _mm256_cmp_ps_mask, __m256, _CMP_LT_OQ)
+RT_DEFINE_MASK_COMPARISON(lt, int8, RtInt8, _mm256_cmp_epi32_mask, __m256i, _MM_CMPINT_LT)
+RT_DEFINE_MASK_COMPARISON(eq, int8, RtInt8, _mm256_cmp_epi32_mask, __m256i, _MM_CMPINT_EQ)
+RT_DEFINE_MASK_COMPARISON(le, float16, RtFloat16, _mm512_cmp_ps_mask, __m512, _CMP_LE_OQ)
+RT_DEFINE_MASK_COMPARISON(lt, float16, RtFloat16, _mm512_cmp_ps_mask, __m512, _CMP_LT_OQ)
+RT_DEFINE_MASK_COMPARISON(lt, int16, RtInt16, _mm512_cmp_epi32_mask, __m512i, _MM_CMPINT_LT)
+RT_DEFINE_MASK_COMPARISON(eq, int16, RtInt16, _mm512_cmp_epi32_mask, __m512i, _MM_CMPINT_EQ)
+RT_DEFINE_MASK_COMPARISON(le, double8, RtDouble8, _mm512_cmp_pd_mask, __m512d, _CMP_LE_OQ)
+RT_DEFINE_MASK_COMPARISON(eq, double8, RtDouble8, _mm512_cmp_pd_mask, __m512d, _CMP_EQ_OQ)
+#else
+RT_DEFINE_COMPARISONS(8)
+#if defined(__AVX2__)
+RT_DEFINE_DOUBLE_COMPARISONS(4)
+#endif
+#endif
+
+/* ---- the width of the instruction set ---- */
+
+#define RT_CONCATENATE(name, lanes) name##lanes
+#define RT_OF_WIDTH(name, lanes)    RT_CONCATENATE(name, lanes)
+#define RT_OF_LANES(name)           RT_OF_WIDTH(name, RT_LANES)
+#define RT_OF_HALF(name)            RT_OF_WIDTH(name, RT_HALF)
+
+typedef RT_OF_LANES(RtFloat) RtFloats;
+typedef RT_OF_LANES(RtInt) RtInts;
+typedef RT_OF_LANES(RtWord) RtWords;
+typedef RT_OF_HALF(RtDouble) RtDoubles;
+typedef RT_OF_HALF(RtLong) RtLongs;
+
+#define rt_all         RT_OF_LANES(rt_all)
+#define rt_all_ints    RT_OF_LANES(rt_all_ints)
+#define rt_all_doubles RT_OF_HALF(rt_all_doubles)
+#define rt_load        RT_OF_LANES(rt_load)
+#define rt_loadu       RT_OF_LANES(rt_loadu)
+#define rt_load_ints   RT_OF_LANES(rt_load_ints)
+
+#if RT_AVX512
+#define RT_BY_WIDTH(Type, f) Type##4 : f##4, Type##8 : f##8, Type##16 : f##16
+#else
+#define RT_BY_WIDTH(Type, f) Type##4 : f##4, Type##8 : f##8
+#endif
+#define RT_BY_FLOATS(f) RT_BY_WIDTH(RtFloat, f##_float)
+#define RT_BY_INTS(f)   RT_BY_WIDTH(RtInt, f##_int)
+#define RT_BY_DOUBLES(f)                                                                                     \
+    RtDoubles:                                                                                               \
+    RT_OF_HALF(f##_double)
+
+#define rt_store(at, a) _Generic((a), RT_BY_FLOATS(rt_store), RT_BY_INTS(rt_store))(at, a)
+#define rt_abs(a)       _Generic((a), RT_BY_FLOATS(rt_abs), RT_BY_DOUBLES(rt_abs))(a)
+#define rt_min(a, b)    _Generic((a), RT_BY_FLOATS(rt_min), RT_BY_INTS(rt_min), RT_BY_DOUBLES(rt_min))(a, b)
+#define rt_max(a, b)    _Generic((a), RT_BY_FLOATS(rt_max), RT_BY_INTS(rt_max), RT_BY_DOUBLES(rt_max))(a, b)
+#define rt_select(mask, a, b)                                                                                \
+    _Generic((a), RT_BY_FLOATS(rt_select), RT_BY_INTS(rt_select), RT_BY_DOUBLES(rt_select))(mask, a, b)
+#define rt_bits(mask)    _Generic((mask), RT_BY_INTS(rt_bits))(mask)
+#define rt_le_bits(a, b) _Generic((a), RT_BY_FLOATS(rt_le_bits), RT_BY_DOUBLES(rt_le_bits))(a, b)
+#define rt_lt_bits(a, b) _Generic((a), RT_BY_FLOATS(rt_lt_bits), RT_BY_INTS(rt_lt_bits))(a, b)
+#define rt_eq_bits(a, b) _Generic((a), RT_BY_INTS(rt_eq_bits), RT_BY_DOUBLES(rt_eq_bits))(a, b)
+#define rt_to_ints(a)    __builtin_convertvector(a, RtInts) /* towards 0 */
+#define rt_to_floats(a)  __builtin_convertvector(a, RtFloats)
+
+/* ---- bits as masks ---- */
+
+/* -1 in the lanes of the bits, else 0; a in these lanes, else b; and a stored to them, the others kept. */
+RT_INLINE RtInt8 rt_mask8(uint32_t bits) {
+    const RtInt8 lanes = {1, 2, 4, 8, 16, 32, 64, 128};
+    return (rt_all_ints8((int32_t)bits) & lanes) == lanes;
+}
+#if RT_AVX512
+RT_INLINE RtInt16 rt_select_bits(uint32_t bits, RtInt16 a, RtInt16 b) {
+    return (RtInt16)_mm512_mask_mov_epi32((__m512i)b, (__mmask16)bits, (__m512i)a);
+}
+RT_INLINE RtInt8 rt_select_bits8(uint32_t bits, RtInt8 a, RtInt8 b) {
+    return (RtInt8)_mm256_mask_mov_epi32((__m256i)b, (__mmask8)bits, (__m256i)a);
+}
+RT_INLINE void rt_store_lanes(void *at, uint32_t bits, RtInt16 a) {
+    _mm512_mask_storeu_epi32(at, (__mmask16)bits, (__m512i)a);
+}
+#else
+RT_INLINE RtInt8 rt_select_bits8(uint32_t bits, RtInt8 a, RtInt8 b) {
+    return rt_select(rt_mask8(bits), a, b);
+}
+RT_INLINE RtInts rt_select_bits(uint32_t bits, RtInts a, RtInts b) {
+#if RT_LANES == 8
+    return rt_select_bits8(bits, a, b);
+#else
+    const RtInts lanes = {1, 2, 4, 8};
+    return rt_select((rt_all_ints((int32_t)bits) & lanes) == lanes, a, b);
+#endif
+}
+RT_INLINE void rt_store_lanes(void *at, uint32_t bits, RtInts a) {
+    rt_store(at, rt_select_bits(bits, a, rt_load_ints(at)));
+}
+#endif
+
+/* ---- compression: the lanes of some bits brought to the front, in order ---- */
+
+/* For each eight bits the lanes in them, in ascending order, a byte each from the lowest on. */
+extern const uint64_t rt_lanes_of_bits[256];
+
+/* rt_compress8(rt_order8(bits), a): what is behind them is anything. */
+#if RT_AVX512
+typedef __mmask8 RtOrder8;
+RT_INLINE RtOrder8 rt_order8(uint32_t bits) {
+    return (__mmask8)bits;
+}
+RT_INLINE RtInt8 rt_compress8(RtOrder8 order, RtInt8 a) {
+    return (RtInt8)_mm256_maskz_compress_epi32(order, (__m256i)a);
+}
+#elif defined(__AVX2__)
+typedef __m256i RtOrder8;
+RT_INLINE RtOrder8 rt_order8(uint32_t bits) {
+    return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)&rt_lanes_of_bits[bits]));
+}
+RT_INLINE RtInt8 rt_compress8(RtOrder8 order, RtInt8 a) {
+    return (RtInt8)_mm256_permutevar8x32_epi32((__m256i)a, order);
+}
+#else
+typedef uint64_t RtOrder8;
+RT_INLINE RtOrder8 rt_order8(uint32_t bits) {
+    return rt_lanes_of_bits[bits];
+}
+RT_INLINE RtInt8 rt_compress8(RtOrder8 order, RtInt8 a) {
+    RtInt8 out;
+    for (int i = 0; i < 8; i++) out[i] = a[order >> 8 * i & 7];
+    return out;
+}
+#endif
+
+/* To at[0..RT_LANES): so much is written. */
+RT_INLINE void rt_compress_store(uint32_t *at, uint32_t bits, RtInts a) {
+#if RT_AVX512
+    _mm512_storeu_si512(at, _mm512_maskz_compress_epi32((__mmask16)bits, (__m512i)a));
+#elif RT_LANES == 8
+    rt_store(at, rt_compress8(rt_order8(bits), a));
+#else
+    for (int i = 0; i < RT_LANES; i++) at[i] = (uint32_t)a[rt_lanes_of_bits[bits] >> 8 * i & 3];
+#endif
+}
+
+/* ---- tables ---- */
+
+/* table[index[i]] in lane i, index < 2^31; of words table[stride * index[i]], stride 1 or 2. */
+RT_INLINE RtFloats rt_gather(const float *table, RtInts index) {
+#if RT_AVX512
+    return _mm512_i32gather_ps((__m512i)index, table, 4);
+#elif RT_LANES == 8
+    return _mm256_i32gather_ps(table, (__m256i)index, 4);
+#else
+    return (RtFloats){table[index[0]], table[index[1]], table[index[2]], table[index[3]]};
+#endif
+}
+#if RT_AVX512
+#define rt_gather_words(table, index, stride)                                                                \
+    ((RtInts)_mm512_i32gather_epi32((__m512i)(index), table, 4 * (stride)))
+#elif RT_LANES == 8
+#define rt_gather_words(table, index, stride)                                                                \
+    ((RtInts)_mm256_i32gather_epi32((const int *)(table), (__m256i)(index), 4 * (stride)))
+#else
+RT_INLINE RtInts rt_gather_words(const uint32_t *table, RtInts index, int stride) {
+    RtInts out;
+    for (int i = 0; i < RT_LANES; i++) out[i] = (int32_t)table[stride * index[i]];
+    return out;
+}
+#endif
+/* The same of a table of sixty-four floats, aligned to 64 bytes. */
+RT_INLINE RtFloats rt_gather64(const float *table, RtInts index) {
+#if RT_AVX512
+    __m512i i = (__m512i)index;
+    __m512 lo = _mm512_permutex2var_ps(_mm512_load_ps(table), i, _mm512_load_ps(table + 16));
+    __m512 hi = _mm512_permutex2var_ps(_mm512_load_ps(table + 32), i, _mm512_load_ps(table + 48));
+    return _mm512_mask_mov_ps(lo, _mm512_test_epi32_mask(i, _mm512_set1_epi32(32)), hi);
+#else
+    return rt_gather(table, index);
+#endif
+}
+
+/* ---- rearranging lanes, in groups of four ---- */
+
+/* Lane k of row i becomes lane i of row k. */
+RT_INLINE void rt_transpose4(RtFloat4 rows[4]) {
+    RtFloat4 a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+    RtFloat4 b = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+    RtFloat4 c = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+    RtFloat4 d = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+    rows[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    rows[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    rows[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    rows[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+/* rt_repeat4(a): a in each group. rt_load_groups(at): group i from at[i], anywhere. rt_spread4(a, i): lane i
+ * of each group, a constant, in all of the group. */
+enum { RT_GROUPS = RT_LANES / 4 };
+#if RT_AVX512
+RT_INLINE RtFloats rt_repeat4(RtFloat4 a) {
+    return _mm512_broadcast_f32x4(a);
+}
+RT_INLINE RtFloats rt_load_groups(const float *const at[RT_GROUPS]) {
+    __m512 joined = _mm512_insertf32x4(_mm512_castps128_ps512(rt_loadu4(at[0])), rt_loadu4(at[1]), 1);
+    return _mm512_insertf32x4(_mm512_insertf32x4(joined, rt_loadu4(at[2]), 2), rt_loadu4(at[3]), 3);
+}
+#define rt_spread4(a, i) ((RtFloats)_mm512_permute_ps(a, 0x55 * (i)))
+#elif RT_LANES == 8
+RT_INLINE RtFloats rt_repeat4(RtFloat4 a) {
+    return _mm256_set_m128(a, a);
+}
+RT_INLINE RtFloats rt_load_groups(const float *const at[RT_GROUPS]) {
+    return _mm256_set_m128(rt_loadu4(at[1]), rt_loadu4(at[0]));
+}
+#define rt_spread4(a, i) ((RtFloats)_mm256_permute_ps(a, 0x55 * (i)))
+#else
+RT_INLINE RtFloats rt_repeat4(RtFloat4 a) {
+    return a;
+}
+RT_INLINE RtFloats rt_load_groups(const float *const at[RT_GROUPS]) {
+    return rt_loadu4(at[0]);
+}
+#define rt_spread4(a, i) __builtin_shufflevector(a, a, i, i, i, i)
+#endif
+
+/* Four floats from each of RT_LANES places: float k of place i to lane i of columns[k]. */
+RT_INLINE void rt_load_columns(const float *const from[RT_LANES], RtFloats columns[4]) {
+    RtFloats r[4];
+    for (int i = 0; i < 4; i++) {
+        const float *at[RT_GROUPS];
+        for (int k = 0; k < RT_GROUPS; k++) at[k] = from[4 * k + i];
+        r[i] = rt_load_groups(at);
+    }
+#if RT_LANES == 4
+    rt_transpose4(r);
+    for (int k = 0; k < 4; k++) columns[k] = r[k];
+#else
+    RtFloats a = RT_MM(unpacklo_ps)(r[0], r[1]), b = RT_MM(unpacklo_ps)(r[2], r[3]);
+    RtFloats c = RT_MM(unpackhi_ps)(r[0], r[1]), d = RT_MM(unpackhi_ps)(r[2], r[3]);
+    columns[0] = RT_MM(shuffle_ps)(a, b, 0x44);
+    columns[1] = RT_MM(shuffle_ps)(a, b, 0xee);
+    columns[2] = RT_MM(shuffle_ps)(c, d, 0x44);
+    columns[3] = RT_MM(shuffle_ps)(c, d, 0xee);
+#endif
+}
+
+/* ---- the least and the most of all lanes ---- */
+
+/* Lane i: the least of the lanes i modulo 4. */
+RT_INLINE RtFloat4 rt_fold4(RtFloats a) {
+#if RT_AVX512
+    RtFloat8 half = rt_min_float8(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));
+    return rt_min_float4(rt_lower4(half), rt_upper4(half));
+#elif RT_LANES == 8
+    return rt_min_float4(rt_lower4(a), rt_upper4(a));
+#else
+    return a;
+#endif
+}
+RT_INLINE float rt_least4(RtFloat4 a) {
+    a = rt_min_float4(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));
+    return rt_min_float4(a, __builtin_shufflevector(a, a, 1, 0, 3, 2))[0];
+}
+RT_INLINE float rt_least(RtFloats a) {
+    return rt_least4(rt_fold4(a));
+}
+RT_INLINE float rt_most(RtFloats a) {
+    return -rt_least(-a);
+}
+
+/* ---- rounding, and doubles ---- */
+
+#if RT_LANES > 4
+RT_INLINE RtFloats rt_floor(RtFloats a) {
+    return RT_MM(floor_ps)(a);
+}
+RT_INLINE RtFloats rt_ceil(RtFloats a) {
+    return RT_MM(ceil_ps)(a);
+}
+#else
+RT_INLINE RtFloats rt_floor(RtFloats a) {
+    return (RtFloats){floorf(a[0]), floorf(a[1]), floorf(a[2]), floorf(a[3])};
+}
+RT_INLINE RtFloats rt_ceil(RtFloats a) {
+    return (RtFloats){ceilf(a[0]), ceilf(a[1]), ceilf(a[2]), ceilf(a[3])};
+}
+#endif
+
+/* The lower lanes, half 0, or the upper, half 1, as doubles; floats of both, rounded; and RT_LANES / 2
+ * doubles rounded to at[0..RT_LANES / 2). */
+#if RT_AVX512
+RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
+    return _mm512_cvtps_pd(half ? _mm512_extractf32x8_ps(a, 1) : _mm512_castps512_ps256(a));
+}
+RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
+    return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(lower)), _mm512_cvtpd_ps(upper), 1);
+}
+RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
+    _mm256_storeu_ps(at, _mm512_cvtpd_ps(a));
+}
+#elif RT_LANES == 8
+RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
+    return _mm256_cvtps_pd(half ? rt_upper4(a) : rt_lower4(a));
+}
+RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
+    return _mm256_set_m128(_mm256_cvtpd_ps(upper), _mm256_cvtpd_ps(lower));
+}
+RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
+    _mm_storeu_ps(at, _mm256_cvtpd_ps(a));
+}
+#elif defined(__SSE2__)
+RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
+    return _mm_cvtps_pd(half ? (RtFloats)_mm_movehl_ps(a, a) : a);
+}
+RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
+    return _mm_movelh_ps(_mm_cvtpd_ps(lower), _mm_cvtpd_ps(upper));
+}
+RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
+    _mm_storel_epi64((__m128i *)(void *)at, _mm_castps_si128(_mm_cvtpd_ps(a)));
+}
+#else
+RT_INLINE RtDoubles rt_to_doubles(RtFloats a, int half) {
+    return (RtDoubles){(double)a[2 * half], (double)a[2 * half + 1]};
+}
+RT_INLINE RtFloats rt_round_doubles(RtDoubles lower, RtDoubles upper) {
+    return (RtFloats){(float)lower[0], (float)lower[1], (float)upper[0], (float)upper[1]};
+}
+RT_INLINE void rt_store_doubles(float *at, RtDoubles a) {
+    at[0] = (float)a[0];
+    at[1] = (float)a[1];
+}
+#endif
+
+/* |a| with the sign of another; a >= 0. */
+RT_INLINE RtDoubles rt_copy_sign(RtDoubles a, RtDoubles sign) {
+    return (RtDoubles)((RtLongs)a | ((RtLongs)sign & INT64_MIN));
+}
+
+#endif
