@@ -26,7 +26,7 @@ fail() {
 }
 
 # The section as a script: indented commands, and blocks of Python.
-awk '/^## / { inside = /^## Rays of one.s own$/ }
+awk '/^## / { inside = /^## Your own rays$/ }
     !inside { next }
     /^```python/ { print "python3 - <<\047EOF\047"; next }
     /^```/ { print "EOF"; next }
