@@ -5,7 +5,6 @@
  * nine of a third of its radius: six about its equator and three towards its tip, the root's being +Z, a
  * child's the direction in which it sits. Objects come depth first, in the order of the Standard Procedural
  * Databases. All angles have known sines and cosines, so nothing but + - * / sqrt is used. */
-#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 
@@ -16,18 +15,13 @@ static const RtParam params[] = {
 
 enum { CHILDREN = 9 };
 
-typedef struct Flake {
-    RtScene *scene;
-    uint32_t material;
-    RtVec3d offsets[CHILDREN]; /* unit directions of the children of a sphere that points to +Z */
-} Flake;
-
 static uint64_t object_count(const RtValue *values) {
     uint64_t spheres = 1;
     for (int64_t level = 0; level < values[0].i; level++) spheres = spheres * CHILDREN + 1;
     return spheres + 1;
 }
 
+/* Unit directions of the children of a sphere that points to +Z. */
 static void set_offsets(RtVec3d offsets[CHILDREN]) {
     double d = sqrt(0.5);
     const RtVec3d trio[3] = {{d, d, 0}, {d, 0, -d}, {0, d, -d}};
@@ -39,38 +33,28 @@ static void set_offsets(RtVec3d offsets[CHILDREN]) {
     }
 }
 
-static RtStatus add_sphere(const Flake *flake, RtVec3d center, double radius, RtVec3d direction,
-                           int64_t levels, RtError *error) {
-    RT_TRY(rt_scene_add_sphere(flake->scene, flake->material, rt_narrow(center), (float)radius, error));
-    if (levels == 0) return RT_OK;
-    for (int i = 0; i < CHILDREN; i++) {
-        RtVec3d towards = rt_spd_rotate_from_z(flake->offsets[i], direction);
+static void add_flake(RtSceneBuilder *b, const RtVec3d offsets[CHILDREN], RtVec3d center, double radius,
+                      RtVec3d direction, int64_t levels) {
+    rt_build_sphere(b, center, radius);
+    for (int i = 0; levels > 0 && i < CHILDREN; i++) {
+        RtVec3d towards = rt_spd_rotate_from_z(offsets[i], direction);
         RtVec3d child = rt_add_scaledd(center, towards, radius * (1 + 1.0 / 3));
-        RT_TRY(add_sphere(flake, child, radius / 3, towards, levels - 1, error));
+        add_flake(b, offsets, child, radius / 3, towards, levels - 1);
     }
-    return RT_OK;
 }
 
-static RtStatus add_floor(RtScene *scene, RtError *error) {
-    uint32_t material;
-    RtMaterial matte = rt_nff_material("floor", rt_vec3(1, 0.75f, 0.33f), 0.8f, 0, 100000, 0, 1);
-    RT_TRY(rt_scene_add_material(scene, &matte, &material, error));
-    const RtVec3 corners[4] = {{12, 12, -0.5f}, {-12, 12, -0.5f}, {-12, -12, -0.5f}, {12, -12, -0.5f}};
-    return rt_scene_add_polygon(scene, material, corners, 4, error);
-}
-
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    static const RtVec3 lights[3] = {{4, 3, 2}, {1, -4, 4}, {-3, 1, 5}};
-    RT_TRY(rt_spd_add_lights(scene, lights, 3, error));
-    scene->camera.from = rt_vec3(2.1f, 1.3f, 1.7f);
-    scene->camera.near = 0.01f;
-    RT_TRY(add_floor(scene, error));
-
-    Flake flake = {.scene = scene};
-    RtMaterial shiny = rt_nff_material("balls", rt_vec3(1, 0.9f, 0.7f), 0.5f, 0.5f, 3.0827f, 0, 1);
-    RT_TRY(rt_scene_add_material(scene, &shiny, &flake.material, error));
-    set_offsets(flake.offsets);
-    return add_sphere(&flake, rt_vec3d(0, 0, 0), 0.5, rt_vec3d(0, 0, 1), values[0].i, error);
+static void generate(RtSceneBuilder *b, const RtValue *values) {
+    static const RtVec3d lights[3] = {{4, 3, 2}, {1, -4, 4}, {-3, 1, 5}};
+    static const RtVec3d floor[4] = {{12, 12, -0.5}, {-12, 12, -0.5}, {-12, -12, -0.5}, {12, -12, -0.5}};
+    RtVec3d offsets[CHILDREN];
+    set_offsets(offsets);
+    rt_spd_lights(b, lights, 3);
+    b->scene->camera.from = rt_vec3(2.1f, 1.3f, 1.7f);
+    b->scene->camera.near = 0.01f;
+    rt_build_material(b, rt_nff_material("floor", rt_vec3(1, 0.75f, 0.33f), 0.8f, 0, 100000, 0, 1));
+    rt_build_polygon(b, floor, 4);
+    rt_build_material(b, rt_nff_material("balls", rt_vec3(1, 0.9f, 0.7f), 0.5f, 0.5f, 3.0827f, 0, 1));
+    add_flake(b, offsets, rt_vec3d(0, 0, 0), 0.5, rt_vec3d(0, 0, 1), values[0].i);
 }
 
 const RtBuiltin rt_builtin_balls = {

@@ -3,6 +3,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/words.h"
+#include "core/scene/load.h"
+#include "scenes/open.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -50,13 +52,18 @@ RtStatus rt_builtin_named(const char *spec, const RtBuiltin **builtin, RtError *
                    name, suggestion, *suggestion ? "" : ".", list);
 }
 
+uint64_t rt_builtin_object_count(const RtBuiltin *builtin, const RtValue *values) {
+    return builtin->object_count ? builtin->object_count(values) : rt_build_count(builtin->generate, values);
+}
+
 uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values) {
     uint64_t each = builtin->object_bytes ? builtin->object_bytes(values) : RT_BUILTIN_OBJECT_BYTES;
-    return builtin->object_count(values) * each;
+    return rt_builtin_object_count(builtin, values) * each;
 }
 
 static bool fits(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes) {
-    return builtin->object_count(values) <= RT_MAX_OBJECTS && rt_builtin_bytes(builtin, values) <= bytes;
+    return rt_builtin_object_count(builtin, values) <= RT_MAX_OBJECTS &&
+           rt_builtin_bytes(builtin, values) <= bytes;
 }
 
 RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values, uint64_t bytes,
@@ -74,7 +81,7 @@ RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values
             too_large = tried[0].i;
         }
     }
-    uint64_t objects = builtin->object_count(values);
+    uint64_t objects = rt_builtin_object_count(builtin, values);
     return rt_fail(error, RT_BAD_INPUT,
                    "scene %s: %s=%lld makes %llu objects, which may take %.1f GB where %.1f GB are "
                    "available: %s=%lld would fit",
@@ -97,7 +104,7 @@ RtStatus rt_builtin_objects(const char *spec, uint64_t *count, RtError *error) {
     const RtBuiltin *builtin;
     RtValue values[RT_MAX_PARAMS];
     RT_TRY(parse(spec, &builtin, values, error));
-    *count = builtin->object_count(values);
+    *count = rt_builtin_object_count(builtin, values);
     return RT_OK;
 }
 
@@ -113,8 +120,14 @@ RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error) {
     int used = snprintf(scene->name, sizeof scene->name, "%s:", builtin->name);
     rt_params_format(builtin->params, builtin->param_count, values, scene->name + used,
                      sizeof scene->name - (size_t)used);
-    RtStatus status = builtin->generate(scene, values, error);
+    RtStatus status = rt_build_scene(scene, builtin->generate, values, error);
     if (status == RT_OK) status = rt_scene_finish(scene, error);
     if (status != RT_OK) rt_scene_clear(scene);
     return status;
+}
+
+/* A spec that is neither a file nor a built-in is refused with the list of built-ins. */
+RtStatus rt_scene_open(const char *spec, RtScene *scene, RtError *error) {
+    bool builtin = rt_builtin_find(spec) || !rt_scene_is_file(spec);
+    return builtin ? rt_builtin_open(spec, scene, error) : rt_scene_load(spec, rt_builtin_open, scene, error);
 }

@@ -3,8 +3,7 @@
 #ifndef RT_SCENES_BUILTIN_H
 #define RT_SCENES_BUILTIN_H
 
-#include "core/base/param.h"
-#include "core/scene/scene.h"
+#include "scenes/build.h"
 
 /* What an object may take while a scene is made, arrays that grow by doubling included: a sphere, a cone, a
  * triangle or a polygon of four corners. */
@@ -17,12 +16,11 @@ typedef struct RtBuiltin {
     const char *name, *summary, *source; /* source: where the scene comes from */
     const RtParam *params;               /* params[0]: the whole number that sets the size, where one does */
     size_t param_count;
-    /* How many objects `generate` would make: checked against memory before anything is made. */
+    /* The number of objects, to check against memory before anything is made; NULL: `generate` counts. */
     uint64_t (*object_count)(const RtValue *values);
-    /* What each of them may take while the scene is made; NULL: RT_BUILTIN_OBJECT_BYTES. */
+    /* Bytes that each of them may take while the scene is made; NULL: RT_BUILTIN_OBJECT_BYTES. */
     uint64_t (*object_bytes)(const RtValue *values);
-    /* Fills an initialised scene (rt_scene_init); the caller finishes it, or clears it after a failure. */
-    RtStatus (*generate)(RtScene *scene, const RtValue *values, RtError *error);
+    RtSceneGenerator *generate;
 } RtBuiltin;
 
 /* Each in its own file. */
@@ -46,6 +44,9 @@ RtStatus rt_builtin_open(const char *spec, RtScene *scene, RtError *error);
 
 /* How many objects the scene of such a spec has, or nearly so, without making it. */
 RtStatus rt_builtin_objects(const char *spec, uint64_t *count, RtError *error);
+
+/* The number of objects for these values. */
+uint64_t rt_builtin_object_count(const RtBuiltin *builtin, const RtValue *values);
 
 /* What the scene may take while it is made. */
 uint64_t rt_builtin_bytes(const RtBuiltin *builtin, const RtValue *values);

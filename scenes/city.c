@@ -22,114 +22,103 @@ static const double block = 72, street = 18, kerb = 0.2, pavement = 4;
 enum { LOTS_ALONG = 3, LAMPS = 3, DASHES = 6, CARS = 3, STRIPES = 6 };
 
 /* Four quarter turns about the middle of the block bring what is along one street to all. */
-static void turn_block(RtForms *forms, RtVec3d corner, int quarters) {
+static void turn_block(RtSceneBuilder *b, RtVec3d corner, int quarters) {
     static const double x[4] = {0, 1, 1, 0}, y[4] = {0, 0, 1, 1};
     RtVec3d at = {corner.x + block * x[quarters], corner.y + block * y[quarters], corner.z};
-    rt_forms_at(forms, at, quarters);
+    rt_build_origin(b, at, quarters);
 }
 
 /* Along the street in front of the block, at y < 0: marks, a crossing, cars, lamps and trees. */
-static RtStatus add_street(RtForms *forms, RtRandom *random, RtVec3d corner, int quarters, RtError *error) {
+static void add_street(RtSceneBuilder *b, RtRandom *random, RtVec3d corner, int quarters) {
     RtVec3d ground = {corner.x, corner.y, 0};
-    turn_block(forms, ground, quarters);
-    forms->material = RT_CITY_PAINT;
+    turn_block(b, ground, quarters);
+    b->material = RT_CITY_PAINT;
     for (int i = 0; quarters % 2 == 0 && i < DASHES;
          i++) { /* in the middle of the street: of one side only */
         double x = block * (i + 0.3) / DASHES;
-        RT_TRY(rt_forms_box(forms, rt_vec3d(x, -street / 2 - 0.1, 0),
-                            rt_vec3d(x + 5, -street / 2 + 0.1, 0.02), RT_SIDE_TOP, error));
+        rt_build_box(b, rt_vec3d(x, -street / 2 - 0.1, 0), rt_vec3d(x + 5, -street / 2 + 0.1, 0.02),
+                     RT_SIDE_TOP);
     }
     for (int i = 0; i < STRIPES; i++) {
         double y = -street / 2 + 0.6 + 1.4 * i;
-        RT_TRY(rt_forms_box(forms, rt_vec3d(0.5, y, 0), rt_vec3d(3.5, y + 0.7, 0.02), RT_SIDE_TOP, error));
+        rt_build_box(b, rt_vec3d(0.5, y, 0), rt_vec3d(3.5, y + 0.7, 0.02), RT_SIDE_TOP);
     }
     for (int i = 0; i < CARS; i++) {
         double x = 8 + block * (i + rt_random_betweend(random, 0, 0.6)) / CARS, y = i == 1 ? -6.6 : -2.4;
-        turn_block(forms, ground, quarters);
-        RtVec3d at = rt_transform_pointd(&forms->place, rt_vec3d(x, y, 0));
-        rt_forms_at(forms, at, quarters);
-        RT_TRY(rt_city_car(forms, random, error));
+        turn_block(b, ground, quarters);
+        RtVec3d at = rt_transform_pointd(&b->transform, rt_vec3d(x, y, 0));
+        rt_build_origin(b, at, quarters);
+        rt_city_car(b, random);
     }
     for (int i = 0; i < LAMPS; i++) {
-        turn_block(forms, corner, quarters);
+        turn_block(b, corner, quarters);
         double x = block * (i + 0.25) / LAMPS;
-        RtVec3d lamp = rt_transform_pointd(&forms->place, rt_vec3d(x, 0.6, 0));
-        RtVec3d tree = rt_transform_pointd(&forms->place, rt_vec3d(x + 11, 1.6, 0));
-        rt_forms_at(forms, lamp, quarters);
-        RT_TRY(rt_city_lamp(forms, error));
-        rt_forms_at(forms, tree, quarters);
-        RT_TRY(rt_city_tree(forms, random, error));
+        RtVec3d lamp = rt_transform_pointd(&b->transform, rt_vec3d(x, 0.6, 0));
+        RtVec3d tree = rt_transform_pointd(&b->transform, rt_vec3d(x + 11, 1.6, 0));
+        rt_build_origin(b, lamp, quarters);
+        rt_city_lamp(b);
+        rt_build_origin(b, tree, quarters);
+        rt_city_tree(b, random);
     }
-    return RT_OK;
 }
 
 /* Two rows of lots, back to back. */
-static RtStatus add_lots(RtForms *forms, RtRandom *random, RtVec3d corner, double downtown, RtError *error) {
+static void add_lots(RtSceneBuilder *b, RtRandom *random, RtVec3d corner, double downtown) {
     double inner = block - 2 * pavement, width = inner / LOTS_ALONG;
     for (int row = 0; row < 2; row++) {
         double step = row ? -width : width, from = row ? block - pavement : pavement;
         for (int i = 0; i < LOTS_ALONG; i++) {
-            RtCityLot lot = {.forms = forms,
+            RtCityLot lot = {.b = b,
                              .random = random,
                              .corner = {corner.x + from + step * i, corner.y + from, corner.z},
                              .quarters = 2 * row,
                              .width = width,
                              .depth = inner / 2,
                              .downtown = downtown};
-            RT_TRY(rt_city_building(&lot, error));
+            rt_city_building(&lot);
         }
     }
-    return RT_OK;
 }
 
-static RtStatus add_block(RtForms *forms, uint64_t seed, int64_t i, int64_t j, int64_t size, RtError *error) {
+static void add_block(RtSceneBuilder *b, uint64_t seed, int64_t i, int64_t j, int64_t size) {
     RtRandom random = rt_random(seed, (uint64_t)i << 32 | (uint64_t)j);
     double middle = (double)(size - 1) / 2, reach = 0.5 * (double)size;
     double off_x = ((double)i - middle) / reach, off_y = ((double)j - middle) / reach;
     double away = off_x * off_x + off_y * off_y, downtown = away < 1 ? (1 - away) * (1 - away) : 0;
     RtVec3d corner = {(block + street) * (double)i, (block + street) * (double)j, kerb};
 
-    rt_forms_at(forms, rt_vec3d(corner.x, corner.y, 0), 0);
-    forms->material = RT_CITY_PAVING;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(0, 0, 0), rt_vec3d(block, block, kerb), RT_SIDES_STANDING, error));
+    rt_build_origin(b, rt_vec3d(corner.x, corner.y, 0), 0);
+    b->material = RT_CITY_PAVING;
+    rt_build_box(b, rt_vec3d(0, 0, 0), rt_vec3d(block, block, kerb), RT_SIDES_STANDING);
     for (int quarters = 0; quarters < 4; quarters++) {
-        RT_TRY(add_street(forms, &random, corner, quarters, error));
+        add_street(b, &random, corner, quarters);
     }
-    if (rt_random_below(&random, 8) != 0) return add_lots(forms, &random, corner, downtown, error);
-    rt_forms_at(forms, rt_vec3d(corner.x + pavement, corner.y + pavement, corner.z), 0);
-    return rt_city_park(forms, &random, block - 2 * pavement, error);
+    if (rt_random_below(&random, 8) != 0) {
+        add_lots(b, &random, corner, downtown);
+    } else {
+        rt_build_origin(b, rt_vec3d(corner.x + pavement, corner.y + pavement, corner.z), 0);
+        rt_city_park(b, &random, block - 2 * pavement);
+    }
 }
 
-static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
+static void generate(RtSceneBuilder *b, const RtValue *values) {
     int64_t size = values[SIZE].i;
-    RT_TRY(rt_forms_materials(forms, rt_city_materials, RT_CITY_MATERIALS, error));
-    forms->polygons = true;
-    forms->material = RT_CITY_ASPHALT;
-    double end = (block + street) * (double)size;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(-street, -street, 0), rt_vec3d(end, end, 0), RT_SIDE_TOP, error));
-    for (int64_t j = 0; j < size; j++) {
-        for (int64_t i = 0; i < size; i++) {
-            RT_TRY(add_block(forms, (uint64_t)values[SEED].i, i, j, size, error));
-        }
-    }
-    return RT_OK;
-}
-
-static uint64_t object_count(const RtValue *values) {
-    return rt_forms_count(make, values);
-}
-
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    double end = (block + street) * (double)values[SIZE].i, away = end + 60;
+    double end = (block + street) * (double)size, away = end + 60;
+    RtScene *scene = b->scene;
     scene->camera.from = rt_narrow(rt_vec3d(end / 2 - 0.5 * away, -0.3 * away, 0.3 * away));
     scene->camera.at = rt_narrow(rt_vec3d(end / 2, 0.45 * end, 0.03 * end));
     scene->camera.fov = 40;
     scene->background = rt_vec3(0.5f, 0.68f, 0.9f);
-    RtVec3 sun = rt_narrow(rt_vec3d(-2 * end, -0.6 * end, 2.2 * end));
-    RtVec3 sky = rt_narrow(rt_vec3d(2 * end, -2.5 * end, 3 * end));
-    RT_TRY(rt_scene_add_light(scene, sun, rt_vec3(0.8f, 0.76f, 0.66f), error));
-    RT_TRY(rt_scene_add_light(scene, sky, rt_vec3(0.25f, 0.27f, 0.32f), error));
-    return rt_forms_make(scene, make, values, error);
+    rt_build_light(b, rt_vec3d(-2 * end, -0.6 * end, 2.2 * end), rt_vec3(0.8f, 0.76f, 0.66f));
+    rt_build_light(b, rt_vec3d(2 * end, -2.5 * end, 3 * end), rt_vec3(0.25f, 0.27f, 0.32f));
+    b->transformed = true;
+    rt_build_materials(b, rt_city_materials, RT_CITY_MATERIALS);
+    b->polygons = true;
+    b->material = RT_CITY_ASPHALT;
+    rt_build_box(b, rt_vec3d(-street, -street, 0), rt_vec3d(end, end, 0), RT_SIDE_TOP);
+    for (int64_t j = 0; j < size; j++) {
+        for (int64_t i = 0; i < size; i++) add_block(b, (uint64_t)values[SEED].i, i, j, size);
+    }
 }
 
 const RtBuiltin rt_builtin_city = {
@@ -137,6 +126,5 @@ const RtBuiltin rt_builtin_city = {
     .summary = "blocks of houses and towers: faces along the axes that share planes; cylinders and spheres",
     .source = "made to be hard on structures that cut space by planes",
     RT_PARAMS_OF(params),
-    .object_count = object_count,
     .generate = generate,
 };

@@ -35,72 +35,68 @@ static uint32_t choose(RtRandom *random, uint32_t count) {
 
 /* ---- in the street ---- */
 
-RtStatus rt_city_car(RtForms *forms, RtRandom *random, RtError *error) {
-    forms->material = RT_CITY_CARS + choose(random, RT_CITY_CAR_COUNT);
-    RT_TRY(rt_forms_box(forms, rt_vec3d(0, -0.9, 0.35), rt_vec3d(4.4, 0.9, 0.95), RT_SIDES_ALL, error));
-    forms->material = RT_CITY_GLASS;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(0.9, -0.8, 0.95), rt_vec3d(3.4, 0.8, 1.5), RT_SIDES_STANDING, error));
-    forms->material = RT_CITY_ASPHALT;
+void rt_city_car(RtSceneBuilder *b, RtRandom *random) {
+    b->material = RT_CITY_CARS + choose(random, RT_CITY_CAR_COUNT);
+    rt_build_box(b, rt_vec3d(0, -0.9, 0.35), rt_vec3d(4.4, 0.9, 0.95), RT_SIDES_ALL);
+    b->material = RT_CITY_GLASS;
+    rt_build_box(b, rt_vec3d(0.9, -0.8, 0.95), rt_vec3d(3.4, 0.8, 1.5), RT_SIDES_STANDING);
+    b->material = RT_CITY_ASPHALT;
     for (int i = 0; i < 4; i++) {
         double x = i < 2 ? 0.85 : 3.5, y = i % 2 ? 0.7 : -0.95;
-        RT_TRY(rt_forms_cone(forms, rt_vec3d(x, y, 0.33), 0.33, rt_vec3d(x, y + 0.25, 0.33), 0.33, error));
+        rt_build_cone(b, rt_vec3d(x, y, 0.33), 0.33, rt_vec3d(x, y + 0.25, 0.33), 0.33);
     }
-    return RT_OK;
 }
 
-RtStatus rt_city_lamp(RtForms *forms, RtError *error) {
+void rt_city_lamp(RtSceneBuilder *b) {
     const RtVec3d foot = {0, 0, 0}, top = {0, 0, 6}, end = {0, -1.8, 6.4};
-    forms->material = RT_CITY_METAL;
-    RT_TRY(rt_forms_cone(forms, foot, 0.12, top, 0.07, error));
-    RT_TRY(rt_forms_cone(forms, top, 0.07, end, 0.05, error));
-    forms->material = RT_CITY_LIGHT;
-    return rt_forms_sphere(forms, end, 0.35, error);
+    b->material = RT_CITY_METAL;
+    rt_build_cone(b, foot, 0.12, top, 0.07);
+    rt_build_cone(b, top, 0.07, end, 0.05);
+    b->material = RT_CITY_LIGHT;
+    rt_build_sphere(b, end, 0.35);
 }
 
-RtStatus rt_city_tree(RtForms *forms, RtRandom *random, RtError *error) {
+void rt_city_tree(RtSceneBuilder *b, RtRandom *random) {
     double height = rt_random_betweend(random, 2.5, 4.5), crown = rt_random_betweend(random, 1.3, 2.2);
     RtVec3d fork = {0, 0, height}, left = {-0.5 * crown, 0.3 * crown, height + 0.6 * crown};
     RtVec3d right = {0.4 * crown, -0.3 * crown, height + 1.2 * crown};
-    forms->material = RT_CITY_BARK;
-    RT_TRY(rt_forms_cone(forms, rt_vec3d(0, 0, 0), 0.25, fork, 0.15, error));
-    forms->material = RT_CITY_LEAVES;
-    RT_TRY(rt_forms_sphere(forms, left, crown, error));
-    return rt_forms_sphere(forms, right, 0.9 * crown, error);
+    b->material = RT_CITY_BARK;
+    rt_build_cone(b, rt_vec3d(0, 0, 0), 0.25, fork, 0.15);
+    b->material = RT_CITY_LEAVES;
+    rt_build_sphere(b, left, crown);
+    rt_build_sphere(b, right, 0.9 * crown);
 }
 
 enum { PARK_TREES = 40, BASIN_SIDES = 24 };
 
-RtStatus rt_city_park(RtForms *forms, RtRandom *random, double edge, RtError *error) {
-    RtTransform place = forms->place;
+void rt_city_park(RtSceneBuilder *b, RtRandom *random, double edge) {
+    RtTransform place = b->transform;
     RtVec3d middle = {edge / 2, edge / 2, 0};
-    forms->material = RT_CITY_GRASS;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(0, 0, 0), rt_vec3d(edge, edge, 0.1), RT_SIDES_STANDING, error));
-    forms->material = RT_CITY_PAVING;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(middle.x - 2, 0, 0), rt_vec3d(middle.x + 2, edge, 0.13), RT_SIDE_TOP,
-                        error));
-    RT_TRY(rt_forms_box(forms, rt_vec3d(0, middle.y - 2, 0), rt_vec3d(edge, middle.y + 2, 0.13), RT_SIDE_TOP,
-                        error));
+    b->material = RT_CITY_GRASS;
+    rt_build_box(b, rt_vec3d(0, 0, 0), rt_vec3d(edge, edge, 0.1), RT_SIDES_STANDING);
+    b->material = RT_CITY_PAVING;
+    rt_build_box(b, rt_vec3d(middle.x - 2, 0, 0), rt_vec3d(middle.x + 2, edge, 0.13), RT_SIDE_TOP);
+    rt_build_box(b, rt_vec3d(0, middle.y - 2, 0), rt_vec3d(edge, middle.y + 2, 0.13), RT_SIDE_TOP);
     /* A fountain: a basin, a column and a bowl. */
     const RtVec3d rim = {middle.x, middle.y, 0.9}, water = {middle.x, middle.y, 0.7};
     const RtVec3d top = {middle.x, middle.y, 3}, bowl = {middle.x, middle.y, 3.6};
-    RT_TRY(rt_forms_cone(forms, middle, 7, rim, 7, error));
-    RT_TRY(rt_forms_cone(forms, middle, 6.6, rim, 6.6, error));
-    RT_TRY(rt_forms_cone(forms, rim, 6.6, rt_vec3d(rim.x, rim.y, 0.91), 7, error));
-    RT_TRY(rt_forms_cone(forms, middle, 0.4, top, 0.3, error));
-    RT_TRY(rt_forms_cone(forms, top, 0.3, bowl, 2, error));
-    forms->material = RT_CITY_WATER;
-    RT_TRY(rt_forms_disc(forms, water, 6.6, BASIN_SIDES, error));
-    RT_TRY(rt_forms_disc(forms, rt_vec3d(bowl.x, bowl.y, 3.5), 1.8, BASIN_SIDES, error));
+    rt_build_cone(b, middle, 7, rim, 7);
+    rt_build_cone(b, middle, 6.6, rim, 6.6);
+    rt_build_cone(b, rim, 6.6, rt_vec3d(rim.x, rim.y, 0.91), 7);
+    rt_build_cone(b, middle, 0.4, top, 0.3);
+    rt_build_cone(b, top, 0.3, bowl, 2);
+    b->material = RT_CITY_WATER;
+    rt_build_disc(b, water, 6.6, BASIN_SIDES);
+    rt_build_disc(b, rt_vec3d(bowl.x, bowl.y, 3.5), 1.8, BASIN_SIDES);
     for (int i = 0; i < PARK_TREES; i++) {
         /* In the four lawns between the paths. */
         double lawn = edge / 2 - 12, x = rt_random_betweend(random, 2, lawn),
                y = rt_random_betweend(random, 2, lawn);
         RtVec3d at = {i & 1 ? edge - x : x, i & 2 ? edge - y : y, 0};
-        forms->place = place;
-        rt_forms_at(forms, rt_transform_pointd(&place, at), 0);
-        RT_TRY(rt_city_tree(forms, random, error));
+        b->transform = place;
+        rt_build_origin(b, rt_transform_pointd(&place, at), 0);
+        rt_city_tree(b, random);
     }
-    return RT_OK;
 }
 
 /* ---- buildings ---- */
@@ -113,167 +109,171 @@ static double between(const RtCityLot *lot, double lo, double hi) {
 
 /* What comes next has its origin at (x, y, z) of the lot and is turned once more. */
 static void stand(const RtCityLot *lot, double x, double y, double z, int quarters) {
-    rt_forms_at(lot->forms, lot->corner, lot->quarters);
-    RtVec3d at = rt_transform_pointd(&lot->forms->place, rt_vec3d(x, y, z));
-    rt_forms_at(lot->forms, at, lot->quarters + quarters);
+    rt_build_origin(lot->b, lot->corner, lot->quarters);
+    RtVec3d at = rt_transform_pointd(&lot->b->transform, rt_vec3d(x, y, z));
+    rt_build_origin(lot->b, at, lot->quarters + quarters);
 }
 
 /* Windows in a wall at y = 0, from x0 to x1 and from z0 upwards, a little before it. */
-static RtStatus add_windows(RtForms *forms, double x0, double x1, double z0, uint32_t storeys, uint32_t bays,
-                            RtError *error) {
+static void add_windows(RtSceneBuilder *b, double x0, double x1, double z0, uint32_t storeys, uint32_t bays) {
     double bay = (x1 - x0) / bays, pier = bays == 1 ? 0.3 : 0.22 * bay;
-    forms->material = RT_CITY_GLASS;
+    b->material = RT_CITY_GLASS;
     for (uint32_t i = 0; i < storeys; i++) {
         for (uint32_t j = 0; j < bays; j++) {
             RtVec3d lo = {x0 + bay * j + pier, -0.05, z0 + storey * i + 0.9};
             RtVec3d hi = {x0 + bay * (j + 1) - pier, 0, z0 + storey * i + 2.7};
-            RT_TRY(rt_forms_box(forms, lo, hi, RT_SIDE_FRONT, error));
+            rt_build_box(b, lo, hi, RT_SIDE_FRONT);
         }
     }
-    return RT_OK;
 }
 
 /* A water tank on legs, as on roofs. */
-static RtStatus add_tank(RtForms *forms, RtError *error) {
-    forms->material = RT_CITY_METAL;
+static void add_tank(RtSceneBuilder *b) {
+    b->material = RT_CITY_METAL;
     for (int i = 0; i < 4; i++) {
         double x = i & 1 ? 1 : -1, y = i & 2 ? 1 : -1;
-        RT_TRY(rt_forms_cone(forms, rt_vec3d(x, y, 0), 0.1, rt_vec3d(x, y, 2), 0.1, error));
+        rt_build_cone(b, rt_vec3d(x, y, 0), 0.1, rt_vec3d(x, y, 2), 0.1);
     }
     const RtVec3d bottom = {0, 0, 2}, top = {0, 0, 4.6}, tip = {0, 0, 5.7};
-    forms->material = RT_CITY_BARK;
-    RT_TRY(rt_forms_disc(forms, bottom, 1.7, 16, error));
-    RT_TRY(rt_forms_cone(forms, bottom, 1.7, top, 1.7, error));
-    forms->material = RT_CITY_ROOF;
-    return rt_forms_cone(forms, top, 1.9, tip, 0, error);
+    b->material = RT_CITY_BARK;
+    rt_build_disc(b, bottom, 1.7, 16);
+    rt_build_cone(b, bottom, 1.7, top, 1.7);
+    b->material = RT_CITY_ROOF;
+    rt_build_cone(b, top, 1.9, tip, 0);
 }
 
 /* A parapet about a flat roof, and what stands on it. */
-static RtStatus add_flat_roof(const RtCityLot *lot, double height, RtError *error) {
-    RtForms *forms = lot->forms;
+static void add_flat_roof(const RtCityLot *lot, double height) {
+    RtSceneBuilder *b = lot->b;
     double w = lot->width, d = lot->depth, t = 0.4;
     const RtVec3d lo[4] = {{0, 0, 0}, {0, d - t, 0}, {0, t, 0}, {w - t, t, 0}};
     const RtVec3d hi[4] = {{w, t, 1}, {w, d, 1}, {t, d - t, 1}, {w, d - t, 1}};
     stand(lot, 0, 0, height, 0);
-    for (int i = 0; i < 4; i++) RT_TRY(rt_forms_box(forms, lo[i], hi[i], RT_SIDES_STANDING, error));
-    forms->material = RT_CITY_METAL;
+    for (int i = 0; i < 4; i++) rt_build_box(b, lo[i], hi[i], RT_SIDES_STANDING);
+    b->material = RT_CITY_METAL;
     for (uint32_t i = choose(lot->random, 3); i > 0; i--) {
         double x = between(lot, 2, w - 5), y = between(lot, 2, d - 5);
-        RT_TRY(rt_forms_box(forms, rt_vec3d(x, y, 0), rt_vec3d(x + 2.5, y + 1.5, 1.4), RT_SIDES_STANDING,
-                            error));
+        rt_build_box(b, rt_vec3d(x, y, 0), rt_vec3d(x + 2.5, y + 1.5, 1.4), RT_SIDES_STANDING);
     }
-    if (choose(lot->random, 3) != 0) return RT_OK;
+    if (choose(lot->random, 3) != 0) return;
     double x = between(lot, 3, w - 3), y = between(lot, 3, d - 3);
     stand(lot, x, y, height, 0);
-    return add_tank(forms, error);
+    add_tank(b);
 }
 
 /* A ridge along the street, and chimneys. */
-static RtStatus add_gable(const RtCityLot *lot, double height, RtError *error) {
-    RtForms *forms = lot->forms;
+static void add_gable(const RtCityLot *lot, double height) {
+    RtSceneBuilder *b = lot->b;
     double w = lot->width, d = lot->depth, rise = between(lot, 4, 7);
     const RtVec3d corners[6] = {{0, 0, 0}, {w, 0, 0},        {w, d, 0},
                                 {0, d, 0}, {0, d / 2, rise}, {w, d / 2, rise}};
     const RtVec3d left[3] = {corners[0], corners[4], corners[3]},
                   right[3] = {corners[1], corners[2], corners[5]};
     stand(lot, 0, 0, height, 0);
-    RT_TRY(rt_forms_polygon(forms, left, 3, error));
-    RT_TRY(rt_forms_polygon(forms, right, 3, error));
+    rt_build_polygon(b, left, 3);
+    rt_build_polygon(b, right, 3);
     const RtVec3d front[4] = {corners[0], corners[1], corners[5], corners[4]};
     const RtVec3d back[4] = {corners[2], corners[3], corners[4], corners[5]};
-    forms->material = RT_CITY_TILES;
-    RT_TRY(rt_forms_quad(forms, front, error));
-    RT_TRY(rt_forms_quad(forms, back, error));
-    forms->material = RT_CITY_WALLS;
+    b->material = RT_CITY_TILES;
+    rt_build_quad(b, front);
+    rt_build_quad(b, back);
+    b->material = RT_CITY_WALLS;
     double x = between(lot, 2, w - 3), top = rise + 1.2;
-    return rt_forms_box(forms, rt_vec3d(x, 0.6 * d, 0), rt_vec3d(x + 1.2, 0.6 * d + 1, top),
-                        RT_SIDES_STANDING, error);
+    rt_build_box(b, rt_vec3d(x, 0.6 * d, 0), rt_vec3d(x + 1.2, 0.6 * d + 1, top), RT_SIDES_STANDING);
 }
 
-static RtStatus add_house(const RtCityLot *lot, RtError *error) {
-    RtForms *forms = lot->forms;
+static void add_house(const RtCityLot *lot) {
+    RtSceneBuilder *b = lot->b;
     uint32_t storeys = 3 + choose(lot->random, 4), bays = 4 + choose(lot->random, 3);
     uint32_t wall = RT_CITY_WALLS + choose(lot->random, RT_CITY_WALL_COUNT);
     double height = storey * storeys + 0.6, w = lot->width, d = lot->depth;
     stand(lot, 0, 0, 0, 0);
-    forms->material = wall;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(0, 0, 0), rt_vec3d(w, d, height), RT_SIDES_STANDING, error));
+    b->material = wall;
+    rt_build_box(b, rt_vec3d(0, 0, 0), rt_vec3d(w, d, height), RT_SIDES_STANDING);
     /* A cornice, a shop with an awning, windows above. */
-    RT_TRY(rt_forms_box(forms, rt_vec3d(0, -0.4, height - 0.5), rt_vec3d(w, 0, height), RT_SIDES_ALL, error));
+    rt_build_box(b, rt_vec3d(0, -0.4, height - 0.5), rt_vec3d(w, 0, height), RT_SIDES_ALL);
     const RtVec3d awning[4] = {{1, -1.6, 2.6}, {w - 1, -1.6, 2.6}, {w - 1, 0, 3.2}, {1, 0, 3.2}};
-    forms->material = RT_CITY_CARS + choose(lot->random, RT_CITY_CAR_COUNT);
-    RT_TRY(rt_forms_quad(forms, awning, error));
-    forms->material = RT_CITY_GLASS;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(1, -0.05, 0.4), rt_vec3d(w - 1, 0, 2.6), RT_SIDE_FRONT, error));
-    RT_TRY(add_windows(forms, 0.5, w - 0.5, storey, storeys - 1, bays, error));
-    forms->material = wall;
-    return choose(lot->random, 2) ? add_flat_roof(lot, height, error) : add_gable(lot, height, error);
+    b->material = RT_CITY_CARS + choose(lot->random, RT_CITY_CAR_COUNT);
+    rt_build_quad(b, awning);
+    b->material = RT_CITY_GLASS;
+    rt_build_box(b, rt_vec3d(1, -0.05, 0.4), rt_vec3d(w - 1, 0, 2.6), RT_SIDE_FRONT);
+    add_windows(b, 0.5, w - 0.5, storey, storeys - 1, bays);
+    b->material = wall;
+    if (choose(lot->random, 2)) {
+        add_flat_roof(lot, height);
+    } else {
+        add_gable(lot, height);
+    }
 }
 
 /* A shaft about the middle of the lot from `foot` up, a band of windows to each storey and side. */
-static RtStatus add_shaft(const RtCityLot *lot, double half, double foot, uint32_t storeys, uint32_t wall,
-                          RtError *error) {
-    RtForms *forms = lot->forms;
+static void add_shaft(const RtCityLot *lot, double half, double foot, uint32_t storeys, uint32_t wall) {
+    RtSceneBuilder *b = lot->b;
     RtVec3d lo = {-half, -half, 0}, hi = {half, half, storey * storeys};
     stand(lot, lot->width / 2, lot->depth / 2, foot, 0);
-    forms->material = wall;
-    RT_TRY(rt_forms_box(forms, lo, hi, RT_SIDES_STANDING, error));
+    b->material = wall;
+    rt_build_box(b, lo, hi, RT_SIDES_STANDING);
     for (int side = 0; side < 4; side++) {
         stand(lot, lot->width / 2, lot->depth / 2, foot, side);
-        RtVec3d out = rt_transform_pointd(&forms->place, rt_vec3d(0, -half, 0));
-        rt_forms_at(forms, out, lot->quarters + side);
-        RT_TRY(add_windows(forms, -half, half, 0, storeys, 1, error));
+        RtVec3d out = rt_transform_pointd(&b->transform, rt_vec3d(0, -half, 0));
+        rt_build_origin(b, out, lot->quarters + side);
+        add_windows(b, -half, half, 0, storeys, 1);
     }
-    return RT_OK;
 }
 
-static RtStatus add_mast(const RtCityLot *lot, double foot, RtError *error) {
+static void add_mast(RtSceneBuilder *b) {
     const RtVec3d bottom = {0, 0, 0}, top = {0, 0, 14};
-    stand(lot, lot->width / 2, lot->depth / 2, foot, 0);
-    lot->forms->material = RT_CITY_METAL;
-    RT_TRY(rt_forms_cone(lot->forms, bottom, 0.5, top, 0.1, error));
-    lot->forms->material = RT_CITY_LIGHT;
-    return rt_forms_sphere(lot->forms, top, 0.5, error);
+    b->material = RT_CITY_METAL;
+    rt_build_cone(b, bottom, 0.5, top, 0.1);
+    b->material = RT_CITY_LIGHT;
+    rt_build_sphere(b, top, 0.5);
 }
 
 /* Shafts that step back over a base. */
-static RtStatus add_tower(const RtCityLot *lot, RtError *error) {
+static void add_tower(const RtCityLot *lot) {
     uint32_t wall = RT_CITY_WALLS + choose(lot->random, RT_CITY_WALL_COUNT);
     uint32_t shafts = 1 + choose(lot->random, 3);
     double half = 9.5, height = 0;
     for (uint32_t i = 0; i < shafts; i++) {
         uint32_t storeys = 4 + (uint32_t)(between(lot, 0.2, 1) * (4 + 16 * lot->downtown));
-        RT_TRY(add_shaft(lot, half, height, storeys, wall, error));
+        add_shaft(lot, half, height, storeys, wall);
         height += storey * storeys;
         half *= 0.78;
     }
-    if (choose(lot->random, 2)) return add_mast(lot, height, error);
     stand(lot, lot->width / 2, lot->depth / 2, height, 0);
-    return add_tank(lot->forms, error);
+    if (choose(lot->random, 2)) {
+        add_mast(lot->b);
+    } else {
+        add_tank(lot->b);
+    }
 }
 
 /* A cylinder with a ring of glass to each storey under a dome. */
-static RtStatus add_round_tower(const RtCityLot *lot, RtError *error) {
-    RtForms *forms = lot->forms;
+static void add_round_tower(const RtCityLot *lot) {
+    RtSceneBuilder *b = lot->b;
     const double radius = 8.5;
     uint32_t storeys = 5 + (uint32_t)(between(lot, 0.3, 1) * (6 + 20 * lot->downtown));
     RtVec3d foot = {0, 0, 0}, top = {0, 0, storey * storeys + 1};
     stand(lot, lot->width / 2, lot->depth / 2, 0, 0);
-    forms->material = RT_CITY_WALLS + choose(lot->random, RT_CITY_WALL_COUNT);
-    RT_TRY(rt_forms_cone(forms, foot, radius, top, radius, error));
-    RT_TRY(rt_forms_disc(forms, top, radius, 32, error));
-    forms->material = RT_CITY_GLASS;
+    b->material = RT_CITY_WALLS + choose(lot->random, RT_CITY_WALL_COUNT);
+    rt_build_cone(b, foot, radius, top, radius);
+    rt_build_disc(b, top, radius, 32);
+    b->material = RT_CITY_GLASS;
     for (uint32_t i = 0; i < storeys; i++) {
         RtVec3d lo = {0, 0, storey * i + 0.9}, hi = {0, 0, storey * i + 2.8};
-        RT_TRY(rt_forms_cone(forms, lo, radius + 0.05, hi, radius + 0.05, error));
+        rt_build_cone(b, lo, radius + 0.05, hi, radius + 0.05);
     }
-    forms->material = RT_CITY_METAL;
-    return rt_forms_sphere(forms, top, 0.7 * radius, error);
+    b->material = RT_CITY_METAL;
+    rt_build_sphere(b, top, 0.7 * radius);
 }
 
-RtStatus rt_city_building(const RtCityLot *lot, RtError *error) {
+void rt_city_building(const RtCityLot *lot) {
     double die = between(lot, 0, 1);
-    if (die < 0.06 + 0.7 * lot->downtown) return add_tower(lot, error);
-    if (die < 0.1 + 0.8 * lot->downtown) return add_round_tower(lot, error);
-    return add_house(lot, error);
+    if (die < 0.06 + 0.7 * lot->downtown) {
+        add_tower(lot);
+    } else if (die < 0.1 + 0.8 * lot->downtown) {
+        add_round_tower(lot);
+    } else {
+        add_house(lot);
+    }
 }

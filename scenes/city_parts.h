@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a city is made of: each part stands at the origin of forms->place and its front, if it has one, looks
+/* What a city is made of: each part stands at the origin of b->transform and its front, if it has one, looks
  * towards -y. Lengths are in metres; quads are polygons. How many objects a part is depends on the random
  * numbers alone. */
 #ifndef RT_SCENES_CITY_PARTS_H
 #define RT_SCENES_CITY_PARTS_H
 
 #include "core/base/random.h"
-#include "scenes/forms.h"
+#include "scenes/build.h"
 
 enum {
     RT_CITY_ASPHALT,
@@ -29,16 +29,16 @@ enum {
 };
 extern const RtMaterial rt_city_materials[RT_CITY_MATERIALS];
 
-RtStatus rt_city_car(RtForms *forms, RtRandom *random, RtError *error);
-RtStatus rt_city_lamp(RtForms *forms, RtError *error);
-RtStatus rt_city_tree(RtForms *forms, RtRandom *random, RtError *error);
+void rt_city_car(RtSceneBuilder *b, RtRandom *random);
+void rt_city_lamp(RtSceneBuilder *b);
+void rt_city_tree(RtSceneBuilder *b, RtRandom *random);
 
 /* A square `edge` long, with the origin in its lower left corner. */
-RtStatus rt_city_park(RtForms *forms, RtRandom *random, double edge, RtError *error);
+void rt_city_park(RtSceneBuilder *b, RtRandom *random, double edge);
 
 /* Ground to build on: width along the street, depth away from it. */
 typedef struct RtCityLot {
-    RtForms *forms;
+    RtSceneBuilder *b;
     RtRandom *random;
     RtVec3d corner; /* left in front, in the scene */
     int quarters;   /* turns, counter-clockwise, that bring its front from -y to where it looks */
@@ -47,6 +47,6 @@ typedef struct RtCityLot {
 } RtCityLot;
 
 /* A house that fills its lot up to the walls of its neighbours, or a tower. */
-RtStatus rt_city_building(const RtCityLot *lot, RtError *error);
+void rt_city_building(const RtCityLot *lot);
 
 #endif

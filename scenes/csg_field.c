@@ -6,7 +6,6 @@
  * root, so that no single operation empties it, and any operation below. */
 #include "core/base/random.h"
 #include "scenes/builtin.h"
-#include "scenes/studio.h"
 
 #define PARAMS(X)                                                                                            \
     X(N, "n", RT_INT("1000", 1, 1e6, "1|27"), "trees", "the size that experiments use")                      \
@@ -28,14 +27,10 @@ typedef struct Field {
 } Field;
 
 static double between(Field *f, double lo, double hi) {
-    return lo + (hi - lo) * (double)rt_random_unit(&f->random);
+    return rt_random_betweend(&f->random, lo, hi);
 }
 
 /* ---- solids ---- */
-
-static RtVec3 narrow_offset(RtVec3d center, RtVec3d direction, double length) {
-    return rt_narrow(rt_add_scaledd(center, direction, length));
-}
 
 static RtStatus add_turned_box(Field *f, RtVec3d center, double size, uint32_t *index) {
     RtVec3 half;
@@ -54,7 +49,8 @@ static RtStatus add_solid(Field *f, uint32_t *index) {
     RtVec3d center = rt_add_scaledd(f->center, rt_random_direction(&f->random), away);
     RtVec3d axis = rt_random_direction(&f->random);
     double size = f->radius * between(f, 0.12, 0.3);
-    RtVec3 base = narrow_offset(center, axis, -size), apex = narrow_offset(center, axis, size);
+    RtVec3 base = rt_narrow(rt_add_scaledd(center, axis, -size));
+    RtVec3 apex = rt_narrow(rt_add_scaledd(center, axis, size));
     RtSolidSet *set = &f->builder.set;
     switch (rt_random_below(&f->random, 5)) {
     case 0: {
@@ -104,21 +100,20 @@ static uint64_t trees_along_edge(uint64_t n) {
     return edge;
 }
 
-static RtStatus add_object(RtScene *scene, uint64_t i, const RtValue *values, RtError *error) {
+static void add_object(RtSceneBuilder *b, uint64_t i, const RtValue *values) {
     uint64_t edge = trees_along_edge((uint64_t)values[N].i);
     double spacing = 2 / (double)edge;
-    Field f = {.random = rt_random((uint64_t)values[SEED].i, i), .radius = 0.55 * spacing, .error = error};
+    Field f = {.random = rt_random((uint64_t)values[SEED].i, i), .radius = 0.55 * spacing, .error = b->error};
     uint64_t place[3] = {i % edge, i / edge % edge, i / edge / edge};
     for (int a = 0; a < 3; a++) f.center.at[a] = ((double)place[a] + between(&f, 0.4, 0.6)) * spacing - 1;
     uint32_t least = (uint32_t)values[LEAST].i, most = (uint32_t)values[MOST].i;
     if (most < least) most = least;
     RtCsgTerm root;
     RtStatus status = add_tree(&f, least + rt_random_below(&f.random, most - least + 1), 0, &root);
-    if (status == RT_OK) {
-        status = rt_scene_add_csg(scene, &f.builder, root, values[EXTENTS].flag, error);
-    }
+    if (status == RT_OK)
+        status = rt_scene_add_csg(b->scene, &f.builder, root, values[EXTENTS].flag, b->error);
+    rt_build_check(b, status);
     rt_csg_builder_clear(&f.builder);
-    return status;
 }
 
 static uint64_t object_count(const RtValue *values) {
@@ -129,12 +124,9 @@ static uint64_t object_bytes(const RtValue *values) {
     return RT_BUILTIN_OBJECT_BYTES + 1024 * (uint64_t)values[MOST].i; /* a solid and its node in the tree */
 }
 
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    static const RtStudioMaterial materials[RT_STUDIO_MATERIALS] = {RT_STUDIO_CLAY, RT_STUDIO_SLATE,
-                                                                    RT_STUDIO_MOSS, RT_STUDIO_STEEL};
-    RT_TRY(rt_studio(scene, materials, error));
-    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) RT_TRY(add_object(scene, i, values, error));
-    return RT_OK;
+static void generate(RtSceneBuilder *b, const RtValue *values) {
+    rt_build_studio(b, false);
+    for (uint64_t i = 0; i < (uint64_t)values[N].i && b->status == RT_OK; i++) add_object(b, i, values);
 }
 
 const RtBuiltin rt_builtin_csg_field = {

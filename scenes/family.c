@@ -19,8 +19,7 @@ typedef enum Make {
     AXIS_ALIGNED,
     TREES,
     MESH,
-    NEEDLES,
-    MAKE_COUNT
+    NEEDLES
 } Make;
 
 /* How the whole is scaled and moved: scale * p + (offset, offset, offset). Or, where the seed draws it, by
@@ -34,7 +33,7 @@ typedef struct Recipe {
     const char *name;
     uint32_t count;
     Make make;
-    RtPlacement *place;
+    RtPlace *place;
     double scale, offset;
     Scaling scaling;
     Around around;
@@ -42,219 +41,193 @@ typedef struct Recipe {
 
 /* ---- objects ---- */
 
-typedef struct Builder {
+typedef struct Family {
     const Recipe *recipe;
-    RtScene *scene;
-    uint32_t material;
+    RtSceneBuilder *b; /* its transform is the recipe's scale and offset */
     RtRandom random;
-    double scale, offset;
-} Builder;
+} Family;
 
-static RtVec3 placed(const Builder *b, RtVec3d p) {
-    double o = b->offset;
-    return rt_narrow(rt_add_scaledd(rt_vec3d(o, o, o), p, b->scale));
+static void add_triangle_of(Family *f, const RtVec3d v[3]) {
+    rt_build_triangle(f->b, v[0], v[1], v[2]);
 }
 
-static RtStatus add_sphere(Builder *b, RtPlace at, RtError *error) {
-    float radius = (float)(at.size * b->scale);
-    return rt_scene_add_sphere(b->scene, b->material, placed(b, at.center), radius, error);
+static void add_triangle(Family *f, RtPlacement at) {
+    RtVec3d v[3];
+    for (int i = 0; i < 3; i++) v[i] = rt_add_scaledd(at.center, rt_in_cube(&f->random), at.size);
+    add_triangle_of(f, v);
 }
 
-static RtStatus add_triangle(Builder *b, RtPlace at, RtError *error) {
-    RtVec3 v[3];
-    for (int i = 0; i < 3; i++) v[i] = placed(b, rt_add_scaledd(at.center, rt_in_cube(&b->random), at.size));
-    return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
-}
-
-/* Slivers, needles and triangles without area, among whole ones. */
-static RtStatus add_sliver(Builder *b, RtPlace at, uint32_t i, RtError *error) {
+/* Slivers, needles and degenerate triangles, among ordinary ones. */
+static void add_sliver(Family *f, RtPlacement at, uint32_t i) {
     static const double thin[] = {1e-3, 1e-5, 1e-7, 1e-9};
     RtVec3d p[3];
-    for (int k = 0; k < 3; k++) p[k] = rt_add_scaledd(at.center, rt_in_cube(&b->random), at.size);
-    RtVec3d along = rt_subd(p[1], p[0]), aside = rt_scaled(rt_in_cube(&b->random), at.size * thin[i / 6 % 4]);
+    for (int k = 0; k < 3; k++) p[k] = rt_add_scaledd(at.center, rt_in_cube(&f->random), at.size);
+    RtVec3d along = rt_subd(p[1], p[0]), aside = rt_scaled(rt_in_cube(&f->random), at.size * thin[i / 6 % 4]);
     switch (i % 6) {
-    case 0: p[2] = rt_addd(rt_add_scaledd(p[0], along, rt_random_betweend(&b->random, 0, 1)), aside); break;
+    case 0: p[2] = rt_addd(rt_add_scaledd(p[0], along, rt_random_betweend(&f->random, 0, 1)), aside); break;
     case 1: p[2] = rt_addd(p[1], aside); break;
-    case 2: p[2] = rt_add_scaledd(p[0], along, 0.5); break; /* in a line, or nearly so */
+    case 2: p[2] = rt_add_scaledd(p[0], along, 0.5); break; /* collinear, or nearly so */
     case 3: p[2] = p[1]; break;
     case 4: p[1] = p[2] = p[0]; break;
     default: break;
     }
-    const RtVec3 v[3] = {placed(b, p[0]), placed(b, p[1]), placed(b, p[2])};
-    return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
+    add_triangle_of(f, p);
 }
 
 /* Triangles around one edge, like the leaves of a book, and around one vertex. */
-static RtStatus add_shared(Builder *b, uint32_t i, RtError *error) {
-    RtVec3d p[3] = {{0.1, -0.7, 0.3}, {-0.2, 0.6, 0.4}, rt_in_cube(&b->random)};
-    if (i % 2) p[1] = rt_in_cube(&b->random);
-    const RtVec3 v[3] = {placed(b, p[i % 3]), placed(b, p[(i + 1) % 3]), placed(b, p[(i + 2) % 3])};
-    return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
+static void add_shared(Family *f, uint32_t i) {
+    RtVec3d p[3] = {{0.1, -0.7, 0.3}, {-0.2, 0.6, 0.4}, rt_in_cube(&f->random)};
+    if (i % 2) p[1] = rt_in_cube(&f->random);
+    rt_build_triangle(f->b, p[i % 3], p[(i + 1) % 3], p[(i + 2) % 3]);
 }
 
-/* An L in the plane of u and v: concave, six vertices. */
-static RtStatus add_ell(Builder *b, RtPlace at, RtVec3d u, RtVec3d v, RtError *error) {
+/* A concave L of six vertices in a coordinate plane, so that offsets and scales do not warp it. */
+static void add_polygon(Family *f, RtPlacement at) {
     static const double outline[6][2] = {{-1, -1}, {1, -1}, {1, 0}, {0, 0}, {0, 1}, {-1, 1}};
-    RtVec3 vertices[6];
+    uint32_t plane = rt_random_below(&f->random, 3);
+    RtVec3d vertices[6];
     for (int i = 0; i < 6; i++) {
-        RtVec3d p = rt_add_scaledd(at.center, u, at.size * outline[i][0]);
-        vertices[i] = placed(b, rt_add_scaledd(p, v, at.size * outline[i][1]));
+        vertices[i] = at.center;
+        vertices[i].at[plane == 1] += at.size * outline[i][0];
+        vertices[i].at[plane == 0 ? 1 : 2] += at.size * outline[i][1];
     }
-    return rt_scene_add_polygon(b->scene, b->material, vertices, 6, error);
+    rt_build_polygon(f->b, vertices, 6);
 }
 
-static RtStatus add_polygon(Builder *b, RtPlace at, RtError *error) {
-    /* In a plane that is exactly representable, so that offsets and scales do not warp it. */
-    static const RtVec3d u[3] = {{1, 0, 0}, {0, 1, 0}, {1, 0, 0}};
-    static const RtVec3d v[3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
-    uint32_t plane = rt_random_below(&b->random, 3);
-    return add_ell(b, at, u[plane], v[plane], error);
+static void add_cone(Family *f, RtPlacement at) {
+    RtVec3d axis = rt_random_direction(&f->random);
+    double base = at.size * rt_random_betweend(&f->random, 0.2, 0.8);
+    double apex = rt_random_below(&f->random, 2) ? base : 0; /* a cylinder or a full cone */
+    rt_build_cone(f->b, at.center, base, rt_add_scaledd(at.center, axis, at.size), apex);
 }
 
-static RtStatus add_cone(Builder *b, RtPlace at, RtError *error) {
-    RtVec3d axis = rt_random_direction(&b->random);
-    double size = at.size * b->scale;
-    float base = (float)(size * rt_random_betweend(&b->random, 0.2, 0.8));
-    float apex = rt_random_below(&b->random, 2) ? base : 0; /* a cylinder or a full cone */
-    return rt_scene_add_cone(b->scene, b->material, placed(b, at.center), base,
-                             placed(b, rt_add_scaledd(at.center, axis, at.size)), apex, error);
-}
-
-/* A rectangle in a coordinate plane: as two triangles or as a polygon. */
-static RtStatus add_axis_aligned(Builder *b, RtPlace at, uint32_t i, RtError *error) {
-    int w = (int)(rt_random_below(&b->random, 3)), u = (w + 1) % 3, v = (w + 2) % 3;
-    RtVec3 corner[4];
+/* A rectangle in a coordinate plane, by turns as two triangles and as a polygon. */
+static void add_axis_aligned(Family *f, RtPlacement at, uint32_t i) {
+    int w = (int)(rt_random_below(&f->random, 3)), u = (w + 1) % 3, v = (w + 2) % 3;
+    RtVec3d c[4];
     for (int k = 0; k < 4; k++) {
-        RtVec3d p = at.center;
-        p.at[u] += k == 1 || k == 2 ? at.size : -at.size;
-        p.at[v] += k >= 2 ? at.size : -at.size;
-        corner[k] = placed(b, p);
+        c[k] = at.center;
+        c[k].at[u] += k == 1 || k == 2 ? at.size : -at.size;
+        c[k].at[v] += k >= 2 ? at.size : -at.size;
     }
-    if (i % 2) return rt_scene_add_polygon(b->scene, b->material, corner, 4, error);
-    const RtVec3 halves[2][3] = {{corner[0], corner[1], corner[2]}, {corner[0], corner[2], corner[3]}};
-    RT_TRY(rt_scene_add_triangle(b->scene, b->material, halves[0], NULL, error));
-    return rt_scene_add_triangle(b->scene, b->material, halves[1], NULL, error);
+    if (i % 2) {
+        rt_build_polygon(f->b, c, 4);
+    } else {
+        rt_build_triangle(f->b, c[0], c[1], c[2]);
+        rt_build_triangle(f->b, c[0], c[2], c[3]);
+    }
 }
 
-/* Across the whole world, in turn near each axis: a triangle, or a cylinder. */
-static RtStatus add_needle(Builder *b, RtPlace at, uint32_t i, RtError *error) {
-    RtVec3d from = at.center, to = rt_add_scaledd(at.center, rt_in_cube(&b->random), at.size);
+/* Across the whole scene near each axis in turn: a triangle, or a cylinder. */
+static void add_needle(Family *f, RtPlacement at, uint32_t i) {
+    RtVec3d from = at.center, to = rt_add_scaledd(at.center, rt_in_cube(&f->random), at.size);
     from.at[i % 3] = -1;
     to.at[i % 3] = 1;
-    float radius = (float)(at.size * b->scale / 64);
     if (i / 3 % 2) {
-        return rt_scene_add_cone(b->scene, b->material, placed(b, from), radius, placed(b, to), radius,
-                                 error);
+        rt_build_cone(f->b, from, at.size / 64, to, at.size / 64);
+    } else {
+        rt_build_triangle(f->b, from, to, rt_add_scaledd(to, rt_in_cube(&f->random), at.size / 32));
     }
-    RtVec3d aside = rt_add_scaledd(to, rt_in_cube(&b->random), at.size / 32);
-    const RtVec3 v[3] = {placed(b, from), placed(b, to), placed(b, aside)};
-    return rt_scene_add_triangle(b->scene, b->material, v, NULL, error);
 }
 
-static RtStatus add_round_or_flat(Builder *b, RtPlace at, uint32_t i, RtError *error) {
+static void add_mixed(Family *f, RtPlacement at, uint32_t i) {
     switch (i % 4) {
-    case 0: return add_sphere(b, at, error);
-    case 1: return add_triangle(b, at, error);
-    case 2: return add_polygon(b, at, error);
-    default: return add_cone(b, at, error);
+    case 0: rt_build_sphere(f->b, at.center, at.size); break;
+    case 1: add_triangle(f, at); break;
+    case 2: add_polygon(f, at); break;
+    default: add_cone(f, at);
     }
 }
 
-/* A random CSG tree of up to 24 solids; the first of every eight is a lone one. With and without tests of
- * inner nodes by turns. RT_BAD_INPUT if one of its solids is flat where rounding puts it. */
-static RtStatus try_tree(Builder *b, RtPlace at, uint32_t i, RtError *error) {
-    RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_below(&b->random, 23), i % 2};
-    double o = b->offset, scale = b->scale, size = scale * at.size / 4;
+/* A random CSG tree of up to 24 solids; the first of every eight is a single solid. Every other tree tests
+ * inner nodes. RT_BAD_INPUT if rounding flattens one of its solids. */
+static RtStatus try_tree(Family *f, RtPlacement at, uint32_t i, RtError *error) {
+    RtTreeRecipe recipe = {i % 8 == 0 ? 1 : 2 + rt_random_below(&f->random, 23), i % 2};
+    double o = f->b->transform.m[0][3], scale = f->b->transform.m[0][0], size = scale * at.size / 4;
     RtTransform move = {{{size, 0, 0, o + scale * at.center.x},
                          {0, size, 0, o + scale * at.center.y},
                          {0, 0, size, o + scale * at.center.z}}};
     RtCsgBuilder trees = {0};
     RtCsgTerm root;
-    RtStatus status = rt_random_tree(&trees, &b->random, &recipe, 1, &root, error);
+    RtStatus status = rt_random_tree(&trees, &f->random, &recipe, 1, &root, error);
     if (status == RT_OK) status = rt_csg_move(&trees, root, &move, &root, error);
-    if (status == RT_OK) status = rt_scene_add_csg(b->scene, &trees, root, i / 2 % 2 == 0, error);
+    if (status == RT_OK) status = rt_scene_add_csg(f->b->scene, &trees, root, i / 2 % 2 == 0, error);
     rt_csg_builder_clear(&trees);
     return status;
 }
 
 /* The next tree that is not flat. */
-static RtStatus add_tree(Builder *b, RtPlace at, uint32_t i, RtError *error) {
+static void add_tree(Family *f, RtPlacement at, uint32_t i) {
     RtStatus status = RT_BAD_INPUT;
-    for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++) status = try_tree(b, at, i, error);
-    return status;
+    for (int tries = 0; tries < 100 && status == RT_BAD_INPUT; tries++)
+        status = try_tree(f, at, i, f->b->error);
+    rt_build_check(f->b, status);
 }
 
-/* A closed mesh: an octahedron, each face cut into n x n triangles, its vertices pushed out to the sphere.
+/* A closed mesh: an octahedron, each face cut into n x n triangles, its vertices moved to the unit sphere.
  * Neighbours share their vertices bit for bit. */
-static RtStatus add_mesh(Builder *b, uint32_t n, RtError *error) {
+static void add_mesh(Family *f, uint32_t n) {
     for (uint32_t face = 0; face < 8; face++) {
         RtVec3d sign = {face & 1 ? -1 : 1, face & 2 ? -1 : 1, face & 4 ? -1 : 1};
         for (uint32_t i = 0; i < n; i++) {
             for (uint32_t j = 0; j + i < n; j++) {
                 const uint32_t at[4][2] = {{i, j}, {i + 1, j}, {i, j + 1}, {i + 1, j + 1}};
-                RtVec3 v[4];
+                RtVec3d v[4];
                 for (int k = 0; k < 4; k++) {
                     double x = at[k][0], y = at[k][1], z = (double)n - x - y;
-                    RtVec3d p = rt_normalized(rt_vec3d(x * sign.x, y * sign.y, z * sign.z));
-                    v[k] = placed(b, p);
+                    v[k] = rt_normalized(rt_vec3d(x * sign.x, y * sign.y, z * sign.z));
                 }
-                RT_TRY(rt_scene_add_triangle(b->scene, b->material, v, NULL, error));
-                if (i + j + 1 == n) continue;
-                RT_TRY(rt_scene_add_triangle(b->scene, b->material, v + 1, NULL, error));
+                add_triangle_of(f, v);
+                if (i + j + 1 < n) add_triangle_of(f, v + 1);
             }
         }
     }
-    return RT_OK;
 }
 
-static RtStatus add_object(Builder *b, uint32_t i, RtError *error) {
-    RtPlace at = b->recipe->place(&b->random, i, b->recipe->count);
-    switch (b->recipe->make) {
-    case SPHERES: return add_sphere(b, at, error);
-    case TRIANGLES: return add_triangle(b, at, error);
-    case SLIVERS: return add_sliver(b, at, i, error);
-    case SHARED: return add_shared(b, i, error);
-    case ROUND_AND_FLAT: return add_round_or_flat(b, at, i, error);
-    case AXIS_ALIGNED: return add_axis_aligned(b, at, i, error);
-    case TREES: return add_tree(b, at, i, error);
-    case NEEDLES: return add_needle(b, at, i, error);
-    case MESH:
-    case MAKE_COUNT: break;
+static void add_object(Family *f, uint32_t i) {
+    RtPlacement at = f->recipe->place(&f->random, i, f->recipe->count);
+    switch (f->recipe->make) {
+    case SPHERES: rt_build_sphere(f->b, at.center, at.size); break;
+    case TRIANGLES: add_triangle(f, at); break;
+    case SLIVERS: add_sliver(f, at, i); break;
+    case SHARED: add_shared(f, i); break;
+    case ROUND_AND_FLAT: add_mixed(f, at, i); break;
+    case AXIS_ALIGNED: add_axis_aligned(f, at, i); break;
+    case TREES: add_tree(f, at, i); break;
+    case NEEDLES: add_needle(f, at, i); break;
+    case MESH: break;
     }
-    return RT_OK;
 }
 
-/* ---- what stands around them ---- */
+/* ---- lights and cameras ---- */
 
-/* Lights within objects and on them, at vertices, among them, in a corner of the world and far from it. */
-static RtStatus add_lights(Builder *b, RtError *error) {
+/* Lights within objects and on them, at vertices, among them, in a corner of the scene and far from it. */
+static void add_lights(RtSceneBuilder *b) {
     const RtGeometry *g = &b->scene->geometry;
+    if (b->status != RT_OK) return;
     const RtSphere *sphere = &g->spheres[1];
     const RtVec3 at[] = {
         g->spheres[0].center, {{sphere->center.x + sphere->radius, sphere->center.y, sphere->center.z}},
         g->triangles[0].v[0], g->polygon_vertices[1],
         g->cones[0].base,     {{0, 0, 0}},
         {{1, -1, 1}},         {{-700, 300, 500}}};
-    for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
-        RT_TRY(rt_scene_add_light(b->scene, at[i], (RtVec3){{0.2f, 0.2f, 0.2f}}, error));
-    }
-    return RT_OK;
+    for (size_t i = 0; i < sizeof at / sizeof at[0]; i++)
+        rt_build_light(b, rt_widen(at[i]), rt_vec3(0.2f, 0.2f, 0.2f));
 }
 
-/* The eye at the origin, with objects on all its sides. Of an odd number of columns or rows of samples the
- * middle one looks along a plane of coordinates. */
-static RtStatus add_eye(Builder *b, RtError *error) {
-    b->scene->camera.from = (RtVec3){{0, 0, 0}};
-    b->scene->camera.at = (RtVec3){{0, 1, 0}};
-    b->scene->camera.up = (RtVec3){{0, 0, 1}};
-    return rt_scene_add_light(b->scene, (RtVec3){{0, 0, 0}}, (RtVec3){{1, 1, 1}}, error);
+/* The eye at the origin, with objects on all sides. If the number of sample columns or rows is odd, the
+ * middle one looks along a coordinate plane. */
+static void add_eye(RtSceneBuilder *b) {
+    b->scene->camera.from = rt_vec3(0, 0, 0);
+    b->scene->camera.at = rt_vec3(0, 1, 0);
+    b->scene->camera.up = rt_vec3(0, 0, 1);
+    rt_build_light(b, rt_vec3d(0, 0, 0), rt_vec3(1, 1, 1));
 }
 
 /* ---- the families ---- */
 
 /* X(name, count, make, place, scale, offset, scaling, around): in the order of the streams of their random
- * numbers.
- */
+ * numbers. */
 #define RECIPES(X)                                                                                           \
     X("empty", 0, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                            \
     X("one-sphere", 1, SPHERES, rt_place_uniform, 1, 0, GIVEN, CAMERA)                                       \
@@ -306,28 +279,13 @@ static const Recipe recipes[] = {RECIPES(AS_RECIPE)};
 enum { PARAMS(RT_PARAM_INDEX) };
 static const RtParam params[] = {PARAMS(RT_PARAM_ENTRY)};
 
-static RtStatus fill(Builder *b, RtError *error) {
-    RtMaterial material = rt_default_material();
-    RT_TRY(rt_scene_add_material(b->scene, &material, &b->material, error));
-    if (b->recipe->make == MESH) {
-        RT_TRY(add_mesh(b, b->recipe->count, error));
-    } else {
-        for (uint32_t i = 0; i < b->recipe->count; i++) RT_TRY(add_object(b, i, error));
-    }
-    if (b->recipe->around == LIGHTS) return add_lights(b, error);
-    if (b->recipe->around == EYE) return add_eye(b, error);
-    return RT_OK;
-}
-
-static void choose_scale(Builder *b) {
-    const Recipe *recipe = b->recipe;
-    b->scale = recipe->scale;
-    b->offset = recipe->offset;
-    if (recipe->scaling == GIVEN) return;
-    b->scale = ldexp(1, (int)(rt_random_below(&b->random, 81)) - 40);
-    if (recipe->scaling == DRAWN_SCALE_AND_OFFSET) {
-        b->offset = ldexp(b->scale, (int)(rt_random_below(&b->random, 17)));
-    }
+static void set_transform(Family *f) {
+    const Recipe *recipe = f->recipe;
+    double scale = recipe->scale, o = recipe->offset;
+    if (recipe->scaling != GIVEN) scale = ldexp(1, (int)(rt_random_below(&f->random, 81)) - 40);
+    if (recipe->scaling == DRAWN_SCALE_AND_OFFSET) o = ldexp(scale, (int)(rt_random_below(&f->random, 17)));
+    f->b->transformed = true;
+    f->b->transform = (RtTransform){{{scale, 0, 0, o}, {0, scale, 0, o}, {0, 0, scale, o}}};
 }
 
 static uint64_t object_count(const RtValue *values) {
@@ -343,14 +301,18 @@ static uint64_t object_bytes(const RtValue *values) {
     return UINT64_C(1) << 16;
 }
 
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+static void generate(RtSceneBuilder *b, const RtValue *values) {
     uint32_t kind = values[KIND].choice;
-    Builder builder = {
-        .recipe = &recipes[kind], .scene = scene, .random = rt_random((uint64_t)values[SEED].i, kind)};
-    choose_scale(&builder);
-    scene->camera.width = 40;
-    scene->camera.height = 30;
-    return fill(&builder, error);
+    const Recipe *recipe = &recipes[kind];
+    Family f = {.recipe = recipe, .b = b, .random = rt_random((uint64_t)values[SEED].i, kind)};
+    set_transform(&f);
+    b->scene->camera.width = 40;
+    b->scene->camera.height = 30;
+    rt_build_material(b, rt_default_material());
+    if (recipe->make == MESH) add_mesh(&f, recipe->count);
+    for (uint32_t i = 0; recipe->make != MESH && i < recipe->count; i++) add_object(&f, i);
+    if (recipe->around == LIGHTS) add_lights(b);
+    if (recipe->around == EYE) add_eye(b);
 }
 
 const RtBuiltin rt_builtin_family = {

@@ -6,16 +6,16 @@
 #include "core/base/random.h"
 
 /* Centre and size of object `i` of `count`, in a world of about [-1, 1]^3. */
-typedef struct RtPlace {
+typedef struct RtPlacement {
     RtVec3d center;
     double size;
-} RtPlace;
-typedef RtPlace RtPlacement(RtRandom *random, uint32_t i, uint32_t count);
+} RtPlacement;
+typedef RtPlacement RtPlace(RtRandom *random, uint32_t i, uint32_t count);
 
 /* A point of [-1, 1]^3. */
 RtVec3d rt_in_cube(RtRandom *random);
 
-RtPlacement rt_place_uniform, rt_place_coincident, rt_place_on_a_line, rt_place_in_a_plane,
+RtPlace rt_place_uniform, rt_place_coincident, rt_place_on_a_line, rt_place_in_a_plane,
     rt_place_huge_beside_tiny, rt_place_clustered, rt_place_duplicated, rt_place_on_a_lattice,
     rt_place_touching, rt_place_in_progression, rt_place_concentric, rt_place_stacked,
     rt_place_around_the_origin;

@@ -8,8 +8,8 @@
  * the random numbers of stream i alone. The ground is noise from lattices of random heights (Perlin 1985, in
  * its simplest form); all lengths are in metres. */
 #include "core/base/random.h"
+#include "scenes/build.h"
 #include "scenes/builtin.h"
-#include "scenes/forms.h"
 
 #define PARAMS(X)                                                                                            \
     X(N, "n", RT_INT("1000", 1, 1e6, "1|5"), "trees, of about 1020 triangles each", "a million triangles")   \
@@ -88,19 +88,18 @@ static RtVec3d ground_point(const void *of, uint32_t column, uint32_t row) {
     return rt_vec3d(x, y, height_at(ground->seed, x, y));
 }
 
-static RtStatus add_ground(RtForms *forms, const Ground *ground, RtError *error) {
+static void add_ground(RtSceneBuilder *b, const Ground *ground) {
     uint32_t cells = (ground->edge + 2 * MARGIN) * CELLS;
-    forms->material = SOIL;
-    return rt_forms_sheet(
-        forms,
-        &(RtSheet){.columns = cells, .rows = cells, .smooth = true, .point = ground_point, .of = ground},
-        error);
+    b->material = SOIL;
+    rt_build_grid_mesh(
+        b,
+        &(RtGridMesh){.columns = cells, .rows = cells, .smooth = true, .point = ground_point, .of = ground});
 }
 
 /* ---- trees ---- */
 
 typedef struct Tree {
-    RtForms *forms;
+    RtSceneBuilder *b;
     RtRandom random;
     uint32_t bark, leaves; /* materials; of leaves the first of three */
 } Tree;
@@ -109,25 +108,24 @@ static double between(Tree *tree, double lo, double hi) {
     return rt_random_betweend(&tree->random, lo, hi);
 }
 
-static RtStatus add_leaf(Tree *tree, RtVec3d at, RtError *error) {
+static void add_leaf(Tree *tree, RtVec3d at) {
     RtVec3d along = rt_random_direction(&tree->random);
     RtVec3d across = rt_normalized(rt_crossd(along, rt_random_direction(&tree->random)));
     double length = between(tree, 0.35, 0.65);
     RtVec3d tip = rt_add_scaledd(at, along, length), middle = rt_add_scaledd(at, along, 0.4 * length);
-    tree->forms->material = tree->leaves + rt_random_below(&tree->random, 3);
-    return rt_forms_triangle(tree->forms, at, rt_add_scaledd(middle, across, 0.6 * length), tip, error);
+    tree->b->material = tree->leaves + rt_random_below(&tree->random, 3);
+    rt_build_triangle(tree->b, at, rt_add_scaledd(middle, across, 0.6 * length), tip);
 }
 
 /* A branch from `base`, and what grows on it. */
-static RtStatus add_branch(Tree *tree, RtVec3d base, RtVec3d direction, double length, uint32_t level,
-                           RtError *error) {
+static void add_branch(Tree *tree, RtVec3d base, RtVec3d direction, double length, uint32_t level) {
     static const uint32_t sides[LEVELS + 1] = {6, 4, 3, 3};
     double radius = length * (level == 0 ? 0.045 : 0.03);
     RtVec3d tip = rt_add_scaledd(base, direction, length);
-    tree->forms->material = tree->bark;
-    RT_TRY(rt_forms_tube(tree->forms, base, radius, tip, 0.5 * radius, sides[level], error));
+    tree->b->material = tree->bark;
+    rt_build_prism(tree->b, base, radius, tip, 0.5 * radius, sides[level]);
     for (uint32_t i = 0; level == LEVELS && i < TWIG_LEAVES; i++) {
-        RT_TRY(add_leaf(tree, rt_add_scaledd(base, direction, length * between(tree, 0.2, 1.1)), error));
+        add_leaf(tree, rt_add_scaledd(base, direction, length * between(tree, 0.2, 1.1)));
     }
     for (uint32_t i = 0; level < LEVELS && i < FORKS; i++) {
         double along = level == 0 ? 0.55 + 0.15 * i : 0.4 + 0.2 * i;
@@ -135,98 +133,85 @@ static RtStatus add_branch(Tree *tree, RtVec3d base, RtVec3d direction, double l
         RtVec3d fork =
             rt_add_scaledd(rt_scaled(direction, i + 1 == FORKS ? 1.2 : 0.6), out, between(tree, 0.7, 1));
         fork.z += 0.2;
-        RT_TRY(add_branch(tree, rt_add_scaledd(base, direction, length * along), rt_normalized(fork),
-                          length * between(tree, 0.5, 0.62), level + 1, error));
+        add_branch(tree, rt_add_scaledd(base, direction, length * along), rt_normalized(fork),
+                   length * between(tree, 0.5, 0.62), level + 1);
     }
-    return RT_OK;
 }
 
 /* From the trunk at height `up` (0 to 1) of the tree outwards and down a little. */
-static RtStatus add_bough(Tree *tree, RtVec3d foot, double height, double up, RtError *error) {
+static void add_bough(Tree *tree, RtVec3d foot, double height, double up) {
     RtVec3d turn = rt_random_direction(&tree->random);
     RtVec3d out = rt_normalized(rt_vec3d(turn.x, turn.y, 0)), across = {-out.y, out.x, 0};
     double length = height * (0.04 + 0.28 * (1 - up)) * between(tree, 0.8, 1.1);
     RtVec3d base = {foot.x, foot.y, foot.z + height * up};
     RtVec3d tip = rt_add_scaledd(base, out, length);
     tip.z -= 0.35 * length;
-    tree->forms->material = tree->bark;
-    RT_TRY(rt_forms_tube(tree->forms, base, 0.02 * length, tip, 0, 3, error));
+    tree->b->material = tree->bark;
+    rt_build_prism(tree->b, base, 0.02 * length, tip, 0, 3);
     for (uint32_t i = 0; i < BOUGH_TUFTS; i++) {
         RtVec3d from = rt_add_scaledd(base, rt_subd(tip, base), 0.14 * i);
         double width = (0.36 - 0.035 * i) * length, hang = -0.12 * length;
         RtVec3d end = rt_add_scaledd(base, rt_subd(tip, base), 0.14 * i + 0.2);
         RtVec3d left = rt_add_scaledd(end, across, -width), right = rt_add_scaledd(end, across, width);
         left.z += hang, right.z += hang * between(tree, 0.6, 1.2);
-        tree->forms->material = rt_random_below(&tree->random, 2) ? NEEDLES : DARK_NEEDLES;
-        RT_TRY(rt_forms_triangle(tree->forms, from, right, left, error));
+        tree->b->material = rt_random_below(&tree->random, 2) ? NEEDLES : DARK_NEEDLES;
+        rt_build_triangle(tree->b, from, right, left);
     }
-    return RT_OK;
 }
 
-static RtStatus add_conifer(Tree *tree, RtVec3d foot, double height, RtError *error) {
+static void add_conifer(Tree *tree, RtVec3d foot, double height) {
     RtVec3d top = {foot.x, foot.y, foot.z + height};
-    tree->forms->material = tree->bark;
-    RT_TRY(rt_forms_tube(tree->forms, foot, 0.02 * height, top, 0, 6, error));
+    tree->b->material = tree->bark;
+    rt_build_prism(tree->b, foot, 0.02 * height, top, 0, 6);
     for (uint32_t i = 0; i < WHORLS * BOUGHS; i++) {
-        RT_TRY(add_bough(tree, foot, height, 0.16 + 0.82 * i / (WHORLS * BOUGHS), error));
+        add_bough(tree, foot, height, 0.16 + 0.82 * i / (WHORLS * BOUGHS));
     }
-    return RT_OK;
 }
 
-static RtStatus add_tree(RtForms *forms, const Ground *ground, uint64_t i, RtError *error) {
-    Tree tree = {.forms = forms, .random = rt_random(ground->seed, i), .bark = BARK};
+static void add_tree(RtSceneBuilder *b, const Ground *ground, uint64_t i) {
+    Tree tree = {.b = b, .random = rt_random(ground->seed, i), .bark = BARK};
     uint32_t die = rt_random_below(&tree.random, 12);
     bool conifer = die < 4;
     tree.leaves = LEAVES + (die < 9 ? 0 : die < 11 ? 3 : 6);
     if (die == 9 || die == 10) tree.bark = BIRCH_BARK;
-    if (!forms->scene) {
+    if (b->counting) {
         /* What follows is as much for every tree of a kind. */
         const uint64_t broadleaf = 12 + 4 * 8 + 16 * 6 + 64 * (6 + TWIG_LEAVES);
-        forms->count += conifer ? 6 + WHORLS * BOUGHS * (3 + BOUGH_TUFTS) : broadleaf;
-        return RT_OK;
+        b->count += conifer ? 6 + WHORLS * BOUGHS * (3 + BOUGH_TUFTS) : broadleaf;
+        return;
     }
     uint64_t column = i % ground->edge, row = i / ground->edge;
     double x = square * ((double)column + between(&tree, 0.1, 0.9));
     double y = square * ((double)row + between(&tree, 0.1, 0.9));
     RtVec3d foot = {x, y, height_at(ground->seed, x, y) - 0.3};
-    if (conifer) return add_conifer(&tree, foot, between(&tree, 6, 12), error);
+    if (conifer) {
+        add_conifer(&tree, foot, between(&tree, 6, 12));
+        return;
+    }
     double lean_x = between(&tree, -0.12, 0.12), lean_y = between(&tree, -0.12, 0.12);
     RtVec3d lean = {lean_x, lean_y, 1};
-    return add_branch(&tree, foot, rt_normalized(lean), between(&tree, 3.2, 5), 0, error);
+    add_branch(&tree, foot, rt_normalized(lean), between(&tree, 3.2, 5), 0);
 }
 
 /* ---- the scene ---- */
 
-static Ground ground_of(const RtValue *values) {
+static void generate(RtSceneBuilder *b, const RtValue *values) {
     Ground ground = {.seed = (uint64_t)values[SEED].i, .edge = 1};
     while ((uint64_t)ground.edge * ground.edge < (uint64_t)values[N].i) ground.edge++;
-    return ground;
-}
-
-static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
-    Ground ground = ground_of(values);
-    RT_TRY(rt_forms_materials(forms, materials, MATERIALS, error));
-    RT_TRY(add_ground(forms, &ground, error));
-    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) RT_TRY(add_tree(forms, &ground, i, error));
-    return RT_OK;
-}
-
-static uint64_t object_count(const RtValue *values) {
-    return rt_forms_count(make, values);
-}
-
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    Ground ground = ground_of(values);
     double width = square * ground.edge, eye_y = -14;
     double eye_z = height_at(ground.seed, width / 2, eye_y) + 9;
+    RtScene *scene = b->scene;
     scene->camera.from = rt_narrow(rt_vec3d(width / 2, eye_y, eye_z));
     scene->camera.at = rt_narrow(rt_vec3d(width / 2, eye_y + 20, eye_z - 3));
     scene->background = rt_vec3(0.55f, 0.7f, 0.9f);
-    RtVec3 sun = rt_narrow(rt_vec3d(-2 * width - 40, -3 * width - 40, 4 * width + 60));
-    RtVec3 sky = rt_narrow(rt_vec3d(3 * width + 40, -width, 3 * width + 60));
-    RT_TRY(rt_scene_add_light(scene, sun, rt_vec3(0.85f, 0.8f, 0.7f), error));
-    RT_TRY(rt_scene_add_light(scene, sky, rt_vec3(0.22f, 0.25f, 0.32f), error));
-    return rt_forms_make(scene, make, values, error);
+    RtVec3d sun = {-2 * width - 40, -3 * width - 40, 4 * width + 60};
+    RtVec3d sky = {3 * width + 40, -width, 3 * width + 60};
+    rt_build_light(b, sun, rt_vec3(0.85f, 0.8f, 0.7f));
+    rt_build_light(b, sky, rt_vec3(0.22f, 0.25f, 0.32f));
+    b->transformed = true;
+    rt_build_materials(b, materials, MATERIALS);
+    add_ground(b, &ground);
+    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) add_tree(b, &ground, i);
 }
 
 const RtBuiltin rt_builtin_forest = {
@@ -234,6 +219,5 @@ const RtBuiltin rt_builtin_forest = {
     .summary = "n trees on hilly ground: a million small triangles that lie any way",
     .source = "made to measure how builders scale",
     RT_PARAMS_OF(params),
-    .object_count = object_count,
     .generate = generate,
 };

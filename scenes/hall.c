@@ -65,16 +65,14 @@ static RtVec3d room_point(const void *of, uint32_t column, uint32_t row) {
     return rt_vec3d(p.x, y, p.z);
 }
 
-static RtStatus add_room(RtForms *forms, RtError *error) {
-    forms->material = PLASTER;
-    return rt_forms_sheet(forms,
-                          &(RtSheet){.columns = SECTION_POINTS,
-                                     .rows = ROOM_ROWS,
-                                     .wrapped = true,
-                                     .first_pole = true,
-                                     .last_pole = true,
-                                     .point = room_point},
-                          error);
+static void add_room(RtSceneBuilder *b) {
+    b->material = PLASTER;
+    rt_build_grid_mesh(b, &(RtGridMesh){.columns = SECTION_POINTS,
+                                        .rows = ROOM_ROWS,
+                                        .wrapped = true,
+                                        .first_pole = true,
+                                        .last_pole = true,
+                                        .point = room_point});
 }
 
 /* ---- floor and vault ---- */
@@ -101,7 +99,7 @@ static RtVec3d tile_point(const void *of, uint32_t column, uint32_t row) {
     return panel_point(of, column, row);
 }
 
-static RtStatus add_floor(RtForms *forms, RtError *error) {
+static void add_floor(RtSceneBuilder *b) {
     static const double levels[3][2] = {{0.99, 0}, {0.96, 0.01}, {0, 0.01}};
     const double tile = 1;
     for (int i = 0; i < 2 * (int)(aisle_x / tile); i++) {
@@ -110,18 +108,15 @@ static RtStatus add_floor(RtForms *forms, RtError *error) {
                                  .hi = {(i + 1) * tile - aisle_x, (j + 1) * tile + front_y},
                                  .steps = 1,
                                  .levels = levels};
-            forms->material = (i + j) % 2 ? DARK_MARBLE : LIGHT_MARBLE;
-            RT_TRY(rt_forms_sheet(forms,
-                                  &(RtSheet){.columns = 4,
-                                             .rows = 2,
-                                             .wrapped = true,
-                                             .last_pole = true,
-                                             .point = tile_point,
-                                             .of = &panel},
-                                  error));
+            b->material = (i + j) % 2 ? DARK_MARBLE : LIGHT_MARBLE;
+            rt_build_grid_mesh(b, &(RtGridMesh){.columns = 4,
+                                                .rows = 2,
+                                                .wrapped = true,
+                                                .last_pole = true,
+                                                .point = tile_point,
+                                                .of = &panel});
         }
     }
-    return RT_OK;
 }
 
 /* The rectangle bent round the vault: x is an angle in degrees from the right, z a depth below the vault. */
@@ -132,19 +127,20 @@ static RtVec3d coffer_point(const void *of, uint32_t column, uint32_t row) {
     return rt_vec3d(radius * turn.cosine, p.y, spring + radius * turn.sine);
 }
 
-static RtStatus add_boss(RtForms *forms, double degrees, double y, RtError *error) {
+static void add_boss(RtSceneBuilder *b, double degrees, double y) {
     static const double levels[4][2] = {{1, 0.05}, {0.8, 0.15}, {0.4, 0.2}, {0, 0.22}};
     const Panel panel = {
         .lo = {degrees - 1.8, y - 0.17}, .hi = {degrees + 1.8, y + 0.17}, .steps = 2, .levels = levels};
-    forms->material = GOLD;
-    return rt_forms_sheet(
-        forms,
-        &(RtSheet){
-            .columns = 8, .rows = 3, .wrapped = true, .last_pole = true, .point = coffer_point, .of = &panel},
-        error);
+    b->material = GOLD;
+    rt_build_grid_mesh(b, &(RtGridMesh){.columns = 8,
+                                        .rows = 3,
+                                        .wrapped = true,
+                                        .last_pole = true,
+                                        .point = coffer_point,
+                                        .of = &panel});
 }
 
-static RtStatus add_coffers(RtForms *forms, uint32_t size, RtError *error) {
+static void add_coffers(RtSceneBuilder *b, uint32_t size) {
     static const double levels[7][2] = {{1, 0.3},   {0.84, 0.3}, {0.78, 0.2}, {0.66, 0.2},
                                         {0.6, 0.1}, {0.5, 0.05}, {0, 0.05}};
     const double width = 180.0 / COFFERS_AROUND, length = (back_y - front_y) / COFFERS_ALONG;
@@ -154,19 +150,16 @@ static RtStatus add_coffers(RtForms *forms, uint32_t size, RtError *error) {
                                  .hi = {(i + 1) * width, front_y + (j + 1) * length},
                                  .steps = (size + 3) / 4,
                                  .levels = levels};
-            forms->material = COFFERS;
-            RT_TRY(rt_forms_sheet(forms,
-                                  &(RtSheet){.columns = 4 * panel.steps,
-                                             .rows = 6,
-                                             .wrapped = true,
-                                             .last_pole = true,
-                                             .point = coffer_point,
-                                             .of = &panel},
-                                  error));
-            RT_TRY(add_boss(forms, (i + 0.5) * width, front_y + (j + 0.5) * length, error));
+            b->material = COFFERS;
+            rt_build_grid_mesh(b, &(RtGridMesh){.columns = 4 * panel.steps,
+                                                .rows = 6,
+                                                .wrapped = true,
+                                                .last_pole = true,
+                                                .point = coffer_point,
+                                                .of = &panel});
+            add_boss(b, (i + 0.5) * width, front_y + (j + 0.5) * length);
         }
     }
-    return RT_OK;
 }
 
 /* ---- arcades ---- */
@@ -197,137 +190,115 @@ static RtVec3d wall_point(const void *of, uint32_t column, uint32_t row) {
     return rt_vec3d(0.35, length * turn.x, arch_z + length * turn.y);
 }
 
-static RtStatus add_arch(RtForms *forms, uint32_t size, RtVec3d at, RtError *error) {
+static void add_arch(RtSceneBuilder *b, uint32_t size, RtVec3d at) {
     uint32_t steps = 3 * size;
-    forms->material = STONE;
-    rt_forms_at(forms, at, 0);
-    RT_TRY(rt_forms_sheet(
-        forms,
-        &(RtSheet){
-            .columns = steps, .rows = MOULDING_ROWS, .smooth = true, .point = arch_point, .of = &steps},
-        error));
-    forms->material = PLASTER;
+    b->material = STONE;
+    rt_build_origin(b, at, 0);
+    rt_build_grid_mesh(
+        b, &(RtGridMesh){
+               .columns = steps, .rows = MOULDING_ROWS, .smooth = true, .point = arch_point, .of = &steps});
+    b->material = PLASTER;
     for (int side = 0; side < 2; side++) {
-        rt_forms_at(forms, at, 2 * side);
-        RT_TRY(rt_forms_sheet(
-            forms, &(RtSheet){.columns = steps, .rows = 1, .point = wall_point, .of = &steps}, error));
+        rt_build_origin(b, at, 2 * side);
+        rt_build_grid_mesh(b, &(RtGridMesh){.columns = steps, .rows = 1, .point = wall_point, .of = &steps});
     }
-    return RT_OK;
 }
 
-static RtStatus add_rail(RtForms *forms, double side, uint32_t size, RtError *error) {
+static void add_rail(RtSceneBuilder *b, double side, uint32_t size) {
     double x = side * 5, end = back_y - front_y;
-    rt_forms_at(forms, rt_vec3d(x, front_y, aisle_top), 0);
-    forms->material = STONE;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(-0.45, 0, -0.3), rt_vec3d(0.45, end, 0), RT_SIDES_ALL, error));
-    RT_TRY(rt_forms_box(forms, rt_vec3d(-0.35, 0, 0.8), rt_vec3d(-0.1, end, 0.92), RT_SIDES_ALL, error));
+    rt_build_origin(b, rt_vec3d(x, front_y, aisle_top), 0);
+    b->material = STONE;
+    rt_build_box(b, rt_vec3d(-0.45, 0, -0.3), rt_vec3d(0.45, end, 0), RT_SIDES_ALL);
+    rt_build_box(b, rt_vec3d(-0.35, 0, 0.8), rt_vec3d(-0.1, end, 0.92), RT_SIDES_ALL);
     for (int i = 0; i < 2 * (int)end; i++) {
-        rt_forms_at(forms, rt_vec3d(x - side * 0.22, front_y + 0.5 * i + 0.25, aisle_top), 0);
-        RT_TRY(rt_ornament_baluster(forms, size, error));
+        rt_build_origin(b, rt_vec3d(x - side * 0.22, front_y + 0.5 * i + 0.25, aisle_top), 0);
+        rt_ornament_baluster(b, size);
     }
-    return RT_OK;
 }
 
 /* ---- what stands and hangs in it ---- */
 
 /* A round window in the wall behind `at`, which faces +x turned by `quarters`; its frame is a ring. */
-static RtStatus add_window(RtForms *forms, RtVec3d at, int quarters, double radius, uint32_t size,
-                           RtError *error) {
-    rt_forms_at(forms, at, quarters);
-    forms->material = STONE;
+static void add_window(RtSceneBuilder *b, RtVec3d at, int quarters, double radius, uint32_t size) {
+    rt_build_origin(b, at, quarters);
+    b->material = STONE;
     const RtTorus frame = {
         .axis = 0, .radius = radius, .tube = radius / 6, .around = 4 * size, .sides = size + 2};
-    RT_TRY(rt_forms_torus(forms, &frame, error));
+    rt_build_torus(b, &frame);
     const RtVec3d middle = {0.03, 0, 0};
     RtVec3d before = {0.03, radius, 0};
     for (uint32_t i = 1; i <= 4 * size; i++) {
         RtVec3d turn = rt_on_circle(i, 4 * size), after = {0.03, radius * turn.x, radius * turn.y};
-        forms->material = SKY;
-        RT_TRY(rt_forms_triangle(forms, middle, before, after, error));
-        forms->material = STONE;
-        if (i % 4 == 0) RT_TRY(rt_forms_tube(forms, middle, radius / 20, after, radius / 20, 4, error));
+        b->material = SKY;
+        rt_build_triangle(b, middle, before, after);
+        b->material = STONE;
+        if (i % 4 == 0) rt_build_prism(b, middle, radius / 20, after, radius / 20, 4);
         before = after;
     }
-    return RT_OK;
 }
 
-static RtStatus add_vase(RtForms *forms, RtVec3d at, uint32_t i, uint32_t size, RtError *error) {
+static void add_vase(RtSceneBuilder *b, RtVec3d at, uint32_t i, uint32_t size) {
     static const uint32_t glazes[RT_VASE_KINDS] = {TERRACOTTA, GLAZE, CHINA};
-    rt_forms_at(forms, at, 0);
-    forms->material = DARK_MARBLE;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(-0.4, -0.4, 0), rt_vec3d(0.4, 0.4, 1), RT_SIDES_STANDING, error));
+    rt_build_origin(b, at, 0);
+    b->material = DARK_MARBLE;
+    rt_build_box(b, rt_vec3d(-0.4, -0.4, 0), rt_vec3d(0.4, 0.4, 1), RT_SIDES_STANDING);
     at.z += 1;
-    rt_forms_at(forms, at, 0);
-    forms->material = glazes[i % RT_VASE_KINDS];
-    return rt_ornament_vase(forms, size, i, error);
+    rt_build_origin(b, at, 0);
+    b->material = glazes[i % RT_VASE_KINDS];
+    rt_ornament_vase(b, size, i);
 }
 
-static RtStatus add_side(RtForms *forms, double side, uint32_t size, RtError *error) {
+static void add_side(RtSceneBuilder *b, double side, uint32_t size) {
     for (uint32_t i = 0; i <= BAYS; i++) {
-        rt_forms_at(forms, rt_vec3d(side * column_x, bay * i, 0), 0);
-        forms->material = STONE;
-        RT_TRY(rt_ornament_column(forms, size, error));
+        rt_build_origin(b, rt_vec3d(side * column_x, bay * i, 0), 0);
+        b->material = STONE;
+        rt_ornament_column(b, size);
         RtVec3d half = {0.25, 0.4, 0};
-        rt_forms_at(forms, rt_vec3d(side * (aisle_x - half.x), bay * i, 0), 0);
-        RT_TRY(rt_forms_box(forms, rt_scaled(half, -1), rt_vec3d(half.x, half.y, aisle_top), RT_SIDES_ALL,
-                            error));
+        rt_build_origin(b, rt_vec3d(side * (aisle_x - half.x), bay * i, 0), 0);
+        rt_build_box(b, rt_scaled(half, -1), rt_vec3d(half.x, half.y, aisle_top), RT_SIDES_ALL);
     }
     for (uint32_t i = 0; i < BAYS; i++) {
         double y = bay * (i + 0.5);
-        RT_TRY(add_arch(forms, size, rt_vec3d(side * column_x, y, 0), error));
-        RT_TRY(add_window(forms, rt_vec3d(side * nave_x, y, 9), side > 0 ? 2 : 0, 0.7, size, error));
-        if (i % 4 != 3) RT_TRY(add_vase(forms, rt_vec3d(side * 7.8, y, 0), i, size, error));
+        add_arch(b, size, rt_vec3d(side * column_x, y, 0));
+        add_window(b, rt_vec3d(side * nave_x, y, 9), side > 0 ? 2 : 0, 0.7, size);
+        if (i % 4 != 3) add_vase(b, rt_vec3d(side * 7.8, y, 0), i, size);
     }
-    return add_rail(forms, side, size, error);
-}
-
-static RtVec3d chandelier_place(uint32_t i) {
-    return rt_vec3d(0, (i + 0.5) * bay * BAYS / CHANDELIERS, chandelier_z);
+    add_rail(b, side, size);
 }
 
 /* A teapot, as large as it deserves. */
-static RtStatus add_monument(RtForms *forms, uint32_t size, RtError *error) {
-    rt_forms_at(forms, rt_vec3d(0, 15, 0), 0);
-    forms->material = DARK_MARBLE;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(-1.3, -1.3, 0), rt_vec3d(1.3, 1.3, 0.4), RT_SIDES_STANDING, error));
-    forms->material = STONE;
-    RT_TRY(rt_forms_box(forms, rt_vec3d(-0.9, -0.9, 0.4), rt_vec3d(0.9, 0.9, 1.5), RT_SIDES_STANDING, error));
-    forms->material = GOLD;
-    forms->place = (RtTransform){{{0.4, 0, 0, 0}, {0, 0.4, 0, 15}, {0, 0, 0.4, 1.5}}};
-    return rt_teapot(forms, size, error);
+static void add_monument(RtSceneBuilder *b, uint32_t size) {
+    rt_build_origin(b, rt_vec3d(0, 15, 0), 0);
+    b->material = DARK_MARBLE;
+    rt_build_box(b, rt_vec3d(-1.3, -1.3, 0), rt_vec3d(1.3, 1.3, 0.4), RT_SIDES_STANDING);
+    b->material = STONE;
+    rt_build_box(b, rt_vec3d(-0.9, -0.9, 0.4), rt_vec3d(0.9, 0.9, 1.5), RT_SIDES_STANDING);
+    b->material = GOLD;
+    b->transform = (RtTransform){{{0.4, 0, 0, 0}, {0, 0.4, 0, 15}, {0, 0, 0.4, 1.5}}};
+    rt_teapot(b, size);
 }
 
-static RtStatus make(RtForms *forms, const RtValue *values, RtError *error) {
+static void generate(RtSceneBuilder *b, const RtValue *values) {
     uint32_t size = (uint32_t)values[0].i;
-    RT_TRY(rt_forms_materials(forms, materials, MATERIALS, error));
-    RT_TRY(add_room(forms, error));
-    RT_TRY(add_floor(forms, error));
-    RT_TRY(add_coffers(forms, size, error));
-    RT_TRY(add_side(forms, -1, size, error));
-    RT_TRY(add_side(forms, 1, size, error));
-    RT_TRY(add_window(forms, rt_vec3d(0, back_y, 9.6), 3, 3.4, 3 * size, error));
+    b->scene->camera.from = rt_vec3(2.3f, -0.6f, 2.4f);
+    b->scene->camera.at = rt_vec3(-0.9f, 15, 4.6f);
+    b->scene->camera.fov = 65;
+    b->transformed = true;
+    rt_build_materials(b, materials, MATERIALS);
+    add_room(b);
+    add_floor(b);
+    add_coffers(b, size);
+    add_side(b, -1, size);
+    add_side(b, 1, size);
+    add_window(b, rt_vec3d(0, back_y, 9.6), 3, 3.4, 3 * size);
     for (uint32_t i = 0; i < CHANDELIERS; i++) {
-        forms->material = GOLD;
-        rt_forms_at(forms, chandelier_place(i), 0);
-        RT_TRY(rt_ornament_chandelier(forms, size, CHAIN_LINKS, error));
+        RtVec3d at = rt_vec3d(0, (i + 0.5) * bay * BAYS / CHANDELIERS, chandelier_z);
+        rt_build_light(b, rt_addd(at, rt_vec3d(0, 0, -0.8)), rt_vec3(0.29f, 0.26f, 0.22f));
+        b->material = GOLD;
+        rt_build_origin(b, at, 0);
+        rt_ornament_chandelier(b, size, CHAIN_LINKS);
     }
-    RT_TRY(add_monument(forms, size, error));
-    return RT_OK;
-}
-
-static uint64_t object_count(const RtValue *values) {
-    return rt_forms_count(make, values);
-}
-
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    scene->camera.from = rt_vec3(2.3f, -0.6f, 2.4f);
-    scene->camera.at = rt_vec3(-0.9f, 15, 4.6f);
-    scene->camera.fov = 65;
-    for (uint32_t i = 0; i < CHANDELIERS; i++) {
-        RtVec3 at = rt_narrow(rt_addd(chandelier_place(i), rt_vec3d(0, 0, -0.8)));
-        RT_TRY(rt_scene_add_light(scene, at, rt_vec3(0.29f, 0.26f, 0.22f), error));
-    }
-    return rt_forms_make(scene, make, values, error);
+    add_monument(b, size);
 }
 
 const RtBuiltin rt_builtin_hall = {
@@ -335,6 +306,5 @@ const RtBuiltin rt_builtin_hall = {
     .summary = "a closed interior: columns, vault, vases; long thin triangles and small ones close together",
     .source = "made like the interiors that papers on hierarchies use",
     RT_PARAMS_OF(params),
-    .object_count = object_count,
     .generate = generate,
 };

@@ -7,7 +7,6 @@
  * its arms are normal to. Inferred from the numbers of the database: the axes are turned by -20 degrees about
  * Y and by -30 about X; all lengths; and the order, which is that of the files: depth first, cylinders before
  * spheres. */
-#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 
@@ -18,12 +17,7 @@ static const RtParam params[] = {
 
 #define ARM        0.75
 #define ROD_RADIUS 0.075
-#define TIP_RADIUS 0.15
-
-typedef struct Jacks {
-    RtScene *scene;
-    RtVec3d axes[3]; /* unit, the directions of arms */
-} Jacks;
+#define END_RADIUS 0.15
 
 static uint64_t object_count(const RtValue *values) {
     uint64_t jacks = 0;
@@ -31,56 +25,44 @@ static uint64_t object_count(const RtValue *values) {
     return 9 * jacks;
 }
 
-static RtStatus add_arms(const Jacks *jacks, RtVec3d center, double scale, RtError *error) {
-    RtVec3 tips[2][3]; /* along the axes, and against them */
-    for (int side = 0; side < 2; side++) {
-        double reach = side == 0 ? ARM * scale : -ARM * scale;
-        for (int a = 0; a < 3; a++) tips[side][a] = rt_narrow(rt_add_scaledd(center, jacks->axes[a], reach));
-    }
-    float rod_radius = (float)(ROD_RADIUS * scale), tip_radius = (float)(TIP_RADIUS * scale);
-    for (int a = 0; a < 3; a++) {
-        RT_TRY(rt_scene_add_cone(jacks->scene, 0, tips[1][a], rod_radius, tips[0][a], rod_radius, error));
-    }
-    for (int i = 0; i < 6; i++) {
-        RT_TRY(rt_scene_add_sphere(jacks->scene, 0, tips[i / 3][i % 3], tip_radius, error));
-    }
-    return RT_OK;
+/* Three cylinders, then six spheres at their ends. */
+static void add_arms(RtSceneBuilder *b, const RtVec3d axes[3], RtVec3d center, double scale) {
+    RtVec3d ends[2][3]; /* along the axes, and against them */
+    for (int i = 0; i < 6; i++)
+        ends[i / 3][i % 3] = rt_add_scaledd(center, axes[i % 3], i < 3 ? ARM * scale : -ARM * scale);
+    for (int a = 0; a < 3; a++)
+        rt_build_cone(b, ends[1][a], ROD_RADIUS * scale, ends[0][a], ROD_RADIUS * scale);
+    for (int i = 0; i < 6; i++) rt_build_sphere(b, ends[i / 3][i % 3], END_RADIUS * scale);
 }
 
-static RtStatus add_jack(const Jacks *jacks, RtVec3d center, double scale, int64_t levels, RtError *error) {
-    RT_TRY(add_arms(jacks, center, scale, error));
-    if (levels == 1) return RT_OK;
-    for (int corner = 0; corner < 8; corner++) {
+static void add_jack(RtSceneBuilder *b, const RtVec3d axes[3], RtVec3d center, double scale, int64_t levels) {
+    add_arms(b, axes, center, scale);
+    for (int corner = 0; levels > 1 && corner < 8; corner++) {
         RtVec3d child = center;
-        for (int a = 0; a < 3; a++) {
-            double along = corner >> (2 - a) & 1 ? scale / 2 : -scale / 2;
-            child = rt_add_scaledd(child, jacks->axes[a], along);
-        }
-        RT_TRY(add_jack(jacks, child, scale / 2, levels - 1, error));
+        for (int a = 0; a < 3; a++)
+            child = rt_add_scaledd(child, axes[a], corner >> (2 - a) & 1 ? scale / 2 : -scale / 2);
+        add_jack(b, axes, child, scale / 2, levels - 1);
     }
-    return RT_OK;
 }
 
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    static const RtVec3 lights[1] = {{-10, 3, -20}};
-    RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
-    scene->background = rt_vec3(0.2f, 0.05f, 0.2f);
-    scene->camera.from = rt_vec3(0, 0, -8);
-    scene->camera.up = rt_vec3(0, 1, 0);
-    scene->camera.fov = 25;
-    scene->camera.near = 0.001f;
-    scene->camera.width = scene->camera.height = 256;
-    uint32_t material;
-    RtMaterial metal = rt_nff_material("jack", rt_vec3(0.737f, 0.561f, 0.561f), 0.7f, 0.7f, 11.1434f, 0, 1);
-    RT_TRY(rt_scene_add_material(scene, &metal, &material, error));
-
-    static const RtVec3d axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    Jacks jacks = {.scene = scene};
+static void generate(RtSceneBuilder *b, const RtValue *values) {
+    static const RtVec3d lights[1] = {{-10, 3, -20}}, axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    RtCamera *camera = &b->scene->camera;
+    rt_spd_lights(b, lights, 1);
+    b->scene->background = rt_vec3(0.2f, 0.05f, 0.2f);
+    camera->from = rt_vec3(0, 0, -8);
+    camera->up = rt_vec3(0, 1, 0);
+    camera->fov = 25;
+    camera->near = 0.001f;
+    camera->width = camera->height = 256;
+    rt_build_material(b,
+                      rt_nff_material("jack", rt_vec3(0.737f, 0.561f, 0.561f), 0.7f, 0.7f, 11.1434f, 0, 1));
+    RtVec3d turned[3];
     for (int a = 0; a < 3; a++) {
-        RtVec3d turned = rt_spd_rotate(axes[a], axes[1], rt_turn(-20));
-        jacks.axes[a] = rt_spd_rotate(turned, axes[0], rt_turn(-30));
+        turned[a] = rt_spd_rotate(axes[a], axes[1], rt_turn(-20));
+        turned[a] = rt_spd_rotate(turned[a], axes[0], rt_turn(-30));
     }
-    return add_jack(&jacks, rt_vec3d(0, 0, 0), 1, values[0].i, error);
+    add_jack(b, turned, rt_vec3d(0, 0, 0), 1, values[0].i);
 }
 
 const RtBuiltin rt_builtin_jacks = {

@@ -7,7 +7,6 @@
  * depends on its place in the lattice alone, so that neighbours fit. Above size 7 the database leaves the
  * random numbers undefined (a shift by a negative amount); here the lattice coordinate is shifted the other
  * way. */
-#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 
@@ -22,8 +21,7 @@ typedef struct Corner {
 } Corner;
 
 typedef struct Mount {
-    RtScene *scene;
-    uint32_t material;
+    RtSceneBuilder *b;
     uint32_t size;
 } Mount;
 
@@ -52,24 +50,18 @@ static double displacement(const Mount *mount, uint32_t x, uint32_t y) {
     return normal_random(21 + (((x << (23 - size)) + (y << (15 - size)) + low) & 0xffff));
 }
 
-static RtVec3 place(const Mount *mount, Corner corner) {
+static RtVec3d place(const Mount *mount, Corner corner) {
     double step = 2 / (double)(1u << mount->size);
-    return rt_narrow(rt_vec3d(corner.x * step - 1, corner.y * step - 1, corner.z));
-}
-
-static RtStatus add_square(const Mount *mount, const Corner corners[4], RtError *error) {
-    for (int i = 0; i < 4; i += 2) {
-        RtVec3 vertices[3];
-        for (int k = 0; k < 3; k++) vertices[k] = place(mount, corners[(i + k) % 4]);
-        RT_TRY(rt_scene_add_triangle(mount->scene, mount->material, vertices, NULL, error));
-    }
-    return RT_OK;
+    return rt_vec3d(corner.x * step - 1, corner.y * step - 1, corner.z);
 }
 
 /* The square between corners in counter-clockwise order, the first being the lower left; `half` its side. */
-static RtStatus add_level(const Mount *mount, const Corner corners[4], double half, uint32_t levels,
-                          RtError *error) {
-    if (levels == 0) return add_square(mount, corners, error);
+static void add_level(const Mount *mount, const Corner corners[4], double half, uint32_t levels) {
+    for (int i = 0; levels == 0 && i < 4; i += 2) {
+        rt_build_triangle(mount->b, place(mount, corners[i]), place(mount, corners[i + 1]),
+                          place(mount, corners[(i + 2) % 4]));
+    }
+    if (levels == 0) return;
     const double root2 = 1.4142136,
                  roughness = half * sqrt(1.2599210498948731648 - 1); /* the cube root of 2 */
     Corner middle = {.x = (corners[0].x + corners[2].x) / 2, .y = (corners[0].y + corners[2].y) / 2};
@@ -77,8 +69,8 @@ static RtStatus add_level(const Mount *mount, const Corner corners[4], double ha
                roughness * root2 * displacement(mount, middle.x, middle.y);
     Corner sides[4];
     for (int i = 0; i < 4; i++) {
-        const Corner *a = &corners[i], *b = &corners[(i + 1) % 4];
-        sides[i] = (Corner){.x = (a->x + b->x) / 2, .y = (a->y + b->y) / 2, .z = (a->z + b->z) / 2};
+        const Corner *v = &corners[i], *w = &corners[(i + 1) % 4];
+        sides[i] = (Corner){.x = (v->x + w->x) / 2, .y = (v->y + w->y) / 2, .z = (v->z + w->z) / 2};
         sides[i].z += roughness * displacement(mount, sides[i].x, sides[i].y);
     }
     for (int i = 0; i < 4; i++) {
@@ -88,43 +80,35 @@ static RtStatus add_level(const Mount *mount, const Corner corners[4], double ha
         quarter[(i + 1) % 4] = sides[i];
         quarter[(i + 2) % 4] = middle;
         quarter[(i + 3) % 4] = sides[(i + 3) % 4];
-        RT_TRY(add_level(mount, quarter, half / 2, levels - 1, error));
+        add_level(mount, quarter, half / 2, levels - 1);
     }
-    return RT_OK;
 }
 
 /* One over the mountain, and three below it, on the edges of a regular tetrahedron. */
-static RtStatus add_spheres(RtScene *scene, RtError *error) {
-    uint32_t material;
-    RtMaterial glass = rt_nff_material("glass", rt_vec3(1, 1, 1), 0.1f, 0.1f, 101.148f, 0.9f, 1.5f);
-    RT_TRY(rt_scene_add_material(scene, &glass, &material, error));
-
+static void add_spheres(RtSceneBuilder *b) {
     const double radius = 0.17;
     const RtVec3d center = {-0.8, 0.8, 1}, diagonal = {sqrt(0.5), sqrt(0.5), 0}, z = {0, 0, 1};
     const RtVec3d up = {0, 0, radius * sqrt(1.5)};
     const RtTurn tetrahedral = {.cosine = -1.0 / 3, .sine = sqrt(8.0 / 9)};
-    RT_TRY(rt_scene_add_sphere(scene, material, rt_narrow(rt_addd(center, up)), (float)radius, error));
+    rt_build_material(b, rt_nff_material("glass", rt_vec3(1, 1, 1), 0.1f, 0.1f, 101.148f, 0.9f, 1.5f));
+    rt_build_sphere(b, rt_addd(center, up), radius);
     for (int i = 0; i < 3; i++) {
         RtVec3d offset = rt_spd_rotate(rt_spd_rotate(up, diagonal, tetrahedral), z, rt_turn(120.0 * i));
-        RtVec3 below = rt_narrow(rt_addd(center, offset));
-        RT_TRY(rt_scene_add_sphere(scene, material, below, (float)radius, error));
+        rt_build_sphere(b, rt_addd(center, offset), radius);
     }
-    return RT_OK;
 }
 
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    static const RtVec3 lights[1] = {{-100, -100, 100}};
-    RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
-    scene->camera.from = rt_vec3(-1.6f, 1.6f, 1.7f);
-    scene->camera.near = 0.01f;
-    RT_TRY(add_spheres(scene, error));
-
-    Mount mount = {.scene = scene, .size = (uint32_t)values[0].i};
-    RtMaterial rock = rt_nff_material("rock", rt_vec3(0.5f, 0.45f, 0.35f), 1, 0, 100000, 0, 1);
-    RT_TRY(rt_scene_add_material(scene, &rock, &mount.material, error));
+static void generate(RtSceneBuilder *b, const RtValue *values) {
+    static const RtVec3d lights[1] = {{-100, -100, 100}};
+    rt_spd_lights(b, lights, 1);
+    b->scene->camera.from = rt_vec3(-1.6f, 1.6f, 1.7f);
+    b->scene->camera.near = 0.01f;
+    add_spheres(b);
+    rt_build_material(b, rt_nff_material("rock", rt_vec3(0.5f, 0.45f, 0.35f), 1, 0, 100000, 0, 1));
+    Mount mount = {.b = b, .size = (uint32_t)values[0].i};
     uint32_t side = 1u << mount.size;
     const Corner corners[4] = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}};
-    return add_level(&mount, corners, 1, mount.size, error);
+    add_level(&mount, corners, 1, mount.size);
 }
 
 const RtBuiltin rt_builtin_mount = {

@@ -3,10 +3,10 @@
 
 #define COUNT_OF(array) (uint32_t)(sizeof(array) / sizeof(array)[0])
 
-static RtStatus add_lathe(RtForms *forms, const RtVec3d *profile, uint32_t count, uint32_t steps,
-                          uint32_t sides, RtError *error) {
-    const RtLathe lathe = {.profile = profile, .count = count, .steps = steps, .sides = sides, .scale = 1};
-    return rt_forms_lathe(forms, &lathe, error);
+static void add_lathe(RtSceneBuilder *b, const RtVec3d *profile, uint32_t count, uint32_t steps,
+                      uint32_t sides) {
+    const RtLathe lathe = {.profile = profile, .count = count, .steps = steps, .sides = sides};
+    rt_build_lathe(b, &lathe);
 }
 
 /* ---- columns ---- */
@@ -25,15 +25,13 @@ static RtVec3d shaft_point(const void *of, uint32_t column, uint32_t row) {
     return rt_vec3d(turn.x, turn.y, 0.55 + 3.55 * z);
 }
 
-static RtStatus add_shaft(RtForms *forms, uint32_t size, RtError *error) {
+static void add_shaft(RtSceneBuilder *b, uint32_t size) {
     uint32_t steps = size / 2 + 1; /* of a flute */
-    return rt_forms_sheet(forms,
-                          &(RtSheet){.columns = FLUTES * steps,
-                                     .rows = SHAFT_ROWS,
-                                     .wrapped = true,
-                                     .point = shaft_point,
-                                     .of = &steps},
-                          error);
+    rt_build_grid_mesh(b, &(RtGridMesh){.columns = FLUTES * steps,
+                                        .rows = SHAFT_ROWS,
+                                        .wrapped = true,
+                                        .point = shaft_point,
+                                        .of = &steps});
 }
 
 typedef struct Leaf {
@@ -54,7 +52,7 @@ static RtVec3d leaf_point(const void *of, uint32_t column, uint32_t row) {
     return rt_vec3d(p.x, p.y, z);
 }
 
-static RtStatus add_leaves(RtForms *forms, uint32_t size, RtError *error) {
+static void add_leaves(RtSceneBuilder *b, uint32_t size) {
     for (uint32_t i = 0; i < 2 * LEAVES; i++) {
         RtVec3d out = rt_on_circle(i, 2 * LEAVES);
         bool upper = i % 2;
@@ -64,39 +62,35 @@ static RtStatus add_leaves(RtForms *forms, uint32_t size, RtError *error) {
                      .height = upper ? 0.52 : 0.36,
                      .radius = upper ? 0.37 : 0.4,
                      .rows = size + 1};
-        RT_TRY(rt_forms_sheet(forms,
-                              &(RtSheet){.columns = LEAF_COLUMNS,
-                                         .rows = leaf.rows,
-                                         .last_pole = true,
-                                         .smooth = true,
-                                         .point = leaf_point,
-                                         .of = &leaf},
-                              error));
+        rt_build_grid_mesh(b, &(RtGridMesh){.columns = LEAF_COLUMNS,
+                                            .rows = leaf.rows,
+                                            .last_pole = true,
+                                            .smooth = true,
+                                            .point = leaf_point,
+                                            .of = &leaf});
     }
-    return RT_OK;
 }
 
-RtStatus rt_ornament_column(RtForms *forms, uint32_t size, RtError *error) {
+void rt_ornament_column(RtSceneBuilder *b, uint32_t size) {
     static const RtVec3d base[] = {{0.6, 0, 0.18},  {0.62, 0, 0.24}, {0.58, 0, 0.31},
                                    {0.5, 0, 0.34},  {0.48, 0, 0.39}, {0.52, 0, 0.43},
                                    {0.52, 0, 0.48}, {0.45, 0, 0.51}, {0.43, 0, 0.55}};
     static const RtVec3d bell[] = {{0.36, 0, 4.1}, {0.4, 0, 4.13},  {0.4, 0, 4.17}, {0.36, 0, 4.2},
                                    {0.36, 0, 4.4}, {0.42, 0, 4.58}, {0.56, 0, 4.7}};
-    RT_TRY(
-        rt_forms_box(forms, rt_vec3d(-0.62, -0.62, 0), rt_vec3d(0.62, 0.62, 0.18), RT_SIDES_STANDING, error));
-    RT_TRY(add_lathe(forms, base, COUNT_OF(base), size + 4, 6 * size, error));
-    RT_TRY(add_shaft(forms, size, error));
-    RT_TRY(add_lathe(forms, bell, COUNT_OF(bell), size + 2, 6 * size, error));
-    RT_TRY(add_leaves(forms, size, error));
-    return rt_forms_box(forms, rt_vec3d(-0.6, -0.6, 4.7), rt_vec3d(0.6, 0.6, RT_COLUMN_HEIGHT), RT_SIDES_ALL,
-                        error);
+
+    rt_build_box(b, rt_vec3d(-0.62, -0.62, 0), rt_vec3d(0.62, 0.62, 0.18), RT_SIDES_STANDING);
+    add_lathe(b, base, COUNT_OF(base), size + 4, 6 * size);
+    add_shaft(b, size);
+    add_lathe(b, bell, COUNT_OF(bell), size + 2, 6 * size);
+    add_leaves(b, size);
+    rt_build_box(b, rt_vec3d(-0.6, -0.6, 4.7), rt_vec3d(0.6, 0.6, RT_COLUMN_HEIGHT), RT_SIDES_ALL);
 }
 
 /* ---- vases and balusters ---- */
 
 enum { VASE_POINTS = 10 };
 
-RtStatus rt_ornament_vase(RtForms *forms, uint32_t size, uint32_t kind, RtError *error) {
+void rt_ornament_vase(RtSceneBuilder *b, uint32_t size, uint32_t kind) {
     /* From the middle of the foot up the outside, over the lip and down inside. */
     static const RtVec3d profiles[RT_VASE_KINDS][VASE_POINTS] = {
         {{0, 0, 0},
@@ -130,20 +124,20 @@ RtStatus rt_ornament_vase(RtForms *forms, uint32_t size, uint32_t kind, RtError 
          {0.46, 0, 1.05},
          {0, 0, 0.62}},
     };
-    return add_lathe(forms, profiles[kind % RT_VASE_KINDS], VASE_POINTS, 5 * size, 6 * size, error);
+    add_lathe(b, profiles[kind % RT_VASE_KINDS], VASE_POINTS, 5 * size, 6 * size);
 }
 
-RtStatus rt_ornament_baluster(RtForms *forms, uint32_t size, RtError *error) {
+void rt_ornament_baluster(RtSceneBuilder *b, uint32_t size) {
     static const RtVec3d profile[] = {{0.09, 0, 0},   {0.09, 0, 0.06}, {0.04, 0, 0.1}, {0.1, 0, 0.28},
                                       {0.08, 0, 0.4}, {0.035, 0, 0.6}, {0.06, 0, 0.7}, {0.09, 0, 0.8}};
-    return add_lathe(forms, profile, COUNT_OF(profile), size + 2, size + 2, error);
+    add_lathe(b, profile, COUNT_OF(profile), size + 2, size + 2);
 }
 
 /* ---- chandeliers ---- */
 
 enum { CANDLES = 12, SPOKES = 6 };
 
-static RtStatus add_candle(RtForms *forms, RtVec3d at, uint32_t size, RtError *error) {
+static void add_candle(RtSceneBuilder *b, RtVec3d at, uint32_t size) {
     static const RtVec3d profile[] = {{0, 0, -0.02},   {0.1, 0, 0.02},  {0.11, 0, 0.05}, {0.035, 0, 0.05},
                                       {0.03, 0, 0.1},  {0.03, 0, 0.28}, {0.01, 0, 0.29}, {0.018, 0, 0.32},
                                       {0.01, 0, 0.36}, {0, 0, 0.4}};
@@ -151,12 +145,11 @@ static RtStatus add_candle(RtForms *forms, RtVec3d at, uint32_t size, RtError *e
                            .profile = profile,
                            .count = COUNT_OF(profile),
                            .steps = 2 * (COUNT_OF(profile) - 1),
-                           .sides = size + 2,
-                           .scale = 1};
-    return rt_forms_lathe(forms, &lathe, error);
+                           .sides = size + 2};
+    rt_build_lathe(b, &lathe);
 }
 
-static RtStatus add_chain(RtForms *forms, uint32_t size, uint32_t links, RtError *error) {
+static void add_chain(RtSceneBuilder *b, uint32_t size, uint32_t links) {
     for (uint32_t i = 0; i < links; i++) {
         const RtTorus link = {.center = {0, 0, 0.5 + 0.12 * i},
                               .axis = (int)(i % 2),
@@ -164,26 +157,25 @@ static RtStatus add_chain(RtForms *forms, uint32_t size, uint32_t links, RtError
                               .tube = 0.014,
                               .around = size / 2 + 4,
                               .sides = 4};
-        RT_TRY(rt_forms_torus(forms, &link, error));
+        rt_build_torus(b, &link);
     }
-    return RT_OK;
 }
 
-RtStatus rt_ornament_chandelier(RtForms *forms, uint32_t size, uint32_t links, RtError *error) {
+void rt_ornament_chandelier(RtSceneBuilder *b, uint32_t size, uint32_t links) {
     static const RtVec3d hub[] = {{0, 0, -0.35},   {0.06, 0, -0.3}, {0.02, 0, -0.2}, {0.14, 0, -0.05},
                                   {0.14, 0, 0.05}, {0.04, 0, 0.2},  {0.06, 0, 0.4},  {0, 0, 0.45}};
     const RtTorus ring = {.axis = 2, .radius = 1, .tube = 0.05, .around = 6 * size, .sides = size + 2};
-    RT_TRY(rt_forms_torus(forms, &ring, error));
-    RT_TRY(add_lathe(forms, hub, COUNT_OF(hub), 3 * size, 2 * size + 2, error));
+    rt_build_torus(b, &ring);
+    add_lathe(b, hub, COUNT_OF(hub), 3 * size, 2 * size + 2);
     for (uint32_t i = 0; i < SPOKES; i++) {
         RtVec3d out = rt_on_circle(i, SPOKES), high = {0, 0, 0.3};
-        RT_TRY(rt_forms_tube(forms, rt_scaled(out, 0.1), 0.025, out, 0.025, size, error));
-        RT_TRY(rt_forms_tube(forms, high, 0.012, out, 0.012, size, error));
+        rt_build_prism(b, rt_scaled(out, 0.1), 0.025, out, 0.025, size);
+        rt_build_prism(b, high, 0.012, out, 0.012, size);
     }
     for (uint32_t i = 0; i < CANDLES; i++) {
         RtVec3d at = rt_scaled(rt_on_circle(2 * i + 1, 2 * CANDLES), 1.02);
         at.z = 0.05;
-        RT_TRY(add_candle(forms, at, size, error));
+        add_candle(b, at, size);
     }
-    return add_chain(forms, size, links, error);
+    add_chain(b, size, links);
 }

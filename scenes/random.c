@@ -9,7 +9,6 @@
 #include "core/base/random.h"
 #include "core/base/elementary.h"
 #include "scenes/builtin.h"
-#include "scenes/studio.h"
 
 enum { UNIFORM, CLUSTERED, COINCIDENT, LINE, PLANE, STADIUM };
 enum { SPHERES, TRIANGLES, MIXED };
@@ -78,77 +77,59 @@ static RtVec3d center_of(uint64_t i, RtRandom *random, const RtValue *values) {
 
 /* ---- objects ---- */
 
-/* What an object is made of. */
-typedef struct Maker {
-    RtScene *scene;
+typedef struct Object {
+    RtSceneBuilder *b;
     RtRandom random;
-    uint32_t material;
     bool flat; /* in a plane of constant z */
     RtVec3d center;
     double radius;
-} Maker;
+} Object;
 
-static RtVec3d direction(Maker *m) {
-    RtVec3d d = rt_random_direction(&m->random);
-    return m->flat ? rt_normalized(rt_vec3d(d.x, d.y, 0)) : d;
+static RtVec3d direction(Object *o) {
+    RtVec3d d = rt_random_direction(&o->random);
+    return o->flat ? rt_normalized(rt_vec3d(d.x, d.y, 0)) : d;
 }
 
-static RtStatus add_triangle(Maker *m, RtError *error) {
-    RtVec3 vertices[3];
-    for (int i = 0; i < 3; i++) {
-        vertices[i] = rt_narrow(rt_add_scaledd(m->center, direction(m), m->radius));
-    }
-    return rt_scene_add_triangle(m->scene, m->material, vertices, NULL, error);
+static void add_triangle(Object *o) {
+    RtVec3d v[3];
+    for (int i = 0; i < 3; i++) v[i] = rt_add_scaledd(o->center, direction(o), o->radius);
+    rt_build_triangle(o->b, v[0], v[1], v[2]);
 }
 
-/* An arrow head: concave, so that the test for being inside has something to do. */
-static RtStatus add_polygon(Maker *m, RtError *error) {
+/* A concave arrow head. */
+static void add_polygon(Object *o) {
     static const double u[4] = {1, -0.7, -0.2, -0.7}, v[4] = {0, 0.7, 0, -0.7};
-    RtVec3d along = direction(m);
-    RtVec3d other = rt_vec3d(0, 0, 0);
-    other.at[m->flat ? 2 : rt_major_axis(rt_narrow(along)) == 0] = 1; /* an axis that `along` is not near */
-    RtVec3d across = rt_normalized(rt_crossd(along, other));
-    RtVec3 vertices[4];
+    RtVec3d along = direction(o), other = {0, 0, 0};
+    other.at[o->flat ? 2 : rt_major_axis(rt_narrow(along)) == 0] = 1; /* an axis that `along` is not near */
+    RtVec3d across = rt_normalized(rt_crossd(along, other)), vertices[4];
     for (int i = 0; i < 4; i++) {
-        RtVec3d on_axis = rt_add_scaledd(m->center, along, u[i] * m->radius);
-        vertices[i] = rt_narrow(rt_add_scaledd(on_axis, across, v[i] * m->radius));
+        RtVec3d on_axis = rt_add_scaledd(o->center, along, u[i] * o->radius);
+        vertices[i] = rt_add_scaledd(on_axis, across, v[i] * o->radius);
     }
-    return rt_scene_add_polygon(m->scene, m->material, vertices, 4, error);
+    rt_build_polygon(o->b, vertices, 4);
 }
 
-static RtStatus add_cone(Maker *m, RtError *error) {
-    RtVec3d half = rt_scaled(direction(m), m->radius);
-    float base_radius = (float)(m->radius / 2), apex_radius = base_radius * rt_random_unit(&m->random);
-    return rt_scene_add_cone(m->scene, m->material, rt_narrow(rt_subd(m->center, half)), base_radius,
-                             rt_narrow(rt_addd(m->center, half)), apex_radius, error);
+static void add_cone(Object *o) {
+    RtVec3d half = rt_scaled(direction(o), o->radius);
+    float base_radius = (float)(o->radius / 2), apex_radius = base_radius * rt_random_unit(&o->random);
+    rt_build_cone(o->b, rt_subd(o->center, half), (double)base_radius, rt_addd(o->center, half),
+                  (double)apex_radius);
 }
 
-/* Not all shapes there are: what this scene is must not change when there are more. */
-static const RtShape mixed[] = {RT_SHAPE_SPHERE, RT_SHAPE_POLYGON, RT_SHAPE_TRIANGLE, RT_SHAPE_CONE};
-
-static RtStatus add_object(RtScene *scene, uint64_t i, double mean_radius, const RtValue *values,
-                           RtError *error) {
-    uint32_t distribution = values[DISTRIBUTION].choice;
-    Maker m = {.scene = scene,
-               .random = rt_random((uint64_t)values[SEED].i, distribution == COINCIDENT ? 0 : i),
-               .material = (uint32_t)(i / 4 % scene->material_count),
-               .flat = distribution == PLANE};
-    m.center = center_of(i, &m.random, values);
-    double deviation = 2 * (double)rt_random_unit(&m.random) - 1;
-    m.radius = mean_radius * (1 + values[SPREAD].f * deviation);
-    if (distribution == STADIUM) m.radius *= stadium_scale[is_huge(i)];
-    RtShape shape = values[SHAPE].choice == MIXED       ? mixed[i % (sizeof mixed / sizeof mixed[0])]
-                    : values[SHAPE].choice == TRIANGLES ? RT_SHAPE_TRIANGLE
-                                                        : RT_SHAPE_SPHERE;
-    switch (shape) {
-    case RT_SHAPE_POLYGON: return add_polygon(&m, error);
-    case RT_SHAPE_TRIANGLE: return add_triangle(&m, error);
-    case RT_SHAPE_CONE: return add_cone(&m, error);
-    case RT_SHAPE_SPHERE:
-    case RT_SHAPE_CSG:
-    case RT_SHAPE_COUNT: break;
-    }
-    return rt_scene_add_sphere(scene, m.material, rt_narrow(m.center), (float)m.radius, error);
+static void add_object(RtSceneBuilder *b, uint64_t i, double mean_radius, const RtValue *values) {
+    uint32_t distribution = values[DISTRIBUTION].choice, shape = values[SHAPE].choice;
+    Object o = {.b = b,
+                .random = rt_random((uint64_t)values[SEED].i, distribution == COINCIDENT ? 0 : i),
+                .flat = distribution == PLANE};
+    o.center = center_of(i, &o.random, values);
+    double deviation = 2 * (double)rt_random_unit(&o.random) - 1;
+    o.radius = mean_radius * (1 + values[SPREAD].f * deviation);
+    if (distribution == STADIUM) o.radius *= stadium_scale[is_huge(i)];
+    b->material = (uint32_t)(i / 4 % RT_STUDIO_MATERIALS);
+    if (shape == SPHERES || (shape == MIXED && i % 4 == 0)) rt_build_sphere(b, o.center, o.radius);
+    if (shape == MIXED && i % 4 == 1) add_polygon(&o);
+    if (shape == TRIANGLES || (shape == MIXED && i % 4 == 2)) add_triangle(&o);
+    if (shape == MIXED && i % 4 == 3) add_cone(&o);
 }
 
 /* On a line of length 2, in a square or in a cube of that edge. */
@@ -165,16 +146,12 @@ static uint64_t object_count(const RtValue *values) {
     return (uint64_t)values[N].i;
 }
 
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    static const RtStudioMaterial materials[RT_STUDIO_MATERIALS] = {RT_STUDIO_CLAY, RT_STUDIO_SLATE,
-                                                                    RT_STUDIO_STEEL, RT_STUDIO_GLASS};
-    RT_TRY(rt_studio(scene, materials, error));
-    /* As a float32, which it was while the cube root was the library's, so that scenes stay what they are. */
+static void generate(RtSceneBuilder *b, const RtValue *values) {
+    rt_build_studio(b, true);
+    /* Rounded to float32, so that scenes keep the sizes that published counts were made with. */
     double mean_radius = (double)(float)(values[RADIUS].f * mean_spacing(values));
-    for (uint64_t i = 0; i < (uint64_t)values[N].i; i++) {
-        RT_TRY(add_object(scene, i, mean_radius, values, error));
-    }
-    return RT_OK;
+    for (uint64_t i = 0; i < (uint64_t)values[N].i && b->status == RT_OK; i++)
+        add_object(b, i, mean_radius, values);
 }
 
 const RtBuiltin rt_builtin_random = {

@@ -7,7 +7,6 @@
  * pentagons are smaller by 1 + RADIUS, and the radius is not, so that cylinders of different rings overlap a
  * little. Layer n of the pyramid is n by n objects. Colours, of which the paper says nothing, and the order
  * of objects are those of the database. */
-#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 
@@ -29,7 +28,7 @@ static uint64_t object_count(const RtValue *values) {
 
 /* One pentagon lies in the plane of X and Y, the others in planes normal to axes of a dodecahedron next to Z,
  * at the angle whose cosine is 1 / sqrt 5. */
-static void tie(Knot knot) {
+static void set_knot(Knot knot) {
     const RtVec3d x = {1, 0, 0}, z = {0, 0, 1};
     const RtTurn tilt = {.cosine = sqrt(1.0 / 5), .sine = sqrt(4.0 / 5)};
     for (int i = 0; i < CORNERS; i++) {
@@ -42,67 +41,57 @@ static void tie(Knot knot) {
     }
 }
 
-static RtStatus add_knot(RtScene *scene, const Knot knot, RtVec3d center, RtError *error) {
+static void add_knot(RtSceneBuilder *b, const Knot knot, RtVec3d center) {
     for (uint32_t ring = 0; ring < RINGS; ring++) {
+        b->material = ring;
         for (int i = 0; i < CORNERS; i++) {
-            RtVec3 corner = rt_narrow(rt_addd(center, knot[ring][i]));
-            RtVec3 last = rt_narrow(rt_addd(center, knot[ring][(i + CORNERS - 1) % CORNERS]));
-            RT_TRY(rt_scene_add_cone(scene, ring, corner, (float)RADIUS, last, (float)RADIUS, error));
-            RT_TRY(rt_scene_add_sphere(scene, ring, corner, (float)RADIUS, error));
+            RtVec3d corner = rt_addd(center, knot[ring][i]);
+            RtVec3d last = rt_addd(center, knot[ring][(i + CORNERS - 1) % CORNERS]);
+            rt_build_cone(b, corner, RADIUS, last, RADIUS);
+            rt_build_sphere(b, corner, RADIUS);
         }
     }
-    return RT_OK;
 }
 
-/* Of the rings first, in their order, and then of the wall. */
-static RtStatus add_materials(RtScene *scene, uint32_t *wall, RtError *error) {
+/* Materials of the rings, in their order, and then of the wall. */
+static void add_materials(RtSceneBuilder *b) {
     static const RtVec3 colors[RINGS] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0}};
     static const char *const names[RINGS] = {"red", "green", "blue", "cyan", "magenta", "yellow"};
-    uint32_t index;
-    for (int i = 0; i < RINGS; i++) {
-        RtMaterial shiny = rt_nff_material(names[i], colors[i], 0.5f, 0.2f, 45.2776f, 0, 1);
-        RT_TRY(rt_scene_add_material(scene, &shiny, &index, error));
-    }
-    RtMaterial white = rt_nff_material("wall", rt_vec3(1, 1, 1), 1, 0, 100000, 0, 1);
-    return rt_scene_add_material(scene, &white, wall, error);
+    for (int i = 0; i < RINGS; i++)
+        rt_build_material(b, rt_nff_material(names[i], colors[i], 0.5f, 0.2f, 45.2776f, 0, 1));
+    rt_build_material(b, rt_nff_material("wall", rt_vec3(1, 1, 1), 1, 0, 100000, 0, 1));
 }
 
 /* Square, centred before the eye, and a hundredth larger than the picture. */
-static RtStatus add_wall(RtScene *scene, uint32_t material, RtVec3d eye, double y, RtError *error) {
+static void add_wall(RtSceneBuilder *b, RtVec3d eye, double y) {
     RtTurn half_view = rt_turn(22.5);
     double half = 1.01 * (y - eye.y) * (half_view.sine / half_view.cosine);
     const double x[4] = {1, -1, -1, 1}, z[4] = {1, 1, -1, -1};
-    RtVec3 corners[4];
-    for (int i = 0; i < 4; i++) corners[i] = rt_narrow(rt_vec3d(eye.x + half * x[i], y, eye.z + half * z[i]));
-    return rt_scene_add_polygon(scene, material, corners, 4, error);
+    RtVec3d corners[4];
+    for (int i = 0; i < 4; i++) corners[i] = rt_vec3d(eye.x + half * x[i], y, eye.z + half * z[i]);
+    rt_build_polygon(b, corners, 4);
 }
 
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
+static void generate(RtSceneBuilder *b, const RtValue *values) {
     const int64_t size = values[0].i;
     const double spread = 1 / rt_turn(22.5).sine; /* from layer to layer: the pyramid fills the view */
-    const float front = (float)-spread;
-    const RtVec3 lights[3] = {{3, front, 3}, {-4, front, 1}, {2, front, -4}};
-    RT_TRY(rt_spd_add_lights(scene, lights, 3, error));
     const RtVec3d eye = {-1, -spread, 0.5};
-    scene->camera.from = rt_narrow(eye);
-    scene->camera.at = rt_narrow(rt_vec3d(eye.x, eye.y + 1, eye.z));
-    scene->camera.near = 1;
-
-    uint32_t wall;
-    RT_TRY(add_materials(scene, &wall, error));
-    RT_TRY(add_wall(scene, wall, eye, spread * (double)(size + 1), error));
+    const RtVec3d lights[3] = {{3, -spread, 3}, {-4, -spread, 1}, {2, -spread, -4}};
+    rt_spd_lights(b, lights, 3);
+    b->scene->camera.from = rt_narrow(eye);
+    b->scene->camera.at = rt_narrow(rt_vec3d(eye.x, eye.y + 1, eye.z));
+    b->scene->camera.near = 1;
+    add_materials(b);
+    add_wall(b, eye, spread * (double)(size + 1));
     Knot knot;
-    tie(knot);
+    set_knot(knot);
     for (int64_t layer = 1; layer <= size; layer++) {
-        for (int64_t z = 0; z < layer; z++) {
-            for (int64_t x = 0; x < layer; x++) {
-                RtVec3d center = {(double)(2 * x - layer + 1), spread * (double)layer,
-                                  (double)(2 * z - layer + 1)};
-                RT_TRY(add_knot(scene, (const RtVec3d(*)[CORNERS])knot, center, error));
-            }
+        for (int64_t i = 0; i < layer * layer; i++) {
+            RtVec3d center = {(double)(2 * (i % layer) - layer + 1), spread * (double)layer,
+                              (double)(2 * (i / layer) - layer + 1)};
+            add_knot(b, (const RtVec3d(*)[CORNERS])knot, center);
         }
     }
-    return RT_OK;
 }
 
 const RtBuiltin rt_builtin_rings = {

@@ -6,7 +6,6 @@
  * turns on a cone, each as large as it is far from the axis: at the angle a, from -12 pi to 6 pi, the radius
  * is r = e^(0.15 a) and the centre (r sin a, r cos a, -2 r). These numbers were inferred from the files of
  * the database, smallest sphere first. */
-#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 
@@ -21,35 +20,32 @@ static uint64_t object_count(const RtValue *values) {
     return ((uint64_t)ARCS << values[0].i) + 1;
 }
 
-static RtStatus add_sphere(RtScene *scene, double degrees, double radius, RtError *error) {
+static void add_sphere(RtSceneBuilder *b, double degrees, double radius) {
     RtTurn turn = rt_turn(degrees);
-    RtVec3d center = {radius * turn.sine, radius * turn.cosine, -2 * radius};
-    return rt_scene_add_sphere(scene, 0, rt_narrow(center), (float)radius, error);
+    rt_build_sphere(b, rt_vec3d(radius * turn.sine, radius * turn.cosine, -2 * radius), radius);
 }
 
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    static const RtVec3 lights[1] = {{-100, -100, 100}};
-    RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
-    scene->camera.from = rt_vec3(-6, -60, 35);
-    scene->camera.at = rt_vec3(0, 8, -15);
-    scene->camera.near = 0.5f;
-    uint32_t material;
-    RtMaterial pearl = rt_nff_material("shell", rt_vec3(1, 0.8f, 0.4f), 0.8f, 0.2f, 45.2776f, 0, 1);
-    RT_TRY(rt_scene_add_material(scene, &pearl, &material, error));
+static void generate(RtSceneBuilder *b, const RtValue *values) {
+    static const RtVec3d lights[1] = {{-100, -100, 100}};
+    rt_spd_lights(b, lights, 1);
+    b->scene->camera.from = rt_vec3(-6, -60, 35);
+    b->scene->camera.at = rt_vec3(0, 8, -15);
+    b->scene->camera.near = 0.5f;
+    rt_build_material(b, rt_nff_material("shell", rt_vec3(1, 0.8f, 0.4f), 0.8f, 0.2f, 45.2776f, 0, 1));
 
     const double arc_growth = 1.0482518687537468114; /* e^(0.015 pi) */
     const int64_t spheres = INT64_C(1) << values[0].i;
     double growth = arc_growth, radius = 0.0035004393966670334; /* e^(-1.8 pi) */
     for (int64_t halving = 0; halving < values[0].i; halving++) growth = sqrt(growth);
     for (int arc = 0; arc < ARCS; arc++) {
-        double within = radius; /* multiplied on within an arc only: rounding errors do not add up */
+        double within = radius; /* multiplied within an arc only: rounding errors do not add up */
         for (int64_t i = 0; i < spheres; i++) {
-            RT_TRY(add_sphere(scene, 18 * (arc + (double)i / (double)spheres), within, error));
+            add_sphere(b, 18 * (arc + (double)i / (double)spheres), within);
             within *= growth;
         }
         radius *= arc_growth;
     }
-    return add_sphere(scene, 0, radius, error);
+    add_sphere(b, 0, radius);
 }
 
 const RtBuiltin rt_builtin_shells = {

@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scenes/spd.h"
 
-#include "core/scene/nff.h"
-
-RtStatus rt_spd_add_lights(RtScene *scene, const RtVec3 *positions, uint32_t count, RtError *error) {
-    for (uint32_t i = 0; i < count; i++) {
-        RT_TRY(rt_scene_add_light(scene, positions[i], rt_nff_light_intensity(count), error));
-    }
-    return RT_OK;
+void rt_spd_lights(RtSceneBuilder *b, const RtVec3d *positions, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) rt_build_light(b, positions[i], rt_nff_light_intensity(count));
 }
 
 RtVec3d rt_spd_rotate(RtVec3d v, RtVec3d axis, RtTurn turn) {

@@ -6,14 +6,14 @@
 #define RT_SCENES_SPD_H
 
 #include "core/base/elementary.h"
-#include "core/scene/scene.h"
+#include "scenes/build.h"
 
 #define RT_SPD_SOURCE "SPD: E. Haines 1987, A Proposal for Standard Graphics Environments, IEEE CG&A 7(11)"
 
 #define RT_SPD_LATER_SOURCE "SPD: E. Haines, Standard Procedural Databases 3, later than the paper of 1987"
 
-/* Adds white lights that share the light as SPD asks (rt_nff_light_intensity). */
-RtStatus rt_spd_add_lights(RtScene *scene, const RtVec3 *positions, uint32_t count, RtError *error);
+/* Adds white lights of the intensity that SPD asks for (rt_nff_light_intensity). */
+void rt_spd_lights(RtSceneBuilder *b, const RtVec3d *positions, uint32_t count);
 
 /* `v` turned about the unit vector `axis`, counter-clockwise for one who looks against it (Rodrigues). */
 RtVec3d rt_spd_rotate(RtVec3d v, RtVec3d axis, RtTurn turn);

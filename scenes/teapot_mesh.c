@@ -5,7 +5,6 @@
  * out. */
 #include "scenes/teapot_mesh.h"
 
-#include "core/base/memory.h"
 #include "scenes/teapot_patches.h"
 
 enum { COLLAPSED = 8 };
@@ -63,38 +62,26 @@ static bool same(RtVec3 a, RtVec3 b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-static RtStatus add_half(const RtForms *forms, const Corner *a, const Corner *b, const Corner *c,
-                         RtError *error) {
-    if (same(a->point, b->point) || same(b->point, c->point)) return RT_OK;
-    const RtVec3 points[3] = {a->point, b->point, c->point}, normals[3] = {a->normal, b->normal, c->normal};
-    return rt_scene_add_triangle(forms->scene, forms->material, points, normals, error);
+static void add_half(RtSceneBuilder *b, const Corner *u, const Corner *v, const Corner *w) {
+    if (b->status != RT_OK || same(u->point, v->point) || same(v->point, w->point)) return;
+    const RtVec3 points[3] = {u->point, v->point, w->point}, normals[3] = {u->normal, v->normal, w->normal};
+    b->status = rt_scene_add_triangle(b->scene, b->material, points, normals, b->error);
 }
 
-/* `corners`: room for two rows of n + 1. */
-static RtStatus add_patch(const RtForms *forms, const unsigned short patch[16], uint32_t n, Corner *corners,
-                          RtError *error) {
-    Corner *const rows[2] = {corners, corners + n + 1};
+static void add_patch(RtSceneBuilder *b, const unsigned short patch[16], uint32_t n) {
+    Corner rows[2][RT_TEAPOT_MAX_SIZE + 1];
     for (uint32_t i = 0; i <= n; i++) {
         const Corner *before = rows[(i + 1) % 2];
         Corner *row = rows[i % 2];
-        for (uint32_t j = 0; j <= n; j++) row[j] = corner_of(&forms->place, patch, i, j, n);
+        for (uint32_t j = 0; j <= n; j++) row[j] = corner_of(&b->transform, patch, i, j, n);
         for (uint32_t j = 0; i > 0 && j < n; j++) {
-            RT_TRY(add_half(forms, &before[j], &before[j + 1], &row[j + 1], error));
-            RT_TRY(add_half(forms, &row[j + 1], &row[j], &before[j], error));
+            add_half(b, &before[j], &before[j + 1], &row[j + 1]);
+            add_half(b, &row[j + 1], &row[j], &before[j]);
         }
     }
-    return RT_OK;
 }
 
-RtStatus rt_teapot(RtForms *forms, uint32_t n, RtError *error) {
-    forms->count += 2 * (uint64_t)TEAPOT_PATCHES * n * n - (uint64_t)COLLAPSED * n;
-    if (!forms->scene) return RT_OK;
-    Corner *corners = rt_alloc(2 * ((size_t)n + 1), sizeof(Corner));
-    if (!corners) return rt_fail_memory(error, "a row of a teapot", 2 * ((size_t)n + 1) * sizeof(Corner));
-    RtStatus status = RT_OK;
-    for (int i = 0; i < TEAPOT_PATCHES && status == RT_OK; i++) {
-        status = add_patch(forms, teapot_patches[i], n, corners, error);
-    }
-    rt_free(corners);
-    return status;
+void rt_teapot(RtSceneBuilder *b, uint32_t n) {
+    b->count += 2 * (uint64_t)TEAPOT_PATCHES * n * n - (uint64_t)COLLAPSED * n;
+    for (int i = 0; i < TEAPOT_PATCHES && !b->counting; i++) add_patch(b, teapot_patches[i], n);
 }

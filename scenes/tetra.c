@@ -5,7 +5,6 @@
  * tetrahedron at the four corners whose signs have a product of +1; each level replaces it by four of half
  * its size in those corners. Objects come depth first, in the order of the Standard Procedural Databases. All
  * coordinates are exact. */
-#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 
@@ -18,43 +17,32 @@ static uint64_t object_count(const RtValue *values) {
 }
 
 /* The corner of the cube about `center` at the signs (x, y, x * y). */
-static RtVec3 corner(RtVec3d center, double half, double x, double y) {
-    return rt_narrow(rt_addd(center, rt_vec3d(x * half, y * half, x * y * half)));
+static RtVec3d corner(RtVec3d center, double half, double x, double y) {
+    return rt_addd(center, rt_vec3d(x * half, y * half, x * y * half));
 }
 
-static RtStatus add_tetrahedron(RtScene *scene, RtVec3d center, double half, RtError *error) {
+static void add_level(RtSceneBuilder *b, RtVec3d center, double half, int64_t levels) {
     static const double face_x[4] = {-1, 1, 1, -1}, face_y[4] = {-1, 1, -1, 1};
     for (int i = 0; i < 4; i++) {
-        double x = face_x[i], y = face_y[i];
-        RtVec3 vertices[3] = {corner(center, half, x, y), corner(center, half, x, -y),
-                              corner(center, half, -x, y)};
-        RT_TRY(rt_scene_add_triangle(scene, 0, vertices, NULL, error));
-    }
-    return RT_OK;
-}
-
-static RtStatus add_level(RtScene *scene, RtVec3d center, double half, int64_t levels, RtError *error) {
-    if (levels == 1) return add_tetrahedron(scene, center, half, error);
-    for (int x = -1; x <= 1; x += 2) {
-        for (int y = -1; y <= 1; y += 2) {
-            RtVec3d step = rt_scaled(rt_vec3d(x, y, x * y), half / 2);
-            RT_TRY(add_level(scene, rt_addd(center, step), half / 2, levels - 1, error));
+        if (levels == 1) {
+            double x = face_x[i], y = face_y[i];
+            rt_build_triangle(b, corner(center, half, x, y), corner(center, half, x, -y),
+                              corner(center, half, -x, y));
+        } else {
+            add_level(b, corner(center, half / 2, i / 2 ? 1 : -1, i % 2 ? 1 : -1), half / 2, levels - 1);
         }
     }
-    return RT_OK;
 }
 
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    uint32_t material;
-    RtMaterial red = rt_nff_material("red", rt_vec3(1, 0.2f, 0.2f), 1, 0, 100000, 0, 1);
-    RT_TRY(rt_scene_add_material(scene, &red, &material, error));
-    static const RtVec3 lights[1] = {{2, -18, -5}};
-    RT_TRY(rt_spd_add_lights(scene, lights, 1, error));
-    scene->camera.from = rt_vec3(1.022846f, -3.177154f, -2.174512f);
-    scene->camera.at = rt_vec3(-0.004103f, -0.004103f, 0.216539f);
-    scene->camera.up = rt_vec3(-0.816497f, -0.816497f, 0.816497f);
-    scene->camera.near = 1;
-    return add_level(scene, rt_vec3d(0, 0, 0), 1, values[0].i, error);
+static void generate(RtSceneBuilder *b, const RtValue *values) {
+    static const RtVec3d lights[1] = {{2, -18, -5}};
+    rt_spd_lights(b, lights, 1);
+    b->scene->camera.from = rt_vec3(1.022846f, -3.177154f, -2.174512f);
+    b->scene->camera.at = rt_vec3(-0.004103f, -0.004103f, 0.216539f);
+    b->scene->camera.up = rt_vec3(-0.816497f, -0.816497f, 0.816497f);
+    b->scene->camera.near = 1;
+    rt_build_material(b, rt_nff_material("red", rt_vec3(1, 0.2f, 0.2f), 1, 0, 100000, 0, 1));
+    add_level(b, rt_vec3d(0, 0, 0), 1, values[0].i);
 }
 
 const RtBuiltin rt_builtin_tetra = {

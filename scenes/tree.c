@@ -5,7 +5,6 @@
  * origin to (0, 0, 1). A branch has two children: smaller copies of it, turned and moved to its tip, of which
  * only the radii go by a factor of their own. Objects come depth first, in the order of the Standard
  * Procedural Databases. */
-#include "core/scene/nff.h"
 #include "scenes/builtin.h"
 #include "scenes/spd.h"
 
@@ -22,12 +21,6 @@ typedef struct Frame {
     RtVec3d axis[3];
 } Frame;
 
-typedef struct Tree {
-    RtScene *scene;
-    uint32_t material;
-    Frame children[2]; /* within their parent's frame */
-} Tree;
-
 static uint64_t object_count(const RtValue *values) {
     return (UINT64_C(4) << values[0].i) - 1;
 }
@@ -38,7 +31,8 @@ static RtVec3d outward(const Frame *frame, RtVec3d v) {
     return rt_add_scaledd(rt_add_scaledd(sum, frame->axis[1], v.y), frame->axis[2], v.z);
 }
 
-/* Turned about X by `tilt` degrees, then about Z by `around`, and scaled. */
+/* A child within the frame of its parent: turned about X by `tilt` degrees, then about Z by `around`, and
+ * scaled. */
 static Frame child_frame(double tilt, double around, double scale) {
     static const RtVec3d axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     Frame frame;
@@ -49,44 +43,32 @@ static Frame child_frame(double tilt, double around, double scale) {
     return frame;
 }
 
-static RtStatus add_branch(const Tree *tree, RtVec3d base, const Frame *frame, double radius, int64_t levels,
-                           RtError *error) {
+static void add_branch(RtSceneBuilder *b, const Frame children[2], RtVec3d base, const Frame *frame,
+                       double radius, int64_t levels) {
     RtVec3d tip = rt_addd(base, frame->axis[2]);
-    float tip_radius = (float)(radius * TAPER);
-    RT_TRY(rt_scene_add_cone(tree->scene, tree->material, rt_narrow(base), (float)radius, rt_narrow(tip),
-                             tip_radius, error));
-    RT_TRY(rt_scene_add_sphere(tree->scene, tree->material, rt_narrow(tip), tip_radius, error));
-    if (levels == 0) return RT_OK;
-    for (int i = 0; i < 2; i++) {
+    rt_build_cone(b, base, radius, tip, radius * TAPER);
+    rt_build_sphere(b, tip, radius * TAPER);
+    for (int i = 0; levels > 0 && i < 2; i++) {
         Frame child;
-        for (int a = 0; a < 3; a++) child.axis[a] = outward(frame, tree->children[i].axis[a]);
-        RT_TRY(add_branch(tree, tip, &child, radius * TAPER, levels - 1, error));
+        for (int a = 0; a < 3; a++) child.axis[a] = outward(frame, children[i].axis[a]);
+        add_branch(b, children, tip, &child, radius * TAPER, levels - 1);
     }
-    return RT_OK;
 }
 
-static RtStatus add_field(RtScene *scene, RtError *error) {
-    uint32_t material;
-    RtMaterial grass = rt_nff_material("field", rt_vec3(0.2f, 0.7f, 0.2f), 1, 0, 100000, 0, 1);
-    RT_TRY(rt_scene_add_material(scene, &grass, &material, error));
-    const RtVec3 corners[4] = {{50, 50, 0}, {-50, 50, 0}, {-50, -50, 0}, {50, -50, 0}};
-    return rt_scene_add_polygon(scene, material, corners, 4, error);
-}
-
-static RtStatus generate(RtScene *scene, const RtValue *values, RtError *error) {
-    static const RtVec3 lights[7] = {{-5, 5, 50},   {30, -30, 30}, {-40, -30, 20}, {10, 30, 40},
-                                     {-30, 40, 10}, {50, 25, 20},  {-10, -60, 30}};
-    RT_TRY(rt_spd_add_lights(scene, lights, 7, error));
-    scene->camera.from = rt_vec3(4.5f, 0.4f, 2);
-    scene->camera.at = rt_vec3(0, 0, 1.5f);
-    scene->camera.near = 1;
-    RT_TRY(add_field(scene, error));
-
-    Tree tree = {.scene = scene, .children = {child_frame(40, 90, 0.65), child_frame(25, 230, 0.7)}};
-    RtMaterial bark = rt_nff_material("bark", rt_vec3(0.55f, 0.4f, 0.2f), 1, 0, 100000, 0, 1);
-    RT_TRY(rt_scene_add_material(scene, &bark, &tree.material, error));
-    const Frame upright = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    return add_branch(&tree, rt_vec3d(0, 0, 0), &upright, TRUNK_RADIUS, values[0].i, error);
+static void generate(RtSceneBuilder *b, const RtValue *values) {
+    static const RtVec3d lights[7] = {{-5, 5, 50},   {30, -30, 30}, {-40, -30, 20}, {10, 30, 40},
+                                      {-30, 40, 10}, {50, 25, 20},  {-10, -60, 30}};
+    static const RtVec3d field[4] = {{50, 50, 0}, {-50, 50, 0}, {-50, -50, 0}, {50, -50, 0}};
+    static const Frame upright = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    const Frame children[2] = {child_frame(40, 90, 0.65), child_frame(25, 230, 0.7)};
+    rt_spd_lights(b, lights, 7);
+    b->scene->camera.from = rt_vec3(4.5f, 0.4f, 2);
+    b->scene->camera.at = rt_vec3(0, 0, 1.5f);
+    b->scene->camera.near = 1;
+    rt_build_material(b, rt_nff_material("field", rt_vec3(0.2f, 0.7f, 0.2f), 1, 0, 100000, 0, 1));
+    rt_build_polygon(b, field, 4);
+    rt_build_material(b, rt_nff_material("bark", rt_vec3(0.55f, 0.4f, 0.2f), 1, 0, 100000, 0, 1));
+    add_branch(b, children, rt_vec3d(0, 0, 0), &upright, TRUNK_RADIUS, values[0].i);
 }
 
 const RtBuiltin rt_builtin_tree = {

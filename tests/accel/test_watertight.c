@@ -8,7 +8,7 @@
 #include "accel_testing.h"
 
 #include "core/base/random.h"
-#include "scenes/forms.h"
+#include "scenes/build.h"
 #include "scenes/open.h"
 
 #include <stdio.h>

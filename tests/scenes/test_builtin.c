@@ -209,7 +209,7 @@ RT_TEST(the_count_of_objects_of_every_family_is_told_beforehand) {
         assert_ok(rt_params_parse(builtin->params, builtin->param_count, strchr(spec, ':') + 1, "it", values,
                                   error));
         RtScene scene = open_scene(spec);
-        assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
+        assert_int_equal(rt_builtin_object_count(builtin, values), scene.geometry.object_count);
         rt_scene_clear(&scene);
     }
 }
@@ -220,7 +220,7 @@ RT_TEST(the_count_of_objects_is_told_beforehand) {
         RtValue values[RT_MAX_PARAMS];
         assert_ok(rt_params_parse(builtin->params, builtin->param_count, NULL, "it", values, error));
         RtScene scene = open_scene(builtin->name);
-        assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
+        assert_int_equal(rt_builtin_object_count(builtin, values), scene.geometry.object_count);
         rt_scene_clear(&scene);
     }
 }

@@ -5,7 +5,6 @@
 
 #include "accel/accel.h"
 #include "scenes/builtin.h"
-#include "scenes/forms.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,7 +41,7 @@ RT_TEST(a_count_before_making_is_the_count_made) {
         assert_ok(rt_params_parse(builtin->params, builtin->param_count, colon ? colon + 1 : NULL, "it",
                                   values, error));
         RtScene scene = open_scene(specs[i]);
-        assert_int_equal(builtin->object_count(values), scene.geometry.object_count);
+        assert_int_equal(rt_builtin_object_count(builtin, values), scene.geometry.object_count);
         rt_scene_clear(&scene);
     }
 }
@@ -271,13 +270,12 @@ RT_TEST(points_on_the_circle_are_exact_where_they_can_be) {
 
 RT_TEST(a_box_faces_outwards) {
     RtScene scene;
-    RtMaterial standard = rt_default_material();
     rt_scene_init(&scene);
-    RtForms forms = rt_forms(&scene);
-    assert_ok(rt_forms_materials(&forms, &standard, 1, error));
+    RtSceneBuilder b = {.scene = &scene};
+    rt_build_material(&b, rt_default_material());
     for (int quarters = 0; quarters < 4; quarters++) {
-        rt_forms_at(&forms, rt_vec3d(10 * quarters, 0, 0), quarters);
-        assert_ok(rt_forms_box(&forms, rt_vec3d(-1, -1, -1), rt_vec3d(1, 1, 1), RT_SIDES_ALL, error));
+        rt_build_origin(&b, rt_vec3d(10 * quarters, 0, 0), quarters);
+        rt_build_box(&b, rt_vec3d(-1, -1, -1), rt_vec3d(1, 1, 1), RT_SIDES_ALL);
     }
     assert_int_equal(scene.geometry.triangle_count, 48);
     for (uint32_t i = 0; i < 48; i++) {
@@ -287,27 +285,26 @@ RT_TEST(a_box_faces_outwards) {
         assert_true(rt_lengthd(normal) == 4 && rt_dotd(normal, rt_subd(a, center)) == 4);
     }
     assert_int_equal(open_edges(&scene.geometry, 0, 12), 0);
-    rt_forms_clear(&forms);
+    rt_free(b.points);
     rt_scene_clear(&scene);
 }
 
 RT_TEST(a_lathe_with_ends_on_the_axis_is_closed_and_faces_outwards) {
-    static const RtVec3d profile[] = {{0, 0, 0}, {1, 0, 0.2}, {0.5, 0, 1}, {0, 0, 1.5}};
+    static const RtVec3d profile[] = {{0, 0, 0}, {2, 0, 0.4}, {1, 0, 2}, {0, 0, 3}};
     RtScene scene;
-    RtMaterial standard = rt_default_material();
     rt_scene_init(&scene);
-    RtForms forms = rt_forms(&scene);
-    assert_ok(rt_forms_materials(&forms, &standard, 1, error));
-    const RtLathe lathe = {
-        .center = {5, 6, 7}, .profile = profile, .count = 4, .steps = 9, .sides = 7, .scale = 2};
-    assert_ok(rt_forms_lathe(&forms, &lathe, error));
+    RtSceneBuilder b = {.scene = &scene};
+    rt_build_material(&b, rt_default_material());
+    const RtLathe lathe = {.center = {5, 6, 7}, .profile = profile, .count = 4, .steps = 9, .sides = 7};
+    rt_build_lathe(&b, &lathe);
+    assert_int_equal(b.status, RT_OK);
     assert_int_equal(scene.geometry.triangle_count, 7 * (2 * 9 - 2));
-    assert_int_equal(forms.count, scene.geometry.triangle_count);
+    assert_int_equal(b.count, scene.geometry.triangle_count);
     assert_int_equal(open_edges(&scene.geometry, 0, scene.geometry.triangle_count), 0);
     normals_point_where_the_triangles_do(&scene.geometry);
     assert_ok(rt_scene_finish(&scene, error));
     assert_true(scene.geometry.box.lo.z == 7 && scene.geometry.box.hi.z == 10);
-    rt_forms_clear(&forms);
+    rt_free(b.points);
     rt_scene_clear(&scene);
 }
 
