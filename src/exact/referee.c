@@ -176,19 +176,3 @@ RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, c
     give_back(arena, mark);
     return finding;
 }
-
-RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                           long double *ulps) {
-    RtExactArena *arena = borrow();
-    size_t mark = rt_exact_arena_mark(arena);
-    RtWideRay line = rt_wide_ray(ray);
-    RtExactLine exact = rt_exact_line(arena, &line);
-    RtPlace at;
-    RtFinding finding = rt_exact_hit(arena, geometry, id, &exact, &at);
-    if (finding == RT_HIT) {
-        long double ulp = rt_float_ulp(rt_place_value(arena, &at, exact.zero));
-        *ulps = -rt_place_value(arena, &at, rt_exact_of(arena, (double)t)) / ulp;
-    }
-    give_back(arena, mark);
-    return finding;
-}

@@ -62,11 +62,6 @@ RtFinding rt_referee_hit(const RtGeometry *geometry, uint32_t id, const RtWideRa
 RtFinding rt_referee_order(const RtGeometry *geometry, uint32_t a, uint32_t b, const RtRay *ray, int *order,
                            long double *apart);
 
-/* (t - exact t) in ulps of the exact t in float32, the difference being exact. RT_MISSED if object `id` is
- * not met. */
-RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                           long double *ulps);
-
 /* One ulp of x in float32: the distance between floats of its size, never 0. */
 long double rt_float_ulp(long double x);
 

@@ -3,6 +3,7 @@
  * but for rays that pass a border within the rounding of float32. */
 #include "testing.h"
 
+#include "exact/border.h"
 #include "exact/referee.h"
 
 /* ---- numbers ---- */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Precision: how far off our hit functions are. Rays of several cases are aimed at random objects of one
- * kind, and what rt_object_hit says is held against exact arithmetic (exact/referee.h): the error of
- * t, and the decisions that differ. docs/precision.md has the table. */
-#ifndef RT_EXACT_PRECISION_H
-#define RT_EXACT_PRECISION_H
+/* Measures the precision of the hit functions: rays of several cases are aimed at random objects of one kind,
+ * and rt_object_hit is compared with exact arithmetic (exact/referee.h): the error of t, and the decisions
+ * that differ. docs/precision.md has the table. */
+#ifndef RT_TESTS_EXACT_PRECISION_H
+#define RT_TESTS_EXACT_PRECISION_H
 
 #include "core/base/status.h"
 #include "core/shape/geometry.h"

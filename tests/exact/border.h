@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How near to a border a decision is: a hit function that says otherwise than exact arithmetic is excused if
- * the ray, moved a little, would be decided its way.
+/* The distance of a ray from the border of an object: a hit function may differ from exact arithmetic if the
+ * ray, moved a little, would be decided its way.
  *
- * The unit is what rounding to float32 may do to a place seen from the origin: 2^-24 of the distance from
- * there to the farthest plane of the object's box, along the axis that is largest. The thickness by which
- * boxes are widened (core/base/ray.h) is 16 of them. */
-#ifndef RT_EXACT_BORDER_H
-#define RT_EXACT_BORDER_H
+ * The unit is the effect of rounding to float32 on a point seen from the origin: 2^-24 of the distance to the
+ * farthest plane of the object's box, along the axis where it is largest. The thickness by which boxes are
+ * widened (core/base/ray.h) is 16 units. */
+#ifndef RT_TESTS_EXACT_BORDER_H
+#define RT_TESTS_EXACT_BORDER_H
 
 #include "exact/referee.h"
 
@@ -27,6 +27,11 @@ RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *
  * RT_UNDECIDED where that is. */
 RtFinding rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
                             RtDecision decision);
+
+/* (t - exact t) in ulps of the exact t in float32, the difference being exact. RT_MISSED if object `id` is
+ * not met. */
+RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                           long double *ulps);
 
 /* How near to a border of the object the ray's line passes, in units. Of flat shapes it is the distance from
  * the nearest edge. Of others it is the least power of two, 2^RT_BORDER_NEAR or more, by which the origin has

@@ -85,3 +85,18 @@ double rt_border_distance(const RtGeometry *geometry, uint32_t id, const RtRay *
     default: return least_move(geometry, id, line, unit, decision);
     }
 }
+
+RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                           long double *ulps) {
+    RtExactArena arena = {0};
+    RtWideRay line = rt_wide_ray(ray);
+    RtExactLine exact = rt_exact_line(&arena, &line);
+    RtPlace at;
+    RtFinding finding = rt_exact_hit(&arena, geometry, id, &exact, &at);
+    if (finding == RT_HIT) {
+        long double ulp = rt_float_ulp(rt_place_value(&arena, &at, exact.zero));
+        *ulps = -rt_place_value(&arena, &at, rt_exact_of(&arena, (double)t)) / ulp;
+    }
+    rt_exact_arena_clear(&arena);
+    return finding;
+}
