@@ -232,9 +232,30 @@ RT_DEFINE_MASK_COMPARISON(le, double8, RtDouble8, _mm512_cmp_pd_mask, __m512d, _
 RT_DEFINE_MASK_COMPARISON(eq, double8, RtDouble8, _mm512_cmp_pd_mask, __m512d, _CMP_EQ_OQ)
 #else
 RT_DEFINE_COMPARISONS(8)
+#endif
 #if defined(__AVX2__)
 RT_DEFINE_DOUBLE_COMPARISONS(4)
 #endif
+
+/* Bit i: numbers between `least` and `most` are not of different signs. */
+#define RT_DEFINE_ONE_SIGN(Type, type, sign)                                                                 \
+    RT_INLINE uint32_t rt_one_sign_##type(Type least, Type most) {                                           \
+        return rt_bits_##sign((least >= 0) | (most <= 0));                                                   \
+    }
+#define RT_DEFINE_MASK_ONE_SIGN(Type, type)                                                                  \
+    RT_INLINE uint32_t rt_one_sign_##type(Type least, Type most) {                                           \
+        const Type zero = {0};                                                                               \
+        return rt_le_bits_##type(zero, least) | rt_le_bits_##type(most, zero);                               \
+    }
+RT_DEFINE_ONE_SIGN(RtFloat4, float4, int4)
+RT_DEFINE_ONE_SIGN(RtFloat8, float8, int8)
+RT_DEFINE_ONE_SIGN(RtDouble2, double2, long2)
+#if defined(__AVX2__)
+RT_DEFINE_ONE_SIGN(RtDouble4, double4, long4)
+#endif
+#if RT_AVX512
+RT_DEFINE_MASK_ONE_SIGN(RtFloat16, float16)
+RT_DEFINE_MASK_ONE_SIGN(RtDouble8, double8)
 #endif
 
 /* ---- the width of the instruction set ---- */
@@ -258,15 +279,18 @@ typedef RT_OF_HALF(RtLong) RtLongs;
 #define rt_load_ints   RT_OF_LANES(rt_load_ints)
 
 #if RT_AVX512
-#define RT_BY_WIDTH(Type, f) Type##4 : f##4, Type##8 : f##8, Type##16 : f##16
+#define RT_BY_WIDTH(Type, f)        Type##4 : f##4, Type##8 : f##8, Type##16 : f##16
+#define RT_BY_DOUBLE_WIDTH(Type, f) Type##4 : f##4, Type##8 : f##8
+#elif RT_LANES == 8
+#define RT_BY_WIDTH(Type, f)        Type##4 : f##4, Type##8 : f##8
+#define RT_BY_DOUBLE_WIDTH(Type, f) Type##2 : f##2, Type##4 : f##4
 #else
-#define RT_BY_WIDTH(Type, f) Type##4 : f##4, Type##8 : f##8
+#define RT_BY_WIDTH(Type, f)        Type##4 : f##4, Type##8 : f##8
+#define RT_BY_DOUBLE_WIDTH(Type, f) Type##2 : f##2
 #endif
-#define RT_BY_FLOATS(f) RT_BY_WIDTH(RtFloat, f##_float)
-#define RT_BY_INTS(f)   RT_BY_WIDTH(RtInt, f##_int)
-#define RT_BY_DOUBLES(f)                                                                                     \
-    RtDoubles:                                                                                               \
-    RT_OF_HALF(f##_double)
+#define RT_BY_FLOATS(f)  RT_BY_WIDTH(RtFloat, f##_float)
+#define RT_BY_INTS(f)    RT_BY_WIDTH(RtInt, f##_int)
+#define RT_BY_DOUBLES(f) RT_BY_DOUBLE_WIDTH(RtDouble, f##_double)
 
 #define rt_store(at, a) _Generic((a), RT_BY_FLOATS(rt_store), RT_BY_INTS(rt_store))(at, a)
 #define rt_abs(a)       _Generic((a), RT_BY_FLOATS(rt_abs), RT_BY_DOUBLES(rt_abs))(a)
@@ -278,8 +302,10 @@ typedef RT_OF_HALF(RtLong) RtLongs;
 #define rt_le_bits(a, b) _Generic((a), RT_BY_FLOATS(rt_le_bits), RT_BY_DOUBLES(rt_le_bits))(a, b)
 #define rt_lt_bits(a, b) _Generic((a), RT_BY_FLOATS(rt_lt_bits), RT_BY_INTS(rt_lt_bits))(a, b)
 #define rt_eq_bits(a, b) _Generic((a), RT_BY_INTS(rt_eq_bits), RT_BY_DOUBLES(rt_eq_bits))(a, b)
-#define rt_to_ints(a)    __builtin_convertvector(a, RtInts) /* towards 0 */
-#define rt_to_floats(a)  __builtin_convertvector(a, RtFloats)
+#define rt_one_sign_bits(least, most)                                                                        \
+    _Generic((least), RT_BY_FLOATS(rt_one_sign), RT_BY_DOUBLES(rt_one_sign))(least, most)
+#define rt_to_ints(a)   __builtin_convertvector(a, RtInts) /* towards 0 */
+#define rt_to_floats(a) __builtin_convertvector(a, RtFloats)
 
 /* ---- bits as masks ---- */
 
@@ -359,6 +385,63 @@ RT_INLINE void rt_compress_store(uint32_t *at, uint32_t bits, RtInts a) {
     for (int i = 0; i < RT_LANES; i++) at[i] = (uint32_t)a[rt_lanes_of_bits[bits] >> 8 * i & 3];
 #endif
 }
+
+/* ---- eight lanes whose mask stays as the machine makes it, and eight sets of up to sixty-four ---- */
+
+/* rt_le_mask8: where a <= b; rt_select_mask8(mask, a, b): a there, else b.
+ * rt_sets8_add: adds members to the sets of a mask; rt_sets8_bits: bit i: set i is not empty;
+ * rt_sets8_compress: the sets of some bits, in order, to at[0..8). */
+#if RT_AVX512
+typedef __mmask8 RtMask8;
+typedef RtLong8 RtSets8;
+RT_INLINE RtMask8 rt_le_mask8(RtFloat8 a, RtFloat8 b) {
+    return _mm256_cmp_ps_mask(a, b, _CMP_LE_OQ);
+}
+RT_INLINE RtFloat8 rt_select_mask8(RtMask8 mask, RtFloat8 a, RtFloat8 b) {
+    return _mm256_mask_mov_ps(b, mask, a);
+}
+RT_INLINE void rt_sets8_add(RtSets8 *sets, RtMask8 mask, uint64_t members) {
+    __m512i old = (__m512i)*sets;
+    *sets = (RtSets8)_mm512_mask_or_epi64(old, mask, old, _mm512_set1_epi64((long long)members));
+}
+RT_INLINE uint32_t rt_sets8_bits(const RtSets8 *sets) {
+    return _mm512_test_epi64_mask((__m512i)*sets, (__m512i)*sets);
+}
+RT_INLINE void rt_sets8_compress(uint64_t *at, uint32_t bits, const RtSets8 *sets) {
+    _mm512_storeu_si512(at, _mm512_maskz_compress_epi64((__mmask8)bits, (__m512i)*sets));
+}
+#else
+typedef RtInt8 RtMask8;
+typedef struct RtSets8 {
+    RtLong4 lower, upper;
+} RtSets8;
+RT_INLINE RtMask8 rt_le_mask8(RtFloat8 a, RtFloat8 b) {
+    return a <= b;
+}
+RT_INLINE RtFloat8 rt_select_mask8(RtMask8 mask, RtFloat8 a, RtFloat8 b) {
+    return rt_select(mask, a, b);
+}
+RT_INLINE void rt_sets8_add(RtSets8 *sets, RtMask8 mask, uint64_t members) {
+    RtInt4 lower = (RtInt4)rt_lower4((RtFloat8)mask), upper = (RtInt4)rt_upper4((RtFloat8)mask);
+    sets->lower |= __builtin_convertvector(lower, RtLong4) & (int64_t)members;
+    sets->upper |= __builtin_convertvector(upper, RtLong4) & (int64_t)members;
+}
+RT_INLINE uint32_t rt_sets8_bits(const RtSets8 *sets) {
+#if defined(__AVX2__)
+    return 255 ^ (rt_bits_long4(sets->lower == 0) | rt_bits_long4(sets->upper == 0) << 4);
+#else
+    uint32_t bits = 0;
+    for (int i = 0; i < 4; i++)
+        bits |= (uint32_t)(sets->lower[i] != 0) << i | (uint32_t)(sets->upper[i] != 0) << (4 + i);
+    return bits;
+#endif
+}
+RT_INLINE void rt_sets8_compress(uint64_t *at, uint32_t bits, const RtSets8 *sets) {
+    _Alignas(32) RtSets8 all = *sets;
+    const uint64_t *set = (const uint64_t *)&all;
+    for (; bits; bits &= bits - 1) *at++ = set[__builtin_ctz(bits)];
+}
+#endif
 
 /* ---- tables ---- */
 
