@@ -165,7 +165,7 @@ RT_TEST(every_instruction_set_makes_the_same_lists_and_counts) {
         for (RtIsa isa = RT_ISA_PORTABLE; isa <= rt_isa_best(); isa++) {
             RtLightBuffer other = *best;
             other.isa.kernels = RT_KERNELS_FOR(light, isa);
-            other.painting = RT_KERNELS_FOR(light_painting, isa);
+            other.raster = RT_KERNELS_FOR(light_raster, isa);
             other.cubes = rt_alloc(scene.light_count, sizeof(RtLightCube));
             assert_non_null(other.cubes);
             for (uint32_t light = 0; light < scene.light_count; light++) {

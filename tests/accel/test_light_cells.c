@@ -24,7 +24,7 @@ static List list_at(const RtLightBuffer *buffer, uint32_t column, uint32_t row) 
     const RtLightGrid *grid = &cube->grids[4];
     assert_int_equal(grid->columns * grid->rows, 1);
     uint32_t tile = cube->tiles[grid->first_tile];
-    uint32_t cell = grid->first_cell + rt_light_first_cell(tile) + row * rt_light_fineness(tile) + column;
+    uint32_t cell = grid->first_cell + rt_light_first_cell(tile) + row * rt_light_resolution(tile) + column;
     List list = {cube->entries + cube->first[cell], cube->first[cell + 1] - cube->first[cell], false};
     list.cut = list.count > 0 && list.at[list.count - 1].object == RT_LIGHT_BEYOND;
     return list;

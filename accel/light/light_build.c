@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building a light buffer: margins, grids and how fine they are, near lists; then light by light what falls
- * into the tiles (bins.c) and their lists (tile.c). */
+/* Building a light buffer: margins, grids and their resolution, near lists; then the lists, light by light
+ * (light_lists.c). */
 #include "accel/light/light.h"
 
 #include "core/base/memory.h"
@@ -39,51 +39,51 @@ static RtStatus make_cubes(RtLightBuffer *buffer, RtError *error) {
 
 /* ---- tiles ---- */
 
-/* The part of a face that sees the scene, and how many objects are seen there. */
-typedef struct Outlook {
+/* The part of a face that sees the scene, and an estimate of how many objects are seen there. */
+typedef struct Seen {
     RtLightView view; /* far: 0 where nothing is seen */
     double objects;
-} Outlook;
+} Seen;
 
-/* From every kth object. */
-static void look_at_objects(const RtLightBuffer *buffer, uint32_t light, Outlook outlooks[6]) {
+/* By every kth object. */
+static void look_at_objects(const RtLightBuffer *buffer, uint32_t light, Seen seen[6]) {
     enum { SAMPLE = 2048 };
     const RtGeometry *g = &buffer->isa.base.scene->geometry;
     uint32_t stride = g->object_count / SAMPLE + 1;
     for (int face = 0; g->object_count > 0 && face < 6; face++) {
-        Outlook *o = &outlooks[face];
-        RtLightView v;
-        if (!rt_light_view(buffer, light, face, &g->box, &o->view)) {
-            o->view.far = 0;
+        const RtLightFace on = rt_light_face(buffer, light, face);
+        RtLightView view;
+        if (!rt_light_view(&on, &g->box, &seen[face].view)) {
+            seen[face].view.far = 0;
             continue;
         }
         for (uint32_t id = 0; id < g->object_count; id += stride)
-            o->objects += rt_light_view(buffer, light, face, &g->boxes[id], &v) ? stride : 0;
+            seen[face].objects += rt_light_view(&on, &g->boxes[id], &view) ? stride : 0;
     }
 }
 
 /* Tiles of about so many objects, of which a third may be in front. */
 enum { OBJECTS_OF_TILE = 64, MOST_TILES = 256, CELLS_OF_TILE = 32 };
 
-/* How many tiles there are along the longer edge, and how fine they may be. `cells`: how many of them are
- * asked for along it, or 0. */
-static void divide(const Outlook *o, double cells, double margin, RtLightGrid *grid) {
+/* How many tiles there are along the longer edge, and their resolution at most. `cells`: how many are asked
+ * for along it, or 0. */
+static void divide(const Seen *o, double cells, double margin, RtLightGrid *grid) {
     double width = o->view.hi[0] - o->view.lo[0], height = o->view.hi[1] - o->view.lo[1];
     double longer = fmax(width, height), tiles;
     if (cells > 0) {
         tiles = ceil(cells / CELLS_OF_TILE);
-        grid->finest = (uint32_t)ceil(cells / tiles);
+        grid->max_resolution = (uint32_t)ceil(cells / tiles);
     } else {
         tiles = floor(longer * sqrt(o->objects / OBJECTS_OF_TILE / (width * height)));
         tiles = fmin(fmax(tiles, 1), MOST_TILES);
         /* Cells 16 times as wide as what they grow by. */
         double narrowest = 16 * (0x1p-18 + 8 * margin / (o->view.near + o->view.far));
-        grid->finest = (uint32_t)fmin(fmax(longer / tiles / narrowest, 1), RT_LIGHT_FINEST);
+        grid->max_resolution = (uint32_t)fmin(fmax(longer / tiles / narrowest, 1), RT_LIGHT_MAX_RESOLUTION);
     }
     grid->scale = (float)(tiles / longer);
 }
 
-static void make_grid(const Outlook *o, double cells, double margin, RtLightGrid *grid) {
+static void make_grid(const Seen *o, double cells, double margin, RtLightGrid *grid) {
     *grid = (RtLightGrid){.columns = 0};
     if (o->view.far <= 0) return;
     divide(o, cells, margin, grid);
@@ -94,7 +94,8 @@ static void make_grid(const Outlook *o, double cells, double margin, RtLightGrid
     grid->columns = (uint32_t)fmax(ceil((o->view.hi[0] - (double)grid->u) * scale - 0x1p-20), 1);
     grid->rows = (uint32_t)fmax(ceil((o->view.hi[1] - (double)grid->w) * scale - 0x1p-20), 1);
     double most = floor(sqrt((double)RT_LIGHT_FACE_CELLS / ((double)grid->columns * grid->rows)));
-    if (grid->finest > most) grid->finest = (uint32_t)most; /* where there are more than a million objects */
+    if (grid->max_resolution > most)
+        grid->max_resolution = (uint32_t)most; /* where there are more than a million objects */
     /* Two steps before the nearest object, so that what is before it has a lesser key. */
     grid->depth = rt_float_below(o->view.near - 2 * (o->view.far - o->view.near) / RT_LIGHT_DEPTHS);
     grid->depth_scale = (float)((RT_LIGHT_DEPTHS - 1) / (o->view.far - (double)grid->depth));
@@ -105,19 +106,19 @@ static void make_grid(const Outlook *o, double cells, double margin, RtLightGrid
 /* A buffer must have room for so much: a list's place, and two entries. */
 enum { LEAST_OF_CELL = sizeof(uint32_t) + 2 * sizeof(RtLightEntry) };
 
-/* Sets the grids of all lights for `cells` along the longer edge, 0 to choose; gives the cells there are at
- * most. */
-static double make_grids(RtLightBuffer *buffer, const Outlook *outlooks, double cells) {
+/* Sets the grids of all lights for `cells` along the longer edge, 0 to choose; returns the most cells there
+ * can be. */
+static double make_grids(RtLightBuffer *buffer, const Seen *seen, double cells) {
     double all = 0;
     for (uint32_t light = 0; light < buffer->isa.base.scene->light_count; light++) {
         RtLightCube *cube = &buffer->cubes[light];
         double tiles = 0;
         for (uint32_t face = 0; face < 6; face++) {
             RtLightGrid *grid = &cube->grids[face];
-            make_grid(&outlooks[6 * (size_t)light + face], cells, cube->margin, grid);
+            make_grid(&seen[6 * (size_t)light + face], cells, cube->margin, grid);
             grid->first_tile = (uint32_t)tiles;
             tiles += (double)grid->columns * grid->rows;
-            all += (double)grid->columns * grid->rows * grid->finest * grid->finest;
+            all += (double)grid->columns * grid->rows * grid->max_resolution * grid->max_resolution;
         }
         cube->tile_count = (uint32_t)tiles;
     }
@@ -130,23 +131,23 @@ static double make_coarser(RtLightBuffer *buffer, double part) {
     for (uint32_t light = 0; light < buffer->isa.base.scene->light_count; light++) {
         for (int face = 0; face < 6; face++) {
             RtLightGrid *grid = &buffer->cubes[light].grids[face];
-            grid->finest = (uint32_t)fmax(grid->finest * sqrt(part), 1);
-            all += (double)grid->columns * grid->rows * grid->finest * grid->finest;
+            grid->max_resolution = (uint32_t)fmax(grid->max_resolution * sqrt(part), 1);
+            all += (double)grid->columns * grid->rows * grid->max_resolution * grid->max_resolution;
         }
     }
     return all;
 }
 
-static RtStatus fit_grids(RtLightBuffer *buffer, const Outlook *outlooks, double limit, double *cells,
+static RtStatus fit_grids(RtLightBuffer *buffer, const Seen *seen, double limit, double *cells,
                           RtError *error) {
     uint32_t fits = 0, too_many = buffer->cells;
     double most = limit / LEAST_OF_CELL;
-    *cells = make_grids(buffer, outlooks, buffer->cells);
+    *cells = make_grids(buffer, seen, buffer->cells);
     if (*cells > most && buffer->cells == 0) *cells = make_coarser(buffer, most / *cells);
     if (*cells <= most) return RT_OK;
     while (too_many - fits > 1) {
         uint32_t n = fits + (too_many - fits) / 2;
-        *(make_grids(buffer, outlooks, n) <= most ? &fits : &too_many) = n;
+        *(make_grids(buffer, seen, n) <= most ? &fits : &too_many) = n;
     }
     return rt_fail(
         error, RT_BAD_INPUT,
@@ -157,12 +158,11 @@ static RtStatus fit_grids(RtLightBuffer *buffer, const Outlook *outlooks, double
 
 static RtStatus choose_grids(RtLightBuffer *buffer, double limit, double *cells, RtError *error) {
     const RtScene *scene = buffer->isa.base.scene;
-    Outlook *outlooks = rt_alloc(6 * (size_t)scene->light_count, sizeof(Outlook));
-    if (!outlooks)
-        return rt_fail_memory(error, "a light buffer", 6 * (size_t)scene->light_count * sizeof(Outlook));
-    for (uint32_t i = 0; i < scene->light_count; i++) look_at_objects(buffer, i, outlooks + 6 * (size_t)i);
-    RtStatus status = fit_grids(buffer, outlooks, limit, cells, error);
-    rt_free(outlooks);
+    Seen *seen = rt_alloc(6 * (size_t)scene->light_count, sizeof(Seen));
+    if (!seen) return rt_fail_memory(error, "a light buffer", 6 * (size_t)scene->light_count * sizeof(Seen));
+    for (uint32_t i = 0; i < scene->light_count; i++) look_at_objects(buffer, i, seen + 6 * (size_t)i);
+    RtStatus status = fit_grids(buffer, seen, limit, cells, error);
+    rt_free(seen);
     return status;
 }
 
@@ -172,9 +172,10 @@ static RtStatus make_near_list(RtLightBuffer *buffer, uint32_t light, RtError *e
     const RtGeometry *g = &buffer->isa.base.scene->geometry;
     RtLightCube *cube = &buffer->cubes[light];
     uint32_t capacity = 0;
-    if (!rt_light_is_in(buffer, light, &g->box)) return RT_OK;
+    const RtLightFace on = rt_light_face(buffer, light, 0);
+    if (!rt_light_is_in(&on, &g->box)) return RT_OK;
     for (uint32_t id = 0; id < g->object_count; id++) {
-        if (!rt_light_is_near(buffer, light, id)) continue;
+        if (!rt_light_is_near(&on, id)) continue;
         RT_TRY(rt_reserve(&cube->near, &capacity, cube->near_count + UINT64_C(1), sizeof(uint32_t), error));
         cube->near[cube->near_count++] = id;
     }
@@ -183,8 +184,9 @@ static RtStatus make_near_list(RtLightBuffer *buffer, uint32_t light, RtError *e
 
 /* ---- build and destroy ---- */
 
-/* Left to its own choice a light serves scenes of more objects only: what lies below answers rays among fewer
- * in less time than it takes to find their cells and look at the entry that is their own object. */
+/* Unless cells are asked for, a light serves only scenes of more objects: among fewer, the accelerator below
+ * answers rays in less time than it takes to find their cells and look at the entry that is their own object.
+ */
 enum { FEW_OBJECTS = 12000 };
 
 static RtStatus make_lights(RtLightBuffer *buffer, const RtBuild *what, RtError *error) {
@@ -225,7 +227,7 @@ RtStatus rt_light_build(const RtBuild *what, RtAccel **out, RtError *error) {
     buffer->extents = values[RT_LIGHT_EXTENTS].flag;
     RtIsa isa = rt_isa_best();
     buffer->isa.kernels = RT_KERNELS_FOR(light, isa);
-    buffer->painting = RT_KERNELS_FOR(light_painting, isa);
+    buffer->raster = RT_KERNELS_FOR(light_raster, isa);
     RtStatus status = make_cubes(buffer, error);
     if (status == RT_OK) status = make_lights(buffer, what, error);
     return rt_accel_built(accel, status, out);

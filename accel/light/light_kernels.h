@@ -5,14 +5,14 @@
  * Of a stream a block of rays is taken at a time, light by light. First each ray finds its cell, sixteen in
  * lanes. Then the rays that have a list go through it in rounds, of one entry, of two, and of four: those
  * whose entry is not deeper and is seen in their part of the cell make pairs of a ray and an object, which
- * are tested in lanes where they are triangles. Who is blocked, or at the end of its list, drops out. What a
- * ray does depends on no other, so that counts are the same in streams of any length. Rays at the end of a
- * list that was cut, and those that are not exactly what a shadow ray is, are passed on together.
+ * are tested in lanes where they are triangles. A ray that is occluded, or at the end of its list, drops out.
+ * What a ray does depends on no other, so that counts are the same in streams of any length. Rays at the end
+ * of a list that was cut, and those that are not exactly what a shadow ray is, are passed on together.
  *
  * A step is an entry looked at that is not deeper than the ray; an extent test that of the part of the cell,
- * and of the side of a polygon or sphere (side.h). */
-#include "accel/light/meet.h"
-#include "accel/light/raster.h"
+ * and of the side of a polygon or sphere (light_facing.h). */
+#include "accel/light/light_draw.h"
+#include "accel/light/light_pairs.h"
 
 /* ---- a round ---- */
 
@@ -23,9 +23,9 @@ typedef struct Round {
 } Round;
 
 /* Appends the pairs of lanes `met`. */
-RT_KERNEL void add_pairs(const Asking *a, Round *round, uint32_t met, RtW16 ray, RtW16 object) {
-    const RtGeometry *g = &a->self->isa.base.scene->geometry;
-    Stream *stream = a->stream;
+RT_KERNEL void add_pairs(const RayBatch *batch, Round *round, uint32_t met, RtW16 ray, RtW16 object) {
+    const RtGeometry *g = &batch->self->isa.base.scene->geometry;
+    Stream *stream = batch->stream;
     if (!round->all_triangles) {
         const RtW16 triangle = rt_w16_all(RT_SHAPE_TRIANGLE);
         uint32_t other = met & ~rt_w16_equal(rt_w16_right(object, RT_REF_INDEX_BITS), triangle);
@@ -45,13 +45,13 @@ RT_KERNEL void add_pairs(const Asking *a, Round *round, uint32_t met, RtW16 ray,
     round->pairs = after;
 }
 
-/* Not of an Asking: were its address handed out, the compiler could not tell that its tally stays NULL. */
+/* Not of an RayBatch: were its address handed out, the compiler could not tell that its tally stays NULL. */
 RT_COLD static void observe_entries(const RtGeometry *g, bool extents, const RtW16 *object, uint32_t lanes,
                                     uint32_t met) {
     uint32_t objects[16];
     rt_w16_put_some(objects, 0xffff, *object);
     for (; lanes; lanes &= lanes - 1) {
-        uint32_t lane = (uint32_t)__builtin_ctz(lanes), id = rt_light_id_of(g, objects[lane]);
+        uint32_t lane = (uint32_t)__builtin_ctz(lanes), id = rt_raster_id(g, objects[lane]);
         const char *what = "entry of object";
         rt_observe(&(RtTraced){.kind = RT_TRACED_STEP, .what = what, .index = id});
         if (!extents) continue;
@@ -60,19 +60,19 @@ RT_COLD static void observe_entries(const RtGeometry *g, bool extents, const RtW
     }
 }
 
-/* Sixteen rays on their way look at their next `deep` entries. */
-RT_KERNEL void look_up(const Asking *a, const RtLightEntry *entries, uint32_t first, uint32_t count,
+/* Sixteen rays in lists look at their next `deep` entries. */
+RT_KERNEL void look_up(const RayBatch *batch, const RtLightEntry *entries, uint32_t first, uint32_t count,
                        uint32_t deep, Round *round) {
-    Stream *stream = a->stream;
-    Way *way = &stream->way;
+    Stream *stream = batch->stream;
+    Cursors *cursors = &stream->cursors;
     const RtW16 beyond = rt_w16_all(RT_LIGHT_BEYOND), one = rt_w16_all(1), none = rt_w16_all(0);
     uint32_t lanes = count - first < 16 ? (1u << (count - first)) - 1 : 0xffff;
-    RtW16 ray = rt_w16_pick(lanes, none, rt_w16_get(way->ray + first));
-    RtW16 at = rt_w16_pick(lanes, none, rt_w16_get(way->at + first));
-    RtW16 end = rt_w16_get(way->end + first), key = rt_w16_get(way->key + first);
+    RtW16 ray = rt_w16_pick(lanes, none, rt_w16_get(cursors->ray + first));
+    RtW16 at = rt_w16_pick(lanes, none, rt_w16_get(cursors->at + first));
+    RtW16 end = rt_w16_get(cursors->end + first), key = rt_w16_get(cursors->key + first);
     const RtW16 depth = rt_w16_right(key, 16);
     const RtW16 part = rt_w16_and(key, rt_w16_all(RT_LIGHT_PART * RT_LIGHT_PART - 1));
-    lanes &= rt_w16_equal(rt_w16_lookup(a->blockers, ray), rt_w16_all(RT_NO_OBJECT));
+    lanes &= rt_w16_equal(rt_w16_lookup(batch->occluders, ray), rt_w16_all(RT_NO_OBJECT));
     for (uint32_t i = 0; i < deep && lanes; i++) {
         RtW16 object = rt_w16_lookup_pair(&entries[0].object, at);
         RtW16 of_entry = rt_w16_lookup_pair(&entries[0].key, at);
@@ -81,72 +81,73 @@ RT_KERNEL void look_up(const Asking *a, const RtLightEntry *entries, uint32_t fi
         lanes &= ~ends;
         rt_w16_put_some(stream->ended + stream->ended_count, ends, ray);
         stream->ended_count += (uint32_t)__builtin_popcount(ends);
-        RT_COUNT(a->tally, steps, __builtin_popcount(lanes));
+        RT_COUNT(batch->tally, steps, __builtin_popcount(lanes));
         uint32_t met = lanes;
-        if (a->self->extents) {
-            RT_COUNT(a->tally, extent_tests, __builtin_popcount(lanes));
+        if (batch->self->extents) {
+            RT_COUNT(batch->tally, extent_tests, __builtin_popcount(lanes));
             met &= rt_w16_equal(rt_w16_and(rt_w16_down(of_entry, part), one), one);
         }
-        if (RT_OBSERVED(a->tally))
-            observe_entries(&a->self->isa.base.scene->geometry, a->self->extents, &object, lanes, met);
-        if (met) add_pairs(a, round, met, ray, object);
+        if (RT_OBSERVED(batch->tally))
+            observe_entries(&batch->self->isa.base.scene->geometry, batch->self->extents, &object, lanes,
+                            met);
+        if (met) add_pairs(batch, round, met, ray, object);
         RtW16 next = rt_w16_add(at, one);
         lanes &= rt_w16_below(next, end);
         at = rt_w16_pick(lanes, none, next);
     }
-    rt_w16_put_some(way->ray + round->left, lanes, ray);
-    rt_w16_put_some(way->at + round->left, lanes, at);
-    rt_w16_put_some(way->end + round->left, lanes, end);
-    rt_w16_put_some(way->key + round->left, lanes, key);
+    rt_w16_put_some(cursors->ray + round->left, lanes, ray);
+    rt_w16_put_some(cursors->at + round->left, lanes, at);
+    rt_w16_put_some(cursors->end + round->left, lanes, end);
+    rt_w16_put_some(cursors->key + round->left, lanes, key);
     round->left += (uint32_t)__builtin_popcount(lanes);
 }
 
-/* A round of all rays on their way; gives how many are left. */
-RT_KERNEL uint32_t take_round(const Asking *a, uint32_t light, uint32_t count, uint32_t deep,
+/* A round of all rays in lists; returns how many are left. */
+RT_KERNEL uint32_t take_round(const RayBatch *batch, uint32_t light, uint32_t count, uint32_t deep,
                               bool all_triangles) {
-    const RtLightEntry *entries = a->self->cubes[light].entries;
+    const RtLightEntry *entries = batch->self->cubes[light].entries;
     Round round = {0, 0, 0, all_triangles};
-    for (uint32_t first = 0; first < count; first += 16) look_up(a, entries, first, count, deep, &round);
-    RT_COUNT(a->tally, object_tests, round.pairs);
-    if (RT_OBSERVED(a->tally))
-        observe_pairs(&a->self->isa.base.scene->geometry, a->stream->pair_object, round.pairs);
-    test_pairs(a, light, round.pairs);
-    test_others(a, round.others);
+    for (uint32_t first = 0; first < count; first += 16) look_up(batch, entries, first, count, deep, &round);
+    RT_COUNT(batch->tally, object_tests, round.pairs);
+    if (RT_OBSERVED(batch->tally))
+        observe_pairs(&batch->self->isa.base.scene->geometry, batch->stream->pair_object, round.pairs);
+    test_pairs(batch, light, round.pairs);
+    test_others(batch, round.others);
     return round.left;
 }
 
 /* Rays order[0..count) to a light that serves. */
-RT_KERNEL void shade_light(const Asking *a, uint32_t light, const uint32_t *order, uint32_t count,
+RT_KERNEL void shade_light(const RayBatch *batch, uint32_t light, const uint32_t *order, uint32_t count,
                            bool all_triangles) {
-    Stream *stream = a->stream;
+    Stream *stream = batch->stream;
     stream->ended_count = 0;
-    uint32_t on_way = begin_light(a, light, order, count);
+    uint32_t on_way = begin_light(batch, light, order, count);
     for (uint32_t deep = 1; on_way > 0; deep = deep < DEEPEST ? 2 * deep : DEEPEST)
-        on_way = take_round(a, light, on_way, deep, all_triangles);
-    /* Those at the end of a list that was cut; some were blocked in the same round. */
+        on_way = take_round(batch, light, on_way, deep, all_triangles);
+    /* Those at the end of a list that was cut; some were occluded in the same round. */
     for (uint32_t i = 0; i < stream->ended_count; i++) {
         uint32_t ray = stream->ended[i];
         stream->passed[stream->passed_count] = ray;
-        stream->passed_count += a->blockers[ray] == RT_NO_OBJECT;
+        stream->passed_count += batch->occluders[ray] == RT_NO_OBJECT;
     }
 }
 
 /* ---- streams ---- */
 
-RT_KERNEL void pass_on(const Asking *a, RtTally *tallies) {
-    Stream *stream = a->stream;
+RT_KERNEL void pass_on(const RayBatch *batch, RtTally *tallies) {
+    Stream *stream = batch->stream;
     uint32_t count = stream->passed_count;
     if (count == 0) return;
-    RT_COUNT(a->tally, passed_on, count);
-    RT_OBSERVE(a->tally, .kind = RT_TRACED_PASSED_ON, .what = "light");
-    for (uint32_t i = 0; i < count; i++) stream->passed_rays[i] = a->rays[stream->passed[i]];
-    rt_hand_down_occluded(&a->self->isa.base, a->scratch, stream->passed_rays, count, stream->passed_blockers,
-                          tallies);
-    for (uint32_t i = 0; i < count; i++) a->blockers[stream->passed[i]] = stream->passed_blockers[i];
+    RT_COUNT(batch->tally, passed_on, count);
+    RT_OBSERVE(batch->tally, .kind = RT_TRACED_PASSED_ON, .what = "light");
+    for (uint32_t i = 0; i < count; i++) stream->passed_rays[i] = batch->rays[stream->passed[i]];
+    rt_hand_down_occluded(&batch->self->isa.base, batch->scratch, stream->passed_rays, count,
+                          stream->passed_occluders, tallies);
+    for (uint32_t i = 0; i < count; i++) batch->occluders[stream->passed[i]] = stream->passed_occluders[i];
 }
 
-/* Rays by light: those of lights[0] first, in their order. Gives how many are of it; the others are put
- * behind, to be gone over again. */
+/* Rays by light: those of lights[0] first, in their order. Returns how many these are; the others go to
+ * others[0..*other_count). */
 RT_KERNEL uint32_t gather_light(const RtRay *rays, uint32_t *order, uint32_t count, uint32_t *others,
                                 uint32_t *other_count) {
     uint32_t light = rays[order[0]].source, same = 0, other = 0;
@@ -163,21 +164,21 @@ RT_KERNEL uint32_t gather_light(const RtRay *rays, uint32_t *order, uint32_t cou
 }
 
 /* A block of shadow rays. */
-RT_KERNEL void shade_block(Asking *a, uint32_t count, RtTally *tallies) {
-    const RtScene *scene = a->self->isa.base.scene;
+RT_KERNEL void shade_block(RayBatch *batch, uint32_t count, RtTally *tallies) {
+    const RtScene *scene = batch->self->isa.base.scene;
     const bool all_triangles = scene->geometry.triangle_count == scene->geometry.object_count;
-    Stream *stream = a->stream;
+    Stream *stream = batch->stream;
     uint32_t two[2][BLOCK], *order = two[0], *others = two[1];
     stream->passed_count = 0;
     for (uint32_t i = 0; i < count; i++) {
         order[i] = i;
-        a->blockers[i] = RT_NO_OBJECT;
+        batch->occluders[i] = RT_NO_OBJECT;
     }
     for (uint32_t left = count; left > 0;) {
-        uint32_t light = a->rays[order[0]].source, rest;
-        uint32_t n = gather_light(a->rays, order, left, others, &rest);
-        if (light < scene->light_count && a->self->cubes[light].serves) {
-            shade_light(a, light, order, n, all_triangles);
+        uint32_t light = batch->rays[order[0]].source, rest;
+        uint32_t n = gather_light(batch->rays, order, left, others, &rest);
+        if (light < scene->light_count && batch->self->cubes[light].serves) {
+            shade_light(batch, light, order, n, all_triangles);
         } else {
             memcpy(stream->passed + stream->passed_count, order, n * sizeof *order);
             stream->passed_count += n;
@@ -188,42 +189,43 @@ RT_KERNEL void shade_block(Asking *a, uint32_t count, RtTally *tallies) {
         others = swap;
     }
     uint32_t hits = 0;
-    if (a->tally) {
-        for (uint32_t i = 0; i < count; i++) hits += a->blockers[i] != RT_NO_OBJECT;
+    if (batch->tally) {
+        for (uint32_t i = 0; i < count; i++) hits += batch->occluders[i] != RT_NO_OBJECT;
     }
-    pass_on(a, tallies);
-    RT_COUNT(a->tally, rays, count - stream->passed_count);
-    RT_COUNT(a->tally, hits, hits);
+    pass_on(batch, tallies);
+    RT_COUNT(batch->tally, rays, count - stream->passed_count);
+    RT_COUNT(batch->tally, hits, hits);
 }
 
-/* Of a buffer that serves no light: all at once, for packets are made of what comes together. */
+/* Where the buffer serves no light: hands down all at once, because packets are made of rays that come
+ * together. */
 RT_KERNEL void pass_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                        uint32_t *blockers, RtTally *tallies) {
+                        uint32_t *occluders, RtTally *tallies) {
     for (size_t i = 0; tallies && i < count; i++) {
         if (rays[i].kind != RT_RAY_SHADOW) continue;
         RT_COUNT(&tallies[RT_RAY_SHADOW], passed_on, 1);
         RT_OBSERVE(&tallies[RT_RAY_SHADOW], .kind = RT_TRACED_PASSED_ON, .what = "light");
     }
-    rt_hand_down_occluded(accel, scratch, rays, count, blockers, tallies);
+    rt_hand_down_occluded(accel, scratch, rays, count, occluders, tallies);
 }
 
 RT_KERNEL void occluded_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            uint32_t *blockers, RtTally *tallies) {
+                            uint32_t *occluders, RtTally *tallies) {
     const RtLightBuffer *self = (const RtLightBuffer *)accel;
     if (!self->serves) {
-        pass_all(accel, scratch, rays, count, blockers, tallies);
+        pass_all(accel, scratch, rays, count, occluders, tallies);
         return;
     }
     for (size_t i = 0, next; i < count; i = next) {
         for (next = i; next < count && rays[next].kind != RT_RAY_SHADOW; next++) {
         }
-        if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, blockers + i, tallies);
+        if (next > i) rt_hand_down_occluded(accel, scratch, rays + i, next - i, occluders + i, tallies);
         i = next;
         while (next < count && next - i < BLOCK && rays[next].kind == RT_RAY_SHADOW) next++;
         if (next == i) continue;
-        Asking a = {self,     scratch,      scratch->own,
-                    rays + i, blockers + i, tallies ? &tallies[RT_RAY_SHADOW] : NULL};
-        shade_block(&a, (uint32_t)(next - i), tallies);
+        RayBatch batch = {self,     scratch,       scratch->own,
+                          rays + i, occluders + i, tallies ? &tallies[RT_RAY_SHADOW] : NULL};
+        shade_block(&batch, (uint32_t)(next - i), tallies);
     }
 }
 
@@ -231,4 +233,4 @@ RT_REFUSE_QUESTION(nearest, RtHit)
 RT_DEFINE_BOTH(occluded, uint32_t, occluded_all)
 
 RT_DEFINE_KERNEL_TABLE(sizeof(Stream));
-const RtLightPainting RT_PAINTING = {place, cover, draw, cover_outline, draw_outline};
+const RtLightRaster RT_RASTER = {place, cover, draw, cover_outline, draw_outline};

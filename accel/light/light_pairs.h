@@ -1,33 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pairs of a ray to a light and an object of its list: triangles in lanes, other shapes one by one. */
-#ifndef RT_ACCEL_LIGHT_MEET_H
-#define RT_ACCEL_LIGHT_MEET_H
+#ifndef RT_ACCEL_LIGHT_LIGHT_PAIRS_H
+#define RT_ACCEL_LIGHT_LIGHT_PAIRS_H
 
-#include "accel/light/enter.h"
-#include "accel/light/side.h"
-
-/* The triangles of sixteen pairs, or fewer. */
-RT_KERNEL void load_triangles(const RtGeometry *g, const uint32_t *objects, uint32_t count, RtV16 v[3][3]) {
-    const RtTriangle *at[16];
-    for (uint32_t i = 0; i < 16; i++) at[i] = &g->triangles[rt_ref_index(objects[i < count ? i : 0])];
-    rt_pairs_gather(at, v);
-}
+#include "accel/light/light_facing.h"
+#include "accel/light/light_lookup.h"
 
 /* Sixteen pairs, or fewer, of a ray to one light and a triangle. */
-RT_KERNEL void load_pairs(const Asking *a, uint32_t light, const uint32_t *ray, const uint32_t *object,
+RT_KERNEL void load_pairs(const RayBatch *batch, uint32_t light, const uint32_t *ray, const uint32_t *object,
                           uint32_t count, RtPairs *pairs) {
-    const RtGeometry *g = &a->self->isa.base.scene->geometry;
-    const RtTriangle *at[16];
     Sixteen s;
-    load_origins(a, light, ray, count, &s);
-    for (uint32_t i = 0; i < 16; i++) at[i] = &g->triangles[rt_ref_index(object[i < count ? i : 0])];
-    rt_pairs_gather(at, pairs->v);
+    load_origins(batch, light, ray, count, &s);
+    rt_raster_gather(&batch->self->isa.base.scene->geometry, object, count, pairs->v);
     for (int k = 0; k < 3; k++) pairs->org[k] = s.org[k], pairs->dir[k] = s.dir[k];
     pairs->tmin = s.tmin;
 }
 
-/* Those that the first test of rt_triangle_hit lets pass. */
-RT_KERNEL uint32_t sieve_pairs(const RtPairs *p) {
+/* The edge-function prefilter: those that the first test of rt_triangle_hit lets pass. */
+RT_KERNEL uint32_t prefilter_pairs(const RtPairs *p) {
     RtV16 x[3], y[3], z[3];
     RtSet16 in_y, in_z;
     major_axes(p->dir, &in_y, &in_z);
@@ -62,33 +52,33 @@ RT_COLD static void observe_pairs(const RtGeometry *g, const uint32_t *object, u
 }
 
 /* Tests pairs in full. */
-RT_KERNEL void hit_pairs(const Asking *a, const uint32_t *ray, const uint32_t *object, uint32_t count,
+RT_KERNEL void hit_pairs(const RayBatch *batch, const uint32_t *ray, const uint32_t *object, uint32_t count,
                          RtPairs *pairs) {
-    const RtGeometry *g = &a->self->isa.base.scene->geometry;
+    const RtGeometry *g = &batch->self->isa.base.scene->geometry;
     _Alignas(64) float tmax[16];
     RtV16 t;
-    for (uint32_t i = 0; i < 16; i++) tmax[i] = a->rays[ray[i < count ? i : 0]].tmax;
+    for (uint32_t i = 0; i < 16; i++) tmax[i] = batch->rays[ray[i < count ? i : 0]].tmax;
     pairs->tmax = rt_v16_load(tmax);
     uint32_t hit = rt_pairs_hit(pairs, &t) & ((1u << count) - 1);
-    RT_COUNT(a->tally, object_hits, __builtin_popcount(hit));
-    if (RT_OBSERVED(a->tally)) observe_hits(g, object, hit, &t);
+    RT_COUNT(batch->tally, object_hits, __builtin_popcount(hit));
+    if (RT_OBSERVED(batch->tally)) observe_hits(g, object, hit, &t);
     for (; hit; hit &= hit - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(hit);
-        a->blockers[ray[i]] = g->triangle_ids[rt_ref_index(object[i])];
+        batch->occluders[ray[i]] = g->triangle_ids[rt_ref_index(object[i])];
     }
 }
 
-/* Tests pairs 0..count-1. Sixteen of which the sieve lets at least half pass are tested in full at once; of
- * others those that pass come together first. */
-RT_KERNEL void test_pairs(const Asking *a, uint32_t light, uint32_t count) {
-    uint32_t *ray = a->stream->pair_ray, *object = a->stream->pair_object, kept = 0;
+/* Tests pairs 0..count-1. Sixteen of which at least half pass the prefilter are tested in full at once; of
+ * others those that pass are gathered first. */
+RT_KERNEL void test_pairs(const RayBatch *batch, uint32_t light, uint32_t count) {
+    uint32_t *ray = batch->stream->pair_ray, *object = batch->stream->pair_object, kept = 0;
     RtPairs pairs;
     for (uint32_t first = 0; first < count; first += 16) {
         uint32_t n = count - first < 16 ? count - first : 16;
-        load_pairs(a, light, ray + first, object + first, n, &pairs);
-        uint32_t passed = sieve_pairs(&pairs) & ((1u << n) - 1);
+        load_pairs(batch, light, ray + first, object + first, n, &pairs);
+        uint32_t passed = prefilter_pairs(&pairs) & ((1u << n) - 1);
         if (2 * (uint32_t)__builtin_popcount(passed) >= n) {
-            hit_pairs(a, ray + first, object + first, n, &pairs);
+            hit_pairs(batch, ray + first, object + first, n, &pairs);
             continue;
         }
         RtW16 rays = rt_w16_get(ray + first), objects = rt_w16_get(object + first);
@@ -98,29 +88,29 @@ RT_KERNEL void test_pairs(const Asking *a, uint32_t light, uint32_t count) {
     }
     for (uint32_t first = 0; first < kept; first += 16) {
         uint32_t n = kept - first < 16 ? kept - first : 16;
-        load_pairs(a, light, ray + first, object + first, n, &pairs);
-        hit_pairs(a, ray + first, object + first, n, &pairs);
+        load_pairs(batch, light, ray + first, object + first, n, &pairs);
+        hit_pairs(batch, ray + first, object + first, n, &pairs);
     }
 }
 
 /* Tests objects of other shapes one by one. */
-RT_KERNEL void test_others(const Asking *a, uint32_t count) {
-    const RtGeometry *g = &a->self->isa.base.scene->geometry;
+RT_KERNEL void test_others(const RayBatch *batch, uint32_t count) {
+    const RtGeometry *g = &batch->self->isa.base.scene->geometry;
     for (uint32_t i = 0; i < count; i++) {
-        RtRef object = a->stream->other_object[i];
-        uint32_t number = a->stream->other_ray[i], id = rt_light_id_of(g, object);
-        const RtRay *ray = &a->rays[number];
-        if (a->self->extents && rt_light_has_side(object)) {
-            RT_COUNT(a->tally, extent_tests, 1);
-            bool aside = rt_light_is_aside(g, id, ray);
-            RT_OBSERVE(a->tally, .kind = RT_TRACED_EXTENT_TEST, .what = "side of object", .index = id,
-                       .met = !aside);
-            if (aside) continue;
+        RtRef object = batch->stream->other_object[i];
+        uint32_t number = batch->stream->other_ray[i], id = rt_raster_id(g, object);
+        const RtRay *ray = &batch->rays[number];
+        if (batch->self->extents && rt_light_has_facing_test(object)) {
+            RT_COUNT(batch->tally, extent_tests, 1);
+            bool leaves = rt_light_leaves(g, id, ray);
+            RT_OBSERVE(batch->tally, .kind = RT_TRACED_EXTENT_TEST, .what = "side of object", .index = id,
+                       .met = !leaves);
+            if (leaves) continue;
         }
         RtPreparedRay prepared;
         RtHit hit = RT_MISS;
-        rt_hit_ray(&prepared, g, ray, a->scratch->room);
-        if (rt_test_object(g, id, &prepared, true, &hit, a->tally)) a->blockers[number] = id;
+        rt_hit_ray(&prepared, g, ray, batch->scratch->room);
+        if (rt_test_object(g, id, &prepared, true, &hit, batch->tally)) batch->occluders[number] = id;
     }
 }
 

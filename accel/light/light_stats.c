@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a light buffer looks like, and whether its invariants hold. */
+/* Describing and validating a light buffer. */
 #include "accel/light/light.h"
 
 #include "core/base/memory.h"
@@ -15,15 +15,16 @@ bool rt_light_look_up(const RtAccel *accel, const RtRay *ray, RtCellView *cell) 
     float w = (-ray->dir.at[(z + 2) % 3] / depth - grid->w) * grid->scale;
     if (!(u >= 0 && w >= 0 && u < (float)grid->columns && w < (float)grid->rows)) return false;
     uint32_t column = (uint32_t)u, row = (uint32_t)w;
-    uint32_t tile = cube->tiles[grid->first_tile + row * grid->columns + column], n = rt_light_fineness(tile);
+    uint32_t tile = cube->tiles[grid->first_tile + row * grid->columns + column],
+             n = rt_light_resolution(tile);
     uint32_t x = (uint32_t)((u - (float)column) * (float)n), y = (uint32_t)((w - (float)row) * (float)n);
     cell->number =
         grid->first_cell + rt_light_first_cell(tile) + (y < n ? y : n - 1) * n + (x < n ? x : n - 1);
     uint32_t first = cube->first[cell->number], end = cube->first[cell->number + 1];
     cell->cut = end > first && cube->entries[end - 1].object == RT_LIGHT_BEYOND;
     cell->length = end - first - cell->cut;
-    cell->object = cell->length == 0 ? RT_NO_OBJECT
-                                     : rt_light_id_of(&accel->scene->geometry, cube->entries[first].object);
+    cell->object =
+        cell->length == 0 ? RT_NO_OBJECT : rt_raster_id(&accel->scene->geometry, cube->entries[first].object);
     return true;
 }
 
@@ -75,9 +76,8 @@ static RtStatus check_order(const RtLightCube *cube, uint32_t light, uint32_t ob
 /* By how much objects may be said to be nearer to cells, in cells, than lists say: both err on the safe side,
  * lists by less. */
 static float tolerance(const RtLightTile *tile, const RtLightFootprint *at) {
-    const RtLightCube *cube = &tile->buffer->cubes[tile->light];
-    double cells = (double)cube->grids[tile->face].scale * tile->n;
-    return (float)(0x1p-5 + 8 * cube->margin * cells / (double)at->near);
+    double cells = (double)tile->on.grid->scale * tile->n;
+    return (float)(0x1p-5 + 8 * tile->on.cube->margin * cells / (double)at->near);
 }
 
 /* The least depth that the lists may have for an object in a cell: they, too, allow for rounding. */
@@ -121,11 +121,10 @@ static uint32_t parts_seen(const RtLightCells *at, const RtLightOutline *outline
 
 static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFootprint *from,
                            RtError *error) {
-    const RtLightBuffer *buffer = tile->buffer;
-    const RtLightCube *cube = &buffer->cubes[tile->light];
-    const RtLightGrid *grid = &cube->grids[tile->face];
+    const RtLightCube *cube = tile->on.cube;
+    const RtLightGrid *grid = tile->on.grid;
     const RtLightCells at = rt_light_cells(tile, from);
-    RtRef object = buffer->isa.base.scene->geometry.objects[id];
+    RtRef object = tile->on.geometry->objects[id];
     RtShape shape = rt_ref_shape(object);
     RtLightOutline outline;
     bool flat = shape == RT_SHAPE_TRIANGLE || shape == RT_SHAPE_POLYGON;
@@ -143,38 +142,35 @@ static RtStatus check_tile(const RtLightTile *tile, uint32_t id, const RtLightFo
                 error, RT_MISMATCH,
                 "light: the list of cell %u,%u of tile %u,%u of face %d of light %u lacks object %u "
                 "at depth %g",
-                column, row, tile->column, tile->row, tile->face, tile->light, id, (double)near);
+                column, row, tile->column, tile->row, tile->on.face,
+                (uint32_t)(cube - tile->on.buffer->cubes), id, (double)near);
         }
     }
     return RT_OK;
 }
 
-static RtStatus check_object(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
-                             RtError *error) {
-    const RtLightCube *cube = &buffer->cubes[light];
-    const RtLightGrid *grid = &cube->grids[face];
+static RtStatus check_object(const RtLightFace *on, uint32_t id, RtError *error) {
+    const RtLightGrid *grid = on->grid;
     RtLightFootprint at;
-    if (!rt_light_footprint(buffer, light, face, id, &at)) return RT_OK;
+    if (!rt_light_footprint(on, id, &at)) return RT_OK;
     for (uint32_t row = at.lo[1]; row <= at.hi[1]; row++) {
         for (uint32_t column = at.lo[0]; column <= at.hi[0]; column++) {
-            uint32_t n = rt_light_fineness(cube->tiles[grid->first_tile + row * grid->columns + column]);
-            const RtLightTile tile = {buffer, light, face, column, row, n};
-            RT_TRY(check_tile(&tile, id, &at, error));
+            uint32_t tile = on->cube->tiles[grid->first_tile + row * grid->columns + column];
+            RT_TRY(check_tile(&(RtLightTile){*on, column, row, rt_light_resolution(tile)}, id, &at, error));
         }
     }
     return RT_OK;
 }
 
-static RtStatus check_near(const RtLightBuffer *buffer, uint32_t light, RtError *error) {
-    const RtLightCube *cube = &buffer->cubes[light];
+static RtStatus check_near(const RtLightFace *on, uint32_t light, RtError *error) {
     uint32_t at = 0;
-    for (uint32_t id = 0; id < buffer->isa.base.scene->geometry.object_count; id++) {
-        if (!rt_light_is_near(buffer, light, id)) continue;
-        if (at < cube->near_count && cube->near[at++] == id) continue;
+    for (uint32_t id = 0; id < on->geometry->object_count; id++) {
+        if (!rt_light_is_near(on, id)) continue;
+        if (at < on->cube->near_count && on->cube->near[at++] == id) continue;
         at = UINT32_MAX;
         break;
     }
-    if (at == cube->near_count) return RT_OK;
+    if (at == on->cube->near_count) return RT_OK;
     return rt_fail(error, RT_MISMATCH,
                    "light: the near list of light %u does not hold the objects that touch it", light);
 }
@@ -184,11 +180,13 @@ RtStatus rt_light_validate(const RtAccel *accel, RtError *error) {
     uint32_t objects = accel->scene->geometry.object_count;
     for (uint32_t light = 0; light < accel->scene->light_count; light++) {
         if (!buffer->cubes[light].serves) continue;
-        RT_TRY(check_near(buffer, light, error));
-        RT_TRY(check_order(&buffer->cubes[light], light, objects, error));
+        RtLightFace faces[6];
+        for (int face = 0; face < 6; face++) faces[face] = rt_light_face(buffer, light, face);
+        RT_TRY(check_near(&faces[0], light, error));
+        RT_TRY(check_order(faces[0].cube, light, objects, error));
         for (uint32_t id = 0; id < objects; id++) {
-            if (rt_light_is_near(buffer, light, id)) continue;
-            for (int face = 0; face < 6; face++) RT_TRY(check_object(buffer, light, face, id, error));
+            for (int face = 0; face < 6 && !rt_light_is_near(&faces[0], id); face++)
+                RT_TRY(check_object(&faces[face], id, error));
         }
     }
     return RT_OK;

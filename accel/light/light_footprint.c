@@ -1,43 +1,34 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Where on the faces of a light's cube an object is seen, and what covers whole cells. All in double, in
- * offsets from the light; raster.h does the same for small triangles in lanes.
+ * offsets from the light; light_draw.h does the same for small triangles in lanes.
  *
- * Why the lists are complete. A hit on an object at t means (core/base/ray.h) that the ray's point at t is in
- * the object's box but for the thickness and a few roundings: 2^-20 of the distance from the ray's origin,
- * 2^-22 of the length of dir, 2^-22 of the coordinates. dir is the difference of light and origin in float32,
- * so the ray's point is off the true segment by another 2^-24 of its length. For origins inside `domain` all
- * of these are below
+ * Why the lists are complete: the bounds of accel/raster/raster.h, with E = margin. A hit is off the object's
+ * box by 2^-20 of the distance from the ray's origin, 2^-22 of the length of dir, and 2^-22 of the
+ * coordinates; dir is the difference of light and origin in float32, which moves the ray off the true segment
+ * by another 2^-24 of its length. For origins inside `domain` all of these together are below
  *
- *     margin = 2^-18 * reach + 2^-20 * farthest,
+ *     margin = 2^-18 * reach + 2^-20 * farthest.
  *
- * with reach the largest side of the box around domain and light, and farthest its largest coordinate. So the
- * true segment meets the box grown by the margin, at a depth between 0 and that of the origin, and in the
- * cell of the segment's direction, whose u and w are known to 2^-21: the shear of a ray is dir.b / dir.a but
- * for two roundings of 2^-24, and there is one each for u - grid.u, at most 2, and its product with
- * grid.scale. So is its place among the parts of the cell. A sphere's hit function computes in double: the
- * distance of the line from its centre is at most its radius + 2^-24 of the distance from the origin.
+ * So the true segment meets the grown box at a depth between 0 and that of the origin, in the cell of the
+ * segment's direction. u and w of a ray are known to 2^-21: dir.b / dir.a but for two roundings of 2^-24, and
+ * one each for u - grid.u, at most 2, and its product with grid.scale; so is its place among the parts of the
+ * cell. A sphere's hit function computes in double: the distance of the line from its centre is at most its
+ * radius + 2^-24 of the distance from the origin.
  *
  * Of the cells of the rectangle around an object's box,
  *
- * - balls (spheres, and those about cones and CSG trees) touch those that the cone that they fill meets:
- *   points of the cell at depth z are at most z * half * sqrt(2) from its axis;
- * - triangles and polygons touch those that no plane through the light and an edge parts from them. Let s be
- *   the normal of such a plane, all vertices on its side s . v >= 0 but for rounding. A hit is on the
- *   triangle as if its vertices lay up to 7 * 2^-24 of their distance from the origin elsewhere
- *   (accel/extent.h), and what moves the point besides is less than the margin; so it lies within the margin
- *   of the object along each axis, at s . p >= -margin |s|_1. A polygon is hit in its plane, off its vertices
- *   by its warp along one axis, which is added. The cell's points of depth z have s . p <= z M, where M is
- *   the largest of its corners at depth 1. With M < 0 and z at least the least depth d of the grown box: none
- *   in common if d M < -margin |s|_1. The slack is more than twice that: s, computed from a and b, is off by
- *   2^-51 |a||b|, its products with a p as long as `reach` by 2^-50 |a||b| reach, where the margin is above
- *   2^-18 reach. Where the light is within the margin of the object's depth (d <= 0) no cell is parted. A
- *   concave polygon has vertices on both sides of some edges, which then part nothing.
+ * - balls (spheres, and those about cones and CSG trees) touch those that the cone about them meets: points
+ * of the cell at depth z are at most z * half * sqrt(2) from its axis;
+ * - triangles and polygons touch those that no edge function separates from them (bound 3). In a cell s . q
+ * <= z M, with M the largest of its corners at depth 1, so a cell is separated if d M < -margin |s|_1 for M <
+ * 0 and the least depth d of the grown box. The slack is more than twice that: s, computed from a and b, is
+ * off by 2^-51 |a||b|, its products with a q as long as `reach` by 2^-50 |a||b| reach, and the margin is
+ * above 2^-18 reach. If d <= 0 no cell is separated. A polygon is hit in its plane, off its vertices by its
+ * warp along one axis, which is added. A concave polygon has vertices on both sides of some edges: these
+ * separate nothing.
  * - Other shapes touch all cells of the rectangle, and cover none.
  *
- * Their depth in a cell: with n the normal of a flat object's plane and k = n . p > 0 for its points p, a hit
- * has n . p >= k - margin |n|_1, and in the direction (u, w, 1) the depth (n . p) / (n . (u, w, 1)).
- *
- * What covers need not be proved: see light.h. */
+ * Their depth in a cell is that of bound 4. What covers a cell need not be proved: see light.h. */
 #include "accel/light/light.h"
 
 static RtVec3d face_axes(int face, RtVec3d v) {
@@ -46,32 +37,28 @@ static RtVec3d face_axes(int face, RtVec3d v) {
     return rt_vec3d(v.at[(axis + 1) % 3], v.at[(axis + 2) % 3], face % 2 ? depth : -depth);
 }
 
-RtVec3d rt_light_offset(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3d point) {
-    return face_axes(face, rt_subd(point, rt_widen(buffer->isa.base.scene->lights[light].position)));
+/* Relative to the light, in the axes of a face: u and w times depth, and depth. */
+static RtVec3d offset_of(const RtLightFace *on, RtVec3d point) {
+    return face_axes(on->face, rt_subd(point, rt_widen(on->position)));
 }
 
-static RtVec3d offset(const RtLightBuffer *buffer, uint32_t light, int face, RtVec3 point) {
-    return rt_light_offset(buffer, light, face, rt_widen(point));
+static RtVec3d offset(const RtLightFace *on, RtVec3 point) {
+    return offset_of(on, rt_widen(point));
 }
 
 /* A box grown by the margin. */
-static void grow_box(const RtLightBuffer *buffer, uint32_t light, int face, const RtBox *box, RtVec3d *lo,
-                     RtVec3d *hi) {
-    RtVec3d a = offset(buffer, light, face, box->lo), b = offset(buffer, light, face, box->hi);
+static void grow_box(const RtLightFace *on, const RtBox *box, RtVec3d *lo, RtVec3d *hi) {
+    RtVec3d a = offset(on, box->lo), b = offset(on, box->hi);
     for (int k = 0; k < 3; k++) {
-        lo->at[k] = fmin(a.at[k], b.at[k]) - buffer->cubes[light].margin;
-        hi->at[k] = fmax(a.at[k], b.at[k]) + buffer->cubes[light].margin;
+        lo->at[k] = fmin(a.at[k], b.at[k]) - on->cube->margin;
+        hi->at[k] = fmax(a.at[k], b.at[k]) + on->cube->margin;
     }
 }
 
-bool rt_light_is_in(const RtLightBuffer *buffer, uint32_t light, const RtBox *box) {
+bool rt_light_is_in(const RtLightFace *on, const RtBox *box) {
     RtVec3d lo, hi;
-    grow_box(buffer, light, 1, box, &lo, &hi);
+    grow_box(on, box, &lo, &hi);
     return lo.x <= 0 && hi.x >= 0 && lo.y <= 0 && hi.y >= 0 && lo.z <= 0 && hi.z >= 0;
-}
-
-bool rt_light_is_near(const RtLightBuffer *buffer, uint32_t light, uint32_t id) {
-    return rt_light_is_in(buffer, light, &buffer->isa.base.scene->geometry.boxes[id]);
 }
 
 /* The least and largest x / z with x in [lo, hi] and z in [near, far], far > 0; z <= 0 does not count. */
@@ -81,10 +68,9 @@ static void quotients(double lo, double hi, double near, double far, double *lea
     *most = most_at > 0 ? hi / most_at : INFINITY;
 }
 
-bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const RtBox *box,
-                   RtLightView *view) {
+bool rt_light_view(const RtLightFace *on, const RtBox *box, RtLightView *view) {
     RtVec3d lo, hi;
-    grow_box(buffer, light, face, box, &lo, &hi);
+    grow_box(on, box, &lo, &hi);
     if (!(hi.z > 0)) return false;
     for (int k = 0; k < 2; k++) {
         double least, most;
@@ -98,7 +84,7 @@ bool rt_light_view(const RtLightBuffer *buffer, uint32_t light, int face, const 
     return true;
 }
 
-/* What is lost in float32 where cells or tiles are counted, as a part of one. */
+/* The rounding of float32 in columns and rows, as a part of a cell or tile. */
 #define SLACK 0x1p-6
 
 /* The vertices of a flat object; NULL of another. A point hit is within *warp of their hull. */
@@ -113,16 +99,16 @@ static const RtVec3 *vertices_of(const RtGeometry *g, uint32_t id, uint32_t *cou
     return g->polygon_vertices + g->polygons[index].first;
 }
 
-/* Of a flat object that is all in front of the light less than its box is seen: the hull of its vertices,
- * each grown by the margin. False if it is not on the face. */
-static bool narrow_view(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
-                        RtLightView *view) {
+/* Narrows the view of a flat object that is all in front of the light to the hull of its vertices, each grown
+ * by the margin. False if it is not on the face. */
+static bool narrow_view(const RtLightFace *on, uint32_t id, RtLightView *view) {
     uint32_t count;
     double warp, least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
-    const RtVec3 *vertices = vertices_of(&buffer->isa.base.scene->geometry, id, &count, &warp);
-    double grow = buffer->cubes[light].margin + warp;
-    for (uint32_t i = 0; vertices && i < count; i++) {
-        RtVec3d at = offset(buffer, light, face, vertices[i]);
+    const RtVec3 *vertices = vertices_of(on->geometry, id, &count, &warp);
+    double grow = on->cube->margin + warp;
+    if (!vertices) return true;
+    for (uint32_t i = 0; i < count; i++) {
+        RtVec3d at = offset(on, vertices[i]);
         if (!(at.z > 2 * grow)) return true;
         for (int k = 0; k < 2; k++) {
             double lo, hi;
@@ -131,7 +117,7 @@ static bool narrow_view(const RtLightBuffer *buffer, uint32_t light, int face, u
             most[k] = fmax(hi, most[k]);
         }
     }
-    for (int k = 0; vertices && k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         view->lo[k] = fmax(least[k] - RT_LIGHT_EDGE, view->lo[k]);
         view->hi[k] = fmin(most[k] + RT_LIGHT_EDGE, view->hi[k]);
         if (!(view->lo[k] <= view->hi[k])) return false;
@@ -139,13 +125,11 @@ static bool narrow_view(const RtLightBuffer *buffer, uint32_t light, int face, u
     return true;
 }
 
-bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, uint32_t id,
-                        RtLightFootprint *footprint) {
-    const RtLightGrid *grid = &buffer->cubes[light].grids[face];
+bool rt_light_footprint(const RtLightFace *on, uint32_t id, RtLightFootprint *footprint) {
+    const RtLightGrid *grid = on->grid;
     RtLightView view;
-    if (grid->columns == 0) return false;
-    if (!rt_light_view(buffer, light, face, &buffer->isa.base.scene->geometry.boxes[id], &view)) return false;
-    if (!narrow_view(buffer, light, face, id, &view)) return false;
+    if (grid->columns == 0 || !rt_light_view(on, &on->geometry->boxes[id], &view)) return false;
+    if (!narrow_view(on, id, &view)) return false;
     for (int k = 0; k < 2; k++) {
         double corner = (double)(k ? grid->w : grid->u), scale = (double)grid->scale;
         uint32_t count = k ? grid->rows : grid->columns;
@@ -159,6 +143,16 @@ bool rt_light_footprint(const RtLightBuffer *buffer, uint32_t light, int face, u
     footprint->near = rt_float_below(view.near);
     footprint->far = rt_float_above(view.far);
     return true;
+}
+
+uint32_t rt_light_place(const RtLightFace *on, uint32_t id, RtTileRange *to) {
+    RtLightFootprint at;
+    if (!rt_light_footprint(on, id, &at)) return 0;
+    *to = (RtTileRange){.object = on->geometry->objects[id] | RT_LIGHT_BY_FOOTPRINT,
+                        .lo = {(uint16_t)at.lo[0], (uint16_t)at.lo[1]},
+                        .hi = {(uint16_t)at.hi[0], (uint16_t)at.hi[1]},
+                        .layer = (uint16_t)on->face};
+    return 1;
 }
 
 RtLightCells rt_light_cells(const RtLightTile *tile, const RtLightFootprint *footprint) {
@@ -177,13 +171,13 @@ RtLightCells rt_light_cells(const RtLightTile *tile, const RtLightFootprint *foo
     return at;
 }
 
-/* What cells of a tile are on its face: direction (u, w) of its corner, and cells per 1 of it. */
+/* A tile on its face: direction (u, w) of its corner, and cells per 1 of it. */
 typedef struct Frame {
     double u, w, scale;
 } Frame;
 
 static Frame frame_of(const RtLightTile *tile) {
-    const RtLightGrid *grid = &tile->buffer->cubes[tile->light].grids[tile->face];
+    const RtLightGrid *grid = tile->on.grid;
     double scale = (double)grid->scale;
     return (Frame){(double)grid->u + tile->column / scale, (double)grid->w + tile->row / scale,
                    scale * tile->n};
@@ -231,7 +225,7 @@ static void add_edges(RtLightOutline *o, const Frame *frame, const RtVec3d *vert
         if (o->covers) narrow(line, (positive ? 1 : -1) / unit, o->inside[i]);
         /* What is seen edge on is on both sides. */
         double around = across_cell(frame, side) + 2 * slack / least_depth;
-        around += 0x1p-20 * (fabs(line[2]) + around + unit * 2 * RT_LIGHT_FINEST);
+        around += 0x1p-20 * (fabs(line[2]) + around + unit * 2 * RT_LIGHT_MAX_RESOLUTION);
         for (int sign = -1; sign <= 1; sign += 2) {
             if (!(sign > 0 ? positive : negative)) continue;
             const double part[3] = {sign * line[0], sign * line[1], sign * line[2] + around};
@@ -252,35 +246,33 @@ static void add_plane(RtLightOutline *o, const Frame *frame, RtVec3d point, RtVe
     }
     narrow(plane, 1 / at, o->face);
     plane[2] += across_cell(frame, normal);
-    plane[2] += 0x1p-20 * (fabs(plane[2]) + 2 * RT_LIGHT_FINEST * (fabs(plane[0]) + fabs(plane[1])));
+    plane[2] += 0x1p-20 * (fabs(plane[2]) + 2 * RT_LIGHT_MAX_RESOLUTION * (fabs(plane[0]) + fabs(plane[1])));
     narrow(plane, 1 / least, o->slope);
 }
 
 void rt_light_outline(const RtLightTile *tile, uint32_t id, const RtLightFootprint *at, RtLightOutline *o) {
-    const RtLightBuffer *buffer = tile->buffer;
-    const RtGeometry *g = &buffer->isa.base.scene->geometry;
+    const RtLightFace *on = &tile->on;
+    const RtGeometry *g = on->geometry;
     const Frame frame = frame_of(tile);
-    const uint32_t light = tile->light;
-    const int face = tile->face;
     uint32_t count;
-    double grow = buffer->cubes[light].margin, warp;
+    double grow = on->cube->margin, warp;
     RtVec3d offsets[RT_LIGHT_MAX_EDGES], normal, point;
     const RtVec3 *vertices = vertices_of(g, id, &count, &warp);
     *o = (RtLightOutline){.covers = count <= RT_LIGHT_MAX_EDGES, .edges = count, .slope = {0, 0, INFINITY}};
     if (o->covers && at->near > 0) {
-        for (uint32_t i = 0; i < count; i++) offsets[i] = offset(buffer, light, face, vertices[i]);
+        for (uint32_t i = 0; i < count; i++) offsets[i] = offset(on, vertices[i]);
         add_edges(o, &frame, offsets, count, grow + warp, (double)at->near);
     } else {
         o->covers = false;
     }
     if (rt_ref_shape(g->objects[id]) == RT_SHAPE_POLYGON) {
         const RtPolygon *polygon = &g->polygons[rt_ref_index(g->objects[id])];
-        normal = face_axes(face, polygon->normal);
-        point = rt_light_offset(buffer, light, face, polygon->center);
+        normal = face_axes(on->face, polygon->normal);
+        point = offset_of(on, polygon->center);
     } else {
-        point = offset(buffer, light, face, vertices[0]);
-        RtVec3d b = rt_subd(offset(buffer, light, face, vertices[1]), point);
-        normal = rt_crossd(b, rt_subd(offset(buffer, light, face, vertices[2]), point));
+        point = offset(on, vertices[0]);
+        RtVec3d b = rt_subd(offset(on, vertices[1]), point);
+        normal = rt_crossd(b, rt_subd(offset(on, vertices[2]), point));
         grow += 0x1p-40 * norm(point);
     }
     add_plane(o, &frame, point, normal, grow);
@@ -300,22 +292,21 @@ static double distance_squared(RtVec3d point, RtVec3d axis) {
 }
 
 bool rt_light_touches(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row) {
-    const RtLightBuffer *buffer = tile->buffer;
     const Frame frame = frame_of(tile);
-    RtBall ball = rt_object_ball(&buffer->isa.base.scene->geometry, id);
-    RtVec3d center = rt_light_offset(buffer, tile->light, tile->face, ball.center);
-    double radius = ball.radius + 2 * buffer->cubes[tile->light].margin;
+    RtBall ball = rt_object_ball(tile->on.geometry, id);
+    RtVec3d center = offset_of(&tile->on, ball.center);
+    double radius = ball.radius + 2 * tile->on.cube->margin;
     double half = 1.5 * ((0.5 + SLACK) / frame.scale + RT_LIGHT_EDGE); /* above sqrt(2) */
     double reach = radius + half * (center.z + radius); /* a ball's points are at most so deep */
     return distance_squared(center, direction(&frame, column + 0.5, row + 0.5)) <= reach * reach;
 }
 
 bool rt_light_covers(const RtLightTile *tile, uint32_t id, uint32_t column, uint32_t row, float *depth) {
-    const RtGeometry *g = &tile->buffer->isa.base.scene->geometry;
+    const RtGeometry *g = tile->on.geometry;
     if (rt_ref_shape(g->objects[id]) != RT_SHAPE_SPHERE) return false;
     const RtSphere *sphere = &g->spheres[rt_ref_index(g->objects[id])];
     const Frame frame = frame_of(tile);
-    RtVec3d center = offset(tile->buffer, tile->light, tile->face, sphere->center);
+    RtVec3d center = offset(&tile->on, sphere->center);
     RtVec3d corner = direction(&frame, column, row);
     double radius = (double)sphere->radius;
     if (!(rt_dotd(center, corner) > 0) || !(distance_squared(center, corner) < radius * radius)) return false;

@@ -1,39 +1,32 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Footprints: the samples whose rays may hit an object, by projecting its box.
+/* The samples whose rays may hit an object, by projecting its box.
  *
- * Why they are complete. A hit at t means (core/base/ray.h) that the ray's point at t is in the object's box
- * but for the thickness, 2^-20 of the largest distance D between eye and box along an axis, 2^-23 of the
- * eye's coordinates, and three roundings of 2^-24 each of both. So it is in the box grown by
+ * The box is grown by E = 2^-19 M + 2^-21 |eye| (accel/raster/raster.h, 1). A hit is off the object's box by
+ * the thickness, 2^-20 M, by 2^-23 of the eye's coordinates, and by three roundings of 2^-24 of both; what is
+ * left covers the double arithmetic of this file. The part below tmin is cut off.
  *
- *     margin = 2^-19 D + 2^-21 |eye|,
- *
- * with room to spare for the double arithmetic of this file. That box, cut off where t would be below tmin,
- * is a convex body in front of the eye, and a projection of such a body is reached at its corners; where it
- * comes up to the plane of the eye it reaches to infinity, on the side on which it does (that is all that
- * clipping homogeneous coordinates at w = 0 comes to).
- *
- * A direction is rounded to float32: it is off by 2^-24 of its length, which moves its position in the image
- * by less than `blur`, and its component along the axis, 1, by less than that. */
+ * A direction rounded to float32 is off by 2^-24 of its length, which moves its position in the image by less
+ * than `direction_error`, and its component along the axis, which is 1, by less than that. */
 #include "accel/item/item.h"
 
-void rt_item_aim(RtItemBuffer *buffer) {
-    const RtView *v = &buffer->view;
+RtItemProjection rt_item_projection(const RtView *v) {
     double right = rt_lengthd(v->right), down = rt_lengthd(v->down);
-    buffer->across = rt_scaled(v->right, 1 / (right * right));
-    buffer->downward = rt_scaled(v->down, 1 / (down * down));
+    RtVec3d across = rt_scaled(v->right, 1 / (right * right));
+    RtVec3d downward = rt_scaled(v->down, 1 / (down * down));
     /* Position i of n samples: (2 i + 1) / n - 1, or between corners 2 i / (n - 1) - 1. */
     const RtSampling *s = &v->sampling;
     double step[2] = {(s->corners ? s->columns - 1 : s->columns) * 0.5,
                       (s->corners ? s->rows - 1 : s->rows) * 0.5};
-    double start[2] = {(s->columns - 1) * 0.5, (s->rows - 1) * 0.5};
     double longest = 1.001 + right + down;
-    buffer->aim = (RtItemAim){
-        .x = rt_add_scaledd(rt_scaled(buffer->across, step[0]), v->forward, start[0]),
-        .y = rt_add_scaledd(rt_scaled(buffer->downward, step[1]), v->forward, start[1]),
+    return (RtItemProjection){
+        .x = rt_add_scaledd(rt_scaled(across, step[0]), v->forward, (s->columns - 1) * 0.5),
+        .y = rt_add_scaledd(rt_scaled(downward, step[1]), v->forward, (s->rows - 1) * 0.5),
         .depth = v->forward,
         .scale = {step[0] / right, step[1] / down},
         .longest = longest,
-        .blur = 0x1p-22 * longest * (1 + 1 / right + 1 / down),
+        .direction_error = 0x1p-22 * longest * (1 + 1 / right + 1 / down),
+        .across = across,
+        .down = downward,
     };
 }
 
@@ -42,12 +35,7 @@ typedef struct Projected {
     double x[2], w;
 } Projected;
 
-static Projected project(const RtItemBuffer *buffer, RtVec3d q) {
-    return (Projected){{rt_dotd(q, buffer->across), rt_dotd(q, buffer->downward)},
-                       rt_dotd(q, buffer->view.forward)};
-}
-
-/* What corners have in common; empty while lo > hi. */
+/* Bounds of positions and depths; empty while lo > hi. */
 typedef struct Bounds {
     double lo[2], hi[2], near;
     double zero; /* an x at w = 0 that is as good as 0 */
@@ -72,8 +60,9 @@ static Projected at_depth(const Projected *a, const Projected *b, double cut) {
     return (Projected){{a->x[0] + part * (b->x[0] - a->x[0]), a->x[1] + part * (b->x[1] - a->x[1])}, cut};
 }
 
-/* The projection of the part of a box, grown by the margin, that is not less deep than `cut` >= 0. */
+/* The projection of the part of the grown box that is not less deep than `cut` >= 0. */
 static Bounds project_box(const RtItemBuffer *buffer, const RtBox *box, double cut) {
+    const RtItemProjection *to = &buffer->projection;
     RtVec3d ends[2] = {rt_subd(rt_widen(box->lo), buffer->view.eye),
                        rt_subd(rt_widen(box->hi), buffer->view.eye)};
     double reach = 0, eye = 0;
@@ -87,7 +76,7 @@ static Bounds project_box(const RtItemBuffer *buffer, const RtBox *box, double c
     for (int i = 0; i < 8; i++) {
         RtVec3d q;
         for (int a = 0; a < 3; a++) q.at[a] = i >> a & 1 ? ends[1].at[a] + margin : ends[0].at[a] - margin;
-        corners[i] = project(buffer, q);
+        corners[i] = (Projected){{rt_dotd(q, to->across), rt_dotd(q, to->down)}, rt_dotd(q, to->depth)};
         if (corners[i].w >= cut) include(&bounds, &corners[i]);
     }
     for (int i = 0; i < 8; i++) {
@@ -113,19 +102,32 @@ static bool samples_between(double lo, double hi, uint32_t n, bool corners, uint
 
 bool rt_item_footprint(const RtItemBuffer *buffer, uint32_t id, RtItemFootprint *footprint) {
     const RtSampling *s = &buffer->view.sampling;
+    const uint32_t count[2] = {s->columns, s->rows};
     float tmin = (float)buffer->view.near;
-    double blur = buffer->aim.blur;
-    if (!(blur <= RT_ITEM_MOST_BLUR)) {
+    double error = buffer->projection.direction_error;
+    if (!(error <= RT_ITEM_MAX_DIRECTION_ERROR)) {
         *footprint = (RtItemFootprint){{0, 0}, {s->columns - 1, s->rows - 1}, tmin};
         return true;
     }
-    Bounds b = project_box(buffer, &buffer->isa.base.scene->geometry.boxes[id], (double)tmin * (1 - blur));
-    if (!samples_between(b.lo[0] - blur, b.hi[0] + blur, s->columns, s->corners, &footprint->lo[0],
-                         &footprint->hi[0]) ||
-        !samples_between(b.lo[1] - blur, b.hi[1] + blur, s->rows, s->corners, &footprint->lo[1],
-                         &footprint->hi[1])) {
-        return false;
+    Bounds b = project_box(buffer, &rt_item_geometry(buffer)->boxes[id], (double)tmin * (1 - error));
+    for (int a = 0; a < 2; a++) {
+        if (!samples_between(b.lo[a] - error, b.hi[a] + error, count[a], s->corners, &footprint->lo[a],
+                             &footprint->hi[a])) {
+            return false;
+        }
     }
-    footprint->near = rt_maxf(rt_float_below(b.near * (1 - blur)), tmin);
+    footprint->near = rt_maxf(rt_float_below(b.near * (1 - error)), tmin);
     return true;
+}
+
+uint32_t rt_item_place_footprint(const RtItemBuffer *buffer, uint32_t id, uint16_t layer, RtTileRange *to) {
+    RtItemFootprint at;
+    if (!rt_item_footprint(buffer, id, &at)) return 0;
+    to->object = rt_item_geometry(buffer)->objects[id];
+    to->layer = layer;
+    for (int a = 0; a < 2; a++) {
+        to->lo[a] = (uint16_t)(at.lo[a] / RT_ITEM_TILE);
+        to->hi[a] = (uint16_t)(at.hi[a] / RT_ITEM_TILE);
+    }
+    return 1;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an item buffer looks like, and whether its invariants hold. */
+/* Describing and validating an item buffer. */
 #include "accel/item/item.h"
 
 #include "core/base/memory.h"
@@ -31,7 +31,7 @@ void rt_item_describe(const RtAccel *accel, RtDescription *out) {
 /* No object but the sample's own is hit before it, if that is hit at all. */
 static RtStatus check_sample(const RtItemBuffer *buffer, uint32_t column, uint32_t row, RtCrossing *room,
                              RtError *error) {
-    const RtGeometry *g = &buffer->isa.base.scene->geometry;
+    const RtGeometry *g = rt_item_geometry(buffer);
     RtRay ray = rt_view_ray(&buffer->view, column, row);
     uint32_t named = buffer->samples[ray.source];
     RtPreparedRay prepared;
