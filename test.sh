@@ -41,7 +41,7 @@ case "${1-}" in
     run_tests clang -LE 'tree|once'
     build debug
     run_tests debug -LE 'tree|slow'
-    build tsan
+    targets=thread_tests build tsan
     run_tests tsan -L threads
     ;;
 *) die "usage: ./test.sh [--all]" ;;
