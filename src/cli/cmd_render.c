@@ -16,7 +16,6 @@
 #include "verify/equivalence.h"
 
 #include <argp.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -131,19 +130,7 @@ typedef struct Run {
     RtFrame timed, counted;
     bool by_default; /* the picture of the structure is all there is to make: its background, where it has
                         one, is made in a quicker way */
-    atomic_uint_fast64_t rays[RT_RAY_KIND_COUNT];
 } Run;
-
-static RtStatus count_by_kind(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error) {
-    (void)tile, (void)error;
-    Run *run = context;
-    uint64_t kinds[RT_RAY_KIND_COUNT] = {0};
-    for (size_t i = 0; i < count; i++) kinds[rays[i].kind]++;
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        if (kinds[kind]) atomic_fetch_add(&run->rays[kind], kinds[kind]);
-    }
-    return RT_OK;
-}
 
 static void show_progress(void *context, size_t tiles_done, size_t tiles) {
     size_t percent = tiles_done * 100 / tiles;
@@ -167,8 +154,6 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     *f = (RtFrameOptions){.depth = o->depth, .threads = o->threads};
     if (isatty(STDERR_FILENO)) f->progress = show_progress;
     f->progress_context = "tracing";
-    f->sink = count_by_kind;
-    f->sink_context = run;
     const char *paths[MOST_OUTPUTS];
     bool alone = o->pictures.structure && list_outputs(o, paths) == 1 && !o->check;
     if (alone && !rt_pictures_need_frame(&o->pictures, run->accel)) return RT_OK;
@@ -179,7 +164,6 @@ static RtStatus trace_frames(Run *run, RtError *error) {
     f->progress_context = "counting";
     f->counted = true;
     f->cost_kinds = o->pictures.kinds;
-    f->sink = NULL;
     return rt_frame_trace(&run->counted, run->accel, f, error);
 }
 
@@ -237,7 +221,7 @@ static RtStatus write_images(const Run *run, RtError *error) {
 
 static uint64_t total_rays(const Run *run) {
     uint64_t sum = 0;
-    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sum += run->rays[kind];
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sum += run->timed.ray_count[kind];
     return sum;
 }
 
@@ -248,7 +232,7 @@ static json_t *stats_json(const Run *run) {
     rt_accel_describe(run->accel, &d);
     json_t *kinds = json_object();
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        if (run->rays[kind])
+        if (run->timed.ray_count[kind])
             json_object_set_new(kinds, rt_ray_kind_name((RtRayKind)kind),
                                 rt_json_tally(&run->counted.tallies[kind]));
     }
@@ -274,8 +258,9 @@ static void print_rays(const Run *run) {
     int threads = rt_thread_count(run->options->threads);
     printf(", %u level%s: ", run->options->depth, rt_plural(run->options->depth));
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        if (run->rays[kind])
-            printf("%llu %s, ", (unsigned long long)run->rays[kind], rt_ray_kind_name((RtRayKind)kind));
+        if (run->timed.ray_count[kind])
+            printf("%llu %s, ", (unsigned long long)run->timed.ray_count[kind],
+                   rt_ray_kind_name((RtRayKind)kind));
     }
     printf("%llu ray%s in %.3g s on %d thread%s: %.3g Mrays/s.", (unsigned long long)rays, rt_plural(rays),
            run->timed.seconds, threads, rt_plural((uint64_t)threads),
@@ -356,7 +341,7 @@ static RtStatus check_rays(const Run *run, RtError *error) {
     RT_TRY(rt_accel_open(rt_accel_truth(), &run->scene, &brute, error));
     RtStatus status = rt_rayset_record(sets, run->accel, &recording, error);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT && status == RT_OK; kind++) {
-        if (run->rays[kind] > 0) status = check_kind(run, brute, &sets[kind], error);
+        if (run->timed.ray_count[kind] > 0) status = check_kind(run, brute, &sets[kind], error);
     }
     if (status == RT_OK) status = check_frame(run, brute, error);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);

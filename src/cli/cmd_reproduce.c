@@ -7,7 +7,7 @@
 #include "cli/progress.h"
 #include "core/base/memory.h"
 #include "experiment/manifest.h"
-#include "report/result_directory.h"
+#include "report/result_files.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,14 +51,14 @@ static RtStatus compare(const char *path, const char *kept, const char *counted,
                    end_of_line(counted));
 }
 
-static RtStatus compare_file(const char *directory, const RtExactFile *file, const RtResults *results,
+static RtStatus compare_file(const char *directory, RtResultFile file, const RtResults *results,
                              const RtPublished *published, RtError *error) {
     char path[RT_MAX_PATH], *kept = NULL, *counted = NULL;
     size_t size;
-    RT_TRY(rt_path_join(directory, file->name, path, error));
+    RT_TRY(rt_path_join(directory, rt_result_files[file], path, error));
     FILE *stream = open_memstream(&counted, &size);
     if (!stream) return rt_fail_memory(error, "the counts", 0);
-    file->write(results, published, stream);
+    rt_result_file_write(file, results, published, stream);
     RtStatus status = fclose(stream) == 0 ? RT_OK : rt_fail_memory(error, "the counts", 0);
     if (status == RT_OK) status = rt_file_read(path, MOST_CSV_BYTES, &kept, &size, error);
     if (status == RT_OK) status = compare(path, kept, counted, error);
@@ -72,10 +72,10 @@ static RtStatus compare_all(const char *directory, const RtResults *results, RtE
     RtPublished published;
     RtStatus status = rt_published_load(&published, results->experiment, error);
     if (status == RT_OK) rt_published_compare(&published, results);
-    for (size_t i = 0; status == RT_OK && i < RT_EXACT_FILES; i++) {
-        const RtExactFile *file = &rt_exact_files[i];
-        if (!file->is_wanted(results->experiment)) continue;
-        status = compare_file(directory, file, results, &published, error);
+    for (int i = 0; status == RT_OK && i < RT_RESULT_FILE_COUNT; i++) {
+        const RtFileSort sort = rt_result_file_sort(results->experiment, (RtResultFile)i);
+        if (sort == RT_FILE_COUNTED || sort == RT_FILE_COMPARED)
+            status = compare_file(directory, (RtResultFile)i, results, &published, error);
     }
     if (status == RT_OK) status = rt_published_check(&published, error);
     rt_published_clear(&published);

@@ -155,14 +155,13 @@ static RtStatus serve_kind(const RtSpec *spec, const RtScene *scene, const Given
     return ask(*accel, given, passes, error);
 }
 
-static RtStatus serve_accel(const Serving *serving, const RtScene *scene, uint32_t t, uint32_t c,
-                            const Given given[RT_RAY_KIND_COUNT], RtError *error) {
+static void serve_accel(const Serving *serving, const RtScene *scene, uint32_t t, uint32_t c,
+                        const Given given[RT_RAY_KIND_COUNT]) {
     const RtExperiment *e = serving->experiment;
-    RtSpec spec;
+    RtSpec spec = e->candidates[c].parsed;
     RtAccel *accel = NULL;
     char text[RT_MAX_SPEC_CHARS];
     const char *label = e->candidates[c].label, *at = e->workloads[t].label;
-    RT_TRY(rt_spec_parse(e->candidates[c].spec, &spec, error));
     settle_isa(&spec);
     rt_spec_format(&spec, text);
     for (uint32_t k = 0; k < e->kind_count; k++) {
@@ -180,7 +179,6 @@ static RtStatus serve_accel(const Serving *serving, const RtScene *scene, uint32
                                    kind, "passes", passes, "spec", text, "rays", (json_int_t)g->set.count));
     }
     rt_accel_destroy(accel);
-    return RT_OK;
 }
 
 static RtStatus serve_scene(const Serving *serving, uint32_t t, RtScene *scene, RtError *error) {
@@ -191,7 +189,7 @@ static RtStatus serve_scene(const Serving *serving, uint32_t t, RtScene *scene, 
     for (uint32_t k = 0; k < e->kind_count && status == RT_OK; k++)
         status = read_rays(serving->folder, t, e->kinds[k], &given[e->kinds[k]], error);
     for (uint32_t c = 0; c < e->candidate_count && status == RT_OK; c++) {
-        if (rt_candidate_runs(e, c, t)) status = serve_accel(serving, scene, t, c, given, error);
+        if (rt_candidate_runs(e, c, t)) serve_accel(serving, scene, t, c, given);
     }
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         rt_rayset_clear(&given[k].set);

@@ -96,10 +96,19 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
     return RT_OK;
 }
 
-/* The first that is not of a plugin: with one that breaks nothing could be compared. */
-static uint32_t default_baseline(const RtExperiment *experiment) {
+RtStatus rt_candidate_parse(RtCandidate *candidate, RtError *error) {
+    RtSpec spec;
+    if (candidate->parsed.layer_count > 0) return RT_OK;
+    RT_TRY(rt_spec_parse(candidate->spec, &spec, error));
+    candidate->parsed = spec;
+    return RT_OK;
+}
+
+/* The first that is not a plugin's: with a baseline that breaks, nothing could be compared. */
+static uint32_t default_baseline(RtExperiment *experiment) {
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
-        if (!rt_spec_text_is_away(experiment->candidates[c].spec)) return c;
+        RtCandidate *candidate = &experiment->candidates[c];
+        if (rt_candidate_parse(candidate, NULL) != RT_OK || !rt_spec_is_away(&candidate->parsed)) return c;
     }
     return 0;
 }
@@ -174,20 +183,19 @@ static RtStatus fail_twice(const char *label, RtError *error) {
                    label);
 }
 
-/* Where results are only read, it is what it was. */
-static RtStatus check_spec(const RtExperiment *experiment, uint32_t i, bool *missing, RtError *error) {
-    RtSpec spec;
+/* Whether this build lacks it; where results are only read, whether the build that made them did. */
+static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error) {
+    RtCandidate *candidate = &experiment->candidates[i];
     RtError why = {RT_OK, ""};
-    *missing = experiment->manifest && rt_manifest_is_missing(experiment->manifest, i);
-    if (experiment->manifest || rt_spec_parse(experiment->candidates[i].spec, &spec, &why) == RT_OK)
-        return RT_OK;
-    *missing = why.status == RT_NOT_AVAILABLE;
-    return *missing ? RT_OK : rt_fail(error, why.status, "%s", why.message);
+    candidate->missing = experiment->manifest && rt_manifest_is_missing(experiment->manifest, i);
+    if (experiment->manifest || rt_candidate_parse(candidate, &why) == RT_OK) return RT_OK;
+    candidate->missing = why.status == RT_NOT_AVAILABLE;
+    return candidate->missing ? RT_OK : rt_fail(error, why.status, "%s", why.message);
 }
 
 static RtStatus check_candidate(RtExperiment *experiment, uint32_t i, RtError *error) {
     RtCandidate *candidate = &experiment->candidates[i];
-    RT_TRY(check_spec(experiment, i, &candidate->missing, error));
+    RT_TRY(check_spec(experiment, i, error));
     const uint32_t all = (uint32_t)((UINT64_C(1) << experiment->workload_count) - 1);
     for (uint32_t k = 0; k < i; k++) {
         const RtCandidate *other = &experiment->candidates[k];

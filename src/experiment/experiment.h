@@ -44,6 +44,7 @@ typedef struct RtCandidate {
     uint32_t entry;
     char group[RT_MAX_LABEL];     /* the heading it stands under in the table of frames, or "" */
     char spec[RT_MAX_SPEC_CHARS]; /* as written */
+    RtSpec parsed;                /* no layers until rt_candidate_parse */
     uint64_t ray_stride;          /* k: measured on each kth ray of a set, so that slow ones finish; >= 1 */
     uint32_t left_out;            /* bit t: it is not measured on workloads[t] */
     bool missing;                 /* this build does not have it: skipped with a notice */
@@ -154,6 +155,10 @@ bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t);
  * for here, appended to the candidates. A label that is none leaves an index that rt_experiment_check
  * refuses. NULL chooses the first that is not of a plugin. */
 RtStatus rt_experiment_set_baseline(RtExperiment *experiment, const char *label, RtError *error);
+
+/* Parses the candidate's spec, unless that is done. rt_experiment_check does it for all that this build has.
+ */
+RtStatus rt_candidate_parse(RtCandidate *candidate, RtError *error);
 
 /* Whether candidate `c` is one of those that ratios refer to. */
 bool rt_candidate_is_baseline(const RtExperiment *experiment, uint32_t c);

@@ -7,19 +7,19 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const result_files[] = {
-    RT_RUN_JOURNAL,    RT_VERIFY_JOURNAL, RT_MANIFEST, "counts.csv",   "times.csv",
-    "rounds.csv",      "published.csv",   "best.csv",  "published.md", "report.html",
-    "verify.csv",      "verify.md",       "tables.md", "tables.tex",   RT_DISTRIBUTIONS_CSV,
-    RT_HISTOGRAMS_CSV, RT_HARDWARE_CSV,   RT_FRAME_CSV};
+const char *const rt_result_files[RT_RESULT_FILE_COUNT] = {
+#define NAME(ID, name) name,
+    RT_RESULT_FILES(NAME)
+#undef NAME
+};
 
-enum { RESULT_FILES = sizeof result_files / sizeof result_files[0] };
+/* Those that are removed: all but the copy of the experiment, the last one. */
+enum { RESULTS = RT_FILE_EXPERIMENT };
 
 bool rt_previous_results_has(const char *name) {
-    for (int i = 0; i < RESULT_FILES; i++) {
-        if (strcmp(name, result_files[i]) == 0) return true;
-    }
-    return strcmp(name, "experiment.yaml") == 0;
+    int i = 0;
+    while (i < RT_RESULT_FILE_COUNT && strcmp(name, rt_result_files[i]) != 0) i++;
+    return i < RT_RESULT_FILE_COUNT;
 }
 
 static bool has(const char *directory, const char *name) {
@@ -41,8 +41,8 @@ static bool is_given_up(const char *directory, const char *journal) {
 }
 
 static const char *find_result(const char *directory) {
-    for (int i = 0; i < RESULT_FILES; i++) {
-        if (has(directory, result_files[i])) return result_files[i];
+    for (int i = 0; i < RESULTS; i++) {
+        if (has(directory, rt_result_files[i])) return rt_result_files[i];
     }
     return NULL;
 }
@@ -85,9 +85,9 @@ RtStatus rt_previous_results_remove(const char *directory, const char *journal, 
     if (!find_result(directory)) return RT_OK;
     RT_TRY(rt_path_join(directory, journal, path, error));
     RT_TRY(rt_file_write(path, given_up, sizeof given_up - 1, error));
-    for (int i = 0; i < RESULT_FILES; i++) {
-        if (strcmp(result_files[i], journal) == 0) continue;
-        if (rt_path_join(directory, result_files[i], path, NULL) == RT_OK) remove(path);
+    for (int i = 0; i < RESULTS; i++) {
+        if (strcmp(rt_result_files[i], journal) == 0) continue;
+        if (rt_path_join(directory, rt_result_files[i], path, NULL) == RT_OK) remove(path);
     }
     remove_each(directory, "plots", ".svg");
     remove_each(directory, "plots", ".pdf");

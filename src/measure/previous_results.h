@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an earlier run has left in a result directory, and what becomes of it: nothing is overwritten unasked.
- */
+/* The files of a result directory, and what becomes of those that a previous run left there: nothing is
+ * overwritten unasked. */
 #ifndef RT_MEASURE_PREVIOUS_RESULTS_H
 #define RT_MEASURE_PREVIOUS_RESULTS_H
 
@@ -15,16 +15,41 @@ typedef enum RtStart {
     RT_START_ANEW    /* the results are lost */
 } RtStart;
 
-/* The journals of experiments and of verifications, and what either writes when it has found everything. */
+/* Every file of a result directory, X(ID, name). Journals come first; experiment.yaml, which is a copy, is
+ * not a result. report/result_files.h says which experiments have which, and writes them. */
+#define RT_RESULT_FILES(X)                                                                                   \
+    X(RUN_JOURNAL, "cells.jsonl")                                                                            \
+    X(VERIFY_JOURNAL, "rows.jsonl")                                                                          \
+    X(MANIFEST, "manifest.json")                                                                             \
+    X(COUNTS, "counts.csv")                                                                                  \
+    X(TIMES, "times.csv")                                                                                    \
+    X(ROUNDS, "rounds.csv")                                                                                  \
+    X(DISTRIBUTIONS, "distributions.csv")                                                                    \
+    X(HISTOGRAMS, "histograms.csv")                                                                          \
+    X(HARDWARE, "hardware.csv")                                                                              \
+    X(FRAME, "frame.csv")                                                                                    \
+    X(PUBLISHED, "published.csv")                                                                            \
+    X(BEST, "best.csv")                                                                                      \
+    X(PUBLISHED_PAGE, "published.md")                                                                        \
+    X(TABLES_MD, "tables.md")                                                                                \
+    X(TABLES_TEX, "tables.tex")                                                                              \
+    X(REPORT, "report.html")                                                                                 \
+    X(VERIFY_CSV, "verify.csv")                                                                              \
+    X(VERIFY_MD, "verify.md")                                                                                \
+    X(EXPERIMENT, "experiment.yaml")
+
+typedef enum RtResultFile {
+#define RT_FILE_ENUM(ID, name) RT_FILE_##ID,
+    RT_RESULT_FILES(RT_FILE_ENUM)
+#undef RT_FILE_ENUM
+        RT_RESULT_FILE_COUNT
+} RtResultFile;
+
+extern const char *const rt_result_files[RT_RESULT_FILE_COUNT];
+
 #define RT_RUN_JOURNAL    "cells.jsonl"
 #define RT_VERIFY_JOURNAL "rows.jsonl"
 #define RT_MANIFEST       "manifest.json"
-
-/* Tables that only some experiments have. */
-#define RT_DISTRIBUTIONS_CSV "distributions.csv"
-#define RT_HISTOGRAMS_CSV    "histograms.csv"
-#define RT_HARDWARE_CSV      "hardware.csv"
-#define RT_FRAME_CSV         "frame.csv"
 
 /* Whether a result directory has a file of that name of its own. */
 bool rt_previous_results_has(const char *name);

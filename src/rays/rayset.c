@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Ray sets. The sink of a frame appends each ray to the list of its tile and kind; the lists are joined in
- * the order of tiles, so threads cannot change a set. Diffuse and random rays draw their numbers from one
- * stream a ray, numbered by kind and index. */
+/* Ray sets. A frame keeps the rays that it traces; diffuse and random rays are made here. Each draws its
+ * numbers from a stream of its own, numbered by kind and index. */
 #include "rays/rayset.h"
 
 #include "core/base/memory.h"
@@ -18,18 +17,10 @@ _Static_assert(sizeof(RtRay) == 10 * sizeof(uint32_t), "a ray has no padding, so
 /* Rays made by one item of parallel work. */
 #define CHUNK 4096
 
-/* The rays of one tile, by kind. */
-typedef struct TileRays {
-    uint32_t count[RT_RAY_KIND_COUNT], capacity[RT_RAY_KIND_COUNT];
-    RtRay *rays[RT_RAY_KIND_COUNT];
-} TileRays;
-
 typedef struct Recorder {
     const RtRecording *recording;
     const RtScene *scene;
-    const RtFrame *frame;
-    TileRays *tiles; /* [tile_count] */
-    size_t tile_count;
+    RtFrame frame;
     RtRaySet *sets; /* [RT_RAY_KIND_COUNT] */
 } Recorder;
 
@@ -46,45 +37,12 @@ void rt_rayset_seal(RtRaySet *set) {
     set->fingerprint = XXH3_64bits(set->rays, set->count * sizeof(RtRay));
 }
 
-/* ---- rays of the frame ---- */
-
-static RtStatus record(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error) {
-    Recorder *recorder = context;
-    assert(tile < recorder->tile_count);
-    TileRays *to = &recorder->tiles[tile];
-    for (size_t i = 0; i < count; i++) {
-        uint32_t kind = rays[i].kind;
-        RT_TRY(rt_reserve(&to->rays[kind], &to->capacity[kind], (uint64_t)to->count[kind] + 1, sizeof(RtRay),
-                          error));
-        to->rays[kind][to->count[kind]++] = rays[i];
-    }
-    return RT_OK;
-}
-
-/* Joins the tiles' lists of one kind, and frees them as it goes. */
-static RtStatus join(Recorder *recorder, RtRayKind kind, RtError *error) {
-    uint64_t count = 0;
-    for (size_t i = 0; i < recorder->tile_count; i++) count += recorder->tiles[i].count[kind];
-    RtRaySet *set = &recorder->sets[kind];
-    RT_TRY(rt_rayset_init(set, kind, count, error));
-    uint64_t used = 0;
-    for (size_t i = 0; i < recorder->tile_count; i++) {
-        TileRays *tile = &recorder->tiles[i];
-        if (tile->count[kind] == 0) continue;
-        memcpy(set->rays + used, tile->rays[kind], tile->count[kind] * sizeof(RtRay));
-        used += tile->count[kind];
-        rt_free(tile->rays[kind]);
-        tile->rays[kind] = NULL;
-    }
-    return RT_OK;
-}
-
 /* ---- diffuse rays ---- */
 
 /* The ray that bounces where `primary` hit, off the side it came from. */
 static RtRay bounce(const Recorder *recorder, const RtRay *primary, RtCrossing *room) {
     uint32_t sample = primary->source;
-    RtHit hit = {recorder->frame->depth[sample], recorder->frame->object[sample]};
+    RtHit hit = {recorder->frame.depth[sample], recorder->frame.object[sample]};
     RtSurface surface = rt_surface(recorder->scene, primary, hit, room);
     RtRandom random = rt_random(recorder->recording->seed, stream_of(RT_RAY_DIFFUSE, sample));
     return (RtRay){.org = rt_narrow(rt_add_scaledd(surface.point, surface.side, surface.offset)),
@@ -103,7 +61,7 @@ static RtStatus make_diffuse(Recorder *recorder, RtError *error) {
     RtCrossing *room;
     RT_TRY(rt_hit_room(&recorder->scene->geometry, &room, error));
     for (uint64_t i = 0; i < primary->count; i++) {
-        if (recorder->frame->object[primary->rays[i].source] == RT_NO_OBJECT) continue;
+        if (recorder->frame.object[primary->rays[i].source] == RT_NO_OBJECT) continue;
         RtRay ray = bounce(recorder, &primary->rays[i], room);
         if (rt_ray_is_valid(&ray)) set->rays[set->count++] = ray;
     }
@@ -173,16 +131,17 @@ static RtStatus make_random(Recorder *recorder, RtError *error) {
 
 /* ---- recording ---- */
 
-static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *frame, RtError *error) {
-    RtFrameOptions options = {.depth = recorder->recording->depth,
-                              .threads = recorder->recording->threads,
-                              .light_from_outside = recorder->recording->light_from_outside,
-                              .sink = record,
-                              .sink_context = recorder};
+static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtError *error) {
+    RtFrame *frame = &recorder->frame;
+    const RtFrameOptions options = {.depth = recorder->recording->depth,
+                                    .threads = recorder->recording->threads,
+                                    .light_from_outside = recorder->recording->light_from_outside,
+                                    .keep_rays = true};
     RT_TRY(rt_frame_trace(frame, accel, &options, error));
-    recorder->frame = frame;
-    for (RtRayKind kind = RT_RAY_PRIMARY; kind <= RT_RAY_TRANSMISSION; kind++) {
-        RT_TRY(join(recorder, kind, error));
+    for (int kind = RT_RAY_PRIMARY; kind <= RT_RAY_TRANSMISSION; kind++) {
+        recorder->sets[kind].count = frame->ray_count[kind];
+        recorder->sets[kind].rays = frame->rays[kind];
+        frame->rays[kind] = NULL; /* it is the set's now */
     }
     RT_TRY(make_diffuse(recorder, error));
     RT_TRY(make_occlusion(recorder, error));
@@ -193,21 +152,10 @@ static RtStatus make_sets(Recorder *recorder, const RtAccel *accel, RtFrame *fra
 
 RtStatus rt_rayset_record(RtRaySet *sets, const RtAccel *accel, const RtRecording *recording,
                           RtError *error) {
-    const RtSampling *sampling = &accel->scene->sampling;
-    Recorder recorder = {
-        .recording = recording, .scene = accel->scene, .tile_count = rt_tile_count(sampling), .sets = sets};
+    Recorder recorder = {.recording = recording, .scene = accel->scene, .sets = sets};
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) sets[kind] = (RtRaySet){.kind = (RtRayKind)kind};
-    recorder.tiles = rt_alloc(recorder.tile_count, sizeof(TileRays));
-    if (!recorder.tiles) {
-        return rt_fail_memory(error, "the ray lists of tiles", recorder.tile_count * sizeof(TileRays));
-    }
-    RtFrame frame = {0};
-    RtStatus status = make_sets(&recorder, accel, &frame, error);
-    rt_frame_clear(&frame);
-    for (size_t i = 0; i < recorder.tile_count; i++) {
-        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_free(recorder.tiles[i].rays[kind]);
-    }
-    rt_free(recorder.tiles);
+    RtStatus status = make_sets(&recorder, accel, error);
+    rt_frame_clear(&recorder.frame);
     for (int kind = 0; status != RT_OK && kind < RT_RAY_KIND_COUNT; kind++) rt_rayset_clear(&sets[kind]);
     return status;
 }

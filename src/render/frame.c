@@ -14,6 +14,7 @@
 #include "render/illumination.h"
 
 #include <pthread.h>
+#include <string.h>
 
 enum { STREAM = 1024, LEVEL = RT_MAX_SPAWN * STREAM };
 
@@ -29,12 +30,19 @@ typedef struct Level {
     uint32_t count;
 } Level;
 
+/* The rays of one tile that are kept, by kind. */
+typedef struct TileRays {
+    uint32_t count[RT_RAY_KIND_COUNT], capacity[RT_RAY_KIND_COUNT];
+    RtRay *rays[RT_RAY_KIND_COUNT];
+} TileRays;
+
 typedef struct Job Job;
 
 typedef struct Worker {
     Job *job;
     RtQuery query;
     RtTally tallies[RT_RAY_KIND_COUNT];
+    uint64_t ray_count[RT_RAY_KIND_COUNT];
     size_t tile;
     Level *levels; /* [depth]; 0 holds the primary rays */
 
@@ -57,6 +65,7 @@ struct Job {
     const RtScene *scene;
     RtView view;
     RtSample *tiles; /* [tile_count], in order */
+    TileRays *kept;  /* [tile_count], or NULL */
     size_t tile_count, tiles_done;
     pthread_mutex_t lock; /* guards tiles_done and the calls of progress */
     Worker *workers;
@@ -77,14 +86,23 @@ static void charge(Worker *worker, uint32_t sample, uint32_t kind, RtTally cost[
     cost[kind] = (RtTally){0};
 }
 
-static RtStatus show_to_sink(Worker *worker, const RtRay *rays, uint32_t count, RtError *error) {
-    const RtFrameOptions *o = worker->job->options;
-    return o->sink ? o->sink(o->sink_context, worker->tile, rays, count, error) : RT_OK;
+/* Counts rays by kind, and keeps them where that is asked for. */
+static RtStatus take_rays(Worker *worker, const RtRay *rays, uint32_t count, RtError *error) {
+    TileRays *to = worker->job->kept ? &worker->job->kept[worker->tile] : NULL;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t kind = rays[i].kind;
+        worker->ray_count[kind]++;
+        if (!to) continue;
+        RT_TRY(rt_reserve(&to->rays[kind], &to->capacity[kind], (uint64_t)to->count[kind] + 1, sizeof(RtRay),
+                          error));
+        to->rays[kind][to->count[kind]++] = rays[i];
+    }
+    return RT_OK;
 }
 
 static RtStatus ask_nearest(Worker *worker, const RtRay *rays, const Path *paths, uint32_t count,
                             RtError *error) {
-    RT_TRY(show_to_sink(worker, rays, count, error));
+    RT_TRY(take_rays(worker, rays, count, error));
     if (!worker->job->options->counted) {
         rt_nearest(&worker->query, rays, count, worker->hits, NULL);
         return RT_OK;
@@ -99,7 +117,7 @@ static RtStatus ask_nearest(Worker *worker, const RtRay *rays, const Path *paths
 
 static RtStatus ask_occluded(Worker *worker, RtError *error) {
     const RtRay *rays = worker->shadow_rays;
-    RT_TRY(show_to_sink(worker, rays, worker->shadow_count, error));
+    RT_TRY(take_rays(worker, rays, worker->shadow_count, error));
     if (!worker->job->options->counted) {
         rt_occluded(&worker->query, rays, worker->shadow_count, worker->blocked, NULL);
         return RT_OK;
@@ -293,7 +311,36 @@ static RtStatus init_tiles(Job *job, const RtSampling *sampling, RtError *error)
     job->tiles = rt_alloc(job->tile_count, sizeof(RtSample));
     if (!job->tiles) return rt_fail_memory(error, "the tiles of a frame", job->tile_count * sizeof(RtSample));
     rt_tiles_in_order(sampling, job->tiles);
+    if (!job->options->keep_rays) return RT_OK;
+    job->kept = rt_alloc(job->tile_count, sizeof(TileRays));
+    if (job->kept) return RT_OK;
+    return rt_fail_memory(error, "the ray lists of tiles", job->tile_count * sizeof(TileRays));
+}
+
+/* Joins the lists of all tiles, kind by kind, and frees them as it goes. */
+static RtStatus join_rays(Job *job, RtError *error) {
+    for (int kind = 0; job->kept && kind < RT_RAY_KIND_COUNT; kind++) {
+        const uint64_t count = job->frame->ray_count[kind];
+        RtRay *rays = job->frame->rays[kind] = rt_alloc_unset(count, sizeof(RtRay));
+        if (!rays) return rt_fail_memory(error, "the rays of a frame", count * sizeof(RtRay));
+        for (size_t i = 0; i < job->tile_count; i++) {
+            TileRays *tile = &job->kept[i];
+            if (tile->count[kind] == 0) continue;
+            memcpy(rays, tile->rays[kind], tile->count[kind] * sizeof(RtRay));
+            rays += tile->count[kind];
+            rt_free(tile->rays[kind]);
+            tile->rays[kind] = NULL;
+        }
+    }
     return RT_OK;
+}
+
+static void clear_tiles(Job *job) {
+    for (size_t i = 0; job->kept && i < job->tile_count; i++) {
+        for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_free(job->kept[i].rays[kind]);
+    }
+    rt_free(job->kept);
+    rt_free(job->tiles);
 }
 
 void rt_frame_clear(RtFrame *frame) {
@@ -301,6 +348,7 @@ void rt_frame_clear(RtFrame *frame) {
     rt_free(frame->object);
     rt_free(frame->depth);
     rt_free(frame->cost);
+    for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) rt_free(frame->rays[kind]);
     *frame = (RtFrame){0};
 }
 
@@ -322,11 +370,12 @@ static RtStatus run(Job *job, const RtAccel *accel, RtError *error) {
     for (int i = 0; i < threads; i++) {
         for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
             rt_tally_add(&job->frame->tallies[kind], &job->workers[i].tallies[kind]);
+            job->frame->ray_count[kind] += job->workers[i].ray_count[kind];
         }
         clear_worker(&job->workers[i], job->options->depth);
     }
     rt_free(job->workers);
-    return status;
+    return status == RT_OK ? join_rays(job, error) : status;
 }
 
 RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptions *options, RtError *error) {
@@ -345,7 +394,7 @@ RtStatus rt_frame_trace(RtFrame *frame, const RtAccel *accel, const RtFrameOptio
         status = run(&job, accel, error);
         pthread_mutex_destroy(&job.lock);
     }
-    rt_free(job.tiles);
+    clear_tiles(&job);
     if (status != RT_OK) rt_frame_clear(frame);
     return status;
 }

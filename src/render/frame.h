@@ -20,19 +20,13 @@
 /* A frame of more samples is refused: 8192 x 8192, which take 1.3 GB, counted 6.7 GB. */
 #define RT_MAX_FRAME_SAMPLES (UINT32_C(1) << 26)
 
-/* Called with every ray of one tile, by its number in the order of tiles, as it is traced, by any thread, but
- * for one tile in one order: level by level, each stream as it goes to the accelerator (shadow rays to
- * `occluded`, the others to `nearest`). `rays` is valid during the call only. */
-typedef RtStatus RtRaySink(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error);
-
 typedef struct RtFrameOptions {
     uint32_t depth;      /* levels of the ray tree, 1..RT_MAX_DEPTH; the primary ray is the first */
     int threads;         /* 0 = all processors */
     bool counted;        /* fill tallies and the count channels; else the timed kernels run */
     uint32_t cost_kinds; /* rays that are added to a sample's cost, bits 1 << RtRayKind; 0: of all kinds */
     bool light_from_outside; /* ask for light on the outside of surfaces, whatever side a ray comes from */
-    RtRaySink *sink;         /* or NULL */
-    void *sink_context;
+    bool keep_rays;          /* keep all rays that are traced */
     /* Optional: called by one thread at a time as tiles are finished. */
     void (*progress)(void *context, size_t tiles_done, size_t tiles);
     void *progress_context;
@@ -45,8 +39,12 @@ typedef struct RtFrame {
     uint32_t *object; /* primary hit, RT_NO_OBJECT for none */
     float *depth;     /* t of the primary hit (distance along the camera's axis), INFINITY for none */
     RtTally *cost;    /* rays of the sample's tree, of cost_kinds; NULL unless counted */
-    RtTally tallies[RT_RAY_KIND_COUNT]; /* zero unless counted */
-    double seconds;                     /* wall time of the tracing */
+    RtTally tallies[RT_RAY_KIND_COUNT];    /* zero unless counted */
+    uint64_t ray_count[RT_RAY_KIND_COUNT]; /* rays traced, by kind */
+    /* [ray_count] with keep_rays, else NULL. Tile after tile, and within a tile in the order in which they
+     * are traced: level by level, each stream as it goes to the accelerator. */
+    RtRay *rays[RT_RAY_KIND_COUNT];
+    double seconds; /* wall time of the tracing */
 } RtFrame;
 
 /* Traces the frame. Scene and sampling are the accelerator's. Free with rt_frame_clear; after a failure it is

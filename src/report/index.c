@@ -33,8 +33,7 @@ static void put_size(FILE *out, const RtResults *results) {
 static void put_paragraph(FILE *out, const char *title, const char *text) {
     if (!*text) return;
     fprintf(out, "<p><strong>%s</strong> ", title);
-    rt_html_put(out, text);
-    fputs("</p>\n", out);
+    rt_html_wrap(out, "", text, "</p>\n");
 }
 
 /* `name`: of the directory, seen from the page. */
@@ -108,14 +107,13 @@ static void visit(void *context, const char *path) {
 }
 
 RtStatus rt_index_write(const char *folder, size_t *count, RtError *error) {
-    char path[RT_MAX_PATH], plain[RT_MAX_PATH];
+    char plain[RT_MAX_PATH];
     RtOutput output;
     /* Without slashes at its end, so that the rest of a path is the name seen from it. */
     snprintf(plain, sizeof plain, "%s", *folder ? folder : ".");
     for (size_t size = strlen(plain); size > 1 && plain[size - 1] == '/'; size--) plain[size - 1] = '\0';
     *count = 0;
-    RT_TRY(rt_path_join(plain, "index.html", path, error));
-    RT_TRY(rt_output_open(&output, path, error));
+    RT_TRY(rt_output_open_in(&output, plain, "index.html", error));
     Index index = {.out = output.file, .folder = plain, .experiment = rt_alloc(1, sizeof(RtExperiment))};
     if (!index.experiment) {
         rt_output_discard(&output);

@@ -25,12 +25,9 @@ void rt_page_begin(FILE *out, const char *title) {
           "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<link rel=\"icon\" "
           "href=\"data:,\">\n<title>",
           out);
-    rt_html_put(out, title);
-    fputs("</title>\n<style>\n", out);
+    rt_html_wrap(out, "", title, "</title>\n<style>\n");
     rt_page_lines(out, page_css);
-    fputs("</style></head>\n<body><main>\n<h1>", out);
-    rt_html_put(out, title);
-    fputs("</h1>\n", out);
+    rt_html_wrap(out, "</style></head>\n<body><main>\n<h1>", title, "</h1>\n");
 }
 
 void rt_page_end(FILE *out) {
@@ -65,8 +62,7 @@ void rt_page_href(FILE *out, const char *file) {
 void rt_page_card(FILE *out, const char *title, const char *text) {
     if (!*text) return;
     fprintf(out, "<section class=\"card\"><h2>%s</h2><p>", title);
-    rt_html_put(out, text);
-    fputs("</p></section>\n", out);
+    rt_html_wrap(out, "", text, "</p></section>\n");
 }
 
 void rt_page_verdict(FILE *out, const RtResults *results) {
@@ -98,20 +94,15 @@ static const char *text_at(const json_t *object, const char *key) {
 void rt_page_provenance(FILE *out, const json_t *manifest) {
     const json_t *machine = json_object_get(manifest, "machine");
     const json_t *clock = json_object_get(machine, "clock_mhz");
-    fputs("<p class=\"meta\">", out);
-    rt_html_put(out, text_at(manifest, "date"));
-    fputs(" &middot; ", out);
+    rt_html_wrap(out, "<p class=\"meta\">", text_at(manifest, "date"), " &middot; ");
     rt_html_put(out, text_at(machine, "cpu"));
     if (json_is_number(clock)) {
         fprintf(out, " &middot; clock %.2f GHz", 1e-3 * json_number_value(clock));
     } else {
         fputs(" &middot; clock unknown", out);
     }
-    fputs(" &middot; governor ", out);
-    rt_html_put(out, text_at(machine, "governor"));
-    fputs(" &middot; raytally ", out);
-    rt_html_put(out, text_at(machine, "version"));
-    fputs(" (", out);
+    rt_html_wrap(out, " &middot; governor ", text_at(machine, "governor"), " &middot; raytally ");
+    rt_html_wrap(out, "", text_at(machine, "version"), " (");
     rt_html_put(out, text_at(machine, "commit"));
     fprintf(out, "%s)%s</p>\n", json_is_true(json_object_get(machine, "dirty")) ? ", with changes" : "",
             json_is_true(json_object_get(manifest, "quick")) ? " &middot; <strong>quick variant</strong>"

@@ -73,10 +73,8 @@ static void put_head(const RtResults *results, bool tex, FILE *out) {
 static RtStatus write_tables(const RtResults *results, const char *directory, const char *name, bool tex,
                              RtError *error) {
     const RtExperiment *experiment = results->experiment;
-    char path[RT_MAX_PATH];
     RtOutput output;
-    RT_TRY(rt_path_join(directory, name, path, error));
-    RT_TRY(rt_output_open(&output, path, error));
+    RT_TRY(rt_output_open_in(&output, directory, name, error));
     put_head(results, tex, output.file);
     for (uint32_t t = 0; t < experiment->workload_count; t++) {
         if (!results->workloads[t].known) continue;

@@ -48,10 +48,8 @@ static bool has_rays(const RtResults *results, RtRayKind kind) {
 static RtStatus write_names(const RtResults *results, const char *directory, const char *format,
                             RtError *error) {
     const RtExperiment *experiment = results->experiment;
-    char path[RT_MAX_PATH];
     RtOutput output;
-    RT_TRY(rt_path_join(directory, "plots/names.gp", path, error));
-    RT_TRY(rt_output_open(&output, path, error));
+    RT_TRY(rt_output_open_in(&output, directory, "plots/names.gp", error));
     FILE *out = output.file;
     fprintf(out,
             "# What counts.csv and times.csv have rows of, in the order of the experiment.\n"
@@ -90,10 +88,8 @@ static RtStatus write_names(const RtResults *results, const char *directory, con
 
 /* The script that draws histograms.csv, after whatever was drawn before it: with what it needs. */
 static RtStatus write_histograms(const RtResults *results, const char *directory, RtError *error) {
-    char path[RT_MAX_PATH];
     RtOutput output;
-    RT_TRY(rt_path_join(directory, "plots/" HISTOGRAM_SCRIPT, path, error));
-    RT_TRY(rt_output_open(&output, path, error));
+    RT_TRY(rt_output_open_in(&output, directory, "plots/" HISTOGRAM_SCRIPT, error));
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         const char *scene = results->experiment->workloads[t].label;
         fprintf(

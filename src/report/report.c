@@ -41,9 +41,7 @@ static void put_claims(FILE *out, const RtResults *results) {
         fprintf(out, "<li><span class=\"verdict %s\">%s</span> ", classes[result.verdict],
                 rt_claim_verdict_name(result.verdict));
         rt_html_put(out, experiment->claims[i]);
-        fputs("<small>", out);
-        rt_html_put(out, result.figures);
-        fputs("</small></li>\n", out);
+        rt_html_wrap(out, "<small>", result.figures, "</small></li>\n");
     }
     fputs("</ul></section>\n", out);
 }
@@ -61,16 +59,14 @@ static void put_link(FILE *out, const char *directory, const char *name) {
 }
 
 static void put_links(FILE *out, const char *directory) {
-    static const char *const files[] = {
-        "counts.csv",    "times.csv",    "rounds.csv",    RT_DISTRIBUTIONS_CSV, RT_HISTOGRAMS_CSV,
-        RT_HARDWARE_CSV, RT_FRAME_CSV,   "published.csv", "best.csv",           "tables.md",
-        "tables.tex",    "published.md", "manifest.json", "experiment.yaml"};
     fputs("<nav class=\"here\" aria-label=\"Sections\"><a href=\"#plots\">Plots</a> <a "
           "href=\"#scenes\">Scenes</a> "
           "<a href=\"#tables\">Tables</a> <a href=\"#method\">How it was measured</a></nav>\n"
           "<nav class=\"here\" aria-label=\"Files\"><span class=\"meta\">Data:</span> ",
           out);
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) put_link(out, directory, files[i]);
+    for (int i = RT_FILE_MANIFEST; i < RT_RESULT_FILE_COUNT; i++) {
+        if (i != RT_FILE_REPORT) put_link(out, directory, rt_result_files[i]);
+    }
     fputs("</nav>\n", out);
 }
 
@@ -141,8 +137,8 @@ static void put_svg(FILE *out, const char *svg, size_t size, const Caption *capt
     fprintf(out, "\"><img width=\"%d\" height=\"%d\" alt=\"Plot: ", width, height);
     char text[MAX_CAPTION];
     snprintf(text, sizeof text, "%.*s", (int)length, caption->text);
-    rt_html_put(out, *text ? text : caption->name);
-    fputs(". Its figures are in the tables and files of this page.\" src=\"", out);
+    rt_html_wrap(out, "", *text ? text : caption->name,
+                 ". Its figures are in the tables and files of this page.\" src=\"");
     rt_page_data_url(out, "image/svg+xml", svg, size);
     fputs("\"></div>", out);
 }
@@ -161,8 +157,7 @@ static void put_plot(void *context, const char *path) {
     if (rt_file_read(path, MOST_FILE_BYTES, &svg, &size, NULL) != RT_OK) return;
     put_svg(plots->out, svg, size, &caption);
     rt_free(svg);
-    fputs("<figcaption>", plots->out);
-    rt_html_put(plots->out, *caption.text ? caption.text : name);
+    rt_html_wrap(plots->out, "<figcaption>", *caption.text ? caption.text : name, "");
     if (is_beside(plots->directory, pdf)) {
         fputs(" <a", plots->out);
         rt_page_href(plots->out, pdf);
@@ -186,9 +181,7 @@ static void put_picture(FILE *out, const char *path, const char *label) {
     char *data;
     size_t size;
     if (rt_file_read(path, MOST_FILE_BYTES, &data, &size, NULL) != RT_OK) return;
-    fputs("<img alt=\"Picture of the scene ", out);
-    rt_html_put(out, label);
-    fputs("\" src=\"", out);
+    rt_html_wrap(out, "<img alt=\"Picture of the scene ", label, "\" src=\"");
     rt_page_data_url(out, "image/png", data, size);
     fputs("\">", out);
     rt_free(data);
@@ -204,8 +197,7 @@ static void put_scenes(FILE *out, const RtResults *results, const char *director
         if (!workload->known || rt_path_join(directory, name, path, NULL) != RT_OK) continue;
         fputs("<figure>", out);
         put_picture(out, path, setup->label);
-        fputs("<figcaption><strong>", out);
-        rt_html_put(out, setup->label);
+        rt_html_wrap(out, "<figcaption><strong>", setup->label, "");
         fprintf(out,
                 "</strong>: %" PRIu32 " object%s; rays of a frame of %" PRIu32 " &times; %" PRIu32
                 " pixel %s, depth %" PRIu32 "</figcaption></figure>\n",
@@ -277,11 +269,8 @@ static void put_tables(FILE *out, const RtResults *results) {
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         const char *label = results->experiment->workloads[t].label;
         if (!results->workloads[t].known) continue;
-        fputs("<section class=\"scene-tables\" data-scene=\"", out);
-        rt_html_put(out, label);
-        fputs("\"><h3>", out);
-        rt_html_put(out, label);
-        fputs("</h3>\n", out);
+        rt_html_wrap(out, "<section class=\"scene-tables\" data-scene=\"", label, "\"><h3>");
+        rt_html_wrap(out, "", label, "</h3>\n");
         put_table(out, results, t, RT_TOTALS_MORE, "all kinds of rays together");
         fputs("<details><summary>By kind of rays</summary>", out);
         put_table(out, results, t, RT_CELLS_MORE, "by kind of rays");
@@ -320,17 +309,13 @@ static void put_answer(FILE *out, const RtResults *results, const char *director
     fputs("<p class=\"meta\">", out);
     rt_frame_legend(experiment, text);
     rt_html_put(out, text);
-    fputs(" ", out);
-    rt_html_put(out, experiment->frame.note);
-    fputs("</p>\n", out);
+    rt_html_wrap(out, " ", experiment->frame.note, "</p>\n");
 }
 
 static void put_head(FILE *out, const RtResults *results, const json_t *manifest, const char *directory) {
     const RtExperiment *experiment = results->experiment;
     rt_page_begin(out, experiment->name);
-    fputs("<p class=\"lede\">", out);
-    rt_html_put(out, experiment->question);
-    fputs("</p>\n", out);
+    rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
     put_answer(out, results, directory);
     put_claims(out, results);
     rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "None is written yet.");
@@ -346,9 +331,7 @@ static void put_members(FILE *out, const json_t *object) {
     json_object_foreach((json_t *)object, key, value) {
         if (json_is_object(value) || json_is_array(value) || json_is_null(value)) continue;
         if (strcmp(key, "question") == 0 || strcmp(key, "prediction") == 0) continue;
-        fputs("<dt>", out);
-        rt_html_put(out, key);
-        fputs("</dt><dd>", out);
+        rt_html_wrap(out, "<dt>", key, "</dt><dd>");
         if (json_is_string(value)) rt_html_put(out, json_string_value(value));
         if (json_is_integer(value)) fprintf(out, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
         if (json_is_real(value)) fprintf(out, "%.9g", json_real_value(value));
@@ -369,11 +352,8 @@ static void put_plugins(FILE *out, const json_t *plugins) {
             fputs(n ? ", " : " ", out);
             rt_html_put(out, json_is_string(name) ? json_string_value(name) : "");
         }
-        fputs("</dt><dd>", out);
-        rt_html_put(out, file ? file : "");
-        fputs(", hash ", out);
-        rt_html_put(out, hash ? hash : "unknown");
-        fputs("</dd>\n", out);
+        rt_html_wrap(out, "</dt><dd>", file ? file : "", ", hash ");
+        rt_html_wrap(out, "", hash ? hash : "unknown", "</dd>\n");
     }
 }
 
@@ -409,8 +389,7 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
     fputs("</p>\n<details><summary>Counters</summary><dl>", out);
     for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
         fprintf(out, "<dt>%s</dt><dd>", rt_tally_name(i));
-        rt_html_put(out, rt_tally_meaning(i));
-        fputs("</dd>\n", out);
+        rt_html_wrap(out, "", rt_tally_meaning(i), "</dd>\n");
     }
     fputs("</dl></details>\n<pre class=\"meta\">", out);
     rt_print_limits(results, out);
@@ -423,11 +402,9 @@ static void put_method(FILE *out, const RtResults *results, const json_t *manife
 
 RtStatus rt_report_write(const RtResults *results, const RtPublished *published, const json_t *manifest,
                          const char *directory, RtError *error) {
-    char path[RT_MAX_PATH];
     RtOutput output;
     RT_TRY(rt_paper_tables_write(results, directory, error));
-    RT_TRY(rt_path_join(directory, "report.html", path, error));
-    RT_TRY(rt_output_open(&output, path, error));
+    RT_TRY(rt_output_open_in(&output, directory, "report.html", error));
     put_head(output.file, results, manifest, directory);
     put_plots(output.file, results->experiment, directory);
     rt_published_page(published, true, output.file);

@@ -1,104 +1,149 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+/* A run in order: open_run looks at the directory and opens the scenes, begin makes the directory and removes
+ * the results of a previous run, measure begins the journal and fills the results, finish writes what is made
+ * of all of them. */
 #include "report/result_directory.h"
 
-#include "experiment/distribution_tables.h"
+#include "core/base/lock.h"
+#include "core/base/parallel.h"
+#include "core/base/words.h"
+#include "core/text/json_lines.h"
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
-#include "experiment/result_tables.h"
-#include "literature/published_tables.h"
-#include "measure/previous_results.h"
+#include "render/image.h"
 #include "report/plot.h"
 #include "report/report.h"
-#include "report/scripts.h"
+#include "report/result_files.h"
 
-/* A run, and what the literature says of it. */
-typedef struct Work {
-    RtRun run;
-    RtPublished published;
-} Work;
+#include <inttypes.h>
+#include <string.h>
 
-/* ---- what is exact ---- */
+typedef struct Run {
+    RtResults *results;             /* borrowed, like what follows */
+    const RtExperiment *experiment; /* that of the results */
+    const RtRunOptions *options;
+    RtLock lock;
+    bool resumed;                     /* the directory has the journal that is resumed */
+    bool measured;                    /* anything that the journal did not know */
+    RtScene scenes[RT_MAX_WORKLOADS]; /* each until its last workload is over */
+    bool opened[RT_MAX_WORKLOADS];
+    RtJsonLines journal;
+    RtPublished published; /* what the literature says of it */
+} Run;
 
-static void write_counts(const RtResults *results, const RtPublished *published, FILE *out) {
-    RtResultRow row = {.results = results};
-    RtTable table = rt_result_table(RT_COUNTS, &row);
-    (void)published;
-    rt_table_csv(&table, out);
+static RtStatus path_in(const Run *run, const char *name, char *path, RtError *error) {
+    return rt_path_join(run->options->directory, name, path, error);
 }
 
-static void write_published_table(const RtPublished *published, RtPublishedTable which, FILE *out) {
-    RtPublishedCursor cursor = {.published = published};
-    RtTable table = rt_published_table(which, &cursor);
-    rt_table_csv(&table, out);
+static void notify(const Run *run, const char *message) {
+    const RtObserver *observer = &run->options->workload.observer;
+    if (observer->notice) observer->notice(observer->context, message);
 }
 
-static void write_published(const RtResults *results, const RtPublished *published, FILE *out) {
-    (void)results;
-    write_published_table(published, RT_FIGURES, out);
+/* ---- before ---- */
+
+/* Keeps others away from the directory and looks at what is there, as soon as it is there. */
+static RtStatus take_directory(Run *run, RtError *error) {
+    const RtRunOptions *options = run->options;
+    char path[RT_MAX_PATH];
+    if (rt_lock_is_held(&run->lock)) return RT_OK;
+    RT_TRY(rt_lock_take(&run->lock, options->directory, error));
+    RT_TRY(path_in(run, RT_RUN_JOURNAL, path, error));
+    /* A journal tells more of itself than that it is there. */
+    if (options->start != RT_START_ANEW && rt_file_exists(path)) {
+        RT_TRY(rt_journal_load(path, run->results, &options->workload.only, options->renew, error));
+    }
+    return rt_previous_results_look(options->directory, RT_RUN_JOURNAL, options->start, &run->resumed, error);
 }
 
-static void write_best(const RtResults *results, const RtPublished *published, FILE *out) {
-    (void)results;
-    write_published_table(published, RT_BEST, out);
-}
-
-static void write_markdown(const RtResults *results, const RtPublished *published, FILE *out) {
-    (void)results;
-    rt_published_page(published, false, out);
-}
-
-static void write_distribution_table(const RtResults *results, RtDistributionTable which, FILE *out) {
-    RtDistributionRow row = {.results = results};
-    RtTable table = rt_distribution_table(which, &row);
-    rt_table_csv(&table, out);
-}
-
-static void write_distributions(const RtResults *results, const RtPublished *published, FILE *out) {
-    (void)published;
-    write_distribution_table(results, RT_DISTRIBUTIONS, out);
-}
-
-static void write_histograms(const RtResults *results, const RtPublished *published, FILE *out) {
-    (void)published;
-    write_distribution_table(results, RT_HISTOGRAMS, out);
-}
-
-static bool always(const RtExperiment *experiment) {
-    (void)experiment;
+static bool is_complete(const Run *run) {
+    RtWorkloadOptions options = run->options->workload;
+    options.only = (RtOnly){.shard = options.only.shard, .shards = options.only.shards};
+    for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
+        if (!rt_workload_is_done(run->results, t, &options)) return false;
+    }
     return true;
 }
 
-static bool is_published(const RtExperiment *experiment) {
-    return experiment->published.table_count > 0;
+/* Where a workload's scene is kept: at the first workload of the same scene. */
+static uint32_t slot_of(const RtExperiment *experiment, uint32_t t) {
+    uint32_t slot = 0;
+    while (strcmp(experiment->workloads[slot].path, experiment->workloads[t].path) != 0) slot++;
+    return slot;
 }
 
-static bool has_distributions(const RtExperiment *experiment) {
-    return experiment->distributions;
+static RtStatus image_path(const Run *run, uint32_t t, char *path, RtError *error) {
+    char name[RT_MAX_LABEL + 16];
+    snprintf(name, sizeof name, "images/%s.png", run->experiment->workloads[t].label);
+    return path_in(run, name, path, error);
 }
 
-const RtExactFile rt_exact_files[RT_EXACT_FILES] = {
-    {"counts.csv", always, write_counts},
-    {RT_DISTRIBUTIONS_CSV, has_distributions, write_distributions},
-    {RT_HISTOGRAMS_CSV, has_distributions, write_histograms},
-    {"published.csv", is_published, write_published},
-    {"best.csv", is_published, write_best},
-    {"published.md", is_published, write_markdown}};
+static RtStatus open_scenes(Run *run, RtError *error) {
+    for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
+        uint32_t slot = slot_of(run->experiment, t);
+        char image[RT_MAX_PATH];
+        if (!rt_only_scene(&run->options->workload.only, run->experiment, t)) continue;
+        RT_TRY(image_path(run, t, image, error));
+        bool drawn = run->resumed && rt_file_exists(image);
+        if (run->opened[slot] || (drawn && rt_workload_is_done(run->results, t, &run->options->workload)))
+            continue;
+        RT_TRY(rt_workload_open(run->results, t, &run->options->workload, &run->scenes[slot], error));
+        run->opened[slot] = !run->results->workloads[t].skipped;
+    }
+    return RT_OK;
+}
+
+/* Cells are timed on as many threads as those that are known: else their times would not compare. */
+static RtStatus check_threads(const Run *run, RtError *error) {
+    const int threads = rt_thread_count(run->options->workload.timing);
+    for (RtCellCursor at = {0}; rt_results_next(run->results, &at);) {
+        if (!at.cell->timed || at.cell->threads == threads) continue;
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s was timed on %d thread%s so far, and would be on %d from here on: go on with "
+                       "--threads %d, or start over with --force",
+                       run->options->directory, at.cell->threads, at.cell->threads == 1 ? "" : "s", threads,
+                       at.cell->threads);
+    }
+    return RT_OK;
+}
+
+static RtStatus open_run(Run *run, RtError *error) {
+    RT_TRY(take_directory(run, error));
+    RT_TRY(open_scenes(run, error));
+    return run->resumed && !is_complete(run) ? check_threads(run, error) : RT_OK;
+}
+
+static const char *const folders[] = {"", "plots", "images"};
+
+static RtStatus make_directory(Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    for (int i = 0; i < 3; i++) {
+        RT_TRY(path_in(run, folders[i], path, error));
+        RT_TRY(rt_directory_create(path, error));
+    }
+    RT_TRY(take_directory(run, error));
+    for (int i = 0; i < 3; i++) {
+        RT_TRY(path_in(run, folders[i], path, error));
+        rt_outputs_remove_left(path);
+    }
+    return RT_OK;
+}
 
 /* A table that lies in a folder beside the YAML gets to one of the same name, where the copy of the YAML
  * finds it. */
-static RtStatus copy_table(const RtRun *run, const char *name, RtOutputs *copies, RtError *error) {
+static RtStatus copy_table(const Run *run, const char *name, RtOutputs *copies, RtError *error) {
     char from[RT_MAX_PATH], to[RT_MAX_PATH], folder[RT_MAX_PATH];
     RT_TRY(rt_path_join(run->experiment->folder, name, from, error));
-    RT_TRY(rt_run_path(run, name, to, error));
+    RT_TRY(path_in(run, name, to, error));
     rt_path_folder(to, folder);
     RT_TRY(rt_directory_create(folder, error));
     return rt_outputs_copy(copies, from, to, error);
 }
 
-static RtStatus copy_experiment(const RtRun *run, RtOutputs *copies, RtError *error) {
+static RtStatus copy_experiment(const Run *run, RtOutputs *copies, RtError *error) {
     const RtPublishedSetup *published = &run->experiment->published;
     char path[RT_MAX_PATH];
-    RT_TRY(rt_run_path(run, "experiment.yaml", path, error));
+    RT_TRY(path_in(run, rt_result_files[RT_FILE_EXPERIMENT], path, error));
     RT_TRY(rt_outputs_copy(copies, run->experiment->path, path, error));
     for (uint32_t i = 0; i < published->table_count; i++)
         RT_TRY(copy_table(run, published->tables[i], copies, error));
@@ -107,76 +152,177 @@ static RtStatus copy_experiment(const RtRun *run, RtOutputs *copies, RtError *er
 }
 
 /* The copies are on the disk before the earlier results are removed, and get their names after that. */
-static RtStatus replace_previous(RtRun *run, RtError *error) {
+static RtStatus replace_previous(Run *run, RtError *error) {
     RtOutputs copies = {0};
     RtStatus status = copy_experiment(run, &copies, error);
-    if (status == RT_OK) status = rt_run_replace(run, error);
+    if (status == RT_OK && !run->resumed)
+        status = rt_previous_results_remove(run->options->directory, RT_RUN_JOURNAL, error);
     if (status == RT_OK) status = rt_outputs_commit(&copies, error);
     rt_outputs_clear(&copies);
     return status;
 }
 
-static RtStatus begin(Work *work, RtError *error) {
-    RtRun *run = &work->run;
-    RT_TRY(rt_published_load(&work->published, run->experiment, error));
+static RtStatus begin(Run *run, RtError *error) {
+    RT_TRY(rt_published_load(&run->published, run->experiment, error));
     RT_TRY(rt_scripts_find(run->experiment, error));
     RT_TRY(rt_scripts_check(run->experiment, run->options->directory, run->resumed, run->options->scripts,
                             error));
-    RT_TRY(rt_run_begin(run, error));
+    RT_TRY(make_directory(run, error));
     return replace_previous(run, error);
 }
 
-static RtStatus write_exact(const Work *work, const RtExactFile *file, RtError *error) {
+/* ---- measuring ---- */
+
+static RtStatus open_journal(Run *run, RtError *error) {
     char path[RT_MAX_PATH];
-    RtOutput output;
-    RT_TRY(rt_run_path(&work->run, file->name, path, error));
-    RT_TRY(rt_output_open(&output, path, error));
-    file->write(work->run.results, &work->published, output.file);
-    return rt_output_commit(&output, error);
+    RT_TRY(path_in(run, RT_RUN_JOURNAL, path, error));
+    if (run->resumed && run->options->renew)
+        RT_TRY(rt_journal_renew(path, run->experiment, &run->options->workload.only, error));
+    return rt_journal_open(&run->journal, path, run->experiment, &run->options->workload.only, run->resumed,
+                           error);
+}
+
+static void name_missing(const Run *run) {
+    for (uint32_t c = 0; c < run->experiment->candidate_count; c++) {
+        char message[RT_MAX_LABEL + 64];
+        if (!run->experiment->candidates[c].missing) continue;
+        snprintf(message, sizeof message, "'%s' is skipped: this build does not have it",
+                 run->experiment->candidates[c].label);
+        notify(run, message);
+    }
+}
+
+/* The manifest tells of a run that is over, and what was measured until then. */
+static RtStatus unfinish(Run *run, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(path_in(run, RT_MANIFEST, path, error));
+    remove(path);
+    run->measured = true;
+    return RT_OK;
+}
+
+static RtStatus on_event(void *context, const RtResults *results, const RtEvent *event, RtError *error) {
+    Run *run = context;
+    const RtObserver *observer = &run->options->workload.observer;
+    if (!run->measured) RT_TRY(unfinish(run, error));
+    RT_TRY(rt_journal_append(&run->journal, results, event, error));
+    return observer->event ? observer->event(observer->context, results, event, error) : RT_OK;
+}
+
+static void on_notice(void *context, const char *message) {
+    notify(context, message);
+}
+
+/* What is made of cells, after each workload. */
+static RtStatus write_tables(const Run *run, RtError *error) {
+    const char *directory = run->options->directory;
+    RT_TRY(rt_result_files_write(RT_FILE_COUNTED, run->results, NULL, directory, error));
+    return rt_result_files_write(RT_FILE_MEASURED, run->results, NULL, directory, error);
+}
+
+static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int threads, const char *path,
+                           RtError *error) {
+    RtAccel *accel;
+    RtFrame frame = {0};
+    RtImage image = {0};
+    RtFrameOptions options = {.depth = RT_DEFAULT_DEPTH, .threads = threads};
+    RT_TRY(rt_scene_sample(scene, workload->width, workload->height, 2, false, error));
+    RT_TRY(rt_accel_open_on(rt_accel_default(), scene, threads, &accel, error));
+    RtStatus status = rt_frame_trace(&frame, accel, &options, error);
+    if (status == RT_OK) status = rt_image_from_frame(&image, &frame, error);
+    if (status == RT_OK) status = rt_png_write(&image, path, error);
+    rt_image_clear(&image);
+    rt_frame_clear(&frame);
+    rt_accel_destroy(accel);
+    return status;
+}
+
+/* The picture of a workload's scene, unless it is there. */
+static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(image_path(run, t, path, error));
+    if (run->results->workloads[t].skipped || (run->resumed && rt_file_exists(path))) return RT_OK;
+    return draw_scene(&run->scenes[slot_of(run->experiment, t)], &run->results->workloads[t],
+                      run->options->workload.threads, path, error);
+}
+
+/* Frees the scene of workload `t`, unless a later one is on it, too. */
+static void close_scene(Run *run, uint32_t t) {
+    uint32_t slot = slot_of(run->experiment, t);
+    for (uint32_t later = t + 1; later < run->experiment->workload_count; later++) {
+        if (slot_of(run->experiment, later) == slot) return;
+    }
+    rt_scene_clear(&run->scenes[slot]);
+}
+
+/* What was done where nothing was measured. */
+static void tell_end(const Run *run) {
+    char message[128];
+    uint32_t scenes;
+    uint64_t cells = rt_results_size(run->results, &scenes);
+    if (run->options->joined) {
+        snprintf(message, sizeof message,
+                 "joined %" PRIu32 " shard%s: %" PRIu64 " cell%s of %" PRIu32 " scene%s",
+                 run->options->joined, rt_plural(run->options->joined), cells, rt_plural(cells), scenes,
+                 rt_plural(scenes));
+        notify(run, message);
+    } else {
+        notify(run, "nothing was left to measure: this run is finished. --force begins it anew");
+    }
+}
+
+static RtStatus measure(Run *run, RtError *error) {
+    RtWorkloadOptions options = run->options->workload;
+    options.observer = (RtObserver){run, on_event, on_notice};
+    RT_TRY(open_journal(run, error));
+    name_missing(run);
+    for (uint32_t t = 0; t < run->experiment->workload_count; t++) {
+        RtScene *scene = &run->scenes[slot_of(run->experiment, t)];
+        if (!rt_only_scene(&options.only, run->experiment, t)) continue;
+        RT_TRY(rt_workload_measure(run->results, t, &options, scene, error));
+        RT_TRY(write_tables(run, error));
+        RT_TRY(write_image(run, t, error));
+        close_scene(run, t);
+    }
+    if (run->measured || !run->resumed || !is_complete(run)) return RT_OK;
+    tell_end(run);
+    return RT_OK;
 }
 
 /* ---- after ---- */
 
-static RtStatus write_compared(Work *work, RtError *error) {
-    if (work->run.experiment->published.table_count == 0) return RT_OK;
-    rt_published_compare(&work->published, work->run.results);
-    for (size_t i = 0; i < RT_EXACT_FILES; i++) {
-        if (rt_exact_files[i].is_wanted == is_published) RT_TRY(write_exact(work, &rt_exact_files[i], error));
-    }
-    return RT_OK;
-}
-
-/* It tells when and with what was measured: where nothing was, the one that is there still does. */
-static RtStatus write_manifest(const RtRun *run, RtError *error) {
+/* The manifest says when and with what was measured: where nothing was, the one that is there still does. */
+static RtStatus write_manifest(const Run *run, RtError *error) {
     char path[RT_MAX_PATH];
-    RT_TRY(rt_run_path(run, RT_MANIFEST, path, error));
+    RT_TRY(path_in(run, RT_MANIFEST, path, error));
     if (!run->measured && rt_file_exists(path)) return RT_OK;
     return rt_manifest_write(run->results, &run->options->workload, run->options->directory, error);
 }
 
-static RtStatus write_report(const Work *work, RtError *error) {
-    const char *directory = work->run.options->directory;
+static RtStatus write_report(const Run *run, RtError *error) {
+    const char *directory = run->options->directory;
     json_t *manifest;
     RT_TRY(rt_manifest_read(directory, &manifest, error));
-    RtStatus status = rt_report_write(work->run.results, &work->published, manifest, directory, error);
+    RtStatus status = rt_report_write(run->results, &run->published, manifest, directory, error);
     json_decref(manifest);
     return status;
 }
 
-static RtStatus finish(Work *work, RtError *error) {
-    const RtRun *run = &work->run;
-    /* A shard is finished; what is made of all of them is for rt_run_merge. */
+static RtStatus finish(Run *run, RtError *error) {
+    /* A shard is finished; rt_merge writes what is made of all of them. */
     if (run->options->workload.only.shards) return write_manifest(run, error);
-    RT_TRY(write_compared(work, error));
+    rt_published_compare(&run->published, run->results);
+    RT_TRY(rt_result_files_write(RT_FILE_COMPARED, run->results, &run->published, run->options->directory,
+                                 error));
     RT_TRY(write_manifest(run, error));
-    /* What was measured is worth a report, drawn or not. */
+    /* The report is written even where drawing failed. */
     RtError drawing = {RT_OK, ""};
     RtStatus drawn = rt_plots_draw(run->results, run->options->directory, &drawing);
-    RT_TRY(write_report(work, error));
-    RtStatus checked = rt_published_check(&work->published, error);
+    RT_TRY(write_report(run, error));
+    RtStatus checked = rt_published_check(&run->published, error);
     if (drawn == RT_OK) return checked;
     if (drawn == RT_NOT_AVAILABLE || checked != RT_OK) {
-        rt_run_notice(run, drawing.message);
+        notify(run, drawing.message);
         return checked;
     }
     if (error) *error = drawing;
@@ -184,17 +330,19 @@ static RtStatus finish(Work *work, RtError *error) {
 }
 
 RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtError *error) {
-    Work work = {0};
-    RtStatus status = rt_run_open(&work.run, results, options, error);
-    if (status == RT_OK) status = begin(&work, error);
-    if (status == RT_OK) status = rt_run_measure(&work.run, error);
-    if (status == RT_OK && rt_run_is_complete(&work.run)) {
-        status = finish(&work, error);
+    Run run = {.results = results, .experiment = results->experiment, .options = options, .lock = RT_NO_LOCK};
+    RtStatus status = open_run(&run, error);
+    if (status == RT_OK) status = begin(&run, error);
+    if (status == RT_OK) status = measure(&run, error);
+    if (status == RT_OK && is_complete(&run)) {
+        status = finish(&run, error);
     } else if (status == RT_OK) {
-        rt_run_notice(&work.run, "a part was measured; --resume without --only measures what is left");
+        notify(&run, "a part was measured; --resume without --only measures what is left");
     }
-    rt_run_close(&work.run);
-    rt_published_clear(&work.published);
+    rt_json_lines_close(&run.journal);
+    for (uint32_t t = 0; t < RT_MAX_WORKLOADS; t++) rt_scene_clear(&run.scenes[t]);
+    rt_lock_release(&run.lock);
+    rt_published_clear(&run.published);
     return status;
 }
 

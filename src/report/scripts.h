@@ -9,7 +9,14 @@
 #define RT_REPORT_SCRIPTS_H
 
 #include "core/base/file.h"
-#include "experiment/run.h"
+#include "experiment/experiment.h"
+
+/* Which gnuplot scripts are run. */
+typedef enum RtScripts {
+    RT_SCRIPTS_SHIPPED, /* those that raytally ships */
+    RT_SCRIPTS_OWN,     /* also those beside the experiment */
+    RT_SCRIPTS_ALL
+} RtScripts;
 
 /* Refuses a script that cannot be read. */
 RtStatus rt_scripts_find(const RtExperiment *experiment, RtError *error);

@@ -334,10 +334,8 @@ static void put_figures(Figure *figure, FILE *out) {
 }
 
 static RtStatus write_script(Figure *figure, const char *directory, RtError *error) {
-    char path[RT_MAX_PATH];
     RtOutput output;
-    RT_TRY(rt_path_join(directory, "plots/sweep.gp", path, error));
-    RT_TRY(rt_output_open(&output, path, error));
+    RT_TRY(rt_output_open_in(&output, directory, "plots/sweep.gp", error));
     put_figures(figure, output.file);
     return rt_output_commit(&output, error);
 }

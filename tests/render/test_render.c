@@ -5,8 +5,6 @@
 
 #include "core/base/memory.h"
 
-#include <pthread.h>
-
 RT_TEST(two_mirrors_return_a_ray_as_often_as_the_depth_allows) {
     RtScene scene;
     start_scene(&scene, (RtMaterial){.color = {1, 1, 1}, .ambient = 1, .reflection = 0.5f, .ior = 1});
@@ -123,62 +121,25 @@ RT_TEST(corner_sampling_traces_one_more_ray_than_pixels_a_side) {
     rt_scene_clear(&scene);
 }
 
-/* Counts rays by kind, and the tiles that came. */
-typedef struct Seen {
-    pthread_mutex_t lock;
-    uint64_t rays[RT_RAY_KIND_COUNT];
-    uint64_t invalid;
-    size_t fail_at_tile; /* SIZE_MAX: never */
-} Seen;
-
-static RtStatus see(void *context, size_t tile, const RtRay *rays, size_t count, RtError *error) {
-    Seen *seen = context;
-    if (tile == seen->fail_at_tile) return rt_fail(error, RT_MISMATCH, "tile %zu", tile);
-    pthread_mutex_lock(&seen->lock);
-    for (size_t i = 0; i < count; i++) {
-        seen->rays[rays[i].kind]++;
-        seen->invalid += !rt_ray_is_valid(&rays[i]);
-    }
-    pthread_mutex_unlock(&seen->lock);
-    return RT_OK;
-}
-
-RT_TEST(the_sink_sees_every_ray_that_is_counted) {
+RT_TEST(a_frame_keeps_every_ray_that_is_counted) {
     RtScene scene;
+    uint64_t invalid = 0, others = 0;
     busy_scene(&scene);
-    Seen seen = {.lock = PTHREAD_MUTEX_INITIALIZER, .fail_at_tile = SIZE_MAX};
     RtFrameOptions options = options_for(&scene, 40, 40, false);
     options.counted = true;
     options.threads = 2;
-    options.sink = see;
-    options.sink_context = &seen;
+    options.keep_rays = true;
     RtFrame frame = trace(&scene, &options);
     for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
-        assert_int_equal(seen.rays[kind], frame.tallies[kind].rays);
+        assert_int_equal(frame.ray_count[kind], frame.tallies[kind].rays);
+        for (uint64_t i = 0; i < frame.ray_count[kind]; i++) {
+            invalid += !rt_ray_is_valid(&frame.rays[kind][i]);
+            others += frame.rays[kind][i].kind != (uint32_t)kind;
+        }
     }
-    assert_int_equal(seen.invalid, 0);
-    assert_true(seen.rays[RT_RAY_SHADOW] > 0 && seen.rays[RT_RAY_REFLECTION] > 0);
+    assert_int_equal(invalid + others, 0);
+    assert_true(frame.ray_count[RT_RAY_SHADOW] > 0 && frame.ray_count[RT_RAY_REFLECTION] > 0);
     rt_frame_clear(&frame);
-    rt_scene_clear(&scene);
-}
-
-RT_TEST(a_sink_that_fails_stops_the_frame_and_leaves_nothing) {
-    RtScene scene;
-    busy_scene(&scene);
-    RtAccel *accel;
-    assert_ok(rt_accel_open("brute", &scene, &accel, error));
-    Seen seen = {.lock = PTHREAD_MUTEX_INITIALIZER, .fail_at_tile = 3};
-    RtFrameOptions options = options_for(&scene, 64, 64, false);
-    options.sink = see;
-    options.sink_context = &seen;
-    int64_t live = rt_alloc_live();
-    RtFrame frame;
-    RtError error;
-    assert_int_equal(rt_frame_trace(&frame, accel, &options, &error), RT_MISMATCH);
-    assert_string_equal(error.message, "tile 3");
-    assert_null(frame.color);
-    assert_int_equal(rt_alloc_live(), live);
-    rt_accel_destroy(accel);
     rt_scene_clear(&scene);
 }
 
@@ -189,6 +150,7 @@ RT_TEST(a_frame_without_memory_is_a_status_and_leaks_nothing) {
     assert_ok(rt_accel_open("brute", &scene, &accel, error));
     RtFrameOptions options = options_for(&scene, 4, 4, false);
     options.counted = true;
+    options.keep_rays = true;
     int64_t live = rt_alloc_live();
     RtFrame frame;
     RtStatus status = RT_NO_MEMORY;

@@ -56,6 +56,12 @@ RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error) {
     return create_temporary(output, error);
 }
 
+RtStatus rt_output_open_in(RtOutput *output, const char *folder, const char *name, RtError *error) {
+    char path[RT_MAX_PATH];
+    RT_TRY(rt_path_join(folder, name, path, error));
+    return rt_output_open(output, path, error);
+}
+
 RtStatus rt_output_finish(RtOutput *output, RtError *error) {
     errno = 0;
     bool written = fflush(output->file) == 0 && !ferror(output->file) && fsync(fileno(output->file)) == 0;

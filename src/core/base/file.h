@@ -21,6 +21,9 @@ typedef struct RtOutput {
 /* Refuses a `path` that is there and not a regular file: renaming would replace /dev/null, say. */
 RtStatus rt_output_open(RtOutput *output, const char *path, RtError *error);
 
+/* The same for the file `name` in `folder` (rt_path_join). */
+RtStatus rt_output_open_in(RtOutput *output, const char *folder, const char *name, RtError *error);
+
 /* Flushes to the disk and closes: only the name is left to be given, by rt_output_commit. A failed write of
  * any time before is reported here, and discards. */
 RtStatus rt_output_finish(RtOutput *output, RtError *error);

@@ -193,6 +193,9 @@ void rt_table_line(const RtTable *table, int *widths, const void *row, FILE *out
 /* Text as HTML, with what has a meaning there escaped; NULL is "". */
 void rt_html_put(FILE *out, const char *text);
 
+/* The same between `before` and `after`, which are HTML. */
+void rt_html_wrap(FILE *out, const char *before, const char *text, const char *after);
+
 /* The same with `code` and **bold** as in Markdown. */
 void rt_html_markup(FILE *out, const char *text);
 

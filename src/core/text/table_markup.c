@@ -111,6 +111,12 @@ void rt_html_put(FILE *out, const char *text) {
     for (; text && *text; text++) put_character(out, *text);
 }
 
+void rt_html_wrap(FILE *out, const char *before, const char *text, const char *after) {
+    fputs(before, out);
+    rt_html_put(out, text);
+    fputs(after, out);
+}
+
 void rt_html_markup(FILE *out, const char *text) {
     bool code = false, bold = false;
     for (; *text; text++) {
