@@ -112,17 +112,22 @@ RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, co
     return RT_RAY_PRIMARY;
 }
 
-bool rt_cli_has_extension(const char *path, const char *extension) {
-    size_t length = strlen(path), tail = strlen(extension);
-    return length > tail && strcmp(path + length - tail, extension) == 0;
+/* The last dot of a name that has something before it, or "". */
+static const char *extension_of(const char *path) {
+    const char *dot = strrchr(path, '.');
+    return dot && dot != path ? dot : "";
+}
+
+bool rt_cli_has_extension(const char *path, const char *extensions) {
+    const char *own = extension_of(path), *at = strstr(extensions, own);
+    return *own && at && strchr(", ", at[strlen(own)]); /* or its end */
 }
 
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
-                     const char *extension) {
-    if (!rt_cli_has_extension(path, extension)) {
+                     const char *extensions) {
+    if (!rt_cli_has_extension(path, extensions))
         argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
-                   extension);
-    }
+                   extensions);
     if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
     *slot = path;
 }

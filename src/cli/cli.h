@@ -128,12 +128,15 @@ RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, 
 /* The name of a kind of rays that an image is made of: primary, shadow, reflection or transmission. */
 RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text);
 
-bool rt_cli_has_extension(const char *path, const char *extension);
+#define RT_CLI_PICTURES ".png, .svg or .pdf" /* what pictures are drawn in */
 
-/* For parsers: stores `path` in *slot, or argp_error's exit where it does not end in `extension` or there is
- * one. */
+/* Does the file name end in one of `extensions`, such as ".png, .svg or .pdf"? */
+bool rt_cli_has_extension(const char *path, const char *extensions);
+
+/* For parsers: stores `path` in *slot; exits by argp_error if it ends in none of `extensions`, or *slot is
+ * taken. */
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
-                     const char *extension);
+                     const char *extensions);
 
 /* "WxH" */
 void rt_cli_size(struct argp_state *state, const char *text, uint32_t *width, uint32_t *height);

@@ -53,9 +53,8 @@ static const struct argp_option options[] = {
     {0}};
 
 static void parse_output(Options *o, struct argp_state *state, const char *path) {
-    if (!rt_cli_has_extension(path, ".png") && !rt_cli_has_extension(path, ".exr")) {
+    if (!rt_cli_has_extension(path, ".png or .exr"))
         argp_error(state, "-o: invalid value '%s': expected a file name that ends in .png or .exr", path);
-    }
     const char **slot = rt_cli_has_extension(path, ".png") ? &o->png : &o->exr;
     if (*slot) argp_error(state, "-o: both '%s' and '%s': one file of each format is written", *slot, path);
     *slot = path;

@@ -7,7 +7,7 @@
 #include "core/base/words.h"
 #include "core/text/json.h"
 #include "core/text/table.h"
-#include "render/path.h"
+#include "picture/path_picture.h"
 #include "scenes/open.h"
 
 #include <argp.h>
@@ -54,7 +54,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
     case 'k': o->kind = rt_cli_image_ray_kind(state, "--rays", argument); return 0;
     case 'j': o->json = true; return 0;
     case KEY_LIGHT: o->light = (uint32_t)rt_cli_integer(state, "--light", argument, 0, UINT32_MAX); return 0;
-    case KEY_SVG: rt_cli_set_path(state, "--svg", &o->svg, argument, ".svg"); return 0;
+    case KEY_SVG: rt_cli_set_path(state, "--svg", &o->svg, argument, RT_CLI_PICTURES); return 0;
     case KEY_ROWS: o->rows = rt_cli_integer(state, "--rows", argument, 0, UINT32_MAX); return 0;
     case ARGP_KEY_ARG:
         if (o->scene) argp_error(state, "one SCENE at a time; '%s' is a second one", argument);

@@ -3,7 +3,7 @@
 
 #include "cli/cli.h"
 #include "core/base/words.h"
-#include "picture/cells.h"
+#include "picture/buffers.h"
 #include "render/path.h"
 
 #include <math.h>
@@ -78,7 +78,7 @@ static void parse_heatmap(RtPictureOptions *o, struct argp_state *state, const c
     if (state->next >= state->argc) argp_error(state, "--heatmap: a FILE.png is needed after the counter");
     char option[64];
     snprintf(option, sizeof option, "--heatmap %s", counter);
-    rt_cli_set_path(state, option, slot, state->argv[state->next++], ".png");
+    rt_cli_set_path(state, option, slot, state->argv[state->next++], RT_CLI_PICTURES);
 }
 
 /* "3" or "2..5" */
@@ -130,7 +130,9 @@ static void parse_scale(RtPictureOptions *o, struct argp_state *state, const cha
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     RtPictureOptions *o = state->input;
     switch (key) {
-    case KEY_STRUCTURE: rt_cli_set_path(state, "--structure", &o->structure, argument, ".png"); return 0;
+    case KEY_STRUCTURE:
+        rt_cli_set_path(state, "--structure", &o->structure, argument, RT_CLI_PICTURES);
+        return 0;
     case KEY_HEATMAP: parse_heatmap(o, state, argument); return 0;
     case KEY_LAYER: o->layer = argument; return 0;
     case KEY_LEVEL: parse_level(&o->boxes, state, argument), o->of_boxes = "--level"; return 0;
@@ -211,8 +213,8 @@ bool rt_pictures_need_frame(const RtPictureOptions *o, const RtAccel *accel) {
     return rt_structure_layer(accel, o->layer, &layer, &error) == RT_OK && !layer->ops->look_up;
 }
 
-static RtStatus image_of_cells(const RtPictureOptions *o, const RtAccel *accel, const RtAccel *layer,
-                               RtImage *image, RtError *error) {
+static RtStatus draw_cells(const RtPictureOptions *o, const RtAccel *accel, const RtAccel *layer,
+                           RtError *error) {
     RtRay ray;
     const RtSampling *s = &accel->scene->sampling;
     if (o->aimed) RT_TRY(rt_cli_check_pixel(s, o->x, o->y, error));
@@ -221,36 +223,25 @@ static RtStatus image_of_cells(const RtPictureOptions *o, const RtAccel *accel, 
         RT_TRY(rt_path_ray(accel, RT_RAY_SHADOW, f.column + f.span / 2, f.row + f.span / 2, o->light, &ray,
                            error));
     }
-    return rt_cells_image(image, layer, o->light, o->aimed ? &ray : NULL, error);
+    return rt_buffer_draw(o->structure, layer, o->light, o->aimed ? &ray : NULL, error);
 }
 
 RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, const RtFrame *frame,
                                RtError *error) {
     const RtAccel *layer;
-    RtImage image;
     RtStructureOptions boxes = o->boxes;
     RT_TRY(rt_structure_layer(accel, o->layer, &layer, error));
+    if (layer->ops->look_up) return draw_cells(o, accel, layer, error);
     if (o->in_middle) boxes.at = (double)rt_box_center(accel->scene->geometry.box).at[boxes.axis];
-    if (layer->ops->look_up)
-        RT_TRY(image_of_cells(o, accel, layer, &image, error));
-    else
-        RT_TRY(rt_structure_image(&image, layer, frame, &boxes, error));
-    RtStatus status = rt_png_write(&image, o->structure, error);
-    rt_image_clear(&image);
-    return status;
+    return rt_structure_draw(o->structure, layer, frame, &boxes, error);
 }
 
 RtStatus rt_pictures_heatmaps(const RtPictureOptions *o, const RtHeatmapPanel *panels, uint32_t count,
                               RtError *error) {
-    RtStatus status = RT_OK;
-    for (size_t i = 0; status == RT_OK && i < RT_TALLY_COUNTER_COUNT; i++) {
-        RtImage image = {0};
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
         RtHeatmapOptions heat = o->heat;
         heat.counter = i;
-        if (!o->heatmaps[i]) continue;
-        status = rt_heatmap(&image, panels, count, &heat, error);
-        if (status == RT_OK) status = rt_png_write(&image, o->heatmaps[i], error);
-        rt_image_clear(&image);
+        if (o->heatmaps[i]) RT_TRY(rt_heatmap_draw(o->heatmaps[i], panels, count, &heat, error));
     }
-    return status;
+    return RT_OK;
 }

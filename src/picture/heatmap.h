@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Heatmaps: what each pixel cost, as a colour, above a legend; those of several accelerators on one scale. */
+/* Heatmaps: the cost of each pixel as a colour; those of several accelerators share a scale. */
 #ifndef RT_PICTURE_HEATMAP_H
 #define RT_PICTURE_HEATMAP_H
 
@@ -9,13 +9,13 @@ typedef enum RtHeatmapScale { RT_HEATMAP_AUTO, RT_HEATMAP_LINEAR, RT_HEATMAP_LOG
 
 typedef struct RtHeatmapOptions {
     size_t counter;       /* as in rt_tally_get */
-    RtHeatmapScale scale; /* AUTO: logarithmic where the mean is below an eighth of the most */
-    double most;      /* value of the brightest colour, and of all above it; 0: the largest value there is */
-    bool difference;  /* of two panels: a third has the first less the second */
-    const char *rays; /* which rays the frames' costs are of, for the legend: "shadow"; NULL: all */
+    RtHeatmapScale scale; /* AUTO: logarithmic if the mean is below an eighth of the maximum */
+    double most;          /* value of the brightest colour, and of all above it; 0: the maximum */
+    bool difference;      /* with two panels: a third shows the first minus the second */
+    const char *rays;     /* the kind of rays that the costs are of, for the legend; NULL: all */
 } RtHeatmapOptions;
 
-/* A counted frame and what is written above it. Frames of one image are of one size. */
+/* A counted frame and its label. All frames of a heatmap have one size. */
 typedef struct RtHeatmapPanel {
     const RtFrame *frame;
     const char *label;
@@ -23,13 +23,12 @@ typedef struct RtHeatmapPanel {
 
 #define RT_MAX_PANELS 8
 
-/* Panels side by side, 1..RT_MAX_PANELS, in each the mean of the counter over a pixel's ray trees by
- * rt_color_scale: linear from 0 to the most, or by log(1 + value). Below are the mean and the most of each, a
- * bar with the values of the colours, which are those of all panels, the name of the counter and the scale. A
- * difference is red where the first panel costs more, blue where the second does, on a linear scale with a
- * bar of its own. A single panel without a label has none above it; an image narrower than its legend is
- * padded. Free with rt_image_clear. */
-RtStatus rt_heatmap(RtImage *image, const RtHeatmapPanel *panels, uint32_t count,
-                    const RtHeatmapOptions *options, RtError *error);
+/* Draws 1..RT_MAX_PANELS panels side by side to `file` (canvas.h): each pixel's mean of the counter over its
+ * ray trees, in the colours of rt_color_scale, linear from 0 to the maximum or by log(1 + value). All panels
+ * share one scale, which a bar below shows with the counter's name, the mean and the maximum of each. A
+ * difference has a linear scale of its own: red where the first panel costs more, blue where the second does.
+ * A single panel may have no label; an image narrower than its legend is padded. */
+RtStatus rt_heatmap_draw(const char *file, const RtHeatmapPanel *panels, uint32_t count,
+                         const RtHeatmapOptions *options, RtError *error);
 
 #endif

@@ -1,17 +1,85 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Boxes are drawn in the homogeneous coordinates of the view: (x, y, w) with w the distance along the axis
- * and the image -w <= x, y <= w, in which the near plane and the four sides of the view are planes to clip
- * with alike. */
+/* In perspective, boxes are drawn in the homogeneous coordinates of the view: (x, y, w) with w the distance
+ * along the axis and -w <= x, y <= w inside the image, so the near plane and the sides of the view clip
+ * alike. In section, boxes and objects are cut by a plane whose coordinates (across, up) map to pixels by
+ * `left`, `top` and `scale`. */
 #include "picture/structure.h"
 
 #include "core/base/elementary.h"
-#include "picture/net.h"
-#include "picture/structure_parts.h"
+#include "picture/extent_outline.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { MARGIN = 6, LINE = 11 }; /* of the legend, dots */
+enum { LEAST_WIDTH = 300, LINES = 3 }; /* of the legend */
+
+typedef struct Drawing {
+    cairo_t *cairo;
+    const RtFrame *frame;
+    const RtAccel *layer;
+    const RtStructureOptions *options;
+    double width, height; /* of the picture without its legend */
+    double em;            /* the font size */
+    RtView view;
+    double near;
+    RtSectionPlane plane;
+    double left, top, scale; /* of a section */
+    uint32_t first, last;    /* the levels that are drawn */
+    uint32_t level;          /* the one that is being drawn */
+    bool hidden;             /* which edges are being drawn */
+    RtExtentKind kind;       /* of what is drawn */
+    uint64_t drawn, all;     /* boxes */
+    double least, most;      /* their sizes: lengths of diagonals, points left out */
+} Drawing;
+
+/* ---- which boxes, in which colours ---- */
+
+/* Is the box on the levels, and in the slice, that are asked for? */
+static bool is_shown(const Drawing *d, const RtBoxView *view) {
+    const RtStructureOptions *o = d->options;
+    RtPoint corners[RT_OUTLINE_CORNERS];
+    if (rt_box_is_empty(*view->box) || view->depth < o->first_level || view->depth > o->last_level ||
+        (o->leaves && !view->leaf))
+        return false;
+    return !o->slice || rt_outline_section(view, d->plane, corners) > 0;
+}
+
+static double size_of(const RtBox *box) {
+    return rt_lengthd(rt_subd(rt_widen(box->hi), rt_widen(box->lo)));
+}
+
+/* Counts a box, and notes levels and sizes. */
+static void count_box(void *context, const RtBoxView *view) {
+    Drawing *d = context;
+    d->all++;
+    if (!is_shown(d, view)) return;
+    if (d->drawn++ == 0) d->first = d->last = view->depth;
+    if (view->depth < d->first) d->first = view->depth;
+    if (view->depth > d->last) d->last = view->depth;
+    if (rt_outline_kind(view) != RT_EXTENT_BOX) d->kind = rt_outline_kind(view);
+    double size = size_of(view->box);
+    if (size > 0 && (d->most == 0 || size < d->least)) d->least = size;
+    d->most = fmax(d->most, size);
+}
+
+static RtColor color_of_level(const Drawing *d, uint32_t depth) {
+    double deep = d->last > d->first ? (double)(depth - d->first) / (d->last - d->first) : 0;
+    return rt_color_scale(1 - 0.7 * deep);
+}
+
+/* Where all boxes are on one level, colours show sizes. */
+static bool is_by_size(const Drawing *d) {
+    return d->first == d->last && d->most > 1.5 * d->least;
+}
+
+static RtColor color_of_size(const Drawing *d, double size) {
+    double small = rt_log(d->most / fmax(fmin(size, d->most), d->least)) / rt_log(d->most / d->least);
+    return rt_color_scale(1 - 0.7 * small);
+}
+
+static RtColor color_of_box(const Drawing *d, const RtBoxView *view) {
+    return is_by_size(d) ? color_of_size(d, size_of(view->box)) : color_of_level(d, view->depth);
+}
 
 /* ---- in perspective ---- */
 
@@ -21,10 +89,10 @@ static RtVec3d project(const RtView *view, RtVec3d point) {
                     rt_dotd(p, view->down) / rt_dotd(view->down, view->down), rt_dotd(p, view->forward));
 }
 
-/* Distance of `p` to side `plane` of the visible space, negative outside. */
-static double inside(const RtStructureDrawing *drawing, RtVec3d p, int plane) {
+/* Distance of `p` to side `plane` of the view frustum, negative outside. */
+static double inside(const Drawing *d, RtVec3d p, int plane) {
     switch (plane) {
-    case 0: return p.z - drawing->near;
+    case 0: return p.z - d->near;
     case 1: return p.z - p.x;
     case 2: return p.z + p.x;
     case 3: return p.z - p.y;
@@ -32,10 +100,10 @@ static double inside(const RtStructureDrawing *drawing, RtVec3d p, int plane) {
     }
 }
 
-/* Cuts the segment to what is visible; false if nothing is. */
-static bool clip(const RtStructureDrawing *drawing, RtVec3d *a, RtVec3d *b) {
+/* Cuts the segment to the view frustum; false if nothing is left. */
+static bool clip(const Drawing *d, RtVec3d *a, RtVec3d *b) {
     for (int plane = 0; plane < 5; plane++) {
-        double at_a = inside(drawing, *a, plane), at_b = inside(drawing, *b, plane);
+        double at_a = inside(d, *a, plane), at_b = inside(d, *b, plane);
         if (at_a < 0 && at_b < 0) return false;
         if (at_a >= 0 && at_b >= 0) continue;
         RtVec3d cut = rt_add_scaledd(*a, rt_subd(*b, *a), at_a / (at_a - at_b));
@@ -44,106 +112,182 @@ static bool clip(const RtStructureDrawing *drawing, RtVec3d *a, RtVec3d *b) {
     return a->z > 0 && b->z > 0;
 }
 
-/* Is a point at depth `w` behind what the frame sees in a pixel? */
-static bool is_hidden(const RtStructureDrawing *d, int x, int y, double w) {
+/* Is a point at depth `w` behind the surface that the frame shows there? */
+static bool is_hidden(const Drawing *d, double x, double y, double w) {
     const RtSampling *s = &d->frame->sampling;
-    if (x < 0 || y < 0 || (uint32_t)x >= s->width || (uint32_t)y >= s->height) return true;
-    RtFootprint f = rt_pixel_footprint(s, (uint32_t)x, (uint32_t)y);
+    uint32_t column = (uint32_t)fmin(x, d->width - 1), row = (uint32_t)fmin(y, d->height - 1);
+    RtFootprint f = rt_pixel_footprint(s, column, row);
     size_t sample = (size_t)(f.row + f.span / 2) * s->columns + f.column + f.span / 2;
     return w > (double)d->frame->depth[sample] * (1 + 1e-4);
 }
 
-/* 1 / w is linear along the line on the image. */
-static void draw_edge(void *context, RtVec3d from, RtVec3d to) {
-    const RtStructureDrawing *d = context;
+/* Walks along the line a pixel at a time, and adds its hidden or its visible parts to the path. 1 / w is
+ * linear along it. */
+static void add_edge(void *context, RtVec3d from, RtVec3d to) {
+    const Drawing *d = context;
     RtVec3d a = project(&d->view, from), b = project(&d->view, to);
     if (!clip(d, &a, &b)) return;
-    double x0 = (a.x / a.z + 1) / 2 * d->width, y0 = (a.y / a.z + 1) / 2 * d->height;
-    double dx = (b.x / b.z + 1) / 2 * d->width - x0, dy = (b.y / b.z + 1) / 2 * d->height - y0;
-    int steps = (int)ceil(fmax(fabs(dx), fabs(dy)));
-    for (int i = 0; i <= steps; i++) {
-        double at = steps ? (double)i / steps : 0;
-        int x = (int)floor(x0 + at * dx), y = (int)floor(y0 + at * dy);
-        double w = 1 / ((1 - at) / a.z + at / b.z);
-        if (x < (int)d->width && y < (int)d->height)
-            rt_draw_pixel(d->image, x, y, d->color, is_hidden(d, x, y, w) ? 0.06 * d->opacity : d->opacity);
+    double x = (a.x / a.z + 1) / 2 * d->width, y = (a.y / a.z + 1) / 2 * d->height;
+    double dx = (b.x / b.z + 1) / 2 * d->width - x, dy = (b.y / b.z + 1) / 2 * d->height - y;
+    int steps = (int)fmax(ceil(fmax(fabs(dx), fabs(dy))), 1);
+    bool hidden = is_hidden(d, x, y, a.z);
+    cairo_move_to(d->cairo, x, y);
+    for (int i = 1; i <= steps; i++) {
+        double at = (double)i / steps;
+        bool next = is_hidden(d, x + at * dx, y + at * dy, 1 / ((1 - at) / a.z + at / b.z));
+        if (next == hidden && i < steps) continue;
+        (hidden == d->hidden ? cairo_line_to : cairo_move_to)(d->cairo, x + at * dx, y + at * dy);
+        hidden = next;
     }
 }
 
 static void draw_box(void *context, const RtBoxView *view) {
-    RtStructureDrawing *d = context;
-    if (view->depth != d->level || !rt_structure_shows(d, view)) return;
-    d->opacity = d->options->leaves ? 1 : fmax(0.25, 1 / (1 + 0.15 * (view->depth - d->first)));
-    d->color = rt_structure_color(d, view);
-    rt_net_lines(view, d->view.eye, (RtLineViewer){draw_edge, d});
+    Drawing *d = context;
+    if (view->depth != d->level || !is_shown(d, view)) return;
+    double opacity = d->options->leaves ? 1 : fmax(0.25, 1 / (1 + 0.15 * (view->depth - d->first)));
+    for (int pass = 0; pass < 2; pass++) {
+        d->hidden = pass == 0;
+        rt_outline_edges(view, d->view.eye, (RtLineViewer){add_edge, d});
+        rt_set_color(d->cairo, color_of_box(d, view), d->hidden ? 0.06 * opacity : opacity);
+        cairo_stroke(d->cairo);
+    }
 }
 
-static RtStatus draw_perspective(RtStructureDrawing *d, RtError *error) {
+static RtStatus draw_perspective(Drawing *d, RtError *error) {
     const RtCamera *camera = &d->layer->scene->camera;
     RtSampling sampling;
+    RtImage image;
     RT_TRY(rt_sampling_init(&sampling, (uint32_t)d->width, (uint32_t)d->height, 1, false, error));
     RT_TRY(rt_view_init(&d->view, camera, sampling, error));
-    double distance = rt_lengthd(rt_subd(rt_widen(camera->at), d->view.eye));
-    d->near = fmax(d->view.near, 1e-3 * distance);
-    for (uint32_t y = 0; y < (uint32_t)d->height; y++) {
-        uint8_t *row = d->image->rgb + (size_t)3 * y * d->image->width;
-        for (size_t i = 0; i < (size_t)3 * (uint32_t)d->width; i++) row[i] = (uint8_t)(row[i] * 2 / 5);
-    }
+    RT_TRY(rt_image_from_frame(&image, d->frame, error));
+    for (size_t i = 0; i < (size_t)3 * image.width * image.height; i++)
+        image.rgb[i] = (uint8_t)(image.rgb[i] * 2 / 5);
+    RtStatus status = rt_paint_image(d->cairo, &image, 0, 0, error);
+    rt_image_clear(&image);
+    d->near = fmax(d->view.near, 1e-3 * rt_lengthd(rt_subd(rt_widen(camera->at), d->view.eye)));
     /* The large boxes come last, over the small ones that share their edges. */
-    for (d->level = d->last + 1; d->level-- > d->first;)
+    for (d->level = d->last + 1; status == RT_OK && d->level-- > d->first;)
         d->layer->ops->each_box(d->layer, (RtBoxViewer){draw_box, d});
-    return RT_OK;
+    return status;
+}
+
+/* ---- in section ---- */
+
+static RtPoint point_of(const Drawing *d, double across, double up) {
+    return (RtPoint){(across - d->left) * d->scale, (d->top - up) * d->scale};
+}
+
+static void fill_box(void *context, const RtBoxView *view) {
+    const Drawing *d = context;
+    RtPoint corners[RT_OUTLINE_CORNERS];
+    if (!is_shown(d, view)) return;
+    uint32_t count = rt_outline_section(view, d->plane, corners);
+    for (uint32_t i = 0; i < count; i++) corners[i] = point_of(d, corners[i].x, corners[i].y);
+    rt_add_polygon(d->cairo, corners, count);
+    rt_set_color(d->cairo, color_of_box(d, view), view->leaf ? 0.18 : 0.05);
+    cairo_fill_preserve(d->cairo);
+    rt_set_color(d->cairo, color_of_box(d, view), 0.9);
+    cairo_stroke(d->cairo);
+}
+
+static void outline_sphere(const Drawing *d, const RtSphere *sphere) {
+    RtVec3d center = rt_widen(sphere->center);
+    double off = center.at[d->plane.axis] - d->plane.at, r = (double)sphere->radius;
+    if (fabs(off) >= r) return;
+    rt_add_circle(d->cairo, point_of(d, center.at[d->plane.across], center.at[d->plane.up]),
+                  sqrt(r * r - off * off) * d->scale);
+    cairo_stroke(d->cairo);
+}
+
+static void outline_flat(const Drawing *d, const RtVec3 *corners, uint32_t count) {
+    RtVec3d on = {{0, 0, 0}}, normal = {{0, 0, 0}}, cut[2];
+    on.at[d->plane.axis] = d->plane.at;
+    normal.at[d->plane.axis] = 1;
+    if (!rt_outline_cut_flat(corners, count, on, normal, cut)) return;
+    rt_add_line(d->cairo, point_of(d, cut[0].at[d->plane.across], cut[0].at[d->plane.up]),
+                point_of(d, cut[1].at[d->plane.across], cut[1].at[d->plane.up]));
+    cairo_stroke(d->cairo);
+}
+
+static void choose_plane(Drawing *d) {
+    RtVec3 up = d->layer->scene->camera.up;
+    d->plane.axis = d->options->axis;
+    d->plane.at = d->options->at;
+    up.at[d->plane.axis] = 0;
+    d->plane.up = rt_major_axis(up) != d->plane.axis ? rt_major_axis(up) : (d->plane.axis + 1) % 3;
+    d->plane.across = 3 - d->plane.up - d->plane.axis;
+}
+
+/* As much as the camera sees at its aim, or the whole scene if that is smaller. */
+static void choose_window(Drawing *d) {
+    const RtBox *box = &d->layer->scene->geometry.box;
+    const RtCamera *camera = &d->layer->scene->camera;
+    RtVec3d size = rt_subd(rt_widen(box->hi), rt_widen(box->lo)), center = rt_widen(rt_box_center(*box));
+    double distance = rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)));
+    RtTurn half = rt_turn((double)camera->fov / 2);
+    double seen = d->height / (2 * distance * half.sine / half.cosine);
+    d->scale = 0.96 * fmin(d->width / fmax(size.at[d->plane.across], 1e-30),
+                           d->height / fmax(size.at[d->plane.up], 1e-30));
+    if (seen > d->scale) d->scale = seen, center = rt_widen(camera->at);
+    d->left = center.at[d->plane.across] - d->width / 2 / d->scale;
+    d->top = center.at[d->plane.up] + d->height / 2 / d->scale;
+}
+
+static void draw_section(Drawing *d) {
+    const RtGeometry *g = &d->layer->scene->geometry;
+    choose_window(d);
+    rt_fill_rectangle(d->cairo, 0, 0, d->width, d->height, (RtColor){{20, 20, 24}});
+    d->layer->ops->each_box(d->layer, (RtBoxViewer){fill_box, d});
+    rt_set_color(d->cairo, RT_WHITE, 1);
+    for (uint32_t i = 0; i < g->sphere_count; i++) outline_sphere(d, &g->spheres[i]);
+    for (uint32_t i = 0; i < g->triangle_count; i++) outline_flat(d, g->triangles[i].v, 3);
+    for (uint32_t i = 0; i < g->polygon_count; i++)
+        outline_flat(d, g->polygon_vertices + g->polygons[i].first, g->polygons[i].count);
 }
 
 /* ---- the legend ---- */
 
-static int legend_height(uint32_t width) {
-    return (2 * MARGIN + 3 * LINE) * rt_text_dot(width);
+static double legend_height(double em) {
+    return ceil((0.9 + RT_LINE * LINES) * em);
 }
 
 /* Squares with the colours of levels, every nth if they are many, or of sizes. */
-static void draw_colors(const RtStructureDrawing *d, int x, int y, int dot) {
+static void draw_colors(const Drawing *d, double x, double y) {
     enum { MOST = 7, SIZES = 5 };
-    bool by_size = rt_structure_is_by_size(d);
+    bool by_size = is_by_size(d);
     uint32_t levels = d->last - d->first + 1, count = by_size ? SIZES : levels < MOST ? levels : MOST;
-    const char *what = by_size ? "size" : "level";
-    rt_draw_text(d->image, x, y, dot, what, RT_WHITE);
-    x += (rt_text_width(what) + MARGIN) * dot;
+    x += rt_draw_text(d->cairo, x, y, by_size ? "size" : "level") + 0.8 * d->em;
     for (uint32_t i = 0; i < count; i++) {
         double at = count > 1 ? (double)i / (count - 1) : 0, size = d->most;
         uint32_t level = d->first + (uint32_t)(at * (levels - 1) + 0.5);
-        for (uint32_t k = 0; by_size && k < i; k++) size *= rt_power(d->least / d->most, 1.0 / (count - 1));
         char text[32];
+        if (by_size) size *= rt_power(d->least / d->most, at);
         if (by_size)
             snprintf(text, sizeof text, "%.2g", size);
         else
             snprintf(text, sizeof text, "%u", level);
-        RtColor color = by_size ? rt_structure_size_color(d, size) : rt_structure_level_color(d, level);
-        rt_draw_rectangle(d->image, x, y, RT_TEXT_HEIGHT * dot, RT_TEXT_HEIGHT * dot, color);
-        x += (RT_TEXT_HEIGHT + 2) * dot;
-        rt_draw_text(d->image, x, y, dot, text, RT_WHITE);
-        x += (rt_text_width(text) + MARGIN) * dot;
+        x += rt_draw_key(d->cairo, x, y, by_size ? color_of_size(d, size) : color_of_level(d, level), text);
+        x += 0.7 * d->em;
     }
 }
 
-static void draw_legend(const RtStructureDrawing *d) {
+static void draw_legend(const Drawing *d) {
     static const char axes[] = "xyz";
     static const char *const names[RT_EXTENT_KIND_COUNT] = {"boxes", "spheres", "oriented boxes",
-                                                            "bodies of slabs"};
-    int dot = rt_text_dot(d->image->width), left = MARGIN * dot, y = (int)d->height + MARGIN * dot;
+                                                            "slab polytopes"};
+    double left = 0.5 * d->em, y = d->height + 1.5 * d->em;
     char text[128];
-    rt_draw_rectangle(d->image, 0, (int)d->height, (int)d->image->width, legend_height(d->image->width),
-                      RT_BLACK);
     if (d->options->slice)
-        snprintf(text, sizeof text, "%s  section %c=%.4g, %c up", d->layer->ops->name, axes[d->options->axis],
-                 d->options->at, axes[d->up]);
+        snprintf(text, sizeof text, "%s, section at %c = %.4g, %c up", d->layer->ops->name,
+                 axes[d->plane.axis], d->plane.at, axes[d->plane.up]);
     else
         snprintf(text, sizeof text, "%s", d->layer->ops->name);
-    rt_draw_text(d->image, left, y, dot, text, RT_WHITE);
+    rt_set_color(d->cairo, RT_WHITE, 1);
+    rt_draw_text(d->cairo, left, y, text);
     snprintf(text, sizeof text, "%llu of %llu %s%s", (unsigned long long)d->drawn, (unsigned long long)d->all,
-             names[d->kind], d->options->leaves ? ": leaves" : "");
-    rt_draw_text(d->image, left, y + LINE * dot, dot, text, RT_WHITE);
-    draw_colors(d, left, y + 2 * LINE * dot, dot);
+             names[d->kind], d->options->leaves ? ", leaves only" : "");
+    rt_draw_text(d->cairo, left, y + RT_LINE * d->em, text);
+    draw_colors(d, left, y + 2 * RT_LINE * d->em);
 }
 
 /* ---- from outside ---- */
@@ -159,7 +303,7 @@ static RtStatus refuse(const RtAccelOps *ops, RtError *error) {
         ops->name);
 }
 
-/* Is this layer the one? `last`: there is none below. */
+/* Is this layer the one to draw? `last`: there is none below. */
 static RtStatus choose(const RtAccelOps *ops, const char *name, bool last, bool *chosen, RtError *error) {
     *chosen = name ? strcmp(ops->name, name) == 0 : has_picture(ops);
     if (*chosen && !has_picture(ops)) return refuse(ops, error);
@@ -184,46 +328,44 @@ RtStatus rt_structure_available(const RtSpec *spec, const char *name, RtError *e
     return RT_OK;
 }
 
-/* The frame's picture, above room for the legend. */
-static RtStatus make_image(RtImage *image, const RtFrame *frame, RtError *error) {
-    RtImage picture;
-    uint32_t width = frame->sampling.width, height = frame->sampling.height;
-    RT_TRY(rt_image_from_frame(&picture, frame, error));
-    RtStatus status =
-        rt_image_init(image, width > 240 ? width : 240, height + (uint32_t)legend_height(width), error);
-    for (uint32_t y = 0; status == RT_OK && y < height; y++)
-        memcpy(image->rgb + (size_t)3 * y * image->width, picture.rgb + (size_t)3 * y * width,
-               (size_t)3 * width);
-    rt_image_clear(&picture);
-    return status;
+static RtStatus draw(Drawing *d, RtError *error) {
+    RtStatus status = RT_OK;
+    cairo_save(d->cairo);
+    cairo_rectangle(d->cairo, 0, 0, d->width, d->height);
+    cairo_clip(d->cairo);
+    if (d->options->slice)
+        draw_section(d);
+    else
+        status = draw_perspective(d, error);
+    cairo_restore(d->cairo);
+    RT_TRY(status);
+    draw_legend(d);
+    return rt_accel_check(d->layer, error);
 }
 
-RtStatus rt_structure_image(RtImage *image, const RtAccel *layer, const RtFrame *frame,
-                            const RtStructureOptions *options, RtError *error) {
-    RtStructureDrawing d = {.image = image,
-                            .frame = frame,
-                            .layer = layer,
-                            .options = options,
-                            .width = frame->sampling.width,
-                            .height = frame->sampling.height};
+RtStatus rt_structure_draw(const char *file, const RtAccel *layer, const RtFrame *frame,
+                           const RtStructureOptions *options, RtError *error) {
+    const RtSampling *s = &frame->sampling;
     const RtCamera *camera = &layer->scene->camera;
-    layer->ops->each_box(layer, (RtBoxViewer){rt_structure_count, &d});
+    uint32_t width = s->width > LEAST_WIDTH ? s->width : LEAST_WIDTH;
+    RtCanvas canvas;
+    Drawing d = {.frame = frame,
+                 .layer = layer,
+                 .options = options,
+                 .width = s->width,
+                 .height = s->height,
+                 .em = rt_font_size(width)};
+    choose_plane(&d);
+    layer->ops->each_box(layer, (RtBoxViewer){count_box, &d});
     RT_TRY(rt_accel_check(layer, error));
-    /* The floor, which is larger than all that is seen, does not set the scale. */
-    d.most =
-        fmax(d.least, fmin(d.most, 2 * rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)))));
+    /* A floor much larger than the view does not set the scale. */
+    double view = rt_lengthd(rt_subd(rt_widen(camera->at), rt_widen(camera->from)));
+    d.most = fmax(d.least, fmin(d.most, 2 * view));
     if (d.drawn == 0 && layer->scene->geometry.object_count > 0)
         return rt_fail(error, RT_BAD_INPUT,
                        "none of the %llu boxes of %s is on the levels, or in the slice, that are asked for",
                        (unsigned long long)d.all, layer->ops->name);
-    RT_TRY(make_image(image, frame, error));
-    RtStatus status = RT_OK;
-    if (options->slice)
-        rt_structure_draw_section(&d);
-    else
-        status = draw_perspective(&d, error);
-    if (status == RT_OK) status = rt_accel_check(layer, error);
-    if (status == RT_OK) draw_legend(&d);
-    if (status != RT_OK) rt_image_clear(image);
-    return status;
+    RT_TRY(rt_canvas_open(&canvas, file, width, s->height + legend_height(d.em), RT_BLACK, d.em, error));
+    d.cairo = canvas.cairo;
+    return rt_canvas_close(&canvas, draw(&d, error), error);
 }

@@ -51,8 +51,4 @@ uint32_t rt_path_run(const RtPath *path, uint32_t first);
 RtStatus rt_path_ray(const RtAccel *accel, RtRayKind kind, uint32_t column, uint32_t row, uint32_t light,
                      RtRay *ray, RtError *error);
 
-/* Draws the path, an SVG file (path_svg.c). `title` and `spec` are written above it. */
-RtStatus rt_path_draw(const RtPath *path, const RtScene *scene, const char *title, const char *spec,
-                      const char *file, RtError *error);
-
 #endif

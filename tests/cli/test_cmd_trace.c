@@ -99,8 +99,8 @@ RT_TEST(a_shadow_ray_is_followed_through_overlays) {
     unlink(OUT ".txt");
 }
 
-/* Embree's own kernels count nothing and name no blocker; skipped where it was not built in. */
-RT_TEST(a_blocker_that_is_not_named_has_no_number) {
+/* Embree's own kernels count nothing and name no occluder; skipped where it was not built in. */
+RT_TEST(an_occluder_that_is_not_named_has_no_number) {
     const char *arguments = "balls:size=2 --size 64x64 --pixel 20,44 --rays shadow --accel embree";
     if (trace(arguments) == 2 && says(OUT ".err", "without Embree")) return;
     assert_int_equal(trace(arguments), 0);
@@ -134,13 +134,18 @@ RT_TEST(many_object_tests_that_miss_are_one_row_unless_each_is_asked_for) {
     unlink(OUT ".txt");
 }
 
-RT_TEST(the_path_is_drawn) {
-    assert_int_equal(trace("balls:size=2 --size 64x64 --pixel 32,30 --accel kd --svg " OUT ".svg"), 0);
-    assert_true(says(OUT ".svg", "<svg xmlns"));
-    assert_true(says(OUT ".svg", "the primary ray of pixel 32,30 of 64 x 64"));
-    assert_true(says(OUT ".svg", "1  extent test, node 0: met"));
-    assert_true(says(OUT ".svg", "</svg>"));
-    unlink(OUT ".svg");
+RT_TEST(the_path_is_drawn_in_the_format_that_the_name_says) {
+    static const char *const begins[][2] = {{".svg", "<svg"}, {".pdf", "%PDF"}, {".png", "PNG"}};
+    for (int i = 0; i < 3; i++) {
+        char arguments[512], file[256];
+        snprintf(file, sizeof file, OUT "%s", begins[i][0]);
+        snprintf(arguments, sizeof arguments, "balls:size=2 --size 64x64 --pixel 32,30 --accel kd --svg %s",
+                 file);
+        assert_int_equal(trace(arguments), 0);
+        assert_true(says(OUT ".txt", "wrote "));
+        assert_true(says(file, begins[i][1]));
+        unlink(file);
+    }
     unlink(OUT ".txt");
 }
 
@@ -160,7 +165,7 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --pixel 512,0", "choose 0..511,0..511"},
         {"balls --pixel 0,0 --accel bvhh", "mean 'bvh'"},
         {"balls --pixel 0,0 --rays random", "expected primary"},
-        {"balls --pixel 0,0 --svg a.png", ".svg"},
+        {"balls --pixel 0,0 --svg a.gif", ".svg or .pdf"},
         {"'no\xff.yaml' --pixel 0,0 --json", "is not UTF-8"},
         {"balls --pixel 0,0 --svg a.svg --svg b.svg", "one file is written"},
         {"balls --pixel 0,0 tetra", "one SCENE"},

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The path of a ray: what counted kernels tell an onlooker adds up to what they count. */
+#define PICTURE_FILE RT_BINARY_DIR "/test_path_picture.png"
 #include "accel_testing.h"
 
-#include "core/base/file.h"
-#include "render/path.h"
+#include "picture/path_picture.h"
+#include "picture/picture_testing.h"
 #include "scenes/open.h"
 #include "verify/spread.h"
 
@@ -18,19 +19,19 @@ static void assert_adds_up(RtAccel *accel, const char *spec, const RtRay *ray) {
     RtTally counted[RT_RAY_KIND_COUNT] = {0};
     RtPath path;
     RtHit hit;
-    bool blocked;
+    bool occluded;
     RtError problem;
     if (rt_path_trace(&path, accel, ray, &problem) != RT_OK) fail_msg("%s: %s", spec, problem.message);
     assert_ok(rt_query_init(&query, accel, error));
     rt_query_begin(&query);
     if (path.any)
-        rt_occluded(&query, &path.ray, 1, &blocked, counted);
+        rt_occluded(&query, &path.ray, 1, &occluded, counted);
     else
         rt_nearest(&query, &path.ray, 1, &hit, counted);
     if (memcmp(&counted[ray->kind], &path.tally, sizeof path.tally) != 0)
         fail_msg("%s: a %s ray's path does not add up", spec, rt_ray_kind_name((RtRayKind)ray->kind));
     if (path.any)
-        assert_int_equal(blocked, path.hit.object != RT_NO_OBJECT);
+        assert_int_equal(occluded, path.hit.object != RT_NO_OBJECT);
     else
         assert_memory_equal(&hit, &path.hit, sizeof hit);
     rt_query_clear(&query);
@@ -147,77 +148,40 @@ RT_TEST(nobody_looks_on_after_a_path) {
 
 /* ---- the drawing ---- */
 
-enum { FAR_OUT = 2000 }; /* pixels: what lies farther outside of the drawing is cut off */
-#define SVG_FILE RT_BINARY_DIR "/test_path.svg"
-
-/* The drawing of made-up rows along the x axis, with z up, to *svg; free with rt_free. */
-static void draw(RtPathRow *rows, uint32_t count, const RtScene *scene, char **svg) {
-    size_t size;
-    RtPath path = {
-        .ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY}, .hit = RT_MISS, .rows = rows, .count = count};
-    assert_ok(rt_path_draw(&path, scene, "title", "spec", SVG_FILE, error));
-    assert_ok(rt_file_read(SVG_FILE, 1000000, svg, &size, error));
-    unlink(SVG_FILE);
+static cairo_t *new_canvas(double width, double height) {
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
+    cairo_t *cairo = cairo_create(surface);
+    cairo_surface_destroy(surface);
+    return cairo;
 }
 
-static int count_of(const char *text, const char *part) {
-    int count = 0;
-    while ((text = strstr(text, part))) text++, count++;
-    return count;
-}
-
-RT_TEST(a_slanted_wall_that_leaves_the_drawing_keeps_its_slope) {
-    RtScene scene;
-    RtVec3 wall[4] = {{{-9e5f, -1, -3e5f}}, {{9e5f, -1, 3e5f}}, {{9e5f, 1, 3e5f}}, {{-9e5f, 1, -3e5f}}};
-    begin_scene(&scene);
-    assert_ok(rt_scene_add_polygon(&scene, 0, wall, 4, error));
-    assert_ok(rt_scene_finish(&scene, error));
-    RtBox box = {{{1, -1, -1}}, {{2, 1, 1}}};
-    RtPathRow row = {.kind = RT_TRACED_OBJECT_TEST, .boxed = true, .box = box, .enter = 1, .leave = 2};
-    char *svg;
-    draw(&row, 1, &scene, &svg);
-    double x[2], y[2];
-    int lines = 0;
-    for (const char *at = svg; (at = strstr(at, "<line x1")); at++) {
-        int style = 0;
-        assert_int_equal(sscanf(at, "<line x1=\"%lf\" y1=\"%lf\" x2=\"%lf\" y2=\"%lf\" %n", &x[0], &y[0],
-                                &x[1], &y[1], &style),
-                         4);
-        if (strncmp(at + style, "stroke=\"#555\"", 13) != 0) continue; /* the ray, or a tick */
-        lines++;
-        for (int i = 0; i < 2; i++) assert_true(fabs(x[i]) <= FAR_OUT && fabs(y[i]) <= FAR_OUT);
-        assert_true(fabs((y[1] - y[0]) / (x[1] - x[0]) + 1.0 / 3) < 1e-4);
+/* A line is cut to three times the size of the picture. */
+RT_TEST(a_line_that_leaves_the_picture_is_cut_and_keeps_its_slope) {
+    cairo_t *cairo = new_canvas(100, 200);
+    double x0, y0, x1, y1;
+    for (double far = 1e3; far < 1e12; far *= 10) {
+        rt_add_line(cairo, (RtPoint){-far, 50 - far / 3}, (RtPoint){far, 50 + far / 3});
+        cairo_path_extents(cairo, &x0, &y0, &x1, &y1);
+        assert_true(fabs(x0 + 100) < 0.1 && fabs(x1 - 200) < 0.1);
+        assert_true(fabs(y0 - (50 - 100 / 3.0)) < 0.1 && fabs(y1 - (50 + 200 / 3.0)) < 0.1);
+        cairo_new_path(cairo);
+        rt_add_line(cairo, (RtPoint){far, -far}, (RtPoint){far, far});
+        assert_false(cairo_has_current_point(cairo)); /* beside it */
+        cairo_new_path(cairo);
     }
-    assert_int_equal(lines, 1);
-    rt_free(svg);
-    rt_scene_clear(&scene);
+    cairo_destroy(cairo);
 }
 
-RT_TEST(a_ball_of_any_size_goes_by_the_middle_of_the_drawing_in_numbers_that_viewers_like) {
-    RtScene scene;
-    make_lattice(&scene, 1, 1, 1);
-    for (double r = 1e3; r < 1e12; r *= 100) { /* its surface is 0.05 below the ray */
-        RtPathRow row = {.kind = RT_TRACED_STEP,
-                         .boxed = true,
-                         .round = true,
-                         .box = {{{1, -1, -1}}, {{2, 1, 1}}},
-                         .ball = {{{1.5, 0, -r - 0.05}}, r},
-                         .enter = 1,
-                         .leave = 2};
-        RtPathRow rows[2] = {row, row};
-        rows[1].round = false; /* the drawing is as wide as this box */
-        char *svg;
-        draw(rows, 2, &scene, &svg);
-        double x, y, around;
-        assert_int_equal(count_of(svg, "<circle"), 1);
-        assert_int_equal(
-            sscanf(strstr(svg, "<circle"), "<circle cx=\"%lf\" cy=\"%lf\" r=\"%lf\"", &x, &y, &around), 3);
-        assert_true(fabs(x) <= 1e6 + FAR_OUT && fabs(y) <= 1e6 + FAR_OUT && around <= 1e6);
-        double scale = 730 / 1.1; /* pixels per unit; the ray is at y = 64 + 330 / 2 */
-        assert_true(fabs(y - around - (229 + 0.05 * scale)) < 0.1);
-        rt_free(svg);
+RT_TEST(a_circle_of_any_size_passes_the_middle_of_the_picture_at_its_distance) {
+    cairo_t *cairo = new_canvas(100, 200);
+    double x0, y0, x1, y1;
+    for (double r = 10; r < 1e12; r *= 100) { /* its right end is 7 to the left of the middle */
+        rt_add_circle(cairo, (RtPoint){43 - r, 100}, r);
+        cairo_path_extents(cairo, &x0, &y0, &x1, &y1);
+        assert_true(fabs(x1 - 43) < 0.1 && x0 >= -2.1e6);
+        cairo_new_path(cairo);
     }
-    rt_scene_clear(&scene);
+    cairo_destroy(cairo);
 }
 
 RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length) {
@@ -229,13 +193,44 @@ RT_TEST(an_axis_has_few_ticks_also_where_the_rows_are_far_away_and_of_no_length)
                          .box = {{{1, -1, -1}}, {{2, 1, 1}}},
                          .enter = far,
                          .leave = nextafter(far, INFINITY)};
-        char *svg;
-        draw(&row, 1, &scene, &svg);
-        int ticks = count_of(svg, ">t = ");
+        RtPath path = {
+            .ray = {.dir = {{1, 0, 0}}, .tmax = INFINITY}, .hit = RT_MISS, .rows = &row, .count = 1};
+        assert_ok(rt_path_draw(&path, &scene, "title \xff", "spec", PICTURE_FILE, error));
+        RtImage image = read_picture();
+        uint32_t ticks = 0;
+        for (int x = 0; x < (int)image.width; x++)
+            ticks += pixel(&image, x, 438)[0] == 221; /* above the row */
         assert_true(ticks >= 3 && ticks <= 20);
-        rt_free(svg);
+        rt_image_clear(&image);
     }
     rt_scene_clear(&scene);
+}
+
+/* Each format begins with what names it, and is the same again when drawn again. */
+RT_TEST(a_picture_is_png_svg_or_pdf_by_its_name_and_the_same_every_time) {
+    static const struct {
+        const char *file, *begins;
+    } formats[] = {{RT_BINARY_DIR "/test_path.png", "\x89PNG"},
+                   {RT_BINARY_DIR "/test_path.svg", "<?xml"},
+                   {RT_BINARY_DIR "/test_path.pdf", "%PDF"}};
+    RtScene scene;
+    RtAccel *accel;
+    RtPath path = path_along_the_row("bvh", 0, &scene, &accel);
+    for (size_t i = 0; i < 3; i++) {
+        char *first, *second;
+        size_t size, again;
+        assert_ok(rt_path_draw(&path, &scene, "title", "spec", formats[i].file, error));
+        assert_ok(rt_file_read(formats[i].file, 1000000, &first, &size, error));
+        assert_ok(rt_path_draw(&path, &scene, "title", "spec", formats[i].file, error));
+        assert_ok(rt_file_read(formats[i].file, 1000000, &second, &again, error));
+        unlink(formats[i].file);
+        assert_memory_equal(first, formats[i].begins, strlen(formats[i].begins));
+        assert_int_equal(size, again);
+        if (i != 1) assert_memory_equal(first, second, size); /* cairo numbers surfaces of a process in SVG */
+        rt_free(first);
+        rt_free(second);
+    }
+    forget(&path, &scene, accel);
 }
 
 RT_TESTS(path, NULL, assert_nothing_is_kept)

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* render/: images, heatmaps and pictures of structures, read back from the files they were written to. */
+/* render/: images, read back from the files they were written to. */
 #include "testing.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
-#include "picture/draw.h"
-#include "picture/heatmap.h"
 #include "render/image.h"
 #include "scenes/open.h"
 
@@ -207,147 +205,6 @@ RT_TEST(a_file_that_cannot_be_written_is_a_status_and_leaves_nothing) {
     assert_int_equal(rt_alloc_live(), live);
     rt_image_clear(&image);
     rt_frame_clear(&frame);
-}
-
-RT_TEST(a_heatmap_is_dark_where_nothing_was_spent_and_yellow_at_the_most) {
-    enum { W = 240, H = 20 };
-    static RtTally cost[W * H];
-    RtFrame frame = {.cost = cost};
-    const RtHeatmapPanel panel = {&frame, NULL};
-    const RtHeatmapOptions options = {.counter = offsetof(RtTally, object_tests) / sizeof(uint64_t)};
-    assert_ok(rt_sampling_init(&frame.sampling, W, H, 1, false, error));
-    for (int i = 0; i < W * H; i++) cost[i].object_tests = i == 0 ? 0 : i == 1 ? 100 : 50;
-    RtImage image;
-    assert_ok(rt_heatmap(&image, &panel, 1, &options, error));
-    RtColor none = rt_color_scale(0), half = rt_color_scale(0.5), most = rt_color_scale(1);
-    assert_memory_equal(image.rgb, none.rgb, 3);
-    assert_memory_equal(image.rgb + 3, most.rgb, 3);
-    assert_memory_equal(image.rgb + 6, half.rgb, 3); /* linear */
-    assert_true(image.height > H);
-    rt_image_clear(&image);
-    /* One pixel far above all others: a logarithmic scale still tells 0 from 50. */
-    cost[1].object_tests = 1000000;
-    assert_ok(rt_heatmap(&image, &panel, 1, &options, error));
-    RtColor some = rt_color_scale(log1p(50) / log1p(1e6));
-    assert_memory_equal(image.rgb + 6, some.rgb, 3);
-    rt_image_clear(&image);
-}
-
-RT_TEST(a_heatmap_of_nothing_or_of_one_pixel_has_its_legend) {
-    RtTally cost = {0};
-    RtFrame frame = {.cost = &cost};
-    const RtHeatmapPanel panel = {&frame, NULL};
-    const RtHeatmapOptions options = {.counter = offsetof(RtTally, steps) / sizeof(uint64_t)};
-    assert_ok(rt_sampling_init(&frame.sampling, 1, 1, 1, false, error));
-    for (uint64_t steps = 0; steps < 3; steps++) {
-        cost.steps = steps == 2 ? UINT64_MAX : steps;
-        RtImage image;
-        assert_ok(rt_heatmap(&image, &panel, 1, &options, error));
-        assert_true(image.width > 100);
-        rt_image_clear(&image);
-    }
-}
-
-/* Two pictures of one row of pixels, beside one another. */
-enum { WIDE = 300 };
-static RtTally costs[2][WIDE];
-
-static RtImage two_heatmaps(RtHeatmapOptions options) {
-    RtFrame frames[2] = {{.cost = costs[0]}, {.cost = costs[1]}};
-    RtHeatmapPanel panels[2] = {{&frames[0], "one"}, {&frames[1], "two"}};
-    RtImage image;
-    for (int i = 0; i < 2; i++) assert_ok(rt_sampling_init(&frames[i].sampling, WIDE, 1, 1, false, error));
-    options.counter = offsetof(RtTally, steps) / sizeof(uint64_t);
-    assert_ok(rt_heatmap(&image, panels, 2, &options, error));
-    return image;
-}
-
-/* Is there the colour, with as many panels, in row y of panel `panel` at x? Panels begin 4 pixels after
- * another. */
-static bool has_color(const RtImage *image, int panel, int x, RtColor color) {
-    int y = 15; /* below the label */
-    const uint8_t *at = image->rgb + 3 * ((size_t)y * image->width + (size_t)(panel * (WIDE + 4) + x));
-    return memcmp(at, color.rgb, 3) == 0;
-}
-
-RT_TEST(heatmaps_of_two_accelerators_have_one_scale) {
-    for (int i = 0; i < WIDE; i++) costs[0][i].steps = 50, costs[1][i].steps = i == 0 ? 100 : 25;
-    RtImage image = two_heatmaps((RtHeatmapOptions){0});
-    assert_true(has_color(&image, 0, 0, rt_color_scale(0.5)));
-    assert_true(has_color(&image, 1, 0, rt_color_scale(1)));
-    assert_true(has_color(&image, 1, 1, rt_color_scale(0.25)));
-    rt_image_clear(&image);
-    image = two_heatmaps((RtHeatmapOptions){.most = 50});
-    assert_true(has_color(&image, 0, 0, rt_color_scale(1)));
-    assert_true(has_color(&image, 1, 0, rt_color_scale(1)));
-    assert_true(has_color(&image, 1, 1, rt_color_scale(0.5)));
-    rt_image_clear(&image);
-    image = two_heatmaps((RtHeatmapOptions){.scale = RT_HEATMAP_LOG});
-    assert_true(has_color(&image, 0, 0, rt_color_scale(log1p(50) / log1p(100))));
-    rt_image_clear(&image);
-    costs[0][5].steps = 200; /* the most is the first's */
-    image = two_heatmaps((RtHeatmapOptions){0});
-    assert_true(has_color(&image, 0, 5, rt_color_scale(1)));
-    assert_true(has_color(&image, 1, 0, rt_color_scale(0.5)));
-    rt_image_clear(&image);
-}
-
-RT_TEST(a_difference_is_red_where_the_first_costs_more_and_blue_where_the_second_does) {
-    for (int i = 0; i < WIDE; i++)
-        costs[0][i].steps = 50, costs[1][i].steps = i == 0 ? 100 : i == 1 ? 50 : 25;
-    RtImage image = two_heatmaps((RtHeatmapOptions){.difference = true});
-    assert_true(has_color(&image, 2, 0, rt_color_difference(-1)));
-    assert_true(has_color(&image, 2, 1, rt_color_difference(0)));
-    assert_true(has_color(&image, 2, 2, rt_color_difference(0.5)));
-    RtColor blue = rt_color_difference(-1), red = rt_color_difference(1);
-    assert_true(blue.rgb[2] > blue.rgb[0] && red.rgb[0] > red.rgb[2]);
-    rt_image_clear(&image);
-}
-
-/* Is any pixel of the columns from..to, in the rows of the labels, white? */
-static bool has_label(const RtImage *image, uint32_t from, uint32_t to) {
-    bool found = false;
-    for (uint32_t y = 4; y < 4 + RT_TEXT_HEIGHT; y++) {
-        for (uint32_t x = from; x < to; x++)
-            found |= memcmp(image->rgb + 3 * ((size_t)y * image->width + x), RT_WHITE.rgb, 3) == 0;
-    }
-    return found;
-}
-
-RT_TEST(panels_of_four_pixels_have_the_labels_and_bars_of_their_pitch_and_no_more) {
-    enum { SIDE = 4, PITCH = 240, ROOM = 236, MARGIN = 4, BAR = 15 + SIDE + 15 };
-    static RtTally spent[2][SIDE * SIDE];
-    RtFrame frames[2] = {{.cost = spent[0]}, {.cost = spent[1]}};
-    char first[100] = {0}, second[] = "11111111111111111111";
-    RtHeatmapPanel panels[2] = {{&frames[0], first}, {&frames[1], second}};
-    RtHeatmapOptions options = {.counter = offsetof(RtTally, steps) / sizeof(uint64_t), .difference = true};
-    RtImage image;
-    memset(first, '1', sizeof first - 1);
-    spent[0][0].steps = 9;
-    for (int i = 0; i < 2; i++) assert_ok(rt_sampling_init(&frames[i].sampling, SIDE, SIDE, 1, false, error));
-    assert_ok(rt_heatmap(&image, panels, 2, &options, error));
-    assert_int_equal(image.width, 2 * PITCH + ROOM);
-    /* Characters are 6 pixels wide: 38 fit. */
-    assert_true(has_label(&image, MARGIN + 37 * 6, MARGIN + 38 * 6));
-    assert_false(has_label(&image, MARGIN + 38 * 6, PITCH + MARGIN));
-    assert_true(has_label(&image, PITCH + MARGIN + 19 * 6, PITCH + MARGIN + 20 * 6));
-    assert_false(has_label(&image, PITCH + MARGIN + 20 * 6, 2 * PITCH + MARGIN));
-    const uint8_t *bar = image.rgb + 3 * ((size_t)BAR * image.width + 2 * PITCH);
-    RtColor blue = rt_color_difference(-1), red = rt_color_difference(1);
-    assert_memory_equal(bar + (size_t)3 * MARGIN, blue.rgb, 3);
-    assert_memory_equal(bar + (size_t)3 * (ROOM - MARGIN - 1), red.rgb, 3);
-    assert_memory_equal(bar + (size_t)3 * (ROOM - MARGIN), RT_BLACK.rgb, 3);
-    rt_image_clear(&image);
-}
-
-RT_TEST(the_scale_grows_in_lightness) {
-    double before = -1;
-    for (int i = 0; i <= 100; i++) {
-        RtColor c = rt_color_scale(i / 100.0);
-        double lightness = 0.2126 * c.rgb[0] + 0.7152 * c.rgb[1] + 0.0722 * c.rgb[2];
-        assert_true(lightness >= before);
-        before = lightness;
-    }
 }
 
 RT_TESTS(image, NULL, NULL)

@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "picture/buffers.h"
+
+#include "core/base/memory.h"
+#include "core/base/words.h"
+#include "picture/canvas.h"
+
+#include <stdio.h>
+
+enum { LEAST_WIDTH = 330 }; /* of a legend, pixels */
+
+static const RtColor magenta = {{255, 0, 200}}, unseen = {{60, 60, 60}}, red = {{230, 40, 40}};
+
+/* Where line `line` of the legend below `top` is, and how high `lines` lines are. */
+static double baseline(double top, int line, double em) {
+    return top + (1.5 + RT_LINE * line) * em;
+}
+
+static double legend_height(int lines, double em) {
+    return ceil(baseline(0, lines - 1, em) + 0.7 * em);
+}
+
+/* ---- the item buffer ---- */
+
+static RtColor color_of_sample(const RtCellView *cell, uint32_t x, uint32_t y) {
+    if (cell->object == RT_UNNAMED_OBJECT) return (x + y) % 4 ? magenta : RT_WHITE;
+    return cell->object == RT_NO_OBJECT ? RT_BLACK : rt_color_of_id(cell->object);
+}
+
+static RtStatus draw_samples(cairo_t *cairo, const RtAccel *layer, RtImage *image, double em,
+                             RtError *error) {
+    const RtSampling *s = &layer->scene->sampling;
+    uint64_t named = 0, undecided = 0, samples = (uint64_t)s->columns * s->rows;
+    RtCellView cell;
+    for (uint32_t i = 0; i < samples; i++) {
+        layer->ops->look_up(layer, &(RtRay){.source = i}, &cell);
+        named += cell.object < RT_UNNAMED_OBJECT;
+        undecided += cell.object == RT_UNNAMED_OBJECT;
+    }
+    for (uint32_t y = 0; y < s->height; y++) {
+        for (uint32_t x = 0; x < s->width; x++) {
+            RtFootprint f = rt_pixel_footprint(s, x, y);
+            uint32_t sample = (f.row + f.span / 2) * s->columns + f.column + f.span / 2;
+            layer->ops->look_up(layer, &(RtRay){.source = sample}, &cell);
+            rt_image_set(image, x, y, color_of_sample(&cell, x, y));
+        }
+    }
+    RT_TRY(rt_paint_image(cairo, image, 0, 0, error));
+    const struct {
+        uint64_t count;
+        RtColor color;
+        const char *what;
+    } keys[] = {{named, rt_color_of_id(1), "name an object (a colour each)"},
+                {undecided, magenta, "are undecided and passed on"},
+                {samples - named - undecided, unseen, "see nothing (black)"}};
+    char text[128];
+    rt_set_color(cairo, RT_WHITE, 1);
+    snprintf(text, sizeof text, "%s: %llu sample%s", layer->ops->name, (unsigned long long)samples,
+             rt_plural(samples));
+    rt_draw_text(cairo, 0.5 * em, baseline(s->height, 0, em), text);
+    for (int i = 0; i < 3; i++) {
+        snprintf(text, sizeof text, "%llu %s", (unsigned long long)keys[i].count, keys[i].what);
+        rt_draw_key(cairo, 0.5 * em, baseline(s->height, i + 1, em), keys[i].color, text);
+    }
+    return RT_OK;
+}
+
+static RtStatus draw_item_buffer(const char *file, const RtAccel *layer, RtError *error) {
+    const RtSampling *s = &layer->scene->sampling;
+    uint32_t width = s->width > LEAST_WIDTH ? s->width : LEAST_WIDTH;
+    double em = rt_font_size(width);
+    RtCanvas canvas;
+    RtImage image;
+    RT_TRY(rt_image_init(&image, s->width, s->height, error));
+    RtStatus status =
+        rt_canvas_open(&canvas, file, width, s->height + legend_height(4, em), RT_BLACK, em, error);
+    if (status == RT_OK)
+        status = rt_canvas_close(&canvas, draw_samples(canvas.cairo, layer, &image, em, error), error);
+    rt_image_clear(&image);
+    return status;
+}
+
+/* ---- the light buffer ---- */
+
+/* A face of the unfolded cube map: its place among 4 x 3 squares, and the directions of its middle, its right
+ * and its top as 1 + axis, negative for the opposite direction. Axis 1 is up. */
+typedef struct Face {
+    int column, row, middle, right, top;
+} Face;
+
+static const Face faces[6] = {{0, 1, -1, 3, 2},  {1, 1, 3, 1, 2},  {2, 1, 1, -3, 2},
+                              {3, 1, -3, -1, 2}, {1, 0, 2, 1, -3}, {1, 2, -2, 1, 3}};
+
+enum {
+    SIDE = 240,
+    WIDTH = 4 * SIDE,
+    HEIGHT = 3 * SIDE,
+    LINES = 7
+}; /* pixels of a face and of all; of the legend */
+
+#define NO_CELL UINT32_MAX
+
+typedef struct CubeMap {
+    cairo_t *cairo;
+    const RtAccel *layer;
+    uint32_t light;
+    int up;            /* the axis of the scene that is axis 1 */
+    RtCellView *cells; /* [HEIGHT][WIDTH], number NO_CELL where there is none */
+    RtScale scale;     /* of lengths */
+    double em;
+} CubeMap;
+
+/* The axis of the scene that `signed_axis` of a face is. */
+static int axis_of(const CubeMap *map, int signed_axis) {
+    int axis = (signed_axis < 0 ? -signed_axis : signed_axis) - 1;
+    return (axis + map->up + 2) % 3;
+}
+
+static void add_axis(const CubeMap *map, int signed_axis, float amount, RtVec3 *direction) {
+    direction->at[axis_of(map, signed_axis)] += signed_axis < 0 ? -amount : amount;
+}
+
+/* From the light through the middle of a pixel of the face. */
+static RtVec3 direction_of(const CubeMap *map, const Face *face, int x, int y) {
+    RtVec3 direction = {{0, 0, 0}};
+    add_axis(map, face->middle, 1, &direction);
+    add_axis(map, face->right, 2 * ((float)x + 0.5f) / SIDE - 1, &direction);
+    add_axis(map, face->top, 1 - 2 * ((float)y + 0.5f) / SIDE, &direction);
+    return direction;
+}
+
+/* Looks up all directions; returns whether any has a cell. */
+static bool look_up_cells(CubeMap *map) {
+    bool any = false;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) map->cells[i].number = NO_CELL;
+    for (int i = 0; i < 6 * SIDE * SIDE; i++) {
+        const Face *face = &faces[i / (SIDE * SIDE)];
+        int x = i % SIDE, y = i / SIDE % SIDE;
+        RtRay ray = {.dir = rt_scale(direction_of(map, face, x, y), -1), /* rays go to the light */
+                     .kind = RT_RAY_SHADOW,
+                     .source = map->light};
+        RtCellView *cell = &map->cells[(face->row * SIDE + y) * WIDTH + face->column * SIDE + x];
+        if (!map->layer->ops->look_up(map->layer, &ray, cell)) cell->number = NO_CELL;
+        if (cell->number == NO_CELL) continue;
+        map->scale.most = fmax(map->scale.most, cell->length);
+        any = true;
+    }
+    return any;
+}
+
+static RtColor color_of_cell(const CubeMap *map, int x, int y) {
+    const RtCellView *cell = &map->cells[y * WIDTH + x];
+    int u = x % SIDE, v = y % SIDE;
+    if (u == 0 || v == 0 || u == SIDE - 1 || v == SIDE - 1) return RT_GREY; /* of the face */
+    if (cell->number == NO_CELL) return unseen;
+    if (cell->cut && x % 2 == 0 && y % 2 == 0) return red;
+    return rt_color_scale(rt_scale_position(&map->scale, cell->length));
+}
+
+static bool has_number(const CubeMap *map, int x, int y, uint32_t number) {
+    return x >= 0 && y >= 0 && x < WIDTH && y < HEIGHT && map->cells[y * WIDTH + x].number == number;
+}
+
+/* The faces, and the outline of the cell `marked` (NO_CELL: none). */
+static void fill_image(const CubeMap *map, uint32_t marked, RtImage *image) {
+    for (int i = 0; i < 6 * SIDE * SIDE; i++) {
+        const Face *face = &faces[i / (SIDE * SIDE)];
+        int x = face->column * SIDE + i % SIDE, y = face->row * SIDE + i / SIDE % SIDE;
+        bool inner = has_number(map, x - 1, y, marked) && has_number(map, x + 1, y, marked) &&
+                     has_number(map, x, y - 1, marked) && has_number(map, x, y + 1, marked);
+        bool outline = marked != NO_CELL && has_number(map, x, y, marked) && !inner;
+        rt_image_set(image, (uint32_t)x, (uint32_t)y, outline ? RT_WHITE : color_of_cell(map, x, y));
+    }
+}
+
+static void draw_face_names(const CubeMap *map) {
+    for (int f = 0; f < 6; f++) {
+        char name[3] = {faces[f].middle < 0 ? '-' : '+', "xyz"[axis_of(map, faces[f].middle)], 0};
+        double x = faces[f].column * SIDE + 2, y = faces[f].row * SIDE + 2, em = map->em;
+        rt_fill_rectangle(map->cairo, x, y, ceil(rt_text_width(map->cairo, name) + 0.6 * em), ceil(1.3 * em),
+                          RT_BLACK);
+        rt_set_color(map->cairo, RT_WHITE, 1);
+        rt_draw_text(map->cairo, x + 0.3 * em, y + em, name);
+    }
+}
+
+static void draw_ring(const CubeMap *map, uint32_t number) {
+    int count = 0;
+    double x_sum = 0, y_sum = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        if (map->cells[i].number == number) x_sum += i % WIDTH, y_sum += i / WIDTH, count++;
+    }
+    for (int pass = 0; count > 0 && pass < 2; pass++) {
+        rt_set_color(map->cairo, pass ? RT_WHITE : RT_BLACK, 1);
+        cairo_set_line_width(map->cairo, pass ? 2 : 4);
+        rt_add_circle(map->cairo, (RtPoint){x_sum / count, y_sum / count}, sqrt(count) + 12);
+        cairo_stroke(map->cairo);
+    }
+}
+
+static void draw_legend(const CubeMap *map, const RtRay *marked, const RtCellView *cell) {
+    double em = map->em, left = 0.5 * em;
+    char text[160];
+    snprintf(text, sizeof text, "%s, light %u: objects in the list of a cell, up to %g",
+             map->layer->ops->name, map->light, map->scale.most);
+    rt_set_color(map->cairo, RT_WHITE, 1);
+    rt_draw_text(map->cairo, left, baseline(HEIGHT, 0, em), text);
+    rt_draw_scale(map->cairo, left, floor(baseline(HEIGHT, 0, em) + 0.6 * em), WIDTH - 2 * left, &map->scale);
+    rt_draw_key(map->cairo, left, baseline(HEIGHT, 3, em), unseen, "nothing is seen there");
+    rt_draw_key(map->cairo, left, baseline(HEIGHT, 4, em), red,
+                "red dots: the list was cut, rays may be passed on");
+    if (!marked) return;
+    if (cell->number == NO_CELL)
+        snprintf(text, sizeof text, "the ray reads no cell: it is lit");
+    else
+        snprintf(text, sizeof text, "ringed: the ray reads cell %u, with %u object%s%s", cell->number,
+                 cell->length, rt_plural(cell->length), cell->cut ? ", cut" : "");
+    rt_draw_key(map->cairo, left, baseline(HEIGHT, 5, em), RT_WHITE, text);
+}
+
+static RtStatus draw_cube_map(CubeMap *map, const char *file, const RtRay *marked, RtError *error) {
+    RtCanvas canvas;
+    RtImage image;
+    RtCellView cell = {.number = NO_CELL};
+    if (!look_up_cells(map))
+        return rt_fail(
+            error, RT_NOT_AVAILABLE,
+            "%s has no cells around light %u, and passes its rays on: ask for some, as in light:cells=64",
+            map->layer->ops->name, map->light);
+    if (marked && !map->layer->ops->look_up(map->layer, marked, &cell)) cell.number = NO_CELL;
+    RT_TRY(rt_image_init(&image, WIDTH, HEIGHT, error));
+    RtStatus status = rt_canvas_open(&canvas, file, WIDTH, HEIGHT + legend_height(LINES - 1, map->em),
+                                     RT_BLACK, map->em, error);
+    if (status == RT_OK) {
+        map->cairo = canvas.cairo;
+        fill_image(map, cell.number, &image);
+        status = rt_paint_image(map->cairo, &image, 0, 0, error);
+        draw_face_names(map);
+        if (cell.number != NO_CELL) draw_ring(map, cell.number);
+        cairo_set_line_width(map->cairo, 1);
+        draw_legend(map, marked, &cell);
+        status = rt_canvas_close(&canvas, status, error);
+    }
+    rt_image_clear(&image);
+    return status;
+}
+
+static RtStatus draw_light_buffer(const char *file, const RtAccel *layer, uint32_t light, const RtRay *marked,
+                                  RtError *error) {
+    const RtScene *scene = layer->scene;
+    if (light >= scene->light_count)
+        return rt_fail(error, RT_BAD_INPUT, "there is no light %u: the scene has %u, numbered from 0", light,
+                       scene->light_count);
+    CubeMap map = {.layer = layer,
+                   .light = light,
+                   .up = rt_major_axis(scene->camera.up),
+                   .cells = rt_alloc(WIDTH * HEIGHT, sizeof(RtCellView)),
+                   .scale = {.logarithmic = true},
+                   .em = rt_font_size(WIDTH)};
+    if (!map.cells) return rt_fail_memory(error, "a picture of cells", WIDTH * HEIGHT * sizeof(RtCellView));
+    RtStatus status = draw_cube_map(&map, file, marked, error);
+    rt_free(map.cells);
+    return status;
+}
+
+RtStatus rt_buffer_draw(const char *file, const RtAccel *layer, uint32_t light, const RtRay *marked,
+                        RtError *error) {
+    bool primary = layer->ops->kinds >> RT_RAY_PRIMARY & 1;
+    return primary ? draw_item_buffer(file, layer, error)
+                   : draw_light_buffer(file, layer, light, marked, error);
+}
