@@ -147,17 +147,10 @@ RT_TEST(every_accelerator_has_a_page_with_the_defaults_of_its_parameters) {
     free(index);
 }
 
-/* A shadow ray through one box; and extent tests, which stand beside object tests. */
+/* Extent tests stand beside object tests. */
 RT_TEST(pictures_show_what_is_said_of_them) {
-    static const char bar[] = "height=\"8\" stroke=\"#555\"";
-    char *page = read_document("docs/accelerators/light.md");
-    char *picture = read_document("docs/images/accelerators/light-trace.svg"), *first = strstr(picture, bar);
-    assert_non_null(strstr(page, "It alone is drawn as a bar"));
-    assert_true(first && !strstr(first + 1, bar));
-    free(picture);
-    free(page);
-    picture = read_document("results/havran-1999/plots/3-best.svg");
-    page = read_document("results/havran-1999/best.csv");
+    char *picture = read_document("results/havran-1999/plots/3-best.svg");
+    char *page = read_document("results/havran-1999/best.csv");
     assert_non_null(
         strstr(page, "\nballs,object_tests,Octree93-A depth=7,6.59771,item+light+bvh,1.12005,8.81136,"));
     assert_non_null(strstr(picture, "1.1 + 8.8  item+light+bvh"));
