@@ -4,30 +4,30 @@
 #include <math.h>
 
 /* Sums of what is known of one candidate, for what is not. */
-typedef struct Habit {
+typedef struct RateEstimate {
     double seconds, rays; /* to trace them */
     double build, builds;
-} Habit;
+} RateEstimate;
 
 typedef struct Forecast {
     const RtResults *results;
     const RtExperiment *experiment;
     bool count_only;
-    Habit all;
+    RateEstimate all;
     RtForecast sums;
 } Forecast;
 
-static void learn(Habit *habit, const RtResults *results, uint32_t t, uint32_t c) {
+static void learn(RateEstimate *rates, const RtResults *results, uint32_t t, uint32_t c) {
     const RtBuildResult *build = rt_build_at(results, t, c);
     if (build->known) {
-        habit->build += build->seconds;
-        habit->builds++;
+        rates->build += build->seconds;
+        rates->builds++;
     }
     for (uint32_t k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtCell *cell = rt_cell_at(results, t, c, (RtRayKind)k);
         if (!cell->timed) continue;
-        habit->seconds += cell->wall.median;
-        habit->rays++;
+        rates->seconds += cell->wall.median;
+        rates->rays++;
     }
 }
 
@@ -35,9 +35,9 @@ static double mean(double sum, double count, double other) {
     return count > 0 ? sum / count : other;
 }
 
-/* Builds are repeated up to three times while that is cheap. */
+/* As often as rt_workload_build repeats it. */
 static double build_seconds(double once) {
-    return fmin(3 * once, fmax(once, 0.25 + once));
+    return fmin(RT_MOST_BUILDS * once, RT_CHEAP_BUILD + once);
 }
 
 static void add(Forecast *f, bool known, double seconds) {
@@ -47,7 +47,7 @@ static void add(Forecast *f, bool known, double seconds) {
         f->sums.left += seconds;
 }
 
-static void add_cell(Forecast *f, const Habit *habit, uint32_t t, uint32_t c, RtRayKind kind) {
+static void add_cell(Forecast *f, const RateEstimate *rates, uint32_t t, uint32_t c, RtRayKind kind) {
     const RtExperiment *e = f->experiment;
     const RtCell *cell = rt_cell_at(f->results, t, c, kind);
     const RtWorkloadResult *workload = &f->results->workloads[t];
@@ -55,7 +55,7 @@ static void add_cell(Forecast *f, const Habit *habit, uint32_t t, uint32_t c, Rt
     bool null = c == e->candidate_count;
     double rays = (double)(workload->known ? workload->rays[kind] : e->limit) / (double)stride;
     double ray = cell->timed ? cell->wall.median
-                             : mean(habit->seconds, habit->rays, mean(f->all.seconds, f->all.rays, 0));
+                             : mean(rates->seconds, rates->rays, mean(f->all.seconds, f->all.rays, 0));
     if (!null) {
         f->sums.cells++;
         f->sums.finished += cell->counted && (cell->timed || f->count_only);
@@ -74,21 +74,21 @@ RtForecast rt_forecast(const RtResults *results, const RtWorkloadOptions *option
         for (uint32_t c = 0; c <= e->candidate_count; c++) learn(&f.all, results, t, c);
     }
     for (uint32_t c = 0; c < e->candidate_count + !f.count_only; c++) {
-        Habit habit = {0};
-        for (uint32_t t = 0; t < e->workload_count; t++) learn(&habit, results, t, c);
+        RateEstimate rates = {0};
+        for (uint32_t t = 0; t < e->workload_count; t++) learn(&rates, results, t, c);
         for (uint32_t t = 0; t < e->workload_count; t++) {
             const RtBuildResult *build = rt_build_at(results, t, c);
             if (results->workloads[t].skipped || !rt_only_scene(&options->only, e, t)) continue;
             if (*build->limit || !rt_candidate_runs(e, c, t) || !rt_only_accel(&options->only, e, c))
                 continue;
-            double once = mean(habit.build, habit.builds, mean(f.all.build, f.all.builds, 0));
+            double once = mean(rates.build, rates.builds, mean(f.all.build, f.all.builds, 0));
             add(&f, build->known, build_seconds(build->known ? build->seconds : once));
             for (uint32_t k = 0; k < e->kind_count; k++) {
                 RtRayKind kind = e->kinds[k];
                 bool none = results->workloads[t].known && !results->workloads[t].rays[kind];
                 if (none || *rt_cell_at(results, t, c, kind)->limit || !rt_only_kind(&options->only, kind))
                     continue;
-                add_cell(&f, &habit, t, c, kind);
+                add_cell(&f, &rates, t, c, kind);
             }
         }
     }

@@ -7,6 +7,10 @@
 #include "experiment/results.h"
 #include "rays/rayset.h"
 
+/* A structure is built up to three times while that is cheap. The forecast knows it, too. */
+#define RT_MOST_BUILDS 3
+#define RT_CHEAP_BUILD 0.25 /* seconds, all builds together */
+
 typedef enum RtEventKind {
     RT_EVENT_WORKLOAD,     /* results->workloads[workload] is known */
     RT_EVENT_BUILD,        /* the build of `candidate` is known */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the machine did for the rays of a workload: rounds of their own, after those that are timed, so that
  * no time is changed by counting. As those they are interleaved. */
+#include "accel/away.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "experiment/workload_state.h"

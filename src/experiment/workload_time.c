@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The timing of one kind of rays in a workload. */
+/* Timing: all candidates of a workload against each other on the rays of one kind. */
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -55,7 +55,7 @@ static RtStatus timing_run_init(TimingRun *run, const RtWorkloadState *workload,
     }
     for (uint32_t c = 0; c < workload->count; c++) {
         run->baseline_entry[c] = run->place[baseline];
-        if (!workload->accels[c] || rt_workload_ray_stride(workload, c) == 1) continue;
+        if (!workload->accels[c] || rt_workload_setup(workload, c)->ray_stride == 1) continue;
         run->baseline_entry[c] = run->count;
         for (uint32_t i = 0; i < baselines; i++) {
             enter(run, workload->accels[baseline + i], &workload->shares[c].set);
@@ -135,11 +135,10 @@ static bool is_enough(void *context, uint32_t rounds) {
 /* Says so where time or rounds were over before. */
 static void tell_width(const TimingRun *run) {
     const RtWorkloadState *workload = run->workload;
-    const RtObserver *observer = &workload->options->observer;
     char message[RT_MAX_LABEL * 3 + 160];
     uint32_t candidate;
     double width = widest_of(run, &candidate);
-    if (workload->options->until <= 0 || width <= workload->options->until || !observer->notice) return;
+    if (workload->options->until <= 0 || width <= workload->options->until) return;
     snprintf(message, sizeof message,
              "%s rays on %s: after %u rounds in %.0f s intervals are within %.2g %%, not %.2g %%; the widest "
              "is that of "
@@ -148,7 +147,7 @@ static void tell_width(const TimingRun *run) {
              workload->experiment->workloads[workload->index].label, run->rounds,
              rt_wall_seconds() - run->start, 100 * width, 100 * workload->options->until,
              rt_candidate_label(workload->experiment, candidate));
-    observer->notice(observer->context, message);
+    rt_workload_notice(workload, message);
 }
 
 /* ---- all of it ---- */

@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Counting: the rays of one kind are dealt out as shares; what would go beyond a limit is left out; every
+ * other candidate is counted, its answers are compared with the expected ones, and distributions are found.
+ */
+#include "accel/away.h"
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "experiment/workload_state.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { PROBE_RAYS = 256 }; /* at most */
+
+/* ---- shares ---- */
+
+/* Rays of a set of which every `stride`th is kept. */
+static uint64_t thinned_count(const RtRaySet *set, uint64_t stride) {
+    return (set->count + stride - 1) / stride;
+}
+
+/* Rays of the set, of all shares that are thinned, and of the probe. */
+static uint64_t count_with_shares(const RtWorkloadState *workload, const RtRaySet *set) {
+    uint64_t count = set->count + PROBE_RAYS;
+    for (uint32_t c = 0; c < workload->count; c++) {
+        if (workload->accels[c] && rt_workload_setup(workload, c)->ray_stride > 1)
+            count += thinned_count(set, rt_workload_setup(workload, c)->ray_stride);
+    }
+    return count;
+}
+
+/* Picks the rays and answers of a share, to lie from `first` on. */
+static void thin_share(const RtWorkloadState *workload, const RtRaySet *set, uint64_t stride, uint64_t first,
+                       RtWorkloadShare *share) {
+    share->set.rays = set->rays + first;
+    share->set.count = thinned_count(set, stride);
+    share->expected = workload->answers + first;
+    for (uint64_t i = 0; i < share->set.count; i++) {
+        share->set.rays[i] = set->rays[i * stride];
+        workload->answers[first + i] = workload->answers[i * stride];
+    }
+}
+
+/* Draws the probe from all of the set, in short runs, with its answers, to lie from `first` on. The first
+ * rays of a set are the uppermost of the image, and as a rule cheaper than others. */
+static RtStatus draw_probe(RtWorkloadState *workload, const RtRaySet *set, uint64_t first, RtError *error) {
+    RtRaySet drawn;
+    RT_TRY(rt_rayset_limit(set, PROBE_RAYS, PROBE_RAYS, &drawn, error));
+    memcpy(set->rays + first, drawn.rays, drawn.count * sizeof(RtRay));
+    workload->probe = (RtWorkloadShare){.set = *set, .expected = workload->answers + first};
+    workload->probe.set.rays = set->rays + first;
+    workload->probe.set.count = drawn.count;
+    rt_rayset_clear(&drawn);
+    return rt_measure_answers(workload->reference, &workload->probe.set, workload->options->threads,
+                              workload->answers + first, error);
+}
+
+/* Gives every candidate its share of the set, and the answers to those that learn. Thinned shares and the
+ * probe are copies behind the set, in the same array: the baseline, which may be one that learns and knows
+ * rays by their places, is timed on all of them. */
+static RtStatus deal_shares(RtWorkloadState *workload, RtRaySet *set, RtError *error) {
+    uint64_t all = count_with_shares(workload, set), used = set->count;
+    uint32_t capacity = (uint32_t)set->count;
+    RT_TRY(rt_reserve(&set->rays, &capacity, all, sizeof(RtRay), error));
+    workload->answers = rt_alloc(all, sizeof(RtHit));
+    if (!workload->answers) return rt_fail_memory(error, "answers", all * sizeof(RtHit));
+    RT_TRY(
+        rt_measure_answers(workload->reference, set, workload->options->threads, workload->answers, error));
+    for (uint32_t c = 0; c < workload->count; c++) {
+        uint64_t stride = rt_workload_setup(workload, c)->ray_stride;
+        if (!workload->accels[c]) continue;
+        workload->shares[c] = (RtWorkloadShare){.set = *set, .expected = workload->answers};
+        if (stride == 1) continue;
+        thin_share(workload, set, stride, used, &workload->shares[c]);
+        used += workload->shares[c].set.count;
+    }
+    if (workload->experiment->limit_seconds > 0) {
+        RT_TRY(draw_probe(workload, set, used, error));
+        used += workload->probe.set.count;
+    }
+    for (uint32_t c = 0; c < workload->count; c++) {
+        if (workload->accels[c])
+            RT_TRY(rt_accel_learn(workload->accels[c], set->rays, workload->answers, used, error));
+    }
+    return RT_OK;
+}
+
+/* ---- limits ---- */
+
+/* Whether a cell would take longer than it may to be counted and timed, by what a part of its rays takes. */
+static RtStatus check_seconds(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
+                              RtError *error) {
+    const RtExperiment *experiment = workload->experiment;
+    const RtRaySet *part = &workload->probe.set;
+    RtCount count;
+    double all = (double)workload->shares[c].set.count;
+    double passes = workload->count_only ? 1 : 2 + experiment->rounds;
+    double start = rt_wall_seconds();
+    if (cell->counted) return RT_OK;
+    RT_TRY(rt_measure_count(workload->accels[c], part, workload->probe.expected, 1, &count, error));
+    double seconds = (rt_wall_seconds() - start) / (double)part->count * all * passes;
+    if (seconds <= experiment->limit_seconds) return RT_OK;
+    snprintf(cell->limit, RT_MAX_LIMIT, "it would take about %.2g s, more than %g s", seconds,
+             experiment->limit_seconds);
+    workload->accels[c] = NULL;
+    return rt_workload_leave_out(workload, c, RT_EVENT_TOO_LONG, kind, cell->limit, error);
+}
+
+/* ---- answers ---- */
+
+/* The invariants of Havran & Sixta 1999: equal for every correct accelerator are the rays, the rays that hit,
+ * and, stronger, each answer. */
+static RtStatus check_differ(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind,
+                             const char *where, const RtCount *count, RtError *error) {
+    const RtWorkloadShare *share = &workload->shares[candidate];
+    if (count->differ == 0) return RT_OK;
+    return rt_fail(error, RT_MISMATCH,
+                   "%s on %s answers %llu of %llu %s rays unlike %s%s, the first of them ray %llu; "
+                   "`raytally verify` shows what is wrong",
+                   rt_candidate_label(workload->experiment, candidate),
+                   workload->experiment->workloads[workload->index].label, (unsigned long long)count->differ,
+                   (unsigned long long)share->set.count, rt_experiment_kind_name(workload->experiment, kind),
+                   rt_accel_default(), where, (unsigned long long)count->first);
+}
+
+static RtStatus check_answers(const RtWorkloadState *workload, uint32_t candidate, RtRayKind kind,
+                              const RtCount *count, RtError *error) {
+    const RtWorkloadShare *share = &workload->shares[candidate];
+    const char *scene = workload->experiment->workloads[workload->index].label;
+    const char *accel = rt_candidate_label(workload->experiment, candidate);
+    uint64_t hits = 0;
+    for (uint64_t i = 0; i < share->set.count; i++) hits += share->expected[i].object != RT_NO_OBJECT;
+    RT_TRY(check_differ(workload, candidate, kind, "", count, error));
+    if (count->tally.rays == share->set.count && count->tally.hits == hits) return RT_OK;
+    return rt_fail(error, RT_MISMATCH,
+                   "%s on %s counts %llu %s rays with %llu hits, where there are %llu with %llu", accel,
+                   scene, (unsigned long long)count->tally.rays,
+                   rt_experiment_kind_name(workload->experiment, kind), (unsigned long long)count->tally.hits,
+                   (unsigned long long)share->set.count, (unsigned long long)hits);
+}
+
+/* What is timed gives the answers that were counted: of a plugin that is asked, too. */
+static RtStatus answer_as_timed(const RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
+    const RtWorkloadShare *share = &workload->shares[c];
+    RtCount timed;
+    if (!workload->accels[c]->exact) return RT_OK;
+    RT_TRY(rt_measure_differ(workload->accels[c], &share->set, share->expected, workload->options->threads,
+                             &timed, error));
+    return check_differ(workload, c, kind, " where nothing is counted", &timed, error);
+}
+
+/* Counts are promised to be the same every time. Of a plugin that is asked. */
+static RtStatus count_again(const RtWorkloadState *workload, uint32_t c, const RtCount *first,
+                            RtError *error) {
+    const RtWorkloadShare *share = &workload->shares[c];
+    RtCount again;
+    RT_TRY(rt_measure_count(workload->accels[c], &share->set, share->expected, workload->options->threads,
+                            &again, error));
+    for (size_t i = 0; i < RT_TALLY_COUNTER_COUNT; i++) {
+        uint64_t was = rt_tally_get(&first->tally, i), is = rt_tally_get(&again.tally, i);
+        if (was == is) continue;
+        return rt_fail(error, RT_BROKEN, "%s: it counts %llu %s on some rays, and %llu when asked again",
+                       rt_candidate_label(workload->experiment, c), (unsigned long long)was, rt_tally_name(i),
+                       (unsigned long long)is);
+    }
+    return RT_OK;
+}
+
+static RtStatus count_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
+                           RtError *error) {
+    const RtWorkloadShare *share = &workload->shares[c];
+    const RtAccel *accel = workload->accels[c];
+    RtCount count;
+    if (cell->counted) return RT_OK;
+    RT_TRY(rt_measure_count(accel, &share->set, share->expected, workload->options->threads, &count, error));
+    if (accel->exact) RT_TRY(check_answers(workload, c, kind, &count, error));
+    if (rt_accel_is_away(accel)) {
+        RT_TRY(count_again(workload, c, &count, error));
+        RT_TRY(answer_as_timed(workload, c, kind, error));
+    }
+    cell->counted = true;
+    cell->tally = count.tally;
+    cell->differ = count.differ;
+    return rt_workload_tell(workload, RT_EVENT_COUNT, c, kind, error);
+}
+
+/* ---- distributions over rays, each asked by itself ---- */
+
+static uint64_t value_of(const RtTally *tally, RtRayQuantity quantity) {
+#define GET(name, meaning)                                                                                   \
+    case RT_QUANTITY_##name: return tally->name;
+    switch (quantity) {
+        RT_RAY_QUANTITIES(GET)
+    case RT_RAY_QUANTITY_COUNT: break;
+    }
+#undef GET
+    return 0;
+}
+
+static RtStatus distribute_rows(const RtRows *rows, RtDistribution *out, RtError *error) {
+    RtStatus status = RT_OK;
+    for (int q = 0; q < RT_RAY_QUANTITY_COUNT && status == RT_OK; q++) {
+        RtOccurrences values = {0};
+        for (uint64_t i = 0; i < rows->count && status == RT_OK; i++)
+            status = rt_occurrences_add(&values, value_of(&rows->tallies[i], (RtRayQuantity)q), error);
+        out[q] = rt_distribution_of(&values);
+        rt_occurrences_clear(&values);
+    }
+    return status;
+}
+
+static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell,
+                                RtError *error) {
+    RtRows rows;
+    if (cell->distributions) return RT_OK;
+    RtDistribution *made = rt_alloc(RT_RAY_QUANTITY_COUNT, sizeof(RtDistribution));
+    if (!made) return rt_fail_memory(error, "distributions", RT_RAY_QUANTITY_COUNT * sizeof(RtDistribution));
+    RtStatus status = rt_measure_rows(workload->accels[c], &workload->shares[c].set,
+                                      workload->options->threads, &rows, error);
+    if (status == RT_OK) status = distribute_rows(&rows, made, error);
+    if (status == RT_NO_MEMORY && rt_accel_is_away(workload->accels[c]))
+        status = RT_BROKEN; /* it counts beyond all reason: its own fault */
+    rt_rows_clear(&rows);
+    if (status != RT_OK) {
+        rt_free(made);
+        return status;
+    }
+    cell->distributions = made;
+    return rt_workload_tell(workload, RT_EVENT_DISTRIBUTION, c, kind, error);
+}
+
+/* ---- all of it ---- */
+
+typedef RtStatus Step(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtCell *cell, RtError *error);
+
+/* A plugin that is broken, or whose answers are wrong, is left out; no other candidate is concerned. */
+static RtStatus each_cell(RtWorkloadState *workload, RtRayKind kind, Step *step, RtError *error) {
+    for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
+        if (!workload->accels[c]) continue;
+        RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+        const bool away = rt_accel_is_away(workload->accels[c]);
+        RtStatus status = step(workload, c, kind, cell, error);
+        if (status == RT_BROKEN || (status == RT_MISMATCH && away))
+            status = rt_workload_break(workload, c, kind, error);
+        RT_TRY(status);
+    }
+    return RT_OK;
+}
+
+RtStatus rt_workload_count(RtWorkloadState *workload, RtRayKind kind, RtError *error) {
+    RT_TRY(deal_shares(workload, &workload->sets[kind], error));
+    if (workload->experiment->limit_seconds > 0) RT_TRY(each_cell(workload, kind, check_seconds, error));
+    RT_TRY(each_cell(workload, kind, count_cell, error));
+    return workload->distributions ? each_cell(workload, kind, distribute_cell, error) : RT_OK;
+}
