@@ -4,6 +4,8 @@
 #include "core/base/memory.h"
 #include "shipped_scripts.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -85,7 +87,7 @@ typedef struct Links {
     RtError *error;
 } Links;
 
-/* gnuplot writes through links. */
+/* gnuplot would write through a link. */
 static void refuse_link(void *context, const char *path) {
     Links *links = context;
     struct stat info;
@@ -99,7 +101,14 @@ static void refuse_link(void *context, const char *path) {
 static RtStatus refuse_links(const char *plots, RtError *error) {
     Links links = {RT_OK, error};
     refuse_link(&links, plots);
-    if (links.status == RT_OK) rt_directory_each(plots, "", refuse_link, &links);
+    RT_TRY(links.status);
+    DIR *folder = opendir(plots);
+    if (!folder && errno != ENOENT)
+        return rt_fail(error, RT_IO,
+                       "%s cannot be read (%s), so it may hold symbolic links: allow that with --trust",
+                       plots, strerror(errno));
+    if (folder) closedir(folder);
+    rt_directory_each(plots, "", refuse_link, &links);
     return links.status;
 }
 

@@ -137,7 +137,7 @@ static void assert_folder_has(const char *names) {
 }
 
 static const char *in_folder(const char *name) {
-    static char paths[4][96];
+    static char paths[4][360];
     static int next;
     char *path = paths[next++ % 4];
     snprintf(path, sizeof paths[0], "%s/%s", folder, name);
@@ -219,6 +219,13 @@ RT_TEST_IN_FOLDER(what_a_killed_process_was_writing_is_removed_and_nothing_else)
 }
 
 /* ---- parameters ---- */
+
+RT_TEST(a_file_may_have_the_longest_name_that_there_is) {
+    char name[256] = "";
+    memset(name, 'n', 255);
+    assert_ok(rt_file_write(in_folder(name), "x", 1, error));
+    assert_int_equal(remove(in_folder(name)), 0);
+}
 
 RT_TEST(parameters_left_out_have_their_defaults) {
     RtValue v[4];

@@ -24,11 +24,15 @@ static RtStatus fail_io(RtError *error, const char *doing, const char *path) {
 /* Nobody can put a link, or another file, where the temporary file is going to be: its name holds 64 random
  * bits, and what has that name already is not opened. */
 static RtStatus create_temporary(RtOutput *output, RtError *error) {
+    /* A file system has names of up to 255 bytes: a long one is cut to leave room for the end. */
+    const size_t most = 255 - strlen(".0123456789abcdef" TEMPORARY_END);
+    const char *slash = strrchr(output->path, '/'), *name = slash ? slash + 1 : output->path;
+    const int kept = (int)(name - output->path) + (int)strnlen(name, most);
     uint64_t number = 0;
     int descriptor = -1;
     if (getrandom(&number, sizeof number, 0) == sizeof number) {
-        snprintf(output->temporary, sizeof output->temporary, "%s.%016" PRIx64 TEMPORARY_END, output->path,
-                 number);
+        snprintf(output->temporary, sizeof output->temporary, "%.*s.%016" PRIx64 TEMPORARY_END, kept,
+                 output->path, number);
         descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     }
     if (descriptor >= 0) output->file = fdopen(descriptor, "wb");

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Which part of a workload is measured, and who is told of what is left out. */
+#include "experiment/workload_state.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- what is asked for ---- */
+
+static bool is_called(const char *name, const char *label, const char *base) {
+    return !name || strcmp(name, label) == 0 || strcmp(name, base) == 0;
+}
+
+bool rt_only_scene(const RtOnly *only, const RtExperiment *experiment, uint32_t workload) {
+    const RtWorkload *setup = &experiment->workloads[workload];
+    if (only->shards && workload % only->shards != only->shard - 1) return false;
+    return is_called(only->scene, setup->label, setup->base);
+}
+
+bool rt_only_accel(const RtOnly *only, const RtExperiment *experiment, uint32_t candidate) {
+    const RtCandidate *setup = &experiment->candidates[candidate];
+    if (candidate == experiment->candidate_count || rt_candidate_is_baseline(experiment, candidate))
+        return true;
+    return is_called(only->accel, setup->label, setup->base);
+}
+
+bool rt_only_kind(const RtOnly *only, RtRayKind kind) {
+    return !only->kind || strcmp(only->kind, rt_ray_kind_name(kind)) == 0;
+}
+
+bool rt_workload_runs(const RtWorkloadState *workload, uint32_t c) {
+    return rt_candidate_runs(workload->experiment, c, workload->index) &&
+           rt_only_accel(&workload->options->only, workload->experiment, c) &&
+           !*rt_build_at(workload->results, workload->index, c)->limit;
+}
+
+/* ---- who is told ---- */
+
+RtStatus rt_workload_tell(const RtWorkloadState *workload, RtEventKind what, uint32_t candidate,
+                          RtRayKind kind, RtError *error) {
+    const RtObserver *observer = &workload->options->observer;
+    const RtEvent event = {what, workload->index, candidate, kind};
+    return observer->event ? observer->event(observer->context, workload->results, &event, error) : RT_OK;
+}
+
+void rt_workload_notice(const RtWorkloadState *workload, const char *message) {
+    const RtObserver *observer = &workload->options->observer;
+    if (observer->notice) observer->notice(observer->context, message);
+}
+
+RtStatus rt_workload_leave_out(RtWorkloadState *workload, uint32_t c, RtEventKind what, RtRayKind kind,
+                               char *limit, RtError *error) {
+    const RtExperiment *experiment = workload->experiment;
+    bool broken = what == RT_EVENT_BROKEN || what == RT_EVENT_BROKEN_BUILD;
+    if (c == experiment->candidate_count || rt_candidate_is_baseline(experiment, c)) {
+        RtStatus status = broken ? RT_BROKEN : RT_BAD_INPUT;
+        rt_fail(error, status, "the baseline '%s' %s on '%s': %s", rt_candidate_label(experiment, c),
+                broken ? "is broken" : "goes beyond a limit", experiment->workloads[workload->index].label,
+                limit);
+        *limit = '\0';
+        return status;
+    }
+    if (broken) {
+        char message[RT_MAX_LIMIT + 2 * RT_MAX_SPEC_CHARS];
+        snprintf(message, sizeof message, "%s on %s: %s", rt_candidate_label(experiment, c),
+                 experiment->workloads[workload->index].label, limit);
+        rt_workload_notice(workload, message);
+    }
+    return rt_workload_tell(workload, what, c, kind, error);
+}
+
+RtStatus rt_workload_break(RtWorkloadState *workload, uint32_t c, RtRayKind kind, RtError *error) {
+    RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
+    snprintf(cell->limit, RT_MAX_LIMIT, "%.511s", error->message);
+    cell->broken = true;
+    workload->accels[c] = NULL;
+    return rt_workload_leave_out(workload, c, RT_EVENT_BROKEN, kind, cell->limit, error);
+}
