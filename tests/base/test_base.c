@@ -220,7 +220,7 @@ RT_TEST_IN_FOLDER(what_a_killed_process_was_writing_is_removed_and_nothing_else)
 
 /* ---- parameters ---- */
 
-RT_TEST(a_file_may_have_the_longest_name_that_there_is) {
+RT_TEST_IN_FOLDER(a_file_may_have_the_longest_name_that_there_is) {
     char name[256] = "";
     memset(name, 'n', 255);
     assert_ok(rt_file_write(in_folder(name), "x", 1, error));
