@@ -85,19 +85,19 @@ typedef struct RtScratch {
 } RtScratch;
 
 /* The four kernels. rays[0..count) are valid (rt_ray_is_valid); scratch[0] is the layer's, and those of the
- * layers below follow; answers go to hits[0..count) and blockers[0..count); tallies[RT_RAY_KIND_COUNT] are
- * added to, by the kind of each ray. A blocker is any object that lies on the ray, RT_NO_OBJECT where none
+ * layers below follow; answers go to hits[0..count) and occluders[0..count); tallies[RT_RAY_KIND_COUNT] are
+ * added to, by the kind of each ray. A occluder is any object that lies on the ray, RT_NO_OBJECT where none
  * does, or RT_UNNAMED_OBJECT from those who know only that there is one. */
 #define RT_UNNAMED_OBJECT (UINT32_MAX - 1)
 
 typedef void RtNearestKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                              RtHit *hits);
 typedef void RtOccludedKernel(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                              uint32_t *blockers);
+                              uint32_t *occluders);
 typedef void RtNearestCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
                               RtHit *hits, RtTally *tallies);
 typedef void RtOccludedCounted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                               size_t count, uint32_t *blockers, RtTally *tallies);
+                               size_t count, uint32_t *occluders, RtTally *tallies);
 
 /* A box of a structure. */
 typedef struct RtBoxView {
@@ -163,7 +163,7 @@ struct RtAccelOps {
     const RtParam *params;
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
-    bool away;      /* it is a plugin's, and built in a process of its own (accel/away.h) */
+    bool away;      /* it is a plugin's, and built in a process of its own (accel/remote.h) */
     /* Optional: a spec of it alone, "light:cells=100", that is verified beside the default where that, over
      * few objects or rays, chooses to leave its own ways unused. */
     const char *trial;
@@ -277,7 +277,7 @@ typedef struct RtSpec {
 RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
 
 /* Whether one of its layers is a plugin's, so that all of it is built away. */
-bool rt_spec_is_away(const RtSpec *spec);
+bool rt_spec_is_remote(const RtSpec *spec);
 
 /* The same of a text, which may be no spec. */
 bool rt_spec_text_is_away(const char *text);
@@ -301,7 +301,7 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
 /* ---- using an accelerator ---- */
 
 /* Builds what the spec says over `scene`, on `threads` threads (0 = all processors), which does not change
- * the structure; away (accel/away.h) where a layer asks for that, and always here by rt_accel_build_here.
+ * the structure; away (accel/remote.h) where a layer asks for that, and always here by rt_accel_build_here.
  * rt_accel_open_on takes the spec as text, rt_accel_open too, and all processors. Destroy with
  * rt_accel_destroy. */
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,

@@ -91,7 +91,7 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
  * which tests all objects against the active rays of a batch. */
 #define RT_DEFINE_BATCH_KERNELS(test_all)                                                                    \
     RT_KERNEL void trace_batches(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any,  \
+                                 size_t count, RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, \
                                  bool counted) {                                                             \
         const RtGeometry *geometry = &accel->scene->geometry;                                                \
         RtBatch *batch = scratch->own;                                                                       \
@@ -104,7 +104,7 @@ RT_KERNEL void rt_batch_begin(RtBatch *batch, const RtGeometry *g, const RtScrat
                 RT_COUNT(counted ? a->tally : NULL, rays, 1);                                                \
                 RT_COUNT(counted ? a->tally : NULL, hits, a->best.object != RT_NO_OBJECT);                   \
                 if (any)                                                                                     \
-                    blockers[first + i] = a->best.object;                                                    \
+                    occluders[first + i] = a->best.object;                                                   \
                 else                                                                                         \
                     hits[first + i] = a->best;                                                               \
             }                                                                                                \

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Building what a spec says, here or away. */
 #include "accel/accel.h"
-#include "accel/away.h"
+#include "accel/remote.h"
 
 RtStatus rt_accel_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
                         RtError *error) {
-    return rt_spec_is_away(spec) ? rt_away_build(spec, scene, threads, out, error)
-                                 : rt_accel_build_here(spec, scene, threads, out, error);
+    return rt_spec_is_remote(spec) ? rt_remote_build(spec, scene, threads, out, error)
+                                   : rt_accel_build_here(spec, scene, threads, out, error);
 }
 
 RtStatus rt_accel_open_on(const char *spec, const RtScene *scene, int threads, RtAccel **out,

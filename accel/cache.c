@@ -3,12 +3,12 @@
  *
  * Neighbouring points are mostly in the shadow of the same object. So the object that blocked the last ray to
  * a light is tested first; where it blocks this one too, the ray is answered by one object test. Otherwise it
- * is passed on, and the blocker that comes back, if any, is remembered.
+ * is passed on, and the occluder that comes back, if any, is remembered.
  *
  * Layout: the scratch memory of a query holds one id per light, the last occluder or RT_NO_OBJECT. There is
  * nothing else: no structure, no cost to build.
  *
- * Exact, because what is remembered is tested by its own hit function, and any blocker will do.
+ * Exact, because what is remembered is tested by its own hit function, and any occluder will do.
  *
  * Which object is remembered depends on the rays before. So that counts do not depend on the number of
  * threads, rt_query_begin forgets all; between two of its calls the rays come in one order, in streams of any
@@ -56,9 +56,9 @@ RT_KERNEL uint32_t shade(const Cache *self, const RtScratch *scratch, const RtRa
             return rt_answer_occluded(*last, tally);
         }
     }
-    uint32_t blocker = rt_pass_on_occluded(&self->base, scratch, ray, tallies);
-    if (blocker < scene->geometry.object_count) *last = blocker;
-    return blocker;
+    uint32_t occluder = rt_pass_on_occluded(&self->base, scratch, ray, tallies);
+    if (occluder < scene->geometry.object_count) *last = occluder;
+    return occluder;
 }
 
 RT_DEFINE_SHADOW_KERNELS(Cache, shade)

@@ -44,8 +44,8 @@ void rt_isa_nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay 
 }
 
 void rt_isa_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *blockers) {
-    kernels_of(accel)->occluded(accel, scratch, rays, count, blockers);
+                     uint32_t *occluders) {
+    kernels_of(accel)->occluded(accel, scratch, rays, count, occluders);
 }
 
 void rt_isa_nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
@@ -54,8 +54,8 @@ void rt_isa_nearest_counted(const RtAccel *accel, const RtScratch *scratch, cons
 }
 
 void rt_isa_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *blockers, RtTally *tallies) {
-    kernels_of(accel)->occluded_counted(accel, scratch, rays, count, blockers, tallies);
+                             uint32_t *occluders, RtTally *tallies) {
+    kernels_of(accel)->occluded_counted(accel, scratch, rays, count, occluders, tallies);
 }
 
 size_t rt_isa_scratch_bytes(const RtAccel *accel) {

@@ -77,25 +77,25 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
         }                                                                                                    \
     }                                                                                                        \
     static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
-                               size_t count, uint32_t *blockers) {                                           \
+                               size_t count, uint32_t *occluders) {                                          \
         for (size_t i = 0; i < count; i++) {                                                                 \
-            blockers[i] = search_one(accel, scratch, &rays[i], true, NULL).object;                           \
+            occluders[i] = search_one(accel, scratch, &rays[i], true, NULL).object;                          \
         }                                                                                                    \
     }                                                                                                        \
     static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, uint32_t *blockers, RtTally *tallies) {                       \
+                                 size_t count, uint32_t *occluders, RtTally *tallies) {                      \
         for (size_t i = 0; i < count; i++) {                                                                 \
             RtTally *tally = &tallies[rays[i].kind];                                                         \
-            blockers[i] = search_one(accel, scratch, &rays[i], true, tally).object;                          \
+            occluders[i] = search_one(accel, scratch, &rays[i], true, tally).object;                         \
         }                                                                                                    \
     }
 
 /* The four kernels from one that traces a whole stream,
  *
  *     void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
- *                RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any, bool counted);
+ *                RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted);
  *
- * answers of which go to `hits`, or where any hit will do to `blockers`. `any` and `counted` are constants
+ * answers of which go to `hits`, or where any hit will do to `occluders`. `any` and `counted` are constants
  * where it is inlined; pointers that are of no use are NULL. */
 #define RT_DEFINE_STREAM_KERNELS(trace)                                                                      \
     static void nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,             \
@@ -107,12 +107,12 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
         trace(accel, scratch, rays, count, hits, NULL, tallies, false, true);                                \
     }                                                                                                        \
     static void occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,            \
-                               size_t count, uint32_t *blockers) {                                           \
-        trace(accel, scratch, rays, count, NULL, blockers, NULL, true, false);                               \
+                               size_t count, uint32_t *occluders) {                                          \
+        trace(accel, scratch, rays, count, NULL, occluders, NULL, true, false);                              \
     }                                                                                                        \
     static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,          \
-                                 size_t count, uint32_t *blockers, RtTally *tallies) {                       \
-        trace(accel, scratch, rays, count, NULL, blockers, tallies, true, true);                             \
+                                 size_t count, uint32_t *occluders, RtTally *tallies) {                      \
+        trace(accel, scratch, rays, count, NULL, occluders, tallies, true, true);                            \
     }
 
 /* Where there are kernels for each instruction set (accel/isa.h): the table of those that one of the
@@ -150,17 +150,17 @@ RT_KERNEL float rt_limit(const RtPreparedRay *ray, const RtHit *best) {
 RT_DEFINE_HAND_DOWN(nearest, RtHit)
 RT_DEFINE_HAND_DOWN(occluded, uint32_t)
 
-/* A ray that this overlay has answered. Gives `hit` back, or `blocker`. */
+/* A ray that this overlay has answered. Gives `hit` back, or `occluder`. */
 RT_KERNEL RtHit rt_answer_nearest(RtHit hit, RtTally *tally) {
     RT_COUNT(tally, rays, 1);
     RT_COUNT(tally, hits, hit.object != RT_NO_OBJECT);
     return hit;
 }
 
-RT_KERNEL uint32_t rt_answer_occluded(uint32_t blocker, RtTally *tally) {
+RT_KERNEL uint32_t rt_answer_occluded(uint32_t occluder, RtTally *tally) {
     RT_COUNT(tally, rays, 1);
-    RT_COUNT(tally, hits, blocker != RT_NO_OBJECT);
-    return blocker;
+    RT_COUNT(tally, hits, occluder != RT_NO_OBJECT);
+    return occluder;
 }
 
 /* The two kernels of a question that an overlay answers for rays of `own_kind`, one by one; runs of others
@@ -197,7 +197,7 @@ RT_KERNEL uint32_t rt_answer_occluded(uint32_t blocker, RtTally *tally) {
  *
  *     uint32_t shade(const Type *self, const RtScratch *scratch, const RtRay *ray, RtTally *tallies);
  *
- * which gives the blocker of one shadow ray, through rt_answer_occluded or rt_pass_on_occluded; and those of
+ * which gives the occluder of one shadow ray, through rt_answer_occluded or rt_pass_on_occluded; and those of
  * an overlay for primary rays, from
  *
  *     RtHit see(const Type *self, const RtScratch *scratch, const RtRay *ray, RtTally *tallies);

@@ -166,14 +166,14 @@ void rt_nearest(RtQuery *query, const RtRay *rays, size_t count, RtHit *hits, Rt
 void rt_occluded(RtQuery *query, const RtRay *rays, size_t count, bool *blocked, RtTally *tallies) {
     enum { STREAM = 1024 };
     const RtAccelOps *ops = query->accel->ops;
-    uint32_t blockers[STREAM];
+    uint32_t occluders[STREAM];
     for (size_t first = 0; first < count; first += STREAM) {
         size_t n = count - first < STREAM ? count - first : STREAM;
         if (tallies) {
-            ops->occluded_counted(query->accel, query->scratch, rays + first, n, blockers, tallies);
+            ops->occluded_counted(query->accel, query->scratch, rays + first, n, occluders, tallies);
         } else {
-            ops->occluded(query->accel, query->scratch, rays + first, n, blockers);
+            ops->occluded(query->accel, query->scratch, rays + first, n, occluders);
         }
-        for (size_t i = 0; i < n; i++) blocked[first + i] = blockers[i] != RT_NO_OBJECT;
+        for (size_t i = 0; i < n; i++) blocked[first + i] = occluders[i] != RT_NO_OBJECT;
     }
 }

@@ -3,7 +3,7 @@
  *
  * A library is tried in a process of its own (rt_plugin_load). What its tables say joins the registry; the
  * library itself is never loaded here. What is built of it lives in a process of its own again
- * (accel/away.h), in which accel/plugin/host.c makes an RtAccel of each table. */
+ * (accel/remote.h), in which accel/plugin/host.c makes an RtAccel of each table. */
 #ifndef RT_ACCEL_PLUGIN_H
 #define RT_ACCEL_PLUGIN_H
 

@@ -66,7 +66,7 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
     }
 }
 
-bool rt_spec_is_away(const RtSpec *spec) {
+bool rt_spec_is_remote(const RtSpec *spec) {
     for (uint32_t i = 0; i < spec->layer_count; i++) {
         if (spec->layers[i].ops->away) return true;
     }
@@ -75,7 +75,7 @@ bool rt_spec_is_away(const RtSpec *spec) {
 
 bool rt_spec_text_is_away(const char *text) {
     RtSpec spec;
-    return rt_spec_parse(text, &spec, NULL) == RT_OK && rt_spec_is_away(&spec);
+    return rt_spec_parse(text, &spec, NULL) == RT_OK && rt_spec_is_remote(&spec);
 }
 
 RtStatus rt_spec_available(const RtSpec *spec, RtError *error) {

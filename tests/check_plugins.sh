@@ -103,7 +103,7 @@ fault lazy 'expected .* got ' "$differs.* where nothing is counted"
 fault uncounted 'its object_tests for [a-z]+ rays add up to 0, and were [0-9]+'
 fault twice 'its object_tests for [a-z]+ rays add up to [0-9]+, and were [0-9]+'
 fault backwards 'counted [0-9]+ steps for [a-z]+ rays, more than there can be'
-fault blocker 'an object is in the way that the ray does not hit, 0 '
+fault occluder 'an object is in the way that the ray does not hit, 0 '
 fault silent 'wrote no answer'
 fault beyond 'wrote or read past its answers'
 fault before 'wrote in front of its answers'

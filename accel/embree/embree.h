@@ -128,7 +128,7 @@ void rt_embree_trace_init(RtEmbreeTrace *trace, bool coherent, bool counted, RtE
 void rt_embree_native_nearest(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
                               RtHit *hits);
 void rt_embree_native_occlusion(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays,
-                                size_t count, uint32_t *blockers);
+                                size_t count, uint32_t *occluders);
 
 /* The kernels of the table of operations, and their scratch memory. */
 RtNearestKernel rt_embree_nearest_timed;

@@ -124,7 +124,7 @@ RT_KERNEL void prefetch_rays(const RtRay *rays, size_t count) {
 }
 
 RT_KERNEL void answer_chunk(const RtEmbree *self, RtEmbreeBatch *batch, RtEmbreeContext *context,
-                            const RtRay *rays, size_t count, RtHit *hits, uint32_t *blockers, unsigned lanes,
+                            const RtRay *rays, size_t count, RtHit *hits, uint32_t *occluders, unsigned lanes,
                             bool stream, unsigned denormals) {
     const bool any = !hits;
     bool ordinary = put_chunk(batch, lanes, rays, count, denormals);
@@ -135,7 +135,7 @@ RT_KERNEL void answer_chunk(const RtEmbree *self, RtEmbreeBatch *batch, RtEmbree
     if (any) {
         for (size_t i = 0; i < count; i++) {
             bool blocked = rt_embree_at(batch, lanes, i, RT_EMBREE_TFAR)->f < 0;
-            blockers[i] = blocked ? RT_UNNAMED_OBJECT : RT_NO_OBJECT;
+            occluders[i] = blocked ? RT_UNNAMED_OBJECT : RT_NO_OBJECT;
         }
     } else if (ordinary) {
         for (size_t i = 0; i < count; i++) hits[i] = take_hit(self, batch, lanes, i, 1);
@@ -147,7 +147,7 @@ RT_KERNEL void answer_chunk(const RtEmbree *self, RtEmbreeBatch *batch, RtEmbree
 }
 
 RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
-                      RtHit *hits, uint32_t *blockers, unsigned lanes, bool stream) {
+                      RtHit *hits, uint32_t *occluders, unsigned lanes, bool stream) {
     const size_t chunk = stream ? RT_EMBREE_STREAM_RAYS : RT_EMBREE_PACKET_RAYS;
     RtEmbreeBatch *batch = scratch->own;
     RtEmbreeTrace trace;
@@ -159,18 +159,18 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
         size_t left = count - begin, n = left < chunk ? left : chunk;
         prefetch_rays(rays + begin + n, left - n < chunk ? left - n : chunk);
         answer_chunk(self, batch, &trace.context, rays + begin, n, hits ? hits + begin : NULL,
-                     hits ? NULL : blockers + begin, lanes, stream, denormals);
+                     hits ? NULL : occluders + begin, lanes, stream, denormals);
     }
     rt_embree_denormals_restore(denormals);
 }
 
 RT_KERNEL void answer_query(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, uint32_t *blockers) {
+                            RtHit *hits, uint32_t *occluders) {
     switch (self->query) {
-    case RT_EMBREE_ONE: answer(self, scratch, rays, count, hits, blockers, 1, false); break;
-    case RT_EMBREE_EIGHT: answer(self, scratch, rays, count, hits, blockers, 8, false); break;
-    case RT_EMBREE_SIXTEEN: answer(self, scratch, rays, count, hits, blockers, 16, false); break;
-    case RT_EMBREE_STREAM: answer(self, scratch, rays, count, hits, blockers, 1, true); break;
+    case RT_EMBREE_ONE: answer(self, scratch, rays, count, hits, occluders, 1, false); break;
+    case RT_EMBREE_EIGHT: answer(self, scratch, rays, count, hits, occluders, 8, false); break;
+    case RT_EMBREE_SIXTEEN: answer(self, scratch, rays, count, hits, occluders, 16, false); break;
+    case RT_EMBREE_STREAM: answer(self, scratch, rays, count, hits, occluders, 1, true); break;
     }
 }
 
@@ -180,6 +180,6 @@ void rt_embree_native_nearest(const RtEmbree *self, const RtScratch *scratch, co
 }
 
 void rt_embree_native_occlusion(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays,
-                                size_t count, uint32_t *blockers) {
-    answer_query(self, scratch, rays, count, NULL, blockers);
+                                size_t count, uint32_t *occluders) {
+    answer_query(self, scratch, rays, count, NULL, occluders);
 }

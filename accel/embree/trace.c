@@ -55,9 +55,9 @@ RT_KERNEL void put_search(const RtEmbree *self, RtEmbreeBatch *batch, unsigned l
 
 /* ---- user mode ---- */
 
-/* Nearest hits to `hits`, or where that is NULL blockers to `blockers`. */
+/* Nearest hits to `hits`, or where that is NULL occluders to `occluders`. */
 RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
-                      RtHit *hits, uint32_t *blockers, RtTally *tallies, unsigned lanes, bool stream) {
+                      RtHit *hits, uint32_t *occluders, RtTally *tallies, unsigned lanes, bool stream) {
     const size_t chunk = stream ? RT_EMBREE_STREAM_RAYS : RT_EMBREE_PACKET_RAYS;
     const bool any = !hits;
     RtEmbreeBatch *batch = scratch->own;
@@ -74,7 +74,7 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
         rt_embree_trace(self, batch, &trace.context, coherent, n, any, lanes, stream);
         for (size_t i = 0; i < n; i++) {
             if (any) {
-                blockers[begin + i] = batch->searches[i].best.object;
+                occluders[begin + i] = batch->searches[i].best.object;
             } else {
                 hits[begin + i] = batch->searches[i].best;
             }
@@ -83,39 +83,39 @@ RT_KERNEL void answer(const RtEmbree *self, const RtScratch *scratch, const RtRa
 }
 
 RT_KERNEL void answer_query(const RtEmbree *self, const RtScratch *scratch, const RtRay *rays, size_t count,
-                            RtHit *hits, uint32_t *blockers, RtTally *tallies) {
+                            RtHit *hits, uint32_t *occluders, RtTally *tallies) {
     switch (self->query) {
-    case RT_EMBREE_ONE: answer(self, scratch, rays, count, hits, blockers, tallies, 1, false); break;
-    case RT_EMBREE_EIGHT: answer(self, scratch, rays, count, hits, blockers, tallies, 8, false); break;
-    case RT_EMBREE_SIXTEEN: answer(self, scratch, rays, count, hits, blockers, tallies, 16, false); break;
-    case RT_EMBREE_STREAM: answer(self, scratch, rays, count, hits, blockers, tallies, 1, true); break;
+    case RT_EMBREE_ONE: answer(self, scratch, rays, count, hits, occluders, tallies, 1, false); break;
+    case RT_EMBREE_EIGHT: answer(self, scratch, rays, count, hits, occluders, tallies, 8, false); break;
+    case RT_EMBREE_SIXTEEN: answer(self, scratch, rays, count, hits, occluders, tallies, 16, false); break;
+    case RT_EMBREE_STREAM: answer(self, scratch, rays, count, hits, occluders, tallies, 1, true); break;
     }
 }
 
 /* ---- the kernels ---- */
 
-/* Rays and hits, from the answers: either hits or blockers. */
-RT_KERNEL void count_answers(const RtRay *rays, size_t count, const RtHit *hits, const uint32_t *blockers,
+/* Rays and hits, from the answers: either hits or occluders. */
+RT_KERNEL void count_answers(const RtRay *rays, size_t count, const RtHit *hits, const uint32_t *occluders,
                              RtTally *tallies) {
     for (size_t i = 0; i < count; i++) {
-        uint32_t object = hits ? hits[i].object : blockers[i];
+        uint32_t object = hits ? hits[i].object : occluders[i];
         RT_COUNT(&tallies[rays[i].kind], rays, 1);
         RT_COUNT(&tallies[rays[i].kind], hits, object != RT_NO_OBJECT);
     }
 }
 
 RT_KERNEL void answer_all(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                          RtHit *hits, uint32_t *blockers, RtTally *tallies) {
+                          RtHit *hits, uint32_t *occluders, RtTally *tallies) {
     const RtEmbree *self = (const RtEmbree *)accel;
-    assert(!hits != !blockers);
+    assert(!hits != !occluders);
     if (self->user) {
-        answer_query(self, scratch, rays, count, hits, blockers, tallies);
+        answer_query(self, scratch, rays, count, hits, occluders, tallies);
     } else if (hits) {
         rt_embree_native_nearest(self, scratch, rays, count, hits);
     } else {
-        rt_embree_native_occlusion(self, scratch, rays, count, blockers);
+        rt_embree_native_occlusion(self, scratch, rays, count, occluders);
     }
-    if (tallies) count_answers(rays, count, hits, blockers, tallies);
+    if (tallies) count_answers(rays, count, hits, occluders, tallies);
 }
 
 void rt_embree_nearest_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
@@ -129,11 +129,11 @@ void rt_embree_nearest_counted(const RtAccel *accel, const RtScratch *scratch, c
 }
 
 void rt_embree_occluded_timed(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                              uint32_t *blockers) {
-    answer_all(accel, scratch, rays, count, NULL, blockers, NULL);
+                              uint32_t *occluders) {
+    answer_all(accel, scratch, rays, count, NULL, occluders, NULL);
 }
 
 void rt_embree_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
-                                size_t count, uint32_t *blockers, RtTally *tallies) {
-    answer_all(accel, scratch, rays, count, NULL, blockers, tallies);
+                                size_t count, uint32_t *occluders, RtTally *tallies) {
+    answer_all(accel, scratch, rays, count, NULL, occluders, tallies);
 }

@@ -146,8 +146,8 @@ void rt_plugin_ops_init(RtPluginOps *ops, const raytally_accel_ops *table) {
                                         [RAYTALLY_FLAG] = RT_PARAM_FLAG};
     for (uint32_t i = 0; i < table->param_count; i++) {
         const raytally_param *p = &table->params[i];
-        ops->params[i] = (RtParam){p->name,    types[p->type], p->standard, p->lo,    p->hi,
-                                   p->choices, p->test_values, p->meaning,  p->source};
+        ops->params[i] = (RtParam){p->name,    types[p->type], p->default_text, p->lo,    p->hi,
+                                   p->choices, p->test_values, p->meaning,      p->source};
     }
     ops->ops = (RtAccelOps){.name = table->name,
                             .summary = table->summary,

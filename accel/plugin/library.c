@@ -142,7 +142,7 @@ static RtStatus check_value(const char *path, const char *name, const RtParam *p
 /* Its default and what it names for testing are within its range. */
 static RtStatus check_values(const char *path, const char *name, const RtParam *param, RtError *error) {
     char text[RT_MAX_SPEC_CHARS];
-    RT_TRY(check_value(path, name, param, "`standard`", param->standard, error));
+    RT_TRY(check_value(path, name, param, "`default_text`", param->default_text, error));
     for (size_t n = 0; rt_param_try(param, n, text, sizeof text); n++)
         RT_TRY(check_value(path, name, param, "`test_values`", text, error));
     return RT_OK;
@@ -166,7 +166,7 @@ static const char *wrong_member(const raytally_param *p) {
     bool number = p->type == RAYTALLY_INT || p->type == RAYTALLY_FLOAT;
     return !is_key(p->name)          ? "a `name` of letters, digits and '_'"
            : p->type > RAYTALLY_FLAG ? "a `type`"
-           : !p->standard            ? "`standard`, its default"
+           : !p->default_text        ? "`default_text`, its default"
            : !p->meaning             ? "its `meaning`"
            : !p->source              ? "its `source`"
            : p->type == RAYTALLY_CHOICE && (!p->choices || count_choices(p->choices) == 0)

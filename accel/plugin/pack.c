@@ -43,7 +43,7 @@ static void put_param(Cursor *c, const raytally_param *p) {
     put(c, &p->lo, sizeof p->lo);
     put(c, &p->hi, sizeof p->hi);
     put_text(c, p->name);
-    put_text(c, p->standard);
+    put_text(c, p->default_text);
     put_text(c, p->choices);
     put_text(c, p->test_values);
     put_text(c, p->meaning);
@@ -87,7 +87,7 @@ static void take_param(Cursor *c, raytally_param *p) {
     take(c, &p->lo, sizeof p->lo);
     take(c, &p->hi, sizeof p->hi);
     p->name = take_text(c);
-    p->standard = take_text(c);
+    p->default_text = take_text(c);
     p->choices = take_text(c);
     p->test_values = take_text(c);
     p->meaning = take_text(c);

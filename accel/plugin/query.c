@@ -247,29 +247,29 @@ static void look_at_hits(PluginQuery *query, const RtRay *rays, size_t count, Rt
     }
 }
 
-/* Whether each blocker is on its ray, by its exact hit: where there is time for it, in streams that are
+/* Whether each occluder is on its ray, by its exact hit: where there is time for it, in streams that are
  * counted. */
-static void test_blockers(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *blockers) {
+static void test_occluders(PluginQuery *query, const RtRay *rays, size_t count, const uint32_t *occluders) {
     for (size_t i = 0; i < count; i++) {
         RtPreparedRay ray;
         float t;
-        if (blockers[i] == RT_NO_OBJECT) continue;
+        if (occluders[i] == RT_NO_OBJECT) continue;
         rt_hit_ray(&ray, query->geometry, &rays[i], query->room);
-        if (rt_object_hit(query->geometry, blockers[i], &ray, &t, NULL)) continue;
+        if (rt_object_hit(query->geometry, occluders[i], &ray, &t, NULL)) continue;
         say_of_ray(query->accel, &rays[i],
-                   "it answered that an object is in the way that the ray does not hit", blockers[i]);
+                   "it answered that an object is in the way that the ray does not hit", occluders[i]);
     }
 }
 
-static void look_at_blockers(PluginQuery *query, const RtRay *rays, size_t count, uint32_t *blockers) {
+static void look_at_occluders(PluginQuery *query, const RtRay *rays, size_t count, uint32_t *occluders) {
     RtPluginAccel *accel = query->accel;
     const uint32_t objects = accel->base.scene->geometry.object_count;
     for (size_t i = 0; i < count; i++) {
-        if (blockers[i] < objects || blockers[i] == RT_NO_OBJECT) continue;
-        say_of_object(accel, &rays[i], blockers[i]);
-        blockers[i] = RT_NO_OBJECT;
+        if (occluders[i] < objects || occluders[i] == RT_NO_OBJECT) continue;
+        say_of_object(accel, &rays[i], occluders[i]);
+        occluders[i] = RT_NO_OBJECT;
     }
-    if (query->counting) test_blockers(query, rays, count, blockers);
+    if (query->counting) test_occluders(query, rays, count, occluders);
 }
 
 /* The counters of a plugin's own, and those that object_hits counts. Rays and hits are counted here, and an
@@ -372,7 +372,7 @@ static void count_from_here(PluginQuery *query) {
         }                                                                                                    \
     }
 DEFINE_KERNELS(nearest, RtHit, raytally_hit, look_at_hits, answers[i].object != RT_NO_OBJECT)
-DEFINE_KERNELS(occluded, uint32_t, uint32_t, look_at_blockers, answers[i] != RT_NO_OBJECT)
+DEFINE_KERNELS(occluded, uint32_t, uint32_t, look_at_occluders, answers[i] != RT_NO_OBJECT)
 
 static RtStatus check(const RtAccel *accel, RtError *error) {
     const RtPluginAccel *self = rt_plugin_of(accel);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The process in which an accelerator lives that raytally does not trust: see wire.h. */
-#include "accel/away.h"
 #include "accel/plugin.h"
 #include "accel/plugin/futex.h"
 #include "accel/plugin/now.h"
 #include "accel/plugin/process.h"
 #include "accel/plugin/wire.h"
+#include "accel/remote.h"
 
 #include "core/base/memory.h"
 
@@ -27,7 +27,7 @@ static struct Served {
     RtAccel *accel;
 } served;
 
-void rt_away_beat(void) {
+void rt_remote_beat(void) {
     if (served.wire) atomic_fetch_add_explicit(&served.wire->beat, 1, memory_order_relaxed);
 }
 
@@ -192,21 +192,21 @@ void rt_wire_boxes(RtQuery *query, void *message) {
     if (left <= WIRE_BOXES) forget_shown();
 }
 
-/* Blockers go where the first of the hits lie, and then each to its own. */
+/* Occluders go where the first of the hits lie, and then each to its own. */
 static void trace_any(RtQuery *query, WireRays *asked) {
     const RtAccelOps *ops = query->accel->ops;
-    uint32_t *blockers = (uint32_t *)asked->hits;
+    uint32_t *occluders = (uint32_t *)asked->hits;
     if (asked->counted) {
         ops->occluded_counted(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
-                              blockers, asked->tallies);
+                              occluders, asked->tallies);
     } else {
         ops->occluded(query->accel, query->scratch, rt_wire_rays(asked, asked->count), asked->count,
-                      blockers);
+                      occluders);
     }
     for (uint32_t i = asked->count; i-- > 0;) {
-        uint32_t blocker;
-        memcpy(&blocker, (const char *)asked->hits + i * sizeof blocker, sizeof blocker);
-        asked->hits[i].object = blocker;
+        uint32_t occluder;
+        memcpy(&occluder, (const char *)asked->hits + i * sizeof occluder, sizeof occluder);
+        asked->hits[i].object = occluder;
     }
 }
 
@@ -249,7 +249,7 @@ static void serve_lane(Lane *lane, unsigned done, RtQuery *query) {
             rt_query_clear(query);
         }
         more = work && served.accel;
-        rt_away_beat();
+        rt_remote_beat();
         rt_futex_set(&lane->answered, ++done);
     }
     rt_free(message);

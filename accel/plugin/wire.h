@@ -13,7 +13,7 @@
 #ifndef RT_ACCEL_PLUGIN_WIRE_H
 #define RT_ACCEL_PLUGIN_WIRE_H
 
-#include "accel/away.h"
+#include "accel/remote.h"
 
 #include <stdatomic.h>
 
@@ -21,7 +21,7 @@
 enum { LANES = 1 + 1024, MESSAGE_BYTES = RT_AWAY_BYTES };
 
 /* What is asked: of the accelerator, by the lane's query, which lane 0 has not. */
-typedef RtAwayWork WireWork;
+typedef RtRemoteWork WireWork;
 
 typedef struct Lane {
     atomic_uint asked, answered; /* the number of the last request, and of the last answer */

@@ -80,10 +80,10 @@ RT_KERNEL size_t trace_together(const Question *q, size_t count, bool any) {
 }
 
 RT_KERNEL void trace(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     RtHit *hits, uint32_t *blockers, RtTally *tallies, bool any, bool counted) {
+                     RtHit *hits, uint32_t *occluders, RtTally *tallies, bool any, bool counted) {
     const RtWide *self = (const RtWide *)accel;
     const RtWideTree *tree = any ? self->occluded : self->nearest;
-    const Question q = {self, tree, &accel->scene->geometry, scratch, rays, hits, blockers, tallies};
+    const Question q = {self, tree, &accel->scene->geometry, scratch, rays, hits, occluders, tallies};
     size_t done = 0;
     if (self->in_flight == 1) {
         trace_singly(&q, 0, count, any, counted);

@@ -139,7 +139,7 @@ RT_KERNEL void land_packet(Packet *p, const Question *q, bool any) {
     test_pairs(p, q->tree, 1, any);
     for (uint32_t i = 0; i < p->count; i++) {
         if (any)
-            q->blockers[p->index[i]] = p->best[i].object;
+            q->occluders[p->index[i]] = p->best[i].object;
         else
             q->hits[p->index[i]] = p->best[i];
     }

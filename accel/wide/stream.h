@@ -22,9 +22,9 @@ typedef struct Question {
     const RtGeometry *geometry;
     const RtScratch *scratch;
     const RtRay *rays;
-    RtHit *hits;        /* of `nearest` */
-    uint32_t *blockers; /* of `occluded` */
-    RtTally *tallies;   /* of the counted kernels */
+    RtHit *hits;         /* of `nearest` */
+    uint32_t *occluders; /* of `occluded` */
+    RtTally *tallies;    /* of the counted kernels */
 } Question;
 
 /* The ray is answered by what the flight has found. */
@@ -33,7 +33,7 @@ RT_KERNEL void land(const Question *q, const Flight *f, bool any, bool counted) 
     RT_COUNT(tally, rays, 1);
     RT_COUNT(tally, hits, f->best.object != RT_NO_OBJECT);
     if (any)
-        q->blockers[f->index] = f->best.object;
+        q->occluders[f->index] = f->best.object;
     else
         q->hits[f->index] = f->best;
 }

@@ -47,15 +47,15 @@ enum raytally_param_type {
 /** One parameter, as in NAME:KEY=VALUE. From this table come parsing, range checks, help, and the values that
  * `verify --spread` tries. */
 typedef struct raytally_param {
-    const char *name;        /**< The key: up to 63 letters, digits and '_'. */
-    uint32_t type;           /**< One of ::raytally_param_type. */
-    const char *standard;    /**< The default, as text. */
-    double lo;               /**< The least number, inclusive; 0 for choices and flags. */
-    double hi;               /**< The largest number, inclusive; 0 for choices and flags. */
-    const char *choices;     /**< "sah|median" for a choice; else NULL. */
-    const char *test_values; /**< Values worth testing, "1|4|20"; NULL for choices and flags: all of them. */
-    const char *meaning;     /**< One line, with the unit where there is one. */
-    const char *source;      /**< Where the default comes from: a paper, a measurement. */
+    const char *name;         /**< The key: up to 63 letters, digits and '_'. */
+    uint32_t type;            /**< One of ::raytally_param_type. */
+    const char *default_text; /**< The default, as text. */
+    double lo;                /**< The least number, inclusive; 0 for choices and flags. */
+    double hi;                /**< The largest number, inclusive; 0 for choices and flags. */
+    const char *choices;      /**< "sah|median" for a choice; else NULL. */
+    const char *test_values;  /**< Values worth testing, "1|4|20"; NULL for choices and flags: all of them. */
+    const char *meaning;      /**< One line, with the unit where there is one. */
+    const char *source;       /**< Where the default comes from: a paper, a measurement. */
 } raytally_param;
 
 /** The value of a parameter, by its type. */
@@ -175,7 +175,7 @@ typedef void raytally_nearest_kernel(const void *self, void *memory, raytally_qu
 /** Whether anything lies on each ray; as ::raytally_nearest_kernel, but for the answers: any object on the
  * ray, or RAYTALLY_NO_OBJECT. */
 typedef void raytally_occluded_kernel(const void *self, void *memory, raytally_query *query,
-                                      const raytally_ray *rays, size_t count, uint32_t *blockers,
+                                      const raytally_ray *rays, size_t count, uint32_t *occluders,
                                       raytally_counters *counters);
 
 /** One accelerator. Members that are optional may be NULL.
@@ -262,15 +262,15 @@ typedef const raytally_accel_ops *raytally_plugin_function(uint32_t index);
         }                                                                                                    \
     }                                                                                                        \
     static void name##_occluded(const void *self, void *memory, raytally_query *query,                       \
-                                const raytally_ray *rays, size_t count, uint32_t *blockers,                  \
+                                const raytally_ray *rays, size_t count, uint32_t *occluders,                 \
                                 raytally_counters *counters) {                                               \
         const Type *own = (const Type *)self;                                                                \
         if (counters) {                                                                                      \
             for (size_t i = 0; i < count; i++)                                                               \
-                blockers[i] = name##_one(own, memory, query, &rays[i], 1, &counters[rays[i].kind]).object;   \
+                occluders[i] = name##_one(own, memory, query, &rays[i], 1, &counters[rays[i].kind]).object;  \
         } else {                                                                                             \
             for (size_t i = 0; i < count; i++)                                                               \
-                blockers[i] = name##_one(own, memory, query, &rays[i], 1, NULL).object;                      \
+                occluders[i] = name##_one(own, memory, query, &rays[i], 1, NULL).object;                     \
         }                                                                                                    \
     }
 

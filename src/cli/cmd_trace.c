@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally trace: one ray's path through an accelerator, step by step. */
-#include "accel/away.h"
 #include "accel/columns.h"
+#include "accel/remote.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "core/base/words.h"
@@ -246,7 +246,7 @@ static RtStatus run(const Options *o, RtError *error) {
     RtStatus status = rt_scene_sample(&scene, o->width, o->height, 1, false, error);
     if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
-    if (status == RT_OK && rt_accel_is_away(accel))
+    if (status == RT_OK && rt_accel_is_remote(accel))
         status =
             rt_fail(error, RT_BAD_INPUT,
                     "%s: the path through an accelerator of a plugin is not seen from here, for it lives "

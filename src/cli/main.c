@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally: the list of commands. */
-#include "accel/away.h"
+#include "accel/remote.h"
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/plugins.h"
@@ -103,8 +103,8 @@ static int run_command(int argc, char **argv) {
     if (takes_plugins(command->argp) && rt_cli_load_plugins(argc, argv, &error) != RT_OK)
         return rt_cli_fail(&error);
     int code = command->run(argc, argv);
-    if (rt_away_farewell()) {
-        fprintf(stderr, "raytally: %s\n", rt_away_farewell());
+    if (rt_remote_exit_message()) {
+        fprintf(stderr, "raytally: %s\n", rt_remote_exit_message());
         if (code == RT_EXIT_OK) code = RT_EXIT_CHECK_FAILED;
     }
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;

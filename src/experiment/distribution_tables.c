@@ -110,7 +110,7 @@ static void print_unknown_leaves(const RtResults *results, uint32_t t, FILE *out
         const RtCandidate *candidate = &results->experiment->candidates[c];
         const RtBuildResult *build = rt_build_at(results, t, c);
         char text[RT_MAX_LABEL + 128];
-        if (!build->known || build->leaves || !rt_spec_is_away(&candidate->parsed)) continue;
+        if (!build->known || build->leaves || !rt_spec_is_remote(&candidate->parsed)) continue;
         snprintf(text, sizeof text,
                  "Leaf size and depth of %s are not known: plugins say how many leaves there are, not what "
                  "is in each.",

@@ -108,7 +108,7 @@ RtStatus rt_candidate_parse(RtCandidate *candidate, RtError *error) {
 static uint32_t default_baseline(RtExperiment *experiment) {
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         RtCandidate *candidate = &experiment->candidates[c];
-        if (rt_candidate_parse(candidate, NULL) != RT_OK || !rt_spec_is_away(&candidate->parsed)) return c;
+        if (rt_candidate_parse(candidate, NULL) != RT_OK || !rt_spec_is_remote(&candidate->parsed)) return c;
     }
     return 0;
 }

@@ -69,7 +69,7 @@ static RtStatus build_within(RtWorkloadState *workload, uint32_t c, const RtSpec
     rt_memory_limit(0);
     bool too_large = status == RT_NO_MEMORY && experiment->limit_megabytes;
     /* A plugin that refuses the scene, or takes all memory for it, does so for itself alone. */
-    bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_away(spec));
+    bool broken = status == RT_BROKEN || (status != RT_OK && !too_large && rt_spec_is_remote(spec));
     if (status != RT_OK && !broken && !too_large) return status;
     if (broken) {
         snprintf(result->limit, RT_MAX_LIMIT, "%.511s", error->message);

@@ -2,7 +2,7 @@
 /* Counting: the rays of one kind are dealt out as shares; what would go beyond a limit is left out; every
  * other candidate is counted, its answers are compared with the expected ones, and distributions are found.
  */
-#include "accel/away.h"
+#include "accel/remote.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "experiment/workload_state.h"
@@ -174,7 +174,7 @@ static RtStatus count_cell(RtWorkloadState *workload, uint32_t c, RtRayKind kind
     if (cell->counted) return RT_OK;
     RT_TRY(rt_measure_count(accel, &share->set, share->expected, workload->options->threads, &count, error));
     if (accel->exact) RT_TRY(check_answers(workload, c, kind, &count, error));
-    if (rt_accel_is_away(accel)) {
+    if (rt_accel_is_remote(accel)) {
         RT_TRY(count_again(workload, c, &count, error));
         RT_TRY(answer_as_timed(workload, c, kind, error));
     }
@@ -218,7 +218,7 @@ static RtStatus distribute_cell(RtWorkloadState *workload, uint32_t c, RtRayKind
     RtStatus status = rt_measure_rows(workload->accels[c], &workload->shares[c].set,
                                       workload->options->threads, &rows, error);
     if (status == RT_OK) status = distribute_rows(&rows, made, error);
-    if (status == RT_NO_MEMORY && rt_accel_is_away(workload->accels[c]))
+    if (status == RT_NO_MEMORY && rt_accel_is_remote(workload->accels[c]))
         status = RT_BROKEN; /* it counts beyond all reason: its own fault */
     rt_rows_clear(&rows);
     if (status != RT_OK) {
@@ -238,7 +238,7 @@ static RtStatus each_cell(RtWorkloadState *workload, RtRayKind kind, Step *step,
     for (uint32_t c = 0; c < workload->experiment->candidate_count; c++) {
         if (!workload->accels[c]) continue;
         RtCell *cell = rt_cell_at(workload->results, workload->index, c, kind);
-        const bool away = rt_accel_is_away(workload->accels[c]);
+        const bool away = rt_accel_is_remote(workload->accels[c]);
         RtStatus status = step(workload, c, kind, cell, error);
         if (status == RT_BROKEN || (status == RT_MISMATCH && away))
             status = rt_workload_break(workload, c, kind, error);

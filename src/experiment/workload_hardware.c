@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What the machine did for the rays of a workload: rounds of their own, after those that are timed, so that
  * no time is changed by counting. As those they are interleaved. */
-#include "accel/away.h"
+#include "accel/remote.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "experiment/workload_state.h"
@@ -57,7 +57,7 @@ static RtHardwareCounts median_of(const RtHardwareCounts counts[ROUNDS]) {
 
 /* What an accelerator of a plugin does is done in another process, which these counters do not see. */
 static bool is_seen(const RtWorkloadState *workload, uint32_t c) {
-    return workload->accels[c] && !rt_accel_is_away(workload->accels[c]);
+    return workload->accels[c] && !rt_accel_is_remote(workload->accels[c]);
 }
 
 static RtStatus count_all(RtWorkloadState *workload, RtRayKind kind, TimingRun *run, RtError *error) {

@@ -102,61 +102,60 @@ raytally_status raytally_estimate_ratio(const double *over, const double *under,
 /* ---- timing ---- */
 
 /* What is timed against each other, and where the times go. */
-typedef struct Contest {
+typedef struct TimingRun {
     raytally_accelerator *const *accelerators; /* [count] */
     size_t count;
     const RtRaySet *set;
     RtHit *hits;     /* [set->count] */
     RtTimed *timed;  /* [count] */
     double *seconds; /* [count][2][rounds] */
-} Contest;
+} TimingRun;
 
-static RtStatus check_timing(const raytally_timing *how, const Contest *contest, RtError *error) {
+static RtStatus check_timing(const raytally_timing *how, const TimingRun *run, RtError *error) {
     RT_TRY(check_rounds(how->rounds, "rounds", error));
     RT_TRY(rt_threads_check(how->threads, error));
     if (!(how->least >= 0 && how->least <= 60))
         return rt_fail(error, RT_BAD_INPUT, "a round of at least %g s: expected 0..60", how->least);
-    if (contest->count == 0) return rt_fail(error, RT_BAD_INPUT, "no accelerator to time");
-    if (contest->set->count == 0) return rt_fail(error, RT_BAD_INPUT, "no rays to time accelerators on");
+    if (run->count == 0) return rt_fail(error, RT_BAD_INPUT, "no accelerator to time");
+    if (run->set->count == 0) return rt_fail(error, RT_BAD_INPUT, "no rays to time accelerators on");
     return RT_OK;
 }
 
-static RtStatus contest_init(Contest *contest, const raytally_timing *how, RtError *error) {
+static RtStatus timing_run_init(TimingRun *run, const raytally_timing *how, RtError *error) {
     size_t doubles = 2 * (size_t)how->rounds;
-    contest->hits = rt_alloc((size_t)contest->set->count, sizeof(RtHit));
-    contest->timed = rt_alloc(contest->count, sizeof(RtTimed));
-    contest->seconds = rt_alloc(contest->count, doubles * sizeof(double));
-    if (!contest->hits || !contest->timed || !contest->seconds)
-        return rt_fail_memory(error, "times", contest->count * doubles * sizeof(double));
-    for (size_t i = 0; i < contest->count; i++) {
-        double *place = contest->seconds + doubles * i;
-        contest->timed[i] =
-            (RtTimed){contest->accelerators[i]->accel, contest->set, place, place + how->rounds, NULL};
+    run->hits = rt_alloc((size_t)run->set->count, sizeof(RtHit));
+    run->timed = rt_alloc(run->count, sizeof(RtTimed));
+    run->seconds = rt_alloc(run->count, doubles * sizeof(double));
+    if (!run->hits || !run->timed || !run->seconds)
+        return rt_fail_memory(error, "times", run->count * doubles * sizeof(double));
+    for (size_t i = 0; i < run->count; i++) {
+        double *place = run->seconds + doubles * i;
+        run->timed[i] = (RtTimed){run->accelerators[i]->accel, run->set, place, place + how->rounds, NULL};
     }
     return RT_OK;
 }
 
-static RtStatus teach(const Contest *contest, int threads, RtError *error) {
-    const RtRaySet *set = contest->set;
-    for (size_t i = 0; i < contest->count; i++) {
-        RtAccel *accel = contest->accelerators[i]->accel;
+static RtStatus teach(const TimingRun *run, int threads, RtError *error) {
+    const RtRaySet *set = run->set;
+    for (size_t i = 0; i < run->count; i++) {
+        RtAccel *accel = run->accelerators[i]->accel;
         if (!learns(accel)) continue;
-        RT_TRY(answer(accel, set, threads, contest->hits, error));
-        RT_TRY(rt_accel_learn(accel, set->rays, contest->hits, (size_t)set->count, error));
+        RT_TRY(answer(accel, set, threads, run->hits, error));
+        RT_TRY(rt_accel_learn(accel, set->rays, run->hits, (size_t)set->count, error));
     }
     return RT_OK;
 }
 
-static RtStatus run(Contest *contest, const raytally_timing *how, raytally_time *times, RtError *error) {
+static RtStatus take_times(TimingRun *run, const raytally_timing *how, raytally_time *times, RtError *error) {
     const RtTiming timing = {
         .rounds = {.rounds = how->rounds, .most = how->rounds, .least = how->least, .seed = how->seed},
         .threads = how->threads};
     uint32_t done = 0;
-    RT_TRY(teach(contest, how->threads, error));
-    RT_TRY(rt_measure_time(contest->timed, contest->count, &timing, &done, error));
-    const double *first = contest->timed[0].seconds;
-    for (size_t i = 0; i < contest->count; i++) {
-        const double *own = contest->timed[i].seconds;
+    RT_TRY(teach(run, how->threads, error));
+    RT_TRY(rt_measure_time(run->timed, run->count, &timing, &done, error));
+    const double *first = run->timed[0].seconds;
+    for (size_t i = 0; i < run->count; i++) {
+        const double *own = run->timed[i].seconds;
         times[i] = (raytally_time){.seconds = public_estimate(rt_estimate(own, done), done),
                                    .ratio = public_estimate(rt_estimate_ratio(first, own, done), done)};
     }
@@ -166,20 +165,20 @@ static RtStatus run(Contest *contest, const raytally_timing *how, raytally_time 
 raytally_status raytally_time_all(raytally_accelerator *const *accelerators, size_t count,
                                   const raytally_rays *rays, const raytally_timing *how, raytally_time *times,
                                   raytally_error *error) {
-    Contest contest = {.accelerators = accelerators, .count = count, .set = &rays->set};
+    TimingRun run = {.accelerators = accelerators, .count = count, .set = &rays->set};
     raytally_timing own = RAYTALLY_TIMING;
     locale_t before = rt_locale_enter();
     RtStatus status = rt_options_take(&own, sizeof own, how, "raytally_timing", rt_error_of(error));
-    if (status == RT_OK) status = check_timing(&own, &contest, rt_error_of(error));
-    if (status == RT_OK) status = contest_init(&contest, &own, rt_error_of(error));
+    if (status == RT_OK) status = check_timing(&own, &run, rt_error_of(error));
+    if (status == RT_OK) status = timing_run_init(&run, &own, rt_error_of(error));
     if (status == RT_OK) {
-        status = run(&contest, &own, times, rt_error_of(error));
+        status = take_times(&run, &own, times, rt_error_of(error));
         for (size_t i = 0; i < count; i++)
             status = forget(accelerators[i]->accel, status, rt_error_of(error));
     }
-    rt_free(contest.hits);
-    rt_free(contest.timed);
-    rt_free(contest.seconds);
+    rt_free(run.hits);
+    rt_free(run.timed);
+    rt_free(run.seconds);
     rt_locale_leave(before);
     return (raytally_status)status;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "measure/measure.h"
 
-#include "accel/away.h"
+#include "accel/remote.h"
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "measure/measure_here.h"
+#include "measure/measure_local.h"
 #include "measure/rounds.h"
 
 #include <string.h>
@@ -56,7 +56,7 @@ static RtStatus pass_init(Pass *pass, const RtAccel *accel, const RtRaySet *set,
 
 static void trace(Pass *pass, int thread, size_t first, size_t count) {
     const RtRay *rays = pass->set->rays + first;
-    rt_away_beat();
+    rt_remote_beat();
     rt_query_begin(&pass->queries[thread]);
     RtTally *tallies = pass->tallies ? pass->tallies[thread] : NULL;
     if (pass->blocked) {

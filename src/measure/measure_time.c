@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Timing accelerators against each other, wherever they live. */
-#include "accel/away.h"
+#include "accel/remote.h"
 #include "core/base/memory.h"
-#include "measure/measure_away.h"
-#include "measure/measure_here.h"
+#include "measure/measure_local.h"
+#include "measure/measure_remote.h"
 
 RtStatus rt_runner_open(RtRunner *runner, const RtTimed *timed, int threads, RtError *error) {
-    bool away = rt_accel_is_away(timed->accel);
+    bool away = rt_accel_is_remote(timed->accel);
     return away ? rt_runner_open_away(runner, timed, threads, error)
                 : rt_runner_open_here(runner, timed, threads, error);
 }

@@ -103,7 +103,7 @@ static RtStatus teach(RtAccel *accel, RtQuery *query, const RtRay *ray, RtError 
     return rt_accel_learn(accel, ray, &hit, 1, error);
 }
 
-/* By the kernels of the top layer itself, which name the blocker. */
+/* By the kernels of the top layer itself, which name the occluder. */
 static void ask(const RtQuery *query, const RtRay *ray, RtPath *path, RtTally *tallies) {
     const RtAccel *accel = query->accel;
     if (path->any)

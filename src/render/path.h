@@ -27,7 +27,7 @@ typedef struct RtPathRow {
 typedef struct RtPath {
     RtRay ray;
     bool any;      /* it was asked whether anything is hit, as of shadow rays, not what is nearest */
-    RtHit hit;     /* of `any`: t is that of the blocker, if one was named */
+    RtHit hit;     /* of `any`: t is that of the occluder, if one was named */
     RtTally tally; /* sums over the rows; `rays` and `hits` are the kernel's own */
     RtPathRow *rows;
     uint32_t count, capacity;

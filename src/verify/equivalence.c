@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "verify/equivalence.h"
 
-#include "accel/away.h"
+#include "accel/remote.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
@@ -130,9 +130,9 @@ static void ask(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *aske
         for (size_t first = 0; first < plan->count; first += stream) {
             size_t n = plan->count - first < stream ? plan->count - first : stream;
             rt_nearest(query, rays + first, n, asked->hits[w] + first, tallies);
-            rt_away_beat();
+            rt_remote_beat();
             rt_occluded(query, rays + first, n, asked->blocked[w] + first, tallies);
-            rt_away_beat();
+            rt_remote_beat();
         }
     }
 }
@@ -141,7 +141,7 @@ static void ask(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *aske
 static void recount(RtQuery *query, const Plan *plan, const RtRay *rays, Asked *asked) {
     for (int i = 0; i < 2; i++) {
         rt_query_begin(query);
-        rt_away_beat();
+        rt_remote_beat();
         memset(asked->recounts[i], 0, sizeof asked->recounts[i]);
         rt_nearest(query, rays, plan->count, asked->hits[plan->way_count - 1], asked->recounts[i]);
     }
@@ -252,11 +252,11 @@ static RtStatus check_chunk(void *context, size_t chunk, int thread, RtError *er
     choose_ways(desk, chunk);
     desk->plan.count = chunk_count(job, chunk);
     const RtRay *rays = job->reference->rays + chunk * CHUNK;
-    if (rt_accel_is_away(job->accel)) {
+    if (rt_accel_is_remote(job->accel)) {
         desk->plan.recount = chunk == 0;
         asked->plan = desk->plan;
         memcpy(asked->rays, rays, desk->plan.count * sizeof(RtRay));
-        rt_away_do(&desk->query, ask_away, asked, sizeof *asked);
+        rt_remote_do(&desk->query, ask_away, asked, sizeof *asked);
         if (desk->plan.recount) compare_recounts(job, asked);
     } else {
         ask(&desk->query, &desk->plan, rays, asked);

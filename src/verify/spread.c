@@ -31,7 +31,7 @@ static bool try_value(const RtAccelOps *ops, size_t n, const RtParam **param, ch
     for (size_t i = 0; i < ops->param_count; i++) {
         *param = &ops->params[i];
         for (size_t k = 0; rt_param_try(*param, k, value, room); k++) {
-            if (strcmp(value, (*param)->standard) != 0 && n-- == 0) return true;
+            if (strcmp(value, (*param)->default_text) != 0 && n-- == 0) return true;
         }
     }
     return false;

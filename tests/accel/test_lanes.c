@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* accel/brute and accel/extents: what they do in lanes is what they do one record after the other, by every
- * instruction set that this machine has: the hits and the blockers bit for bit, and the counts, whatever the
+ * instruction set that this machine has: the hits and the occluders bit for bit, and the counts, whatever the
  * length of a stream. Of `brute` that is what rt_test_all does. */
 #include "equivalence_testing.h"
 
@@ -16,20 +16,20 @@ typedef struct Asked {
     const RtRay *rays;
     size_t count;
     RtHit *hits;
-    uint32_t *blockers;
+    uint32_t *occluders;
     RtTally nearest[RT_RAY_KIND_COUNT], occluded[RT_RAY_KIND_COUNT];
 } Asked;
 
 static void clear(Asked *asked) {
     rt_free(asked->hits);
-    rt_free(asked->blockers);
+    rt_free(asked->occluders);
 }
 
 static Asked begin_asking(const RtRay *rays, size_t count) {
     Asked asked = {.rays = rays, .count = count};
     asked.hits = rt_alloc(count, sizeof(RtHit));
-    asked.blockers = rt_alloc(count, sizeof(uint32_t));
-    assert_true(asked.hits && asked.blockers);
+    asked.occluders = rt_alloc(count, sizeof(uint32_t));
+    assert_true(asked.hits && asked.occluders);
     return asked;
 }
 
@@ -45,7 +45,7 @@ static void by_definition(const RtGeometry *geometry, Asked *asked) {
         asked->hits[i] = RT_MISS;
         rt_test_all(geometry, &prepared, false, &asked->hits[i], &asked->nearest[ray->kind]);
         rt_test_all(geometry, &prepared, true, &first, &asked->occluded[ray->kind]);
-        asked->blockers[i] = first.object;
+        asked->occluders[i] = first.object;
         asked->nearest[ray->kind].rays++;
         asked->nearest[ray->kind].hits += asked->hits[i].object != RT_NO_OBJECT;
         asked->occluded[ray->kind].rays++;
@@ -57,11 +57,11 @@ static void by_definition(const RtGeometry *geometry, Asked *asked) {
 static void assert_same(const Asked *right, const Asked *got, bool counted, const char *who, size_t stream) {
     for (size_t i = 0; i < right->count; i++) {
         if (memcmp(&right->hits[i], &got->hits[i], sizeof(RtHit)) != 0 ||
-            right->blockers[i] != got->blockers[i]) {
+            right->occluders[i] != got->occluders[i]) {
             fail_msg("%s, streams of %zu, counted %d: ray %zu is answered %u at %a, blocked by %u, not "
                      "%u at %a, %u",
-                     who, stream, counted, i, got->hits[i].object, (double)got->hits[i].t, got->blockers[i],
-                     right->hits[i].object, (double)right->hits[i].t, right->blockers[i]);
+                     who, stream, counted, i, got->hits[i].object, (double)got->hits[i].t, got->occluders[i],
+                     right->hits[i].object, (double)right->hits[i].t, right->occluders[i]);
         }
     }
     if (!counted) return;
@@ -77,11 +77,11 @@ static void by_kernels(const RtKernels *kernels, const RtQuery *query, Asked *as
         if (counted) {
             kernels->nearest_counted(query->accel, query->scratch, rays, n, asked->hits + first,
                                      asked->nearest);
-            kernels->occluded_counted(query->accel, query->scratch, rays, n, asked->blockers + first,
+            kernels->occluded_counted(query->accel, query->scratch, rays, n, asked->occluders + first,
                                       asked->occluded);
         } else {
             kernels->nearest(query->accel, query->scratch, rays, n, asked->hits + first);
-            kernels->occluded(query->accel, query->scratch, rays, n, asked->blockers + first);
+            kernels->occluded(query->accel, query->scratch, rays, n, asked->occluders + first);
         }
     }
 }

@@ -5,8 +5,8 @@
 #include "accel_testing.h"
 #include "equivalence_testing.h"
 
-#include "accel/away.h"
 #include "accel/plugin.h"
+#include "accel/remote.h"
 #include "core/base/clock.h"
 #include "measure/measure.h"
 
@@ -57,7 +57,7 @@ RT_TEST(answers_are_those_of_brute_in_streams_of_every_length_on_several_threads
         RtAccel *accel;
         RtEquivalence result;
         assert_ok(rt_accel_open(specs[i], &bench.scene, &accel, error));
-        assert_true(rt_accel_is_away(accel));
+        assert_true(rt_accel_is_remote(accel));
         assert_ok(rt_accel_validate(accel, error));
         assert_ok(rt_equivalence_check(&bench.reference, accel, 3, &result, error));
         assert_int_equal(result.verdicts[RT_EQUAL], result.rays);

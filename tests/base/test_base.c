@@ -63,25 +63,25 @@ RT_TEST(tallies_add_counter_by_counter) {
 static const RtParam table[] = {
     {.name = "width",
      .type = RT_PARAM_INT,
-     .standard = "4",
+     .default_text = "4",
      .lo = 1,
      .hi = 64,
      .meaning = "m",
      .source = "s"},
     {.name = "rule",
      .type = RT_PARAM_CHOICE,
-     .standard = "woo",
+     .default_text = "woo",
      .choices = "cubic|woo",
      .meaning = "m",
      .source = "s"},
     {.name = "resolution",
      .type = RT_PARAM_RESOLUTION,
-     .standard = "auto",
+     .default_text = "auto",
      .lo = 1,
      .hi = 512,
      .meaning = "m",
      .source = "s"},
-    {.name = "mailbox", .type = RT_PARAM_FLAG, .standard = "on", .meaning = "m", .source = "s"},
+    {.name = "mailbox", .type = RT_PARAM_FLAG, .default_text = "on", .meaning = "m", .source = "s"},
 };
 
 /* Opening a pipe would wait for its other end; renaming a file to a device would replace the device. */
@@ -258,9 +258,13 @@ RT_TEST(wrong_parameters_are_refused_with_what_would_be_right) {
 /* Of any range that a table may state, 64-bit integers beyond it included. */
 RT_TEST(whole_numbers_are_exact_or_refused) {
     static const RtParam any = {
-        .name = "n", .type = RT_PARAM_INT, .standard = "0", .lo = -1e30, .hi = 1e30, .meaning = "m"};
-    static const RtParam wide = {
-        .name = "n", .type = RT_PARAM_RESOLUTION, .standard = "auto", .lo = 1, .hi = 1e30, .meaning = "m"};
+        .name = "n", .type = RT_PARAM_INT, .default_text = "0", .lo = -1e30, .hi = 1e30, .meaning = "m"};
+    static const RtParam wide = {.name = "n",
+                                 .type = RT_PARAM_RESOLUTION,
+                                 .default_text = "auto",
+                                 .lo = 1,
+                                 .hi = 1e30,
+                                 .meaning = "m"};
     const struct {
         const char *text;
         int64_t is;

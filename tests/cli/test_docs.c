@@ -45,7 +45,7 @@ static void write_section(Text *text, const RtAccelOps *ops) {
         char range[RT_MAX_SPEC_CHARS];
         rt_param_range(p, range, sizeof range);
         append(text, "| `%s` ", p->name);
-        append_cell(text, p->standard);
+        append_cell(text, p->default_text);
         append_cell(text, range);
         append_cell(text, p->meaning);
         append_cell(text, p->source);
@@ -123,7 +123,7 @@ static bool states_default(const char *page, const RtParam *param) {
         strsep(&line, "|");
         char *names = strsep(&line, "|"), *defaults = strsep(&line, "|");
         for (char *name, *value; !found && (name = next_item(&names)) && (value = next_item(&defaults));)
-            found = strcmp(name, param->name) == 0 && strcmp(value, param->standard) == 0;
+            found = strcmp(name, param->name) == 0 && strcmp(value, param->default_text) == 0;
     }
     free(copy);
     return found;
@@ -140,7 +140,7 @@ RT_TEST(every_accelerator_has_a_page_with_the_defaults_of_its_parameters) {
         char *page = read_document(path);
         for (size_t p = 0; p < ops->param_count; p++) {
             if (!states_default(page, &ops->params[p]))
-                fail_msg("%s has no row `%s` | %s", path, ops->params[p].name, ops->params[p].standard);
+                fail_msg("%s has no row `%s` | %s", path, ops->params[p].name, ops->params[p].default_text);
         }
         free(page);
     }

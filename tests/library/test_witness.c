@@ -44,9 +44,9 @@ static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay 
 }
 
 static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *blockers) {
+                     uint32_t *occluders) {
     look_at(rays, count);
-    brute->occluded(accel, scratch, rays, count, blockers);
+    brute->occluded(accel, scratch, rays, count, occluders);
 }
 
 static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
@@ -56,9 +56,9 @@ static void nearest_counted(const RtAccel *accel, const RtScratch *scratch, cons
 }
 
 static void occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                             uint32_t *blockers, RtTally *tallies) {
+                             uint32_t *occluders, RtTally *tallies) {
     look_at(rays, count);
-    brute->occluded_counted(accel, scratch, rays, count, blockers, tallies);
+    brute->occluded_counted(accel, scratch, rays, count, occluders, tallies);
 }
 
 static size_t scratch_bytes(const RtAccel *accel) {

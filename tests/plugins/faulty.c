@@ -252,9 +252,9 @@ SEARCH(backwards, RAYTALLY_COUNT(counters, RAYTALLY_STEPS, -1000000);)
 
 /* What is no answer, or beside them. */
 static void occluded_by_first(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
-                              size_t count, uint32_t *blockers, raytally_counters *counters) {
-    search_occluded(self, memory, query, rays, count, blockers, counters);
-    for (size_t i = 0; i < count; i++) blockers[i] = blockers[i] == RAYTALLY_NO_OBJECT ? blockers[i] : 0;
+                              size_t count, uint32_t *occluders, raytally_counters *counters) {
+    search_occluded(self, memory, query, rays, count, occluders, counters);
+    for (size_t i = 0; i < count; i++) occluders[i] = occluders[i] == RAYTALLY_NO_OBJECT ? occluders[i] : 0;
 }
 
 static void all_but_one(const void *self, void *memory, raytally_query *query, const raytally_ray *rays,
@@ -389,7 +389,7 @@ static raytally_accel_ops tables[] = {
     {.name = "faulty-uncounted", .summary = "keeps its counters to itself", KERNELS(uncounted)},
     {.name = "faulty-twice", .summary = "counts object tests that are counted", KERNELS(counted_twice)},
     {.name = "faulty-backwards", .summary = "counts below zero", KERNELS(backwards)},
-    {.name = "faulty-blocker", .summary = "names any blocker", .occluded = occluded_by_first},
+    {.name = "faulty-occluder", .summary = "names any occluder", .occluded = occluded_by_first},
     {.name = "faulty-silent", .summary = "leaves the last ray unanswered", .nearest = all_but_one},
     {.name = "faulty-beyond", .summary = "writes an answer too many", .nearest = one_too_many},
     {.name = "faulty-before", .summary = "writes in front of its answers", .nearest = one_too_early},

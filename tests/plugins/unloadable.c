@@ -29,14 +29,14 @@ enum {
 static const raytally_param choices[] = {
     {.name = "mode",
      .type = RAYTALLY_CHOICE,
-     .standard = "last",
+     .default_text = "last",
      .choices = TEN("a") TEN("b") TEN("c") TEN("d") TEN("e") TEN("f") TEN("g") "last",
      .meaning = "what it does",
      .source = "nowhere"}};
 
 static const raytally_param params[] = {{.name = "depth",
                                          .type = RAYTALLY_INT,
-                                         .standard = "12",
+                                         .default_text = "12",
                                          .lo = 1,
                                          .hi = 10,
                                          .test_values = "1|10",

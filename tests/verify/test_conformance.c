@@ -107,7 +107,7 @@ static size_t failures_at(const FamilyBench *bench, const RtAccelOps *ops, size_
         const RtParam *other = &ops->params[c];
         if (other->type != RT_PARAM_CHOICE && other->type != RT_PARAM_FLAG) continue;
         for (size_t k = 0; rt_param_try(other, k, choice, sizeof choice); k++) {
-            if (strcmp(choice, other->standard) == 0) continue;
+            if (strcmp(choice, other->default_text) == 0) continue;
             snprintf(spec, sizeof spec, "%s:%s=%s,%s=%s%s", ops->name, ops->params[p].name, value,
                      other->name, choice, below);
             failures += !conforms(bench, spec, true);

@@ -46,19 +46,19 @@ static void lie_nearest_counted(const RtAccel *accel, const RtScratch *scratch, 
 }
 
 static void lie_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked, size_t count,
-                         uint32_t *blockers) {
+                         uint32_t *occluders) {
     const Liar *liar = (const Liar *)accel;
-    liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, blockers);
+    liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, occluders);
     if (liar->lie == BLOCKED_IN_STREAMS_OF_64 && count == 64) {
-        blockers[63] = blockers[63] == RT_NO_OBJECT ? 0 : RT_NO_OBJECT;
+        occluders[63] = occluders[63] == RT_NO_OBJECT ? 0 : RT_NO_OBJECT;
     }
 }
 
 static void lie_occluded_counted(const RtAccel *accel, const RtScratch *scratch, const RtRay *asked,
-                                 size_t count, uint32_t *blockers, RtTally *tallies) {
+                                 size_t count, uint32_t *occluders, RtTally *tallies) {
     (void)tallies;
     const Liar *liar = (const Liar *)accel;
-    liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, blockers);
+    liar->truth.accel->ops->occluded(liar->truth.accel, scratch, asked, count, occluders);
 }
 
 typedef struct Stage {

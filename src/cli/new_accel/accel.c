@@ -24,7 +24,7 @@ enum { BOXES, PARAMS };
 static const raytally_param params[PARAMS] = {
     [BOXES] = {.name = "boxes",
                .type = RAYTALLY_FLAG,
-               .standard = "on",
+               .default_text = "on",
                .meaning = "test an object only where the ray meets its box",
                .source = "a box costs less than most objects"},
 };

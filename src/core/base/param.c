@@ -192,7 +192,7 @@ static RtStatus parse_setting(const RtParam *table, size_t count, char *setting,
         return rt_fail(error, RT_BAD_INPUT, "%s: invalid value '%s=%s'%s%s expected %s%s (%s; default %s)",
                        what, key, text, suggestion, *suggestion ? "" : ":",
                        table[i].type == RT_PARAM_INT ? "a whole number " : "", range, table[i].meaning,
-                       table[i].standard);
+                       table[i].default_text);
     }
     return fail_unknown(table, count, key, what, error);
 }
@@ -202,9 +202,9 @@ RtStatus rt_params_parse(const RtParam *table, size_t count, const char *text, c
     assert(count <= RT_MAX_PARAMS);
     bool given[RT_MAX_PARAMS] = {false};
     for (size_t i = 0; i < count; i++) {
-        if (!parse_value(&table[i], table[i].standard, &values[i]))
+        if (!parse_value(&table[i], table[i].default_text, &values[i]))
             return rt_fail(error, RT_BAD_INPUT, "%s: the default '%s=%s' does not lie in its own range", what,
-                           table[i].name, table[i].standard);
+                           table[i].name, table[i].default_text);
     }
     if (!text || !*text) return RT_OK;
     char copy[RT_MAX_SPEC_CHARS];

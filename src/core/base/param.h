@@ -27,20 +27,21 @@ typedef enum RtParamType {
 typedef struct RtParam {
     const char *name;
     RtParamType type;
-    const char *standard;    /* the default, as text */
-    double lo, hi;           /* range of a number, inclusive */
-    const char *choices;     /* "box|sphere|obb" for RT_PARAM_CHOICE, up to RT_MAX_CHOICES; else NULL */
-    const char *test_values; /* values worth testing, "1|4|20"; NULL for choices and flags: all of them */
-    const char *meaning;     /* one line; units where there are any */
-    const char *source;      /* where the default comes from */
+    const char *default_text; /* the default, as text */
+    double lo, hi;            /* range of a number, inclusive */
+    const char *choices;      /* "box|sphere|obb" for RT_PARAM_CHOICE, up to RT_MAX_CHOICES; else NULL */
+    const char *test_values;  /* values worth testing, "1|4|20"; NULL for choices and flags: all of them */
+    const char *meaning;      /* one line; units where there are any */
+    const char *source;       /* where the default comes from */
 } RtParam;
 
 /* What a parameter may be, in an entry {name, RT_INT(...), meaning, source} of a table. */
-#define RT_INT(standard, lo, hi, test_values)        RT_PARAM_INT, standard, lo, hi, NULL, test_values
-#define RT_FLOAT(standard, lo, hi, test_values)      RT_PARAM_FLOAT, standard, lo, hi, NULL, test_values
-#define RT_RESOLUTION(standard, lo, hi, test_values) RT_PARAM_RESOLUTION, standard, lo, hi, NULL, test_values
-#define RT_CHOICE(standard, choices)                 RT_PARAM_CHOICE, standard, 0, 0, choices, NULL
-#define RT_FLAG(standard)                            RT_PARAM_FLAG, standard, 0, 0, NULL, NULL
+#define RT_INT(default_text, lo, hi, test_values)   RT_PARAM_INT, default_text, lo, hi, NULL, test_values
+#define RT_FLOAT(default_text, lo, hi, test_values) RT_PARAM_FLOAT, default_text, lo, hi, NULL, test_values
+#define RT_RESOLUTION(default_text, lo, hi, test_values)                                                     \
+    RT_PARAM_RESOLUTION, default_text, lo, hi, NULL, test_values
+#define RT_CHOICE(default_text, choices) RT_PARAM_CHOICE, default_text, 0, 0, choices, NULL
+#define RT_FLAG(default_text)            RT_PARAM_FLAG, default_text, 0, 0, NULL, NULL
 
 /* A list PARAMS(X), of X(INDEX, the entry without its braces), makes both the indices,
  * enum { PARAMS(RT_PARAM_INDEX) }, and the table, {PARAMS(RT_PARAM_ENTRY)}. */

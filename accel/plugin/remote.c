@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Raytally's side of an accelerator that lives away: what stands in for it, and what is said of one that
  * broke. See wire.h. */
-#include "accel/away.h"
+#include "accel/remote.h"
 #include "accel/plugin/futex.h"
 #include "accel/plugin/now.h"
 #include "accel/plugin/process.h"
@@ -41,10 +41,10 @@ typedef struct Away {
 } Away;
 
 /* What a query has: its lane, and whether it has begun anew since the last request. */
-typedef struct AwayQuery {
+typedef struct RemoteQuery {
     uint32_t lane;
     bool begin;
-} AwayQuery;
+} RemoteQuery;
 
 static const RtAccelOps away_ops;
 static void destroy(RtAccel *accel);
@@ -53,7 +53,7 @@ static Away *of(const RtAccel *accel) {
     return (Away *)accel;
 }
 
-bool rt_accel_is_away(const RtAccel *accel) {
+bool rt_accel_is_remote(const RtAccel *accel) {
     return accel->ops->destroy == destroy;
 }
 
@@ -76,7 +76,7 @@ static void say_end(const Away *away, RtProcessEnd end, char *out, size_t room) 
 }
 
 /* "NAME: WHAT while DOING, at the ray ...". The first thing that is said of it stays. */
-static void break_away(Away *away, const char *what, const char *doing, bool ray) {
+static void break_remote(Away *away, const char *what, const char *doing, bool ray) {
     char text[RT_RAY_TEXT] = "";
     if (ray && away->wire->crash.has_ray) {
         RtRay traced = away->wire->crash.ray;
@@ -88,10 +88,10 @@ static void break_away(Away *away, const char *what, const char *doing, bool ray
     away->broken = true;
 }
 
-void rt_away_break(const RtAccel *accel, const char *what, const char *doing) {
+void rt_remote_break(const RtAccel *accel, const char *what, const char *doing) {
     Away *away = of(accel);
     pthread_mutex_lock(&away->lock);
-    break_away(away, what, doing, false);
+    break_remote(away, what, doing, false);
     pthread_mutex_unlock(&away->lock);
 }
 
@@ -103,7 +103,7 @@ static void end_hanging(Away *away, const char *doing, double limit) {
     rt_process_end(&away->process, 1000);
     away->gone = true;
     snprintf(what, sizeof what, "it made no progress for %g s (RAYTALLY_PLUGIN_SECONDS)", limit);
-    break_away(away, what, doing, true);
+    break_remote(away, what, doing, true);
 }
 
 /* Whether its plugin wrote to the words of a lane, which are known at any time. */
@@ -119,12 +119,12 @@ static bool look_after(Away *away, const char *doing, bool overwritten, double w
     if (!away->gone && overwritten) {
         away->gone = true;
         rt_process_end(&away->process, 0);
-        break_away(away, "it overwrote memory that it shares with raytally", doing, false);
+        break_remote(away, "it overwrote memory that it shares with raytally", doing, false);
     } else if (!away->gone && rt_process_wait(&away->process, 0, &end)) {
         char what[160];
         away->gone = true;
         say_end(away, end, what, sizeof what);
-        break_away(away, what, doing, true);
+        break_remote(away, what, doing, true);
     } else if (!away->gone && waited > limit) {
         end_hanging(away, doing, limit);
     }
@@ -188,7 +188,7 @@ static bool ask_master(Away *away, WireWork *work, void *message, size_t bytes, 
 /* What was said over there, which may lack its end, and be no status of ours. */
 static RtStatus hand_on(RtStatus status, const char *name, RtError *said, RtError *error) {
     said->message[sizeof said->message - 1] = '\0';
-    return rt_fail(error, rt_away_status(status), "%s%s%s", name, *name ? ": " : "", said->message);
+    return rt_fail(error, rt_remote_status(status), "%s%s%s", name, *name ? ": " : "", said->message);
 }
 
 static RtStatus why(const Away *away, RtError *error) {
@@ -196,8 +196,8 @@ static RtStatus why(const Away *away, RtError *error) {
     return RT_BROKEN;
 }
 
-void rt_away_do(RtQuery *query, RtAwayWork *work, void *message, size_t bytes) {
-    AwayQuery *own = query->scratch[0].own;
+void rt_remote_do(RtQuery *query, RtRemoteWork *work, void *message, size_t bytes) {
+    RemoteQuery *own = query->scratch[0].own;
     ask(of(query->accel), own->lane, own->begin, work, message, bytes, "it was traced");
     own->begin = false;
 }
@@ -246,7 +246,8 @@ static RtStatus take_built(Away *away, RtError *error) {
     return RT_OK;
 }
 
-RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out, RtError *error) {
+RtStatus rt_remote_build(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,
+                         RtError *error) {
     Away *away = rt_alloc(1, sizeof(Away));
     *out = NULL;
     if (!away) return rt_fail_memory(error, "an accelerator", sizeof(Away));
@@ -269,10 +270,10 @@ RtStatus rt_away_build(const RtSpec *spec, const RtScene *scene, int threads, Rt
     return status;
 }
 
-static _Thread_local char farewell[sizeof(((RtError *)0)->message)];
+static _Thread_local char exit_message[sizeof(((RtError *)0)->message)];
 
-const char *rt_away_farewell(void) {
-    return *farewell ? farewell : NULL;
+const char *rt_remote_exit_message(void) {
+    return *exit_message ? exit_message : NULL;
 }
 
 /* In peace, if it still can: a plugin may crash as it frees what it has. */
@@ -280,7 +281,7 @@ static void destroy(RtAccel *accel) {
     Away *away = of(accel);
     if (away->process.pid > 0 && !away->broken) {
         ask_master(away, rt_wire_destroy, NULL, 0, "it was destroyed");
-        if (away->broken) snprintf(farewell, sizeof farewell, "%s", away->error.message);
+        if (away->broken) snprintf(exit_message, sizeof exit_message, "%s", away->error.message);
     }
     if (away->alive >= 0) close(away->alive); /* ends it */
     rt_process_end(&away->process, 0);
@@ -294,7 +295,7 @@ static void destroy(RtAccel *accel) {
 
 static size_t scratch_bytes(const RtAccel *accel) {
     (void)accel;
-    return sizeof(AwayQuery);
+    return sizeof(RemoteQuery);
 }
 
 static uint32_t take_lane(Away *away) {
@@ -322,7 +323,7 @@ static RtStatus open_lane(Away *away, uint32_t lane, RtError *error) {
 
 static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) {
     Away *away = of(accel);
-    AwayQuery *query = scratch;
+    RemoteQuery *query = scratch;
     query->lane = take_lane(away);
     if (query->lane == LANES) {
         return rt_fail(error, RT_BAD_INPUT, "%s: a plugin traces on %d threads at most", away->name,
@@ -334,14 +335,14 @@ static RtStatus open_query(const RtAccel *accel, void *scratch, RtError *error) 
 }
 
 static void close_query(const RtAccel *accel, void *scratch) {
-    const AwayQuery *query = scratch;
+    const RemoteQuery *query = scratch;
     ask(of(accel), query->lane, false, NULL, NULL, 0, "a query was closed");
     give_lane_back(of(accel), query->lane);
 }
 
 static void begin(const RtAccel *accel, void *scratch) {
     (void)accel;
-    ((AwayQuery *)scratch)->begin = true;
+    ((RemoteQuery *)scratch)->begin = true;
 }
 
 /* ---- kernels ---- */
@@ -350,7 +351,7 @@ static void begin(const RtAccel *accel, void *scratch) {
 static const RtHit *trace_some(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays,
                                uint32_t count, bool any, RtTally *tallies) {
     Away *away = of(accel);
-    AwayQuery *query = scratch->own;
+    RemoteQuery *query = scratch->own;
     WireRays *asked = (WireRays *)away->wire->lanes[query->lane].message;
     char doing[64];
     snprintf(doing, sizeof doing, "it answered a stream of %u ray%s", count, rt_plural(count));
@@ -367,7 +368,7 @@ static const RtHit *trace_some(const RtAccel *accel, const RtScratch *scratch, c
 
 /* Answers are looked at where they are written: what is not sound here was changed since. */
 static void tell_overwritten(const RtAccel *accel) {
-    rt_away_break(accel, "it overwrote its answers", "it answered a stream");
+    rt_remote_break(accel, "it overwrote its answers", "it answered a stream");
 }
 
 static bool is_object(const RtAccel *accel, uint32_t object) {
@@ -390,16 +391,16 @@ static void trace_nearest(const RtAccel *accel, const RtScratch *scratch, const 
 }
 
 static void trace_occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                           uint32_t *blockers, RtTally *tallies) {
+                           uint32_t *occluders, RtTally *tallies) {
     for (size_t first = 0; first < count; first += WIRE_RAYS) {
         uint32_t n = (uint32_t)(count - first < WIRE_RAYS ? count - first : WIRE_RAYS);
         const RtHit *answers = trace_some(accel, scratch, rays + first, n, true, tallies);
         for (uint32_t i = 0; i < n; i++) {
-            uint32_t *blocker = &blockers[first + i];
-            memcpy(blocker, answers ? &answers[i].object : &RT_MISS.object, sizeof *blocker);
-            if (is_object(accel, *blocker)) continue;
-            if (*blocker != RT_NO_OBJECT) tell_overwritten(accel);
-            *blocker = RT_NO_OBJECT;
+            uint32_t *occluder = &occluders[first + i];
+            memcpy(occluder, answers ? &answers[i].object : &RT_MISS.object, sizeof *occluder);
+            if (is_object(accel, *occluder)) continue;
+            if (*occluder != RT_NO_OBJECT) tell_overwritten(accel);
+            *occluder = RT_NO_OBJECT;
         }
     }
 }
@@ -411,8 +412,8 @@ static void nearest(const RtAccel *accel, const RtScratch *scratch, const RtRay 
 }
 
 static void occluded(const RtAccel *accel, const RtScratch *scratch, const RtRay *rays, size_t count,
-                     uint32_t *blockers) {
-    trace_occluded(accel, scratch, rays, count, blockers, NULL);
+                     uint32_t *occluders) {
+    trace_occluded(accel, scratch, rays, count, occluders, NULL);
 }
 
 /* ---- the structure ---- */
@@ -451,7 +452,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
         for (uint32_t i = 0; i < count; i++) {
             const WireBox *shown = &some->boxes[i];
             if (!rt_wire_is_box(&shown->box, shown->depth)) {
-                rt_away_break(accel, "it overwrote boxes", "it showed them");
+                rt_remote_break(accel, "it overwrote boxes", "it showed them");
                 break;
             }
             viewer.show(viewer.context,
@@ -461,7 +462,7 @@ static void each_box(const RtAccel *accel, RtBoxViewer viewer) {
         more = count == WIRE_BOXES && !away->broken && first < UINT32_MAX;
         all = some->complete != 0;
     }
-    if (!all) rt_away_break(accel, "there is no memory for all its boxes", "it showed them");
+    if (!all) rt_remote_break(accel, "there is no memory for all its boxes", "it showed them");
     rt_free(some);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runners of accelerators that live in a process of their own (accel/away.h): the rays are taken there once,
- * and passes over them run there, timed by the clocks there. Nothing that crosses over is timed. */
+/* Runners of accelerators that live in a process of their own (accel/remote.h): the rays are taken there
+ * once, and passes over them run there, timed by the clocks there. Nothing that crosses over is timed. */
 #ifndef RT_MEASURE_MEASURE_AWAY_H
 #define RT_MEASURE_MEASURE_AWAY_H
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "measure/measure_away.h"
+#include "measure/measure_remote.h"
 
-#include "accel/away.h"
+#include "accel/remote.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "measure/measure_here.h"
+#include "measure/measure_local.h"
 
 #include <math.h>
 #include <string.h>
@@ -86,17 +86,17 @@ static void time_there(RtQuery *query, void *message) {
 }
 
 /* Has it done there; what that came to, or why the accelerator is broken. */
-static RtStatus remote_do(Remote *remote, RtAwayWork *work, RemoteMessage *message, size_t bytes,
+static RtStatus remote_do(Remote *remote, RtRemoteWork *work, RemoteMessage *message, size_t bytes,
                           RtError *error) {
     message->there = remote->there;
     message->status = RT_OK;
-    rt_away_do(&remote->query, work, message, bytes);
+    rt_remote_do(&remote->query, work, message, bytes);
     remote->there = message->there;
-    RtStatus status = rt_away_status(message->status);
+    RtStatus status = rt_remote_status(message->status);
     if (status == RT_OK) return rt_accel_check(remote->query.accel, error);
     message->error.message[sizeof message->error.message - 1] = '\0';
     if (status != RT_BROKEN) return rt_fail(error, status, "%s", message->error.message);
-    rt_away_break(remote->query.accel, message->error.message, "it was timed");
+    rt_remote_break(remote->query.accel, message->error.message, "it was timed");
     return rt_accel_check(remote->query.accel, error);
 }
 
@@ -110,7 +110,7 @@ static RtStatus time_remote(void *context, uint32_t repeats, double *seconds, do
     RT_TRY(remote_do(context, time_there, &message, HEAD, error));
     if (!is_duration(message.seconds) || !is_duration(message.wall)) {
         const RtAccel *accel = ((const Remote *)context)->query.accel;
-        rt_away_break(accel, "it overwrote the times", "it was timed");
+        rt_remote_break(accel, "it overwrote the times", "it was timed");
         return rt_accel_check(accel, error);
     }
     *seconds = message.seconds;
