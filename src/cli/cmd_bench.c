@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
  * workload that leaves no directory behind. */
-#include "cli/bench_output.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
 #include "cli/recording.h"
 #include "core/base/memory.h"
+#include "core/base/words.h"
+#include "core/text/json.h"
 #include "experiment/callgrind.h"
+#include "experiment/distribution_tables.h"
+#include "experiment/result_tables.h"
+#include "measure/machine.h"
 #include "verify/spread.h"
 
 #include <errno.h>
@@ -20,6 +24,8 @@ typedef struct Options {
     const char *scene, *baseline, *csv;
     RtWorkloadOptions workload;
     bool json, hardware, distributions;
+    uint32_t rounds;    /* 0: the default */
+    int threads;        /* -1: one to time, all to build and count */
     uint64_t callgrind; /* rays of a kind at most; 0: it is not asked for */
     const char *child;  /* of it: the folder that it serves */
     char *const *argv;  /* all arguments, NULL behind the last */
@@ -100,16 +106,6 @@ static void take_ray_stride(void *options, const char *text, struct argp_state *
     }
 }
 
-static void take_rounds(void *options, const char *text, struct argp_state *state) {
-    RtExperiment *e = ((Options *)options)->recording.experiment;
-    e->rounds = (uint32_t)rt_cli_integer(state, "--rounds", text, 1, RT_MAX_ROUNDS);
-}
-
-static void take_threads(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    o->workload.threads = o->workload.timing = (int)rt_cli_integer(state, "--threads", text, 0, 1024);
-}
-
 static void take_callgrind(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
     o->callgrind =
@@ -128,6 +124,8 @@ static void finish(void *options, struct argp_state *state) {
     if (!e->candidate_count) argp_error(state, "an accelerator is missing: --accel SPEC, or --accel all");
     if (o->baseline) set_baseline(e, o->baseline, state);
     if (!o->baseline) rt_experiment_set_baseline(e, NULL, NULL);
+    if (o->rounds) e->rounds = o->rounds;
+    if (o->threads >= 0) o->workload.threads = o->workload.timing = o->threads;
     if (o->workload.until > 0 && e->rounds < RT_FULL_ROUNDS) e->rounds = RT_FULL_ROUNDS;
     e->hardware = o->hardware;
     e->distributions = o->distributions;
@@ -147,10 +145,10 @@ static const RtOption options[] = {
     {"baseline", 0, "SPEC", RT_TO_TEXT(baseline),
      "The accelerator that ratios refer to (default: the first that is not a plugin). NAME:best is the "
      "fastest of several settings for each kind of rays, as in embree:best (`raytally accels NAME`)"},
-    {"rounds", 0, "N", RT_TO_TAKE(take_rounds),
+    {"rounds", 0, "N", RT_TO_INTEGER(rounds, 1, RT_MAX_ROUNDS),
      "Timing rounds, each in a new random order (10); intervals of 95 % need 6 or more"},
     RT_UNTIL_OPTIONS(workload.until, workload.patience),
-    {"threads", 0, "N", RT_TO_TAKE(take_threads), RT_THREADS_HELP},
+    {"threads", 0, "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
     {"count-only", 0, NULL, RT_TO_FLAG(workload.count_only), "Count, do not time"},
     {"distribution", 0, NULL, RT_TO_FLAG(distributions),
      "Also show distributions: object tests and steps over the rays, each ray traced alone, and objects and "
@@ -215,6 +213,97 @@ static RtStatus serve_callgrind(const Options *o, RtError *error) {
     return status;
 }
 
+/* ---- the report ---- */
+
+/* Appends the rows of one scene. */
+static void extend(json_t *array, const RtResults *results, RtResultTable which, uint32_t workload) {
+    RtResultRow row = {.results = results, .workload = workload};
+    RtTable table = rt_result_table(which, &row);
+    json_t *rows = rt_table_json(&table);
+    json_array_extend(array, rows);
+    json_decref(rows);
+}
+
+/* One scene, and what was recorded of it. */
+static json_t *scene_json(const RtResults *results, uint32_t workload) {
+    const RtExperiment *e = results->experiment;
+    const RtWorkload *setup = &e->workloads[workload];
+    const RtWorkloadResult *scene = &results->workloads[workload];
+    const bool given = *e->rays_from;
+    json_t *rays = given ? json_pack("{s:s}", "from", e->rays_from)
+                         : json_pack("{s:I, s:I, s:b, s:I, s:I, s:I}", "width", (json_int_t)scene->width,
+                                     "height", (json_int_t)scene->height, "corners", setup->corners, "depth",
+                                     (json_int_t)setup->depth, "limit", (json_int_t)e->limit, "coherent_run",
+                                     (json_int_t)e->coherent_run);
+    return json_pack("{s:s, s:I, s:o, s:o}", "scene", setup->spec, "objects", (json_int_t)scene->objects,
+                     "scene_hash", rt_json_hex(scene->scene), "recorded", rays);
+}
+
+static json_t *distributions_json(const RtResults *results, RtDistributionTable which) {
+    RtDistributionRow row = {.results = results};
+    RtTable table = rt_distribution_table(which, &row);
+    return rt_table_json(&table);
+}
+
+static json_t *instructions_json(const RtCallgrind *callgrind) {
+    RtInstructionsRow row = {.callgrind = callgrind};
+    RtTable table = rt_instructions_table(&row);
+    return rt_table_json(&table);
+}
+
+static void print_json(const RtResults *results, const RtCallgrind *callgrind) {
+    const RtExperiment *e = results->experiment;
+    json_t *scenes = json_array(), *rows = json_array(), *nulls = json_array();
+    for (uint32_t t = 0; t < e->workload_count; t++) {
+        json_array_append_new(scenes, scene_json(results, t));
+        extend(rows, results, RT_BENCH, t);
+        extend(nulls, results, RT_NULL_RUNS, t);
+    }
+    json_t *all = json_pack("{s:o, s:o, s:I, s:I, s:s, s:o, s:o}", "machine", rt_machine_json(), "scenes",
+                            scenes, "seed", (json_int_t)e->seed, "rounds", (json_int_t)e->rounds, "baseline",
+                            rt_baseline_label(e), "rows", rows, "null_runs", nulls);
+    if (e->distributions) {
+        json_object_set_new(all, "distributions", distributions_json(results, RT_DISTRIBUTIONS));
+        json_object_set_new(all, "histograms", distributions_json(results, RT_HISTOGRAMS));
+    }
+    if (e->hardware) {
+        RtResultRow row = {.results = results};
+        RtTable table = rt_result_table(RT_HARDWARE, &row);
+        json_object_set_new(all, "hardware", rt_table_json(&table));
+    }
+    if (callgrind->count) json_object_set_new(all, "instructions", instructions_json(callgrind));
+    rt_cli_print_json(all);
+}
+
+static RtStatus write_csv(const Options *o, const RtResults *results, RtError *error) {
+    RtOutput output;
+    RtResultRow row = {.results = results};
+    RtTable table = rt_result_table(o->workload.count_only ? RT_COUNTS : RT_TIMES, &row);
+    RT_TRY(rt_output_open(&output, o->csv, error));
+    rt_table_csv(&table, output.file);
+    return rt_output_commit(&output, error);
+}
+
+static RtStatus report(const Options *o, const RtResults *results, const RtCallgrind *callgrind,
+                       RtError *error) {
+    const RtExperiment *e = results->experiment;
+    char sentence[RT_MAX_SENTENCE];
+    if (o->csv) RT_TRY(write_csv(o, results, error));
+    if (o->json) {
+        print_json(results, callgrind);
+        return RT_OK;
+    }
+    rt_print_results(results, RT_CELLS, stdout);
+    if (e->hardware) rt_print_hardware(results, stdout);
+    if (callgrind->count) rt_print_instructions(callgrind, stdout);
+    if (e->distributions) rt_print_distributions(results, stdout);
+    rt_null_sentence(results, sentence);
+    if (!sentence[0]) return RT_OK;
+    putchar('\n');
+    rt_print_wrapped(sentence, stdout);
+    return RT_OK;
+}
+
 /* ---- the command ---- */
 
 /* Everything but the report. */
@@ -254,9 +343,7 @@ static RtStatus bench(Options *o, RtError *error) {
     RtCallgrind callgrind = {0};
     RtStatus status = rt_results_init(&results, experiment, error);
     if (status == RT_OK) status = measure(o, &results, &callgrind, error);
-    if (status == RT_OK)
-        status = rt_bench_report(&results, &callgrind,
-                                 &(RtBenchOutput){o->csv, o->json, o->workload.count_only}, error);
+    if (status == RT_OK) status = report(o, &results, &callgrind, error);
     if (status == RT_OK) status = rt_results_check_broken(&results, error);
     rt_callgrind_clear(&callgrind);
     rt_results_clear(&results);
@@ -281,7 +368,7 @@ const RtSyntax rt_bench_syntax = {
             "  raytally bench balls --accel bvh --rays-from rays.npy --rays nearest --hits hits.npy"};
 
 int rt_command_bench(int argc, char **argv) {
-    Options o = {.workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
+    Options o = {.threads = -1, .workload = {.timing = 1, .patience = RT_PATIENCE}, .argv = argv};
     RtError error;
     if (rt_recording_init(&o.recording, &error) != RT_OK) return rt_cli_fail(&error);
     rt_cli_parse(&rt_bench_syntax, argc, argv, &o);

@@ -2,8 +2,8 @@
 /* raytally merge: one result directory from those of the shards of an experiment. */
 #include "cli/cli.h"
 #include "cli/plugins.h"
-#include "cli/summary.h"
 #include "core/base/memory.h"
+#include "experiment/result_tables.h"
 #include "report/merge.h"
 
 #include <stdio.h>
@@ -15,11 +15,6 @@ typedef struct Options {
     RtStart start;
     bool trust;
 } Options;
-
-static void take_force(void *options, const char *text, struct argp_state *state) {
-    (void)text, (void)state;
-    ((Options *)options)->start = RT_START_ANEW;
-}
 
 static void take_directory(void *options, const char *text, struct argp_state *state) {
     Options *o = options;
@@ -33,7 +28,7 @@ static void finish(void *options, struct argp_state *state) {
 
 static const RtOption options[] = {
     {"out", 'o', "DIR", RT_TO_TEXT(out), "The result directory to write"},
-    {"force", 0, NULL, RT_TO_TAKE(take_force), "Replace it: the results in DIR are lost"},
+    {"force", 0, NULL, RT_TO_SET(start, RT_START_ANEW), "Replace it: the results in DIR are lost"},
     RT_TRUST_OPTION,
     {0}};
 
@@ -70,7 +65,7 @@ int rt_command_merge(int argc, char **argv) {
                                             &results, &observer, &error)
                                  : rt_fail_memory(&error, "an experiment", sizeof *experiment);
     if (status == RT_OK) {
-        rt_cli_print_summary(&results, stdout);
+        rt_print_summary(&results, stdout);
         printf("\nReport: %s/report.html\n", o.out);
     }
     rt_results_clear(&results);

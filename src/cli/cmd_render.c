@@ -23,7 +23,7 @@ typedef struct Options {
     const char *scene;
     const char *accels[RT_MAX_PANELS]; /* the first makes all but heatmaps */
     uint32_t accel_count;
-    uint32_t width, height; /* 0: the camera's */
+    uint32_t size[2]; /* width, height; 0: the camera's */
     uint32_t samples, depth;
     int threads;
     bool corners, check;
@@ -75,19 +75,10 @@ static void finish(void *options, struct argp_state *state) {
     rt_pictures_finish(&o->pictures, o->accel_count, state);
 }
 
-static void take_size(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    rt_cli_size(state, text, &o->width, &o->height);
-}
-
-static void take_stats(void *options, const char *path, struct argp_state *state) {
-    rt_cli_set_path(state, "--stats", &((Options *)options)->stats, path, ".json");
-}
-
 static const RtOption options[] = {
     {"accel", 'a', "SPEC", RT_TO_TAKE(take_accel),
      "Accelerator (default bvh); `raytally accels` lists them. With --heatmap up to 8 times, to compare"},
-    {"size", 's', "WxH", RT_TO_TAKE(take_size), "Size of the image in pixels (default: the scene's)"},
+    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the scene's)"},
     {"corners", 0, NULL, RT_TO_FLAG(corners),
      "Sample the corners of pixels, (W+1) x (H+1) rays, as the SPD scenes require"},
     {"samples", 'n', "N", RT_TO_INTEGER(samples, 1, 64), "N x N samples per pixel, 1..64 (default 1)"},
@@ -95,7 +86,7 @@ static const RtOption options[] = {
      "Levels of the ray tree, the primary ray being the first, 1..64 (default 5)"},
     {"threads", 't', "N", RT_TO_INTEGER(threads, 1, 1024), "Threads (default: all processors)"},
     {"output", 'o', "FILE", RT_TO_TAKE(take_output), "The image, .png or .exr; may be given once for each"},
-    {"stats", 0, "FILE.json", RT_TO_TAKE(take_stats), "Counts by ray kind, times and sizes"},
+    {"stats", 0, "FILE.json", RT_TO_PATH(stats, ".json"), "Counts by ray kind, times and sizes"},
     {"check", 0, NULL, RT_TO_FLAG(check),
      "Compare the answer to every ray, and the frame, with those of brute; exit code 1 if one differs. brute "
      "is slow: try a small --size first"},
@@ -159,7 +150,7 @@ static RtStatus prepare(Run *run, RtError *error) {
     if (o->pictures.structure) RT_TRY(rt_structure_available(&spec, o->pictures.layer, error));
     if (o->stats) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &run->scene, error));
-    RT_TRY(rt_scene_sample(&run->scene, o->width, o->height, o->samples, o->corners, error));
+    RT_TRY(rt_scene_sample(&run->scene, o->size[0], o->size[1], o->samples, o->corners, error));
     double start = rt_wall_seconds();
     RT_TRY(rt_accel_build(&spec, &run->scene, o->threads, &run->accel, error));
     run->build_seconds = rt_wall_seconds() - start;

@@ -3,12 +3,12 @@
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
-#include "cli/summary.h"
 #include "core/base/memory.h"
 #include "core/base/words.h"
 #include "experiment/claims.h"
 #include "experiment/journal.h"
 #include "experiment/manifest.h"
+#include "experiment/result_tables.h"
 #include "report/result_directory.h"
 
 #include <stdio.h>
@@ -21,7 +21,7 @@ typedef struct Options {
     bool found; /* the experiment is one that a manifest leads to */
     char only_text[3 * RT_MAX_LABEL];
     RtOnly only;
-    int threads, timing;
+    int threads; /* -1: one to time, all to build and count */
     double until, patience;
 } Options;
 
@@ -48,36 +48,22 @@ static void take_shard(void *options, const char *text, struct argp_state *state
     o->only.shards = shards;
 }
 
-static void take_resume(void *options, const char *text, struct argp_state *state) {
+static void take_renew(void *options, const char *text, struct argp_state *state) {
     (void)text, (void)state;
     ((Options *)options)->start = RT_START_RESUME;
-}
-
-static void take_renew(void *options, const char *text, struct argp_state *state) {
-    take_resume(options, text, state);
     ((Options *)options)->renew = true;
-}
-
-static void take_force(void *options, const char *text, struct argp_state *state) {
-    (void)text, (void)state;
-    ((Options *)options)->start = RT_START_ANEW;
-}
-
-static void take_threads(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    o->threads = o->timing = (int)rt_cli_integer(state, "--threads", text, 0, 1024);
 }
 
 static const RtOption options[] = {
     {"out", 'o', "DIR", RT_TO_TEXT(out), "The result directory (results/NAME)"},
-    {"resume", 0, NULL, RT_TO_TAKE(take_resume),
+    {"resume", 0, NULL, RT_TO_SET(start, RT_START_RESUME),
      "Continue an interrupted run: its measurements stay. For a finished run, write tables and plots again"},
     {"renew", 0, NULL, RT_TO_TAKE(take_renew),
      "As --resume, after a plugin has changed: measure its cells again, keep all others"},
-    {"force", 0, NULL, RT_TO_TAKE(take_force),
+    {"force", 0, NULL, RT_TO_SET(start, RT_START_ANEW),
      "Start over: the results in DIR are lost. The last of --resume and --force counts"},
     RT_TRUST_OPTION,
-    {"threads", 't', "N", RT_TO_TAKE(take_threads), RT_THREADS_HELP},
+    {"threads", 't', "N", RT_TO_INTEGER(threads, 0, 1024), RT_THREADS_HELP},
     RT_UNTIL_OPTIONS(until, patience),
     {"quick", 0, NULL, RT_TO_FLAG(quick), "The smaller variant that the YAML describes under `quick`"},
     {"strict", 0, NULL, RT_TO_FLAG(strict),
@@ -161,7 +147,7 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
 /* The command that goes on. */
 static void go_on(const Options *o, const RtExperiment *e, const char *directory, char *out, size_t room) {
     char threads[32] = "", shard[32] = "", until[64] = "", plugins[1024];
-    if (o->timing != 1 || o->threads) snprintf(threads, sizeof threads, " --threads %d", o->threads);
+    if (o->threads >= 0) snprintf(threads, sizeof threads, " --threads %d", o->threads);
     if (o->only.shards) snprintf(shard, sizeof shard, " --shard %u/%u", o->only.shard, o->only.shards);
     if (o->until > 0)
         snprintf(until, sizeof until, " --until %g%% --patience %g", 100 * o->until, o->patience);
@@ -179,7 +165,7 @@ static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how,
     RtStatus status = rt_run_experiment(results, how, error);
     rt_progress_end(&progress);
     if (status != RT_OK) return status;
-    rt_cli_print_summary(results, stdout);
+    rt_print_summary(results, stdout);
     if (!o->only.scene && !o->only.shards) printf("\nReport: %s/report.html\n", how->directory);
     RT_TRY(rt_results_check_broken(results, error));
     return o->strict ? rt_claims_check(results, error) : RT_OK;
@@ -219,8 +205,8 @@ static RtStatus run(Options *o, RtExperiment *experiment, RtError *error) {
         .scripts = o->trust   ? RT_SCRIPTS_ALL
                    : o->found ? RT_SCRIPTS_SHIPPED
                               : RT_SCRIPTS_OWN,
-        .workload = {.threads = o->threads,
-                     .timing = o->timing,
+        .workload = {.threads = o->threads < 0 ? 0 : o->threads,
+                     .timing = o->threads < 0 ? 1 : o->threads,
                      .only = o->only,
                      .until = o->until,
                      .patience = o->patience},
@@ -248,7 +234,7 @@ const RtSyntax rt_run_syntax = {
             "experiments/README.md describes how to write an experiment."};
 
 int rt_command_run(int argc, char **argv) {
-    Options o = {.timing = 1, .patience = RT_PATIENCE};
+    Options o = {.threads = -1, .patience = RT_PATIENCE};
     rt_cli_parse(&rt_run_syntax, argc, argv, &o);
     RtError error;
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);

@@ -15,7 +15,7 @@
 
 typedef struct Options {
     const char *scene, *accel, *svg;
-    uint32_t x, y, width, height, light;
+    uint32_t x, y, size[2], light;
     int64_t rows;
     RtRayKind kind;
     bool aimed, json;
@@ -29,17 +29,8 @@ static void take_pixel(void *options, const char *text, struct argp_state *state
     o->aimed = true;
 }
 
-static void take_size(void *options, const char *text, struct argp_state *state) {
-    Options *o = options;
-    rt_cli_size(state, text, &o->width, &o->height);
-}
-
 static void take_kind(void *options, const char *text, struct argp_state *state) {
     ((Options *)options)->kind = rt_cli_image_ray_kind(state, "--rays", text);
-}
-
-static void take_svg(void *options, const char *path, struct argp_state *state) {
-    rt_cli_set_path(state, "--svg", &((Options *)options)->svg, path, RT_CLI_PICTURES);
 }
 
 static void finish(void *options, struct argp_state *state) {
@@ -50,13 +41,13 @@ static const RtOption options[] = {
     {"pixel", 'p', "X,Y", RT_TO_TAKE(take_pixel),
      "The ray through the middle of this pixel, 0,0 being the upper left"},
     {"accel", 'a', "SPEC", RT_TO_TEXT(accel), "Accelerator (default bvh); `raytally accels` lists them"},
-    {"size", 's', "WxH", RT_TO_TAKE(take_size), "Size of the image in pixels (default: the scene's)"},
+    {"size", 's', "WxH", RT_TO_SIZE(size), "Size of the image in pixels (default: the scene's)"},
     {"rays", 'k', "KIND", RT_TO_TAKE(take_kind),
      "primary (default), or the shadow, reflection or transmission ray that starts where the primary ray "
      "hits"},
     {"light", 0, "N", RT_TO_INTEGER(light, 0, UINT32_MAX),
      "The light that the shadow ray goes to (default 0)"},
-    {"svg", 0, "FILE.svg", RT_TO_TAKE(take_svg),
+    {"svg", 0, "FILE.svg", RT_TO_PATH(svg, RT_CLI_PICTURES),
      "Draw the path: a section through the ray, and what it met where"},
     {"rows", 0, "N", RT_TO_INTEGER(rows, 0, UINT32_MAX),
      "Print at most N rows, 0 for all (200); rows of hits are always printed"},
@@ -238,7 +229,7 @@ static RtStatus run(const Options *o, RtError *error) {
     rt_spec_format(&spec, text);
     if (o->json) RT_TRY(rt_cli_check_json_name(o->scene, error));
     RT_TRY(rt_scene_open(o->scene, &scene, error));
-    RtStatus status = rt_scene_sample(&scene, o->width, o->height, 1, false, error);
+    RtStatus status = rt_scene_sample(&scene, o->size[0], o->size[1], 1, false, error);
     if (status == RT_OK) status = rt_cli_check_pixel(&scene.sampling, o->x, o->y, error);
     if (status == RT_OK) status = rt_accel_build(&spec, &scene, 0, &accel, error);
     if (status == RT_OK && rt_accel_is_remote(accel))

@@ -46,16 +46,6 @@ static void take_scene(void *options, const char *text, struct argp_state *state
     o->scenes[o->scene_count++] = text;
 }
 
-static void take_resume(void *options, const char *text, struct argp_state *state) {
-    (void)text, (void)state;
-    ((Options *)options)->start = RT_START_RESUME;
-}
-
-static void take_force(void *options, const char *text, struct argp_state *state) {
-    (void)text, (void)state;
-    ((Options *)options)->start = RT_START_ANEW;
-}
-
 static void finish(void *options, struct argp_state *state) {
     const Options *o = options;
     if (o->replay && (o->scene_count > 0 || o->accel_count > 0 || o->folder || o->json))
@@ -89,8 +79,8 @@ static const RtOption options[] = {
     {"out", 'o', "DIR", RT_TO_TEXT(folder),
      "Write rows to DIR as they are found, tables of them (verify.csv, verify.md), and replay files of wrong "
      "answers"},
-    {"resume", 0, NULL, RT_TO_TAKE(take_resume), "Continue the interrupted run in --out DIR"},
-    {"force", 0, NULL, RT_TO_TAKE(take_force),
+    {"resume", 0, NULL, RT_TO_SET(start, RT_START_RESUME), "Continue the interrupted run in --out DIR"},
+    {"force", 0, NULL, RT_TO_SET(start, RT_START_ANEW),
      "Start over: the results in --out DIR are lost. The last of --resume and --force counts"},
     {"replay", 0, "FILE", RT_TO_TEXT(replay),
      "Trace the ray of a wrong answer again: exit code 1 if the answer is still wrong, 2 if the ray cannot "

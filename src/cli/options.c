@@ -15,30 +15,27 @@ typedef struct Parse {
     char *options;
 } Parse;
 
-static void take_integer(const RtOption *o, char *at, const char *text, struct argp_state *state) {
-    char name[40];
-    snprintf(name, sizeof name, "--%s", o->name);
-    const int64_t number = rt_cli_integer(state, name, text, o->value.low, o->value.high);
-    if (o->value.form == RT_OPTION_SECONDS)
-        *(double *)at = (double)number;
-    else if (o->value.size == sizeof(uint32_t))
-        *(uint32_t *)at = (uint32_t)number;
-    else
-        *(uint64_t *)at = (uint64_t)number;
-}
-
 static void take_option(const RtOption *o, char *options, const char *text, struct argp_state *state) {
-    char *at = options + o->value.offset, name[40];
-    switch (o->value.form) {
+    const RtOptionValue *value = &o->value;
+    char *at = options + value->offset, name[40];
+    snprintf(name, sizeof name, "--%s", o->name);
+    const bool whole = value->form == RT_OPTION_INTEGER || value->form == RT_OPTION_SECONDS;
+    const int64_t number = whole ? rt_cli_integer(state, name, text, value->low, value->high) : value->low;
+    switch (value->form) {
     case RT_OPTION_FLAG: *(bool *)at = true; return;
     case RT_OPTION_TEXT: *(const char **)at = text; return;
     case RT_OPTION_INTEGER:
-    case RT_OPTION_SECONDS: take_integer(o, at, text, state); return;
-    case RT_OPTION_PERCENT:
-        snprintf(name, sizeof name, "--%s", o->name);
-        *(double *)at = rt_cli_percent(state, name, text);
+        if (value->size == sizeof(uint32_t))
+            *(uint32_t *)at = (uint32_t)number;
+        else
+            *(uint64_t *)at = (uint64_t)number;
         return;
-    case RT_OPTION_TAKE: o->value.take(options, text, state); return;
+    case RT_OPTION_SECONDS: *(double *)at = (double)number; return;
+    case RT_OPTION_PERCENT: *(double *)at = rt_cli_percent(state, name, text); return;
+    case RT_OPTION_SET: *(int *)at = (int)number; return;
+    case RT_OPTION_SIZE: rt_cli_size(state, text, (uint32_t *)at, (uint32_t *)at + 1); return;
+    case RT_OPTION_PATH: rt_cli_set_path(state, name, (const char **)at, text, value->endings); return;
+    case RT_OPTION_TAKE: value->take(options, text, state); return;
     }
 }
 

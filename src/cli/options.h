@@ -21,11 +21,15 @@ typedef struct RtOptionValue {
         RT_OPTION_INTEGER, /* an integer type of `size` bytes: low..high */
         RT_OPTION_SECONDS, /* double: a whole number, low..high */
         RT_OPTION_PERCENT, /* double: "1%" is 0.01 */
+        RT_OPTION_SET,     /* int, or an enum: `low` */
+        RT_OPTION_SIZE,    /* uint32_t[2]: WIDTHxHEIGHT */
+        RT_OPTION_PATH,    /* const char *: a file name that ends in one of `endings` */
         RT_OPTION_TAKE     /* as `take` reads it */
     } form;
     size_t offset, size;
     int64_t low, high;
     RtTakeOption *take;
+    const char *endings;
     int flags; /* argp's */
 } RtOptionValue;
 
@@ -44,6 +48,12 @@ typedef struct RtOptionValue {
     { .form = RT_OPTION_SECONDS, .offset = offsetof(Options, field), .low = (from), .high = (to) }
 #define RT_TO_PERCENT(field)                                                                                 \
     { .form = RT_OPTION_PERCENT, .offset = offsetof(Options, field) }
+#define RT_TO_SET(field, value)                                                                              \
+    { .form = RT_OPTION_SET, .offset = offsetof(Options, field), .low = (value) }
+#define RT_TO_SIZE(field)                                                                                    \
+    { .form = RT_OPTION_SIZE, .offset = offsetof(Options, field) }
+#define RT_TO_PATH(field, ends)                                                                              \
+    { .form = RT_OPTION_PATH, .offset = offsetof(Options, field), .endings = (ends) }
 #define RT_TO_TAKE(function)                                                                                 \
     { .form = RT_OPTION_TAKE, .take = (function) }
 #define RT_TO_TAKE_OPTIONAL(function) /* `text` may be NULL */                                               \
