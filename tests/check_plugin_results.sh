@@ -160,7 +160,7 @@ RAYTALLY_PLUGINS=source ends 2 "${bench[@]}"
 says "RAYTALLY_PLUGINS: there is no \*\.so in source: .*source/build"
 RAYTALLY_PLUGINS=old ends 0 "${bench[@]}" --distribution
 says_not 'there is no \*\.so'
-says 'Leaf size and depth of my-accel are not known'
+says 'Leaf size and depth of my-accel are unknown'
 says_not 'Leaf size and depth of bvh'
 
 [ "$failures" = 0 ] || { echo "$failures complaints" >&2 && exit 1; }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Claims as text: a row of words, read from left to right. */
+/* The parser of claims: words, read from left to right. */
 #include "experiment/claims.h"
 
 #include "core/base/words.h"
@@ -17,7 +17,7 @@ typedef struct Reader {
     RtClaim *claim;
     RtError *error;
     char text[RT_MAX_CLAIM];
-    const char *words[MOST_WORDS + 1]; /* "" behind the last */
+    const char *words[MOST_WORDS + 1]; /* "" after the last */
     uint32_t at, count;
 } Reader;
 
@@ -60,7 +60,7 @@ static bool take(Reader *r, const char *expected) {
 
 static RtStatus need(Reader *r, const char *expected) {
     if (take(r, expected)) return RT_OK;
-    return fail(r, "'%s' stands where '%s' is expected", *word(r) ? word(r) : "nothing", expected);
+    return fail(r, "found '%s', expected '%s'", *word(r) ? word(r) : "nothing", expected);
 }
 
 /* ---- names ---- */
@@ -75,10 +75,10 @@ static RtStatus read_measure(Reader *r) {
     }
     rt_suggest(word(r), measures, MEASURES, suggestion);
     rt_join_names(measures, MEASURES, list, sizeof list);
-    return fail(r, "'%s' is not measured%s it is one of %s", word(r), *suggestion ? suggestion : ":", list);
+    return fail(r, "'%s' is no measure%s choose one of %s", word(r), *suggestion ? suggestion : ":", list);
 }
 
-/* How many candidates have that label, or that base; *last is one of them. */
+/* The number of candidates with that label or base; *last is one of them. */
 static uint32_t count_accels(const RtExperiment *experiment, const char *name, uint32_t *last) {
     uint32_t count = 0;
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
@@ -103,7 +103,7 @@ static RtStatus read_other(Reader *r) {
     uint32_t count = count_accels(r->experiment, word(r), &r->claim->other);
     if (count == 0) return fail(r, "'%s' is not the label of one of the accelerators", word(r));
     if (count > 1) {
-        return fail(r, "'%s' is %u accelerators: name one of them, as '%s'", word(r), count,
+        return fail(r, "'%s' names %u accelerators: name one of them, as '%s'", word(r), count,
                     r->experiment->candidates[r->claim->other].label);
     }
     r->at++;
@@ -134,10 +134,10 @@ static RtStatus find_key(const Reader *r, const char *name, size_t length, RtSwe
         *key = keys[k];
         found++;
     }
-    if (found == 0) return fail(r, "'%.*s' is no parameter that is swept", (int)length, name);
+    if (found == 0) return fail(r, "'%.*s' is no swept parameter", (int)length, name);
     if (found == 1) return RT_OK;
-    return fail(r, "'%.*s' is swept by scenes and by accelerators: write scene.%.*s or accel.%.*s",
-                (int)length, name, (int)length, name, (int)length, name);
+    return fail(r, "scenes and accelerators both sweep '%.*s': write scene.%.*s or accel.%.*s", (int)length,
+                name, (int)length, name, (int)length, name);
 }
 
 static RtStatus read_axis(Reader *r) {
@@ -191,7 +191,7 @@ static RtStatus read_at(Reader *r) {
             found |= text && strcmp(text, value) == 0;
         }
     }
-    if (!found) return fail(r, "'%s' is none of the values of '%.*s'", value, (int)length, word(r));
+    if (!found) return fail(r, "'%s' is no value of '%.*s'", value, (int)length, word(r));
     r->at++;
     return RT_OK;
 }
@@ -200,12 +200,12 @@ static RtStatus read_kind(Reader *r) {
     RtClaim *claim = r->claim;
     bool asked = false;
     if (claim->measure >= RT_CLAIM_BUILD_TIME)
-        return fail(r, "%s is that of no kind of rays", measures[claim->measure]);
+        return fail(r, "%s does not depend on the kind of rays", measures[claim->measure]);
     if (rt_ray_kind_parse(word(r), &claim->kind, NULL) == RT_OK) {
         for (uint32_t k = 0; k < r->experiment->kind_count; k++)
             asked |= r->experiment->kinds[k] == claim->kind;
     }
-    if (!asked) return fail(r, "'%s' is no kind of the rays of this experiment", word(r));
+    if (!asked) return fail(r, "this experiment has no '%s' rays", word(r));
     r->at++;
     return need(r, "rays");
 }
@@ -227,7 +227,7 @@ static RtStatus read_places(Reader *r) {
 
 static RtStatus read_trend(Reader *r) {
     bool never = take(r, "never"), falls = take(r, "falls"), rises = !falls && take(r, "rises");
-    if (!falls && !rises) return fail(r, "'%s' stands where 'falls' or 'rises' is expected", word(r));
+    if (!falls && !rises) return fail(r, "found '%s', expected 'falls' or 'rises'", word(r));
     r->claim->form = RT_CLAIM_TREND;
     r->claim->strictly = !never;
     r->claim->rises = never ? falls : rises;
@@ -242,7 +242,7 @@ static RtStatus read_comparison(Reader *r) {
     RT_TRY(read_places(r));
     while (i < 4 && !take(r, operators[i])) i++;
     if (i == 4) {
-        return fail(r, "'%s' stands where one of < <= > >= is expected", *word(r) ? word(r) : "nothing");
+        return fail(r, "found '%s', expected one of < <= > >=", *word(r) ? word(r) : "nothing");
     }
     r->claim->greater = i >= 2;
     r->claim->or_equal = i % 2 == 1;
@@ -274,5 +274,5 @@ RtStatus rt_claim_parse(const RtExperiment *experiment, const char *text, RtClai
     *claim = (RtClaim){.kind = RT_ALL_RAYS};
     RT_TRY(split(&r, text));
     RT_TRY(read_claim(&r));
-    return r.at == r.count ? RT_OK : fail(&r, "'%s' comes after its end", word(&r));
+    return r.at == r.count ? RT_OK : fail(&r, "unexpected '%s' at its end", word(&r));
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Claims against results: the cells that one is about, their values with what their intervals leave open, and
- * what follows for all of them together. */
+/* Judging claims: the cells of a claim, their values with intervals, and the verdict over all of them. */
 #include "experiment/claims.h"
 
 #include "core/base/elementary.h"
@@ -17,7 +16,7 @@ typedef struct Bounded {
     double value, low, high;
 } Bounded;
 
-/* A value of the claim's measure, and where it was found. */
+/* A value of the claim's measure, and its cell. */
 typedef struct Point {
     uint32_t workload, candidate;
     double x; /* of the parameter of an exponent or a trend */
@@ -52,7 +51,7 @@ static Bounded value_at(const RtResults *results, const RtClaim *claim, uint32_t
     return claim->measure == RT_CLAIM_TIME ? of_estimate(&cost.seconds) : exactly(counts[claim->measure]);
 }
 
-/* Times of `c` over those of `other`, from ratios of throughput that were paired round by round. */
+/* The time of `c` over that of `other`, from ratios of throughput paired by round. */
 static bool paired(const RtResults *results, const RtClaim *claim, uint32_t t, uint32_t c, Bounded *out) {
     const RtExperiment *experiment = results->experiment;
     const bool all = claim->kind == RT_ALL_RAYS;
@@ -75,7 +74,7 @@ static Bounded ratio_at(const RtResults *results, const RtClaim *claim, uint32_t
     return (Bounded){over.value / under.value, over.low / under.high, over.high / under.low};
 }
 
-/* ---- what a claim is about ---- */
+/* ---- the cells of a claim ---- */
 
 static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint32_t t, uint32_t c) {
     const RtCandidate *candidate = &experiment->candidates[c];
@@ -93,7 +92,7 @@ static bool is_about(const RtExperiment *experiment, const RtClaim *claim, uint3
     return true;
 }
 
-/* Whether two points lie on one line: they differ in nothing but the parameter. */
+/* Whether two points lie on one line: they differ only in the parameter. */
 static bool same_line(const RtExperiment *experiment, const RtClaim *claim, const Point *a, const Point *b) {
     enum { ROOM = RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2) };
     char names[2][2 * ROOM];
@@ -108,7 +107,7 @@ static bool same_line(const RtExperiment *experiment, const RtClaim *claim, cons
     return strcmp(names[0], names[1]) == 0;
 }
 
-/* The cells of a claim, to points[0..]: how many. Those without a value have none that is finite. */
+/* Writes the cells of a claim to points[0..]; returns their number. Unknown values are not finite. */
 static uint32_t gather(const RtResults *results, const RtClaim *claim, Point *points) {
     const RtExperiment *experiment = results->experiment;
     bool lines = claim->form >= RT_CLAIM_EXPONENT;
@@ -153,7 +152,7 @@ static double in_units(const RtClaim *claim, double value) {
 
 static void put_bounded(RtClaimResult *result, const RtClaim *claim, const Bounded *b) {
     if (!isfinite(b->value)) {
-        put(result, "not known");
+        put(result, "unknown");
         return;
     }
     put_figure(result, in_units(claim, b->value));
@@ -186,8 +185,7 @@ static RtClaimVerdict compare(const RtClaim *claim, const Bounded *b) {
     return low && high ? RT_CLAIM_HOLDS : low || high ? RT_CLAIM_UNDECIDED : RT_CLAIM_FALSE;
 }
 
-/* Takes a figure for the claim's where its verdict is worse than what was found so far, or is as bad and it
- * is further off. */
+/* The worst figure so far: the worst verdict, and among equal verdicts the figure furthest off. */
 typedef struct Worst {
     RtClaimVerdict verdict;
     const Point *point; /* or NULL */
@@ -202,8 +200,8 @@ static void take(const RtClaim *claim, const Point *point, const Bounded *figure
     *worst = (Worst){verdict, point, *figure};
 }
 
-/* Slope of the least squares of log y over log x; points[0..count) is one line. Unknown where any of them is:
- * the slope of the others may be quite another. */
+/* Least-squares slope of log y over log x; points[0..count) is one line. Unknown if any point is: the others
+ * may have another slope. */
 static Bounded exponent_of(const Point *points, uint32_t count) {
     double mean = 0, squares = 0;
     Bounded slope = {0, 0, 0};
@@ -225,7 +223,7 @@ static Bounded exponent_of(const Point *points, uint32_t count) {
     return slope;
 }
 
-/* From one value of the parameter to the next. */
+/* The verdict on one step of a trend. */
 static RtClaimVerdict step_of(const RtClaim *claim, const Bounded *from, const Bounded *to) {
     double least = claim->rises ? to->low - from->high : from->low - to->high;
     double most = claim->rises ? to->high - from->low : from->high - to->low;
@@ -243,7 +241,7 @@ static void put_step(RtClaimResult *result, const RtClaim *claim, const Point *f
     put(result, text);
 }
 
-/* The first step that is worst; where all hold, from the first value to the last. */
+/* Judges by the first step with the worst verdict; if all hold, shows the first value and the last. */
 static void judge_trend(const RtExperiment *experiment, const RtClaim *claim, const Point *points,
                         uint32_t count, RtClaimResult *result) {
     const Point *from = &points[0], *to = &points[count - 1];
@@ -261,7 +259,7 @@ static void judge_trend(const RtExperiment *experiment, const RtClaim *claim, co
     put_place(result, experiment, from, true);
 }
 
-/* Line by line: the points of each are brought together at the front. */
+/* Line by line: moves the points of each line together. */
 static void judge_lines(const RtExperiment *experiment, const RtClaim *claim, Point *points, uint32_t count,
                         RtClaimResult *result) {
     Worst worst = {RT_CLAIM_HOLDS, NULL, UNKNOWN};
@@ -300,7 +298,7 @@ static void judge_values(const RtExperiment *experiment, const RtClaim *claim, c
     put_place(result, experiment, worst.point, false);
 }
 
-/* Drops the points without a value: how many are left. */
+/* Drops the points without a value; returns the number left. */
 static uint32_t drop_unknown(Point *points, uint32_t count) {
     uint32_t known = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -332,8 +330,7 @@ void rt_claim_judge(const RtResults *results, uint32_t i, RtClaimResult *result)
     if (known > 0 && known < count) {
         char text[64];
         if (result->verdict == RT_CLAIM_HOLDS) result->verdict = RT_CLAIM_UNDECIDED;
-        snprintf(text, sizeof text, "; %" PRIu32 " of %" PRIu32 " values are not known", count - known,
-                 count);
+        snprintf(text, sizeof text, "; %" PRIu32 " of %" PRIu32 " values are unknown", count - known, count);
         put(result, text);
     }
     rt_free(points);

@@ -62,8 +62,7 @@ static const RtColumnGroup histograms[] = {RT_FROM_TO(columns, scene, quantity),
 
 /* ---- rows ---- */
 
-/* A workload after the other, in each an accelerator after the other, in each the quantities over each kind
- * of rays, and then those over leaves. */
+/* By workload, then accelerator, then the quantities over each kind of rays, then those over leaves. */
 static const RtDistribution *find(Row *r, size_t i) {
     const RtExperiment *e = r->results->experiment;
     const size_t over_rays = (size_t)e->kind_count * RT_RAY_QUANTITY_COUNT;
@@ -102,19 +101,19 @@ RtTable rt_distribution_table(RtDistributionTable which, RtDistributionRow *row)
                      .context = row};
 }
 
-/* ---- for the eye ---- */
+/* ---- to read ---- */
 
-/* Plugins describe their structures, and show no leaves (include/raytally/accel.h). */
+/* Plugins report no leaves (include/raytally/accel.h). */
 static void print_unknown_leaves(const RtResults *results, uint32_t t, FILE *out) {
     for (uint32_t c = 0; c < results->experiment->candidate_count; c++) {
         const RtCandidate *candidate = &results->experiment->candidates[c];
         const RtBuildResult *build = rt_build_at(results, t, c);
         char text[RT_MAX_LABEL + 128];
         if (!build->known || build->leaves || !rt_spec_is_remote(&candidate->parsed)) continue;
-        snprintf(text, sizeof text,
-                 "Leaf size and depth of %s are not known: plugins say how many leaves there are, not what "
-                 "is in each.",
-                 candidate->label);
+        snprintf(
+            text, sizeof text,
+            "Leaf size and depth of %s are unknown: plugins report the number of leaves, not their contents.",
+            candidate->label);
         rt_print_wrapped(text, out);
     }
 }
@@ -122,9 +121,8 @@ static void print_unknown_leaves(const RtResults *results, uint32_t t, FILE *out
 void rt_print_distributions(const RtResults *results, FILE *out) {
     for (uint32_t t = 0; t < results->experiment->workload_count; t++) {
         if (!results->workloads[t].known) continue;
-        fprintf(out, "\n%s, how counts are distributed:\n", results->experiment->workloads[t].label);
-        rt_print_wrapped("What half of the rays, or leaves, do not exceed, what 99 % do not, and the most.",
-                         out);
+        fprintf(out, "\n%s, distributions of counts:\n", results->experiment->workloads[t].label);
+        rt_print_wrapped("Medians, 99th percentiles and maxima over the rays, or the leaves.", out);
         rt_print_rows(results, RT_SPREADS, t, out);
         rt_print_rows(results, RT_LEAF_SPREADS, t, out);
         print_unknown_leaves(results, t, out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Distributions as tables: as exact as counts.csv, and of the same accelerators. */
+/* Distributions as tables: as exact as counts.csv, for the same accelerators. */
 #ifndef RT_EXPERIMENT_DISTRIBUTION_TABLES_H
 #define RT_EXPERIMENT_DISTRIBUTION_TABLES_H
 
@@ -9,7 +9,7 @@
 typedef enum RtDistributionTable {
     RT_DISTRIBUTIONS, /* distributions.csv: a row per cell and quantity over rays, and per structure and
                          quantity over leaves: percentiles */
-    RT_HISTOGRAMS     /* histograms.csv: a row for each bin of these with a value in it */
+    RT_HISTOGRAMS     /* histograms.csv: a row for each bin that is not empty */
 } RtDistributionTable;
 
 /* The row at hand. */
@@ -18,15 +18,15 @@ typedef struct RtDistributionRow {
     RtDistributionTable which;
     uint32_t workload, candidate;
     size_t quantity; /* rt_quantity_name */
-    RtRayKind kind;  /* where that is one over rays */
+    RtRayKind kind;  /* if `quantity` is over rays */
     uint32_t bin;    /* of RT_HISTOGRAMS */
     const RtDistribution *distribution;
 } RtDistributionRow;
 
-/* `row` stays where it is as long as the table, which alone uses it, with its results filled in. */
+/* `row` belongs to the table and must outlive it. The caller fills in its results. */
 RtTable rt_distribution_table(RtDistributionTable which, RtDistributionRow *row);
 
-/* For a terminal of 80 columns: of each workload that is known, a row per cell, and then per structure. */
+/* Prints, in 80 columns, a row per cell and then a row per structure of each known workload. */
 void rt_print_distributions(const RtResults *results, FILE *out);
 
 #endif

@@ -21,7 +21,7 @@ void rt_experiment_init(RtExperiment *experiment) {
 
 /* ---- rays of a file ---- */
 
-/* Random rays are those that nothing is known of. */
+/* Nothing is known about the origin of such rays: they count as random. */
 static const struct {
     const char *name;
     RtRayKind kind;
@@ -32,9 +32,9 @@ RtStatus rt_given_kind_parse(const char *name, RtRayKind *kind, RtError *error) 
         *kind = given[i].kind;
         if (strcmp(given[i].name, name) == 0) return RT_OK;
     }
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "rays of a file are asked for the nearest hit, or for any: nearest or occlusion, not '%.40s'", name);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "rays of a file ask for the nearest hit or for any hit: nearest or occlusion, not '%.40s'",
+                   name);
 }
 
 const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind kind) {
@@ -46,8 +46,8 @@ const char *rt_experiment_kind_name(const RtExperiment *experiment, RtRayKind ki
 
 /* ---- the baseline ---- */
 
-/* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without the commas that
- * gnuplot stops at. */
+/* "embree-16-high-avx512" of "embree:query=16,quality=high,isa=avx512": short, and without commas, which
+ * gnuplot does not accept. */
 static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
     size_t used = 0;
     for (const char *c = spec; *c && used + 1 < RT_MAX_LABEL; c++) {
@@ -61,7 +61,7 @@ static void label_setting(const char *spec, char label[RT_MAX_LABEL]) {
     label[used] = '\0';
 }
 
-/* As it was when the results were made: the accelerators that the manifest has behind those of the YAML. */
+/* The baseline of the results: the accelerators after those of the YAML in the manifest. */
 static void append_from_manifest(RtExperiment *experiment, const char *label) {
     RtCandidate candidate = {.ray_stride = 1};
     uint32_t first = experiment->candidate_count;
@@ -80,7 +80,7 @@ static RtStatus append_best(RtExperiment *experiment, const char *label, RtError
     size_t count = 0;
     RT_TRY(rt_best_specs(label, specs, &count, error));
     if (experiment->candidate_count + count > RT_MAX_CANDIDATES) {
-        return rt_fail(error, RT_BAD_INPUT, "'%s' stands for %zu accelerators: at most %d fit together",
+        return rt_fail(error, RT_BAD_INPUT, "'%s' expands to %zu accelerators: an experiment has at most %d",
                        label, count, RT_MAX_CANDIDATES);
     }
     snprintf(experiment->best, sizeof experiment->best, "%s", label);
@@ -104,7 +104,7 @@ RtStatus rt_candidate_parse(RtCandidate *candidate, RtError *error) {
     return RT_OK;
 }
 
-/* The first that is not a plugin's: with a baseline that breaks, nothing could be compared. */
+/* The first that is not a plugin's: without a working baseline nothing could be compared. */
 static uint32_t default_baseline(RtExperiment *experiment) {
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         RtCandidate *candidate = &experiment->candidates[c];
@@ -138,7 +138,7 @@ const char *rt_baseline_label(const RtExperiment *experiment) {
     return *experiment->best ? experiment->best : experiment->candidates[experiment->baseline].label;
 }
 
-/* ---- who is where ---- */
+/* ---- labels ---- */
 
 bool rt_candidate_runs(const RtExperiment *experiment, uint32_t c, uint32_t t) {
     if (c == experiment->candidate_count) return true;
@@ -183,7 +183,7 @@ static RtStatus fail_twice(const char *label, RtError *error) {
                    label);
 }
 
-/* Whether this build lacks it; where results are only read, whether the build that made them did. */
+/* Marks a candidate that this build lacks; for loaded results, that the build that made them lacked. */
 static RtStatus check_spec(RtExperiment *experiment, uint32_t i, RtError *error) {
     RtCandidate *candidate = &experiment->candidates[i];
     RtError why = {RT_OK, ""};
@@ -222,26 +222,24 @@ static RtStatus check_baseline(const RtExperiment *experiment, RtError *error) {
     }
     if (baseline->ray_stride == 1 && !baseline->left_out) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
-                   "the baseline '%s' has to be measured on every ray of every scene: choose another, or "
-                   "leave its `ray_stride` and `scenes` out",
+                   "the baseline '%s' must be measured on every ray of every scene: choose another, or "
+                   "remove its `ray_stride` and `scenes`",
                    baseline->label);
 }
 
-/* The files are copied into the result directory under their names. */
+/* The files are copied into the result directory under the same names. */
 static RtStatus check_beside(const char *name, RtError *error) {
     if (rt_previous_results_has(name)) {
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "'%s' is what the result directory calls a file of its own: rename it, or put it into a "
-            "folder beside the experiment",
-            name);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the result directory has its own file '%s': rename this one, or put it into a folder "
+                       "beside the experiment",
+                       name);
     }
     if (*name != '/' && !strstr(name, "..")) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "'%s' must lie beside the experiment, or in a folder there: its name may not begin with / or "
-        "have .. in it",
-        name);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "'%s' must be beside the experiment, or in a folder there: its name may not begin with / "
+                   "or contain ..",
+                   name);
 }
 
 static RtStatus check_published(const RtExperiment *experiment, RtError *error) {
@@ -252,7 +250,7 @@ static RtStatus check_published(const RtExperiment *experiment, RtError *error) 
     return check_beside(published->reasons, error);
 }
 
-/* All scripts are copied into one folder, to names.gp and histograms.gp (report/plot.h). */
+/* All scripts are copied into one folder, which has names.gp and histograms.gp (report/plot.h). */
 static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *error) {
     const char *name = rt_plot_name(experiment, i);
     if (!*name || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
@@ -264,12 +262,11 @@ static RtStatus check_plot(const RtExperiment *experiment, uint32_t i, RtError *
     if (!taken) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
-        "the result directory has a plots/%s already: give the script another name, though it lies in "
-        "another folder",
+        "the result directory already has a plots/%s: rename the script, even if it is in another folder",
         name);
 }
 
-/* There is a column in tables for each, and both words of it stand in plots/sweep.gp. */
+/* Tables have a column for each; plots/sweep.gp quotes key and value. */
 static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept, RtError *error) {
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     uint32_t count = rt_experiment_swept(experiment, keys);
@@ -285,13 +282,11 @@ static RtStatus check_swept(const RtExperiment *experiment, const RtSwept *swept
     return RT_OK;
 }
 
-/* Nothing is run for the machine to count. */
+/* Without timing no rays are traced for hardware counters. */
 static RtStatus check_hardware(const RtExperiment *experiment, RtError *error) {
     if (!experiment->hardware || !experiment->count_only) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "hardware counters are read while rays are traced for their time, which `count_only` leaves "
-        "out");
+    return rt_fail(error, RT_BAD_INPUT,
+                   "hardware counters need timed rays, and `count_only` times nothing: leave one out");
 }
 
 static bool has_kind(const RtExperiment *experiment, RtRayKind kind) {
@@ -317,7 +312,7 @@ static RtStatus check_frame(const RtExperiment *experiment, RtError *error) {
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
         const RtRayKind kind = (RtRayKind)k;
         if (!rt_ray_kind_is_of_frame(kind) || has_kind(experiment, kind)) continue;
-        return rt_fail(error, RT_BAD_INPUT, "a frame has %s rays, too: name that kind under `rays`",
+        return rt_fail(error, RT_BAD_INPUT, "a frame also has %s rays: add that kind under `rays`",
                        rt_ray_kind_name(kind));
     }
     return RT_OK;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Experiments as YAML: each part of RtExperiment from its mapping, over the defaults of rt_experiment_init.
- * What is wrong with a value is told here; what does not go together, by rt_experiment_check. */
+ * Reports invalid values; rt_experiment_check reports inconsistent ones. */
 #include "core/base/memory.h"
 #include "core/text/yaml.h"
 #include "experiment/claims.h"
@@ -28,7 +28,7 @@ static RtStatus read_size(const RtYaml *y, const RtYamlNode *n, uint32_t *width,
                         RT_MAX_IMAGE_SIDE);
 }
 
-/* A list of up to `room` texts; *count stays as it is where there is none. */
+/* A list of up to `room` texts; without a list *count stays unchanged. */
 static RtStatus read_labels(const RtYaml *y, const RtYamlNode *n, const char *key, uint32_t room,
                             char (*labels)[RT_MAX_LABEL], uint32_t *count) {
     const RtYamlNode *list = rt_yaml_get(y, n, key);
@@ -40,7 +40,7 @@ static RtStatus read_labels(const RtYaml *y, const RtYamlNode *n, const char *ke
     return RT_OK;
 }
 
-/* How much is measured, which `quick` may say again. */
+/* The amount of measuring, which `quick` may override. */
 static RtStatus read_scale(const RtYaml *y, const RtYamlNode *n, uint64_t *limit, uint32_t *rounds,
                            uint32_t *milliseconds) {
     RT_TRY(rt_yaml_u64(y, n, "limit", 1, RT_MAX_RAYS_A_KIND, limit));
@@ -75,7 +75,7 @@ static RtStatus read_workloads(const RtYaml *y, const RtYamlNode *n, uint32_t en
     return rt_yaml_place(y, status, n, "scene");
 }
 
-/* Leaves the candidate out on all workloads that its `scenes` do not name; none named: on none. */
+/* Leaves the candidate out on all workloads that its `scenes` do not name; without `scenes`, on none. */
 static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExperiment *experiment,
                             RtCandidate *candidate) {
     uint32_t on = 0;
@@ -96,7 +96,7 @@ static RtStatus read_scenes(const RtYaml *y, const RtYamlNode *list, const RtExp
     return RT_OK;
 }
 
-/* The name of a group of accelerators, which gnuplot reads between double quotes. */
+/* The name of a group of accelerators, which plots quote. */
 static RtStatus read_group(const RtYaml *y, const RtYamlNode *n, const char *key, char group[RT_MAX_LABEL]) {
     RT_TRY(rt_yaml_copy(y, n, key, RT_MAX_LABEL, group));
     for (const char *c = group; *c; c++) {
@@ -133,7 +133,7 @@ static RtStatus read_tolerances(const RtYaml *y, const RtYamlNode *n, double tol
     return RT_OK;
 }
 
-/* A label may belong to several candidates, each on other scenes: all of them are ours. */
+/* Several candidates on different scenes may share a label: all of them are ours. */
 static RtStatus read_published(const RtYaml *y, const RtYamlNode *n, RtExperiment *experiment) {
     RtPublishedSetup *published = &experiment->published;
     RT_TRY(rt_yaml_keys(y, n, "tables reasons? tolerance? ours?"));
@@ -181,7 +181,7 @@ static RtStatus read_baseline(const RtYaml *y, const RtYamlNode *n, RtExperiment
     return rt_yaml_place(y, rt_experiment_set_baseline(experiment, label, error), n, "baseline");
 }
 
-/* Understood even where it is not asked for, so that mistakes in it do not wait. */
+/* Parsed even without --quick, to find mistakes early. */
 static RtStatus read_quick(const RtYaml *y, const RtYamlNode *n, bool quick, RtExperiment *experiment) {
     uint64_t limit = experiment->limit;
     uint32_t rounds = experiment->rounds, milliseconds = experiment->milliseconds;
@@ -232,7 +232,7 @@ static RtStatus read_claims(const RtYaml *y, const RtYamlNode *list, RtExperimen
     return RT_OK;
 }
 
-/* Gives a failure of rt_experiment_check its place: `where` is "name", or "scenes[3]". */
+/* Adds the line to a failure of rt_experiment_check: `where` is "name", or "scenes[3]". */
 static RtStatus place(const RtYaml *y, RtStatus status, const char *where) {
     char key[RT_MAX_LABEL];
     unsigned index = 0;
@@ -276,17 +276,17 @@ static RtStatus read_experiment(const RtYaml *y, bool quick, RtExperiment *exper
     return read_claims(y, rt_yaml_get(y, n, "expect"), experiment, error);
 }
 
-/* ---- what the results depend on ---- */
+/* ---- the fingerprint ---- */
 
-/* Where line number `line` begins. */
+/* The start of line number `line`. */
 static size_t begin_of(const char *text, size_t length, uint32_t line) {
     size_t at = 0;
     for (; line > 1 && at < length; at++) line -= text[at] == '\n';
     return at;
 }
 
-/* Of the text without the lines of `finding` and `expect`, which are written, or written better, when the
- * results are there. Those that share a line with another key count. */
+/* The hash of the text without the lines of `finding` and `expect`, which may be edited after the run. They
+ * count if they share a line with another key. */
 static uint64_t fingerprint_of(const RtYaml *y, const char *text, size_t length) {
     XXH3_state_t *state = XXH3_createState();
     size_t from = 0;

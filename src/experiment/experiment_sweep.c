@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The scenes and accelerators of an experiment, one by one, from specs that may stand for several. */
+/* Adds scenes and accelerators to an experiment from specs that may be sweeps. */
 #include "experiment/experiment.h"
 
 #include <ctype.h>
@@ -11,7 +11,7 @@ bool rt_may_label(char c) {
     return isgraph((unsigned char)c) && !strchr("\"'`/\\$&<>@^{}", c);
 }
 
-/* Puts what was swept behind the label that all have in common. */
+/* Appends the swept values to the common label. */
 static RtStatus label_one(char label[RT_MAX_LABEL], const char *base, const RtSwept *swept, RtError *error) {
     char whole[RT_MAX_LABEL + RT_MAX_SWEPT * (RT_MAX_NAME + RT_MAX_SWEPT_CHARS + 2)];
     snprintf(whole, sizeof whole, "%s", base);
@@ -26,7 +26,7 @@ static RtStatus label_one(char label[RT_MAX_LABEL], const char *base, const RtSw
 
 /* ---- scenes ---- */
 
-/* The file's name without folder and extension, or the built-in as it is written. */
+/* The file's name without folder and extension, or the built-in's spec. */
 static void name_scene(const char *spec, bool file, char label[RT_MAX_LABEL]) {
     const char *slash = file ? strrchr(spec, '/') : NULL, *start = slash ? slash + 1 : spec;
     size_t length = file ? strcspn(start, ".") : strlen(start);
@@ -73,7 +73,7 @@ RtStatus rt_experiment_add_scenes(RtExperiment *experiment, const RtWorkload *li
 
 /* ---- accelerators ---- */
 
-/* Specs that are cut to labels may become alike. */
+/* Truncated specs may make equal labels. */
 static bool is_taken(const RtExperiment *experiment, const RtCandidate *candidate) {
     const RtCandidate *other = experiment->candidates;
     while (strcmp(other->label, candidate->label) != 0) other++;
@@ -110,7 +110,7 @@ RtStatus rt_experiment_add_accels(RtExperiment *experiment, const RtCandidate *l
     return RT_OK;
 }
 
-/* ---- what is swept ---- */
+/* ---- swept parameters ---- */
 
 static uint32_t add_keys(const RtSwept *swept, bool scene, RtSweptKey *keys, uint32_t count) {
     for (uint32_t i = 0; i < swept->count; i++) {

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Sums of what is known of one candidate, for what is not. */
+/* Sums over the known cells of one candidate, to estimate the others. */
 typedef struct RateEstimate {
     double seconds, rays; /* to trace them */
     double build, builds;
@@ -35,7 +35,7 @@ static double mean(double sum, double count, double other) {
     return count > 0 ? sum / count : other;
 }
 
-/* As often as rt_workload_build repeats it. */
+/* rt_workload_build repeats cheap builds. */
 static double build_seconds(double once) {
     return fmin(RT_MOST_BUILDS * once, RT_CHEAP_BUILD + once);
 }
@@ -62,7 +62,7 @@ static void add_cell(Forecast *f, const RateEstimate *rates, uint32_t t, uint32_
         add(f, cell->counted, rays * ray);
     }
     if (f->count_only) return;
-    /* What is thinned is timed together with the baseline on its rays. */
+    /* A thinned accelerator is timed together with the baseline on its rays. */
     double runs = (1 + e->rounds) * (stride > 1 ? 1.0 + e->baseline_count : 1.0);
     add(f, cell->timed, runs * fmax(1e-3 * e->milliseconds, rays * ray));
 }

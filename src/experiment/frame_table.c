@@ -41,7 +41,7 @@ static uint32_t without_of(const RtExperiment *experiment, uint32_t workload) {
     return rt_candidate_find(experiment, experiment->frame.without, workload);
 }
 
-/* The accelerator below an overlay, where it is measured too; candidate_count: there is none. */
+/* The accelerator below an overlay, if it is measured too; else candidate_count. */
 static uint32_t below_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
     const RtExperiment *experiment = results->experiment;
     const char *plus = strchr(rt_build_at(results, workload, candidate)->spec, '+');
@@ -71,7 +71,7 @@ static double factor_of(const RtResults *results, uint32_t workload, uint32_t ca
     return of(&other) / of(&own);
 }
 
-/* By time, or by object tests where nothing was timed. */
+/* By time, or by object tests if nothing was timed. */
 static double gain_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
     return factor_of(results, workload, candidate, results->experiment->count_only ? tests_of : seconds_of);
 }
@@ -221,8 +221,8 @@ static const char *figure(double value, char room[16]) {
     return room;
 }
 
-/* Of the compared candidates that stand on `below` the one with the next smaller gain after `previous`;
- * candidate_count is that before the first, and after the last. */
+/* The compared candidate on top of `below` with the next smaller gain after `previous`; candidate_count
+ * before the first and after the last. */
 static uint32_t next_of(const RtResults *results, uint32_t t, uint32_t below, uint32_t previous) {
     const uint32_t none = results->experiment->candidate_count;
     const double least = previous == none ? 0 : gain_of(results, t, previous);
@@ -245,8 +245,8 @@ static bool is_level(const RtResults *results, uint32_t t, uint32_t winner, uint
     return !results->experiment->count_only && low <= cost_of(results, t, winner, RT_FRAME_ALL).high;
 }
 
-/* "octree follows with 230 times, grid with 122." Those that are no overlays, without the winner; an overlay
- * that won has another base. */
+/* "octree follows with 230 times, grid with 122." All that are no overlays, without the winner. A winning
+ * overlay has another base. */
 static void say_followers(Text *text, const RtResults *results, uint32_t t, uint32_t winner) {
     const RtExperiment *experiment = results->experiment;
     const uint32_t none = experiment->candidate_count;
@@ -285,7 +285,7 @@ static void say_overlays(Text *text, const RtResults *results, uint32_t t, uint3
     }
 }
 
-/* The fastest of all but the yardstick. */
+/* The fastest of all except the yardstick. */
 static void say_fastest(Text *text, const RtResults *results, uint32_t t, const RtFrameCost *without) {
     const RtExperiment *experiment = results->experiment;
     uint32_t best = experiment->candidate_count;
@@ -338,7 +338,7 @@ void rt_frame_title(const RtResults *results, uint32_t workload, char out[RT_MAX
         w->rays[RT_RAY_REFLECTION] + w->rays[RT_RAY_TRANSMISSION]);
 }
 
-/* ---- for the eye ---- */
+/* ---- to read ---- */
 
 void rt_frame_legend(const RtExperiment *experiment, char out[RT_MAX_FRAME_SENTENCE]) {
     snprintf(

@@ -26,7 +26,7 @@ RtStatus rt_journal_open(RtJsonLines *journal, const char *path, const RtExperim
     return status;
 }
 
-/* Behind a new header, all lines but those of accelerators whose plugin has changed. */
+/* A new header, then all lines except those of accelerators whose plugin has changed. */
 static json_t *lines_without(const json_t *lines, const RtExperiment *experiment, const RtOnly *only) {
     json_t *kept = json_array(), *line, *header = header_json(experiment, only);
     json_t *changed = rt_plugins_changed(json_object_get(json_array_get(lines, 0), "plugins"),
@@ -78,16 +78,15 @@ static RtStatus check_experiment(const char *path, const json_t *header, const R
     bool quick = json_is_true(json_object_get(header, "quick"));
     bool good;
     if (rt_json_parse_hex(json_object_get(header, "hash"), &good) != experiment->fingerprint || !good) {
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "%s: this is a run of another experiment, or of another version of it ('%s'): start over "
-            "and lose it with --force, or give another --out",
-            path, name ? name : "");
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: this is a run of another experiment, or of another version of it ('%s'): replace "
+                       "it with --force, or choose another --out",
+                       path, name ? name : "");
     }
     if (quick == experiment->quick) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
-                   "%s: this is a run %s --quick: start over and lose it with --force, or give another --out",
-                   path, quick ? "with" : "without");
+                   "%s: this is a run %s --quick: replace it with --force, or choose another --out", path,
+                   quick ? "with" : "without");
 }
 
 static RtStatus check_build(const char *path, const json_t *header, const RtOnly *only, RtError *error) {
@@ -95,21 +94,19 @@ static RtStatus check_build(const char *path, const json_t *header, const RtOnly
     json_int_t shard = json_integer_value(json_object_get(header, "shard")),
                shards = json_integer_value(json_object_get(header, "shards"));
     if (shard != only->shard || shards != only->shards) {
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "%s: this is a run with another --shard (%d/%d): start over and lose it with --force, or "
-            "give another --out",
-            path, (int)shard, (int)shards);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: this is a run with another --shard (%d/%d): replace it with --force, or choose "
+                       "another --out",
+                       path, (int)shard, (int)shards);
     }
     if (build && strcmp(build, rt_build_alone()) == 0) return RT_OK;
     return rt_fail(
         error, RT_BAD_INPUT,
-        "%s: this run was begun by another build (%s; this is %s): start over and lose it with --force, or "
-        "give another --out",
+        "%s: another build began this run (%s; this is %s): replace it with --force, or choose another --out",
         path, build ? build : "unknown", rt_build_alone());
 }
 
-/* Where ratios refer to an accelerator of the plugin, nothing of the run would stay. */
+/* A changed baseline invalidates the whole run. */
 static RtStatus check_plugins(const char *path, const RtExperiment *experiment, const json_t *changed,
                               bool renew, RtError *error) {
     char sentence[RT_MAX_PLUGIN_CHANGE];
@@ -122,13 +119,13 @@ static RtStatus check_plugins(const char *path, const RtExperiment *experiment, 
     rt_plugins_change_format(name, json_object_get(changed, name), "when this run was begun", "now",
                              sentence);
     if (baseline)
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: %s, and so is the baseline: start over and lose this run with --force, or give "
-                       "another --out",
-                       path, sentence);
+        return rt_fail(
+            error, RT_BAD_INPUT,
+            "%s: %s, and so is the baseline: replace this run with --force, or choose another --out", path,
+            sentence);
     return rt_fail(error, RT_BAD_INPUT,
-                   "%s: %s: measure its cells again and keep all others with --renew, start over and lose "
-                   "all with --force, or give another --out",
+                   "%s: %s: measure its cells again and keep all others with --renew, replace the run with "
+                   "--force, or choose another --out",
                    path, sentence);
 }
 

@@ -72,8 +72,8 @@ RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *err
     RT_TRY(rt_path_join(directory, "manifest.json", path, error));
     if (!rt_file_exists(path)) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s is not a finished result directory: it has no manifest.json; what --only or an "
-                       "interruption left out is measured by `raytally run EXPERIMENT --out %s --resume`",
+                       "%s is not a finished result directory: it has no manifest.json; `raytally run "
+                       "EXPERIMENT --out %s --resume` measures what is missing",
                        directory, directory);
     }
     *manifest = json_load_file(path, 0, &fault);
@@ -88,7 +88,7 @@ static RtStatus load_experiment(const json_t *manifest, const char *directory, R
     const json_t *hash = json_object_get(manifest, "hash");
     if (!file || !json_is_string(hash)) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s/manifest.json does not say what was run: run the experiment by its YAML",
+                       "%s/manifest.json does not say what was run: give the YAML of the experiment",
                        directory);
     }
     RT_TRY(rt_experiment_load(experiment, file, json_is_true(json_object_get(manifest, "quick")), error));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The manifest of a result: what was run, and with what. */
+/* The manifest of a result: the experiment, and the machine and build that ran it. */
 #ifndef RT_EXPERIMENT_MANIFEST_H
 #define RT_EXPERIMENT_MANIFEST_H
 
@@ -14,8 +14,9 @@ RtStatus rt_manifest_write(const RtResults *results, const RtWorkloadOptions *op
 /* Reads it back; the caller owns the reference. */
 RtStatus rt_manifest_read(const char *directory, json_t **manifest, RtError *error);
 
-/* Loads the experiment that the manifest of `directory` is of, quick if that was, from the file that it
- * names, seen from here; its scenes are found from where it lies. RT_MISMATCH where it has changed since. */
+/* Loads the experiment of the manifest in `directory`, in the same variant, from the file that it names,
+ * relative to the current folder; its scenes are relative to that file. RT_MISMATCH if the file has changed.
+ */
 RtStatus rt_manifest_experiment(const char *directory, RtExperiment *experiment, RtError *error);
 
 #endif

@@ -28,7 +28,7 @@ bool rt_manifest_is_missing(const json_t *manifest, uint32_t i) {
     return json_is_true(json_object_get(entry_at(manifest, i), "missing"));
 }
 
-/* Of one layer, whose name ends before its parameters: the first is behind a colon, others behind commas. */
+/* In one layer, NAME:KEY=VALUE,KEY=VALUE. */
 static bool is_whole_in(const char *layer, const char *owner, const char *key) {
     size_t name = strcspn(layer, ":+"), length = strlen(key);
     if (name != strlen(owner) || strncmp(layer, owner, name) != 0) return true;

@@ -30,7 +30,7 @@ static void print_title(const RtResults *results, uint32_t t, FILE *out) {
     fputc('\n', out);
 }
 
-/* A heading before the rows of each kind of rays, and labels that are long on lines of their own. */
+/* Prints a heading before the rows of each kind of rays, and long labels on their own lines. */
 void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workload, FILE *out) {
     RtResultRow row = {.results = results, .workload = workload};
     const RtTable table = rt_result_table(which, &row);
@@ -58,7 +58,7 @@ void rt_print_rows(const RtResults *results, RtResultTable which, uint32_t workl
     }
 }
 
-/* The least and the most rounds that any cell was timed for; 0 if none was. */
+/* The fewest and the most rounds of any cell; 0 if nothing was timed. */
 static uint32_t rounds_of(const RtResults *results, uint32_t t, uint32_t *least) {
     uint32_t most = 0;
     for (uint32_t c = 0; c <= results->experiment->candidate_count; c++) {
@@ -72,36 +72,36 @@ static uint32_t rounds_of(const RtResults *results, uint32_t t, uint32_t *least)
     return most;
 }
 
-/* What the ratios refer to, and what intervals are worth. */
+/* The baseline of the ratios, and the coverage of the intervals. */
 static void print_ratios(const RtResults *results, uint32_t least, uint32_t most, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char title[RT_MAX_INTERVAL_TITLE], rounds[32], text[RT_MAX_SENTENCE];
     rt_interval_title(experiment, title);
     snprintf(rounds, sizeof rounds, least == most ? "%" PRIu32 : "%" PRIu32 " to %" PRIu32, least, most);
     snprintf(text, sizeof text,
-             "Ratios are of throughput to that of %s, paired in each of %s round%s; intervals of %s.",
+             "Ratios compare throughput with that of %s, paired within each of %s round%s; intervals of %s.",
              rt_baseline_label(experiment), rounds, rt_plural(most), title);
     rt_print_wrapped(text, out);
     if (experiment->baseline_count == 1) return;
-    snprintf(text, sizeof text, "%s: of %" PRIu32 " settings the fastest for each kind, which is shown.",
+    snprintf(text, sizeof text,
+             "%s: the fastest of %" PRIu32 " settings for each kind of rays; the table shows it.",
              experiment->best, experiment->baseline_count);
     rt_print_wrapped(text, out);
 }
 
-/* What is measured on part of the rays, and why its ratio is not the quotient of the throughputs beside it.
- */
+/* Accelerators measured on a part of the rays: their ratios are not the quotients of the throughputs. */
 static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE *out) {
     const RtExperiment *experiment = results->experiment;
     char text[RT_MAX_SENTENCE];
     for (uint32_t c = 0; c < experiment->candidate_count; c++) {
         const RtCandidate *candidate = &experiment->candidates[c];
         if (candidate->ray_stride == 1 || !rt_candidate_runs(experiment, c, t)) continue;
-        size_t n = (size_t)snprintf(text, sizeof text, "* %s is measured on one of %" PRIu64 " rays.",
+        size_t n = (size_t)snprintf(text, sizeof text, "* %s is measured on one in %" PRIu64 " rays.",
                                     candidate->label, candidate->ray_stride);
         if (timed) {
             snprintf(text + n, sizeof text - n,
-                     " Its ratio is to %s on those same rays, and so not the quotient of the throughputs "
-                     "above.",
+                     "  Its ratio compares with %s on those same rays, and so is not the quotient of the "
+                     "throughputs above.",
                      rt_baseline_label(experiment));
         }
         rt_print_wrapped(text, out);
@@ -111,7 +111,7 @@ static void print_strides(const RtResults *results, uint32_t t, bool timed, FILE
 static void print_cells(const RtResults *results, uint32_t t, FILE *out) {
     uint32_t least = 0, most = rounds_of(results, t, &least);
     const bool timed = most > 0;
-    rt_print_wrapped("Object tests, extent tests and steps are those of a ray.", out);
+    rt_print_wrapped("Object tests, extent tests and steps are per ray.", out);
     if (timed) print_ratios(results, least, most, out);
     rt_print_rows(results, timed ? RT_CELLS : RT_COUNTED_CELLS, t, out);
     print_strides(results, t, timed, out);
@@ -134,7 +134,7 @@ void rt_print_results(const RtResults *results, RtResultTable which, FILE *out) 
 
 /* ---- hardware counters ---- */
 
-/* The first reason; NULL where anything was counted. */
+/* The first reason; NULL if anything was counted. */
 static const char *find_why(const RtResults *results) {
     const char *why = NULL;
     for (RtCellCursor at = {0}; rt_results_next(results, &at);) {
@@ -176,18 +176,16 @@ void rt_null_sentence(const RtResults *results, char out[RT_MAX_SENTENCE]) {
     uint32_t misses = runs - straddling, rounds = results->experiment->rounds;
     double coverage = rt_interval_coverage(rounds), chance = 1 - coverage;
     if (misses == 0) {
-        n += snprintf(out + n, room - (size_t)n, ", as they should.");
+        n += snprintf(out + n, room - (size_t)n, ", as expected.");
     } else if (misses <= 1 + 2 * chance * runs) {
-        n += snprintf(out + n, room - (size_t)n, "; %.3g %% of all may miss by chance.", 100 * chance);
+        n += snprintf(out + n, room - (size_t)n, "; %.3g %% may miss it by chance.", 100 * chance);
     } else {
-        n += snprintf(out + n, room - (size_t)n,
-                      ": this machine was not quiet; take small differences for noise.");
+        n += snprintf(out + n, room - (size_t)n, ": the machine was busy; treat small differences as noise.");
     }
     if (rounds >= RT_FULL_ROUNDS) return;
     snprintf(out + n, room - (size_t)n,
-             " Rounds: %" PRIu32
-             ", too few for 95 %%; an interval is all that was measured and holds the median in "
-             "%.3g %%. Take %d or more.",
+             " Rounds: %" PRIu32 ", too few for 95 %%; an interval spans all measurements and holds the "
+                                 "median with %.3g %%. Use %d or more.",
              rounds, 100 * coverage, RT_FULL_ROUNDS);
 }
 

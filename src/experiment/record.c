@@ -46,11 +46,10 @@ json_t *rt_record_json(const RtRecord *record, const void *from) {
 
 void rt_record_reject(RtRecordReader *reader, const char *key, const char *wanted) {
     if (reader->status != RT_OK) return;
-    reader->status =
-        rt_fail_at(reader->error, reader->path, reader->line, 0,
-                   "'%s' is not %s: the journal is damaged, or of another version of raytally. Remove "
-                   "this line, and --resume measures anew what it said",
-                   key, wanted);
+    reader->status = rt_fail_at(reader->error, reader->path, reader->line, 0,
+                                "'%s' is not %s: the journal is damaged, or from another version of "
+                                "raytally. Remove this line; --resume then measures it again",
+                                key, wanted);
 }
 
 static uint64_t take_integer(RtRecordReader *reader, const RtMember *m, const json_t *value) {
@@ -78,7 +77,7 @@ uint64_t rt_json_parse_hex(const json_t *value, bool *good) {
 double rt_record_seconds(RtRecordReader *reader, const json_t *value, const char *key) {
     const double number = json_number_value(value);
     if (json_is_number(value) && number >= 0) return number;
-    rt_record_reject(reader, key, "made of numbers from 0 on");
+    rt_record_reject(reader, key, "a number, 0 or more");
     return 0;
 }
 

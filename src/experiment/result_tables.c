@@ -12,7 +12,7 @@ typedef RtResultRow Row;
 
 /* ---- fields ---- */
 
-/* How often a candidate is measured; the null run is the baseline once more. */
+/* The null run is the baseline once more. */
 static uint64_t ray_stride_of(const Row *r) {
     const RtExperiment *e = r->results->experiment;
     return e->candidates[r->candidate < e->candidate_count ? r->candidate : e->baseline].ray_stride;
@@ -28,7 +28,7 @@ static const char *kind_of(const Row *r) {
     return rt_experiment_kind_name(r->results->experiment, r->kind);
 }
 
-/* A label that is too long to stand beside figures stands on a line before them. */
+/* A label too long to fit beside the figures is printed on a line before them. */
 static RtField short_label_of(const Row *r) {
     char label[RT_MAX_EYE_LABEL];
     rt_result_eye_label(r, label);
@@ -39,15 +39,15 @@ static RtField estimate(const RtEstimate *e, double unit) {
     return rt_field_interval(e->median / unit, e->low / unit, e->high / unit);
 }
 
-/* Three digits, for a number of rays. */
+/* The number of rays in three digits. */
 static RtField break_even_of(const Row *r) {
     const double rays = rt_results_break_even(r->results, r->workload, r->candidate), count = fabs(rays);
     if (isnan(rays)) return rt_field_missing();
-    if (isinf(rays)) return rt_field_text("never ahead");
-    if (rays == 0) return rt_field_text("always ahead");
+    if (isinf(rays)) return rt_field_text("never faster");
+    if (rays == 0) return rt_field_text("always faster");
     double unit = 1;
     while (count / unit >= 1000) unit *= 10;
-    return rt_field_print("ahead %s %.0f", rays > 0 ? "from" : "up to", unit * round(count / unit));
+    return rt_field_print("faster %s %.0f", rays > 0 ? "from" : "up to", unit * round(count / unit));
 }
 
 static RtField baseline_of(const Row *r) {
@@ -60,7 +60,7 @@ void rt_result_eye_label(const RtResultRow *r, char out[RT_MAX_EYE_LABEL]) {
              ray_stride_of(r) > 1 ? " *" : "");
 }
 
-/* A counter, unless it is not known how often it counted a ray. */
+/* A counter; missing if its value per ray is unknown. */
 static RtField known(uint64_t counter, double a_ray) {
     return isnan(a_ray) ? rt_field_missing() : rt_field_integer(counter);
 }
@@ -81,7 +81,7 @@ static const void *build_of(const void *row) {
     return &((const Row *)row)->build->shape.build;
 }
 
-/* Hardware counters have rounds and so a machine and threads of their own. */
+/* Hardware counters have their own rounds, and so their own machine and threads. */
 static const RtMachine *machine_of(const Row *r) {
     return &r->results->machines[r->which == RT_HARDWARE ? r->cell->hardware.machine : r->cell->machine];
 }
@@ -308,8 +308,8 @@ static const RtColumnGroup totals_more[] = {
 
 /* ---- rows ---- */
 
-/* A workload after the other, in each an accelerator after the other, the null run last, in each all
- * kinds; for the eye and bench, of one workload, a kind after the other. */
+/* Tables of all workloads: by workload, then accelerator with the null run last, then kind. Tables for the
+ * terminal and bench: one workload, by kind, then accelerator. */
 static bool is_by_workload(RtResultTable which) {
     return which <= RT_HARDWARE;
 }
@@ -331,13 +331,13 @@ static void find(Row *r, size_t i) {
     r->cell = rt_cell_at(r->results, r->workload, r->candidate, r->kind);
 }
 
-/* One of the baseline's candidates that is not the fastest of them on these rays. */
+/* Whether the candidate is one of the baseline's, but not the fastest of them on these rays. */
 static bool is_lost(const Row *r, const RtCell *cell) {
     return cell->timed && r->candidate < r->results->experiment->candidate_count &&
            rt_candidate_is_baseline(r->results->experiment, r->candidate) && cell->baseline != r->candidate;
 }
 
-/* Whether any of the candidate's cells is for the eye. */
+/* Whether any cell of the candidate is shown. */
 static bool is_shown(const Row *r) {
     for (uint32_t k = 0; k < r->results->experiment->kind_count; k++) {
         const RtCell *cell =
@@ -395,7 +395,7 @@ static bool is_timed(const RtResults *results, uint32_t t) {
     return false;
 }
 
-/* Time, or object tests, which are exact. */
+/* Time, or object tests, which have no interval. */
 static RtEstimate weigh(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind, bool timed) {
     const RtCost cost = rt_results_cost(results, t, c, kind);
     const double tests = cost.object_tests;
@@ -421,7 +421,7 @@ static RtStanding standing_of(const void *row) {
     return rt_standing(r->results, r->workload, r->candidate, is_total(r) ? RT_ALL_RAYS : r->kind);
 }
 
-/* ---- what is swept ---- */
+/* ---- swept parameters ---- */
 
 static RtField get_swept(const void *row, const RtTableColumn *column) {
     const Row *r = row;
@@ -432,7 +432,7 @@ static RtField get_swept(const void *row, const RtTableColumn *column) {
     return rt_swept_number(value, &number) ? rt_field_real(number) : rt_field_missing();
 }
 
-/* A column for each swept parameter at the end, where those of all experiments are alike up to there. */
+/* Appends a column for each swept parameter; the columns before are the same in all experiments. */
 static void add_swept(RtTable *table, Row *row) {
     row->swept_count = rt_experiment_swept(row->results->experiment, row->swept);
     for (uint32_t i = 0; i < row->swept_count; i++) {

@@ -107,7 +107,8 @@ RtStatus rt_results_check_broken(const RtResults *results, RtError *error) {
         if (!at.cell->broken && !rt_build_at(results, at.workload, at.candidate)->broken) continue;
         return rt_fail(error, RT_BROKEN,
                        "'%s' is broken and left out, at least on %s: see above; `raytally verify --accel %s` "
-                       "says more. All other accelerators are measured",
+                       "says more. All other "
+                       "accelerators were measured",
                        e->candidates[at.candidate].label, e->workloads[at.workload].label,
                        e->candidates[at.candidate].spec);
     }
@@ -135,8 +136,8 @@ bool rt_results_has_kind(const RtResults *results, uint32_t workload, RtRayKind 
     return false;
 }
 
-/* A count per ray. It is unknown where nothing was counted, and where the counter stayed at 0 in an
- * accelerator that does not count everything (Embree's own boxes). */
+/* A count per ray. Unknown if nothing was counted, or if the counter stayed at 0 in an accelerator that does
+ * not count everything (Embree's own boxes). */
 static double per_ray(const RtCell *cell, const RtBuildResult *build, uint64_t counter) {
     bool known = cell->counted && (counter || build->counts);
     return known ? (double)counter / (double)cell->tally.rays : (double)NAN;

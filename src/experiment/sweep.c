@@ -26,8 +26,7 @@ bool rt_swept_number(const char *value, double *number) {
            isfinite(*number);
 }
 
-/* Evenly: the largest of the steps, or of the quotients, is not much larger than the least. Of two values
- * those that are more than fourfold. */
+/* Compares the spread of the quotients with that of the steps. Two values: a factor above four. */
 bool rt_swept_logarithmic(const double *values, uint32_t count) {
     double quotient[2] = {INFINITY, 0}, step[2] = {INFINITY, 0};
     if (count < 2 || values[0] <= 0) return false;
@@ -55,16 +54,16 @@ void rt_swept_name(const RtSwept *swept, const char *but, char *out, size_t room
 static RtStatus fail_range(const char *text, int length, RtError *error) {
     return rt_fail(
         error, RT_BAD_INPUT,
-        "'%.*s' is no range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a "
-        "factor above 1 and LOW above 0, and LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is "
-        "1|4|16",
+        "'%.*s' is no range: write LOW..HIGH+STEP with a step above 0, or LOW..HIGH*FACTOR with a factor "
+        "above 1 and LOW above 0, LOW below HIGH, as in 1..9+2 or 1e2..1e7*10; a list is 1|4|16",
         length, text);
 }
 
 static RtStatus add_value(RtSweptParam *param, const char *text, size_t length, RtError *error) {
     if (length == 0 || length >= RT_MAX_SWEPT_CHARS) {
-        return rt_fail(error, RT_BAD_INPUT, "'%.*s' of %s is no value for a list: one has 1..%d characters",
-                       (int)length, text, param->key, RT_MAX_SWEPT_CHARS - 1);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "'%.*s' of %s is no value for a list: values have 1..%d characters", (int)length, text,
+                       param->key, RT_MAX_SWEPT_CHARS - 1);
     }
     for (uint32_t i = 0; i < param->count; i++) {
         if (strlen(param->values[i]) == length && strncmp(param->values[i], text, length) == 0) return RT_OK;
@@ -77,7 +76,7 @@ static RtStatus add_value(RtSweptParam *param, const char *text, size_t length, 
     return RT_OK;
 }
 
-/* A number that is all of text[0..length), without which there is no range. */
+/* Whether all of text[0..length) is a number. */
 static bool read_number(const char *text, size_t length, double *number) {
     char copy[RT_MAX_SWEPT_CHARS];
     if (length == 0 || length >= sizeof copy) return false;
@@ -85,7 +84,7 @@ static bool read_number(const char *text, size_t length, double *number) {
     return rt_swept_number(copy, number);
 }
 
-/* Where the step or factor of what follows the dots begins: a '+' behind an e is that of an exponent. */
+/* The start of the step or factor after the dots; a '+' after an e belongs to an exponent. */
 static size_t find_step(const char *text, size_t length) {
     for (size_t i = 1; i < length; i++) {
         if (text[i] == '*' || (text[i] == '+' && tolower((unsigned char)text[i - 1]) != 'e')) return i;
@@ -93,7 +92,7 @@ static size_t find_step(const char *text, size_t length) {
     return length;
 }
 
-/* Values are not added up, so that no error grows; nine digits hide what there is. */
+/* Multiplies instead of adding, to avoid accumulated errors; nine digits hide the rest. */
 static RtStatus add_range(RtSweptParam *param, const char *text, size_t length, size_t dots, bool whole,
                           RtError *error) {
     const char *above = text + dots + 2;
@@ -147,12 +146,12 @@ static bool is_whole(const char *owner, const char *key, bool scene, const json_
     return false;
 }
 
-/* A '+' before a digit or a dot is that of a step or an exponent, as in spec.c. */
+/* A '+' before a digit or a dot belongs to a step or an exponent, as in spec.c. */
 static bool ends_layer(const char *c, bool scene) {
     return *c == '+' && !scene && !isdigit((unsigned char)c[1]) && c[1] != '.';
 }
 
-/* The value at `start` of a layer's parameter, whose name ends before the '='. */
+/* Reads the value at `start`, after the '=' of a parameter of `layer`. */
 static RtStatus read_param(RtSweep *sweep, const char *layer, size_t start, size_t length, bool scene,
                            const json_t *manifest, RtError *error) {
     const char *text = sweep->text, *value = text + start;
@@ -229,7 +228,7 @@ void rt_sweep_base(const RtSweep *sweep, char *out, size_t room) {
         for (; from < to && used + 1 < room; from++) out[used++] = text[from];
         if (p == sweep->param_count) break;
         from = param->start + param->length;
-        /* "grid:" and what followed: the separator before goes, or the comma behind. */
+        /* Drops the comma after the parameter, or else the separator before it. */
         if (text[from] == ',')
             from++;
         else if (used > 0)

@@ -18,7 +18,7 @@ void rt_figure_measured(const RtFigure *figure, char out[RT_MAX_FIGURE]) {
              figure->measured);
 }
 
-/* ---- looking up ---- */
+/* ---- figures ---- */
 
 const RtFigure *rt_published_figure(const RtPublished *published, const RtPublishedRow *row,
                                     RtColumn column) {
@@ -50,9 +50,9 @@ bool rt_published_columns(const RtPublished *published, uint32_t workload, bool 
     return any;
 }
 
-/* ---- what was measured ---- */
+/* ---- measured figures ---- */
 
-/* Of all ray kinds together; no rays where nothing was counted, or not every kind that others were. */
+/* Over all ray kinds; no rays if nothing was counted, or a kind that others counted is missing. */
 static RtTally tally_of(const RtResults *results, uint32_t workload, uint32_t candidate) {
     RtTally sum = {0};
     for (int k = 0; k < RT_RAY_KIND_COUNT; k++) {
@@ -85,7 +85,7 @@ static double count_rays(const RtResults *results, uint32_t workload, RtColumn c
 static double measure_row(const RtResults *results, const RtPublishedRow *row, RtColumn column) {
     const RtDescription *shape = &rt_build_at(results, row->workload, row->candidate)->shape;
     RtTally tally = tally_of(results, row->workload, row->candidate);
-    double rays = (double)tally.rays; /* 0: what is a ray then is NAN */
+    double rays = (double)tally.rays; /* 0: figures per ray are NAN */
     switch (column) {
     case RT_COLUMN_interior: return (double)shape->interior;
     case RT_COLUMN_leaves: return (double)shape->leaves;
@@ -99,7 +99,7 @@ static double measure_row(const RtResults *results, const RtPublishedRow *row, R
     }
 }
 
-/* NAN where it was not measured. */
+/* NAN if it was not measured. */
 static double measure(const RtResults *results, const RtPublishedRow *row, RtColumn column) {
     if (!results->workloads[row->workload].known) return (double)NAN;
     if (row->of_rays) return count_rays(results, row->workload, column);
@@ -135,9 +135,9 @@ static uint32_t find_reason(const RtPublished *published, const RtFigure *figure
     return RT_NO_REASON;
 }
 
-/* ---- what is least ---- */
+/* ---- the best rows ---- */
 
-/* A row's figure per ray of ours, NAN where it has none. */
+/* A row's figure per ray of ours, or NAN. */
 static double per_ray(const RtPublished *published, const RtPublishedRow *row, RtColumn column,
                       const RtTally *rays) {
     const RtFigure *figure = rt_published_figure(published, row, column);
@@ -211,12 +211,11 @@ static RtStatus fail_outside(const RtPublished *published, const RtFigure *figur
     char name[RT_MAX_ROW_NAME], measured[RT_MAX_FIGURE];
     rt_published_row_name(row, name);
     rt_figure_measured(figure, measured);
-    return rt_fail(
-        error, RT_MISMATCH,
-        "%u published figures are missed by more than their tolerance, without a reason; the first: %s of "
-        "%s on %s is %s, published is %s",
-        count, rt_column_name(figure->column), name, published->experiment->workloads[row->workload].label,
-        measured, figure->text);
+    return rt_fail(error, RT_MISMATCH,
+                   "%u measured figures differ from the published ones by more than their tolerance, without "
+                   "a reason; the first: %s of %s on %s is %s, published is %s",
+                   count, rt_column_name(figure->column), name,
+                   published->experiment->workloads[row->workload].label, measured, figure->text);
 }
 
 static RtStatus check_figures(const RtPublished *published, RtError *error) {
@@ -234,10 +233,9 @@ static RtStatus check_figures(const RtPublished *published, RtError *error) {
 static RtStatus check_reasons(const RtPublished *published, RtError *error) {
     for (uint32_t i = 0; i < published->reason_count; i++) {
         if (published->reasons[i].used) continue;
-        return rt_fail_at(
-            error, published->reasons_path, published->reasons[i].line, 0,
-            "no figure needs this reason: all that it applies to are within their tolerance, not measured, "
-            "or have an earlier one");
+        return rt_fail_at(error, published->reasons_path, published->reasons[i].line, 0,
+                          "no figure needs this reason: all figures that it applies to are within their "
+                          "tolerance, not measured, or have an earlier reason");
     }
     return RT_OK;
 }
@@ -251,7 +249,7 @@ static RtStatus check_best(const RtPublished *published, RtError *error) {
             const RtBest *best = &published->best[t][m];
             if (best->row == RT_NOT_MEASURED || rt_best_is_ahead(best)) continue;
             return rt_fail(error, RT_MISMATCH,
-                           "on %s none of ours needs less than the best published row: %s are %.4g per ray, "
+                           "on %s none of ours is better than the best published row: %s are %.4g per ray, "
                            "published %.4g",
                            experiment->workloads[t].label, rt_measure_name((RtMeasure)m), best->ours,
                            best->published);
@@ -260,7 +258,7 @@ static RtStatus check_best(const RtPublished *published, RtError *error) {
     return RT_OK;
 }
 
-/* A status of the check, though a file is its place. */
+/* The status of the check, with a place in a file. */
 static RtStatus as_mismatch(RtStatus status, RtError *error) {
     if (status != RT_OK && error) error->status = RT_MISMATCH;
     return status == RT_OK ? RT_OK : RT_MISMATCH;

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Published figures beside measured ones.
+/* Published figures compared with measured ones.
  *
  * A table is a CSV file with a row per published row. Columns: scene and source; then accel, the label of the
- * candidate that measures the same (empty: nothing does), structure and parameters, how the row is called,
- * and tests_per, what its object tests are divided by: ray or hit (a ray that hits); then any of RtColumn.
- * Figures stand as they were printed, and agree where they differ by no more than the tolerance and, of those
- * that are not whole numbers, half a unit of the last digit. build_seconds and trace_seconds may be there,
- * too; other machines' times are not compared.
+ * corresponding candidate (empty: none), structure and parameters, the name of the row, and tests_per, the
+ * divisor of its object tests: ray or hit (a ray that hits); then any of RtColumn. Figures are written as
+ * printed. They agree if they differ by at most the tolerance, plus half a unit of the last digit for figures
+ * that are not whole numbers. build_seconds and trace_seconds are allowed but not compared, since they are
+ * other machines' times.
  *
- * Figures of structures and per-ray figures are those of the row's candidate, over all ray kinds of the
- * experiment together; those of rays are of the ray sets.
+ * Figures of structures and per-ray figures are compared with the row's candidate, over all ray kinds of the
+ * experiment; figures of rays with the ray sets.
  *
- * A figure outside its tolerance must have a reason: a row of a CSV file with the columns scene, source,
- * accel, column and reason, the first four being patterns as in file names (* is anything). The first reason
- * that fits counts. A reason that no figure needs is stale; both fail the check. So does a scene on which
- * none of the candidates that the experiment calls `ours` needs fewer object tests per ray than every
- * published row, and fewer tests and steps. */
+ * A figure outside its tolerance needs a reason: a row of a CSV file with the columns scene, source, accel,
+ * column and reason, the first four being patterns as in file names (* is anything). The first matching
+ * reason counts. The check fails for a figure without a reason, for a reason that no figure needs, and for a
+ * scene on which no candidate that the experiment calls `ours` needs fewer object tests per ray, and fewer
+ * tests and steps, than every published row. */
 #ifndef RT_LITERATURE_PUBLISHED_H
 #define RT_LITERATURE_PUBLISHED_H
 
@@ -32,7 +32,7 @@ typedef struct RtPublishedRow {
     char source[RT_MAX_LABEL], structure[RT_MAX_LABEL], parameters[RT_MAX_LABEL], accel[RT_MAX_LABEL];
     uint32_t workload;
     uint32_t candidate;    /* or RT_NOT_MEASURED */
-    bool of_rays;          /* of a table without structures */
+    bool of_rays;          /* from a table without structures */
     bool per_hit;          /* object tests are divided by rays that hit */
     uint32_t first, count; /* its figures */
 } RtPublishedRow;
@@ -44,26 +44,26 @@ typedef struct RtFigure {
     RtColumn column;
     char text[RT_MAX_FIGURE]; /* as published */
     double published, half_unit;
-    double measured;  /* NAN where it is not */
-    double deviation; /* of what was measured, in percent */
+    double measured;  /* or NAN */
+    double deviation; /* of the measured figure, in percent */
     RtJudgement judgement;
-    uint32_t reason; /* of one that is outside: its number, or RT_NO_REASON */
+    uint32_t reason; /* of a figure outside its tolerance: its number, or RT_NO_REASON */
 } RtFigure;
 
 typedef struct RtReason {
     char scene[RT_MAX_LABEL], source[RT_MAX_LABEL], accel[RT_MAX_LABEL], column[RT_MAX_LABEL];
     char text[RT_MAX_REASON];
-    uint32_t line, used; /* of its file; figures that need it */
+    uint32_t line, used; /* in its file; number of figures that need it */
 } RtReason;
 
-/* What is least: object tests a ray, or object tests and steps a ray. Rows per hit are taken per ray of
- * ours. */
+/* The compared cost: object tests per ray, or object tests and steps per ray. Rows per hit are converted to
+ * our rays. */
 typedef enum RtMeasure { RT_BEST_TESTS, RT_BEST_TESTS_AND_STEPS, RT_MEASURE_COUNT } RtMeasure;
 
 typedef struct RtBest {
-    uint32_t row, candidate; /* RT_NOT_MEASURED where there is none */
-    double published, ours;  /* NAN where there is none */
-    double extent_tests;     /* a ray, which that candidate makes besides */
+    uint32_t row, candidate; /* or RT_NOT_MEASURED */
+    double published, ours;  /* or NAN */
+    double extent_tests;     /* per ray, of that candidate */
 } RtBest;
 
 typedef struct RtPublished {
@@ -76,20 +76,20 @@ typedef struct RtPublished {
     RtBest best[RT_MAX_WORKLOADS][RT_MEASURE_COUNT];
 } RtPublished;
 
-/* Loads what the experiment names; nothing where it names nothing. Unknown scenes, accelerators and columns
- * are told with their line. Clear with rt_published_clear, also after a failure. */
+/* Loads the tables that the experiment names, if any. Reports unknown scenes, accelerators and columns with
+ * their line. Clear with rt_published_clear, also after a failure. */
 RtStatus rt_published_load(RtPublished *published, const RtExperiment *experiment, RtError *error);
 void rt_published_clear(RtPublished *published);
 
-/* Fills what is measured of the figures, judges them, and finds what is least. In the quick variant only
- * structures are judged, since its rays are others. */
+/* Fills in the measured figures, judges them, and finds the best rows. The quick variant has other rays: only
+ * structures are judged. */
 void rt_published_compare(RtPublished *published, const RtResults *results);
 
-/* RT_MISMATCH with the first figure that is outside without a reason, stale reason, or scene on which ours
- * are not ahead, and how many there are of each. */
+/* RT_MISMATCH with the first figure outside its tolerance without a reason and the number of them, the first
+ * reason that no figure needs, or the first scene on which ours are not better. */
 RtStatus rt_published_check(const RtPublished *published, RtError *error);
 
-/* Figures of a column, and how they were judged. */
+/* The number of figures of a column, by judgement. */
 typedef struct RtColumnSummary {
     uint32_t figures;
     uint32_t judged[3]; /* by RtJudgement */
@@ -97,17 +97,17 @@ typedef struct RtColumnSummary {
 
 RtColumnSummary rt_column_summary(const RtPublished *published, RtColumn column);
 
-/* The row's figure in that column, NULL where it has none. */
+/* The row's figure in that column, or NULL. */
 const RtFigure *rt_published_figure(const RtPublished *published, const RtPublishedRow *row, RtColumn column);
 
-/* Which columns the rows of a workload have that are, or are not, of rays; false: none. */
+/* The columns in the rows of a workload that are, or are not, of rays; false if there are none. */
 bool rt_published_columns(const RtPublished *published, uint32_t workload, bool of_rays,
                           bool shown[RT_COLUMN_COUNT]);
 
 const char *rt_column_name(RtColumn column);
 const char *rt_measure_name(RtMeasure measure);
 
-/* Whether ours is less than what is published; false where either is not known. */
+/* Whether ours is less than the published figure; false if either is unknown. */
 bool rt_best_is_ahead(const RtBest *best);
 
 /* "Octree84-C depth=4", or the source of a row of rays; room for RT_MAX_ROW_NAME. */
@@ -115,7 +115,7 @@ bool rt_best_is_ahead(const RtBest *best);
 _Static_assert(RT_MAX_ROW_NAME >= 2 * RT_MAX_LABEL, "structure and parameters");
 void rt_published_row_name(const RtPublishedRow *row, char *out);
 
-/* The figure as measured: whole numbers as they are, others in six digits; "" where it is not. */
+/* The measured figure: whole numbers exactly, others in six digits; "" if there is none. */
 void rt_figure_measured(const RtFigure *figure, char out[RT_MAX_FIGURE]);
 
 #endif

@@ -20,7 +20,7 @@ const char *rt_column_name(RtColumn column) {
     return column_names[column];
 }
 
-/* Columns of a table that hold no figure to compare. */
+/* Columns without figures to compare. */
 static const char *const other_columns[] = {"scene",      "source",    "accel",         "structure",
                                             "parameters", "tests_per", "build_seconds", "trace_seconds"};
 enum { OTHER_COUNT = sizeof other_columns / sizeof other_columns[0] };
@@ -81,19 +81,18 @@ static RtStatus take_figure(RtPublished *published, const RtCsv *csv, uint32_t r
     figure->published = strtod(text, &end);
     figure->deviation = (double)NAN;
     figure->reason = RT_NO_REASON;
-    /* No sign, no exponent: half a unit of the last digit is then a matter of counting digits. */
+    /* Without sign and exponent, counting digits finds half a unit of the last one. */
     if (strlen(text) >= RT_MAX_FIGURE || *end || strspn(text, "0123456789.") != strlen(text)) {
         return rt_fail_at(error, csv->path, csv->lines[r], 0, "%s: '%s' is not a figure such as 12.30",
                           rt_column_name(column), text);
     }
     strcpy(figure->text, text);
-    figure->half_unit = is_per_ray(column) ? 0.5 : 0; /* others are whole numbers */
+    figure->half_unit = is_per_ray(column) ? 0.5 : 0; /* the others are whole numbers */
     for (const char *digit = point ? point + 1 : end; *digit; digit++) figure->half_unit /= 10;
     RtPublishedRow *row = &published->rows[published->row_count];
     if (!row->of_rays && is_of_rays(column)) {
         return rt_fail_at(error, csv->path, csv->lines[r], 0,
-                          "%s: the row has an accelerator, which is not what rays are counted by",
-                          rt_column_name(column));
+                          "%s: a row with an accelerator cannot count rays", rt_column_name(column));
     }
     if (row->of_rays && !is_of_rays(column)) {
         return rt_fail_at(error, csv->path, csv->lines[r], 0, "%s: the table needs a column accel",
@@ -104,7 +103,7 @@ static RtStatus take_figure(RtPublished *published, const RtCsv *csv, uint32_t r
     return RT_OK;
 }
 
-/* The candidate of the row: one that is measured on its scene, and on every ray. */
+/* The row's candidate, which must be measured on its scene and on every ray. */
 static RtStatus find_candidate(const RtExperiment *experiment, RtPublishedRow *row, const char *path,
                                uint32_t line, RtError *error) {
     if (!*row->accel) return RT_OK;
@@ -114,7 +113,8 @@ static RtStatus find_candidate(const RtExperiment *experiment, RtPublishedRow *r
                           experiment->name, row->accel, experiment->workloads[row->workload].label);
     }
     if (experiment->candidates[row->candidate].ray_stride == 1) return RT_OK;
-    return rt_fail_at(error, path, line, 0, "'%s' is not measured on every ray, as published figures are",
+    return rt_fail_at(error, path, line, 0,
+                      "'%s' is measured on a part of the rays; published figures cover all of them",
                       row->accel);
 }
 

@@ -169,7 +169,7 @@ static const void *workload_row(void *context, size_t i) {
     return r->row->workload == r->workload && r->row->of_rays == r->of_rays ? r : NULL;
 }
 
-/* The name of a row, and the columns that any row of the workload has. */
+/* The name of the row, and the columns that any row of the workload has. */
 static void show_columns(Row *r) {
     bool shown[RT_COLUMN_COUNT];
     size_t count = 0;
@@ -216,7 +216,7 @@ typedef struct Page {
     FILE *out;
 } Page;
 
-/* Text with `code`, between what goes around it. */
+/* Text with `code`, between two strings. */
 static void put(const Page *page, const char *before, const char *text, const char *after) {
     fputs(before, page->out);
     if (page->html) {
@@ -252,7 +252,7 @@ static void put_workload(const Page *page, uint32_t t) {
 }
 
 static void put_reasons(const Page *page) {
-    put_title(page, "Why figures are missed");
+    put_title(page, "Reasons for deviations");
     fputs(page->html ? "<ul>\n" : "\n", page->out);
     for (uint32_t i = 0; i < page->published->reason_count; i++) {
         const RtReason *reason = &page->published->reasons[i];
@@ -275,12 +275,12 @@ void rt_published_page(const RtPublished *published, bool html, FILE *out) {
     } else {
         fprintf(out, "# %s: published, measured\n", experiment->name);
     }
-    put_paragraph(&page, "Written by `raytally run`. A cell is the published figure; the measured one and "
-                         "its deviation, in bold where it is more than the tolerance.");
+    put_paragraph(&page, "Written by `raytally run`. A cell shows the published figure, then the measured "
+                         "one and its deviation, in bold if it exceeds the tolerance.");
     put_table(&page, 0, RT_SUMMARY);
-    put_title(&page, "Ours against the best published row");
-    put_paragraph(&page, "Per ray of all kinds. A row that counts tests per ray that hits is taken per ray. "
-                         "Extent tests are what ours make besides.");
+    put_title(&page, "Ours compared with the best published row");
+    put_paragraph(&page, "Per ray, over all kinds. Rows that count tests per hit are converted to tests per "
+                         "ray. Ours also make the listed extent tests.");
     put_table(&page, 0, RT_BEST_FOR_THE_EYE);
     for (uint32_t t = 0; t < experiment->workload_count; t++) put_workload(&page, t);
     put_reasons(&page);

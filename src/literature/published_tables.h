@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What was compared with published figures, as tables (core/text/table.h): those of a result directory,
- * byte-identical wherever they are made, and for the eye. */
+/* The comparison with published figures as tables (core/text/table.h): CSV files of a result directory,
+ * byte-identical on every machine, and tables to read. */
 #ifndef RT_LITERATURE_PUBLISHED_TABLES_H
 #define RT_LITERATURE_PUBLISHED_TABLES_H
 
@@ -10,9 +10,9 @@
 typedef enum RtPublishedTable {
     RT_FIGURES,          /* published.csv: a row per figure */
     RT_BEST,             /* best.csv: a row per scene and measure */
-    RT_BEST_FOR_THE_EYE, /* of it, what both sides have */
-    RT_SUMMARY,          /* a row per column that has figures: how they were judged */
-    RT_ROWS_OF_RAYS,     /* of one workload: its rows as they were published, with what was measured */
+    RT_BEST_FOR_THE_EYE, /* to read: the rows that both sides have */
+    RT_SUMMARY,          /* a row per column with figures: the judgements */
+    RT_ROWS_OF_RAYS,     /* of one workload: its published rows, with the measured figures */
     RT_ROWS_OF_STRUCTURES,
     RT_PUBLISHED_TABLE_COUNT
 } RtPublishedTable;
@@ -20,7 +20,7 @@ typedef enum RtPublishedTable {
 /* The row at hand. */
 typedef struct RtPublishedCursor {
     const RtPublished *published;
-    uint32_t workload; /* of RT_ROWS...: which one they are of */
+    uint32_t workload; /* of RT_ROWS... */
     bool of_rays;
     const RtPublishedRow *row;
     const RtFigure *figure;
@@ -28,18 +28,18 @@ typedef struct RtPublishedCursor {
     const RtBest *best;
     RtColumn column;
     RtColumnSummary summary;
-    const char *accel;                        /* label of who measures, NULL where nobody does */
+    const char *accel;                        /* label of the measured accelerator, or NULL */
     RtField said;                             /* the published figure */
     RtTableColumn shown[1 + RT_COLUMN_COUNT]; /* the columns of RT_ROWS... */
     RtColumnGroup shown_group;
 } RtPublishedCursor;
 
-/* `cursor` stays where it is as long as the table, which alone uses it, with `published`, and its workload,
- * filled in. No group: there is nothing to show. */
+/* `cursor` belongs to the table and must outlive it. The caller fills in `published` and the workload. A
+ * table without groups is empty. */
 RtTable rt_published_table(RtPublishedTable which, RtPublishedCursor *cursor);
 
-/* All for the eye, with all reasons: published.md, or a part of report.html, which is empty where nothing was
- * compared. There figures that are missed show their reasons when pointed at. */
+/* All tables to read, with all reasons: published.md, or a part of report.html, empty if nothing was
+ * compared. In HTML a figure outside its tolerance shows its reason as a tooltip. */
 void rt_published_page(const RtPublished *published, bool html, FILE *out);
 
 #endif

@@ -26,7 +26,7 @@ static uint32_t family_color(const char *spec) {
         const char *name = rt_accel_at(i)->name;
         if (has_top(spec, name, strlen(name))) return colors[i % COLOR_COUNT];
     }
-    return colors[rt_accel_count() % COLOR_COUNT]; /* of a plugin that is not loaded, as if it were */
+    return colors[rt_accel_count() % COLOR_COUNT]; /* a plugin that is not loaded */
 }
 
 /* 0, -1/2, 1/4, -1/4, 1/8, -3/8, ...: in (-1/2, 1/2], no number twice, and far from those before. */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What accelerators look like: the same in every plot, table and experiment. */
+/* Colours, markers and dashes of accelerators: the same in every plot, table and experiment. */
 #ifndef RT_REPORT_COLOR_H
 #define RT_REPORT_COLOR_H
 
 #include "experiment/experiment.h"
 
-/* A colour is that of the registered accelerator on top of the spec; of several candidates with the same one
- * the first has it as it is, the others are darker and lighter. Markers and dashes go by the place in the
- * experiment, so that they differ between neighbours and in grey print: no two of 50 candidates have both. */
+/* The colour belongs to the topmost accelerator of the spec; further candidates with the same one get darker
+ * and lighter shades. Marker and dash follow the order in the experiment, for grey print: no two of 50
+ * candidates share both. */
 typedef struct RtLook {
     char color[8]; /* "#rrggbb" */
     int marker;    /* gnuplot's pointtype */
@@ -17,7 +17,7 @@ typedef struct RtLook {
 /* `candidate` may be the null run, which is grey. */
 RtLook rt_candidate_look(const RtExperiment *experiment, uint32_t candidate);
 
-/* That of number `i` of any other lines. */
+/* The look of line `i` of a plot of other lines. */
 RtLook rt_look(uint32_t i);
 
 #endif

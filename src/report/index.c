@@ -68,7 +68,7 @@ static void put_experiment(Index *index, const char *directory, const char *name
         rt_page_provenance(out, manifest);
         put_size(out, &results);
     } else {
-        put_paragraph(out, "It cannot be read:", error.message);
+        put_paragraph(out, "Cannot be read:", error.message);
     }
     fputs("</section>\n", out);
     json_decref(manifest);
@@ -78,14 +78,14 @@ static void put_experiment(Index *index, const char *directory, const char *name
 
 /* ---- all of them ---- */
 
-/* Where a folder holds an experiment.yaml and a manifest. */
+/* Whether a folder holds an experiment.yaml and a manifest. */
 static bool is_result(const char *directory) {
     char path[RT_MAX_PATH], manifest[RT_MAX_PATH];
     return rt_path_join(directory, "experiment.yaml", path, NULL) == RT_OK && rt_file_exists(path) &&
            rt_path_join(directory, RT_MANIFEST, manifest, NULL) == RT_OK && rt_file_exists(manifest);
 }
 
-/* A folder itself, the one above, and what is hidden. */
+/* ., .. and hidden folders. */
 static bool is_hidden(const char *path) {
     const char *slash = strrchr(path, '/');
     return (slash ? slash[1] : path[0]) == '.';
@@ -109,7 +109,7 @@ static void visit(void *context, const char *path) {
 RtStatus rt_index_write(const char *folder, size_t *count, RtError *error) {
     char plain[RT_MAX_PATH];
     RtOutput output;
-    /* Without slashes at its end, so that the rest of a path is the name seen from it. */
+    /* Without trailing slashes, for paths relative to it. */
     snprintf(plain, sizeof plain, "%s", *folder ? folder : ".");
     for (size_t size = strlen(plain); size > 1 && plain[size - 1] == '/'; size--) plain[size - 1] = '\0';
     *count = 0;

@@ -7,9 +7,9 @@
 
 #include <stddef.h>
 
-/* Writes `folder`/index.html: for each result directory in it, or in a folder of it, verdict, question and
- * finding, and a link to its report where that is there. One that cannot be read is named with the reason.
- * Their number goes to *count; RT_BAD_INPUT where there is none. */
+/* Writes `folder`/index.html: verdict, question, finding, and a link to the report of each result directory
+ * in it or in its folders. Names directories that cannot be read, with the reason. *count gets their number;
+ * RT_BAD_INPUT if there is none. */
 RtStatus rt_index_write(const char *folder, size_t *count, RtError *error);
 
 #endif

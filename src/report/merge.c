@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- what the shards say of themselves ---- */
+/* ---- the shards ---- */
 
 typedef struct Merge {
     const char *const *directories;
@@ -39,7 +39,8 @@ static RtStatus load_journals(Merge *merge, RtError *error) {
                            merge->directories[i], RT_RUN_JOURNAL);
         }
         if (rt_manifest_read(merge->directories[i], &manifest, NULL) != RT_OK) {
-            return rt_fail(error, RT_BAD_INPUT, "%s is not finished: go on with raytally run ... --resume",
+            return rt_fail(error, RT_BAD_INPUT,
+                           "%s is not finished: finish it with raytally run ... --resume",
                            merge->directories[i]);
         }
         json_decref(manifest);
@@ -71,8 +72,8 @@ static RtStatus check_alike(const Merge *merge, RtError *error) {
                    merge->directories[0], build ? build : "unknown", rt_build_alone());
 }
 
-/* The threads that timed the shards, 1 where nothing was timed. Times on one thread are processor time, those
- * on several are wall time, so they may not differ. */
+/* The number of threads that timed the shards, 1 if nothing was timed. It must be the same for all: times on
+ * one thread are processor times, times on several are wall times. */
 static RtStatus check_threads(const Merge *merge, int *threads, RtError *error) {
     uint32_t first = merge->count;
     *threads = 1;
@@ -83,7 +84,7 @@ static RtStatus check_threads(const Merge *merge, int *threads, RtError *error) 
             if (!timed || (first < merge->count && here == *threads)) continue;
             if (first < merge->count) {
                 return rt_fail(error, RT_BAD_INPUT,
-                               "%s was timed on %d thread%s, and %s on %d: their times would not compare. "
+                               "%s was timed on %d thread%s, and %s on %d: their times are not comparable. "
                                "Run one of them again with the --threads of the other, and --force",
                                merge->directories[first], *threads, *threads == 1 ? "" : "s",
                                merge->directories[i], here);
@@ -95,8 +96,7 @@ static RtStatus check_threads(const Merge *merge, int *threads, RtError *error) 
     return RT_OK;
 }
 
-/* Of the shards among each other, and with what is loaded here, which the merged result will be said to be
- * made with. */
+/* The shards must have used the plugins that are loaded here, which the manifest will name. */
 static RtStatus check_plugins(const Merge *merge, const RtExperiment *experiment, RtError *error) {
     json_t *used = rt_plugins_used(experiment);
     RtStatus status = RT_OK;
@@ -121,7 +121,7 @@ static RtStatus check_whole(const Merge *merge, RtError *error) {
         for (uint32_t i = 0; i < merge->count; i++) {
             if (number_of(merge, i, "shard") != shard) continue;
             if (found < merge->count) {
-                return rt_fail(error, RT_BAD_INPUT, "shard %u of %u is there twice: %s and %s", shard, shards,
+                return rt_fail(error, RT_BAD_INPUT, "shard %u of %u is given twice: %s and %s", shard, shards,
                                merge->directories[found], merge->directories[i]);
             }
             found = i;
@@ -132,9 +132,7 @@ static RtStatus check_whole(const Merge *merge, RtError *error) {
     return RT_OK;
 }
 
-/* ---- joining ---- */
-
-/* Where the experiment lies, which must be as it was. */
+/* Loads the experiment, which must not have changed. */
 static RtStatus load_experiment(const Merge *merge, RtExperiment *experiment, RtError *error) {
     char path[RT_MAX_PATH];
     json_t *manifest;
@@ -151,9 +149,9 @@ static RtStatus load_experiment(const Merge *merge, RtExperiment *experiment, Rt
     return rt_fail(error, RT_BAD_INPUT, "%s has changed since the shards were made from it", path);
 }
 
-/* ---- the directory that is made ---- */
+/* ---- the joined directory ---- */
 
-/* All lines, shard by shard, behind a header of none. */
+/* All lines, shard by shard, after a header without a shard. */
 static RtStatus add_journal(const Merge *merge, const RtExperiment *experiment, RtOutputs *files,
                             RtError *error) {
     static const RtOnly all = {0};
@@ -196,7 +194,7 @@ static RtStatus copy_images(const Merge *merge, RtOutputs *files, RtError *error
     return copies.status;
 }
 
-/* Everything but what is made of the journal; the journal last. */
+/* All files that are not made from the journal; the journal last. */
 static RtStatus add_files(const Merge *merge, const RtExperiment *experiment, RtOutputs *files,
                           RtError *error) {
     static const char *const folders[] = {"plots", "images"};
@@ -210,7 +208,7 @@ static RtStatus add_files(const Merge *merge, const RtExperiment *experiment, Rt
     return add_journal(merge, experiment, files, error);
 }
 
-/* All of it is on the disk before anything of earlier results is removed. */
+/* Everything is on the disk before any previous result is removed. */
 static RtStatus take_directory(const Merge *merge, const RtExperiment *experiment, RtStart start,
                                RtError *error) {
     RtOutputs files = {0};

@@ -7,15 +7,15 @@
 
 #define RT_MAX_SHARDS RT_MAX_WORKLOADS
 
-/* Writes the result directory `out` from the finished shards in directories[0..count), as one run that
- * measured all of it would have left it. Loads the experiment from where the shards say it lies, and
- * initialises and fills the results: rt_results_clear, also after a failure. `start`: whether results in
- * `out` may be lost (RT_START_ANEW). `trust`: whether gnuplot scripts are run, too, that raytally does not
- * ship: the shards say where the experiment lies, and so which scripts are its own.
+/* Writes the result directory `out` from the finished shards in directories[0..count), as one run would have
+ * left it. Loads the experiment from the path in the shards, and initialises and fills the results:
+ * rt_results_clear, also after a failure. `start`: whether results in `out` may be lost (RT_START_ANEW).
+ * `trust`: whether to run gnuplot scripts that raytally does not ship: the shards, not the user, name the
+ * experiment's path.
  *
- * Refuses what is no finished shard, shards of different experiments, variants or builds, and one that is
- * missing or there twice. Nothing is measured. What lies in `out` is removed only once the joined journal,
- * the pictures and the scripts are whole on its disk. As rt_run_experiment otherwise. */
+ * Rejects unfinished shards, shards of different experiments, variants or builds, and missing or duplicate
+ * shards. Measures nothing. The contents of `out` are removed only after the joined journal, the pictures and
+ * the scripts are on the disk. Otherwise as rt_run_experiment. */
 RtStatus rt_merge(const char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
                   RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error);
 

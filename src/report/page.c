@@ -17,7 +17,7 @@ void rt_page_lines(FILE *out, const char *const *lines) {
     for (; *lines; lines++) fputs(*lines, out);
 }
 
-/* The policy lets the page load nothing: what it shows lies in it. */
+/* The policy lets the page load no other file. */
 void rt_page_begin(FILE *out, const char *title) {
     fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -57,7 +57,7 @@ void rt_page_href(FILE *out, const char *file) {
     fputc('"', out);
 }
 
-/* ---- what is said ---- */
+/* ---- text ---- */
 
 void rt_page_card(FILE *out, const char *title, const char *text) {
     if (!*text) return;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the pages share (report.html, index.html): their frame, verdicts, cards. A page is one file that asks
- * for no other: style and script lie in it (page/page.css, page/page.js), and it is whole without the script.
- */
+/* The common parts of report.html and index.html: frame, verdicts, cards. A page is one self-contained file
+ * with its style and script (page/page.css, page/page.js), and is complete without the script. */
 #ifndef RT_REPORT_PAGE_H
 #define RT_REPORT_PAGE_H
 
@@ -10,24 +9,23 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* Up to the title as the heading, and from after the last section on. */
+/* The beginning up to the heading, and the end after the last section. */
 void rt_page_begin(FILE *out, const char *title);
 void rt_page_end(FILE *out);
 
-/* Strings ended by NULL, such as generated headers have. */
+/* Writes strings up to NULL, as in generated headers. */
 void rt_page_lines(FILE *out, const char *const *lines);
 
 /* `size` bytes at `data` as a data URL in base64, `type` being "image/png" and the like. */
 void rt_page_data_url(FILE *out, const char *type, const void *data, size_t size);
 
-/* A heading with text under it; nothing where there is no text. */
+/* A heading with text below; nothing if the text is empty. */
 void rt_page_card(FILE *out, const char *title, const char *text);
 
-/* "3 of 4 claims hold, 1 does not": how the experiment's claims came out, in the colour of the worst; that
- * nothing was claimed, too. */
+/* "3 of 4 claims hold, 1 does not", in the colour of the worst verdict; or that there are no claims. */
 void rt_page_verdict(FILE *out, const RtResults *results);
 
-/* When and on what it was measured, in a line, by the manifest. */
+/* A line with date and machine, from the manifest. */
 void rt_page_provenance(FILE *out, const json_t *manifest);
 
 /* ` href="FILE"` of a link to a file beside the page, escaped. */

@@ -7,7 +7,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* A table of one kind of rays: the rows of another that are of that kind. */
+/* The rows of a table that are of one kind of rays. */
 typedef struct OfKind {
     RtTable table;
     const RtResultRow *row;
@@ -59,14 +59,14 @@ static void put_head(const RtResults *results, bool tex, FILE *out) {
                 : "# %s\n\nWritten by `raytally`.\n",
             results->experiment->name);
     const char *lead = tex ? "% " : "";
-    fprintf(out, "%sTests, extent tests (ext.) and steps are those of a ray.", lead);
+    fprintf(out, "%sTests, extent tests (ext.) and steps are per ray.", lead);
     if (results->experiment->count_only) {
         fprintf(out, "\n%sBold: the fewest object tests.\n", lead);
         return;
     }
     fprintf(out,
-            " Ratios are of throughput, to %s's; intervals of %s percent.\n"
-            "%sBold: the best, and those whose intervals of times overlap with its interval.\n",
+            "  Ratios compare throughput with %s; intervals of %s percent.\n"
+            "%sBold: the best, and those whose time intervals overlap with its interval.\n",
             rt_baseline_label(results->experiment), interval, lead);
 }
 

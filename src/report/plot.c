@@ -20,7 +20,7 @@ enum { MOST_ARGUMENTS = RT_MAX_PLOTS + 4 };
 
 #define HISTOGRAM_SCRIPT "histograms.gp"
 
-/* ---- scripts that are written ---- */
+/* ---- generated scripts ---- */
 
 /* Whether the CSV files have rows of the candidate, and it is the first of its label. */
 static bool has_rows(const RtResults *results, uint32_t candidate) {
@@ -86,7 +86,7 @@ static RtStatus write_names(const RtResults *results, const char *directory, con
     return rt_output_commit(&output, error);
 }
 
-/* The script that draws histograms.csv, after whatever was drawn before it: with what it needs. */
+/* The script that draws histograms.csv, with the style that it needs. */
 static RtStatus write_histograms(const RtResults *results, const char *directory, RtError *error) {
     RtOutput output;
     RT_TRY(rt_output_open_in(&output, directory, "plots/" HISTOGRAM_SCRIPT, error));
@@ -95,7 +95,7 @@ static RtStatus write_histograms(const RtResults *results, const char *directory
         fprintf(
             output.file,
             "#: histograms-%s: Object tests and steps of each ray on %s, and sizes and depths of leaves, as\n"
-            "#:   parts of all per doubling of the value. Both axes are logarithmic; 0 stands at 1/2.\n",
+            "#:   fractions per doubling of the value. Both axes are logarithmic; 0 is drawn at 1/2.\n",
             scene, scene);
     }
     fputs("reset session\nload \"plots/names.gp\"\n", output.file);
@@ -106,8 +106,7 @@ static RtStatus write_histograms(const RtResults *results, const char *directory
 
 /* ---- gnuplot ---- */
 
-/* What gnuplot said last, which names the script and the line; where it said nothing, the scripts it was
- * given. */
+/* Reports the end of gnuplot's log, which names the script and the line; if it is empty, the scripts. */
 static RtStatus fail_drawing(char **arguments, const char *directory, RtError *error) {
     enum { MOST_BYTES = 1 << 24, MOST_SHOWN = 600 };
     char path[RT_MAX_PATH], scripts[MOST_SHOWN] = "", *log = NULL;
@@ -122,7 +121,7 @@ static RtStatus fail_drawing(char **arguments, const char *directory, RtError *e
     const char *last = size > MOST_SHOWN ? log + size - MOST_SHOWN : log;
     while (isspace((unsigned char)*last)) last++;
     rt_fail(error, RT_MISMATCH, "%s: gnuplot failed%s%s", directory,
-            *last ? ":\n" : " without saying why; it was given", *last ? last : scripts);
+            *last ? ":\n" : " without a message; its scripts:", *last ? last : scripts);
     rt_free(log);
     return RT_MISMATCH;
 }
@@ -151,7 +150,7 @@ static RtStatus run_gnuplot(char **arguments, const char *directory, RtError *er
     return fail_drawing(arguments, directory, error);
 }
 
-/* What becomes of the files that the scripts wrote: they get their names, or go where drawing failed. */
+/* Renames the files that the scripts wrote, or removes them if drawing failed. */
 typedef struct Settling {
     bool keep;
     RtStatus status;
@@ -181,7 +180,7 @@ static RtStatus settle(const char *directory, const char *format, bool keep, RtE
 
 static RtStatus draw(const RtResults *results, const char *directory, const char *format, char **arguments,
                      RtError *error) {
-    settle(directory, format, false, NULL); /* of a drawing that was cut short */
+    settle(directory, format, false, NULL); /* of an interrupted drawing */
     RtStatus status = write_names(results, directory, format, error);
     if (status == RT_OK) status = run_gnuplot(arguments, directory, error);
     if (status == RT_OK) return settle(directory, format, true, error);
@@ -208,7 +207,7 @@ RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError 
         arguments[experiment->plot_count + 2] = histogram_script;
     }
     RT_TRY(draw(results, directory, "svg", arguments, error));
-    /* Where scripts draw and PDF fails, it is gnuplot that cannot: there are none, then. */
+    /* If only PDF fails, this gnuplot does not support it. */
     RtError reason;
     draw(results, directory, "pdf", arguments, &reason);
     return write_names(results, directory, "svg", error); /* as it is kept */

@@ -3,18 +3,17 @@
  *
  * The experiment's scripts are copied into DIR/plots and run there in one process, in the order of the YAML,
  * after DIR/plots/names.gp, which defines `experiment`, and the lists of words `scenes`, `accels`, `colors`
- * (one for each accelerator, the same in every figure) and `kinds`: what the CSV files have rows of. Scripts
- * run in DIR and write plots/NAME.svg.tmp; what they wrote is renamed when all is done. So a person redraws
- * with raytally plot DIR after changing the copies. Which of them may be run: report/scripts.h. */
+ * (one for each accelerator, the same in every figure) and `kinds` in the CSV files. Scripts run in DIR and
+ * write plots/NAME.svg.tmp; these files are renamed when all are done. `raytally plot DIR` runs edited copies
+ * again. report/scripts.h decides which scripts may run. */
 #ifndef RT_REPORT_PLOT_H
 #define RT_REPORT_PLOT_H
 
 #include "experiment/results.h"
 
-/* Draws, by the experiment's scripts; where it names none and sweeps parameters, by one that is written
- * (sweep_plot.h); and where it asks for distributions, by experiments/histograms.gp, too. RT_NOT_AVAILABLE
- * where gnuplot is not installed; RT_MISMATCH, with what it says, where it fails: then the plots are what
- * they were before. */
+/* Draws with the experiment's scripts; with a generated one if it names none and sweeps parameters
+ * (sweep_plot.h); and with experiments/histograms.gp if it has distributions. RT_NOT_AVAILABLE if gnuplot is
+ * not installed; RT_MISMATCH, with its message, if it fails: the old plots then stay. */
 RtStatus rt_plots_draw(const RtResults *results, const char *directory, RtError *error);
 
 #endif

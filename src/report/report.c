@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The page: what was asked and predicted, the figures, the tables, and what it was measured with. Plots and
- * images go in as data URLs, so that the file can be mailed. */
+/* The page: question and prediction, plots, tables, and the machine and method. Plots and images are data
+ * URLs: the file can be mailed. */
 #include "report/report.h"
 
 #include "core/base/memory.h"
@@ -24,7 +24,7 @@ enum { MOST_FILE_BYTES = 1 << 26, MAX_CAPTION = 1024 };
 
 /* ---- sections ---- */
 
-/* What came out stands above what was expected. */
+/* The verdict comes before the prediction. */
 static void put_claims(FILE *out, const RtResults *results) {
     static const char *const classes[] = {
         [RT_CLAIM_HOLDS] = "holds", [RT_CLAIM_UNDECIDED] = "open", [RT_CLAIM_FALSE] = "false"};
@@ -32,8 +32,7 @@ static void put_claims(FILE *out, const RtResults *results) {
     fputs("<section class=\"card\" id=\"verdict\"><h2>Verdict</h2><p>", out);
     rt_page_verdict(out, results);
     if (!experiment->claim_count)
-        fputs(" The prediction states no claim (<code>expect</code>) that could be held against the results.",
-              out);
+        fputs(" The prediction states no claims (<code>expect</code>) to check.", out);
     fputs("</p>\n<ul class=\"claims\">", out);
     for (uint32_t i = 0; i < experiment->claim_count; i++) {
         RtClaimResult result;
@@ -72,7 +71,7 @@ static void put_links(FILE *out, const char *directory) {
 
 /* ---- plots ---- */
 
-/* What a script says of a plot: lines "#: NAME: text", gone on with in lines "#:   text". */
+/* The caption in a script: lines "#: NAME: text", continued in lines "#:   text". */
 typedef struct Caption {
     const char *name;
     char text[MAX_CAPTION];
@@ -107,7 +106,7 @@ static void look_for_caption(void *context, const char *path) {
 typedef struct Plots {
     FILE *out;
     const char *directory;
-    const char *shown; /* the file name of one that stands elsewhere on the page, or NULL */
+    const char *shown; /* the file name of a plot shown elsewhere on the page, or NULL */
 } Plots;
 
 /* Its size in pixels: gnuplot writes viewBox="0 0 WIDTH HEIGHT". */
@@ -125,7 +124,7 @@ static void read_size(const char *svg, int *width, int *height) {
 static void put_svg(FILE *out, const char *svg, size_t size, const Caption *caption) {
     int width, height;
     read_size(svg, &width, &height);
-    /* The first sentence says what is drawn. */
+    /* The first sentence of the caption. */
     const char *end = strstr(caption->text, ". ");
     size_t length = end ? (size_t)(end - caption->text) : strlen(caption->text);
     if (length > 0 && caption->text[length - 1] == '.') length--;
@@ -241,15 +240,15 @@ static void put_details(FILE *out, const char *summary, RtTable *table) {
     fputs("</details>\n", out);
 }
 
-/* What an experiment may ask for besides, of all scenes. */
+/* Optional tables, of all scenes. */
 static void put_more_tables(FILE *out, const RtResults *results) {
     RtDistributionRow distribution = {.results = results};
     RtResultRow cell = {.results = results};
     RtTable distributions = rt_distribution_table(RT_DISTRIBUTIONS, &distribution);
     RtTable hardware = rt_result_table(RT_HARDWARE, &cell);
     if (results->experiment->distributions)
-        put_details(out, "How counts are distributed, over rays and over leaves", &distributions);
-    if (results->experiment->hardware) put_details(out, "What the machine did for a ray", &hardware);
+        put_details(out, "Distributions of counts over rays and over leaves", &distributions);
+    if (results->experiment->hardware) put_details(out, "Hardware counters per ray", &hardware);
 }
 
 static void put_tables(FILE *out, const RtResults *results) {
@@ -257,11 +256,9 @@ static void put_tables(FILE *out, const RtResults *results) {
     rt_interval_title(results->experiment, interval);
     fprintf(
         out,
-        "<h2 id=\"tables\">Tables</h2>\n<p>In brackets intervals of %s. &#9733; is the best of a scene and "
-        "kind "
-        "of rays, by %s; &asymp; has an interval that overlaps with its interval. Times of all kinds "
-        "together have intervals that are rather too wide, and are unknown where one of the kinds was left "
-        "out.</p>\n"
+        "<h2 id=\"tables\">Tables</h2>\n<p>In brackets: intervals of %s. &#9733; marks the best of a scene "
+        "and kind of rays, by %s; &asymp; marks intervals that overlap with the interval of the best. Times "
+        "over all kinds have conservative intervals, and are unknown if one of the kinds was left out.</p>\n"
         "<div class=\"filter\" id=\"filter\" hidden><label for=\"words\">Rows with</label> "
         "<input type=\"search\" id=\"words\" placeholder=\"words, e.g. of a scene, an accelerator, a kind\"> "
         "<output for=\"words\" class=\"meta\"></output></div>\n",
@@ -281,7 +278,8 @@ static void put_tables(FILE *out, const RtResults *results) {
 
 /* ---- the answer ---- */
 
-/* Where the experiment has frames: what helped most on each scene, as sentences, plot and tables. */
+/* For an experiment with frames: the accelerator that helped most on each scene, as sentences, plot and
+ * tables. */
 static void put_answer(FILE *out, const RtResults *results, const char *directory) {
     const RtExperiment *experiment = results->experiment;
     char path[RT_MAX_PATH], text[RT_MAX_FRAME_SENTENCE], caption[RT_MAX_FRAME_SENTENCE + RT_MAX_LABEL];
@@ -318,13 +316,13 @@ static void put_head(FILE *out, const RtResults *results, const json_t *manifest
     rt_html_wrap(out, "<p class=\"lede\">", experiment->question, "</p>\n");
     put_answer(out, results, directory);
     put_claims(out, results);
-    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "None is written yet.");
+    rt_page_card(out, "Finding", *experiment->finding ? experiment->finding : "Not written yet.");
     rt_page_card(out, "Prediction, written before the run", experiment->prediction);
     rt_page_provenance(out, manifest);
     put_links(out, directory);
 }
 
-/* Every member of an object that is text, a number or a truth. */
+/* Every member of an object that is text, a number or a boolean. */
 static void put_members(FILE *out, const json_t *object) {
     const char *key;
     json_t *value;
@@ -340,7 +338,7 @@ static void put_members(FILE *out, const json_t *object) {
     }
 }
 
-/* The libraries that hold accelerators: what they did is theirs, build by build. */
+/* The plugins, with their hashes. */
 static void put_plugins(FILE *out, const json_t *plugins) {
     json_t *plugin, *name;
     size_t i, n;
@@ -360,11 +358,9 @@ static void put_plugins(FILE *out, const json_t *plugins) {
 static void put_timing(FILE *out, const RtResults *results) {
     char sentence[RT_MAX_SENTENCE], interval[RT_MAX_INTERVAL_TITLE];
     rt_interval_title(results->experiment, interval);
-    fputs("Counting and timing are separate passes. Times are medians over rounds in which all accelerators "
-          "took "
-          "turns in random order; ratios are throughput over the baseline's, paired within a round. "
-          "Intervals are "
-          "those of order statistics: they hold the median with a probability of at least ",
+    fputs("Counting and timing are separate passes. Times are medians over rounds that run all accelerators "
+          "in random order; ratios compare throughput with the baseline's, paired within a round. Intervals "
+          "are order statistics: they hold the median with a probability of at least  ",
           out);
     fprintf(out, "%s. ", interval);
     rt_null_sentence(results, sentence);
@@ -372,14 +368,10 @@ static void put_timing(FILE *out, const RtResults *results) {
 }
 
 static void put_method(FILE *out, const RtResults *results, const json_t *manifest) {
-    fputs("<h2 id=\"method\">How it was measured</h2>\n<p>Every accelerator got the same recorded rays. "
-          "Totals weigh each "
-          "ray "
-          "kind by the size of its set. Shadow rays stop at any hit. <em>ideal</em> knows the answers "
-          "beforehand: "
-          "it is the floor. <em>differ</em> counts answers unlike the reference; an exact accelerator has "
-          "none, or "
-          "the run would have failed.</p>\n<p>",
+    fputs("<h2 id=\"method\">How it was measured</h2>\n<p>Every accelerator traced the same recorded rays. "
+          "Totals weigh each kind of rays by the size of its set. Shadow rays stop at any hit. "
+          "<em>ideal</em> knows the answers in advance: it is the lower bound. <em>differ</em> counts "
+          "answers unlike the reference; the run fails if an exact accelerator has any.</p>\n<p>",
           out);
     if (results->experiment->count_only) {
         fputs("Nothing was timed: this experiment counts.", out);

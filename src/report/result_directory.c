@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A run in order: open_run looks at the directory and opens the scenes, begin makes the directory and removes
- * the results of a previous run, measure begins the journal and fills the results, finish writes what is made
- * of all of them. */
+ * the results of a previous run, measure begins the journal and fills the results, finish writes the files
+ * made from all of them. */
 #include "report/result_directory.h"
 
 #include "core/base/lock.h"
@@ -24,11 +24,11 @@ typedef struct Run {
     const RtRunOptions *options;
     RtLock lock;
     bool resumed;                     /* the directory has the journal that is resumed */
-    bool measured;                    /* anything that the journal did not know */
+    bool measured;                    /* anything that the journal did not have */
     RtScene scenes[RT_MAX_WORKLOADS]; /* each until its last workload is over */
     bool opened[RT_MAX_WORKLOADS];
     RtJsonLines journal;
-    RtPublished published; /* what the literature says of it */
+    RtPublished published; /* figures of the literature */
 } Run;
 
 static RtStatus path_in(const Run *run, const char *name, char *path, RtError *error) {
@@ -42,14 +42,14 @@ static void notify(const Run *run, const char *message) {
 
 /* ---- before ---- */
 
-/* Keeps others away from the directory and looks at what is there, as soon as it is there. */
+/* Locks the directory and checks its contents, once it exists. */
 static RtStatus take_directory(Run *run, RtError *error) {
     const RtRunOptions *options = run->options;
     char path[RT_MAX_PATH];
     if (rt_lock_is_held(&run->lock)) return RT_OK;
     RT_TRY(rt_lock_take(&run->lock, options->directory, error));
     RT_TRY(path_in(run, RT_RUN_JOURNAL, path, error));
-    /* A journal tells more of itself than that it is there. */
+    /* Loading a journal gives a better error than its existence. */
     if (options->start != RT_START_ANEW && rt_file_exists(path)) {
         RT_TRY(rt_journal_load(path, run->results, &options->workload.only, options->renew, error));
     }
@@ -65,7 +65,7 @@ static bool is_complete(const Run *run) {
     return true;
 }
 
-/* Where a workload's scene is kept: at the first workload of the same scene. */
+/* The slot of a workload's scene: the first workload of the same scene. */
 static uint32_t slot_of(const RtExperiment *experiment, uint32_t t) {
     uint32_t slot = 0;
     while (strcmp(experiment->workloads[slot].path, experiment->workloads[t].path) != 0) slot++;
@@ -93,13 +93,13 @@ static RtStatus open_scenes(Run *run, RtError *error) {
     return RT_OK;
 }
 
-/* Cells are timed on as many threads as those that are known: else their times would not compare. */
+/* All cells must be timed on the same number of threads, to be comparable. */
 static RtStatus check_threads(const Run *run, RtError *error) {
     const int threads = rt_thread_count(run->options->workload.timing);
     for (RtCellCursor at = {0}; rt_results_next(run->results, &at);) {
         if (!at.cell->timed || at.cell->threads == threads) continue;
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s was timed on %d thread%s so far, and would be on %d from here on: go on with "
+                       "%s was timed on %d thread%s so far, and this command would use %d: resume with "
                        "--threads %d, or start over with --force",
                        run->options->directory, at.cell->threads, at.cell->threads == 1 ? "" : "s", threads,
                        at.cell->threads);
@@ -129,8 +129,7 @@ static RtStatus make_directory(Run *run, RtError *error) {
     return RT_OK;
 }
 
-/* A table that lies in a folder beside the YAML gets to one of the same name, where the copy of the YAML
- * finds it. */
+/* Copies a table with its folder, where the copied YAML finds it. */
 static RtStatus copy_table(const Run *run, const char *name, RtOutputs *copies, RtError *error) {
     char from[RT_MAX_PATH], to[RT_MAX_PATH], folder[RT_MAX_PATH];
     RT_TRY(rt_path_join(run->experiment->folder, name, from, error));
@@ -151,7 +150,7 @@ static RtStatus copy_experiment(const Run *run, RtOutputs *copies, RtError *erro
     return rt_scripts_copy(run->experiment, run->options->directory, run->resumed, copies, error);
 }
 
-/* The copies are on the disk before the earlier results are removed, and get their names after that. */
+/* Writes the copies, removes the previous results, and then renames the copies. */
 static RtStatus replace_previous(Run *run, RtError *error) {
     RtOutputs copies = {0};
     RtStatus status = copy_experiment(run, &copies, error);
@@ -192,7 +191,7 @@ static void name_missing(const Run *run) {
     }
 }
 
-/* The manifest tells of a run that is over, and what was measured until then. */
+/* The manifest marks a finished run. */
 static RtStatus unfinish(Run *run, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(path_in(run, RT_MANIFEST, path, error));
@@ -213,7 +212,7 @@ static void on_notice(void *context, const char *message) {
     notify(context, message);
 }
 
-/* What is made of cells, after each workload. */
+/* The tables made from cells, after each workload. */
 static RtStatus write_tables(const Run *run, RtError *error) {
     const char *directory = run->options->directory;
     RT_TRY(rt_result_files_write(RT_FILE_COUNTED, run->results, NULL, directory, error));
@@ -237,7 +236,7 @@ static RtStatus draw_scene(RtScene *scene, const RtWorkloadResult *workload, int
     return status;
 }
 
-/* The picture of a workload's scene, unless it is there. */
+/* The picture of a workload's scene, unless it exists. */
 static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(image_path(run, t, path, error));
@@ -246,7 +245,7 @@ static RtStatus write_image(Run *run, uint32_t t, RtError *error) {
                       run->options->workload.threads, path, error);
 }
 
-/* Frees the scene of workload `t`, unless a later one is on it, too. */
+/* Frees the scene of workload `t`, unless a later workload uses it. */
 static void close_scene(Run *run, uint32_t t) {
     uint32_t slot = slot_of(run->experiment, t);
     for (uint32_t later = t + 1; later < run->experiment->workload_count; later++) {
@@ -255,7 +254,7 @@ static void close_scene(Run *run, uint32_t t) {
     rt_scene_clear(&run->scenes[slot]);
 }
 
-/* What was done where nothing was measured. */
+/* Says what was done if nothing was measured. */
 static void tell_end(const Run *run) {
     char message[128];
     uint32_t scenes;
@@ -267,7 +266,7 @@ static void tell_end(const Run *run) {
                  rt_plural(scenes));
         notify(run, message);
     } else {
-        notify(run, "nothing was left to measure: this run is finished. --force begins it anew");
+        notify(run, "nothing was left to measure: this run is finished. --force starts it over");
     }
 }
 
@@ -291,7 +290,7 @@ static RtStatus measure(Run *run, RtError *error) {
 
 /* ---- after ---- */
 
-/* The manifest says when and with what was measured: where nothing was, the one that is there still does. */
+/* If nothing was measured, the existing manifest stays valid. */
 static RtStatus write_manifest(const Run *run, RtError *error) {
     char path[RT_MAX_PATH];
     RT_TRY(path_in(run, RT_MANIFEST, path, error));
@@ -309,13 +308,13 @@ static RtStatus write_report(const Run *run, RtError *error) {
 }
 
 static RtStatus finish(Run *run, RtError *error) {
-    /* A shard is finished; rt_merge writes what is made of all of them. */
+    /* rt_merge writes the files made from all shards. */
     if (run->options->workload.only.shards) return write_manifest(run, error);
     rt_published_compare(&run->published, run->results);
     RT_TRY(rt_result_files_write(RT_FILE_COMPARED, run->results, &run->published, run->options->directory,
                                  error));
     RT_TRY(write_manifest(run, error));
-    /* The report is written even where drawing failed. */
+    /* The report is written even if drawing failed. */
     RtError drawing = {RT_OK, ""};
     RtStatus drawn = rt_plots_draw(run->results, run->options->directory, &drawing);
     RT_TRY(write_report(run, error));
@@ -337,7 +336,7 @@ RtStatus rt_run_experiment(RtResults *results, const RtRunOptions *options, RtEr
     if (status == RT_OK && is_complete(&run)) {
         status = finish(&run, error);
     } else if (status == RT_OK) {
-        notify(&run, "a part was measured; --resume without --only measures what is left");
+        notify(&run, "a part was measured; --resume without --only measures the rest");
     }
     rt_json_lines_close(&run.journal);
     for (uint32_t t = 0; t < RT_MAX_WORKLOADS; t++) rt_scene_clear(&run.scenes[t]);

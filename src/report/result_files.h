@@ -6,22 +6,22 @@
 #include "literature/published.h"
 #include "measure/previous_results.h"
 
-/* When a file is written, and what its bytes depend on. */
+/* When a file is written, and whether its bytes are reproducible. */
 typedef enum RtFileSort {
     RT_FILE_OTHER,    /* not made by rt_result_file_write */
     RT_FILE_MEASURED, /* written as cells are measured; depends on times */
-    RT_FILE_COUNTED,  /* written as cells are measured; byte-identical wherever it is made */
-    RT_FILE_COMPARED  /* written at the end, from published figures; byte-identical wherever it is made */
+    RT_FILE_COUNTED,  /* written as cells are measured; byte-identical on every machine */
+    RT_FILE_COMPARED  /* written at the end, from published figures; byte-identical on every machine */
 } RtFileSort;
 
-/* RT_FILE_OTHER also where the experiment has no such file. */
+/* RT_FILE_OTHER also if the experiment has no such file. */
 RtFileSort rt_result_file_sort(const RtExperiment *experiment, RtResultFile file);
 
-/* `published` is used by files of RT_FILE_COMPARED alone. */
+/* Only files of RT_FILE_COMPARED use `published`. */
 void rt_result_file_write(RtResultFile file, const RtResults *results, const RtPublished *published,
                           FILE *out);
 
-/* All files of one sort that the experiment has, into the directory. */
+/* Writes all files of one sort that the experiment has. */
 RtStatus rt_result_files_write(RtFileSort sort, const RtResults *results, const RtPublished *published,
                                const char *directory, RtError *error);
 

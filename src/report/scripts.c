@@ -37,7 +37,7 @@ RtStatus rt_scripts_copy(const RtExperiment *experiment, const char *directory, 
     return RT_OK;
 }
 
-/* ---- which may be run ---- */
+/* ---- trusted scripts ---- */
 
 enum { MOST_BYTES = 1 << 24 };
 
@@ -50,7 +50,7 @@ static bool is_text(const char *const *lines, const char *text) {
     return *text == '\0';
 }
 
-/* Text of `size` bytes, with a 0 behind them. */
+/* `text` has `size` bytes and ends with 0. */
 static bool is_shipped(const char *text, size_t size) {
     if (strlen(text) != size) return false;
     for (int i = 0; shipped_scripts[i]; i++) {
@@ -77,7 +77,7 @@ static RtStatus check_script(const char *path, const char *own, RtError *error) 
     rt_free(text);
     if (known) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
-                   "%s: raytally does not ship this gnuplot script%s, and a script may run any command: read "
+                   "%s: raytally does not ship this gnuplot script%s, and a script can run any command: read "
                    "it, then allow it with --trust",
                    path, own ? ", nor is it the one beside the experiment" : "");
 }
@@ -92,10 +92,10 @@ static void refuse_link(void *context, const char *path) {
     Links *links = context;
     struct stat info;
     if (links->status != RT_OK || lstat(path, &info) != 0 || !S_ISLNK(info.st_mode)) return;
-    links->status = rt_fail(links->error, RT_BAD_INPUT,
-                            "%s is a symbolic link, and gnuplot would write to what it leads to: remove it, "
-                            "or allow it with --trust",
-                            path);
+    links->status = rt_fail(
+        links->error, RT_BAD_INPUT,
+        "%s is a symbolic link, and gnuplot would write to its target: remove it, or allow it with --trust",
+        path);
 }
 
 static RtStatus refuse_links(const char *plots, RtError *error) {
@@ -112,7 +112,7 @@ static RtStatus refuse_links(const char *plots, RtError *error) {
     return links.status;
 }
 
-/* Of a script that the experiment names. */
+/* Checks a script that the experiment names. */
 static RtStatus check_named(const RtExperiment *experiment, uint32_t i, const char *plots, bool keep,
                             RtScripts allowed, RtError *error) {
     char beside[RT_MAX_PATH], copy[RT_MAX_PATH];

@@ -33,8 +33,8 @@ typedef struct Figure {
     uint32_t line_count, point_count, value_count;
     Line *lines;                                              /* [candidate_count] */
     Point *points;                                            /* [workload_count * candidate_count] */
-    char words[RT_MAX_SWEEP_VALUES][RT_MAX_SWEPT_CHARS];      /* values, where they are no numbers */
-    double values[RT_MAX_SWEEP_VALUES + RT_MAX_SWEEP_VALUES]; /* that rise */
+    char words[RT_MAX_SWEEP_VALUES][RT_MAX_SWEPT_CHARS];      /* values that are no numbers */
+    double values[RT_MAX_SWEEP_VALUES + RT_MAX_SWEEP_VALUES]; /* increasing */
 } Figure;
 
 bool rt_sweep_plots_needed(const RtExperiment *experiment) {
@@ -44,7 +44,7 @@ bool rt_sweep_plots_needed(const RtExperiment *experiment) {
 
 /* ---- what is drawn ---- */
 
-/* Where a value stands on the axis: words, one after the other. */
+/* The position of a value on the axis; words are numbered. */
 static double place_of(Figure *figure, const char *value) {
     double x = 0;
     uint32_t i = 0;
@@ -88,7 +88,7 @@ static double cost_of(const Figure *figure, const RtCost *cost) {
     return figure->timed ? cost->seconds.median : cost->object_tests;
 }
 
-/* What the scenes of one figure have in common: all but the parameter, where that is theirs. */
+/* The common name of the scenes of one figure: everything except the parameter. */
 static void name_group(const RtExperiment *experiment, const RtSweptKey *key, uint32_t t,
                        char name[NAME_CHARS]) {
     const RtWorkload *workload = &experiment->workloads[t];
@@ -130,7 +130,7 @@ static void gather(Figure *figure, uint32_t first) {
             add_point(figure, line, value ? place_of(figure, value) : -INFINITY, &cost);
         }
     }
-    /* What has no value is as wide as the axis. */
+    /* Lines without the parameter span the axis. */
     for (uint32_t i = 0, count = figure->point_count; i < count && figure->value_count; i++) {
         Point *point = &figure->points[i];
         if (isfinite(point->x)) continue;
@@ -170,7 +170,7 @@ static void put_data(const Figure *figure, FILE *out) {
     }
 }
 
-/* The colour is that of the line's first accelerator; marker and dash tell lines apart in grey print, too. */
+/* The colour of the line's first accelerator; marker and dash distinguish lines in grey print. */
 static void put_styles(const Figure *figure, FILE *out) {
     const RtExperiment *experiment = figure->results->experiment;
     for (uint32_t line = 0; line < figure->line_count; line++) {
@@ -185,7 +185,7 @@ static void put_styles(const Figure *figure, FILE *out) {
     }
 }
 
-/* The lines from the one that ends highest to the lowest, as they stand at the right of the first panel. */
+/* The order of the lines at the right of the first panel, from top to bottom. */
 static void put_order(const Figure *figure, FILE *out) {
     bool *put = rt_alloc(figure->line_count, sizeof(bool));
     fputs("order = \"", out);
@@ -202,7 +202,7 @@ static void put_order(const Figure *figure, FILE *out) {
     fputs("\"\n", out);
 }
 
-/* Costs of very different size want a logarithmic axis, others one that begins at 0. */
+/* Costs over more than a decade get a logarithmic axis, others one that begins at 0. */
 static bool is_wide(const Figure *figure, int panel) {
     double least = INFINITY, most = 0;
     for (uint32_t i = 0; i < figure->point_count; i++) {
@@ -225,7 +225,7 @@ static void put_axis(const Figure *figure, FILE *out) {
         fprintf(out, ")\nset xrange [-0.2:%.9g]\n", count - 0.8);
     } else if (rt_swept_logarithmic(x, count)) {
         fprintf(out, "set logscale x\nset xrange [%.9g:%.9g]\n", x[0] / 1.05, x[count - 1] * 1.05);
-        /* Few powers of ten lie within: the values themselves. */
+        /* Fewer than three decades: label the values themselves. */
         if (count <= MOST_TICS && x[count - 1] / x[0] < 1000) {
             for (uint32_t i = 0; i < count; i++)
                 fprintf(out, "%s\"%.4g\" %.9g", i ? "," : "set xtics (", x[i], x[i]);
@@ -256,11 +256,11 @@ static void put_panels(const Figure *figure, double legend, FILE *out) {
             fputs(", for [i = 1:words(order)] '$line'.word(order, i) using 1:3:(0):($4 - $3) with vectors "
                   "nohead linestyle int(word(order, i)) dashtype 1 linewidth 1 notitle",
                   out);
-        fputs("\nunset label\n", out); /* the group stands over the first */
+        fputs("\nunset label\n", out); /* only the first shows the group */
     }
 }
 
-/* One column, however many lines there are, in pixels from the top; gnuplot's own keys break into several. */
+/* One column in pixels from the top; gnuplot's own keys break into several. */
 static void put_legend(double legend, double width, double height, FILE *out) {
     fprintf(
         out,
@@ -314,10 +314,10 @@ static void put_figures(Figure *figure, FILE *out) {
     const RtExperiment *experiment = figure->results->experiment;
     RtSweptKey keys[RT_MAX_SWEPT_KEYS];
     uint32_t count = rt_experiment_swept(experiment, keys), number = 0;
-    fputs("# Written by raytally: cost over each swept parameter, all ray kinds together. For plots of your "
-          "own\n"
-          "# name gnuplot scripts under `plots` of the experiment.\n",
-          out);
+    fputs(
+        "# Written by raytally: cost over each swept parameter, over all ray kinds. For your own plots name\n"
+        "# gnuplot scripts under `plots` of the experiment.\n",
+        out);
     for (uint32_t k = 0; k < count; k++) {
         figure->key = keys[k];
         for (uint32_t t = 0; t < experiment->workload_count; t++) {

@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Line plots of cost over each parameter that an experiment sweeps: what is drawn where it names no scripts.
+/* Line plots of cost over each swept parameter, for experiments that name no scripts.
  *
- * plots/sweep.gp is written for gnuplot, with the figures in it, to run after names.gp and style.gp. It draws
- * time, object tests and steps per ray, of all ray kinds together: over a parameter of scenes, a line for
- * each accelerator; over one of accelerators, a line for each that has the rest of its spec and of its label
- * in common, and for one that is not swept a line without markers; a figure for each scene. The legend has
- * the order of the lines at their right ends. */
+ * The generated plots/sweep.gp contains its data, and runs after names.gp and style.gp. It draws time, object
+ * tests and steps per ray, over all ray kinds. Over a parameter of scenes there is a line for each
+ * accelerator. Over a parameter of accelerators there is a figure for each scene, with a line for each group
+ * of specs that differ only in the parameter, and a line without markers for each accelerator without it. The
+ * legend has the order of the lines at their right ends. */
 #ifndef RT_REPORT_SWEEP_PLOT_H
 #define RT_REPORT_SWEEP_PLOT_H
 
 #include "experiment/results.h"
 
-/* Whether there is anything to draw without scripts: something is swept, and the experiment names no plots.
- */
+/* Whether the experiment sweeps parameters and names no plots. */
 bool rt_sweep_plots_needed(const RtExperiment *experiment);
 
-/* Writes sweep.gp, and the style.gp that it needs, to `directory`/plots, which exists. */
+/* Writes sweep.gp and style.gp to `directory`/plots, which exists. */
 RtStatus rt_sweep_plots_write(const RtResults *results, const char *directory, RtError *error);
 
 #endif

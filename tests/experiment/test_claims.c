@@ -132,8 +132,8 @@ RT_TEST(what_was_not_measured_decides_nothing) {
     set_all();
     *rt_cell_at(&results, 0, 0, RT_RAY_PRIMARY) = *rt_cell_at(&results, 0, 0, RT_RAY_SHADOW) = (RtCell){0};
     expect(RT_CLAIM_UNDECIDED, "object_tests of bvh on random:n=10 < 5", "no measurements");
-    expect(RT_CLAIM_UNDECIDED, "object_tests of bvh < 5", "1 of 4 values are not known");
-    expect(RT_CLAIM_FALSE, "object_tests of bvh > 5", "1 of 4 values are not known");
+    expect(RT_CLAIM_UNDECIDED, "object_tests of bvh < 5", "1 of 4 values are unknown");
+    expect(RT_CLAIM_FALSE, "object_tests of bvh > 5", "1 of 4 values are unknown");
 }
 
 /* grid:density=1 needs 2 tests a ray of the one kind and 50 of the other, bvh 5 and 5. Without the dear kind
@@ -178,33 +178,33 @@ RT_TEST(an_exponent_is_undecided_until_all_values_of_its_line_are_known) {
     set(2, 0, 20, 10000, 10000);
     expect(RT_CLAIM_FALSE, "exponent of time of bvh in n < 0.5", "0.996 [0.991, 1.00]");
     rt_cell_at(&results, 2, 0, RT_RAY_PRIMARY)->timed = false;
-    expect(RT_CLAIM_UNDECIDED, "exponent of time of bvh in n < 0.5", "1 of 3 values are not known");
-    expect(RT_CLAIM_UNDECIDED, "exponent of time of bvh in n > 0.5", "1 of 3 values are not known");
+    expect(RT_CLAIM_UNDECIDED, "exponent of time of bvh in n < 0.5", "1 of 3 values are unknown");
+    expect(RT_CLAIM_UNDECIDED, "exponent of time of bvh in n > 0.5", "1 of 3 values are unknown");
     rt_cell_at(&results, 1, 1, RT_RAY_PRIMARY)->counted = false;
     expect(RT_CLAIM_UNDECIDED, "exponent of object_tests of grid in density < 0", "1 of 12 values");
     expect(RT_CLAIM_FALSE, "exponent of object_tests of grid in density > 0", "1 of 12 values");
     expect(RT_CLAIM_FALSE, "object_tests of grid rises with density on random:n=100",
-           "1 of 3 values are not known");
+           "1 of 3 values are unknown");
 }
 
 RT_TEST(a_claim_that_is_none_is_refused_with_what_would_be_right) {
     const char *const cases[][2] = {
-        {"grid is good", "'grid' is not measured: it is one of time, object_tests"},
+        {"grid is good", "'grid' is no measure: choose one of time, object_tests"},
         {"object_test of grid < 5", "did you mean 'object_tests'?"},
-        {"object_tests grid < 5", "'grid' stands where 'of' is expected"},
+        {"object_tests grid < 5", "found 'grid', expected 'of'"},
         {"object_tests of gird < 5", "'gird' is not the label of one of the accelerators"},
         {"object_tests of grid on ball < 5", "'ball' is not the label of one of the scenes"},
-        {"object_tests of grid = 5", "'=' stands where one of < <= > >= is expected"},
+        {"object_tests of grid = 5", "found '=', expected one of < <= > >="},
         {"object_tests of grid <", "'' is no number"},
         {"object_tests of grid < five", "'five' is no number"},
-        {"object_tests of grid < 5 always", "'always' comes after its end"},
-        {"object_tests of grid falls with size", "'size' is no parameter that is swept"},
-        {"object_tests of grid falls monotonically", "'monotonically' stands where 'with' is expected"},
-        {"ratio of time of bvh to grid > 5", "'grid' is 3 accelerators: name one of them"},
-        {"time of bvh at n=11 > 5", "'11' is none of the values of 'n'"},
+        {"object_tests of grid < 5 always", "unexpected 'always' at its end"},
+        {"object_tests of grid falls with size", "'size' is no swept parameter"},
+        {"object_tests of grid falls monotonically", "found 'monotonically', expected 'with'"},
+        {"ratio of time of bvh to grid > 5", "'grid' names 3 accelerators: name one of them"},
+        {"time of bvh at n=11 > 5", "'11' is no value of 'n'"},
         {"time of bvh at n > 5", "write 'at largest PARAM'"},
-        {"time of bvh for random rays > 5", "'random' is no kind of the rays of this experiment"},
-        {"bytes of bvh for primary rays > 5", "bytes is that of no kind of rays"},
+        {"time of bvh for random rays > 5", "this experiment has no 'random' rays"},
+        {"bytes of bvh for primary rays > 5", "bytes does not depend on the kind of rays"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         RtClaim claim;

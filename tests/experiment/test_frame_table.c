@@ -180,7 +180,7 @@ FRAME_TEST(a_frame_needs_its_accelerator_its_group_and_its_kinds_of_rays) {
     refused("'nobody' is not the group");
     strcpy(e->frame.among, "the six");
     e->kind_count = 1;
-    refused("a frame has shadow rays, too");
+    refused("a frame also has shadow rays");
 }
 
 RT_TESTS(frame_table, NULL, NULL)

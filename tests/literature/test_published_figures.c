@@ -116,7 +116,7 @@ RT_TEST_IN_PLACE(ours_must_need_less_than_every_published_row) {
     assert_agrees(place, "balls,s,Tree|deep,,,ray,,12.0,3.5\n", "");
     assert_in_file(place, "out/published.md", "| balls | object_tests | Tree\\|deep | 12 | `all` |");
     /* Per hit it is less than 11 a ray. */
-    assert_fails(place, "balls,s,Tree,deep,,hit,,11.0,3.5\n", "", false, "on balls none of ours needs less");
+    assert_fails(place, "balls,s,Tree,deep,,hit,,11.0,3.5\n", "", false, "on balls none of ours is better");
 }
 
 RT_TESTS(published_figures, NULL, NULL)

@@ -38,7 +38,7 @@ RT_TEST_IN_PLACE(what_a_published_table_or_a_reason_says_wrongly_is_told_with_it
          ":2: tests_per: invalid value 'day'"},
         {"figures.csv", "scene,source,steps\nballs,s,1\n", ":2: steps: the table needs a column accel"},
         {"figures.csv", "scene,source,accel,primary\nballs,s,all,1\n",
-         ":2: primary: the row has an accelerator"},
+         ":2: primary: a row with an accelerator"},
         {"reasons.csv", "scene,source,accel,reason\n", "the column 'column' is missing"},
         {"reasons.csv", "scene,source,accel,column,reason\n*,*,*,*, \n",
          "reasons.csv:2: the reason is missing"},

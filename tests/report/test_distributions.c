@@ -60,7 +60,7 @@ RT_TEST_IN_PLACE(a_run_that_asks_for_distributions_has_them_in_tables_of_their_o
     assert_int_equal(rays, within);
     rt_csv_clear(&csv);
     rt_csv_clear(&bins);
-    assert_in_file(place, "out/report.html", "How counts are distributed");
+    assert_in_file(place, "out/report.html", "Distributions of counts");
     if (access("/usr/bin/gnuplot", X_OK) != 0) RT_SKIP("gnuplot-nox");
     assert_in_file(place, "out/plots/histograms-cloud.svg", "</svg>");
     assert_in_file(place, "out/plots/histograms-balls.svg", "shadow rays");

@@ -69,7 +69,7 @@ RT_TEST_IN_PLACE(four_shards_make_the_counts_of_one_run) {
 RT_TEST_IN_PLACE(what_does_not_make_a_whole_is_refused_and_nothing_is_written) {
     const Place *place = *state;
     refused(place, "merge s1 s2 s4 -o all", "shard 3 of 4 is missing");
-    refused(place, "merge s1 s2 s3 s4 s2 -o all", "shard 2 of 4 is there twice: s2 and s2");
+    refused(place, "merge s1 s2 s3 s4 s2 -o all", "shard 2 of 4 is given twice: s2 and s2");
     refused(place, "merge s1 s2 nowhere -o all", "nowhere is not the directory of a run");
     refused(place, "merge s1 s2", "say where to: -o DIR");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out whole"), 0);
@@ -81,7 +81,7 @@ RT_TEST_IN_PLACE(what_does_not_make_a_whole_is_refused_and_nothing_is_written) {
     refused(place, "merge s1 other s3 s4 -o all", "s1 and other are of different experiments");
     refused(place, "merge s1 s2 s3 s4 -o all", "small.yaml has changed since the shards were made");
     assert_int_equal(remove(path_in(place, "s3/manifest.json").text), 0);
-    refused(place, "merge s1 s2 s3 s4 -o all", "s3 is not finished: go on");
+    refused(place, "merge s1 s2 s3 s4 -o all", "s3 is not finished: finish it");
 }
 
 /* A disk that is full fails alike: at a file that is to be written. */
@@ -116,10 +116,10 @@ RT_TEST_IN_PLACE(cells_timed_on_other_numbers_of_threads_are_not_mixed) {
     const Place *place = *state;
     assert_int_equal(raytally(place, "run small.yaml --threads 2 --shard 3/4 --out two"), 0);
     refused(place, "merge s1 s2 two s4 -o all",
-            "s1 was timed on 1 thread, and two on 2: their times would not compare. Run one of them again");
+            "s1 was timed on 1 thread, and two on 2: their times are not comparable. Run one of them again");
     assert_int_equal(raytally(place, "run small.yaml --threads 2 --out part --only cloud:n=50"), 0);
     assert_int_equal(raytally(place, "run small.yaml --out part --resume"), 2);
-    assert_in_file(place, "message", "part was timed on 2 threads so far, and would be on 1 from here on");
+    assert_in_file(place, "message", "part was timed on 2 threads so far, and this command would use 1");
     assert_int_equal(raytally(place, "run small.yaml --threads 2 --out part --resume"), 0);
     assert_int_equal(raytally(place, "run small.yaml --out part --resume"), 0); /* nothing is left to time */
 }
@@ -149,7 +149,7 @@ RT_TEST_IN_PLACE(another_program_of_uncommitted_sources_is_another_build) {
     if (!uncommitted) return;
     assert_in_file(place, "message", "s1 and s2 are of different builds of raytally");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --shard 2/4 --out s2 --resume"), 2);
-    assert_in_file(place, "message", "this run was begun by another build");
+    assert_in_file(place, "message", "another build began this run");
     refused(place, "merge s2 s2 -o all", "s2 was measured by another build of raytally");
 }
 

@@ -164,7 +164,7 @@ RT_TEST_IN_PLACE(a_kind_of_rays_that_an_accelerator_lacks_leaves_its_means_out_o
     assert_int_equal(raytally(place, "run small.yaml --out out --threads 1 --resume"), 0);
     assert_in_file(place, "message", "nothing was left to measure");
     assert_in_file(place, "output", "undecided      ratio of object_tests");
-    assert_in_file(place, "out/report.html", "are unknown where one of the kinds was left out");
+    assert_in_file(place, "out/report.html", "are unknown if one of the kinds was left out");
     snprintf(command, sizeof command, "grep -Eqx 'grid +[0-9]+ +- +- +- +- +- .*' '%s/output'",
              place->folder);
     assert_int_equal(system(command), 0);
@@ -297,7 +297,7 @@ RT_TEST_IN_PLACE(the_index_has_each_experiment_with_verdict_finding_and_link_and
     assert_in_file(place, "all/index.html", "<a href=\"deeper/two%20%26%20a%20half/report.html\">");
     assert_in_file(place, "all/index.html", "1 of 1 claim holds");
     assert_in_file(place, "all/index.html", "It &lt;was&gt;.");
-    assert_in_file(place, "all/index.html", "It cannot be read:");
+    assert_in_file(place, "all/index.html", "Cannot be read:");
     assert_int_equal(raytally(place, "report --index nowhere"), 2);
     assert_int_equal(raytally(place, "report --index all small"), 2);
     assert_int_equal(system("test ! -e nowhere"), 0);

@@ -284,7 +284,7 @@ RT_TEST_IN_PLACE(gnuplot_that_fails_is_told_of_by_exit_code_1_and_its_own_words)
     assert_ends_with_path(place, bin.text, "plot out --trust", 1, says);
     assert_ends_with_path(place, bin.text, "run small.yaml --out out --resume", 1, says);
     make_gnuplot(place, "#!/bin/sh\nexit 3\n");
-    assert_ends_with_path(place, bin.text, "plot out --trust", 1, "it was given plots/names.gp plots/x.gp");
+    assert_ends_with_path(place, bin.text, "plot out --trust", 1, "its scripts: plots/names.gp plots/x.gp");
 }
 
 RT_TEST_IN_PLACE(where_there_is_no_gnuplot_a_note_says_so) {
