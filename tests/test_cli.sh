@@ -157,7 +157,7 @@ grep -rE 'my-accel|SPDX' my_grid-2 && complain "new-accel: leaves the name, or t
 for file in CMakeLists.txt README.md my_grid-2.c; do
     grep -q 'my_grid-2' "my_grid-2/$file" || complain "new-accel: $file does not know its name"
 done
-refuses 'my_grid-2 is there already' new-accel my_grid-2
+refuses 'my_grid-2 exists already' new-accel my_grid-2
 does new-accel mine --out some/where
 [ -f some/where/mine/mine.c ] || complain 'new-accel: --out does not make its folder'
 touch file
@@ -262,7 +262,7 @@ refuses "0x0.*1\.\.32768" render balls:size=1 --size 0x0 -o x.png
 refuses "1\.\.64" render balls:size=1 --depth 1000000000 -o x.png
 refuses "1\.\.64" render balls:size=1 --samples 0 -o x.png
 refuses "threads.*1\.\." render balls:size=1 --threads -1 -o x.png
-refuses "nothing to make" render balls:size=1
+refuses "nothing to do" render balls:size=1
 refuses "\.png or \.exr" render balls:size=1 -o x.gif
 refuses "missing/x\.png.*No such file" render balls:size=1 --size 8x8 -o missing/x.png
 mkdir taken.png

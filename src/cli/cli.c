@@ -14,11 +14,12 @@ int rt_cli_fail(const RtError *error) {
 
 RtStatus rt_cli_check_json_name(const char *name, RtError *error) {
     json_t *text = json_string_nocheck(name), *checked = json_string(name);
-    bool good = checked || !text; /* without either it is memory that is short, which others say */
+    bool good = checked || !text; /* without either, memory is short, which others report */
     json_decref(text);
     json_decref(checked);
     if (good) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "the name '%s' is not UTF-8, as JSON asks: rename the file", name);
+    return rt_fail(error, RT_BAD_INPUT, "the name '%s' is not UTF-8, which JSON requires: rename the file",
+                   name);
 }
 
 void rt_cli_print_json(json_t *document) {
@@ -66,7 +67,7 @@ int64_t rt_cli_integer(struct argp_state *state, const char *option, const char 
 
 bool rt_cli_digits(const char **text, uint32_t *number) {
     char *end;
-    if (**text < '0' || **text > '9') return false; /* strtoull takes blanks and signs, too */
+    if (**text < '0' || **text > '9') return false; /* strtoull accepts blanks and signs */
     errno = 0;
     unsigned long long value = strtoull(*text, &end, 10);
     if (errno || value > UINT32_MAX) return false;
@@ -97,9 +98,8 @@ void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint3
 
 RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, RtError *error) {
     if (x < sampling->width && y < sampling->height) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT,
-                   "--pixel %u,%u is outside of the image, which is %u x %u: choose 0..%u,0..%u", x, y,
-                   sampling->width, sampling->height, sampling->width - 1, sampling->height - 1);
+    return rt_fail(error, RT_BAD_INPUT, "--pixel %u,%u is outside the image of %u x %u: choose 0..%u,0..%u",
+                   x, y, sampling->width, sampling->height, sampling->width - 1, sampling->height - 1);
 }
 
 RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text) {
@@ -111,7 +111,7 @@ RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, co
     return RT_RAY_PRIMARY;
 }
 
-/* The last dot of a name that has something before it, or "". */
+/* From the last dot of a name that has something before it, or "". */
 static const char *extension_of(const char *path) {
     const char *dot = strrchr(path, '.');
     return dot && dot != path ? dot : "";
@@ -127,7 +127,7 @@ void rt_cli_set_path(struct argp_state *state, const char *option, const char **
     if (!rt_cli_has_extension(path, extensions))
         argp_error(state, "%s: invalid value '%s': expected a file name that ends in %s", option, path,
                    extensions);
-    if (*slot) argp_error(state, "%s: both '%s' and '%s': one file is written", option, *slot, path);
+    if (*slot) argp_error(state, "%s: both '%s' and '%s': give one file", option, *slot, path);
     *slot = path;
 }
 

@@ -45,30 +45,30 @@ const struct argp *rt_cli_command_argp(const RtCommand *command);
 extern const RtSyntax rt_completion_syntax;
 void rt_completion_print(const RtCommand *commands, int count);
 
-/* Prints "raytally: MESSAGE" to stderr and gives the exit code that belongs to the status. */
+/* Prints "raytally: MESSAGE" to stderr and returns the exit code of the status. */
 int rt_cli_fail(const RtError *error);
 
-/* RT_BAD_INPUT, and why, where `name`, of a file, cannot be in a JSON document since it is not UTF-8; to be
- * asked before there is one, for json_pack would only give NULL. */
+/* RT_BAD_INPUT if the file name `name` is not UTF-8, and so cannot be in a JSON document. Call it first:
+ * json_pack would only return NULL. */
 RtStatus rt_cli_check_json_name(const char *name, RtError *error);
 
 /* Prints one JSON document to stdout, indented, and takes the reference. */
 void rt_cli_print_json(json_t *document);
 
-/* A parameter table: two lines a parameter, or an array of objects. */
+/* A parameter table: two lines per parameter, or an array of objects. */
 void rt_cli_print_params(const RtParam *table, size_t count);
 json_t *rt_cli_params_json(const RtParam *table, size_t count);
 
-/* For parsers of options: the number in `text`, lo..hi, or argp_error's exit with what would be right.
+/* For parsers of options: the number in `text`, lo..hi; ends the process by argp_error if it is wrong.
  * `state` is argp's. */
 int64_t rt_cli_integer(struct argp_state *state, const char *option, const char *text, int64_t lo,
                        int64_t hi);
 
-/* For parsers of what has several numbers: reads the digits at *text, up to UINT32_MAX, and goes on to what
- * follows them; false where there are none, or the number is larger. */
+/* For parsers of several numbers: reads the digits at *text, up to UINT32_MAX, and moves *text past them;
+ * false if there are none, or the number is larger. */
 bool rt_cli_digits(const char **text, uint32_t *number);
 
-/* A share such as "1%", more than 0 and at most 100 of a hundred, as a part: 0.01. */
+/* "1%", more than 0 and at most 100 %, as a fraction: 0.01. */
 double rt_cli_percent(struct argp_state *state, const char *option, const char *text);
 
 /* Options of several commands. */
@@ -106,20 +106,20 @@ void rt_list_finish(const RtListOptions *options, const char *key, json_t *list,
 /* A vector as [x, y, z]. */
 json_t *rt_cli_vector_json(RtVec3 v);
 
-/* "X,Y", of --pixel; RT_BAD_INPUT, once the image is known, if the pixel is not in it. */
+/* "X,Y" of --pixel; the check, once the image is known, is RT_BAD_INPUT if the pixel is outside. */
 void rt_cli_pixel(struct argp_state *state, const char *text, uint32_t *x, uint32_t *y);
 RtStatus rt_cli_check_pixel(const RtSampling *sampling, uint32_t x, uint32_t y, RtError *error);
 
-/* The name of a kind of rays that an image is made of: primary, shadow, reflection or transmission. */
+/* A kind of rays of images: primary, shadow, reflection or transmission. */
 RtRayKind rt_cli_image_ray_kind(struct argp_state *state, const char *option, const char *text);
 
-#define RT_CLI_PICTURES ".png, .svg or .pdf" /* what pictures are drawn in */
+#define RT_CLI_PICTURES ".png, .svg or .pdf" /* the formats of pictures */
 
 /* Does the file name end in one of `extensions`, such as ".png, .svg or .pdf"? */
 bool rt_cli_has_extension(const char *path, const char *extensions);
 
-/* For parsers: stores `path` in *slot; exits by argp_error if it ends in none of `extensions`, or *slot is
- * taken. */
+/* For parsers: stores `path` in *slot; ends the process by argp_error if it ends in none of `extensions`, or
+ * if *slot is set. */
 void rt_cli_set_path(struct argp_state *state, const char *option, const char **slot, const char *path,
                      const char *extensions);
 

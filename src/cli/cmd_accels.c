@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally accels: what the tables of the registry say. */
+/* raytally accels: the table of accelerators. */
 #include "accel/accel.h"
 #include "cli/cli.h"
 #include "cli/plugins.h"
@@ -9,7 +9,7 @@
 static void print_accelerator(const RtAccelOps *ops) {
     printf("%s: %s\n  %s\n", ops->name, ops->summary, ops->paper);
     if (ops->kinds) {
-        fputs("  an overlay, OVERLAY+ACCELERATOR: hands on all but rays of kind", stdout);
+        fputs("  an overlay, OVERLAY+ACCELERATOR: answers only rays of kind", stdout);
         for (int kind = 0; kind < RT_RAY_KIND_COUNT; kind++) {
             if (ops->kinds >> kind & 1) printf(" %s", rt_ray_kind_name((RtRayKind)kind));
         }

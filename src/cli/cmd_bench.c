@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally bench: one scene, a few accelerators, counted and timed at once. It is an experiment of one
- * workload that leaves no directory behind. */
+/* raytally bench: counts and times accelerators on the rays of one scene, as an experiment without a
+ * directory. */
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/progress.h"
@@ -57,7 +57,7 @@ void rt_cli_add_accels(RtExperiment *experiment, const char *text, struct argp_s
     }
 }
 
-/* One that was not given is added. */
+/* Adds an accelerator that was not given. */
 static void set_baseline(RtExperiment *experiment, const char *text, struct argp_state *state) {
     RtError error;
     uint32_t c = 0;
@@ -71,7 +71,7 @@ static void set_baseline(RtExperiment *experiment, const char *text, struct argp
     }
 }
 
-/* Rows of rays belong to one accelerator and one kind, and no file is written over another. */
+/* Files of rays need one accelerator and one kind of rays; all files need different names. */
 static void check_rows(const Options *o, struct argp_state *state) {
     const RtExperiment *e = o->recording.experiment;
     const char *const files[] = {o->workload.hits, o->workload.counts, o->csv,
@@ -306,7 +306,7 @@ static RtStatus report(const Options *o, const RtResults *results, const RtCallg
 
 /* ---- the command ---- */
 
-/* Everything but the report. */
+/* All but the report. */
 static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, RtError *error) {
     const RtExperiment *experiment = o->recording.experiment;
     if (o->callgrind) {

@@ -15,7 +15,7 @@ typedef struct Options {
     uint64_t rays, seed;
 } Options;
 
-/* What is counted for both kinds of output. */
+/* The counts of both outputs. */
 typedef struct Counts {
     uint32_t of_shape[RT_SHAPE_COUNT];
     uint32_t zero_area; /* triangles */
@@ -119,7 +119,7 @@ static json_t *camera_json(const RtCamera *camera) {
                      "height", (json_int_t)camera->height);
 }
 
-/* Those of no object: null. */
+/* null without objects. */
 static json_t *bounds_json(const RtGeometry *g) {
     if (g->object_count == 0) return json_null();
     return json_pack("{s:o, s:o}", "lo", rt_cli_vector_json(g->box.lo), "hi", rt_cli_vector_json(g->box.hi));

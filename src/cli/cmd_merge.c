@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally merge: one result directory from those of the shards of an experiment. */
+/* raytally merge: joins the shards of an experiment. */
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "core/base/memory.h"

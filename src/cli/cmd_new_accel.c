@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally new-accel: a folder with an accelerator of one's own, as a plugin that works, to be changed. Its
- * files are those of cli/new_accel, with the name in the place of `my-accel`, and without the line that says
- * what their licence is here: what becomes of them is the user's. */
+/* raytally new-accel: a folder with a working plugin to edit. Its files are those of cli/new_accel, with the
+ * given name instead of `my-accel`, and without the licence line: they belong to the user. */
 #include "accel/accel.h"
 #include "cli/cli.h"
 #include "core/base/file.h"
@@ -72,7 +71,7 @@ static RtStatus write_template(const Template *file, const char *folder, const c
     return rt_output_commit(&output, error);
 }
 
-/* What was written of it, after a failure. */
+/* Removes what was written, after a failure. */
 static void remove_folder(const char *folder, const char *name) {
     char path[RT_MAX_PATH];
     for (int i = 0; i < TEMPLATE_COUNT; i++) {
@@ -84,7 +83,7 @@ static void remove_folder(const char *folder, const char *name) {
 static RtStatus write_folder(const char *folder, const char *name, RtError *error) {
     if (mkdir(folder, 0777) != 0) {
         if (errno == EEXIST)
-            return rt_fail(error, RT_BAD_INPUT, "%s is there already: choose another name or another --out",
+            return rt_fail(error, RT_BAD_INPUT, "%s exists already: choose another name or another --out",
                            folder);
         return rt_fail(error, RT_IO, "%s: creating the folder failed: %s", folder, strerror(errno));
     }
@@ -107,12 +106,12 @@ int rt_command_new_accel(int argc, char **argv) {
     if (status == RT_OK && *o.out) status = rt_directory_create(o.out, &error);
     if (status == RT_OK) status = write_folder(folder, o.name, &error);
     if (status != RT_OK) return rt_cli_fail(&error);
-    printf("%s: an accelerator that works. To go on:\n\n"
+    printf("%s: a working accelerator. Next steps:\n\n"
            "  cd %s\n"
            "  cmake -B build && cmake --build build\n"
            "  cmake --build build --target check\n"
            "  raytally bench balls:size=3 --plugin build/%s.so --accel %s --accel bvh\n\n"
-           "%s.c says where your structure goes, README.md what else there is.\n",
+           "%s.c shows where your structure goes; README.md explains the rest.\n",
            folder, folder, o.name, o.name, o.name);
     return RT_EXIT_OK;
 }

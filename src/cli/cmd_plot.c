@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally plot: the plots of a result directory, drawn again. */
+/* raytally plot: draws the plots of a result directory again. */
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/plugins.h"

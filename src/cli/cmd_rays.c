@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally rays: the rays that `bench` records, as an array of NumPy. */
+/* raytally rays: writes the rays that `bench` records as a NumPy array. */
 #include "cli/cli.h"
 #include "cli/recording.h"
 #include "core/base/words.h"

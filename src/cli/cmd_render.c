@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally render: a picture of a scene, and what it cost. The timed kernels make the picture; where counts
- * are asked for, a second frame is traced by the counted ones. */
+/* raytally render: a picture of a scene, and its cost. The timed kernels make the picture; the counted
+ * kernels trace a second frame if counts are needed. */
 #include "accel/columns.h"
 #include "cli/cli.h"
 #include "cli/pictures.h"
@@ -21,7 +21,7 @@
 
 typedef struct Options {
     const char *scene;
-    const char *accels[RT_MAX_PANELS]; /* the first makes all but heatmaps */
+    const char *accels[RT_MAX_PANELS]; /* the first makes everything except heatmaps */
     uint32_t accel_count;
     uint32_t size[2]; /* width, height; 0: the camera's */
     uint32_t samples, depth;
@@ -48,7 +48,7 @@ static void take_accel(void *options, const char *spec, struct argp_state *state
     o->accels[o->accel_count++] = spec;
 }
 
-/* All that is to be written; returns how many files. */
+/* Lists the files to be written; returns their number. */
 static size_t list_outputs(const Options *o, const char *paths[MOST_OUTPUTS]) {
     const char *const others[] = {o->png, o->exr, o->stats};
     size_t count = 0;
@@ -64,12 +64,12 @@ static void finish(void *options, struct argp_state *state) {
     size_t count = list_outputs(o, paths);
     if (o->accel_count == 0) take_accel(o, rt_accel_default(), state);
     if (count == 0 && !o->check) {
-        argp_error(state, "nothing to make: give -o FILE.png, or --heatmap, --structure, --stats or --check");
+        argp_error(state, "nothing to do: give -o FILE.png, or --heatmap, --structure, --stats or --check");
     }
     for (size_t i = 0; i < count; i++) {
         for (size_t k = 0; k < i; k++) {
             if (strcmp(paths[k], paths[i]) != 0) continue;
-            argp_error(state, "'%s' would be written twice: give each its own file", paths[i]);
+            argp_error(state, "'%s' would be written twice: give each output its own file", paths[i]);
         }
     }
     rt_pictures_finish(&o->pictures, o->accel_count, state);
@@ -94,7 +94,7 @@ static const RtOption options[] = {
 
 /* ---- the frames ---- */
 
-/* All there is to tell about one run. */
+/* One run of the command. */
 typedef struct Run {
     const Options *options;
     RtScene scene;
@@ -103,8 +103,8 @@ typedef struct Run {
     double build_seconds;
     RtFrameOptions frame_options;
     RtFrame timed, counted;
-    bool by_default; /* the picture of the structure is all there is to make: its background, where it has
-                        one, is made in a quicker way */
+    bool by_default; /* only the picture of the structure is made: the default accelerator draws its
+                        background */
 } Run;
 
 static void show_progress(void *context, size_t tiles_done, size_t tiles) {
@@ -159,8 +159,7 @@ static RtStatus prepare(Run *run, RtError *error) {
 
 /* ---- what is written ---- */
 
-/* Counts the image again by each of the accelerators, but the first, which has been; and draws the heatmaps.
- */
+/* Counts the image with each accelerator after the first, and draws the heatmaps. */
 static RtStatus write_heatmaps(const Run *run, RtError *error) {
     const Options *o = run->options;
     RtFrame frames[RT_MAX_PANELS] = {{.cost = NULL}};
@@ -252,8 +251,8 @@ static void print_summary(const Run *run) {
            rt_plural(run->scene.geometry.object_count), run->scene.light_count,
            rt_plural(run->scene.light_count), run->spec, run->build_seconds, (double)d.bytes * 1e-6, s->width,
            s->height, s->corners ? " at their corners" : "");
-    if (run->by_default) /* how fast that was says nothing of this one */
-        printf(", drawn over what %s sees.", rt_accel_default());
+    if (run->by_default) /* its speed says nothing about this one */
+        printf(", drawn over an image by %s.", rt_accel_default());
     else if (total_rays(run) > 0)
         print_rays(run);
     else
@@ -285,7 +284,7 @@ static RtStatus check_kind(const Run *run, const RtAccel *brute, const RtRaySet 
                    rt_ray_kind_name(set->kind), says);
 }
 
-/* The picture as a whole: what answers alike, stream by stream, must also add up alike. */
+/* Compares the whole frame, bit for bit. */
 static RtStatus check_frame(const Run *run, const RtAccel *brute, RtError *error) {
     const RtFrame *got = &run->timed;
     RtFrame right;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally report: the report of a result directory, written again; the page over all of them. */
+/* raytally report: writes the report of a result directory again, or the index of several. */
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/plugins.h"

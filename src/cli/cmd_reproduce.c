@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally reproduce: the counts of a result directory, counted again and compared byte for byte, with all
- * that is made of them alone. */
+/* raytally reproduce: counts a result directory again and compares its exact files byte for byte. */
 #include "cli/cli.h"
 #include "cli/directory.h"
 #include "cli/plugins.h"
@@ -27,7 +26,7 @@ static RtStatus count_again(RtResults *results, RtError *error) {
     return status;
 }
 
-/* What stands behind a line, if not the next one. */
+/* A note if the line is not followed by another. */
 static const char *end_of_line(const char *line) {
     return *line == '\0'                       ? "(nothing more)"
            : line[strcspn(line, "\n")] == '\0' ? " (without an end of line)"
@@ -37,7 +36,7 @@ static const char *end_of_line(const char *line) {
 /* RT_MISMATCH with the first line that differs. */
 static RtStatus compare(const char *path, const char *kept, const char *counted, RtError *error) {
     if (strcmp(kept, counted) == 0) return RT_OK;
-    size_t line = 1, start = 0; /* of the line in hand: up to there the texts are alike */
+    size_t line = 1, start = 0; /* of the first line that differs */
     for (size_t i = 0; kept[i] && kept[i] == counted[i]; i++) {
         if (kept[i] != '\n') continue;
         line++;
@@ -46,7 +45,7 @@ static RtStatus compare(const char *path, const char *kept, const char *counted,
     kept += start;
     counted += start;
     return rt_fail(error, RT_MISMATCH,
-                   "%s:%zu: differs from what is counted now:\n  there: %.*s%s\n  now:   %.*s%s", path, line,
+                   "%s:%zu: differs from the new counts:\n  there: %.*s%s\n  now:   %.*s%s", path, line,
                    (int)strcspn(kept, "\n"), kept, end_of_line(kept), (int)strcspn(counted, "\n"), counted,
                    end_of_line(counted));
 }
@@ -85,7 +84,7 @@ static RtStatus compare_all(const char *directory, const RtResults *results, RtE
 static RtStatus reproduce(const char *directory, const RtExperiment *experiment, RtResults *results,
                           RtError *error) {
     rt_cli_tell_plugins(directory, experiment);
-    /* That is the copy in the directory: its scenes are not found from there. */
+    /* The copy in the directory does not find its scenes; the original does. */
     RtExperiment *original = rt_alloc(1, sizeof *original);
     if (!original) return rt_fail_memory(error, "an experiment", sizeof *original);
     RtStatus status = rt_manifest_experiment(directory, original, error);

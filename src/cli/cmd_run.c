@@ -18,7 +18,7 @@ typedef struct Options {
     const char *path, *out;
     RtStart start;
     bool renew, quick, strict, dry, trust;
-    bool found; /* the experiment is one that a manifest leads to */
+    bool found; /* the experiment comes from a manifest */
     char only_text[3 * RT_MAX_LABEL];
     RtOnly only;
     int threads; /* -1: one to time, all to build and count */
@@ -103,7 +103,7 @@ static RtStatus check_only(const RtExperiment *e, const RtOnly *only, RtError *e
                    rt_plural(e->workload_count), only->shards);
 }
 
-/* What --dry-run prints of one cell. */
+/* The line of a cell in --dry-run. */
 static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKind kind) {
     const RtExperiment *e = results->experiment;
     const RtCell *cell = rt_cell_at(results, t, c, kind);
@@ -116,7 +116,7 @@ static void print_cell(const RtResults *results, uint32_t t, uint32_t c, RtRayKi
                       : "");
 }
 
-/* Nothing is opened: what is in the directory tells how long cells take. */
+/* Opens no scenes: forecasts from the results in the directory. */
 static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *error) {
     const RtExperiment *e = results->experiment;
     const RtOnly *only = &how->workload.only;
@@ -144,7 +144,7 @@ static RtStatus dry_run(RtResults *results, const RtRunOptions *how, RtError *er
     return RT_OK;
 }
 
-/* The command that goes on. */
+/* The command that continues the run. */
 static void go_on(const Options *o, const RtExperiment *e, const char *directory, char *out, size_t room) {
     char threads[32] = "", shard[32] = "", until[64] = "", plugins[1024];
     if (o->threads >= 0) snprintf(threads, sizeof threads, " --threads %d", o->threads);
@@ -171,7 +171,7 @@ static RtStatus measure(const Options *o, RtResults *results, RtRunOptions *how,
     return o->strict ? rt_claims_check(results, error) : RT_OK;
 }
 
-/* A YAML, or the manifest.json of what is to be run again. */
+/* Loads a YAML, or the experiment of a manifest.json. */
 static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     static const char manifest[] = "manifest.json";
     char folder[RT_MAX_PATH];
@@ -179,11 +179,12 @@ static RtStatus load(Options *o, RtExperiment *experiment, RtError *error) {
     if (length < last || strcmp(o->path + length - last, manifest) != 0)
         return rt_experiment_load(experiment, o->path, o->quick, error);
     if (o->quick)
-        return rt_fail(error, RT_BAD_INPUT, "--quick: %s says whether it was; leave it out", o->path);
+        return rt_fail(error, RT_BAD_INPUT, "--quick: %s says which variant it was; leave --quick out",
+                       o->path);
     o->found = true;
     rt_path_folder(o->path, folder);
     RtStatus status = rt_manifest_experiment(folder, experiment, error);
-    rt_cli_tell_plugins(folder, experiment); /* also of one that lacks its plugin, and fails for that */
+    rt_cli_tell_plugins(folder, experiment); /* even if loading failed for lack of a plugin */
     return status;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally scenes: what the table of built-in scenes says. */
+/* raytally scenes: the table of built-in scenes. */
 #include "cli/cli.h"
 #include "scenes/builtin.h"
 

@@ -170,7 +170,7 @@ static json_t *row_json(const RtPathRow *row) {
     return NULL;
 }
 
-/* All rows or, where memory is short, NULL. */
+/* All rows, or NULL if memory is short. */
 static json_t *rows_json(const RtPath *path) {
     json_t *rows = json_array();
     for (uint32_t i = 0; rows && i < path->count; i++) {
@@ -181,8 +181,7 @@ static json_t *rows_json(const RtPath *path) {
     return rows;
 }
 
-/* `object` is null where none is hit, and where it is only known that one blocks the ray; `blocked` is null
- * for rays of which the nearest hit is asked. */
+/* `object` is null if none is hit, or if the occluder is unknown; `blocked` is null for nearest-hit rays. */
 static json_t *path_json(const RtPath *path, const Options *o, const char *spec) {
     const RtRay *r = &path->ray;
     return json_pack("{s:s, s:s, s:[i, i], s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "scene",

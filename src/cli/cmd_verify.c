@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally verify: does every accelerator answer every ray like brute? And --replay: does one still answer
- * one ray wrong? What is done lies in verify/verify.h and verify/replay.h; this is its command
- * line. */
+/* raytally verify: does every accelerator answer every ray like brute? With --replay: is an answer still
+ * wrong? The command line of verify/verify.h and verify/replay.h. */
 #include "cli/cli.h"
 #include "cli/plugins.h"
 #include "cli/verify_choice.h"
@@ -26,7 +25,7 @@ typedef struct Options {
     bool spread, quick, json;
     RtStart start;
     int threads;
-    uint64_t rays, seed; /* rays: 0 until they are chosen */
+    uint64_t rays, seed; /* rays 0: the default */
     const char *folder, *replay, *rays_from;
     RtRaySet given; /* those of rays_from */
     RtVerifyChoice choice;
@@ -113,7 +112,7 @@ static void clear_progress(const Show *show) {
     if (show->terminal) fputs("\r\033[K", stderr);
 }
 
-/* Redrawn ten times a second at most. */
+/* Redrawn at most ten times a second. */
 static void on_doing(void *context, const RtVerifyProgress *p) {
     Show *show = context;
     const RtVerifyChoice *choice = &show->options->choice;
@@ -163,12 +162,12 @@ static void print_row(Show *show, const json_t *row) {
     if (!json_is_null(wrong)) {
         printf("    WRONG: %s\n", text(wrong, "says"));
         if (json_is_null(json_object_get(wrong, "objects_left"))) {
-            printf("    Asked again, the answer is right. ");
+            printf("    Traced again, the answer is right. ");
         } else if (json_is_true(json_object_get(wrong, "shrunk"))) {
             printf("    It takes %lld object%s of the scene. ", number(wrong, "objects_left"),
                    rt_plural((uint64_t)number(wrong, "objects_left")));
         } else {
-            printf("    The scene is left whole: enough failures have been shrunk. ");
+            printf("    The scene is not shrunk: enough failures have been. ");
         }
         rt_cli_plugin_arguments(plugins, sizeof plugins);
         printf("To repeat: raytally verify --replay '%s'%s\n", text(wrong, "replay"), plugins);
@@ -192,7 +191,7 @@ static void on_notice(void *context, const char *message) {
     fprintf(stderr, "raytally: %s\n", message);
 }
 
-/* Who is right where an accelerator that is not exact differs by more than a tie. */
+/* Which side is right where an inexact accelerator differs by more than a tie. */
 static void print_sides(const RtVerifySum *sum) {
     uint64_t differ = 0;
     for (int s = 0; s < RT_SIDE_COUNT; s++) differ += sum->sides[s];
@@ -209,7 +208,7 @@ static void print_count(uint64_t count, const char *what) {
     printf("%" PRIu64 " %s%s, ", count, what, rt_plural(count));
 }
 
-/* How many rows of which accelerators fail, whatever their parameters. */
+/* The number of failed rows by accelerator. */
 static void print_failed(const RtVerifySum *sums, uint32_t count) {
     const char *between = "; rows that fail: ";
     for (uint32_t i = 0; i < count; i++) {
@@ -237,8 +236,8 @@ static void print_total(const Options *o, const RtVerifySum *sums, uint32_t coun
 
 static void print_left_out(const Options *o) {
     if (!o->quick) return;
-    printf("This was the short one, of %" PRIu64 " ray%s a scene and not %d", o->rays, rt_plural(o->rays),
-           MANY_RAYS);
+    printf("This was the short check, with %" PRIu64 " ray%s per scene instead of %d", o->rays,
+           rt_plural(o->rays), MANY_RAYS);
     if (o->choice.scenes_left_out > 0)
         printf(", without %u larger scene%s", o->choice.scenes_left_out,
                rt_plural(o->choice.scenes_left_out));
@@ -296,7 +295,7 @@ static void print_answer(const char *where, const RtFailure *failure, const RtAn
     printf("%s: %s: %s\n", where, answer->wrong ? "WRONG" : "right", says);
 }
 
-/* The scene as it was, and what was left of it. Where one cannot be asked any more the other will do. */
+/* Traces the ray in the original scene and in the shrunk one; one of them suffices. */
 static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     RtReplay file;
     RtStatus status = RT_OK;
@@ -320,7 +319,7 @@ static RtStatus replay(const Options *o, bool *failed, RtError *error) {
     }
     rt_replay_clear(&file);
     if (status != RT_OK || asked > 0) return status;
-    return rt_fail(error, RT_BAD_INPUT, "%s: none of it can be asked again", o->replay);
+    return rt_fail(error, RT_BAD_INPUT, "%s: the ray cannot be traced again", o->replay);
 }
 
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* raytally completion: what can be completed, from the tables of commands, options, accelerators and scenes,
- * as a function of bash that tells it by name; behind it cli/completion.bash, which asks that function. */
+/* raytally completion: a bash function that prints names from the tables of commands, options, accelerators
+ * and scenes, followed by cli/completion.bash, which calls it. */
 #include "accel/accel.h"
 #include "accel/columns.h"
 #include "cli/cli.h"
@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Names of the list TABLE:ENTRY stand between these two. */
+/* Begin and end the list TABLE:ENTRY of names. */
 static void begin(const char *table, const char *entry) {
     printf("    %s%s%s) echo '", table, *entry ? ":" : "", entry);
 }
@@ -23,8 +23,7 @@ static void end(void) {
 
 /* ---- options ---- */
 
-/* --NAME=VALUE and -cVALUE, VALUE as the table calls it up to a blank; without one where it may be left out.
- */
+/* --NAME=VALUE and -cVALUE, with the table's VALUE up to a blank; without VALUE if it is optional. */
 static void print_options(const struct argp *argp) {
     for (const struct argp_option *o = argp->options; o && (o->name || o->doc); o++) {
         if (!o->name || o->flags & (OPTION_HIDDEN | OPTION_DOC)) continue;
@@ -59,7 +58,7 @@ static bool is_word(const RtParam *param) {
     return param->type == RT_PARAM_CHOICE || param->type == RT_PARAM_FLAG;
 }
 
-/* KEY= for each parameter, and what each may be where that is one of a few words. */
+/* KEY= for each parameter, and the values of parameters that are words. */
 static void print_params(const char *table, const char *name, const RtParam *params, size_t count) {
     char value[RT_MAX_SPEC_CHARS], entry[2 * RT_MAX_NAME];
     begin(table, name);

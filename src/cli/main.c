@@ -17,7 +17,7 @@ static const RtCommand commands[] = {
      &rt_scenes_syntax, NULL},
     {"info", "SCENE", "objects by shape, bounds, materials, lights, camera of a scene", rt_command_info,
      &rt_info_syntax, NULL},
-    {"render", "SCENE", "an image of a scene, heatmaps of its cost, a picture of the structure",
+    {"render", "SCENE", "an image of a scene, heatmaps of its cost, pictures of structures",
      rt_command_render, &rt_render_syntax, NULL},
     {"trace", "SCENE", "one ray's path through an accelerator, step by step", rt_command_trace,
      &rt_trace_syntax, NULL},
@@ -25,9 +25,9 @@ static const RtCommand commands[] = {
      &rt_verify_syntax, NULL},
     {"bench", "SCENE", "count and time accelerators on the rays of one scene", rt_command_bench,
      &rt_bench_syntax, NULL},
-    {"compare", "BEFORE AFTER", "faster or slower: two results, or two programs run in turns",
-     rt_command_compare, NULL, &rt_compare_argp},
-    {"rays", "SCENE", "write rays of a scene for NumPy; bench and verify take such files", rt_command_rays,
+    {"compare", "BEFORE AFTER", "compare two results, or two programs run in turns", rt_command_compare, NULL,
+     &rt_compare_argp},
+    {"rays", "SCENE", "write rays of a scene for NumPy; bench and verify read such files", rt_command_rays,
      &rt_rays_syntax, NULL},
     {"run", "EXPERIMENT", "run an experiment: CSV files, plots, report", rt_command_run, &rt_run_syntax,
      NULL},
@@ -36,13 +36,13 @@ static const RtCommand commands[] = {
     {"plot", "DIR", "draw the plots of a result directory again", rt_command_plot, &rt_plot_syntax, NULL},
     {"report", "DIR", "write the report of a result directory again; an index of all", rt_command_report,
      &rt_report_syntax, NULL},
-    {"reproduce", "DIR", "count again, and compare with DIR/counts.csv byte for byte", rt_command_reproduce,
+    {"reproduce", "DIR", "count again and compare with DIR/counts.csv, byte for byte", rt_command_reproduce,
      &rt_reproduce_syntax, NULL},
     {"convert", "IN OUT", "write a scene in another format", rt_command_convert, &rt_convert_syntax, NULL},
-    {"new-accel", "NAME", "a folder with an accelerator of your own, to be changed: a plugin",
-     rt_command_new_accel, &rt_new_accel_syntax, NULL},
-    {"completion", "SHELL", "print a script that completes all this in bash", run_completion,
-     &rt_completion_syntax, NULL},
+    {"new-accel", "NAME", "make a folder with a plugin for your own accelerator", rt_command_new_accel,
+     &rt_new_accel_syntax, NULL},
+    {"completion", "SHELL", "print a completion script for bash", run_completion, &rt_completion_syntax,
+     NULL},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
@@ -61,8 +61,8 @@ static void print_usage(FILE *to) {
         snprintf(usage, sizeof usage, "%s %s", commands[i].name, commands[i].arguments);
         fprintf(to, "  %-21s %s\n", usage, commands[i].summary);
     }
-    fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. To start with:\n"
-                "  raytally accels                          what there is to compare\n"
+    fprintf(to, "\n`raytally COMMAND --help` or `raytally help COMMAND` explains a command. First steps:\n"
+                "  raytally accels                          list the accelerators\n"
                 "  raytally render balls -o balls.png       a picture\n"
                 "  raytally bench balls --accel bvh --accel grid   a comparison\n"
                 "Exit codes: 0 fine, 1 a check failed, 2 bad usage or bad input.\n");
@@ -78,7 +78,7 @@ static int run_unknown(const char *name) {
     return RT_EXIT_BAD_INPUT;
 }
 
-/* Whether its arguments may be about accelerators. */
+/* Whether the command takes --plugin. */
 static bool takes_plugins(const struct argp *argp) {
     const struct argp_child *child = argp ? argp->children : NULL;
     while (child && child->argp && child->argp != &rt_plugin_argp && !takes_plugins(child->argp)) child++;

@@ -181,7 +181,7 @@ size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t co
 
 /* ---- writing ---- */
 
-/* Of the overlays that look rays up in cells, those for shadow rays. */
+/* Overlays for shadow rays that look rays up in cells. */
 static bool has_cells_of_lights(const RtAccel *layer) {
     return layer->ops->look_up && layer->ops->kinds >> RT_RAY_SHADOW & 1;
 }

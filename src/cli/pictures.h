@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Options of `render` about pictures of what an accelerator is and costs: structures and heatmaps. A child
- * parser of argp. */
+/* Options of `render` for pictures of structures and heatmaps. A child parser of argp. */
 #ifndef RT_CLI_PICTURES_H
 #define RT_CLI_PICTURES_H
 
@@ -9,44 +8,44 @@
 
 #include <argp.h>
 
-/* The input of the parser; zero at first, but for `boxes`, RT_ALL_LEVELS. */
+/* The input of the parser: zero, except `boxes` RT_ALL_LEVELS. */
 typedef struct RtPictureOptions {
     const char *structure, *layer;                /* a path or NULL; a name or NULL */
     const char *heatmaps[RT_TALLY_COUNTER_COUNT]; /* paths, by counter */
     RtStructureOptions boxes;
-    bool in_middle; /* the slice is in the middle of the scene, and boxes.at is not set */
+    bool in_middle; /* the slice is in the middle of the scene; boxes.at is not set */
     RtHeatmapOptions heat;
     uint32_t kinds;       /* of rays, bits; 0: all */
-    uint32_t light, x, y; /* of an overlay for shadow rays; the pixel of the ray that is marked */
-    bool aimed;           /* there is such a pixel */
-    /* Options that were given, or NULL: one of pictures of boxes alone, one of pictures of the cells around a
-     * light alone, and one that needs --heatmap. */
+    uint32_t light, x, y; /* of an overlay for shadow rays; the pixel of the marked ray */
+    bool aimed;           /* a pixel was given */
+    /* The last given option, or NULL, that needs a picture of boxes, a picture of a light's cells, or
+     * --heatmap. */
     const char *of_boxes, *of_light, *thermal;
 } RtPictureOptions;
 
 extern const struct argp rt_picture_argp;
 
-/* To be called at ARGP_KEY_END of the parent, which has `accels` accelerators. */
+/* The parent, which has `accels` accelerators, calls this at ARGP_KEY_END. */
 void rt_pictures_finish(RtPictureOptions *o, uint32_t accels, struct argp_state *state);
 
 bool rt_pictures_any_heatmap(const RtPictureOptions *o);
 
-/* Appends the paths that will be written to paths[0..count); gives how many there are then. */
+/* Appends the paths to be written to paths[0..count); returns the new count. */
 size_t rt_pictures_list(const RtPictureOptions *o, const char **paths, size_t count);
 
-/* With --structure: RT_BAD_INPUT where an option was given that the layer to be drawn does not take. */
+/* With --structure: RT_BAD_INPUT if an option does not apply to the drawn layer. */
 RtStatus rt_pictures_check(const RtPictureOptions *o, const RtAccel *accel, RtError *error);
 
-/* With --structure, after rt_pictures_check: whether the picture shows the image of the scene, too, which
- * that of an overlay's cells does not. */
+/* With --structure, after rt_pictures_check: whether the picture needs the image of the scene; the cells of
+ * an overlay do not. */
 bool rt_pictures_need_frame(const RtPictureOptions *o, const RtAccel *accel);
 
 /* Writes the picture of the structure, after rt_pictures_check. `frame` is of the accelerator's scene, and
- * empty where there is no need of it. */
+ * empty if not needed. */
 RtStatus rt_pictures_structure(const RtPictureOptions *o, const RtAccel *accel, const RtFrame *frame,
                                RtError *error);
 
-/* Writes the heatmaps that are asked for. Panels' frames are counted, with o->kinds. */
+/* Writes the heatmaps. The panels' frames are counted, with o->kinds. */
 RtStatus rt_pictures_heatmaps(const RtPictureOptions *o, const RtHeatmapPanel *panels, uint32_t count,
                               RtError *error);
 

@@ -29,7 +29,7 @@ static void pass_over(void *context, const char *path) {
     (void)path;
 }
 
-/* A folder of sources, in place of the one that it is built in, would go unnoticed. */
+/* Finds folders of sources given instead of their build folders. */
 static void note_empty_folders(const char *list) {
     for (const char *part = list; *part; part += strcspn(part, ":"), part += *part == ':') {
         char path[RT_MAX_PATH];
@@ -45,12 +45,12 @@ static void note_empty_folders(const char *list) {
     }
 }
 
-/* What was asked for by the option, of the command's arguments. */
+/* The files given by --plugin. */
 enum { MOST_GIVEN = 32 };
 static const char *given[MOST_GIVEN];
 static size_t given_count;
 
-/* What the option says has been done. */
+/* rt_cli_load_plugins has loaded it already. */
 static error_t parse_option(int key, char *argument, struct argp_state *state) {
     RtError error;
     if (key != OPT_PLUGIN) return ARGP_ERR_UNKNOWN;
@@ -61,7 +61,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 const struct argp rt_plugin_argp = {.options = options, .parser = parse_option};
 
-/* As rt_plugin_load_all reads it; gives the end of what is written. */
+/* Escaped for rt_plugin_load_all; returns the end of the copy. */
 static char *write_name(const char *path, char *out) {
     for (; *path; path++) {
         if (*path == ':' || *path == '\\') *out++ = '\\';
@@ -70,7 +70,7 @@ static char *write_name(const char *path, char *out) {
     return out;
 }
 
-/* Also from the environment of who starts nothing: the names there may be relative, these are not. */
+/* Replaces the variable: its names may be relative, these are absolute. */
 static RtStatus tell_children(RtError *error) {
     size_t count = rt_plugin_count(), room = 0;
     for (size_t i = 0; i < count; i++) room += 2 * strlen(rt_plugin_at(i)->path) + 1;

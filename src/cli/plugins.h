@@ -10,15 +10,15 @@
 /* The child parser of commands that take accelerators. */
 extern const struct argp rt_plugin_argp;
 
-/* Loads what the environment and these arguments name, before the arguments are parsed: they may be about the
- * accelerators in it. The environment then names all of it, for programs that are started. */
+/* Loads the plugins that the environment and these arguments name, before the arguments are parsed, since
+ * they may name accelerators of plugins. Then sets the environment for child processes. */
 RtStatus rt_cli_load_plugins(int argc, char *const *argv, RtError *error);
 
-/* " --plugin 'FILE'" for each that was given, to out[0..room): for commands that a user is told to type. */
+/* " --plugin 'FILE'" for each given plugin, to out[0..room), for commands shown to the user. */
 void rt_cli_plugin_arguments(char *out, size_t room);
 
-/* Says on stderr which accelerators of the experiment are of other plugins than the manifest of `directory`
- * names, or of none. */
+/* Says on stderr which accelerators of the experiment come from other plugins than in the manifest of
+ * `directory`, or from none. */
 void rt_cli_tell_plugins(const char *directory, const RtExperiment *experiment);
 
 #endif

@@ -25,7 +25,7 @@ RtProgress rt_progress_begin(const RtWorkloadOptions *options) {
                         .every = terminal ? LINE_OF_TERMINAL_EVERY : LINE_EVERY};
 }
 
-/* ---- how long it will take ---- */
+/* ---- time left ---- */
 
 void rt_format_duration(double seconds, char out[RT_MAX_DURATION]) {
     int minutes = (int)fmin(round(seconds / 60), 1e8);
@@ -65,7 +65,7 @@ static void describe(RtProgress *progress, const RtResults *results, const RtEve
                                        [RT_EVENT_COUNT] = "counted",
                                        [RT_EVENT_TIME] = "timed",
                                        [RT_EVENT_DISTRIBUTION] = "distributed",
-                                       [RT_EVENT_HARDWARE] = "counted by the machine",
+                                       [RT_EVENT_HARDWARE] = "hardware counters",
                                        [RT_EVENT_TOO_LARGE] = "left out",
                                        [RT_EVENT_TOO_LONG] = "left out",
                                        [RT_EVENT_BROKEN_BUILD] = "is broken",
@@ -83,9 +83,9 @@ static RtStatus on_event(void *context, const RtResults *results, const RtEvent 
     RtProgress *progress = context;
     double now = rt_wall_seconds();
     if (progress->watched) pthread_mutex_lock(&progress->lock);
-    progress->forecast = rt_forecast(results, &progress->options); /* takes less than a cell by far */
+    progress->forecast = rt_forecast(results, &progress->options); /* much faster than a cell */
     progress->asked = now;
-    if (!progress->begun) progress->before = progress->forecast.known; /* what is not measured here */
+    if (!progress->begun) progress->before = progress->forecast.known; /* from earlier runs */
     progress->begun = true;
     describe(progress, results, event);
     if (progress->terminal || now - progress->shown >= progress->every) show(progress);
@@ -102,17 +102,17 @@ RtObserver rt_progress_observer(RtProgress *progress) {
     return (RtObserver){progress, on_event, on_notice};
 }
 
-/* ---- the watch ---- */
+/* ---- the thread ---- */
 
-/* The journal is whole at any moment, so that nothing is left to do. */
+/* The journal is always whole: there is nothing to clean up. */
 static void leave(const RtProgress *progress, int number) {
     fprintf(stderr, "%sraytally: interrupted; ", progress->terminal ? "\r\033[K" : "");
     if (progress->begun) {
-        fprintf(stderr, "%u of %u cell%s %s finished, all that was measured is kept in %s. To go on:\n  %s\n",
+        fprintf(stderr, "%u of %u cell%s %s finished, all measurements are kept in %s. To continue:\n  %s\n",
                 progress->forecast.finished, progress->forecast.cells, rt_plural(progress->forecast.cells),
                 progress->forecast.cells == 1 ? "is" : "are", progress->keeps, progress->go_on);
     } else {
-        fprintf(stderr, "nothing was measured yet, and what was in %s is as it was\n", progress->keeps);
+        fprintf(stderr, "nothing was measured yet, and %s is unchanged\n", progress->keeps);
     }
     _exit(128 + number);
 }
@@ -160,7 +160,7 @@ void rt_progress_end(RtProgress *progress) {
         pthread_mutex_lock(&progress->lock);
         progress->ended = true;
         pthread_mutex_unlock(&progress->lock);
-        pthread_kill(progress->watcher, SIGUSR2); /* so that it does not wait out its second */
+        pthread_kill(progress->watcher, SIGUSR2); /* wakes it at once */
         pthread_join(progress->watcher, NULL);
         pthread_mutex_destroy(&progress->lock);
         block(SIG_UNBLOCK);

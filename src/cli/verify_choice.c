@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Those that are small. */
+/* The limit of small scenes. */
 enum { QUICK_OBJECTS = 100 };
 
-/* Verified unasked beside the families: their cameras see materials that reflect and transmit. */
+/* Verified by default, beside the families: their cameras see materials that reflect and transmit. */
 static const char *const default_scenes[] = {"balls:size=2",
                                              "tetra:size=3",
                                              "random:n=0",
@@ -44,7 +44,7 @@ static RtStatus add_families(RtVerifyChoice *choice, uint64_t seed, RtError *err
     return RT_OK;
 }
 
-/* Puts built-in scenes in the order of their objects; with `quick` the large ones go. */
+/* Sorts built-in scenes by number of objects; with `quick` drops the large ones. */
 static RtStatus sort_scenes(RtVerifyChoice *choice, bool quick, RtError *error) {
     uint64_t objects[RT_VERIFY_MAX_SCENES];
     uint32_t kept = 0;
@@ -93,8 +93,7 @@ static RtStatus add_spec(RtVerifyChoice *choice, const char *spec, bool named, R
     return RT_OK;
 }
 
-/* Its defaults and its trial, the first two of its spread, or without `own` neither; with `spread` the rest.
- */
+/* Adds its defaults and its trial, the first two of its spread, unless !`own`; with `spread` the rest. */
 static RtStatus add_registered(RtVerifyChoice *choice, const RtAccelOps *ops, bool own, bool spread,
                                RtError *error) {
     char spec[RT_MAX_SPEC_CHARS];

@@ -171,7 +171,7 @@ RT_TEST(a_picture_of_cells_alone_takes_no_image_of_the_scene) {
         assert_int_equal(system("cmp '" OUT ".png' '" OUT ".with.png'"), 0);
     }
     assert_int_equal(render(SMALL "--accel item+bvh --layer bvh --structure " OUT ".png"), 0);
-    assert_says("drawn over what bvh sees");
+    assert_says("drawn over an image by bvh");
     assert_int_equal(system("grep -q Mrays " OUT ".txt"), 256); /* of bvh, under the name of another */
     unlink(OUT ".png");
     unlink(OUT ".with.png");

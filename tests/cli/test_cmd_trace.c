@@ -167,7 +167,7 @@ RT_TEST(wrong_usage_exits_with_2_and_says_what_would_be_right) {
         {"balls --pixel 0,0 --rays random", "expected primary"},
         {"balls --pixel 0,0 --svg a.gif", ".svg or .pdf"},
         {"'no\xff.yaml' --pixel 0,0 --json", "is not UTF-8"},
-        {"balls --pixel 0,0 --svg a.svg --svg b.svg", "one file is written"},
+        {"balls --pixel 0,0 --svg a.svg --svg b.svg", "give one file"},
         {"balls --pixel 0,0 tetra", "one SCENE"},
         {"balls --pixel 256,256 --rays shadow --light 3", "there is no light 3"},
         {"tetra --pixel 0,0 --rays shadow", "hits nothing"},

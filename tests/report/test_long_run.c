@@ -121,7 +121,7 @@ RT_TEST_IN_PLACE(an_interrupted_run_says_what_is_kept_and_how_to_go_on) {
     waitpid(child, &how, 0);
     assert_true(WIFEXITED(how) && WEXITSTATUS(how) == 128 + SIGINT);
     assert_in_file(place, "message",
-                   " of 56 cells are finished, all that was measured is kept in out. To go on:");
+                   " of 56 cells are finished, all measurements are kept in out. To continue:");
     assert_in_file(place, "message", "raytally run small.yaml --out out --threads 1 --resume");
     assert_int_equal(raytally(place, "run small.yaml --threads 1 --out out --resume --dry-run"), 0);
     assert_in_file(place, "output", "finished\n");
