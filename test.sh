@@ -25,7 +25,7 @@ run_tests() {
 
 case "${1-}" in
 "")
-    install_missing build optional data test check
+    install_missing build optional data test
     fetch_bunny
     build release -DRT_KERNELS=all
     run_tests release -LE slow
