@@ -18,6 +18,10 @@ int rt_processor_count(void);
 typedef RtStatus (*RtWork)(void *context, size_t item, int thread, RtError *error);
 RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, RtError *error);
 
+/* The same for work that cannot fail: only starting the threads can. */
+typedef void (*RtSureWork)(void *context, size_t item);
+RtStatus rt_parallel_each(size_t items, int threads, RtSureWork work, void *context, RtError *error);
+
 /* Tasks that make tasks: values of one size, handed out oldest first. */
 typedef struct RtTasks RtTasks;
 typedef RtStatus (*RtTaskWork)(void *context, RtTasks *tasks, const void *task, RtError *error);
