@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building a kd-tree, depth first (divide.c), on one thread or on several (subtrees.c).
+/* Building a kd-tree, depth first (kd_divide.c), on one thread or on several (kd_subtrees.c).
  *
  * Paper: Wald & Havran 2006, On building fast kd-trees for Ray Tracing, and on doing that in O(N log N). */
 #include "accel/kd/kd.h"
@@ -25,7 +25,7 @@ typedef struct Root {
     RtKdCell cell;
 } Root;
 
-/* The events of an axis, with room to deal them. */
+/* The events of an axis, with room to partition them. */
 static RtStatus make_axis(void *context, size_t axis, int thread, RtError *error) {
     Root *root = context;
     RtKdBuilder *b = root->builder;
@@ -42,7 +42,7 @@ static RtStatus make_axis(void *context, size_t axis, int thread, RtError *error
     return RT_OK;
 }
 
-/* The root's lists, with room to deal them. */
+/* The root's lists, with room to partition them. */
 static RtStatus make_root(RtKdBuilder *b, const RtGeometry *g, int threads, RtError *error) {
     Root root = {b, g, {.share = 1, .box = b->kd->box, .ids = {0, g->object_count}}};
     uint64_t room = 2 * (uint64_t)g->object_count;
@@ -63,11 +63,11 @@ static RtStatus build_on_one(RtKdBuilder *b, const RtGeometry *g, RtError *error
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(rt_kd_divide(b, &cell, error));
     }
-    if (b->ledger->estimate == 0) return RT_OK;
+    if (b->memory->estimate == 0) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
                    "a kd-tree of max_depth=%u would take about %.3g GiB, more than %.3g GiB: max_depth=%u "
                    "would fit",
-                   asked, b->ledger->estimate / 0x1p30, (double)b->ledger->limit / 0x1p30, b->kd->max_depth);
+                   asked, b->memory->estimate / 0x1p30, (double)b->memory->limit / 0x1p30, b->kd->max_depth);
 }
 
 static RtStatus build_on_several(RtKdBuilder *b, const RtGeometry *g, uint32_t most, int threads, bool *fits,
@@ -76,10 +76,10 @@ static RtStatus build_on_several(RtKdBuilder *b, const RtGeometry *g, uint32_t m
     return rt_kd_build_subtrees(b, most, threads, fits, error);
 }
 
-/* Cells of one thread have no more than such a part of what a thread has to do, but SMALL at least. */
+/* A cell is built by one thread if it has at most this fraction of a thread's share; SMALL at least. */
 enum { SHARES = 8, SMALL = 1 << 12 };
 
-/* On several threads; where that may take too much, all over on one, which knows what would fit. */
+/* On several threads; if that may exceed the limit, again on one, which finds the max_depth that fits. */
 static RtStatus build_tree(RtKd *kd, const RtGeometry *g, uint64_t limit, int threads, RtError *error) {
     uint32_t shares = SHARES * (uint32_t)rt_thread_count(threads), most = g->object_count / shares;
     bool several = shares > SHARES && most >= SMALL, fits = false;
@@ -90,8 +90,8 @@ static RtStatus build_tree(RtKd *kd, const RtGeometry *g, uint64_t limit, int th
                        g->object_count);
     }
     for (; status == RT_OK && !fits; several = false) {
-        RtKdLedger ledger = {.limit = limit};
-        RtKdBuilder builder = {.kd = kd, .ledger = &ledger, .sides = rt_alloc(g->object_count, 1)};
+        RtKdMemory memory = {.limit = limit};
+        RtKdBuilder builder = {.kd = kd, .memory = &memory, .sides = rt_alloc(g->object_count, 1)};
         rt_free(kd->nodes);
         rt_free(kd->ids);
         *kd = empty;

@@ -8,25 +8,25 @@
 /* Calls visit for each node, its cell and its depth, parents first, until it returns something else than
  * RT_OK. The tree may be broken as long as children come after their parents and none is deeper than
  * RT_KD_DEPTH_LIMIT, which `visit` is to see to. */
-typedef struct Place {
+typedef struct CellView {
     uint32_t node, depth;
     RtBox cell;
-} Place;
+} CellView;
 
 static RtStatus each_node(const RtKd *kd,
-                          RtStatus (*visit)(void *context, const RtKd *kd, const Place *place),
+                          RtStatus (*visit)(void *context, const RtKd *kd, const CellView *view),
                           void *context) {
-    Place stack[RT_KD_DEPTH_LIMIT + 2];
+    CellView stack[RT_KD_DEPTH_LIMIT + 2];
     uint32_t stacked = 0;
-    if (kd->node_count > 0) stack[stacked++] = (Place){0, 0, kd->box};
+    if (kd->node_count > 0) stack[stacked++] = (CellView){0, 0, kd->box};
     while (stacked > 0) {
-        Place place = stack[--stacked];
-        const RtKdNode *node = &kd->nodes[place.node];
-        RT_TRY(visit(context, kd, &place));
+        CellView view = stack[--stacked];
+        const RtKdNode *node = &kd->nodes[view.node];
+        RT_TRY(visit(context, kd, &view));
         if (rt_kd_is_leaf(node)) continue;
         for (uint32_t c = 2; c-- > 0;) {
-            RtBox half = rt_kd_half(place.cell, rt_kd_axis(node), node->split, c);
-            stack[stacked++] = (Place){rt_kd_child(node) + c, place.depth + 1, half};
+            RtBox half = rt_kd_half(view.cell, rt_kd_axis(node), node->split, c);
+            stack[stacked++] = (CellView){rt_kd_child(node) + c, view.depth + 1, half};
         }
     }
     return RT_OK;
@@ -39,11 +39,11 @@ typedef struct Sums {
     double inner, leaves, tests; /* sums of halves of areas; of leaves, times lengths of lists, too */
 } Sums;
 
-static RtStatus describe_node(void *context, const RtKd *kd, const Place *place) {
+static RtStatus describe_node(void *context, const RtKd *kd, const CellView *view) {
     Sums *sums = context;
-    const RtKdNode *node = &kd->nodes[place->node];
-    double area = rt_box_half_area(place->cell);
-    if (place->depth > sums->out->depth) sums->out->depth = place->depth;
+    const RtKdNode *node = &kd->nodes[view->node];
+    double area = rt_box_half_area(view->cell);
+    if (view->depth > sums->out->depth) sums->out->depth = view->depth;
     if (rt_kd_is_leaf(node)) {
         sums->out->leaves++;
         sums->out->empty_leaves += rt_kd_length(node) == 0;
@@ -80,38 +80,38 @@ typedef struct Check {
     uint32_t ids;     /* entries in the lists so far */
 } Check;
 
-static RtStatus check_inner(const Check *check, const RtKd *kd, const Place *place) {
-    const RtKdNode *node = &kd->nodes[place->node];
+static RtStatus check_inner(const Check *check, const RtKd *kd, const CellView *view) {
+    const RtKdNode *node = &kd->nodes[view->node];
     uint32_t child = rt_kd_child(node), axis = rt_kd_axis(node);
-    if (child <= place->node || child >= kd->node_count - 1 || check->reached[child]) {
+    if (child <= view->node || child >= kd->node_count - 1 || check->reached[child]) {
         return rt_fail(check->error, RT_MISMATCH, "kd: the children of node %u are not where nodes are",
-                       place->node);
+                       view->node);
     }
-    if (place->depth >= kd->max_depth) {
+    if (view->depth >= kd->max_depth) {
         return rt_fail(check->error, RT_MISMATCH, "kd: the children of node %u are deeper than %u",
-                       place->node, kd->max_depth);
+                       view->node, kd->max_depth);
     }
-    if (!(node->split >= place->cell.lo.at[axis] && node->split <= place->cell.hi.at[axis])) {
+    if (!(node->split >= view->cell.lo.at[axis] && node->split <= view->cell.hi.at[axis])) {
         return rt_fail(check->error, RT_MISMATCH, "kd: the split of node %u lies outside its cell",
-                       place->node);
+                       view->node);
     }
     check->reached[child] = check->reached[child + 1] = 1;
     return RT_OK;
 }
 
-static RtStatus check_leaf(Check *check, const RtKd *kd, const Place *place) {
+static RtStatus check_leaf(Check *check, const RtKd *kd, const CellView *view) {
     const RtGeometry *g = &kd->base.scene->geometry;
-    const RtKdNode *leaf = &kd->nodes[place->node];
+    const RtKdNode *leaf = &kd->nodes[view->node];
     uint32_t length = rt_kd_length(leaf);
     if (leaf->first > kd->id_count || length > kd->id_count - leaf->first) {
         return rt_fail(check->error, RT_MISMATCH, "kd: the list of leaf %u is not where lists are",
-                       place->node);
+                       view->node);
     }
     const uint32_t *ids = kd->ids + leaf->first;
     for (uint32_t i = 0; i < length; i++) {
         if (ids[i] >= g->object_count || (i > 0 && ids[i - 1] >= ids[i])) {
             return rt_fail(check->error, RT_MISMATCH, "kd: the list of leaf %u is not ascending ids",
-                           place->node);
+                           view->node);
         }
         check->listed[ids[i]]++;
     }
@@ -119,10 +119,9 @@ static RtStatus check_leaf(Check *check, const RtKd *kd, const Place *place) {
     return RT_OK;
 }
 
-static RtStatus check_node(void *context, const RtKd *kd, const Place *place) {
+static RtStatus check_node(void *context, const RtKd *kd, const CellView *view) {
     Check *check = context;
-    return rt_kd_is_leaf(&kd->nodes[place->node]) ? check_leaf(check, kd, place)
-                                                  : check_inner(check, kd, place);
+    return rt_kd_is_leaf(&kd->nodes[view->node]) ? check_leaf(check, kd, view) : check_inner(check, kd, view);
 }
 
 static bool lists(const RtKd *kd, const RtKdNode *leaf, uint32_t id) {
@@ -204,12 +203,12 @@ RtStatus rt_kd_validate(const RtAccel *accel, RtError *error) {
 
 /* ---- boxes and leaves ---- */
 
-static RtStatus show_node(void *context, const RtKd *kd, const Place *place) {
+static RtStatus show_node(void *context, const RtKd *kd, const CellView *view) {
     const RtBoxViewer *viewer = context;
-    const RtKdNode *node = &kd->nodes[place->node];
+    const RtKdNode *node = &kd->nodes[view->node];
     bool leaf = rt_kd_is_leaf(node), empty = leaf && rt_kd_length(node) == 0;
     if (!empty)
-        viewer->show(viewer->context, &(RtBoxView){.box = &place->cell, .depth = place->depth, .leaf = leaf});
+        viewer->show(viewer->context, &(RtBoxView){.box = &view->cell, .depth = view->depth, .leaf = leaf});
     return RT_OK;
 }
 
@@ -222,10 +221,10 @@ typedef struct Sought {
     RtBox cell;
 } Sought;
 
-static RtStatus compare_node(void *context, const RtKd *kd, const Place *place) {
+static RtStatus compare_node(void *context, const RtKd *kd, const CellView *view) {
     (void)kd;
     Sought *sought = context;
-    if (place->node == sought->node) sought->cell = place->cell;
+    if (view->node == sought->node) sought->cell = view->cell;
     return RT_OK;
 }
 
@@ -235,10 +234,10 @@ RtBox rt_kd_cell(const RtKd *kd, uint32_t node) {
     return sought.cell;
 }
 
-static RtStatus show_leaf(void *context, const RtKd *kd, const Place *place) {
+static RtStatus show_leaf(void *context, const RtKd *kd, const CellView *view) {
     const RtLeafViewer *viewer = context;
-    const RtKdNode *node = &kd->nodes[place->node];
-    if (rt_kd_is_leaf(node)) viewer->show(viewer->context, rt_kd_length(node), place->depth);
+    const RtKdNode *node = &kd->nodes[view->node];
+    if (rt_kd_is_leaf(node)) viewer->show(viewer->context, rt_kd_length(node), view->depth);
     return RT_OK;
 }
 

@@ -1,30 +1,31 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "accel/tree/slabs.h"
+#include "accel/tree/spatial_bins.h"
 
 #include "core/shape/overlap.h"
 
-typedef struct Slab {
-    RtBox4 box;             /* about the parts that are in it */
-    uint32_t begin, finish; /* references whose first part, and whose last, is in it */
-} Slab;
+typedef struct Bin {
+    RtBox4 box;             /* of the parts in it */
+    uint32_t begin, finish; /* references whose first part, or whose last, is in it */
+} Bin;
 
-/* Slab i lies between planes i and i + 1. */
-typedef struct Slabs {
+/* Bin i lies between planes i and i + 1. */
+typedef struct Bins {
     int count;
-    RtFour lo, scale, last; /* slab of x, nearly: (x - lo) * scale, at most `last` */
-    bool divides[3];        /* else the planes of the axis coincide */
+    RtFour lo, scale, last; /* bin of x, approximately: (x - lo) * scale, at most `last` */
+    bool divides[3];        /* false: the planes of the axis coincide */
     float plane[3][RT_MAX_BINS + 1];
-    Slab slabs[3][RT_MAX_BINS];
-} Slabs;
+    Bin bins[3][RT_MAX_BINS];
+} Bins;
 
-bool rt_ref_part(const RtSlabGroup *group, const RtTreeRef *ref, int axis, float lo, float hi, RtBox *part) {
+bool rt_ref_part(const RtSpatialGroup *group, const RtTreeRef *ref, int axis, float lo, float hi,
+                 RtBox *part) {
     RtBox box = ref->box;
     box.lo.at[axis] = rt_maxf(lo, box.lo.at[axis]);
     box.hi.at[axis] = rt_minf(hi, box.hi.at[axis]);
     return rt_object_part(group->geometry, ref->id, &box, group->margin, part);
 }
 
-static void init(Slabs *self, int count, RtBox4 box) {
+static void init(Bins *self, int count, RtBox4 box) {
     self->count = count;
     self->lo = box.lo;
     self->scale = rt_four_all(0);
@@ -35,25 +36,25 @@ static void init(Slabs *self, int count, RtBox4 box) {
         if (!self->divides[axis]) continue;
         self->scale[axis] = (float)(count / width);
         for (int i = 0; i <= count; i++) self->plane[axis][i] = (float)(lo + width * i / count);
-        for (int i = 0; i < count; i++) self->slabs[axis][i] = (Slab){rt_box4_empty(), 0, 0};
+        for (int i = 0; i < count; i++) self->bins[axis][i] = (Bin){rt_box4_empty(), 0, 0};
     }
     self->lo[3] = 0;
 }
 
-static RtFourBits slabs_of(const Slabs *self, RtFour point) {
+static RtFourBits bins_of(const Bins *self, RtFour point) {
     RtFour at = rt_four_max((point - self->lo) * self->scale, rt_four_all(0));
     return rt_four_truncate(rt_four_min(at, self->last));
 }
 
-/* What begins on a plane is in the slab above, what ends there is in that below. */
-static int first_slab(const Slabs *self, int axis, int guess, float x) {
+/* A part that begins on a plane is in the bin above; one that ends there, in the bin below. */
+static int first_bin(const Bins *self, int axis, int guess, float x) {
     const float *plane = self->plane[axis];
     while (guess > 0 && x < plane[guess]) guess--;
     while (guess + 1 < self->count && x >= plane[guess + 1]) guess++;
     return guess;
 }
 
-static int last_slab(const Slabs *self, int axis, int guess, float x, int first) {
+static int last_bin(const Bins *self, int axis, int guess, float x, int first) {
     const float *plane = self->plane[axis];
     while (guess > first && x <= plane[guess]) guess--;
     while (guess + 1 < self->count && x > plane[guess + 1]) guess++;
@@ -66,31 +67,31 @@ static bool is_empty(RtBox4 box) {
     return (rt_four_at_least(box.hi, box.lo) & 7) != 7;
 }
 
-/* -INFINITY in the lanes where `held` is true, which lets a point through below, INFINITY elsewhere. */
+/* -INFINITY, which add_gated lets a point through, in the lanes where `held` is true; INFINITY elsewhere. */
 static RtFour gate_of(RtFourBits held) {
     return rt_four_pick(held, rt_four_all(INFINITY), rt_four_all(-INFINITY));
 }
 
-/* Adds a point, or nothing where the gate is INFINITY, without a branch. */
+/* Adds a point, or nothing if the gate is INFINITY: branchless. */
 static RtBox4 add_gated(RtBox4 box, RtFour point, float gate) {
     RtFour off = rt_four_all(gate);
     return (RtBox4){rt_four_min(box.lo, rt_four_max(point, off)),
                     rt_four_max(box.hi, rt_four_min(point, -off))};
 }
 
-/* To parts[first..last] what of a triangle is in each slab: its corners there, and where its edges meet the
- * planes. Which those are is as good as random: no branch hangs on it. */
-static void chop_triangle(const Slabs *self, int axis, const RtTriangle *triangle, int first, int last,
+/* Sets parts[first..last] to the box of the part of a triangle in each bin: its corners there, and where its
+ * edges meet the planes. These are unpredictable, so the loop is branchless. */
+static void chop_triangle(const Bins *self, int axis, const RtTriangle *triangle, int first, int last,
                           RtBox4 *parts) {
     const float *plane = self->plane[axis];
     RtFour corner[3], along[3];
     for (int k = 0; k < 3; k++) corner[k] = (RtFour){triangle->v[k].x, triangle->v[k].y, triangle->v[k].z, 0};
     for (int k = 0; k < 3; k++) along[k] = corner[(k + 1) % 3] - corner[k];
-    /* Of edge k in lane k. */
+    /* Lane k: edge k. */
     RtFour from = {triangle->v[0].at[axis], triangle->v[1].at[axis], triangle->v[2].at[axis], 0};
     RtFour to = __builtin_shufflevector(from, from, 1, 2, 0, 3);
     RtFour low = rt_four_min(from, to), high = rt_four_max(from, to), inverse = rt_four_all(1) / (to - from);
-    RtBox4 below = rt_box4_empty(); /* what meets the plane below the slab */
+    RtBox4 below = rt_box4_empty(); /* what meets the lower plane of the bin */
     RtFour lower = rt_four_all(-INFINITY);
     for (int i = first; i <= last; i++) {
         RtFour upper = rt_four_all(i < last ? plane[i + 1] : INFINITY);
@@ -106,8 +107,8 @@ static void chop_triangle(const Slabs *self, int axis, const RtTriangle *triangl
     }
 }
 
-static void chop_other(const Slabs *self, const RtSlabGroup *group, const RtTreeRef *ref, int axis, int first,
-                       int last, RtBox4 *parts) {
+static void chop_other(const Bins *self, const RtSpatialGroup *group, const RtTreeRef *ref, int axis,
+                       int first, int last, RtBox4 *parts) {
     for (int i = first; i <= last; i++) {
         RtBox part;
         bool any = rt_ref_part(group, ref, axis, self->plane[axis][i], self->plane[axis][i + 1], &part);
@@ -115,10 +116,11 @@ static void chop_other(const Slabs *self, const RtSlabGroup *group, const RtTree
     }
 }
 
-static void chop(Slabs *self, const RtSlabGroup *group, const RtTreeRef *ref, int axis, int first, int last) {
+static void chop(Bins *self, const RtSpatialGroup *group, const RtTreeRef *ref, int axis, int first,
+                 int last) {
     RtBox4 parts[RT_MAX_BINS], box = rt_box4_load(&ref->box);
     RtRef object = group->geometry->objects[ref->id];
-    Slab *slabs = self->slabs[axis];
+    Bin *bins = self->bins[axis];
     int begin = last, finish = first;
     if (rt_ref_shape(object) == RT_SHAPE_TRIANGLE)
         chop_triangle(self, axis, &group->geometry->triangles[rt_ref_index(object)], first, last, parts);
@@ -127,64 +129,64 @@ static void chop(Slabs *self, const RtSlabGroup *group, const RtTreeRef *ref, in
     for (int i = first; i <= last; i++) {
         RtBox4 part = {rt_four_max(parts[i].lo, box.lo), rt_four_min(parts[i].hi, box.hi)};
         if (is_empty(part)) continue;
-        slabs[i].box = rt_box4_union(slabs[i].box, part);
+        bins[i].box = rt_box4_union(bins[i].box, part);
         begin = i < begin ? i : begin;
         finish = i;
     }
-    /* Of nothing at all, by rounding, it is as if all were in the last slab. */
+    /* No part at all, by rounding: count it in the last bin. */
     if (finish < begin) finish = begin;
-    slabs[begin].begin++;
-    slabs[finish].finish++;
+    bins[begin].begin++;
+    bins[finish].finish++;
 }
 
-static void add(Slabs *self, const RtSlabGroup *group) {
+static void fill(Bins *self, const RtSpatialGroup *group) {
     for (uint32_t i = 0; i < group->count; i++) {
         const RtTreeRef *ref = &group->refs[i];
         RtBox4 box = rt_box4_load(&ref->box);
-        RtFourBits from = slabs_of(self, box.lo), to = slabs_of(self, box.hi);
+        RtFourBits from = bins_of(self, box.lo), to = bins_of(self, box.hi);
         for (int axis = 0; axis < 3; axis++) {
             if (!self->divides[axis]) continue;
-            int first = first_slab(self, axis, from[axis], ref->box.lo.at[axis]);
-            int last = last_slab(self, axis, to[axis], ref->box.hi.at[axis], first);
+            int first = first_bin(self, axis, from[axis], ref->box.lo.at[axis]);
+            int last = last_bin(self, axis, to[axis], ref->box.hi.at[axis], first);
             if (first < last) {
                 chop(self, group, ref, axis, first, last);
                 continue;
             }
-            Slab *slab = &self->slabs[axis][first];
-            slab->box = rt_box4_union(slab->box, box);
-            slab->begin++;
-            slab->finish++;
+            Bin *bin = &self->bins[axis][first];
+            bin->box = rt_box4_union(bin->box, box);
+            bin->begin++;
+            bin->finish++;
         }
     }
 }
 
 /* ---- the best plane ---- */
 
-static void try_planes(const Slabs *self, int axis, const RtSlabGroup *group, RtCut *best) {
-    const Slab *slabs = self->slabs[axis];
+static void try_planes(const Bins *self, int axis, const RtSpatialGroup *group, RtSpatialSplit *best) {
+    const Bin *bins = self->bins[axis];
     RtBox4 right[RT_MAX_BINS], box = rt_box4_empty();
     uint32_t left_count = 0, right_count = group->count;
-    for (int i = self->count - 1; i > 0; i--) right[i] = box = rt_box4_union(box, slabs[i].box);
+    for (int i = self->count - 1; i > 0; i--) right[i] = box = rt_box4_union(box, bins[i].box);
     box = rt_box4_empty();
     for (int i = 1; i < self->count; i++) {
-        box = rt_box4_union(box, slabs[i - 1].box);
-        left_count += slabs[i - 1].begin;
-        right_count -= slabs[i - 1].finish;
+        box = rt_box4_union(box, bins[i - 1].box);
+        left_count += bins[i - 1].begin;
+        right_count -= bins[i - 1].finish;
         if (left_count == 0 || right_count == 0) continue;
         if (left_count + right_count - group->count > group->spare) continue;
         RtSides sides = {0, {box, right[i]}, {left_count, right_count}};
         rt_sides_set_cost(&sides);
-        if (sides.cost < best->sides.cost) *best = (RtCut){sides, axis, self->plane[axis][i]};
+        if (sides.cost < best->sides.cost) *best = (RtSpatialSplit){sides, axis, self->plane[axis][i]};
     }
 }
 
-RtCut rt_slabs_find_plane(const RtSlabGroup *group, int count) {
-    RtCut best = {.sides.cost = INFINITY};
-    Slabs slabs;
-    init(&slabs, count, group->box);
-    add(&slabs, group);
+RtSpatialSplit rt_spatial_bins_split(const RtSpatialGroup *group, int count) {
+    RtSpatialSplit best = {.sides.cost = INFINITY};
+    Bins bins;
+    init(&bins, count, group->box);
+    fill(&bins, group);
     for (int axis = 0; axis < 3; axis++) {
-        if (slabs.divides[axis]) try_planes(&slabs, axis, group, &best);
+        if (bins.divides[axis]) try_planes(&bins, axis, group, &best);
     }
     return best;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Subtrees of a kd-tree on all threads. The top is built as on one thread, but a cell of few enough objects
- * is set aside, with its lists, where it comes up; then each such cell is built on its own, in the
- * same way while it is large; then all is written into one tree in the order in which one thread would have
- * made it. */
+/* Building the subtrees of a kd-tree on all threads. The top is built as on one thread, but small cells are
+ * deferred with their lists. Each deferred cell is then a task, which defers cells of its own while it is
+ * large. Finally all nodes are copied into one tree, in the order in which one thread would have made them.
+ */
 #include "accel/kd/kd.h"
 
 #include "core/base/memory.h"
@@ -13,7 +13,7 @@
 
 typedef struct Subtree Subtree;
 
-/* Cells of a tree that were set aside. */
+/* The deferred cells of a tree. */
 typedef struct Subtrees {
     Subtree **items; /* [count] */
     uint32_t *of;    /* [node_count of the tree above] the subtree of a node, or NONE */
@@ -23,19 +23,19 @@ typedef struct Subtrees {
 
 #define NONE UINT32_MAX
 
-/* A cell that was set aside, and the tree below it, of which it is node 0. */
+/* A deferred cell, and the tree below it, of which it is node 0. */
 struct Subtree {
     RtKd kd;
-    RtKdLedger ledger;
+    RtKdMemory memory;
     RtKdBuilder builder;
     Subtrees below;
     uint32_t objects;
-    uint32_t root, nodes_at, ids_at; /* where its root, its other nodes and its ids go */
+    uint32_t root, nodes_at, ids_at; /* their places in the whole tree */
 };
 
-/* How work is shared. */
+/* When work is shared. */
 typedef struct Sharing {
-    uint32_t most;  /* objects of a cell that is no longer shared */
+    uint32_t most;  /* objects of a cell that one thread builds */
     uint64_t limit; /* bytes of each subtree */
 } Sharing;
 
@@ -43,7 +43,7 @@ typedef struct Sharing {
 typedef struct Joined {
     RtKdNode *nodes;
     uint32_t *ids;
-    Subtree **whole; /* [whole_count] subtrees of which nothing was set aside */
+    Subtree **whole; /* [whole_count] subtrees without deferred cells */
     uint32_t node_count, id_count, whole_count;
 } Joined;
 
@@ -66,8 +66,8 @@ static RtStatus copy_lists(const RtKdBuilder *from, RtKdCell *cell, RtKdBuilder 
     return RT_OK;
 }
 
-/* The last cell's lists lie at the bottom, with nothing above them that is still of use. */
-static void hand_over_lists(RtKdBuilder *from, RtKdBuilder *to) {
+/* Moves the lists of the last pending cell: they are at the bottom, and nothing above them is needed. */
+static void move_lists(RtKdBuilder *from, RtKdBuilder *to) {
     for (int a = 0; a < 3; a++) {
         to->events[a] = from->events[a];
         to->event_capacity[a] = from->event_capacity[a];
@@ -80,7 +80,7 @@ static void hand_over_lists(RtKdBuilder *from, RtKdBuilder *to) {
     from->id_capacity = 0;
 }
 
-static RtStatus set_aside(Subtrees *s, RtKdBuilder *b, RtKdCell cell, uint64_t limit, RtError *error) {
+static RtStatus defer(Subtrees *s, RtKdBuilder *b, RtKdCell cell, uint64_t limit, RtError *error) {
     RT_TRY(rt_reserve(&s->items, &s->capacity, (uint64_t)s->count + 1, sizeof(Subtree *), error));
     Subtree *item = s->items[s->count] = rt_alloc(1, sizeof(Subtree));
     if (!item) return rt_fail_memory(error, "a subtree of a kd-tree", sizeof(Subtree));
@@ -89,12 +89,12 @@ static RtStatus set_aside(Subtrees *s, RtKdBuilder *b, RtKdCell cell, uint64_t l
     item->kd.nodes = NULL;
     item->kd.ids = NULL;
     item->kd.node_count = item->kd.id_count = 0;
-    item->ledger.limit = limit;
+    item->memory.limit = limit;
     item->builder.kd = &item->kd;
-    item->builder.ledger = &item->ledger;
+    item->builder.memory = &item->memory;
     item->objects = cell.ids.count;
     if (b->pending_count == 0)
-        hand_over_lists(b, &item->builder);
+        move_lists(b, &item->builder);
     else
         RT_TRY(copy_lists(b, &cell, &item->builder, error));
     cell.node = 0;
@@ -102,16 +102,16 @@ static RtStatus set_aside(Subtrees *s, RtKdBuilder *b, RtKdCell cell, uint64_t l
     return RT_OK;
 }
 
-/* Sets aside the cells of no more than `most` objects, with a limit of bytes each. */
+/* Defers the cells of at most `most` objects, with a limit of bytes each. */
 static RtStatus build_top(Subtrees *s, RtKdBuilder *b, uint32_t most, uint64_t limit, RtError *error) {
-    while (b->pending_count > 0 && b->ledger->estimate == 0) {
+    while (b->pending_count > 0 && b->memory->estimate == 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         uint32_t waiting = b->pending_count;
         RT_TRY(rt_reserve(&s->of, &s->of_capacity, b->kd->node_count, sizeof(uint32_t), error));
         RT_TRY(rt_reserve(&s->upper, &s->upper_capacity, b->kd->node_count, sizeof(bool), error));
         s->of[cell.node] = NONE;
         if (cell.ids.count <= most) {
-            RT_TRY(set_aside(s, b, cell, limit, error));
+            RT_TRY(defer(s, b, cell, limit, error));
             continue;
         }
         RT_TRY(rt_kd_divide(b, &cell, error));
@@ -123,8 +123,8 @@ static RtStatus build_top(Subtrees *s, RtKdBuilder *b, uint32_t most, uint64_t l
 
 /* ---- the subtrees ---- */
 
-/* Large ones set aside what they are split into, for whoever is free. */
-static uint32_t most_aside(const Sharing *sharing, uint32_t objects) {
+/* Large subtrees defer the cells that they are split into, as tasks of their own. */
+static uint32_t most_deferred(const Sharing *sharing, uint32_t objects) {
     uint32_t part = objects - objects / 4;
     return part > sharing->most ? part : sharing->most;
 }
@@ -147,10 +147,10 @@ static RtStatus build_subtree(void *context, RtTasks *tasks, const void *task, R
     RT_TRY(rt_reserve(&item->kd.nodes, &b->node_capacity, 1, sizeof(RtKdNode), error));
     item->kd.node_count = 1;
     if (item->objects > sharing->most) {
-        RT_TRY(build_top(&item->below, b, most_aside(sharing, item->objects), sharing->limit, error));
+        RT_TRY(build_top(&item->below, b, most_deferred(sharing, item->objects), sharing->limit, error));
         RT_TRY(add_tasks(tasks, &item->below, error));
     }
-    while (b->pending_count > 0 && item->ledger.estimate == 0) {
+    while (b->pending_count > 0 && item->memory.estimate == 0) {
         RtKdCell cell = b->pending[--b->pending_count];
         RT_TRY(rt_kd_divide(b, &cell, error));
     }
@@ -158,29 +158,29 @@ static RtStatus build_subtree(void *context, RtTasks *tasks, const void *task, R
     return RT_OK;
 }
 
-/* Adds what the subtrees take, and whether none of them was given up. */
+/* Adds up the bytes of the subtrees, and whether all of them fit. */
 static void add_up(const Subtrees *s, uint64_t *bytes, bool *fits) {
     for (uint32_t i = 0; i < s->count; i++) {
-        *bytes += s->items[i]->ledger.bytes;
-        *fits &= s->items[i]->ledger.estimate == 0;
+        *bytes += s->items[i]->memory.bytes;
+        *fits &= s->items[i]->memory.estimate == 0;
         add_up(&s->items[i]->below, bytes, fits);
     }
 }
 
 static bool all_fits(const Subtrees *s, const RtKdBuilder *b) {
-    uint64_t bytes = b->ledger->bytes;
-    bool fits = b->ledger->estimate == 0;
+    uint64_t bytes = b->memory->bytes;
+    bool fits = b->memory->estimate == 0;
     add_up(s, &bytes, &fits);
-    return fits && bytes <= b->ledger->limit;
+    return fits && bytes <= b->memory->limit;
 }
 
 /* ---- one tree ---- */
 
-static void place(Joined *joined, const Subtrees *s, const RtKd *top, uint32_t node, uint32_t at);
+static void assign(Joined *joined, const Subtrees *s, const RtKd *top, uint32_t node, uint32_t at);
 
-static void place_subtree(Joined *joined, Subtree *item, uint32_t at) {
+static void assign_subtree(Joined *joined, Subtree *item, uint32_t at) {
     if (item->below.count > 0) {
-        place(joined, &item->below, &item->kd, 0, at);
+        assign(joined, &item->below, &item->kd, 0, at);
         return;
     }
     item->root = at;
@@ -191,11 +191,11 @@ static void place_subtree(Joined *joined, Subtree *item, uint32_t at) {
     joined->whole[joined->whole_count++] = item;
 }
 
-/* Where all goes: nodes are taken by pairs as their parents come up. */
-static void place(Joined *joined, const Subtrees *s, const RtKd *top, uint32_t node, uint32_t at) {
+/* Assigns nodes and ids in the order of a serial build: pairs of nodes, as their parents are visited. */
+static void assign(Joined *joined, const Subtrees *s, const RtKd *top, uint32_t node, uint32_t at) {
     assert(s->of && s->upper);
     if (s->of[node] != NONE) {
-        place_subtree(joined, s->items[s->of[node]], at);
+        assign_subtree(joined, s->items[s->of[node]], at);
         return;
     }
     RtKdNode made = top->nodes[node];
@@ -214,15 +214,13 @@ static void place(Joined *joined, const Subtrees *s, const RtKd *top, uint32_t n
     joined->node_count += 2;
     for (uint32_t c = 0; c < 2; c++) {
         uint32_t next = c ^ (uint32_t)s->upper[node];
-        place(joined, s, top, child + next, pair + next);
+        assign(joined, s, top, child + next, pair + next);
     }
 }
 
-static RtStatus copy_subtree(void *context, size_t index, int thread, RtError *error) {
+static void copy_subtree(void *context, size_t index) {
     const Joined *joined = context;
     const Subtree *item = joined->whole[index];
-    (void)thread;
-    (void)error;
     for (uint32_t i = 0; i < item->kd.node_count; i++) {
         RtKdNode node = item->kd.nodes[i];
         if (rt_kd_is_leaf(&node))
@@ -233,7 +231,6 @@ static RtStatus copy_subtree(void *context, size_t index, int thread, RtError *e
     }
     if (item->kd.id_count > 0)
         memcpy(joined->ids + item->ids_at, item->kd.ids, item->kd.id_count * sizeof(uint32_t));
-    return RT_OK;
 }
 
 /* Adds the numbers of nodes, ids and subtrees. */
@@ -259,8 +256,8 @@ static RtStatus join(const Subtrees *s, RtKd *kd, int threads, RtError *error) {
                      .node_count = 1};
     RtStatus status = RT_OK;
     if (joined.nodes && joined.ids && joined.whole) {
-        place(&joined, s, kd, 0, 0);
-        status = rt_parallel_for(joined.whole_count, threads, copy_subtree, &joined, error);
+        assign(&joined, s, kd, 0, 0);
+        status = rt_parallel_each(joined.whole_count, threads, copy_subtree, &joined, error);
     } else {
         status = rt_fail_memory(error, "the nodes of a kd-tree",
                                 (size_t)nodes * sizeof(RtKdNode) + (size_t)ids * sizeof(uint32_t));
@@ -290,11 +287,11 @@ static void clear(Subtrees *s) {
 }
 
 RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *fits, RtError *error) {
-    Sharing sharing = {most, b->ledger->limit / (uint64_t)rt_thread_count(threads)};
+    Sharing sharing = {most, b->memory->limit / (uint64_t)rt_thread_count(threads)};
     Subtrees s = {.items = NULL};
     uint32_t objects = b->kd->base.scene->geometry.object_count;
-    RtStatus status = build_top(&s, b, most_aside(&sharing, objects), sharing.limit, error);
-    rt_kd_clear(b); /* the lists of the top are dealt */
+    RtStatus status = build_top(&s, b, most_deferred(&sharing, objects), sharing.limit, error);
+    rt_kd_clear(b); /* the lists of the top are no longer needed */
     if (status == RT_OK)
         status =
             rt_parallel_tasks(s.items, s.count, sizeof(Subtree *), threads, build_subtree, &sharing, error);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building what a spec says, here or away. */
+/* Building the accelerator of a spec, in this process or in one of its own. */
 #include "accel/accel.h"
 #include "accel/remote.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Looking at hierarchies: what they are like, their boxes, and whether they are sound. */
+/* Describing, showing and validating hierarchies. */
 #include "accel/tree/hierarchy.h"
 
 #include "core/base/memory.h"
@@ -86,12 +86,12 @@ static RtStatus check_leaf(Check *check, uint32_t index) {
         if (id >= check->geometry->object_count)
             return rt_fail(check->error, RT_MISMATCH, "%s: leaf %u holds no object", check->name, index);
         check->seen[id]++;
-        for (uint64_t j = node->first; j < i && self->divided; j++) {
+        for (uint64_t j = node->first; j < i && self->split_refs; j++) {
             if (self->ids[j] != id) continue;
             return rt_fail(check->error, RT_MISMATCH, "%s: object %u is in leaf %u twice", check->name, id,
                            index);
         }
-        if (self->divided || rt_box_contains(node->box, check->geometry->boxes[id])) continue;
+        if (self->split_refs || rt_box_contains(node->box, check->geometry->boxes[id])) continue;
         return rt_fail(check->error, RT_MISMATCH, "%s: leaf %u does not contain its object %u", check->name,
                        index, id);
     }
@@ -132,7 +132,7 @@ static RtStatus check_all(Check *check) {
     uint32_t node_count = check->self->node_count;
     RT_TRY(check_node(check, 0, 0));
     for (uint32_t id = 0; id < check->geometry->object_count; id++) {
-        if (check->seen[id] == 1 || (check->self->divided && check->seen[id] > 1)) continue;
+        if (check->seen[id] == 1 || (check->self->split_refs && check->seen[id] > 1)) continue;
         return rt_fail(check->error, RT_MISMATCH, "%s: object %u is in %u leaves, not in one", check->name,
                        id, check->seen[id]);
     }
@@ -149,6 +149,7 @@ RtStatus rt_hierarchy_validate(const RtHierarchy *self, const RtGeometry *geomet
     if (!check.seen) return rt_fail_memory(error, "validating a hierarchy", count * sizeof(uint32_t));
     RtStatus status = check_all(&check);
     rt_free(check.seen);
-    if (status == RT_OK && self->divided) status = rt_hierarchy_check_parts(self, geometry, name, error);
+    if (status == RT_OK && self->split_refs)
+        status = rt_hierarchy_check_coverage(self, geometry, name, error);
     return status;
 }

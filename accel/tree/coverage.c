@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Whether nothing of an object was lost where it was divided: the boxes of the leaves that list it must hold
- * its surface. What of it is in a box is asked of rt_object_part; where no leaf holds that whole, the box is
- * parted at a side of a leaf's that runs through it, over and over, until one does or no side is left.
+/* Whether the boxes of the leaves that list an object contain all of its surface. rt_object_part computes the
+ * part of the surface in a box. If no single leaf contains that part, the box is split at a side of a leaf
+ * that runs through it, recursively, until a leaf contains it or no side is left.
  *
- * Clipped boxes are rounded outward one way for the tree and another way here; so leaves count as larger by a
- * few roundings, which is less than rays are thick. */
+ * The tree and this check clip boxes in different ways and round outward differently, so leaves are enlarged
+ * here by a few roundings, less than the thickness of rays. */
 #include "accel/tree/hierarchy.h"
 #include "core/base/memory.h"
 #include "core/shape/overlap.h"
@@ -17,7 +17,7 @@ typedef struct Parts {
     double margin;    /* for rt_object_part */
 } Parts;
 
-/* The side of one of the leaves that runs through `box` nearest to its middle; false if none does. */
+/* The side of a leaf that runs through `box` nearest to its middle; false if there is none. */
 static bool find_side(const Parts *parts, const uint32_t *leaves, uint32_t count, const RtBox *box, int *axis,
                       float *at) {
     double least = INFINITY;
@@ -37,8 +37,8 @@ static bool find_side(const Parts *parts, const uint32_t *leaves, uint32_t count
     return least < INFINITY;
 }
 
-/* Whether what of the object is in `box` is in leaves[0..count), which are put into another order. */
-static bool is_held(const Parts *parts, uint32_t id, uint32_t *leaves, uint32_t count, RtBox box) {
+/* Whether leaves[0..count) contain the part of the object in `box`; reorders the leaves. */
+static bool is_covered(const Parts *parts, uint32_t id, uint32_t *leaves, uint32_t count, RtBox box) {
     RtBox rest;
     if (!rt_object_part(parts->geometry, id, &box, parts->margin, &rest)) return true;
     uint32_t near = 0;
@@ -60,10 +60,10 @@ static bool is_held(const Parts *parts, uint32_t id, uint32_t *leaves, uint32_t 
     if (!find_side(parts, leaves, near, &rest, &axis, &at)) return false;
     RtBox lower = rest, upper = rest;
     lower.hi.at[axis] = upper.lo.at[axis] = at;
-    return is_held(parts, id, leaves, near, lower) && is_held(parts, id, leaves, near, upper);
+    return is_covered(parts, id, leaves, near, lower) && is_covered(parts, id, leaves, near, upper);
 }
 
-/* Lists the leaves by object: counts, then places. */
+/* Lists the leaves by object: count pass, fill pass. */
 static void list_leaves(Parts *parts) {
     const RtHierarchy *self = parts->self;
     uint32_t objects = parts->geometry->object_count;
@@ -78,8 +78,8 @@ static void list_leaves(Parts *parts) {
     parts->first[0] = 0;
 }
 
-RtStatus rt_hierarchy_check_parts(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
-                                  RtError *error) {
+RtStatus rt_hierarchy_check_coverage(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
+                                     RtError *error) {
     uint32_t objects = geometry->object_count;
     Parts parts = {self, geometry, rt_alloc((size_t)objects + 1, sizeof(uint32_t)),
                    rt_alloc(self->id_count, sizeof(uint32_t)), rt_tree_part_margin(&geometry->box)};
@@ -88,7 +88,7 @@ RtStatus rt_hierarchy_check_parts(const RtHierarchy *self, const RtGeometry *geo
         list_leaves(&parts);
         for (uint32_t id = 0; id < objects && status == RT_OK; id++) {
             uint32_t first = parts.first[id], count = parts.first[id + 1] - first;
-            if (is_held(&parts, id, parts.leaves + first, count, geometry->boxes[id])) continue;
+            if (is_covered(&parts, id, parts.leaves + first, count, geometry->boxes[id])) continue;
             status = rt_fail(error, RT_MISMATCH, "%s: part of object %u is in none of its %u leaves", name,
                              id, count);
         }

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building a grid level by level: the planes of its blocks, and the lists by a count pass and a fill pass.
- * A level's lists are full until the voxels that hold too many objects have been cut into blocks of the next
- * level; what went into those is dropped then. */
+/* Building a grid level by level: the planes of its blocks, then the lists by a count pass and a fill pass.
+ * The lists of voxels that hold too many objects are dropped once the next level, whose blocks are nested in
+ * these voxels, is complete. */
 #include "accel/grid/grid.h"
 
 #include "core/base/memory.h"
 
 #include <string.h>
+
+const RtParam rt_grid_params[RT_GRID_PARAM_COUNT] = {RT_GRID_PARAMS(RT_PARAM_ENTRY)};
 
 typedef struct Builder {
     RtGrid *grid;
@@ -21,8 +23,8 @@ typedef struct Builder {
 typedef struct Cut {
     const Builder *builder;
     RtGridLevel *from, *to;
-    double bytes;  /* of the levels that stand, and estimated for the new one */
-    size_t planes; /* of the new level's blocks; then of those that have theirs */
+    double bytes;  /* of the levels so far, and estimated for the new one */
+    size_t planes; /* of the new level's blocks; then those filled so far */
 } Cut;
 
 /* Whether cutting a box can separate its objects at all: some object does not fill it, and float32 has a
@@ -36,8 +38,8 @@ static bool divisible(const RtGrid *grid, const RtBox *box, const uint32_t *ids,
     return false;
 }
 
-/* Numbers the voxels that are to be cut, and says what they will take, until that is too much. A grid of one
- * voxel is none. */
+/* Numbers the voxels that are to be cut, and adds up their memory until it exceeds the limit. A resolution of
+ * one voxel makes no grid. */
 static RtStatus choose_voxel(void *context, const RtGridVoxel *voxel) {
     Cut *cut = context;
     const Builder *builder = cut->builder;
@@ -56,7 +58,7 @@ static RtStatus choose_voxel(void *context, const RtGridVoxel *voxel) {
     return cut->bytes <= (double)builder->limit ? RT_OK : RT_BAD_INPUT;
 }
 
-/* Gives a block its planes, the next ones of the level. */
+/* Fills the planes of a block, the next ones of the level. */
 static void make_planes(RtGridBlock *block, const RtBox *box, float *plane) {
     for (int a = 0; a < 3; a++) {
         uint32_t n = block->n[a];
@@ -112,15 +114,15 @@ static RtStatus cut_level(const Builder *builder, uint32_t depth) {
 
 /* ---- the lists of a level ---- */
 
-/* Where the lists grow: adds 1 to slot[v] for every voxel v taken, and stores the object at the slot before
- * where there are `ids`. Used twice: to count the lists, and to fill them. */
+/* Both passes over the lists: adds 1 to slot[v] for every voxel v of an object and, in the fill pass, stores
+ * the object at that slot. */
 typedef struct Lists {
     const RtGridBlock *block;
     uint32_t *slot, *ids;
     uint32_t id;
 } Lists;
 
-static void take(void *context, const RtGridRange *range) {
+static void add_range(void *context, const RtGridRange *range) {
     const Lists *lists = context;
     uint32_t at[3];
     for (at[2] = range->from[2]; at[2] <= range->to[2]; at[2]++) {
@@ -134,7 +136,7 @@ static void take(void *context, const RtGridRange *range) {
     }
 }
 
-/* Deals the objects of the voxels of `from` to the blocks of `to` that are nested in them. */
+/* Distributes the objects of the voxels of `from` to the blocks of `to` that are nested in them. */
 static void scatter(const RtGrid *grid, const RtGridLevel *from, const RtGridLevel *to, uint32_t *slot,
                     uint32_t *ids) {
     for (uint32_t v = 0; v < from->voxel_count; v++) {
@@ -142,7 +144,7 @@ static void scatter(const RtGrid *grid, const RtGridLevel *from, const RtGridLev
         Lists lists = {&to->blocks[from->inner[v]], slot, ids, 0};
         for (uint32_t i = from->first[v]; i < from->first[v + 1]; i++) {
             lists.id = from->ids[i];
-            rt_grid_place(grid, lists.block, lists.id, take, &lists);
+            rt_grid_each_range(grid, lists.block, lists.id, add_range, &lists);
         }
     }
 }
@@ -167,7 +169,7 @@ static RtStatus make_lists(const RtGrid *grid, const RtGridLevel *from, RtGridLe
     return RT_OK;
 }
 
-/* Empties the lists of voxels that have been cut. */
+/* Removes the lists of voxels that have been cut. */
 static RtStatus drop_lists(RtGridLevel *level, RtError *error) {
     uint32_t kept = 0;
     for (uint32_t v = 0; v < level->voxel_count; v++) {
@@ -202,7 +204,7 @@ static RtStatus make_root(const Builder *builder) {
     const uint32_t *given = builder->values[RT_GRID_RESOLUTION].resolution;
     rt_grid_choose_resolution(&grid->box, objects, builder->values, n);
     if (given[0] > 0) memcpy(n, given, sizeof n);
-    RtStatus status = rt_grid_refuse(grid, n, ids, objects, builder->limit, builder->error);
+    RtStatus status = rt_grid_check_limit(grid, n, ids, objects, builder->limit, builder->error);
     level->block_count = 1;
     if (status == RT_OK) status = allocate_blocks(level, (size_t)n[0] + n[1] + n[2] + 3, builder->error);
     if (status == RT_OK) {
@@ -247,7 +249,7 @@ void rt_grid_destroy(RtAccel *accel) {
     rt_free(grid);
 }
 
-/* The scene's box, beyond its flat objects by `flat`, and wider by `margin`. */
+/* The scene's box, extended beyond flat objects by `flat`, and widened by `margin`. */
 static RtBox choose_box(const RtGeometry *geometry, double flat, double margin) {
     RtBox box = geometry->box;
     for (uint32_t id = 0; flat > 0 && id < geometry->object_count; id++) {
