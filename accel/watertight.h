@@ -3,7 +3,7 @@
  * four. It repeats rt_triangle_hit (core/shape/triangle.h) operation by operation, to the same bits.
  *
  *     rt_shear        moves vertices to the ray's origin and shears them, until the ray is the z axis
- *     rt_prefilter    the edge functions in float32: rejects nearly all pairs
+ *     rt_edge_prefilter    the edge functions in float32: rejects nearly all pairs
  *     rt_cross        the edge functions in double, and t
  *     rt_admit        rt_box_admit with the triangle's own box
  *
@@ -31,7 +31,7 @@
             s->y[i] = s->y[i] - ray->org_y - ray->shear_y * s->z[i];                                         \
         }                                                                                                    \
     }                                                                                                        \
-    RT_KERNEL uint32_t rt_prefilter##N(const RtSheared##N *s) {                                              \
+    RT_KERNEL uint32_t rt_edge_prefilter##N(const RtSheared##N *s) {                                         \
         const RtFloat##N *x = s->x, *y = s->y;                                                               \
         RtFloat##N u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2];                             \
         RtFloat##N w = x[1] * y[0] - y[1] * x[0];                                                            \
@@ -82,9 +82,9 @@ RT_DEFINE_CROSS(16, 8, rt_to_doubles, RT_ROUND_HALVES)
 
 typedef RT_OF_LANES(RtSheared) RtSheared;
 typedef RT_OF_LANES(RtShear) RtShear;
-#define rt_shear     RT_OF_LANES(rt_shear)
-#define rt_prefilter RT_OF_LANES(rt_prefilter)
-#define rt_cross     RT_OF_LANES(rt_cross)
+#define rt_shear          RT_OF_LANES(rt_shear)
+#define rt_edge_prefilter RT_OF_LANES(rt_edge_prefilter)
+#define rt_cross          RT_OF_LANES(rt_cross)
 
 /* What rt_box_admit needs of each ray, by axis. */
 typedef struct RtLaneRays {
@@ -147,12 +147,12 @@ RT_KERNEL void rt_shear_pairs(const RtRayTriangles *p, RtInts y, RtInts z, RtShe
 }
 
 /* The pairs that the prefilter lets pass. */
-RT_KERNEL uint32_t rt_prefilter_pairs(const RtRayTriangles *p) {
+RT_KERNEL uint32_t rt_edge_prefilter_pairs(const RtRayTriangles *p) {
     RtInts y, z;
     RtSheared s;
     rt_major_axes(p->dir, &y, &z);
     rt_shear_pairs(p, y, z, &s);
-    return rt_prefilter(&s);
+    return rt_edge_prefilter(&s);
 }
 
 /* The pairs that hit, and t of each: any ray, any triangle. */
