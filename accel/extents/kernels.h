@@ -32,16 +32,16 @@ RT_KERNEL void make_line(Line *line, const RtPreparedRay *ray) {
     }
 }
 
-/* Bit i: rt_box_hit of box i; enter[i] is set to where the ray enters it. */
-RT_KERNEL uint32_t hit_boxes(const RtBlock *block, const Line *line, float limit, float enter[RT_LANES]) {
-    RtFloats near = line->tmin, far = rt_all(limit);
+/* Bit i: rt_box_hit of box i; *enter: where the ray enters each box. */
+RT_KERNEL uint32_t hit_boxes(const RtBlock *block, const Line *line, RtFloats limit, RtFloats *enter) {
+    RtFloats near = line->tmin, far = limit;
     for (int a = 0; a < 3; a++) {
         RtFloats first = rt_load(block->row[line->first[a]]) - line->org_near[a];
         RtFloats second = rt_load(block->row[line->last[a]]) - line->org_far[a];
         near = rt_max(first * line->inv[a], near);
         far = rt_min(second * line->inv[a], far);
     }
-    rt_store(enter, near);
+    *enter = near;
     return rt_le_bits(near, far);
 }
 
@@ -65,10 +65,14 @@ RT_KERNEL bool test_chunk(const RtBatch *batch, const RtGeometry *g, RtActiveRay
     Line line;
     uint32_t reported = first;
     make_line(&line, &a->ray);
+    RtFloats limit = rt_all(rt_limit(&a->ray, &a->best));
     for (uint32_t i = 0; i < count; i += RT_LANES) {
         float enter[RT_LANES];
-        uint32_t met = hit_boxes(&batch->chunk[i / RT_LANES], &line, rt_limit(&a->ray, &a->best), enter);
-        if (count - i < RT_LANES) met &= (1u << (count - i)) - 1; /* NaN */
+        RtFloats near;
+        uint32_t met = hit_boxes(&batch->chunk[i / RT_LANES], &line, limit, &near);
+        if (!met) continue;
+        if (count - i < RT_LANES) met &= (1u << (count - i)) - 1; /* lanes without a box */
+        rt_store(enter, near);
         for (; met; met &= met - 1) {
             uint32_t lane = (uint32_t)__builtin_ctz(met), id = first + i + lane;
             if (!(enter[lane] <= rt_limit(&a->ray, &a->best))) continue;
@@ -78,6 +82,7 @@ RT_KERNEL bool test_chunk(const RtBatch *batch, const RtGeometry *g, RtActiveRay
             RT_COUNT(tally, extent_tests, id + 1);
             return true;
         }
+        limit = rt_all(rt_limit(&a->ray, &a->best));
     }
     if (RT_OBSERVED(tally)) observe_tests(g, reported, first + count, false);
     return false;
