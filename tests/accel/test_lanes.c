@@ -7,7 +7,7 @@
 #include "accel/brute/brute.h"
 #include "accel/extents/extents.h"
 #include "accel/kernel.h"
-#include "accel/lanes.h"
+#include "accel/sphere_prefilter.h"
 #include "accel_testing.h"
 #include "core/base/random.h"
 
@@ -285,44 +285,44 @@ RT_TEST(objects_of_every_magnitude_that_rays_touch_are_answered_in_lanes_as_with
     rt_free(rays);
 }
 
-/* ---- accel/lanes.h ---- */
+/* ---- accel/sphere_prefilter.h ---- */
 
-/* Where the same sphere with a radius less by a part of its distance would be turned away, the lane is not
- * left needlessly. */
-static void check_lane(const RtSphere *sphere, const RtPreparedRay *ray, bool left, uint32_t *hits,
+/* A sphere that passes needlessly would be rejected if its radius were less by a small part of its distance.
+ */
+static void check_lane(const RtSphere *sphere, const RtPreparedRay *ray, bool passed, uint32_t *hits,
                        uint32_t *misses) {
     RtBox box = rt_sphere_box(sphere);
     RtVec3d o = rt_subd(rt_widen(sphere->center), rt_widen(ray->org)), u = rt_normalized(rt_widen(ray->dir));
-    double passed = rt_lengthd(rt_crossd(o, u));
+    double distance = rt_lengthd(rt_crossd(o, u));
     float t;
     bool hit = rt_sphere_hit(sphere, &box, ray, &t);
-    assert_true(left || !hit);
-    if (left) assert_true(passed <= (double)sphere->radius * 1.002 + rt_lengthd(o) * 0x1p-15);
+    assert_true(passed || !hit);
+    if (passed) assert_true(distance <= (double)sphere->radius * 1.002 + rt_lengthd(o) * 0x1p-15);
     *hits += hit;
-    *misses += !left;
+    *misses += !passed;
 }
 
-RT_TEST(spheres_are_left_in_lanes_that_may_be_hit_and_hardly_any_other) {
+RT_TEST(spheres_that_may_be_hit_pass_the_prefilter_and_hardly_any_other) {
     RtRandom random = rt_random(5, 5);
     uint32_t hits = 0, misses = 0;
-    for (int round = 0; round < 20000; round++) {
+    for (int round = 0; round < 20000 * 16 / RT_LANES; round++) {
         RtRay ray = far_ray(&random, 1);
         RtPreparedRay prepared = rt_ray_prepare(&ray, &RT_EMPTY_BOX);
         RtSphereLine line = rt_sphere_line(&prepared);
-        float rows[4][16];
-        RtSphere spheres[16];
-        for (int i = 0; i < 16; i++) {
+        float rows[4][RT_LANES];
+        RtSphere spheres[RT_LANES];
+        for (int i = 0; i < RT_LANES; i++) {
             spheres[i] = touched_sphere(&random, &ray, 1);
             if (i % 4 == 3) spheres[i].radius *= 0.997f;
             for (int a = 0; a < 3; a++) rows[a][i] = spheres[i].center.at[a];
             rows[3][i] = spheres[i].radius;
         }
-        uint32_t left = rt_spheres_left16(rows[0], 16, &line);
-        assert_int_equal(left & 255, rt_spheres_left8(rows[0], 16, &line));
-        assert_int_equal(left & 15, rt_spheres_left4(rows[0], 16, &line));
-        for (int i = 0; i < 16; i++) check_lane(&spheres[i], &prepared, left >> i & 1, &hits, &misses);
-        rows[round % 4][round % 16] = NAN;
-        assert_int_equal(rt_spheres_left16(rows[0], 16, &line), left & ~(1u << round % 16));
+        uint32_t passed = rt_sphere_prefilter(rows[0], RT_LANES, &line);
+        for (int i = 0; i < RT_LANES; i++)
+            check_lane(&spheres[i], &prepared, passed >> i & 1, &hits, &misses);
+        rows[round % 4][round / 4 % RT_LANES] = NAN;
+        assert_int_equal(rt_sphere_prefilter(rows[0], RT_LANES, &line),
+                         passed & ~(1u << round / 4 % RT_LANES));
     }
     assert_true(hits > 10000 && misses > 10000);
 }
