@@ -2,7 +2,7 @@
 /* Trying and registering plugins. */
 #include "accel/plugin.h"
 #include "accel/plugin/library.h"
-#include "accel/plugin/process.h"
+#include "core/base/process.h"
 
 #include "core/base/file.h"
 #include "core/base/memory.h"
@@ -48,7 +48,7 @@ static RtStatus run_trial(const char *path, Answer *answer, RtError *error) {
     char what[160];
     RtProcess trial;
     RtProcessEnd end;
-    RT_TRY(rt_process_start(&trial, -1, error));
+    RT_TRY(rt_process_fork(&trial, -1, error));
     if (trial.pid == 0) answer_trial(path, answer);
     bool ended = rt_process_wait(&trial, 1000 * MOST_SECONDS, &end);
     rt_process_end(&trial, 0);

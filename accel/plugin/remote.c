@@ -4,7 +4,7 @@
 #include "accel/remote.h"
 #include "accel/plugin/futex.h"
 #include "accel/plugin/now.h"
-#include "accel/plugin/process.h"
+#include "core/base/process.h"
 #include "accel/plugin/wire.h"
 #include "core/base/words.h"
 
@@ -221,7 +221,7 @@ static RtStatus connect_away(Away *away, int alive[2], RtError *error) {
 static RtStatus start(Away *away, const RtSpec *spec, int threads, RtError *error) {
     int alive[2] = {-1, -1};
     RT_TRY(connect_away(away, alive, error));
-    RtStatus status = rt_process_start(&away->process, alive[0], error);
+    RtStatus status = rt_process_fork(&away->process, alive[0], error);
     if (status == RT_OK && away->process.pid == 0) rt_wire_serve(away->wire, spec, away->base.scene, threads);
     madvise(away->wire, sizeof(Wire), MADV_DONTFORK); /* other plugins do not get it */
     close(alive[0]);

@@ -3,7 +3,7 @@
 #include "accel/plugin.h"
 #include "accel/plugin/futex.h"
 #include "accel/plugin/now.h"
-#include "accel/plugin/process.h"
+#include "core/base/process.h"
 #include "accel/plugin/wire.h"
 #include "accel/remote.h"
 
