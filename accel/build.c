@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Building what a spec says, here or away. */
+/* Building what a spec says, in this process or remotely. */
 #include "accel/accel.h"
 #include "accel/remote.h"
 
