@@ -69,12 +69,12 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
 
 bool rt_spec_is_remote(const RtSpec *spec) {
     for (uint32_t i = 0; i < spec->layer_count; i++) {
-        if (spec->layers[i].ops->away) return true;
+        if (spec->layers[i].ops->remote) return true;
     }
     return false;
 }
 
-bool rt_spec_text_is_away(const char *text) {
+bool rt_spec_text_is_remote(const char *text) {
     RtSpec spec;
     return rt_spec_parse(text, &spec, NULL) == RT_OK && rt_spec_is_remote(&spec);
 }

@@ -44,7 +44,7 @@ refuses() {
 }
 
 # It takes ten seconds, and all else goes on.
-(mkdir forever && cd forever && refuses 'does not survive being loaded: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
+(mkdir forever && cd forever && refuses 'does not survive loading: it takes more than 10 seconds' "$plugins/unloadable-FOREVER.so"
     exit "$failures") &
 forever=$!
 
@@ -85,7 +85,7 @@ fault daemon ''
 fault divide "crashed \(Floating point exception\) .*$at_ray"
 fault recursion "$crash\) .*$at_ray"
 fault free "crashed \(Aborted\) .*$at_ray"
-fault object 'an object that there is not, 1[0-9] \(the scene has 11 objects\)'
+fault object 'an object that does not exist, 1[0-9] \(the scene has 11 objects\)'
 fault nan 't = nan'
 fault farther 'expected .* got ' "$differs"
 fault wrong 'expected .* got ' "$differs"
@@ -102,8 +102,8 @@ fault moody 'counts [0-9]+ extent_tests on some [a-z]+ rays, and [0-9]+ when' \
 fault lazy 'expected .* got ' "$differs.* where nothing is counted"
 fault uncounted 'its object_tests for [a-z]+ rays add up to 0, and were [0-9]+'
 fault twice 'its object_tests for [a-z]+ rays add up to [0-9]+, and were [0-9]+'
-fault backwards 'counted [0-9]+ steps for [a-z]+ rays, more than there can be'
-fault occluder 'an object is in the way that the ray does not hit, 0 '
+fault backwards 'counted [0-9]+ steps for [a-z]+ rays, more than possible'
+fault occluder 'an occluder that the ray does not hit, 0 '
 fault silent 'wrote no answer'
 fault beyond 'wrote or read past its answers'
 fault before 'wrote in front of its answers'
@@ -175,7 +175,7 @@ ends 0 printed report results/faulty --plugin "$plugins/faulty.so"
 
 # ---- what cannot be loaded ----
 
-refuses 'nowhere.so: no plugin there' nowhere.so
+refuses 'nowhere.so: no such plugin' nowhere.so
 echo text >text.so
 refuses 'cannot be loaded: .*text.so' ./text.so
 refuses 'no function .raytally_plugin.*new-accel' "$plugins/unloadable-SYMBOL.so"
@@ -187,10 +187,10 @@ refuses "accelerator 'grid' already: choose another name" "$plugins/unloadable-T
 refuses "it has two accelerators 'unloadable': choose another name" "$plugins/unloadable-TWICE.so"
 refuses "lacks its .*nearest" "$plugins/unloadable-FUNCTION.so"
 refuses "'unloadable' lacks its .params" "$plugins/unloadable-PARAMETERS.so"
-refuses "does not fit itself.*depth" "$plugins/unloadable-STANDARD.so"
+refuses "contradicts itself.*depth" "$plugins/unloadable-STANDARD.so"
 refuses "parameter 'mode' of 'unloadable' has 71 choices; 64 is the most" "$plugins/unloadable-CHOICES.so"
-refuses 'does not survive being loaded: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
-refuses 'does not survive being loaded: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
+refuses 'does not survive loading: it crashed \(Aborted\)' "$plugins/unloadable-CONSTRUCTOR.so"
+refuses 'does not survive loading: it crashed \(Aborted\)' "$plugins/unloadable-ENTRY.so"
 wait $forever || failures=$((failures + 1))
 mkdir folder && cp "$plugins/faulty.so" folder/
 mkdir a:b 'c\d' && cp folder/faulty.so a:b/ && cp folder/faulty.so 'c\d/' && cp "$plugins/odd-LONGER.so" 'c\d/x:y.so'

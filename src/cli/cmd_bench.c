@@ -240,9 +240,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state) {
 
 /* ---- instructions ---- */
 
-static RtStatus leave_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
-                           RtError *error) {
-    return rt_callgrind_leave_rays(context, workload, set, exact, error);
+static RtStatus save_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
+                          RtError *error) {
+    return rt_callgrind_save_rays(context, workload, set, exact, error);
 }
 
 /* The child is asked for by the same arguments, so that it has the same accelerators on the same scenes. */
@@ -280,7 +280,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     if (o->callgrind) {
         RT_TRY(rt_callgrind_check(error));
         RT_TRY(rt_callgrind_init(callgrind, experiment, o->callgrind, error));
-        o->workload.rays = leave_rays;
+        o->workload.rays = save_rays;
         o->workload.rays_context = callgrind;
     }
     RtProgress progress = rt_progress_begin(&o->workload);
@@ -292,7 +292,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
         o->workload.observer.notice(&progress,
                                     "instructions are counted under valgrind, which takes a while");
     rt_progress_end(&progress);
-    if (status == RT_OK && o->callgrind) status = rt_callgrind_leave_out_broken(callgrind, results, error);
+    if (status == RT_OK && o->callgrind) status = rt_callgrind_save_broken(callgrind, results, error);
     if (status == RT_OK && o->callgrind) status = count_instructions(callgrind, o->argv, error);
     return status;
 }
