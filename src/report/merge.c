@@ -15,7 +15,7 @@
 /* ---- what the shards say of themselves ---- */
 
 typedef struct Merge {
-    char *const *directories;
+    const char *const *directories;
     uint32_t count;
     const char *out;
     json_t *journals[RT_MAX_SHARDS];
@@ -242,7 +242,7 @@ static RtStatus merge_all(Merge *merge, RtStart start, bool trust, RtExperiment 
     return rt_run_experiment(results, &options, error);
 }
 
-RtStatus rt_merge(char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
+RtStatus rt_merge(const char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
                   RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error) {
     Merge merge = {.directories = directories, .count = count, .out = out};
     *results = (RtResults){0};

@@ -55,7 +55,7 @@ static RtStatus merge(const Place *place, const char *directory, RtStart start, 
     const RtObserver nobody = {0};
     RtResults results;
     Path shards[] = {path_in(place, "s1"), path_in(place, "s2")}, out = path_in(place, directory);
-    char *const directories[] = {shards[0].text, shards[1].text};
+    const char *const directories[] = {shards[0].text, shards[1].text};
     RtStatus status =
         rt_merge(directories, 2, out.text, start, false, place->experiment, &results, &nobody, error);
     rt_results_clear(&results);
