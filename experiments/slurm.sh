@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # experiments/slurm.sh EXPERIMENT.yaml N [OPTION...]: runs an experiment on a Slurm cluster, as an array of N jobs, each with
-# a part of the scenes and a node to itself, and a job that joins what they measured into results/NAME. OPTIONs are those of
-# `raytally run`, but for --out, --shard and --resume. Run it at the top of the tree, on a file system that the nodes share.
+# some of the scenes and its own node, and a job that joins their results into results/NAME. OPTIONs are those of
+# `raytally run`, except --out, --shard and --resume. Run it at the top of the tree, on a file system that the nodes share.
 #
-# Submitted again, it goes on where jobs were ended, whether by hand, by a limit or by a kill. Prints the ids of the jobs.
+# Submitted again, it continues jobs that were ended by hand, by a limit or by a kill. Prints the ids of the jobs.
 #
 #   RT_PROGRAM     the program (build/release/raytally)
 #   OUT            the result directory (results/NAME); shards and the jobs' output go to $OUT-shards

