@@ -7,6 +7,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_missing build optional data
 fetch_bunny
-targets=raytally build release
+targets=raytally build release -DRT_KERNELS=native
 say "running experiments/first-look.yaml"
 exec build/release/raytally run experiments/first-look.yaml --resume "$@"

@@ -25,21 +25,21 @@ run_tests() {
 
 case "${1-}" in
 "")
-    install_missing build optional data test check
+    install_missing build optional data test
     fetch_bunny
-    build release
+    build release -DRT_KERNELS=all
     run_tests release -LE slow
-    build debug
+    build debug -DRT_KERNELS=native
     run_tests debug -LE 'tree|slow|long'
     ;;
 --all)
     install_missing build optional data test check cluster pages
     fetch_bunny
-    build release -DRT_WERROR=ON
+    build release -DRT_KERNELS=all -DRT_WERROR=ON
     RT_RAYS=256 run_tests release
     build clang -DRT_WERROR=ON
     run_tests clang -LE 'tree|once'
-    build debug
+    build debug -DRT_KERNELS=all
     run_tests debug -LE 'tree|slow'
     targets=thread_tests build tsan
     run_tests tsan -L threads

@@ -85,9 +85,7 @@ RtStatus rt_callgrind_pass(const RtRunner *runner, RtError *error) {
 /* Instruction sets that are not here, and the best of this machine, become the best that there is: by name.
  */
 static void settle_isa(RtSpec *spec) {
-    static const char *const names[] = {
-        [RT_ISA_PORTABLE] = "portable", [RT_ISA_AVX2] = "avx2", [RT_ISA_AVX512] = "avx512"};
-    const char *best = names[rt_isa_best()];
+    const char *best = rt_isa_name(rt_isa_best());
     for (uint32_t i = 0; i < spec->layer_count; i++) {
         RtSpecLayer *layer = &spec->layers[i];
         for (size_t p = 0; p < layer->ops->param_count; p++) {
