@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, tests/ROOM/test_NAME.c as
-# NAME in raytally_tests(ROOM ...); and every source says its licence. Prints those that are not; exit code 1 where
+# check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, or for tests/ROOM/test_NAME.c lists
+# NAME in raytally_tests(ROOM ...). Every source states its licence. Prints the files that fail; exit code 1 if
 # there is one.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"

@@ -51,7 +51,7 @@ root=$here/build/faults
 mkdir -p "$root"
 rm -f "$root"/*.log "$root"/*/verdicts
 
-# Files that differ are copied and become new, so whatever depends on them is built again.
+# Files that differ are copied with a new date, so their dependents are rebuilt.
 copy_tree() { # COPY
     (cd "$here" && find . \( -path ./build -o -name .git -o -path ./results -o -path ./scenes/fetched \) -prune -o -type f -print) |
         while read -r path; do
