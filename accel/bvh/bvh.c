@@ -14,8 +14,8 @@
 #include "accel/mailbox.h"
 #include "accel/surface.h"
 #include "accel/tree/order.h"
-#include "accel/tree/tree_build.h"
 #include "accel/tree/sah_split.h"
+#include "accel/tree/tree_build.h"
 #include "core/base/memory.h"
 
 #define PARAMS(X)                                                                                            \
@@ -56,15 +56,15 @@ static void destroy(RtAccel *accel) {
 static RtTreeOptions options_of(const RtBuild *what) {
     const RtValue *values = what->values;
     return (RtTreeOptions){.method = (RtTreeMethod)values[PARAM_BUILD].choice,
-                          .bits = (uint32_t)values[PARAM_BITS].i,
-                          .radius = (uint32_t)values[PARAM_RADIUS].i,
-                          .spatial = {.bins = (int)values[PARAM_BINS].i,
-                                      .alpha = values[PARAM_ALPHA].f,
-                                      .budget = values[PARAM_BUDGET].f,
-                                      .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                                      .traversal = values[PARAM_TRAVERSAL_COST].f,
-                                      .limit = what->limit},
-                          .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
+                           .bits = (uint32_t)values[PARAM_BITS].i,
+                           .radius = (uint32_t)values[PARAM_RADIUS].i,
+                           .spatial = {.bins = (int)values[PARAM_BINS].i,
+                                       .alpha = values[PARAM_ALPHA].f,
+                                       .budget = values[PARAM_BUDGET].f,
+                                       .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                       .traversal = values[PARAM_TRAVERSAL_COST].f,
+                                       .limit = what->limit},
+                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
 static RtStatus fill(RtHierarchy *hierarchy, const RtBuild *what, RtError *error) {
@@ -157,8 +157,8 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
     }
 }
 
-/* Of split_refs objects the leaf is sought that holds the surface next to the hit: with a thicker ray, or among
- * all objects where hits are not near surfaces (accel/surface.h, accel/tree/spatial.c). */
+/* Of split_refs objects the leaf is sought that holds the surface next to the hit: with a thicker ray, or
+ * among all objects where hits are not near surfaces (accel/surface.h, accel/tree/spatial.c). */
 RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     const RtGeometry *g = &self->base.scene->geometry;

@@ -68,15 +68,15 @@ static void destroy(RtAccel *accel) {
 static RtTreeOptions options_of(const RtBuild *what, RtTreeMethod method) {
     const RtValue *values = what->values;
     return (RtTreeOptions){.method = method,
-                          .bits = MORTON_BITS,
-                          .radius = PLOC_RADIUS,
-                          .spatial = {.bins = (int)values[PARAM_BINS].i,
-                                      .alpha = values[PARAM_ALPHA].f,
-                                      .budget = values[PARAM_BUDGET].f,
-                                      .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                                      .traversal = 1,
-                                      .limit = what->limit},
-                          .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
+                           .bits = MORTON_BITS,
+                           .radius = PLOC_RADIUS,
+                           .spatial = {.bins = (int)values[PARAM_BINS].i,
+                                       .alpha = values[PARAM_ALPHA].f,
+                                       .budget = values[PARAM_BUDGET].f,
+                                       .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                       .traversal = 1,
+                                       .limit = what->limit},
+                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
 static RtStatus fill(RtWideTree *self, const RtBuild *what, RtTreeMethod method, RtError *error) {

@@ -17,6 +17,7 @@
  * missing or there twice. Nothing is measured. What lies in `out` is removed only once the joined journal,
  * the pictures and the scripts are whole on its disk. As rt_run_experiment otherwise. */
 RtStatus rt_merge(const char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
-                  RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error);
+                  RtExperiment *experiment, RtResults *results, const RtRunObserver *observer,
+                  RtError *error);
 
 #endif
