@@ -181,9 +181,9 @@ static const RtOption options[] = {
 
 /* ---- instructions ---- */
 
-static RtStatus leave_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
-                           RtError *error) {
-    return rt_callgrind_leave_rays(context, workload, set, exact, error);
+static RtStatus save_rays(void *context, uint32_t workload, const RtRaySet *set, const RtAccel *exact,
+                          RtError *error) {
+    return rt_callgrind_save_rays(context, workload, set, exact, error);
 }
 
 /* The child gets the same arguments, and so the same accelerators and scenes. */
@@ -312,7 +312,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     if (o->callgrind) {
         RT_TRY(rt_callgrind_check(error));
         RT_TRY(rt_callgrind_init(callgrind, experiment, o->callgrind, error));
-        o->workload.rays = leave_rays;
+        o->workload.rays = save_rays;
         o->workload.rays_context = callgrind;
     }
     RtProgress progress = rt_progress_begin(&o->workload);
@@ -323,7 +323,7 @@ static RtStatus measure(Options *o, RtResults *results, RtCallgrind *callgrind, 
     if (status == RT_OK && o->callgrind)
         o->workload.observer.notice(&progress, "counting instructions under valgrind, which takes a while");
     rt_progress_end(&progress);
-    if (status == RT_OK && o->callgrind) status = rt_callgrind_leave_out_broken(callgrind, results, error);
+    if (status == RT_OK && o->callgrind) status = rt_callgrind_save_broken(callgrind, results, error);
     if (status == RT_OK && o->callgrind) status = count_instructions(callgrind, o->argv, error);
     return status;
 }

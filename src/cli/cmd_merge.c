@@ -59,7 +59,7 @@ int rt_command_merge(int argc, char **argv) {
     rt_cli_parse(&rt_merge_syntax, argc, argv, &o);
     RtError error;
     RtResults results = {0};
-    const RtObserver observer = {.notice = on_notice};
+    const RtRunObserver observer = {.notice = on_notice};
     RtExperiment *experiment = rt_alloc(1, sizeof *experiment);
     RtStatus status = experiment ? rt_merge(o.directories, o.count, o.out, o.start, o.trust, experiment,
                                             &results, &observer, &error)

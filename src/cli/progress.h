@@ -34,7 +34,7 @@ RtProgress rt_progress_begin(const RtWorkloadOptions *options);
 void rt_progress_watch(RtProgress *progress, const char *directory, const char *go_on);
 
 /* The observer of a workload; each notice gets its own line. */
-RtObserver rt_progress_observer(RtProgress *progress);
+RtRunObserver rt_progress_observer(RtProgress *progress);
 
 /* Seconds left, from the forecast and the speed so far; NAN if unknown. */
 double rt_progress_left(const RtProgress *progress, double now);

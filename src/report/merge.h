@@ -17,6 +17,7 @@
  * shards. Measures nothing. The contents of `out` are removed only after the joined journal, the pictures and
  * the scripts are on the disk. Otherwise as rt_run_experiment. */
 RtStatus rt_merge(const char *const *directories, uint32_t count, const char *out, RtStart start, bool trust,
-                  RtExperiment *experiment, RtResults *results, const RtObserver *observer, RtError *error);
+                  RtExperiment *experiment, RtResults *results, const RtRunObserver *observer,
+                  RtError *error);
 
 #endif
