@@ -8,7 +8,13 @@
 
 #include <stdio.h>
 
-static RtStatus draw(const char *directory, RtResults *results, RtScripts allowed, RtError *error) {
+typedef struct Options {
+    const char *directory;
+    bool trust;
+} Options;
+
+static RtStatus draw(const char *directory, RtResults *results, const void *options, RtError *error) {
+    const RtScripts allowed = ((const Options *)options)->trust ? RT_SCRIPTS_ALL : RT_SCRIPTS_SHIPPED;
     RT_TRY(rt_scripts_check(results->experiment, directory, true, allowed, error));
     RtStatus status = rt_plots_draw(results, directory, error);
     if (status == RT_OK) printf("Plots: %s/plots\n", directory);
@@ -16,23 +22,6 @@ static RtStatus draw(const char *directory, RtResults *results, RtScripts allowe
     fprintf(stderr, "raytally: %s\n", error->message);
     return RT_OK;
 }
-
-static RtStatus draw_shipped(const char *directory, const RtExperiment *experiment, RtResults *results,
-                             RtError *error) {
-    (void)experiment;
-    return draw(directory, results, RT_SCRIPTS_SHIPPED, error);
-}
-
-static RtStatus draw_all(const char *directory, const RtExperiment *experiment, RtResults *results,
-                         RtError *error) {
-    (void)experiment;
-    return draw(directory, results, RT_SCRIPTS_ALL, error);
-}
-
-typedef struct Options {
-    const char *directory;
-    bool trust;
-} Options;
 
 static const RtOption options[] = {RT_TRUST_OPTION, {0}};
 static const struct argp_child children[] = {{&rt_plugin_argp, 0, NULL, 0}, {0}};
@@ -48,5 +37,5 @@ const RtSyntax rt_plot_syntax = {
 int rt_command_plot(int argc, char **argv) {
     Options o = {0};
     rt_cli_parse(&rt_plot_syntax, argc, argv, &o);
-    return rt_cli_directory_work(o.directory, true, o.trust ? draw_all : draw_shipped);
+    return rt_cli_directory_work(o.directory, true, draw, &o);
 }

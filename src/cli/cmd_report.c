@@ -10,12 +10,12 @@
 
 #include <stdio.h>
 
-static RtStatus report(const char *directory, const RtExperiment *experiment, RtResults *results,
-                       RtError *error) {
+static RtStatus report(const char *directory, RtResults *results, const void *options, RtError *error) {
+    (void)options;
     json_t *manifest;
     RtPublished published;
     RT_TRY(rt_manifest_read(directory, &manifest, error));
-    RtStatus status = rt_published_load(&published, experiment, error);
+    RtStatus status = rt_published_load(&published, results->experiment, error);
     if (status == RT_OK) {
         rt_published_compare(&published, results);
         status = rt_report_write(results, &published, manifest, directory, error);
@@ -68,5 +68,5 @@ const RtSyntax rt_report_syntax = {
 int rt_command_report(int argc, char **argv) {
     Options o = {0};
     rt_cli_parse(&rt_report_syntax, argc, argv, &o);
-    return o.folder ? write_index(o.folder) : rt_cli_directory_work(o.directory, true, report);
+    return o.folder ? write_index(o.folder) : rt_cli_directory_work(o.directory, true, report, &o);
 }

@@ -81,9 +81,9 @@ static RtStatus compare_all(const char *directory, const RtResults *results, RtE
     return status;
 }
 
-static RtStatus reproduce(const char *directory, const RtExperiment *experiment, RtResults *results,
-                          RtError *error) {
-    rt_cli_tell_plugins(directory, experiment);
+static RtStatus reproduce(const char *directory, RtResults *results, const void *options, RtError *error) {
+    (void)options;
+    rt_cli_tell_plugins(directory, results->experiment);
     /* The copy in the directory does not find its scenes; the original does. */
     RtExperiment *original = rt_alloc(1, sizeof *original);
     if (!original) return rt_fail_memory(error, "an experiment", sizeof *original);
@@ -112,5 +112,5 @@ const RtSyntax rt_reproduce_syntax = {
 int rt_command_reproduce(int argc, char **argv) {
     Options o = {0};
     rt_cli_parse(&rt_reproduce_syntax, argc, argv, &o);
-    return rt_cli_directory_work(o.directory, false, reproduce);
+    return rt_cli_directory_work(o.directory, false, reproduce, &o);
 }

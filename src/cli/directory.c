@@ -5,7 +5,7 @@
 #include "core/base/lock.h"
 #include "core/base/memory.h"
 
-int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work) {
+int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options) {
     RtError error;
     RtLock lock = RT_NO_LOCK;
     RtResults results = {0};
@@ -13,7 +13,7 @@ int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *w
     RtStatus status = experiment ? RT_OK : rt_fail_memory(&error, "an experiment", sizeof *experiment);
     if (status == RT_OK && writes) status = rt_lock_take(&lock, directory, &error);
     if (status == RT_OK) status = rt_run_load(directory, experiment, &results, &error);
-    if (status == RT_OK) status = work(directory, experiment, &results, &error);
+    if (status == RT_OK) status = work(directory, &results, options, &error);
     rt_lock_release(&lock);
     rt_results_clear(&results);
     rt_free(experiment);

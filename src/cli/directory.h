@@ -8,12 +8,12 @@
 #define RT_DIRECTORY_ARGUMENT                                                                                \
     RT_ARGUMENT("DIR", directory, "a result DIR is missing, as in results/first-look")
 
-/* What such a command does with the directory once experiment and results are loaded from it. */
-typedef RtStatus RtDirectoryWork(const char *directory, const RtExperiment *experiment, RtResults *results,
+/* What such a command does with the directory once its results are loaded; `options` are the command's. */
+typedef RtStatus RtDirectoryWork(const char *directory, RtResults *results, const void *options,
                                  RtError *error);
 
 /* Loads the directory and works on it; returns the exit code. A command that writes into the directory locks
  * it. */
-int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work);
+int rt_cli_directory_work(const char *directory, bool writes, RtDirectoryWork *work, const void *options);
 
 #endif

@@ -3,7 +3,7 @@
  * of old and new is left.
  *
  * Linked so that calls of the functions wrapped below come here. */
-#include "experiment_testing.h"
+#include "small_run_testing.h"
 
 #include "report/merge.h"
 #include "report/result_directory.h"
@@ -14,24 +14,6 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-static const char small_experiment[] = "name: small\n"
-                                       "question: Which is cheaper?\n"
-                                       "prediction: The hierarchy.\n"
-                                       "scenes:\n"
-                                       "  - {scene: \"balls:size=1\", size: 12x12, depth: 2}\n"
-                                       "  - {scene: \"random:n=50\", label: cloud, size: 8x8, depth: 2}\n"
-                                       "  - {scene: \"balls:size=1\", label: again, size: 8x8, depth: 1}\n"
-                                       "accelerators: [{accel: bvh}, {accel: grid}]\n"
-                                       "rays: [primary, shadow]\n"
-                                       "count_only: yes\n"
-                                       "limit: 100\n";
-
-static int make_small(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", small_experiment);
-    return 0;
-}
 
 static RtStatus run_shard(const Place *place, const char *directory, uint32_t shard, RtStart start,
                           RtError *error) {

@@ -2,7 +2,7 @@
 /* A result directory: what is in it is not lost, whoever runs into it, whatever fails.
  *
  * Linked so that openings of scenes come here, to be counted. */
-#include "experiment_testing.h"
+#include "small_run_testing.h"
 
 #include "core/base/lock.h"
 #include "report/result_directory.h"
@@ -12,25 +12,6 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-static const char small_experiment[] = "name: small\n"
-                                       "question: Which is cheaper?\n"
-                                       "prediction: The hierarchy.\n"
-                                       "scenes:\n"
-                                       "  - {scene: \"balls:size=1\", size: 12x12, depth: 2}\n"
-                                       "  - {scene: \"random:n=50\", label: cloud, size: 8x8, depth: 2}\n"
-                                       "  - {scene: \"balls:size=1\", label: again, size: 8x8, depth: 1}\n"
-                                       "accelerators: [{accel: bvh}, {accel: grid}]\n"
-                                       "rays: [primary, shadow]\n"
-                                       "count_only: yes\n"
-                                       "limit: 100\n"
-                                       "quick: {limit: 50}\n";
-
-static int make_small(void **state) {
-    if (make_place(state) != 0) return -1;
-    write_in(*state, "small.yaml", small_experiment);
-    return 0;
-}
 
 static RtStatus run(const Place *place, const char *directory, RtStart start, RtError *error) {
     RtResults results;
