@@ -147,7 +147,3 @@ void rt_list_finish(const RtListOptions *options, const char *key, json_t *list,
 json_t *rt_cli_vector_json(RtVec3 v) {
     return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
 }
-
-const struct argp *rt_cli_command_argp(const RtCommand *command) {
-    return command->syntax ? rt_cli_argp(command->syntax) : command->argp;
-}

@@ -39,7 +39,9 @@ int rt_command_compare(int argc, char **argv);
 extern const struct argp rt_compare_argp;
 
 /* The options of a command, as argp has them; valid until the next call. */
-const struct argp *rt_cli_command_argp(const RtCommand *command);
+static inline const struct argp *rt_cli_command_argp(const RtCommand *command) {
+    return command->syntax ? rt_cli_argp(command->syntax) : command->argp;
+}
 
 /* The command that completes all others, whose table main has; it prints a script for bash. */
 extern const RtSyntax rt_completion_syntax;
