@@ -6,7 +6,7 @@
 
 #include <assert.h>
 
-/* A generator sets a camera while it counts, too: that of an empty scene. */
+/* While counting, a generator sets the camera of an unused scene. */
 static RtSceneBuilder run(RtScene *scene, bool counting, RtSceneGenerator *generate, const RtValue *values,
                           RtError *error) {
     RtSceneBuilder b = {
@@ -29,7 +29,7 @@ void rt_build_check(RtSceneBuilder *b, RtStatus status) {
     if (b->status == RT_OK) b->status = status;
 }
 
-/* Are things still added? */
+/* True unless counting or after an error. */
 static bool adds(const RtSceneBuilder *b) {
     return !b->counting && b->status == RT_OK;
 }
@@ -144,7 +144,7 @@ void rt_build_disc(RtSceneBuilder *b, RtVec3d center, double radius, uint32_t si
 }
 
 void rt_build_box(RtSceneBuilder *b, RtVec3d lo, RtVec3d hi, unsigned sides) {
-    /* Corner k is at hi along the axes whose bits are set in k. */
+    /* Bit a of k: corner k is at hi along axis a. */
     static const unsigned char quads[6][4] = {{4, 6, 2, 0}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                               {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (unsigned side = 0; side < 6; side++) {
@@ -193,7 +193,7 @@ static void cell_corners(const RtGridMesh *grid, const Mesh *mesh, uint32_t colu
     corners[3] = above + column;
 }
 
-/* The corners of the two triangles of a cell; the first is left out along the first pole, the second along
+/* The corners of the two triangles of a cell; the first is omitted along the first pole, the second along
  * the last. */
 static const unsigned char halves[2][3] = {{0, 1, 2}, {2, 3, 0}};
 

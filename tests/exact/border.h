@@ -25,13 +25,13 @@ RtDecision rt_decision_of(const RtGeometry *geometry, uint32_t id, const RtRay *
 /* Is it what exact arithmetic decides? A hit on an object that a line can meet more than once has to be the
  * same one: t and the exact t are no farther apart than 2^-8 of the size of the box and two units.
  * RT_UNDECIDED where that is. */
-RtFinding rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
-                            RtDecision decision);
+RtExactResult rt_decision_check(const RtGeometry *geometry, uint32_t id, const RtWideRay *line,
+                                RtDecision decision);
 
 /* (t - exact t) in ulps of the exact t in float32, the difference being exact. RT_MISSED if object `id` is
  * not met. */
-RtFinding rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
-                           long double *ulps);
+RtExactResult rt_referee_error(const RtGeometry *geometry, uint32_t id, const RtRay *ray, float t,
+                               long double *ulps);
 
 /* How near to a border of the object the ray's line passes, in units. Of flat shapes it is the distance from
  * the nearest edge. Of others it is the least power of two, 2^RT_BORDER_NEAR or more, by which the origin has

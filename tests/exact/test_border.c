@@ -91,10 +91,10 @@ RT_TEST(the_referee_decides_against_us_too) {
         RtRay ray = ray_at_triangle(&random, v, i);
         RtHit expected = RT_MISS, right = RT_MISS;
         RtDecision decision = ours(&g, &ray);
-        RtRuling ruling = rt_referee_nearest(&g, &ray);
+        RtExactAnswer ruling = rt_referee_nearest(&g, &ray);
         if (decision.hit) expected = (RtHit){decision.t, 0};
-        if (ruling.finding == RT_HIT) right = (RtHit){(float)ruling.t, 0};
-        if (decision.hit != (ruling.finding == RT_HIT)) {
+        if (ruling.result == RT_HIT) right = (RtHit){(float)ruling.t, 0};
+        if (decision.hit != (ruling.result == RT_HIT)) {
             against++;
             RtSide side;
             RtVerdict verdict;

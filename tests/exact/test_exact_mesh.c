@@ -3,7 +3,7 @@
  * and that all lines through a point are of one mind whether it is inside. */
 #include "solids_testing.h"
 
-#include "exact/exact_mesh.h"
+#include "exact/exact_hit.h"
 #include "exact/referee.h"
 
 /* ---- meshes of boxes ---- */
@@ -66,7 +66,7 @@ static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ra
     uint32_t count;
     RtWideRay wide = rt_wide_ray(ray);
     RtExactLine line = rt_exact_line(&arena, &wide);
-    assert_ok(rt_exact_mesh_places(&arena, set, index, &line, &places, &count, error));
+    assert_ok(rt_exact_mesh_roots(&arena, set, index, &line, &places, &count, error));
     assert_true(count <= MOST && count % 2 == 0);
     for (uint32_t i = 0; i < count; i++) out[i] = rt_exact_value(places[i]);
     rt_free(places);

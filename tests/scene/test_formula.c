@@ -84,7 +84,7 @@ RT_TEST(mistakes_are_placed_at_their_character) {
     expect_complaint("(a - b", "a ')' is missing");
     expect_complaint("a - b)", "at character 6");
     expect_complaint("()", "at character 2");
-    expect_complaint("a + b", "one of | (union), & (intersection), - (difference)");
+    expect_complaint("a + b", "expected | (union), & (intersection), - (difference)");
     expect_complaint("a - who", "there is no solid 'who'");
 }
 

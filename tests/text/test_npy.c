@@ -99,7 +99,7 @@ RT_TEST_IN_PLACE(arrays_of_another_type_order_shape_or_length_are_refused) {
         {1, 0, "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 8)}", 128, "expected '<f4'"},
         {1, 0, "{'descr': '>f4', 'fortran_order': False, 'shape': (2, 8)}", 64, "expected '<f4'"},
         {1, 0, "{'descr': [('t', '<f4')], 'fortran_order': False, 'shape': (2, 8)}", 64, "expected '<f4'"},
-        {1, 0, "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 8)}", 64, "row after row"},
+        {1, 0, "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 8)}", 64, "column-major"},
         {1, 0, "{'descr': '<f4', 'fortran_order': 0, 'shape': (2, 8)}", 64, "the header is not"},
         {1, 0, "{'descr': '<f4', 'shape': (2, 8)}", 64, "the header is not"},
         {1, 0, "{'descr': '<f4', 'fortran_order': False}", 64, "the header is not"},

@@ -252,8 +252,8 @@ static RtStatus build_mutant(const void *context, const RtScene *scene, int thre
 }
 
 /* `recipe` stays the caller's. */
-static inline RtMaker maker_of_mutant(const MutantRecipe *recipe) {
-    return (RtMaker){build_mutant, recipe, 1};
+static inline RtAccelBuilder builder_of_mutant(const MutantRecipe *recipe) {
+    return (RtAccelBuilder){build_mutant, recipe, 1};
 }
 
 #endif

@@ -97,8 +97,8 @@ RT_TEST(a_failure_can_be_replayed_until_it_is_mended) {
     assert_string_equal(replay.accel_spec, "unpadded");
     for (int shrunk = 0; shrunk < 2; shrunk++) {
         RtAnswer broken, mended;
-        assert_ok(rt_replay_ask(&replay, maker_of_mutant(&unpadded), shrunk, &broken, error));
-        assert_ok(rt_replay_ask(&replay, maker_of_mutant(&padded), shrunk, &mended, error));
+        assert_ok(rt_replay_ask(&replay, builder_of_mutant(&unpadded), shrunk, &broken, error));
+        assert_ok(rt_replay_ask(&replay, builder_of_mutant(&padded), shrunk, &mended, error));
         assert_true(broken.wrong);
         assert_false(mended.wrong);
     }
@@ -208,7 +208,7 @@ RT_TEST(an_accelerator_has_one_failure_shrunk) {
         assert_true(i == 0 ? left <= 3 : left == 150);
         assert_ok(rt_replay_load(&replay, replay_of(json_array_get(rows, i)), error));
         assert_true((replay.shrunk_yaml != NULL) == (i == 0));
-        assert_ok(rt_replay_ask(&replay, spec.maker, false, &answer, error));
+        assert_ok(rt_replay_ask(&replay, spec.builder, false, &answer, error));
         assert_true(answer.wrong);
         rt_replay_clear(&replay);
     }
@@ -253,7 +253,7 @@ RT_TEST(a_failure_that_takes_its_neighbours_is_kept_with_them) {
     assert_true(replay.failure.count > 1 && replay.failure.stream > 1);
     assert_int_equal((replay.failure.asked + 1) % replay.failure.stream, 0);
     for (int shrunk = 0; shrunk < 2; shrunk++) {
-        assert_ok(rt_replay_ask(&replay, spec.maker, shrunk, &answer, error));
+        assert_ok(rt_replay_ask(&replay, spec.builder, shrunk, &answer, error));
         assert_true(answer.wrong);
     }
     rt_replay_clear(&replay);
@@ -322,12 +322,13 @@ RT_TEST(a_replay_file_needs_no_other_file) {
     assert_true(replay.failure.occluded && replay.failure.counted);
     assert_int_equal(replay.fingerprint, rt_scene_fingerprint(&scene));
     for (int part = 0; part < 2; part++) {
-        assert_ok(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), part, &again, error));
+        assert_ok(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), part, &again, error));
         assert_false(again.wrong);
     }
     replay.fingerprint ^= 1;
     RtError error;
-    assert_int_equal(rt_replay_ask(&replay, rt_maker_of_spec("bvh"), false, &again, &error), RT_BAD_INPUT);
+    assert_int_equal(rt_replay_ask(&replay, rt_accel_builder_of_spec("bvh"), false, &again, &error),
+                     RT_BAD_INPUT);
     rt_replay_clear(&replay);
     rt_scene_clear(&scene);
 }

@@ -21,7 +21,7 @@ RtTransform rt_transform_compose(const RtTransform *first, const RtTransform *se
 
 static RtStatus check_finite(RtVec3 v, const char *what, RtError *error) {
     if (rt_finite(v)) return RT_OK;
-    return rt_fail(error, RT_BAD_INPUT, "%s is not made of finite numbers: (%g, %g, %g)", what, (double)v.x,
+    return rt_fail(error, RT_BAD_INPUT, "%s is not finite: (%g, %g, %g)", what, (double)v.x,
                    (double)v.y, (double)v.z);
 }
 
