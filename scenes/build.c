@@ -71,7 +71,8 @@ RtVec3d rt_on_circle(uint32_t i, uint32_t n) {
     return rt_vec3d(turn.cosine, turn.sine, 0);
 }
 
-RtVec3d rt_curve_point(const RtVec3d *points, uint32_t count, uint32_t step, uint32_t steps) {
+/* Point `step` of `steps` on the Catmull-Rom spline (1974) through points[0..count), count >= 2. */
+static RtVec3d curve_point(const RtVec3d *points, uint32_t count, uint32_t step, uint32_t steps) {
     uint64_t along = (uint64_t)step * (count - 1);
     uint32_t i = (uint32_t)(along / steps);
     if (i == count - 1) return points[i];
@@ -273,7 +274,7 @@ void rt_build_grid_mesh(RtSceneBuilder *b, const RtGridMesh *grid) {
 
 static RtVec3d lathe_point(const void *of, uint32_t column, uint32_t row) {
     const RtLathe *lathe = of;
-    RtVec3d p = rt_curve_point(lathe->profile, lathe->count, row, lathe->steps);
+    RtVec3d p = curve_point(lathe->profile, lathe->count, row, lathe->steps);
     RtVec3d around = rt_add_scaledd(lathe->center, rt_on_circle(column, lathe->sides), p.x);
     return rt_vec3d(around.x, around.y, around.z + p.z);
 }

@@ -63,9 +63,6 @@ void rt_build_origin(RtSceneBuilder *b, RtVec3d at, int quarters);
  * at quarter turns. */
 RtVec3d rt_on_circle(uint32_t i, uint32_t n);
 
-/* Point `step` of `steps` on the Catmull-Rom spline (1974) through points[0..count), count >= 2. */
-RtVec3d rt_curve_point(const RtVec3d *points, uint32_t count, uint32_t step, uint32_t steps);
-
 void rt_build_sphere(RtSceneBuilder *b, RtVec3d center, double radius);
 void rt_build_cone(RtSceneBuilder *b, RtVec3d base, double base_radius, RtVec3d apex, double apex_radius);
 void rt_build_triangle(RtSceneBuilder *b, RtVec3d v0, RtVec3d v1, RtVec3d v2);

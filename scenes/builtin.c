@@ -83,7 +83,8 @@ RtStatus rt_builtin_check_memory(const RtBuiltin *builtin, const RtValue *values
     }
     uint64_t objects = rt_builtin_object_count(builtin, values);
     return rt_fail(error, RT_BAD_INPUT,
-                   "scene %s: %s=%lld makes %llu objects, which may take %.1f GB, but only %.1f GB are available: %s=%lld would fit",
+                   "scene %s: %s=%lld makes %llu objects, which may take %.1f GB, but only %.1f GB are "
+                   "available: %s=%lld would fit",
                    builtin->name, size->name, (long long)values[0].i, (unsigned long long)objects,
                    (double)rt_builtin_bytes(builtin, values) / 1e9, (double)bytes / 1e9, size->name,
                    (long long)fitting);

@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_files.sh [TREE]: every .c file of the tree is built: CMakeLists.txt lists it, tests/ROOM/test_NAME.c as
-# NAME in raytally_tests(ROOM ...); and every source says its licence. Prints those that are not; exit code 1 where
-# there is one.
+# check_files.sh [TREE]: every .c file of the tree is in CMakeLists.txt (tests/ROOM/test_NAME.c as NAME in
+# raytally_tests(ROOM ...)), and every source file names its licence. Prints the exceptions; exit code 1 if there are any.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 

@@ -4,7 +4,7 @@
 # no function of the library that is called ..._timed may add to a 64-bit word in memory, its own
 # stack apart (which vectors make it address by %rbp).
 # The functions called ..._counted must: each file's counted kernels show that this script would see it. Nor may a
-# timed kernel look whether there is an observer (core/base/observe.h): it may not name rt_observer, which counted kernels do. A file
+# timed kernel look whether there is an observer (core/base/observe.h): it may not name rt_trace_observer, which counted kernels do. A file
 # without timed kernels (isa.c, which hands rays on to those of an instruction set) must count nothing at all.
 # Optimised x86-64 builds only; elsewhere it is skipped (exit code 77).
 set -eu
@@ -27,7 +27,7 @@ objdump --disassemble --reloc --no-show-raw-insn "$library" | awk '
     next
 }
 kind == "" { next }
-/R_X86_64_.*rt_observe/ {
+/R_X86_64_.*rt_(trace_observer|observe)/ {
     looks[file, kind]++
     if (kind == "timed") print "  " file ": " name ": " $0
 }

@@ -62,7 +62,8 @@ static RtPolynomial divided(RtExactArena *arena, RtPolynomial p, const RtPolynom
     return shortened(arena, p);
 }
 
-RtPolynomial rt_polynomial_common(RtExactArena *arena, const RtPolynomial *p, const RtPolynomial *q) {
+/* The greatest common divisor of two polynomials, not both 0. */
+static RtPolynomial common_divisor(RtExactArena *arena, const RtPolynomial *p, const RtPolynomial *q) {
     RtPolynomial a = shortened(arena, *p), b = shortened(arena, *q);
     while (b.degree >= 0) {
         RtPolynomial rest = divided(arena, a, &b, NULL);
@@ -217,7 +218,7 @@ int rt_polynomial_roots(RtExactArena *arena, const RtPolynomial *p, RtAlgebraic 
 /* ---- numbers ---- */
 
 /* A root of (t - p)^2 - q^2 d on the side of p given by q's sign, nearer to p than |q| (d + 1). */
-RtAlgebraic rt_algebraic_of_surd(RtExactArena *arena, const RtSurd *surd) {
+static RtAlgebraic algebraic_of_surd(RtExactArena *arena, const RtSurd *surd) {
     RtRational one = rt_exact_of(arena, 1);
     if (rt_exact_sign(surd->q) == 0 || rt_exact_sign(surd->d) == 0) {
         return (RtAlgebraic){{1, {rt_exact_neg(arena, surd->p), one}},
@@ -237,7 +238,7 @@ RtAlgebraic rt_algebraic_of_surd(RtExactArena *arena, const RtSurd *surd) {
 /* Are the roots equal, given that the intervals overlap? A common root in both intervals is each one's
  * only root. */
 static bool same(RtExactArena *arena, const RtAlgebraic *a, const RtAlgebraic *b) {
-    RtPolynomial common = rt_polynomial_common(arena, &a->of, &b->of);
+    RtPolynomial common = common_divisor(arena, &a->of, &b->of);
     RtRational lo = mpq_cmp(a->lo, b->lo) > 0 ? a->lo : b->lo;
     RtRational hi = mpq_cmp(a->hi, b->hi) < 0 ? a->hi : b->hi;
     return common.degree > 0 &&
@@ -311,7 +312,7 @@ static int compare_mixed(RtExactArena *arena, const RtAlgebraic *algebraic, cons
     } else if (rt_surd_compare(arena, surd, &hi) >= 0) {
         order = -1;
     } else {
-        RtAlgebraic other = rt_algebraic_of_surd(arena, surd);
+        RtAlgebraic other = algebraic_of_surd(arena, surd);
         order = rt_algebraic_compare(arena, algebraic, &other);
     }
     rt_exact_arena_rewind(arena, mark);

@@ -28,9 +28,6 @@ typedef struct RtPolynomial {
 /* -1, 0, 1 */
 int rt_polynomial_sign(RtExactArena *arena, const RtPolynomial *p, RtRational t);
 
-/* The greatest common divisor of two polynomials, not both 0. */
-RtPolynomial rt_polynomial_common(RtExactArena *arena, const RtPolynomial *p, const RtPolynomial *q);
-
 /* A simple root of `of`, and the only one with lo <= t <= hi; lo and hi are no roots. */
 typedef struct RtAlgebraic {
     RtPolynomial of;
@@ -41,8 +38,6 @@ typedef struct RtAlgebraic {
  * appears once; p changes its sign there if its signs at lo and hi differ. Intervals are no wider than
  * 2^-64 of the bound on the roots of p. */
 int rt_polynomial_roots(RtExactArena *arena, const RtPolynomial *p, RtAlgebraic roots[RT_MAX_DEGREE]);
-
-RtAlgebraic rt_algebraic_of_surd(RtExactArena *arena, const RtSurd *surd);
 
 /* -1, 0, 1: the sign of a - b. Nothing stays in the arena. */
 int rt_algebraic_compare(RtExactArena *arena, const RtAlgebraic *a, const RtAlgebraic *b);

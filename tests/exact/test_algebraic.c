@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Roots of polynomials as exact numbers: where they are, that multiple roots are given once, and that equal
- * ones are told from those that nearly are. */
+/* Roots of polynomials as exact numbers: their positions, multiple roots, which appear once, and the
+ * comparison of equal and nearly equal roots. */
 #include "testing.h"
 
 #include "core/base/random.h"

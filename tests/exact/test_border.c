@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Hit functions against the referee: ours decides otherwise than exact arithmetic only where a ray passes an
- * edge within the rounding of float32; broken ones do so elsewhere. docs/precision.md counts it for all
- * shapes. */
+/* Hit functions against the referee: ours differ from exact arithmetic only if a ray passes an edge within
+ * the rounding of float32; broken ones do so elsewhere. docs/precision.md has the counts for all shapes. */
 #include "testing.h"
 
 #include "core/base/random.h"

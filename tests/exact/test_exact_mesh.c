@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Meshes in exact arithmetic: lines through vertices and edges and in faces, meshes that overlap themselves,
- * and that all lines through a point are of one mind whether it is inside. */
+/* Meshes in exact arithmetic: lines through vertices and edges and in faces, meshes that overlap
+ * themselves, and that all lines through a point agree whether it is inside. */
 #include "solids_testing.h"
 
 #include "exact/exact_hit.h"
@@ -59,7 +59,7 @@ static RtRay lattice_ray(RtRandom *random) {
     return ray;
 }
 
-/* The places, to out[0..MOST); gives their number. */
+/* Writes the roots to out[0..MOST); returns their number. */
 static uint32_t places_of(const RtSolidSet *set, uint32_t index, const RtRay *ray, long double *out) {
     RtExactArena arena = {0};
     RtRational *places;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trees in exact arithmetic: tori, their tangents and ties, and that every ray at the trees of the families
- * is decided, as our hit functions do but for rays that pass a border within rounding. */
+/* Trees in exact arithmetic: tori, their tangents and ties; and every ray at the trees of the families is
+ * decided as by our hit functions, except within rounding of a decision boundary. */
 #include "equivalence_testing.h"
 #include "room_testing.h"
 #include "solids_testing.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The referee: exact numbers, hits at borders, true ties, and that our hit functions and it are of one mind
- * but for rays that pass a border within the rounding of float32. */
+/* The referee: exact numbers, hits at boundaries, true ties, and agreement with our hit functions except
+ * within the rounding of float32 of a decision boundary. */
 #include "testing.h"
 
 #include "exact/border.h"

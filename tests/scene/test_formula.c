@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Formulas of CSG trees: what they mean, and what is said of those that mean nothing. */
+/* Formulas of CSG trees: their meaning, and the messages about invalid ones. */
 #include "core/scene/formula.h"
 #include "testing.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Meshes through Assimp: what is kept, what is placed where, what is refused. */
+/* Meshes through Assimp: what is kept, where it is placed, what is rejected. */
 #include "testing.h"
 
 #include "core/base/file.h"

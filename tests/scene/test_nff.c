@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* NFF: what is read, what is written, and what is refused with which line. */
+/* NFF: reading, writing, and the lines of rejected input. */
 #include "scene_testing.h"
 
 #include "core/base/file.h"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The YAML scene format: what it refuses, and where; nothing is left of it, whichever allocation fails. */
+/* The YAML scene format: rejected input, with its position; and whichever allocation fails, nothing leaks. */
 #include "yaml_testing.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* ---- what is said of bad input: its line, and a phrase ---- */
+/* ---- bad input: its line, and a phrase of the message ---- */
 
 #define SPHERE "objects:\n- sphere: {center: [0, 0, 0], radius: 1}\n"
 #define SOLIDS                                                                                               \

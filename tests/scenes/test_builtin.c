@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* scenes/: random scenes, what is refused, and memory; test_spd.c has the databases. */
+/* scenes/: random scenes, rejected specs, and memory; test_spd.c tests the databases. */
 #include "scene_testing.h"
 
 #include "scenes/builtin.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* shape/csg: what each operation leaves, faces and materials, refusals, and the identities of sets. Hits are
- * compared by their bits, over random rays through random trees (experiments/random_tree). */
+/* shape/csg: the result of each operation, faces and materials, rejected trees, and the identities of
+ * sets. Hits are compared bit for bit, over random rays through random trees. */
 #include "csg_testing.h"
 
 /* ---- by hand ---- */
@@ -158,7 +158,7 @@ RT_TEST(a_tree_of_too_many_solids_is_refused) {
 
 typedef RtCsgTerm Side(RtCsgBuilder *b, const RtCsgTerm *terms, bool right_side);
 
-/* Both sides of an identity, made of three random terms and a box about all of them, give the same hits. */
+/* Both sides of an identity of three random terms and a box around them have the same hits. */
 static void check_identity(Side *side, uint64_t seed) {
     RtRandom random = rt_random(seed, 0);
     for (uint32_t round = 0; round < 60; round++) {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/shape/solid.h: solids of each kind met by lines whose crossings are known by hand, and what is
- * refused. */
+/* core/shape/solid.h: lines through solids of each kind with crossings known by hand, and rejected input. */
 #include "solids_testing.h"
 
 /* ---- by hand ---- */

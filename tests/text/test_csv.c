@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* core/text/csv.h: fields that are quoted, and files that are no tables. */
+/* core/text/csv.h: quoted fields, and files that are not tables. */
 #include "experiment_testing.h"
 
 #include "core/text/csv.h"

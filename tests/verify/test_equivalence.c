@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Equivalence and verdicts: lies are found, whichever kernel tells them and in whatever stream; margins and
- * ties are told from errors. */
+/* Equivalence and verdicts: wrong answers are found, in either kernel and in any stream; margins and ties
+ * are distinguished from errors. */
 #include "equivalence_testing.h"
 
 #include "measure/measure.h"

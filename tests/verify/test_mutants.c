@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A test of the test: accelerators with a known pitfall are caught by the rays and scenes that `verify`
- * takes, within a bounded number of rays, and their first failure shrinks to a few objects; the same code
- * without the fault is not caught. */
+/* A test of the test: accelerators with a known pitfall are caught by the rays and scenes of `verify`
+ * within a bounded number of rays, and their first failure shrinks to a few objects; the same code without
+ * the fault is not caught. */
 #include "equivalence_testing.h"
 #include "mutants.h"
 

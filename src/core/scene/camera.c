@@ -49,7 +49,8 @@ RtStatus rt_view_init(RtView *view, const RtCamera *camera, RtSampling sampling,
     }
     RtVec3d axis = rt_subd(rt_widen(camera->at), rt_widen(camera->from));
     if (rt_lengthd(axis) == 0) {
-        return rt_fail(error, RT_BAD_INPUT, "the camera has no direction: `from` and `at` are the same point");
+        return rt_fail(error, RT_BAD_INPUT,
+                       "the camera has no direction: `from` and `at` are the same point");
     }
     RtVec3d forward = rt_normalized(axis);
     RtVec3d right = rt_crossd(forward, rt_normalized(rt_widen(camera->up)));

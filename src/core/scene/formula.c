@@ -80,8 +80,7 @@ static RtStatus read_operand(Parser *p, bool *done) {
         return push_operator(p, OPEN);
     }
     if (length == 0) {
-        return fail(p, *here == '\0' ? "it ends where a name or '(' is expected"
-                                     : "expected a name or '('");
+        return fail(p, *here == '\0' ? "it ends where a name or '(' is expected" : "expected a name or '('");
     }
     if (length >= RT_FORMULA_MAX_NAME) return fail(p, "this name is too long");
     char name[RT_FORMULA_MAX_NAME];

@@ -131,7 +131,8 @@ static RtStatus check_header(FILE *file, const char *path, RtError *error) {
         sscanf(line, ply ? "element %*s %llu" : "%llu", &count);
         if (bytes >= 0 && count > (unsigned long long)bytes) {
             return rt_fail_at(error, path, number, 0,
-                              "the header declares %llu elements, but the file has only %ld bytes: it is truncated or damaged",
+                              "the header declares %llu elements, but the file has only %ld bytes: it is "
+                              "truncated or damaged",
                               count, bytes);
         }
         end = !ply || strncmp(line, "end_header", 10) == 0;

@@ -284,8 +284,8 @@ static RtStatus read_vertices(Reader *r, bool patch, uint32_t *count) {
     size_t room = (size_t)(r->end - r->at) / least + 1;
     if (*count > room) {
         return rt_fail_at(r->error, r->path, r->statement, 0,
-                          "the statement declares %u vertices, but the rest of the file holds at most %zu", *count,
-                          room);
+                          "the statement declares %u vertices, but the rest of the file holds at most %zu",
+                          *count, room);
     }
     RT_TRY(rt_reserve(&r->vertices, &r->vertex_capacity, *count, sizeof(RtVec3), r->error));
     if (patch) {

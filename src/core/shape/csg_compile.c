@@ -38,8 +38,8 @@ RtStatus rt_csg_combine(RtCsgBuilder *builder, RtCsgOp op, RtCsgTerm left, RtCsg
     uint32_t size = builder->nodes[left].size + builder->nodes[right].size;
     if (size > RT_CSG_MAX_SOLIDS) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "a tree of %u solids, counting each use of a named part: the limit is %u",
-                       size, RT_CSG_MAX_SOLIDS);
+                       "a tree of %u solids, counting each use of a named part: the limit is %u", size,
+                       RT_CSG_MAX_SOLIDS);
     }
     RtCsgNode node = {.kind = RT_CSG_COMBINE, .op = op, .left = left, .right = right, .size = size};
     return add_node(builder, &node, out, error);
@@ -70,8 +70,8 @@ typedef struct Part {
     RtCsgTerm term;           /* never a move */
     uint32_t right;           /* operation: its right operand */
     uint32_t solid;           /* leaf: in the forest's set */
-    uint32_t crossings, room; /* most in its list, and on the stack meanwhile; saturates at UINT32_MAX */
-    uint8_t lists;            /* most on the stack meanwhile */
+    uint32_t crossings, room; /* most in its list, and on the stack while it is computed; saturates */
+    uint8_t lists;            /* most on the stack while it is computed */
     bool right_first;
 } Part;
 
@@ -298,7 +298,8 @@ static bool is_flat(RtBox box) {
 static RtStatus check_end(RtBox box, RtError *error) {
     if (rt_finite(box.lo) && rt_finite(box.hi)) return RT_OK;
     return rt_fail(error, RT_BAD_INPUT,
-                   "the tree is unbounded, as far as the boxes of its solids show: intersect it with a bounded solid, or combine its half-spaces into one polyhedron");
+                   "the tree is unbounded, as far as the boxes of its solids show: intersect it with a "
+                   "bounded solid, or combine its half-spaces into one polyhedron");
 }
 
 static RtStatus compile(Compiler *p, RtCsgTerm root, bool extents, RtCsg *out) {

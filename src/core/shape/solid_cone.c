@@ -121,8 +121,8 @@ void rt_solid_cone_to_caps(const RtSolidSet *set, RtSolid *solid) {
 RtStatus rt_solid_add_cone(RtSolidSet *set, double ratio, const RtTransform *to_world, uint32_t *index,
                            RtError *error) {
     if (!(ratio >= 0 && ratio <= 1)) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "the ratio of a cone's radii is %g: expected 0..1; swap its ends", ratio);
+        return rt_fail(error, RT_BAD_INPUT, "the ratio of a cone's radii is %g: expected 0..1; swap its ends",
+                       ratio);
     }
     RT_TRY(rt_solid_check_transform(to_world, error));
     RtSolid solid = {.kind = RT_SOLID_CONE,

@@ -120,8 +120,8 @@ RtStatus rt_solid_add_hull(RtSolidSet *set, const RtVec3 *vertices, uint32_t cou
                            RtError *error) {
     if (count < 4 || count > RT_SOLID_MAX_VERTICES) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "a convex polyhedron of %u vertices: expected 4..%d; use a mesh for more",
-                       count, RT_SOLID_MAX_VERTICES);
+                       "a convex polyhedron of %u vertices: expected 4..%d; use a mesh for more", count,
+                       RT_SOLID_MAX_VERTICES);
     }
     for (uint32_t i = 0; i < count; i++) {
         if (rt_finite(vertices[i])) continue;

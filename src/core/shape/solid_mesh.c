@@ -216,7 +216,8 @@ static RtStatus check_edges(Edge *edges, size_t count, RtError *error) {
         if (sum == 0 || compare_points(a, b) == 0) continue;
         return rt_fail(
             error, RT_BAD_INPUT,
-            "the mesh is not closed: at the edge from (%g, %g, %g) to (%g, %g, %g) triangles on one side have no neighbour with the same winding; close the hole or reverse the triangles",
+            "the mesh is not closed: at the edge from (%g, %g, %g) to (%g, %g, %g) triangles on one side "
+            "have no neighbour with the same winding; close the hole or reverse the triangles",
             (double)a.x, (double)a.y, (double)a.z, (double)b.x, (double)b.y, (double)b.z);
     }
     return RT_OK;
@@ -245,10 +246,10 @@ RtStatus rt_solid_check_volume(const RtTriangle *triangles, uint32_t count, RtEr
         volume += rt_dotd(v[0], rt_crossd(v[1], v[2])) / 6;
     }
     if (volume > 0) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "the volume of the mesh is %g: expected a value above 0; if the mesh is inside out, reverse its triangles (counter-clockwise seen from outside)",
-        volume);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "the volume of the mesh is %g: expected a value above 0; if the mesh is inside out, "
+                   "reverse its triangles (counter-clockwise seen from outside)",
+                   volume);
 }
 
 /* ---- order and boxes ---- */
@@ -329,7 +330,8 @@ static RtStatus check_and_order(RtTriangle *triangles, uint32_t count, RtError *
 RtStatus rt_solid_add_mesh(RtSolidSet *set, const RtTriangle *triangles, uint32_t count,
                            const RtTransform *to_world, uint32_t *index, RtError *error) {
     if (count < 4) {
-        return rt_fail(error, RT_BAD_INPUT, "a closed mesh needs at least 4 triangles, this one has %u", count);
+        return rt_fail(error, RT_BAD_INPUT, "a closed mesh needs at least 4 triangles, this one has %u",
+                       count);
     }
     RT_TRY(rt_solid_check_transform(to_world, error));
     RT_TRY(rt_reserve(&set->triangles, &set->triangle_capacity, (uint64_t)set->triangle_count + count,

@@ -38,7 +38,8 @@ RtStatus rt_solid_check_transform(const RtTransform *to_world, RtError *error) {
     }
     if (!(volume > 0x1p-40 * most)) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "a solid would be flat or turned inside out: its axes must have a length and not lie in one plane");
+                       "a solid would be flat or turned inside out: its axes must have a length and not lie "
+                       "in one plane");
     }
     return RT_OK;
 }

@@ -179,10 +179,10 @@ static RtStatus check_plane(const RtPlane *plane, uint32_t i, RtError *error) {
     RtVec3d n = plane->normal;
     double squared = rt_dotd(n, n);
     if (isfinite(squared) && isfinite(plane->offset) && squared > 0) return RT_OK;
-    return rt_fail(
-        error, RT_BAD_INPUT,
-        "plane %u of the polyhedron, normal (%g, %g, %g), offset %g, must have finite numbers and a normal other than 0",
-        i, n.x, n.y, n.z, plane->offset);
+    return rt_fail(error, RT_BAD_INPUT,
+                   "plane %u of the polyhedron, normal (%g, %g, %g), offset %g, must have finite numbers and "
+                   "a normal other than 0",
+                   i, n.x, n.y, n.z, plane->offset);
 }
 
 RtStatus rt_solid_check_inside(const RtPlane *planes, uint32_t count, RtError *error) {

@@ -130,9 +130,8 @@ static RtStatus read_text(RtNpy *npy, Header *h, RtError *error) {
     }
     unsigned major = start[MAGIC_BYTES], minor = start[MAGIC_BYTES + 1];
     if (major < 1 || major > 3 || minor != 0) {
-        return rt_fail(error, RT_BAD_INPUT,
-                       "%s: unknown format version %u.%u: expected 1.0, 2.0 or 3.0", npy->path, major,
-                       minor);
+        return rt_fail(error, RT_BAD_INPUT, "%s: unknown format version %u.%u: expected 1.0, 2.0 or 3.0",
+                       npy->path, major, minor);
     }
     size_t bytes = major == 1 ? 2 : 4;
     if (fread(size, 1, bytes, npy->file) != bytes)
@@ -153,8 +152,8 @@ static RtStatus check(RtNpy *npy, const Header *h, bool parsed, uint64_t most_ro
     uint32_t columns = npy->columns;
     if (*h->descr && strcmp(h->descr, "<f4") != 0) {
         return rt_fail(error, RT_BAD_INPUT,
-                       "%s: numbers of type %s: expected '<f4', as from array.astype('float32')",
-                       npy->path, h->descr);
+                       "%s: numbers of type %s: expected '<f4', as from array.astype('float32')", npy->path,
+                       h->descr);
     }
     if (!parsed) {
         return rt_fail(error, RT_BAD_INPUT,
@@ -162,10 +161,9 @@ static RtStatus check(RtNpy *npy, const Header *h, bool parsed, uint64_t most_ro
                        npy->path, h->text);
     }
     if (!h->c_order) {
-        return rt_fail(
-            error, RT_BAD_INPUT,
-            "%s: the array is column-major: expected row-major, as from numpy.ascontiguousarray",
-            npy->path);
+        return rt_fail(error, RT_BAD_INPUT,
+                       "%s: the array is column-major: expected row-major, as from numpy.ascontiguousarray",
+                       npy->path);
     }
     if (h->dimensions != 2 || h->shape[1] != columns) {
         return rt_fail(error, RT_BAD_INPUT,

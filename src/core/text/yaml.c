@@ -137,8 +137,7 @@ static RtStatus add_scalar(Builder *b) {
                       yaml->error));
     RT_TRY(add_node(b, RT_YAML_SCALAR, &node));
     for (size_t i = 0; i < length; i++) {
-        if (value[i] == '\0')
-            return rt_yaml_fail(yaml, node, "the value contains a zero byte: remove it");
+        if (value[i] == '\0') return rt_yaml_fail(yaml, node, "the value contains a zero byte: remove it");
         if (value[i] >= ' ' && value[i] != 0x7f) continue;
         return rt_yaml_fail(yaml, node, "the text contains a control character: remove it");
     }
