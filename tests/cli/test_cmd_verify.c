@@ -208,7 +208,7 @@ RT_TEST(a_run_is_gone_on_with) {
     assert_string_equal(text_of(OUT ".rows/verify.csv"), table);
     snprintf(again, sizeof again, "%s --resume --seed 2", arguments);
     assert_int_equal(verify(again), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "another verification, with other seed"));
+    assert_non_null(strstr(text_of(OUT ".err"), "another verification, with different seed"));
 }
 
 RT_TEST(rows_that_are_there_are_not_begun_anew_unasked) {
@@ -248,7 +248,7 @@ RT_TEST(a_run_is_not_gone_on_with_where_a_scene_file_was_edited) {
     snprintf(again, sizeof again, "%s --resume", arguments);
     write_sphere(OUT ".yaml", 2);
     assert_int_equal(verify(again), 2);
-    assert_non_null(strstr(text_of(OUT ".err"), "with other fingerprints"));
+    assert_non_null(strstr(text_of(OUT ".err"), "with different fingerprints"));
 }
 
 /* No accelerator lies, so the journal is made to say so of one, and gone on with. */
