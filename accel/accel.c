@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The struct that every accelerator begins with, as its `build` gets it. */
+/* The struct that every accelerator begins with. */
 #include "accel/accel.h"
 
 #include "core/base/memory.h"

@@ -163,7 +163,7 @@ struct RtAccelOps {
     const RtParam *params;
     size_t param_count;
     uint32_t kinds; /* of an overlay: the rays it answers, bits 1 << RtRayKind; 0: a base, for all rays */
-    bool away;      /* it is a plugin's, and built in a process of its own (accel/remote.h) */
+    bool remote;    /* a plugin's: built in another process (accel/remote.h) */
     /* Optional: a spec of it alone, "light:cells=100", that is verified beside the default where that, over
      * few objects or rays, chooses to leave its own ways unused. */
     const char *trial;
@@ -276,11 +276,11 @@ typedef struct RtSpec {
 /* Parses `name[:key=value[,key=value]...]`, several of them joined by '+': overlays over one base. */
 RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error);
 
-/* Whether one of its layers is a plugin's, so that all of it is built away. */
+/* Whether one of its layers is a plugin's, so that all of it is remote (accel/remote.h). */
 bool rt_spec_is_remote(const RtSpec *spec);
 
 /* The same of a text, which may be no spec. */
-bool rt_spec_text_is_away(const char *text);
+bool rt_spec_text_is_remote(const char *text);
 
 /* RT_OK, or RT_NOT_AVAILABLE and why this machine, or a library, cannot do what a layer asks for. */
 RtStatus rt_spec_available(const RtSpec *spec, RtError *error);
@@ -301,7 +301,7 @@ RtStatus rt_best_specs(const char *text, char specs[RT_MAX_BEST][RT_MAX_SPEC_CHA
 /* ---- using an accelerator ---- */
 
 /* Builds what the spec says over `scene`, on `threads` threads (0 = all processors), which does not change
- * the structure; away (accel/remote.h) where a layer asks for that, and always here by rt_accel_build_here.
+ * the structure; remotely (accel/remote.h) where a layer asks for that, but not by rt_accel_build_here.
  * rt_accel_open_on takes the spec as text, rt_accel_open too, and all processors. Destroy with
  * rt_accel_destroy. */
 RtStatus rt_accel_build_here(const RtSpec *spec, const RtScene *scene, int threads, RtAccel **out,

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Layers: what is common to all accelerators, overlays stacked upon a base. Building, looking at and
- * destroying a stack, and the queries that are asked of it. */
+/* Stacks of accelerators, overlays over a base: building, describing and destroying a stack, and queries. */
 #include "accel/accel.h"
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 
-/* Puts `accel`, just built, upon `below`, which may be NULL. */
+/* Puts `accel`, just built, on top of `below`, which may be NULL. */
 static void stack(RtAccel *accel, RtAccel *below) {
     size_t bytes = accel->ops->scratch_bytes ? accel->ops->scratch_bytes(accel) : 0;
     accel->scratch_room = (bytes + RT_CACHE_LINE - 1) / RT_CACHE_LINE * RT_CACHE_LINE;
@@ -93,7 +92,7 @@ RtStatus rt_accel_learn(RtAccel *accel, const RtRay *rays, const RtHit *hits, si
 
 /* ---- queries ---- */
 
-/* Of the layers above `end`. */
+/* Closes the layers above `end`. */
 static void close_layers(const RtQuery *query, const RtAccel *end) {
     const RtScratch *scratch = query->scratch;
     for (const RtAccel *layer = query->accel; layer != end; layer = layer->below, scratch++) {
@@ -101,7 +100,7 @@ static void close_layers(const RtQuery *query, const RtAccel *end) {
     }
 }
 
-/* Where one cannot be opened nothing is left of the query. */
+/* On failure nothing is left of the query. */
 static RtStatus open_layers(RtQuery *query, RtError *error) {
     const RtScratch *scratch = query->scratch;
     for (const RtAccel *layer = query->accel; layer; layer = layer->below, scratch++) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Specs: "name:key=value,key=value", with '+' between layers. */
 #include "accel/accel.h"
+#include "accel/isa.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -68,17 +69,18 @@ RtStatus rt_spec_parse(const char *text, RtSpec *spec, RtError *error) {
 
 bool rt_spec_is_remote(const RtSpec *spec) {
     for (uint32_t i = 0; i < spec->layer_count; i++) {
-        if (spec->layers[i].ops->away) return true;
+        if (spec->layers[i].ops->remote) return true;
     }
     return false;
 }
 
-bool rt_spec_text_is_away(const char *text) {
+bool rt_spec_text_is_remote(const char *text) {
     RtSpec spec;
     return rt_spec_parse(text, &spec, NULL) == RT_OK && rt_spec_is_remote(&spec);
 }
 
 RtStatus rt_spec_available(const RtSpec *spec, RtError *error) {
+    RT_TRY(rt_isa_best_available(error));
     for (uint32_t i = 0; i < spec->layer_count; i++) {
         const RtSpecLayer *layer = &spec->layers[i];
         if (layer->ops->available) RT_TRY(layer->ops->available(layer->values, error));

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # check_scenes.sh [--update]: every built-in scene and family of scenes has its fingerprint in tests/golden/scenes.txt.
-# Run for every build, this ensures that all compilers and libraries generate the same bits. --update replaces the
-# fingerprints: explain the change in tests/golden/CHANGES.md. Uses $RT_PROGRAM.
+# Run for every build, this makes scenes bit-identical with every compiler and library. --update replaces the
+# fingerprints: give the reason in tests/golden/CHANGES.md. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
@@ -19,7 +19,7 @@ if [ "${1-}" = --update ]; then
 fi
 diff "$golden" "$now"
 
-# every scene has an entry
+# none is left out
 builtins=$("$program" scenes | sed -n 's/^\([a-z-]*\): .*/\1/p')
 families=$("$program" scenes family --json | sed -n 's/.*"range": "\(.*|.*\)".*/\1/p' | tr '|' ' ')
 for name in $builtins ${families:?}; do

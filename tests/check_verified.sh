@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_verified.sh: results/verify has at least a thousand million pairs of a ray and an accelerator and no wrong answer.
-# Verifying one of its scenes again, with the accelerators in its manifest, yields the same rows (except for Embree, whose
-# arithmetic differs between processors). Takes half a minute. Uses $RT_PROGRAM.
+# check_verified.sh: results/verify has a thousand million pairs of a ray and an accelerator without a wrong answer. One
+# of its scenes, verified again with the accelerators in its manifest, has the same rows (except Embree's,
+# whose own arithmetic differs between processors). Half a minute. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
@@ -16,10 +16,10 @@ sum() {
         { sum += $column }
         END { printf "%.0f\n", sum }'
 }
-# setting NAME: of the run
+# setting NAME: a setting of the run
 setting() { sed -n "s/^  \"$1\": \([0-9]*\),$/\1/p" "$manifest"; }
 
-# Accelerators that need instructions this processor lacks are skipped.
+# Skips accelerators that need instructions this processor lacks.
 absent=no-such-instructions
 ! grep -q 'this processor has no avx512' <<<"$("$program" verify tetra --rays 1 --accel wide:isa=avx512 2>&1)" || absent=isa=avx512
 # accels: the accelerators of the run, as options
@@ -31,11 +31,11 @@ echo "$(sum rays) pairs, $(sum wrong) wrong"
 grep -q "^$(sum rays) pairs of a ray and an accelerator" results/verify/verify.md
 
 scene="family:kind=csg-far,seed=$(setting seed)"
-# shellcheck disable=SC2046 # options and their values are separate words
+# shellcheck disable=SC2046 # options and their values are words of their own
 "$program" verify "$scene" $(accels) --rays "$(setting rays)" --seed "$(setting seed)" --out "$again" >/dev/null
 rows=$(grep -F "\"$scene\"," "$table" | grep -v -e '",embree' -e "$absent")
 [ "$(wc -l <<<"$rows")" -gt 10 ]
 if grep -vxFf "$again/verify.csv" <<<"$rows"; then
-    echo "these rows of $table differ when $scene is verified again"
+    echo "these rows of $table are other ones when $scene is verified again"
     exit 1
 fi

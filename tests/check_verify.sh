@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# check_verify.sh [RAYS]: every accelerator answers RAYS hard rays on each family of scenes, more than five million in
-# all, without a wrong answer; replay files of failures are left in verify-failures/. Takes about three minutes on two
-# cores: running it once, with the release build, is enough. Uses $RT_PROGRAM.
+# check_verify.sh [RAYS]: every accelerator traces RAYS hard rays on each family of scenes, more than five million
+# in all, without a wrong answer; wrong ones are left in verify-failures/ to be replayed. Takes some three
+# minutes on two cores: once, with the release build, is enough. Uses $RT_PROGRAM.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 program=${RT_PROGRAM:-build/release/raytally}
@@ -13,7 +13,7 @@ table=$(mktemp) && trap 'rm -f "$table"' EXIT
     grep '"says"\|"replay"\|"problem": "' "$table"
     exit 1
 }
-# All accelerators answer the same rays; a tenth of them come from the camera.
+# The accelerators trace the same rays, a tenth of which are camera rays.
 scenes=$(grep -c '"accel": "brute"' "$table")
 hard=$((scenes * rays / 10 * 9))
 echo "$hard hard rays on $scenes scenes, each answered by $(($(grep -c '"accel"' "$table") / scenes)) accelerators"

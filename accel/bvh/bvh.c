@@ -14,8 +14,8 @@
 #include "accel/mailbox.h"
 #include "accel/surface.h"
 #include "accel/tree/order.h"
-#include "accel/tree/recipe.h"
-#include "accel/tree/split.h"
+#include "accel/tree/sah_split.h"
+#include "accel/tree/tree_build.h"
 #include "core/base/memory.h"
 
 #define PARAMS(X)                                                                                            \
@@ -53,26 +53,26 @@ static void destroy(RtAccel *accel) {
     rt_free(accel);
 }
 
-static RtTreeRecipe recipe_of(const RtBuild *what) {
+static RtTreeOptions options_of(const RtBuild *what) {
     const RtValue *values = what->values;
-    return (RtTreeRecipe){.method = (RtTreeMethod)values[PARAM_BUILD].choice,
-                          .bits = (uint32_t)values[PARAM_BITS].i,
-                          .radius = (uint32_t)values[PARAM_RADIUS].i,
-                          .spatial = {.bins = (int)values[PARAM_BINS].i,
-                                      .alpha = values[PARAM_ALPHA].f,
-                                      .budget = values[PARAM_BUDGET].f,
-                                      .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                                      .traversal = values[PARAM_TRAVERSAL_COST].f,
-                                      .limit = what->limit},
-                          .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
+    return (RtTreeOptions){.method = (RtTreeMethod)values[PARAM_BUILD].choice,
+                           .bits = (uint32_t)values[PARAM_BITS].i,
+                           .radius = (uint32_t)values[PARAM_RADIUS].i,
+                           .spatial = {.bins = (int)values[PARAM_BINS].i,
+                                       .alpha = values[PARAM_ALPHA].f,
+                                       .budget = values[PARAM_BUDGET].f,
+                                       .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                       .traversal = values[PARAM_TRAVERSAL_COST].f,
+                                       .limit = what->limit},
+                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
 static RtStatus fill(RtHierarchy *hierarchy, const RtBuild *what, RtError *error) {
     const RtGeometry *geometry = &what->scene->geometry;
-    RtTreeRecipe recipe = recipe_of(what);
+    RtTreeOptions options = options_of(what);
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(rt_tree_make(&tree, geometry, &recipe, what->threads, error));
+    RT_TRY(rt_tree_build(&tree, geometry, &options, what->threads, error));
     RtStatus status = rt_hierarchy_lay_out(hierarchy, &tree, what->threads, error);
     rt_tree_clear(&tree);
     return status;
@@ -157,12 +157,12 @@ RT_KERNEL void walk(const RtBvh *self, RtMailbox *mailbox, const RtPreparedRay *
     }
 }
 
-/* Of divided objects the leaf is sought that holds the surface next to the hit: with a thicker ray, or among
- * all objects where hits are not near surfaces (accel/surface.h, accel/tree/spatial.c). */
+/* Of split_refs objects the leaf is sought that holds the surface next to the hit: with a thicker ray, or
+ * among all objects where hits are not near surfaces (accel/surface.h, accel/tree/spatial.c). */
 RT_KERNEL void search(const RtBvh *self, void *scratch, const RtPreparedRay *ray, bool any, RtHit *best,
                       RtTally *tally) {
     const RtGeometry *g = &self->base.scene->geometry;
-    if (!self->hierarchy.divided) {
+    if (!self->hierarchy.split_refs) {
         walk(self, NULL, ray, any, best, tally);
     } else if (rt_surface_is_near(ray)) {
         RtMailbox *mailbox = self->mailbox ? scratch : NULL;
@@ -179,7 +179,7 @@ RT_DEFINE_KERNELS(RtBvh, search)
 
 static size_t scratch_bytes(const RtAccel *accel) {
     const RtBvh *self = (const RtBvh *)accel;
-    bool mailbox = self->mailbox && self->hierarchy.divided;
+    bool mailbox = self->mailbox && self->hierarchy.split_refs;
     return mailbox ? rt_mailbox_bytes(&accel->scene->geometry) : 0;
 }
 

@@ -86,10 +86,10 @@ typedef struct RtGrid {
     RtSurfaceRays served; /* ... and by its margin more before surfaces are */
 } RtGrid;
 
-/* resolution.c: into how many voxels along each axis to cut a box with so many objects. */
-void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue *values, uint32_t n[3]);
+/* ---- grid_voxels.c ---- */
 
-/* place.c: which voxels an object goes into. */
+/* The resolution, by the rule, of a grid over a box with so many objects. */
+void rt_grid_choose_resolution(const RtBox *box, uint32_t objects, const RtValue *values, uint32_t n[3]);
 
 /* A range of voxels, first to last on each axis. */
 typedef struct RtGridRange {
@@ -99,34 +99,35 @@ typedef struct RtGridRange {
 /* The box of an object, grown by the slack. */
 RtBox rt_grid_object_box(const RtGrid *grid, uint32_t id);
 
-/* The box of a range, and the range of voxels that hold a box, which must meet the block's. */
+/* The box of a range, and the range of voxels that a box overlaps, which must meet the block's. */
 RtBox rt_grid_range_box(const RtGridBlock *block, const RtGridRange *range);
 RtGridRange rt_grid_touched(const RtGridBlock *block, const RtBox *box);
 
-/* With overlap=exact, whether an object belongs into a voxel of this box that its own box touches. */
+/* With overlap=exact: whether a voxel with this box, which the object's box touches, lists the object. */
 bool rt_grid_surface_meets(const RtGrid *grid, const RtOutline *outline, const RtBox *box);
 
-/* Calls `take` for ranges that together hold each voxel of the block that is to list object `id`, once. The
- * object belongs into the block. */
-void rt_grid_place(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
-                   void (*take)(void *context, const RtGridRange *range), void *context);
+/* Calls `visit` for disjoint ranges that together are the voxels of the block that list object `id`, which
+ * belongs into the block. */
+void rt_grid_each_range(const RtGrid *grid, const RtGridBlock *block, uint32_t id,
+                        void (*visit)(void *context, const RtGridRange *range), void *context);
 
-/* limit.c: both are cheap and careful, and take objects by their boxes, whatever the overlap. */
-
-/* Bytes of the voxels and lists of a block with n voxels along each axis, no less than it will be. */
+/* An upper bound on the bytes of the voxels and lists of a block with n voxels along each axis, by the boxes
+ * of objects whatever the overlap. */
 double rt_grid_estimate(const RtGrid *grid, const RtBox *box, const uint32_t n[3], const uint32_t *ids,
                         uint32_t count);
 
-/* Fails if level 0, with `block` for its only block and all objects ids[0..count), would take more than
- * `limit` bytes, with a resolution that would fit. */
-RtStatus rt_grid_refuse(const RtGrid *grid, const uint32_t n[3], const uint32_t *ids, uint32_t count,
-                        uint64_t limit, RtError *error);
+/* Fails if level 0 with all objects ids[0..count) would exceed `limit` bytes by that bound; the message names
+ * a resolution that would fit. */
+RtStatus rt_grid_check_limit(const RtGrid *grid, const uint32_t n[3], const uint32_t *ids, uint32_t count,
+                             uint64_t limit, RtError *error);
 
-/* build.c */
+/* ---- grid_build.c ---- */
+
 RtStatus rt_grid_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_grid_destroy(RtAccel *accel);
 
-/* stats.c */
+/* ---- grid_stats.c ---- */
+
 void rt_grid_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_grid_validate(const RtAccel *accel, RtError *error);
 void rt_grid_each_box(const RtAccel *accel, RtBoxViewer viewer);

@@ -15,6 +15,7 @@
 
 #include "accel/accel.h"
 #include "accel/surface.h"
+#include "core/shape/overlap.h"
 
 #define RT_KD_PARAMS(X)                                                                                      \
     X(RT_KD_TRAVERSAL_COST, "traversal_cost", RT_FLOAT("0.3", 0, 1000, "0|1|10"),                            \
@@ -92,7 +93,16 @@ static inline RtBox rt_kd_half(RtBox cell, uint32_t axis, float split, uint32_t 
     return cell;
 }
 
-/* build.c */
+/* The part, within `cell`, of an object that has a part on both sides of one of the cell's faces: its box cut
+ * off there or, with overlap=exact, a box of its surface there; false if there is none. */
+static inline bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out) {
+    const RtGeometry *g = &kd->base.scene->geometry;
+    if (kd->surfaces) return rt_object_part(g, id, cell, kd->served.margin, out);
+    *out = rt_box_common(g->boxes[id], *cell);
+    return true;
+}
+
+/* kd_build.c */
 RtStatus rt_kd_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_kd_destroy(RtAccel *accel);
 
@@ -144,11 +154,11 @@ typedef struct RtKdSplit {
  * one of objects and one of events for each axis, in the order in which they will be popped. */
 typedef struct RtKdBuilder {
     RtKd *kd;
-    struct RtKdLedger *ledger; /* borrowed */
+    struct RtKdMemory *memory; /* borrowed */
     RtKdEvent *events[3];
     uint32_t *ids;
     uint32_t event_capacity[3], id_capacity, node_capacity, leaf_id_capacity;
-    uint8_t *sides; /* [object_count] of the objects of the current cell: see deal.c */
+    uint8_t *sides; /* [object_count] of the objects of the current cell: kd_divide.c */
     RtKdCell pending[RT_KD_DEPTH_LIMIT + 2];
     uint32_t pending_count;
     /* Scratch: the new parts of objects that are cut, and their events. */
@@ -158,53 +168,41 @@ typedef struct RtKdBuilder {
     uint32_t cut_id_capacity[2], cut_part_capacity[2], fresh_capacity, spare_capacity;
 } RtKdBuilder;
 
-/* Of the cells met at a depth: how many, entries in their lists, and shares; and of those that are leaves. */
+/* The cells of a depth: their number, list entries and shares of the objects, and those of leaves. */
 typedef struct RtKdLevel {
     uint64_t nodes, ids, leaf_ids;
     double share, leaf_share;
 } RtKdLevel;
 
-/* Bytes so far of the tree, and of the same tree cut off at any depth. Once it takes more than the limit
- * nothing is kept, only counted, and max_depth is lowered to where it seems to fit, as often as it has to
- * be. */
-typedef struct RtKdLedger {
+/* The bytes so far of the tree, and of the same tree cut off at any depth. Once they exceed the limit, cells
+ * are only counted, and max_depth is lowered repeatedly to where the tree seems to fit. */
+typedef struct RtKdMemory {
     uint64_t limit, bytes;
-    double estimate; /* bytes that the tree asked for would take; 0 while it fits */
+    double estimate; /* bytes that the requested tree would take; 0 while it fits */
     RtKdLevel levels[RT_KD_DEPTH_LIMIT + 1];
-} RtKdLedger;
+} RtKdMemory;
 
-/* divide.c. Divides a cell, whose children wait on top of the pending ones, or makes it a leaf. */
+/* kd_limit.c. Counts a cell; lowers max_depth where the tree would exceed the limit. */
+void rt_kd_count_cell(RtKdBuilder *b, const RtKdCell *cell, bool leaf);
+
+/* kd_divide.c. Divides a cell, whose children go on top of the pending cells, or makes it a leaf. */
 RtStatus rt_kd_divide(RtKdBuilder *b, const RtKdCell *cell, RtError *error);
 void rt_kd_clear(RtKdBuilder *b);
 
-/* subtrees.c. Builds all below the root, which is pending, with cells of no more than `most` objects on all
- * threads: the tree that one thread makes, node by node. *fits is false where it may take too much: then
- * what there is is of no use. */
+/* kd_subtrees.c. Builds the tree of the root, which is pending, on all threads, each cell of at most `most`
+ * objects on one: node by node the tree that one thread builds. *fits is false if it may exceed the limit;
+ * then the result is useless. */
 RtStatus rt_kd_build_subtrees(RtKdBuilder *b, uint32_t most, int threads, bool *fits, RtError *error);
 
-/* events.c. The events of the parts of ids[0..count) in a cell along an axis, sorted, to out[0..2 * count);
- * gives their number. `spare`: as much room. */
+/* kd_events.c. Writes the sorted events of the parts of ids[0..count) in a cell along an axis to
+ * out[0..2 * count), and returns their number. `spare`: a buffer of the same size. */
 uint32_t rt_kd_make_events(const uint32_t *ids, const RtBox *parts, uint32_t count, const RtBox *cell,
                            int axis, RtKdEvent *out, RtKdEvent *spare);
 
 /* Merges more[0..n) into events[0..count), which has room; both sorted. */
 void rt_kd_merge_events(RtKdEvent *events, uint32_t count, const RtKdEvent *more, uint32_t n);
 
-/* sweep.c. The plane of the least cost by the surface area heuristic; its cost is INFINITY if there is
- * none. */
-RtKdSplit rt_kd_find_split(const RtKdBuilder *b, const RtKdCell *cell);
-
-/* deal.c. The part, within `cell`, of an object that has a part on both sides of one of the cell's faces: its
- * box cut off there or, with overlap=exact, a box about its surface there; false where there is none. */
-bool rt_kd_part(const RtKd *kd, uint32_t id, const RtBox *cell, RtBox *out);
-
-/* Deals the lists of `cell`, the topmost, to its two children: children[0], the lower, and
- * children[1]; but for their nodes, which are set already. Gives, to *above, which of them has its lists on
- * top of the other's. */
-RtStatus rt_kd_deal(RtKdBuilder *b, const RtKdCell *cell, const RtKdSplit *split, RtKdCell children[2],
-                    uint32_t *above, RtError *error);
-
-/* stats.c */
+/* kd_stats.c */
 void rt_kd_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_kd_validate(const RtAccel *accel, RtError *error);
 void rt_kd_each_box(const RtAccel *accel, RtBoxViewer viewer);

@@ -75,56 +75,16 @@ static inline bool rt_octree_is_inner(const RtOctreeNode *node) {
     return node->count >= RT_OCTREE_INNER;
 }
 
-/* build.c */
+/* octree_build.c */
 RtStatus rt_octree_build(const RtBuild *what, RtAccel **out, RtError *error);
 void rt_octree_destroy(RtAccel *accel);
 
-/* A tree that is being built. Until it is turned into a leaf or divided, a node's list is at `first` of the
- * current level's, and of its children at `first` of the next. */
-typedef struct RtOctreeBuilder {
-    RtOctree *tree;
-    const RtBox *objects; /* their boxes */
-    uint64_t limit;       /* bytes */
-    uint32_t depth;       /* of the current level */
-    uint32_t node_capacity, box_capacity, id_capacity;
-    /* The lists of the current level and of the next, node after node. */
-    uint32_t *list, *next;
-    uint32_t next_count, next_capacity;
-} RtOctreeBuilder;
-
-/* divide.c. Makes a tree without nodes, `b->list` being the objects of `cell`, one of a single node. */
-RtStatus rt_octree_begin(RtOctreeBuilder *b, RtBox cell, uint32_t count, RtError *error);
-
-/* Goes to the next level. */
-void rt_octree_next_level(RtOctreeBuilder *b);
-
-/* Frees the arrays of a tree and its lists, but not the tree. */
-void rt_octree_end(RtOctreeBuilder *b);
-
-/* Whether a cell of the current level, with the list ids[0..count), is to be divided. */
-bool rt_octree_divides(const RtOctreeBuilder *b, const RtBox *cell, const uint32_t *ids, uint32_t count);
-
-/* Whether it makes sense to cut the cell further: float32 has a plane inside it and, unless cut_filled says
- * that this does not matter, some of its objects ids[0..count) does not fill it. */
+/* Whether dividing the cell can separate its objects ids[0..count): float32 has a plane inside it and, unless
+ * cut_filled is set, the box of some object does not fill it. */
 bool rt_octree_divisible(const RtOctree *tree, const RtBox *boxes, const RtBox *cell, const uint32_t *ids,
                          uint32_t count);
 
-/* Divides node `index` of the current level: deals the objects ids[0..count) to eight new children. */
-RtStatus rt_octree_divide(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
-                          RtError *error);
-
-/* Makes node `index` of the current level a leaf with the list ids[0..count). */
-RtStatus rt_octree_make_leaf(RtOctreeBuilder *b, uint32_t index, const uint32_t *ids, uint32_t count,
-                             RtError *error);
-
-/* Refuses the tree: it would take `bytes`, or more, while it would fit with max_depth = `fits`. */
-RtStatus rt_octree_refuse(const RtOctreeBuilder *b, double bytes, uint32_t fits, RtError *error);
-
-/* limit.c. Refuses a tree of which the current level, nodes [from, to), is about to be divided, where what it
- * would take in the end is estimated to be certainly more than the limit; else RT_OK. */
-RtStatus rt_octree_check_limit(const RtOctreeBuilder *b, uint32_t from, uint32_t to, RtError *error);
-
-/* stats.c */
+/* octree_stats.c */
 void rt_octree_describe(const RtAccel *accel, RtDescription *out);
 RtStatus rt_octree_validate(const RtAccel *accel, RtError *error);
 void rt_octree_each_box(const RtAccel *accel, RtBoxViewer viewer);

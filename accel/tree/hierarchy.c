@@ -1,80 +1,76 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* From a binary tree of references to the nodes that are traced: which subtrees become leaves, which nodes
- * are opened into their parent. */
+/* Laying out a binary tree of references for tracing: which subtrees become leaves, which nodes are replaced
+ * by their children in their parent. */
 #include "accel/tree/hierarchy.h"
-#include "accel/tree/fold.h"
+#include "accel/tree/reduction.h"
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 
 #include <assert.h>
 
-/* What a subtree holds, and what it costs to trace: area times object tests and visits of inner nodes. */
-typedef struct Weight {
+/* The contents of a subtree, and its expected cost: area x (object tests + visits of inner nodes). */
+typedef struct Cost {
     uint32_t references, leaves;
     double cost;
-} Weight;
+} Cost;
 
-/* Nodes and ids that are taken. */
-typedef struct Taken {
+/* Numbers of nodes and ids in use. */
+typedef struct Used {
     uint32_t nodes, ids;
-} Taken;
+} Used;
 
-/* Where a part of the tree goes. */
+/* The place of a part in the hierarchy. */
 typedef struct Part {
-    uint32_t node; /* its root; unset if it lies in a leaf */
-    Taken taken;   /* what is taken before it */
+    uint32_t node; /* its root; unset if the part is inside a leaf */
+    Used used;     /* before it */
     bool placed;
 } Part;
 
 typedef struct Layout {
     RtHierarchy *self;
     const RtTree *tree;
-    bool *leaf; /* [tree->used] by node of the tree: it becomes a leaf, unless it lies below one */
-    RtFoldParts weighed;
-    Part *parts; /* [weighed.count] */
+    bool *leaf; /* [tree->used] the node becomes a leaf, or is below one */
+    RtReducedParts reduced;
+    Part *parts; /* [reduced.count] */
     uint32_t next;
 } Layout;
 
-static Weight weight_of_leaf(Layout *layout, uint32_t index) {
+static Cost cost_of_leaf(Layout *layout, uint32_t index) {
     layout->leaf[index] = true;
-    return (Weight){1, 1, rt_box_half_area(layout->tree->nodes[index].box)};
+    return (Cost){1, 1, rt_box_half_area(layout->tree->nodes[index].box)};
 }
 
-/* A subtree of few enough references becomes a leaf where that costs no more. */
-static Weight weight_of_both(Layout *layout, uint32_t index, const Weight *left, const Weight *right) {
+/* A subtree of at most leaf_limit references becomes a leaf where that costs no more. */
+static Cost cost_of_both(Layout *layout, uint32_t index, const Cost *left, const Cost *right) {
     double area = rt_box_half_area(layout->tree->nodes[index].box);
-    Weight inner = {left->references + right->references, left->leaves + right->leaves,
-                    layout->self->traversal_cost * area + left->cost + right->cost};
-    Weight leaf = {inner.references, 1, area * inner.references};
+    Cost inner = {left->references + right->references, left->leaves + right->leaves,
+                  layout->self->traversal_cost * area + left->cost + right->cost};
+    Cost leaf = {inner.references, 1, area * inner.references};
     bool better = leaf.references <= layout->self->leaf_limit && leaf.cost <= inner.cost;
     layout->leaf[index] = better;
     return better ? leaf : inner;
 }
 
-static bool weigh(Layout *layout, uint32_t index, uint32_t levels, Weight *weight) {
+static bool reduce_subtree(void *context, uint32_t index, uint32_t levels, void *value) {
+    Layout *layout = context;
     if (rt_tree_is_leaf(layout->tree, index)) {
-        *weight = weight_of_leaf(layout, index);
+        *(Cost *)value = cost_of_leaf(layout, index);
         return true;
     }
     const uint32_t *child = layout->tree->nodes[index].child;
-    Weight left, right;
-    if (levels == 0 || !weigh(layout, child[0], levels - 1, &left) ||
-        !weigh(layout, child[1], levels - 1, &right))
+    Cost left, right;
+    if (levels == 0 || !reduce_subtree(layout, child[0], levels - 1, &left) ||
+        !reduce_subtree(layout, child[1], levels - 1, &right))
         return false;
-    *weight = weight_of_both(layout, index, &left, &right);
+    *(Cost *)value = cost_of_both(layout, index, &left, &right);
     return true;
 }
 
-static bool weigh_part(void *context, uint32_t index, uint32_t levels, void *weight) {
-    return weigh(context, index, levels, weight);
+static void combine_children(void *context, uint32_t index, const void *const children[2], void *value) {
+    *(Cost *)value = cost_of_both(context, index, children[0], children[1]);
 }
 
-static void weigh_node(void *context, uint32_t index, const void *const sides[2], void *weight) {
-    *(Weight *)weight = weight_of_both(context, index, sides[0], sides[1]);
-}
-
-/* The children of a wide node: the largest that is no leaf is opened in its place, until there are
- * `width`. */
+/* The children of a wide node: the largest inner one is replaced by its children, until there are `width`. */
 static uint32_t open_children(const Layout *layout, uint32_t index, uint32_t *children) {
     const RtTreeNode *nodes = layout->tree->nodes;
     uint32_t count = 2;
@@ -96,110 +92,107 @@ static uint32_t open_children(const Layout *layout, uint32_t index, uint32_t *ch
     return count;
 }
 
-/* Appends the objects of a subtree to the leaf whose ids begin at `first`; parts of one object are one. */
-static void append_ids(const Layout *layout, uint32_t first, uint32_t index, Taken *taken) {
+/* Appends the objects of a subtree to the leaf whose ids begin at `first`, each object once. */
+static void append_ids(const Layout *layout, uint32_t first, uint32_t index, Used *used) {
     RtHierarchy *self = layout->self;
     const uint32_t *child = layout->tree->nodes[index].child;
     if (rt_tree_is_leaf(layout->tree, index)) {
-        for (uint32_t i = first; i < taken->ids && self->divided; i++) {
+        for (uint32_t i = first; i < used->ids && self->split_refs; i++) {
             if (self->ids[i] == child[1]) return;
         }
-        self->ids[taken->ids++] = child[1];
+        self->ids[used->ids++] = child[1];
         return;
     }
-    for (int s = 0; s < 2; s++) append_ids(layout, first, child[s], taken);
+    for (int s = 0; s < 2; s++) append_ids(layout, first, child[s], used);
 }
 
-/* Makes a node, and takes places for its children, which go to children[..]; none of a leaf. */
+/* Makes a node and reserves its children, whose nodes of the tree go to children[..]; none of a leaf. */
 static void place_one(const Layout *layout, uint32_t node_index, uint32_t index, uint32_t *children,
-                      Taken *taken) {
+                      Used *used) {
     RtNode *node = &layout->self->nodes[node_index];
     node->box = layout->tree->nodes[index].box;
     if (layout->leaf[index]) {
-        node->first = taken->ids;
-        append_ids(layout, node->first, index, taken);
-        node->count = RT_NODE_LEAF | (taken->ids - node->first);
+        node->first = used->ids;
+        append_ids(layout, node->first, index, used);
+        node->count = RT_NODE_LEAF | (used->ids - node->first);
         return;
     }
     node->count = open_children(layout, index, children);
-    node->first = taken->nodes;
-    taken->nodes += node->count;
+    node->first = used->nodes;
+    used->nodes += node->count;
 }
 
-static void place(const Layout *layout, uint32_t node_index, uint32_t index, Taken *taken) {
+static void place(const Layout *layout, uint32_t node_index, uint32_t index, Used *used) {
     const RtNode *node = &layout->self->nodes[node_index];
     uint32_t children[RT_NODE_MAX_WIDTH] = {0};
-    place_one(layout, node_index, index, children, taken);
+    place_one(layout, node_index, index, children, used);
     if (rt_node_is_leaf(node)) return;
-    for (uint32_t i = 0; i < node->count; i++) place(layout, node->first + i, children[i], taken);
+    for (uint32_t i = 0; i < node->count; i++) place(layout, node->first + i, children[i], used);
 }
 
-static RtStatus place_part(void *context, size_t item, int thread, RtError *error) {
+static void place_part(void *context, size_t item) {
     const Layout *layout = context;
     const Part *part = &layout->parts[item];
-    Taken taken = part->taken;
-    (void)thread;
-    (void)error;
-    if (part->placed) place(layout, part->node, layout->weighed.index[item], &taken);
-    return RT_OK;
+    Used used = part->used;
+    if (part->placed) place(layout, part->node, layout->reduced.index[item], &used);
 }
 
-/* Passes by the parts of a subtree. */
+/* Skips the parts of a subtree. */
 static void skip_parts(Layout *layout, uint32_t index, uint32_t depth) {
     const uint32_t *child = layout->tree->nodes[index].child;
-    if (!rt_fold_is_top(layout->tree, index, depth)) {
+    if (!rt_reduction_is_top(layout->tree, index, depth)) {
         layout->next++;
         return;
     }
     for (int s = 0; s < 2; s++) skip_parts(layout, child[s], depth + 1);
 }
 
-/* Of pairs, none of them divided: what the parts take is known before. */
-static void place_top(Layout *layout, uint32_t node_index, uint32_t index, uint32_t depth, Taken *taken) {
-    if (!rt_fold_is_top(layout->tree, index, depth)) {
-        const Weight *weight = (const Weight *)(const void *)layout->weighed.weights + layout->next;
+/* Binary nodes without split references: the sizes of the parts are known. */
+static void place_top(Layout *layout, uint32_t node_index, uint32_t index, uint32_t depth, Used *used) {
+    if (!rt_reduction_is_top(layout->tree, index, depth)) {
+        const Cost *cost = (const Cost *)(const void *)layout->reduced.values + layout->next;
         Part *part = &layout->parts[layout->next++];
         part->node = node_index;
-        part->taken = *taken;
+        part->used = *used;
         part->placed = true;
-        taken->nodes += 2 * weight->leaves - 2;
-        taken->ids += weight->references;
+        used->nodes += 2 * cost->leaves - 2;
+        used->ids += cost->references;
         return;
     }
     const RtNode *node = &layout->self->nodes[node_index];
     uint32_t children[RT_NODE_MAX_WIDTH] = {0};
-    place_one(layout, node_index, index, children, taken);
+    place_one(layout, node_index, index, children, used);
     if (rt_node_is_leaf(node)) {
         skip_parts(layout, index, depth);
         return;
     }
-    for (uint32_t i = 0; i < 2; i++) place_top(layout, node->first + i, children[i], depth + 1, taken);
+    for (uint32_t i = 0; i < 2; i++) place_top(layout, node->first + i, children[i], depth + 1, used);
 }
 
 static RtStatus place_all(Layout *layout, int threads, RtError *error) {
     RtHierarchy *self = layout->self;
     uint32_t root = layout->tree->root;
-    Taken taken = {1, 0};
-    if (self->width > 2 || self->divided) {
-        place(layout, 0, root, &taken);
+    Used used = {1, 0};
+    if (self->width > 2 || self->split_refs) {
+        place(layout, 0, root, &used);
     } else {
-        place_top(layout, 0, root, 0, &taken);
-        RT_TRY(rt_parallel_for(layout->weighed.count, threads, place_part, layout, error));
+        place_top(layout, 0, root, 0, &used);
+        RT_TRY(rt_parallel_each(layout->reduced.count, threads, place_part, layout, error));
     }
-    self->node_count = taken.nodes;
-    self->id_count = taken.ids;
+    self->node_count = used.nodes;
+    self->id_count = used.ids;
     return RT_OK;
 }
 
 static RtStatus lay_out(Layout *layout, RtTree *tree, int threads, RtError *error) {
     RtHierarchy *self = layout->self;
-    RtFold fold = {sizeof(Weight), weigh_part, weigh_node, layout};
-    Weight whole;
-    RT_TRY(rt_tree_fold(tree, &fold, threads, &layout->weighed, &whole, error));
+    RtReduction reduction = {sizeof(Cost), reduce_subtree, combine_children, layout};
+    Cost whole;
+    RT_TRY(rt_tree_reduce(tree, &reduction, threads, &layout->reduced, &whole, error));
     size_t most = 2 * (size_t)whole.leaves - 1;
     self->nodes = rt_alloc_unset(most, sizeof(RtNode));
     self->ids = rt_alloc_unset(whole.references, sizeof(uint32_t));
-    self->divided = tree->divided;
+    self->split_refs = tree->split_refs;
     if (self->nodes && self->ids) return place_all(layout, threads, error);
     return rt_fail_memory(error, "the nodes of a hierarchy",
                           most * sizeof(RtNode) + whole.references * sizeof(uint32_t));
@@ -210,13 +203,13 @@ RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtEr
     Layout layout = {.self = self,
                      .tree = tree,
                      .leaf = rt_alloc_unset(tree->used, sizeof(bool)),
-                     .parts = rt_alloc(RT_FOLD_MAX_PARTS, sizeof(Part))};
+                     .parts = rt_alloc(RT_REDUCTION_MAX_PARTS, sizeof(Part))};
     RtStatus status = layout.leaf && layout.parts
                           ? lay_out(&layout, tree, threads, error)
                           : rt_fail_memory(error, "the leaves of a hierarchy", tree->used * sizeof(bool));
     rt_free(layout.leaf);
     rt_free(layout.parts);
-    rt_fold_parts_clear(&layout.weighed);
+    rt_reduced_parts_clear(&layout.reduced);
     if (status != RT_OK) rt_hierarchy_clear(self);
     return status;
 }

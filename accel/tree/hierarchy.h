@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Hierarchies of boxes as they are traced: one array of 32-byte nodes, the children of a node side by side,
- * and one array of object ids, of which a leaf owns a run.
+/* Hierarchies of boxes in the form that is traced: an array of 32-byte nodes, in which the children of a node
+ * are adjacent, and an array of object ids, in which each leaf owns a run.
  *
- * Invariants: a node's box contains the boxes of its children and objects; every object is in exactly one
- * leaf, or, where they are divided, in leaves whose boxes hold all of its surface, once in each; no leaf is
- * deeper than RT_TREE_MAX_DEPTH; the leaves come in the order of their ids, children as they stand, so that
- * the ids of a subtree are one run. Node 0 is the root; of no objects there is no node. */
+ * Invariants: a node's box contains the boxes of its children and objects. Every object is in exactly one
+ * leaf; with split references, in leaves whose boxes together contain its surface, once in each. No leaf is
+ * deeper than RT_TREE_MAX_DEPTH. Leaves are ordered like their runs of ids, so the ids of a subtree are one
+ * run. Node 0 is the root; an empty scene has no node. */
 #ifndef RT_ACCEL_TREE_HIERARCHY_H
 #define RT_ACCEL_TREE_HIERARCHY_H
 
@@ -14,7 +14,7 @@
 
 enum { RT_NODE_MAX_WIDTH = 16 };
 
-/* Marks the number of objects of a leaf; without it, the number of children of an inner node. */
+/* The flag of leaves in RtNode.count. */
 #define RT_NODE_LEAF UINT32_C(0x80000000)
 
 typedef struct RtNode {
@@ -30,42 +30,42 @@ typedef struct RtHierarchy {
     uint32_t width;        /* most children of a node, 2..RT_NODE_MAX_WIDTH */
     uint32_t leaf_limit;   /* most objects of a leaf */
     double traversal_cost; /* of visiting an inner node, in object tests */
-    bool divided;          /* objects may be in several leaves; rays need be thick (accel/surface.h) */
+    bool split_refs;       /* objects may be in several leaves; rays are thickened (accel/surface.h) */
 } RtHierarchy;
 
 static inline bool rt_node_is_leaf(const RtNode *node) {
     return (node->count & RT_NODE_LEAF) != 0;
 }
 
-/* Objects of a leaf, or children of an inner node. */
+/* Number of objects of a leaf, or of children of an inner node. */
 static inline uint32_t rt_node_fanout(const RtNode *node) {
     return node->count & ~RT_NODE_LEAF;
 }
 
-/* Fills nodes and ids of a hierarchy, whose other limits are set, from a complete tree, which is limited in
- * depth for it. References of a subtree share a leaf where that costs no more by the surface area heuristic;
- * nodes wider than pairs take in the largest of their children. The same on any number of `threads` (0 = all
- * processors). On failure nothing is left behind. */
+/* Lays out a complete tree: sets the nodes and ids of a hierarchy whose other members are set. Limits the
+ * depth of the tree first if necessary. The references of a subtree share a leaf where that costs no more by
+ * the surface area heuristic; where width > 2, the largest children are replaced by their own. The result
+ * does not depend on the number of `threads` (0 = all processors). On failure nothing is left behind. */
 RtStatus rt_hierarchy_lay_out(RtHierarchy *self, RtTree *tree, int threads, RtError *error);
 void rt_hierarchy_clear(RtHierarchy *self);
 
-/* For RtAccelOps. The predictions are those of boxes; the qualities, in object tests and leaves, are sampled
- * (quality.c), in some 0.1 s where there are a million objects. */
+/* For RtAccelOps. The predictions are those of boxes. The qualities are sampled (quality.c), in about 0.1 s
+ * for a million objects. */
 void rt_hierarchy_describe(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out);
 
-/* quality.c, for describe: sets the qualities. */
+/* quality.c, for rt_hierarchy_describe: sets the qualities. */
 void rt_hierarchy_measure(const RtHierarchy *self, const RtGeometry *geometry, RtDescription *out);
 
-/* `extents`: of the nodes, by their index; or NULL. */
+/* `extents`: those of the nodes, by index, or NULL. */
 void rt_hierarchy_each_box(const RtHierarchy *self, const struct RtExtentSet *extents, RtBoxViewer viewer);
 void rt_hierarchy_each_leaf(const RtHierarchy *self, RtLeafViewer viewer);
 
-/* RT_OK, or RT_MISMATCH and the first broken invariant, told of `name`. */
+/* RT_OK, or RT_MISMATCH with the first broken invariant, in a message that begins with `name`. */
 RtStatus rt_hierarchy_validate(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
                                RtError *error);
 
-/* parts.c, for validate: whether the leaves that list an object hold its surface, for all objects. */
-RtStatus rt_hierarchy_check_parts(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
-                                  RtError *error);
+/* coverage.c, for rt_hierarchy_validate: whether the leaves of each object contain its surface. */
+RtStatus rt_hierarchy_check_coverage(const RtHierarchy *self, const RtGeometry *geometry, const char *name,
+                                     RtError *error);
 
 #endif

@@ -76,14 +76,11 @@ static void list_groups(Builder *b, Group group) {
     for (int s = 0; s < 2; s++) list_groups(b, sides[s]);
 }
 
-static RtStatus build_group(void *context, size_t item, int thread, RtError *error) {
+static void build_group(void *context, size_t item) {
     const Builder *b = context;
     Group group = b->groups[item];
-    (void)thread;
-    (void)error;
     for (uint32_t i = group.begin; i < group.begin + group.count; i++) b->in_row[i] = b->boxes[b->row[i].id];
     build(b, group);
-    return RT_OK;
 }
 
 static void unite_top(const Builder *b, Group group) {
@@ -98,7 +95,7 @@ static RtStatus build_all(Builder *b, uint32_t count, int threads, RtError *erro
     Group all = {0, count, 0};
     list_groups(b, all);
     b->tree->used = b->tree->capacity;
-    RT_TRY(rt_parallel_for(b->group_count, threads, build_group, b, error));
+    RT_TRY(rt_parallel_each(b->group_count, threads, build_group, b, error));
     unite_top(b, all);
     return RT_OK;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "accel/tree/neighbours.h"
 
-#include "accel/tree/split.h"
+#include "accel/tree/sah_split.h"
 #include "core/base/memory.h"
 
 #define NOBODY                                                                                               \

@@ -35,36 +35,27 @@ static uint32_t chunk_end(const Sorter *s, size_t chunk) {
     return s->count - begin < s->chunk_size ? s->count : begin + s->chunk_size;
 }
 
-static RtStatus find_centers(void *context, size_t chunk, int thread, RtError *error) {
+static void find_centers(void *context, size_t chunk) {
     Sorter *s = context;
     RtBox centers = RT_EMPTY_BOX;
-    (void)thread;
-    (void)error;
     for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
         centers = rt_box_add_point(centers, rt_box_center(s->boxes[i]));
     s->centers_of[chunk] = centers;
-    return RT_OK;
 }
 
-static RtStatus count_digits(void *context, size_t chunk, int thread, RtError *error) {
+static void count_digits(void *context, size_t chunk) {
     Sorter *s = context;
     uint32_t *place = s->places[chunk].of;
-    (void)thread;
-    (void)error;
     memset(place, 0, sizeof(Places));
     for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
         place[s->items[i].key >> s->shift & (DIGITS - 1)]++;
-    return RT_OK;
 }
 
-static RtStatus move_items(void *context, size_t chunk, int thread, RtError *error) {
+static void move_items(void *context, size_t chunk) {
     Sorter *s = context;
     uint32_t *place = s->places[chunk].of;
-    (void)thread;
-    (void)error;
     for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++)
         s->out[place[s->items[i].key >> s->shift & (DIGITS - 1)]++] = s->items[i];
-    return RT_OK;
 }
 
 /* Turns numbers of digits into places: digit by digit, and of each chunk by chunk. False if there is but one
@@ -84,9 +75,9 @@ static bool find_places(Sorter *s, size_t chunks) {
 /* Sorts the items, whose keys have `bits` bits. */
 static RtStatus sort(Sorter *s, uint32_t bits, size_t chunks, int threads) {
     for (s->shift = 0; s->shift < bits; s->shift += DIGIT_BITS) {
-        RT_TRY(rt_parallel_for(chunks, threads, count_digits, s, NULL));
+        RT_TRY(rt_parallel_each(chunks, threads, count_digits, s, NULL));
         if (!find_places(s, chunks)) continue;
-        RT_TRY(rt_parallel_for(chunks, threads, move_items, s, NULL));
+        RT_TRY(rt_parallel_each(chunks, threads, move_items, s, NULL));
         RtKeyed *kept = s->items;
         s->items = s->out;
         s->out = kept;
@@ -121,24 +112,21 @@ static uint32_t ascending_bits(float x) {
     return bits & UINT32_C(0x80000000) ? ~bits : bits | UINT32_C(0x80000000);
 }
 
-static RtStatus make_keys(void *context, size_t chunk, int thread, RtError *error) {
+static void make_keys(void *context, size_t chunk) {
     Sorter *s = context;
-    (void)thread;
-    (void)error;
     for (uint32_t i = chunk_begin(s, chunk); i < chunk_end(s, chunk); i++) {
         RtVec3 center = rt_box_center(s->boxes[i]);
         uint64_t key =
             s->bits > 0 ? morton_code(center, &s->centers, 1 << s->bits) : ascending_bits(center.at[s->axis]);
         s->items[i] = (RtKeyed){key, i};
     }
-    return RT_OK;
 }
 
 static RtStatus make_order(Sorter *s, size_t chunks, int threads) {
-    RT_TRY(rt_parallel_for(chunks, threads, find_centers, s, NULL));
+    RT_TRY(rt_parallel_each(chunks, threads, find_centers, s, NULL));
     s->centers = RT_EMPTY_BOX;
     for (size_t c = 0; c < chunks; c++) s->centers = rt_box_union(s->centers, s->centers_of[c]);
-    RT_TRY(rt_parallel_for(chunks, threads, make_keys, s, NULL));
+    RT_TRY(rt_parallel_each(chunks, threads, make_keys, s, NULL));
     return sort(s, s->bits > 0 ? 3 * s->bits : 32, chunks, threads);
 }
 

@@ -78,11 +78,9 @@ static inline __attribute__((always_inline)) void measure(const Rounds *r, uint3
     }
 }
 
-static RtStatus find_nearest(void *context, size_t chunk, int thread, RtError *error) {
+static void find_nearest(void *context, size_t chunk) {
     const Rounds *r = context;
     uint32_t begin = chunk_begin(chunk), end = chunk_end(r, chunk);
-    (void)thread;
-    (void)error;
     for (uint32_t i = begin; i < end; i++) {
         r->distance[i] = INFINITY;
         r->nearest[i] = UINT32_MAX;
@@ -98,7 +96,6 @@ static RtStatus find_nearest(void *context, size_t chunk, int thread, RtError *e
             measure(r, i, end, last, true, false);
         }
     }
-    return RT_OK;
 }
 
 static bool is_mutual(const uint32_t *nearest, uint32_t i) {
@@ -113,26 +110,21 @@ static void pair_more(uint32_t *nearest, uint32_t count) {
     }
 }
 
-static RtStatus count_left(void *context, size_t chunk, int thread, RtError *error) {
+static void count_left(void *context, size_t chunk) {
     const Rounds *r = context;
     Left left = {0, 0};
-    (void)thread;
-    (void)error;
     for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
         bool mutual = is_mutual(r->nearest, i), first = r->nearest[i] > i;
         left.clusters += !mutual || first;
         left.unions += mutual && first;
     }
     r->left[chunk] = left;
-    return RT_OK;
 }
 
-static RtStatus unite_pairs(void *context, size_t chunk, int thread, RtError *error) {
+static void unite_pairs(void *context, size_t chunk) {
     const Rounds *r = context;
     Cluster *to = r->next + r->left[chunk].clusters;
     uint32_t node = r->tree->used + r->left[chunk].unions;
-    (void)thread;
-    (void)error;
     for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
         uint32_t other = r->nearest[i];
         bool mutual = is_mutual(r->nearest, i);
@@ -145,21 +137,20 @@ static RtStatus unite_pairs(void *context, size_t chunk, int thread, RtError *er
         }
         to++;
     }
-    return RT_OK;
 }
 
 static RtStatus run_round(Rounds *r, uint32_t round, int threads, RtError *error) {
     size_t chunks = (r->count + CHUNK - 1) / CHUNK;
-    RT_TRY(rt_parallel_for(chunks, threads, find_nearest, r, error));
+    RT_TRY(rt_parallel_each(chunks, threads, find_nearest, r, error));
     if (round >= PATIENCE) pair_more(r->nearest, r->count);
-    RT_TRY(rt_parallel_for(chunks, threads, count_left, r, error));
+    RT_TRY(rt_parallel_each(chunks, threads, count_left, r, error));
     Left sum = {0, 0};
     for (size_t c = 0; c < chunks; c++) {
         Left left = r->left[c];
         r->left[c] = sum;
         sum = (Left){sum.clusters + left.clusters, sum.unions + left.unions};
     }
-    RT_TRY(rt_parallel_for(chunks, threads, unite_pairs, r, error));
+    RT_TRY(rt_parallel_each(chunks, threads, unite_pairs, r, error));
     Cluster *kept = r->row;
     r->row = r->next;
     r->next = kept;
@@ -176,24 +167,21 @@ typedef struct Start {
     const RtBox *boxes;
 } Start;
 
-static RtStatus set_leaves(void *context, size_t chunk, int thread, RtError *error) {
+static void set_leaves(void *context, size_t chunk) {
     const Start *start = context;
     const Rounds *r = start->rounds;
-    (void)thread;
-    (void)error;
     for (uint32_t i = chunk_begin(chunk); i < chunk_end(r, chunk); i++) {
         uint32_t id = start->order[i].id;
         rt_tree_set_leaf(r->tree, i, start->boxes[id], id);
         r->row[i] = (Cluster){rt_box4_load(&start->boxes[id]), i};
     }
-    return RT_OK;
 }
 
 static RtStatus run_rounds(Rounds *r, const RtBox *boxes, uint32_t bits, int threads, RtError *error) {
     RtKeyed *order = rt_order_morton(boxes, r->count, bits, threads);
     if (!order) return rt_fail_memory(error, "Morton codes", 2 * (size_t)r->count * sizeof(RtKeyed));
     Start start = {r, order, boxes};
-    RtStatus status = rt_parallel_for((r->count + CHUNK - 1) / CHUNK, threads, set_leaves, &start, error);
+    RtStatus status = rt_parallel_each((r->count + CHUNK - 1) / CHUNK, threads, set_leaves, &start, error);
     rt_free(order);
     r->tree->used = r->count;
     for (uint32_t round = 0; status == RT_OK && r->count > 1; round++)

@@ -137,13 +137,10 @@ static Move find_move(const Optimizer *o, uint32_t node) {
     return s.best;
 }
 
-static RtStatus find_moves(void *context, size_t item, int thread, RtError *error) {
+static void find_moves(void *context, size_t item) {
     const Optimizer *o = context;
-    (void)thread;
-    (void)error;
     uint32_t from = (uint32_t)item * CHUNK, used = o->tree->used;
     for (uint32_t i = from; i < used && i - from < CHUNK; i++) o->moves[i] = find_move(o, i);
-    return RT_OK;
 }
 
 /* ---- the moves ---- */
@@ -227,7 +224,7 @@ static int by_gain(const void *a, const void *b) {
 /* Gives the number of moves made. */
 static RtStatus run_round(Optimizer *o, int threads, uint32_t *made, RtError *error) {
     uint32_t used = o->tree->used, found = 0;
-    RT_TRY(rt_parallel_for((used + CHUNK - 1) / CHUNK, threads, find_moves, o, error));
+    RT_TRY(rt_parallel_each((used + CHUNK - 1) / CHUNK, threads, find_moves, o, error));
     for (uint32_t i = 0; i < used; i++) {
         o->mark[i] = 0;
         if (o->moves[i].target != NONE) o->moves[found++] = o->moves[i];

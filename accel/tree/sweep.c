@@ -7,7 +7,7 @@
  * There are three rows of the same references, each sorted along one axis. Those of a node are one run, at
  * the same place in all three, so that every pass over them reads memory in a row. */
 #include "accel/tree/order.h"
-#include "accel/tree/split.h"
+#include "accel/tree/sah_split.h"
 #include "accel/tree/tree.h"
 #include "core/base/memory.h"
 

@@ -2,7 +2,7 @@
 /* Binary trees of references, and the bound on their depth. */
 #include "accel/tree/tree.h"
 
-#include "accel/tree/split.h"
+#include "accel/tree/sah_split.h"
 #include "core/base/memory.h"
 
 #include <assert.h>

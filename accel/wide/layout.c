@@ -197,7 +197,7 @@ static RtStatus lay_out(Layout *layout, RtTree *tree, const RtGeometry *geometry
     RtWideTree *self = layout->self;
     RT_TRY(rt_wide_plan_init(&layout->plan, tree, geometry, how, error));
     self->bytes = (uint64_t)layout->plan.units * RT_WIDE_UNIT;
-    self->divided = tree->divided;
+    self->divided = tree->split_refs;
     if (self->bytes > how->limit || self->bytes > RT_WIDE_MAX_BYTES)
         return refuse(self->bytes, how->limit, error);
     self->arena = how->huge_pages ? rt_alloc_unset(self->bytes, 1) : rt_alloc(self->bytes, 1);

@@ -14,7 +14,7 @@
  * with its cost, so that every subtree has its place before any is there. */
 #include "accel/wide/plan.h"
 
-#include "accel/tree/fold.h"
+#include "accel/tree/reduction.h"
 #include "core/base/memory.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static uint32_t blocks_of(uint32_t count) {
 void rt_wide_collect(const RtTree *tree, uint32_t index, uint32_t *ids, uint32_t *count) {
     const uint32_t *child = tree->nodes[index].child;
     if (rt_tree_is_leaf(tree, index)) {
-        for (uint32_t i = 0; i < *count && tree->divided; i++) {
+        for (uint32_t i = 0; i < *count && tree->split_refs; i++) {
             if (ids[i] == child[1]) return;
         }
         ids[(*count)++] = child[1];
@@ -127,7 +127,7 @@ static void consider_leaf(const RtWidePlan *self, uint32_t index, float area, We
                           RtWideChoice *chosen) {
     uint32_t count = own->references;
     if (count > self->how->leaf_limit) return;
-    if (self->tree->divided) {
+    if (self->tree->split_refs) {
         uint32_t ids[RT_WIDE_MAX_LEAF];
         count = 0;
         rt_wide_collect(self->tree, index, ids, &count);
@@ -213,8 +213,8 @@ static void weigh_node(void *context, uint32_t index, const void *const sides[2]
 
 RtStatus rt_wide_plan_init(RtWidePlan *self, RtTree *tree, const RtGeometry *geometry,
                            const RtWideLayout *how, RtError *error) {
-    RtFold fold = {sizeof(Weight), weigh_part, weigh_node, self};
-    RtFoldParts parts;
+    RtReduction reduction = {sizeof(Weight), weigh_part, weigh_node, self};
+    RtReducedParts parts;
     Weight whole;
     *self = (RtWidePlan){.tree = tree,
                          .geometry = geometry,
@@ -224,8 +224,8 @@ RtStatus rt_wide_plan_init(RtWidePlan *self, RtTree *tree, const RtGeometry *geo
                          .choices = rt_alloc_unset(tree->used, sizeof(RtWideChoice))};
     if (!self->choices)
         return rt_fail_memory(error, "the plan of a hierarchy", tree->used * sizeof(RtWideChoice));
-    RtStatus status = rt_tree_fold(tree, &fold, how->threads, &parts, &whole, error);
-    rt_fold_parts_clear(&parts);
+    RtStatus status = rt_tree_reduce(tree, &reduction, how->threads, &parts, &whole, error);
+    rt_reduced_parts_clear(&parts);
     if (status != RT_OK) return status;
     self->units = whole.units[0] + (rt_wide_becomes_leaf(self, tree->root) ? RT_WIDE_NODE_UNITS : 0);
     return RT_OK;

@@ -66,7 +66,7 @@ static bool flatten(const RtWideTree *self, RtHierarchy *to) {
     *to = (RtHierarchy){.width = RT_WIDE,
                         .leaf_limit = RT_WIDE_MAX_LEAF,
                         .traversal_cost = 1,
-                        .divided = self->divided,
+                        .split_refs = self->divided,
                         .nodes = rt_alloc(sizes.nodes, sizeof(RtNode)),
                         .ids = rt_alloc(sizes.ids, sizeof(uint32_t)),
                         .node_count = 1};

@@ -14,7 +14,7 @@
  * triangle of a leaf, which are tested at once. Counts are those of rays alone, the same for all instruction
  * sets and any number of rays in flight. */
 #include "accel/wide/wide.h"
-#include "accel/tree/recipe.h"
+#include "accel/tree/tree_build.h"
 
 #include "core/base/memory.h"
 
@@ -65,18 +65,18 @@ static void destroy(RtAccel *accel) {
     rt_free(self);
 }
 
-static RtTreeRecipe recipe_of(const RtBuild *what, RtTreeMethod method) {
+static RtTreeOptions options_of(const RtBuild *what, RtTreeMethod method) {
     const RtValue *values = what->values;
-    return (RtTreeRecipe){.method = method,
-                          .bits = MORTON_BITS,
-                          .radius = PLOC_RADIUS,
-                          .spatial = {.bins = (int)values[PARAM_BINS].i,
-                                      .alpha = values[PARAM_ALPHA].f,
-                                      .budget = values[PARAM_BUDGET].f,
-                                      .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
-                                      .traversal = 1,
-                                      .limit = what->limit},
-                          .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
+    return (RtTreeOptions){.method = method,
+                           .bits = MORTON_BITS,
+                           .radius = PLOC_RADIUS,
+                           .spatial = {.bins = (int)values[PARAM_BINS].i,
+                                       .alpha = values[PARAM_ALPHA].f,
+                                       .budget = values[PARAM_BUDGET].f,
+                                       .leaf = (uint32_t)values[PARAM_MAX_LEAF_SIZE].i,
+                                       .traversal = 1,
+                                       .limit = what->limit},
+                           .reinsertion = (uint32_t)values[PARAM_REINSERTION].i};
 }
 
 static RtStatus fill(RtWideTree *self, const RtBuild *what, RtTreeMethod method, RtError *error) {
@@ -87,10 +87,10 @@ static RtStatus fill(RtWideTree *self, const RtBuild *what, RtTreeMethod method,
                         .huge_pages = values[PARAM_HUGE_PAGES].flag,
                         .threads = what->threads,
                         .limit = what->limit};
-    RtTreeRecipe recipe = recipe_of(what, method);
+    RtTreeOptions options = options_of(what, method);
     RtTree tree;
     if (geometry->object_count == 0) return RT_OK;
-    RT_TRY(rt_tree_make(&tree, geometry, &recipe, what->threads, error));
+    RT_TRY(rt_tree_build(&tree, geometry, &options, what->threads, error));
     RtStatus status = rt_wide_lay_out(self, &tree, geometry, &how, error);
     rt_tree_clear(&tree);
     return status;

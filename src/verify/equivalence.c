@@ -39,7 +39,7 @@ typedef struct Answers {
                         * recognise by address */
 } Answers;
 
-_Static_assert(sizeof(Answers) <= RT_AWAY_BYTES, "it fits");
+_Static_assert(sizeof(Answers) <= RT_REMOTE_BYTES, "it fits");
 
 /* One thread's memory. It has its own copy of the plan, because a plugin's process may have overwritten
  * the one in `answers`. */
@@ -131,9 +131,9 @@ static void answer(RtQuery *query, const Plan *plan, const RtRay *rays, Answers 
         for (size_t first = 0; first < plan->count; first += stream) {
             size_t n = plan->count - first < stream ? plan->count - first : stream;
             rt_nearest(query, rays + first, n, answers->hits[w] + first, tallies);
-            rt_remote_beat();
+            rt_remote_progress();
             rt_occluded(query, rays + first, n, answers->blocked[w] + first, tallies);
-            rt_remote_beat();
+            rt_remote_progress();
         }
     }
 }
@@ -142,7 +142,7 @@ static void answer(RtQuery *query, const Plan *plan, const RtRay *rays, Answers 
 static void recount(RtQuery *query, const Plan *plan, const RtRay *rays, Answers *answers) {
     for (int i = 0; i < 2; i++) {
         rt_query_begin(query);
-        rt_remote_beat();
+        rt_remote_progress();
         memset(answers->recounts[i], 0, sizeof answers->recounts[i]);
         rt_nearest(query, rays, plan->count, answers->hits[plan->mode_count - 1], answers->recounts[i]);
     }

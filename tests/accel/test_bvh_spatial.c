@@ -34,7 +34,7 @@ static RtScene make_diagonal(void) {
 RT_TEST(a_long_diagonal_triangle_is_in_two_leaves) {
     RtScene scene = make_diagonal();
     RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial");
-    assert_true(bvh->hierarchy.divided);
+    assert_true(bvh->hierarchy.split_refs);
     assert_int_equal(bvh->hierarchy.id_count, 10);
     uint32_t leaves = 0;
     for (uint32_t i = 0; i < bvh->hierarchy.id_count; i++) leaves += bvh->hierarchy.ids[i] == 0;
@@ -104,7 +104,7 @@ RT_TEST(without_budget_or_overlap_it_is_the_binned_tree) {
     for (int i = 0; i < 2; i++) {
         RtBvh *bvh = make_bvh(&scene, specs[i]);
         const RtHierarchy *a = &binned->hierarchy, *b = &bvh->hierarchy;
-        assert_false(b->divided);
+        assert_false(b->split_refs);
         assert_int_equal(a->node_count, b->node_count);
         assert_memory_equal(a->nodes, b->nodes, a->node_count * sizeof(RtNode));
         assert_memory_equal(a->ids, b->ids, a->id_count * sizeof(uint32_t));
@@ -118,7 +118,7 @@ RT_TEST(validate_misses_a_part_of_a_divided_object) {
     RtScene scene = make_slivers(200, 3, 1, 0);
     RtBvh *bvh = make_bvh(&scene, "bvh:build=spatial,max_leaf_size=4");
     RtHierarchy *hierarchy = &bvh->hierarchy;
-    assert_true(hierarchy->divided);
+    assert_true(hierarchy->split_refs);
     uint32_t tried = 0;
     for (uint32_t i = 0; i < hierarchy->node_count; i++) {
         RtNode *node = &hierarchy->nodes[i], kept = *node;
@@ -210,12 +210,12 @@ RT_TEST(the_tree_is_the_same_bit_for_bit_on_any_number_of_threads) {
         .bins = 16, .alpha = 1e-5, .budget = 1.5, .leaf = 8, .traversal = 1, .limit = UINT64_MAX};
     RtTree one, other;
     assert_ok(rt_tree_spatial(&one, &scene.geometry, &how, 1, error));
-    assert_true(one.divided);
+    assert_true(one.split_refs);
     assert_tree(&one);
     for (int threads = 2; threads <= 5; threads++) {
         assert_ok(rt_tree_spatial(&other, &scene.geometry, &how, threads, error));
         assert_int_equal(one.used, other.used);
-        assert_true(other.divided);
+        assert_true(other.split_refs);
         assert_memory_equal(one.nodes, other.nodes, one.used * sizeof(RtTreeNode));
         rt_tree_clear(&other);
     }

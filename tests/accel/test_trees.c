@@ -3,7 +3,7 @@
 #include "tree_testing.h"
 
 #include "accel/tree/neighbours.h"
-#include "accel/tree/split.h"
+#include "accel/tree/sah_split.h"
 
 #include <string.h>
 

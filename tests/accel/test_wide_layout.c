@@ -62,7 +62,7 @@ RT_TEST(the_arena_is_the_same_byte_for_byte_on_any_number_of_threads) {
         assert_ok(rt_tree_ploc(&tree, g->boxes, g->object_count, 21, 25, 1, error));
         assert_same_on_any_threads(&scene, &tree, 8);
         assert_ok(rt_tree_spatial(&tree, g, &how, 1, error));
-        assert_true(tree.divided);
+        assert_true(tree.split_refs);
         assert_same_on_any_threads(&scene, &tree, 8);
         rt_scene_clear(&scene);
     }

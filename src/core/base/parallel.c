@@ -101,6 +101,22 @@ RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, 
     return pool.status;
 }
 
+typedef struct SureJob {
+    RtSureWork work;
+    void *context;
+} SureJob;
+
+static RtStatus run_sure(void *context, size_t item, int thread, RtError *error) {
+    const SureJob *job = context;
+    (void)thread, (void)error;
+    job->work(job->context, item);
+    return RT_OK;
+}
+
+RtStatus rt_parallel_each(size_t items, int threads, RtSureWork work, void *context, RtError *error) {
+    return rt_parallel_for(items, threads, run_sure, &(SureJob){work, context}, error);
+}
+
 /* ---- tasks that create tasks ---- */
 
 struct RtTasks {

@@ -18,6 +18,10 @@ int rt_processor_count(void);
 typedef RtStatus (*RtWork)(void *context, size_t item, int thread, RtError *error);
 RtStatus rt_parallel_for(size_t items, int threads, RtWork work, void *context, RtError *error);
 
+/* The same for work that cannot fail: only starting the threads can. */
+typedef void (*RtSureWork)(void *context, size_t item);
+RtStatus rt_parallel_each(size_t items, int threads, RtSureWork work, void *context, RtError *error);
+
 /* Tasks that create tasks: values of one size, RT_MAX_TASK_BYTES at most, processed oldest first. */
 #define RT_MAX_TASK_BYTES 64
 typedef struct RtTasks RtTasks;

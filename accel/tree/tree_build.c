@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "accel/tree/tree_build.h"
+
+static RtStatus make(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                     RtError *error) {
+    const RtBox *boxes = geometry->boxes;
+    uint32_t count = geometry->object_count;
+    switch (options->method) {
+    case RT_TREE_BINNED: break;
+    case RT_TREE_SWEEP: return rt_tree_sweep(tree, boxes, count, error);
+    case RT_TREE_LBVH: return rt_tree_lbvh(tree, boxes, count, options->bits, threads, error);
+    case RT_TREE_PLOC:
+        return rt_tree_ploc(tree, boxes, count, options->bits, options->radius, threads, error);
+    case RT_TREE_SPATIAL: return rt_tree_spatial(tree, geometry, &options->spatial, threads, error);
+    }
+    return rt_tree_topdown(tree, boxes, count, options->spatial.bins, threads, error);
+}
+
+RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error) {
+    RT_TRY(make(tree, geometry, options, threads, error));
+    RtStatus status = rt_tree_reinsert(tree, options->reinsertion, threads, error);
+    if (status != RT_OK) rt_tree_clear(tree);
+    return status;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Building a binary tree as parameters say: by one of the methods of tree.h, and reinsertion. */
+#ifndef RT_ACCEL_TREE_TREE_BUILD_H
+#define RT_ACCEL_TREE_TREE_BUILD_H
+
+#include "accel/tree/tree.h"
+
+/* In the order of RT_TREE_METHODS, the choices of a parameter. */
+#define RT_TREE_METHODS "binned|sweep|lbvh|ploc|spatial"
+typedef enum RtTreeMethod {
+    RT_TREE_BINNED,
+    RT_TREE_SWEEP,
+    RT_TREE_LBVH,
+    RT_TREE_PLOC,
+    RT_TREE_SPATIAL
+} RtTreeMethod;
+
+typedef struct RtTreeOptions {
+    RtTreeMethod method;
+    uint32_t bits;        /* lbvh, ploc: of a Morton code along each axis */
+    uint32_t radius;      /* ploc: neighbours searched on either side */
+    RtSpatial spatial;    /* spatial; its bins also apply to binned */
+    uint32_t reinsertion; /* most rounds */
+} RtTreeOptions;
+
+/* Builds a complete tree of all objects, at least 1; the same on any number of `threads` (0 = all
+ * processors). On failure nothing is left behind. */
+RtStatus rt_tree_build(RtTree *tree, const RtGeometry *geometry, const RtTreeOptions *options, int threads,
+                       RtError *error);
+
+#endif
